@@ -1,1 +1,22 @@
-//! design
+//! What a study is: objects, configurations, comparisons and groups, and the records its stages exchange.
+//!
+//! A study is written down once, in a TOML file ([`config`]), read and checked before any work starts
+//! ([`Study::load`]), and from then on passed by value. The stages never call each other: they hand over the
+//! plain records of [`record`] and [`machine`], so statistics build without geometry.
+//!
+//! Names: a *method* is an arrangement with a clustering (`bi`: body-centred, integrated); a *configuration* is a
+//! method applied to an object (`ss_bi`); a *comparison* shows two configurations of one object side by side; a
+//! *comparison group* collects the comparisons whose methods are all among its members.
+
+mod check;
+pub mod code_names;
+pub mod config;
+pub mod machine;
+mod method;
+pub mod published;
+pub mod record;
+mod study;
+
+pub use check::ConfigError;
+pub use method::{Arrangement, Clustering, ConfigurationId, Method, ParseIdError};
+pub use study::{Comparison, Configuration, Group, Study};

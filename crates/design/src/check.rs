@@ -1,0 +1,142 @@
+//! What may be wrong with a study file, and the checks that say so.
+
+use std::path::{Path, PathBuf};
+
+/// Why a study file is refused. Every variant names the file, and the key where there is one.
+#[derive(Debug, thiserror::Error)]
+pub enum ConfigError {
+    /// The file cannot be read.
+    #[error("{}: cannot be read: {source}", file.display())]
+    Read {
+        /// The study file.
+        file: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// Not TOML, a key that does not exist or is missing, or a value of the wrong kind.
+    #[error("{}: {message}", file.display())]
+    Syntax {
+        /// The study file.
+        file: PathBuf,
+        /// Line, column and key.
+        message: String,
+    },
+    /// A value outside its range, or at odds with another.
+    #[error("{}: {key} = {value}: {limit}", file.display())]
+    Value {
+        /// The study file.
+        file: PathBuf,
+        /// The key, as in `objects[1].isovalue`.
+        key: String,
+        /// What it says.
+        value: String,
+        /// What it may say.
+        limit: String,
+    },
+    /// A file that the study names is not there.
+    #[error("{}: {key} names {}: no such file{hint}", file.display(), path.display())]
+    MissingFile {
+        /// The study file.
+        file: PathBuf,
+        /// The key.
+        key: String,
+        /// The path, resolved against the study file's folder.
+        path: PathBuf,
+        /// What to do, or empty.
+        hint: String,
+    },
+    /// A table of published numbers does not parse.
+    #[error("{}: {message}", file.display())]
+    Table {
+        /// The table.
+        file: PathBuf,
+        /// Row and column.
+        message: String,
+    },
+}
+
+/// Checks values of one file and builds errors that name it.
+pub(crate) struct Checker<'a> {
+    pub(crate) file: &'a Path,
+}
+
+impl Checker<'_> {
+    pub(crate) fn refuse<T>(
+        &self,
+        key: impl Into<String>,
+        value: impl ToString,
+        limit: impl Into<String>,
+    ) -> Result<T, ConfigError> {
+        Err(ConfigError::Value {
+            file: self.file.into(),
+            key: key.into(),
+            value: value.to_string(),
+            limit: limit.into(),
+        })
+    }
+
+    /// A finite number in `low..=high`.
+    pub(crate) fn number(&self, key: &str, value: f64, low: f64, high: f64) -> Result<(), ConfigError> {
+        if !value.is_finite() {
+            return self.refuse(key, value, "must be a finite number");
+        }
+        if value < low || value > high {
+            return self.refuse(key, value, format!("must lie between {low} and {high}"));
+        }
+        Ok(())
+    }
+
+    /// A finite number above zero, up to `high`.
+    pub(crate) fn positive(&self, key: &str, value: f64, high: f64) -> Result<(), ConfigError> {
+        if !value.is_finite() {
+            return self.refuse(key, value, "must be a finite number");
+        }
+        if value <= 0.0 || value > high {
+            return self.refuse(key, value, format!("must be above 0 and at most {high}"));
+        }
+        Ok(())
+    }
+
+    pub(crate) fn numbers(&self, key: &str, values: &[f64], low: f64, high: f64) -> Result<(), ConfigError> {
+        values
+            .iter()
+            .enumerate()
+            .try_for_each(|(i, &value)| self.number(&format!("{key}[{i}]"), value, low, high))
+    }
+
+    /// A whole number in `low..=high`.
+    pub(crate) fn count(&self, key: &str, value: u32, low: u32, high: u32) -> Result<(), ConfigError> {
+        if value < low || value > high {
+            return self.refuse(key, value, format!("must lie between {low} and {high}"));
+        }
+        Ok(())
+    }
+
+    /// No two of the values are the same.
+    pub(crate) fn distinct(
+        &self,
+        key: impl Fn(usize) -> String,
+        values: &[String],
+    ) -> Result<(), ConfigError> {
+        for (i, value) in values.iter().enumerate() {
+            if let Some(j) = values[..i].iter().position(|earlier| earlier == value) {
+                return self.refuse(key(i), value, format!("already used by {}", key(j)));
+            }
+        }
+        Ok(())
+    }
+
+    /// A path as written, resolved against the study file's folder; the file must be there.
+    pub(crate) fn existing(&self, key: &str, written: &str, hint: &str) -> Result<PathBuf, ConfigError> {
+        let path = self.resolve(written);
+        if path.is_file() {
+            Ok(path)
+        } else {
+            Err(ConfigError::MissingFile { file: self.file.into(), key: key.into(), path, hint: hint.into() })
+        }
+    }
+
+    pub(crate) fn resolve(&self, written: &str) -> PathBuf {
+        self.file.parent().unwrap_or(Path::new("")).join(written)
+    }
+}

@@ -1,0 +1,304 @@
+//! The study file, key by key. Every key here is documented in `configs/paper.toml` with unit and range.
+//!
+//! These types mirror the file and nothing else: paths are as written (relative to the file's own folder), numbers
+//! are unchecked. [`crate::Study::load`] turns them into something to work from.
+
+use crate::method::{Arrangement, Clustering, ConfigurationId, Method};
+use serde::{Deserialize, Serialize};
+
+/// The whole study file.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StudyFile {
+    /// Version of this layout; 1.
+    pub schema: u32,
+    /// What the study is called, and its seed.
+    pub study: StudySection,
+    /// What a run may use.
+    pub limits: LimitsSection,
+    /// What holds for every extraction.
+    pub extraction: ExtractionSection,
+    /// The objects whose surfaces are extracted.
+    pub objects: Vec<ObjectSection>,
+    /// Arrangements to cross with the clusterings.
+    pub arrangements: Vec<Arrangement>,
+    /// Clusterings to cross with the arrangements.
+    pub clusterings: Vec<Clustering>,
+    /// How the animations are taken.
+    pub turntable: TurntableSection,
+    /// How surfaces are coloured.
+    pub shading: ShadingSection,
+    /// How stimuli are made from turntables.
+    pub stimuli: StimuliSection,
+    /// Still pictures of single configurations.
+    #[serde(default)]
+    pub stills: Vec<StillSection>,
+    /// What is timed, and how often.
+    pub benchmark: BenchmarkSection,
+    /// The questions: what is shown on which side.
+    pub comparisons: Vec<ComparisonSection>,
+    /// Comparison groups over which preference factors are computed.
+    pub groups: Vec<GroupSection>,
+    /// The answers to analyse; leave out for a study that has none yet.
+    pub responses: Option<ResponsesSection>,
+    /// Published numbers to compare with; leave out for a new study.
+    pub published: Option<PublishedSection>,
+}
+
+/// What the study is called, and its seed.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StudySection {
+    /// Folder name under `results/`: lower-case letters, digits and hyphens.
+    pub id: String,
+    /// One line for headings.
+    pub title: String,
+    /// Seed of code names and of the benchmark's order.
+    pub seed: u64,
+}
+
+/// What a run may use.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LimitsSection {
+    /// Most memory that one extraction may need, in GiB.
+    pub memory_gib: f64,
+}
+
+/// Where lattice positions come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Positions {
+    /// Computed from indices.
+    Indexed,
+    /// Summed up in single precision, as the original program does.
+    Accumulated,
+}
+
+/// What holds for every extraction.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExtractionSection {
+    /// Where lattice positions come from.
+    pub positions: Positions,
+    /// With accumulated positions: into how many runs of layers the z axis is cut, each starting its sum anew.
+    pub accumulation_chunks: u32,
+}
+
+/// One object of the study.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectSection {
+    /// Short id, the first half of a configuration's id.
+    pub id: String,
+    /// Name in tables and figures.
+    pub name: String,
+    /// The scalar field.
+    pub field: FieldSection,
+    /// Value at which the surface lies; inside is above it.
+    pub isovalue: f64,
+    /// Smallest corner of the sampled volume.
+    pub min: [f64; 3],
+    /// Largest corner of the sampled volume.
+    pub max: [f64; 3],
+    /// Cube edge in the benchmark.
+    pub benchmark_spacing: f64,
+    /// Cube edge of the meshes in the animations.
+    pub stimulus_spacing: f64,
+    /// The camera for this object.
+    pub camera: CameraSection,
+}
+
+/// A scalar field, positive inside.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum FieldSection {
+    /// Radius minus distance from the origin.
+    Sphere {
+        /// Radius.
+        radius: f64,
+    },
+    /// The paper's fractal-noise asteroid; it has no parameters.
+    Asteroid,
+    /// Signed distance to a closed triangle mesh: the first of the sources that is there.
+    Mesh {
+        /// Files to try in turn.
+        sources: Vec<MeshSourceSection>,
+    },
+}
+
+/// A mesh file and how it is placed in the scene: `scale * axes(p) + offset`.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshSourceSection {
+    /// OBJ or PLY file.
+    pub file: String,
+    /// The file's SHA-256 in hexadecimal; any other content is refused.
+    pub sha256: String,
+    /// Which file axis becomes x, y and z, with sign: `["x", "-z", "y"]`.
+    pub axes: [String; 3],
+    /// Scale factor.
+    pub scale: f64,
+    /// Added after scaling.
+    pub offset: [f64; 3],
+}
+
+/// The camera for one object.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraSection {
+    /// The paper's distance parameter D; the eye is about 1.323 D from the origin.
+    pub distance: f64,
+    /// Vertical field of view in radians.
+    pub vertical_fov_rad: f64,
+}
+
+/// How the animations are taken.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TurntableSection {
+    /// Frame width in pixels.
+    pub width: u32,
+    /// Frame height in pixels.
+    pub height: u32,
+    /// Frames a turn.
+    pub frames: u32,
+    /// Nominal seconds a turn; a frame's delay is rounded down to whole centiseconds.
+    pub duration_s: f64,
+    /// The paper's elevation parameter u in radians.
+    pub elevation_rad: f64,
+    /// Near plane.
+    pub near: f64,
+    /// Far plane.
+    pub far: f64,
+    /// Samples along each side of a pixel.
+    pub supersampling: u32,
+}
+
+/// How surfaces are coloured; colours are red, green, blue from 0 to 1.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ShadingSection {
+    /// Direction in which light travels, not normalised.
+    pub light: [f64; 3],
+    /// Colour towards the light.
+    pub lit: [f64; 3],
+    /// Colour away from the light.
+    pub shade: [f64; 3],
+    /// Colour of the highlight.
+    pub highlight: [f64; 3],
+    /// Colour behind the object.
+    pub background: [f64; 3],
+}
+
+/// How stimuli are made from turntables.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StimuliSection {
+    /// Whole-number enlargement of a pair in the file, nearest neighbour.
+    pub pair_scale: u32,
+}
+
+/// How a still shows the surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Look {
+    /// Interpolated vertex normals.
+    Smooth,
+    /// One normal a triangle.
+    Flat,
+    /// Triangle edges only.
+    Wireframe,
+    /// Smooth with triangle edges on top.
+    SmoothWireframe,
+}
+
+impl Look {
+    /// The name used in captions.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Smooth => "smooth",
+            Self::Flat => "flat",
+            Self::Wireframe => "wireframe",
+            Self::SmoothWireframe => "smooth + wireframe",
+        }
+    }
+}
+
+/// A figure of still pictures: one configuration in several looks.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StillSection {
+    /// File name without extension.
+    pub id: String,
+    /// Caption.
+    pub caption: String,
+    /// What is shown.
+    pub configuration: ConfigurationId,
+    /// Cube edge.
+    pub spacing: f64,
+    /// The looks, left to right.
+    pub looks: Vec<Look>,
+}
+
+/// What is timed, and how often.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BenchmarkSection {
+    /// Rounds run and thrown away before measuring.
+    pub warmup: u32,
+    /// Rounds of `isostudy bench`.
+    pub iterations: u32,
+    /// Rounds of the short plan that `isostudy study` takes.
+    pub short_iterations: u32,
+    /// Threads in the sampling stage; 0 takes every core.
+    pub threads: u32,
+    /// TOML file that describes the CPU the numbers are meant for.
+    pub target: String,
+}
+
+/// One question: what is shown on which side.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ComparisonSection {
+    /// The question's id, unique; the column in the responses.
+    pub question: String,
+    /// Shown on the left.
+    pub left: ConfigurationId,
+    /// Shown on the right.
+    pub right: ConfigurationId,
+}
+
+/// A comparison group.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GroupSection {
+    /// Short id, unique.
+    pub id: String,
+    /// Name in tables and figures.
+    pub label: String,
+    /// Methods whose comparisons among each other make up the group.
+    pub members: Vec<Method>,
+}
+
+/// The answers to analyse.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ResponsesSection {
+    /// CSV file: one row a respondent, one column a question, cells `L`, `NP` or `R`.
+    pub file: String,
+}
+
+/// Published numbers to compare with.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PublishedSection {
+    /// Where they were published.
+    pub source: String,
+    /// Benchmark rows; columns as in [`crate::published::BenchmarkRow`].
+    pub benchmark: Option<String>,
+    /// Preference factors; columns as in [`crate::published::PreferenceCell`].
+    pub preferences: Option<String>,
+    /// Claims in the text; columns as in [`crate::published::Claim`].
+    pub claims: Option<String>,
+}

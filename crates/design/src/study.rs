@@ -1,0 +1,515 @@
+//! A study, read from its file, checked, and ready to work from.
+
+use crate::check::{Checker, ConfigError};
+use crate::config::{FieldSection, ObjectSection, StudyFile};
+use crate::machine::CpuProfile;
+use crate::method::{ConfigurationId, Method};
+use crate::published::{BenchmarkRow, Claim, PreferenceCell};
+use serde::de::DeserializeOwned;
+use std::path::{Path, PathBuf};
+
+/// A study: its file, checked, with everything derived from it.
+#[derive(Debug, Clone)]
+pub struct Study {
+    /// The file it was read from.
+    pub path: PathBuf,
+    /// What the file says, checked.
+    pub file: StudyFile,
+    /// Every object with every arrangement and clustering, in the file's order.
+    pub configurations: Vec<Configuration>,
+    /// The questions, in the file's order.
+    pub comparisons: Vec<Comparison>,
+    /// The comparison groups, in the file's order.
+    pub groups: Vec<Group>,
+    /// The CPU the benchmark is meant for.
+    pub target: CpuProfile,
+    /// The responses, resolved; the file is there.
+    pub responses: Option<PathBuf>,
+    /// Published numbers; empty for a new study.
+    pub published: Published,
+}
+
+/// One object with one method.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Configuration {
+    /// Its id.
+    pub id: ConfigurationId,
+    /// Index of its object in `file.objects`.
+    pub object: usize,
+}
+
+/// One question: two configurations of one object, side by side.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Comparison {
+    /// The question's id.
+    pub question: String,
+    /// Index of the object in `file.objects`.
+    pub object: usize,
+    /// Index in `groups`; every comparison is in exactly one.
+    pub group: usize,
+    /// Shown on the left.
+    pub left: ConfigurationId,
+    /// Shown on the right.
+    pub right: ConfigurationId,
+}
+
+/// A comparison group: the comparisons whose methods are both members.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Group {
+    /// Short id.
+    pub id: String,
+    /// Name in tables and figures.
+    pub label: String,
+    /// The methods compared.
+    pub members: Vec<Method>,
+    /// Indices into `comparisons`.
+    pub comparisons: Vec<usize>,
+}
+
+/// Published numbers to compare with.
+#[derive(Debug, Clone, Default)]
+pub struct Published {
+    /// Where they were published.
+    pub source: String,
+    /// Benchmark rows.
+    pub benchmark: Vec<BenchmarkRow>,
+    /// Preference factors.
+    pub preferences: Vec<PreferenceCell>,
+    /// Claims in the text.
+    pub claims: Vec<Claim>,
+}
+
+const FETCH_HINT: &str = "; `make bunny` (scripts/fetch-bunny.sh) fetches the mesh";
+
+impl Study {
+    /// Reads and checks a study file and the tables it names.
+    ///
+    /// Relative paths in the file are taken from the file's own folder.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, naming the file, the key and what is allowed. Nothing has been written then.
+    pub fn load(path: &Path) -> Result<Self, ConfigError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| ConfigError::Read { file: path.into(), source })?;
+        Self::parse(&text, path)
+    }
+
+    /// As [`Study::load`], from text; `path` names it in errors and anchors relative paths.
+    ///
+    /// # Errors
+    /// As for [`Study::load`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, ConfigError> {
+        let file: StudyFile = parse_toml(text, path)?;
+        let checker = Checker { file: path };
+        check_sections(&checker, &file)?;
+        check_objects(&checker, &file.objects)?;
+        let configurations = cross(&file);
+        let mut groups = groups(&checker, &file, &configurations)?;
+        let comparisons = comparisons(&checker, &file, &configurations, &mut groups)?;
+        check_stills(&checker, &file, &configurations)?;
+
+        let target_path = checker.existing("benchmark.target", &file.benchmark.target, "")?;
+        let target_text = std::fs::read_to_string(&target_path)
+            .map_err(|source| ConfigError::Read { file: target_path.clone(), source })?;
+        let target = parse_toml(&target_text, &target_path)?;
+        let responses = match &file.responses {
+            None => None,
+            Some(responses) => Some(checker.existing("responses.file", &responses.file, "")?),
+        };
+        let published = match &file.published {
+            None => Published::default(),
+            Some(section) => Published {
+                source: section.source.clone(),
+                benchmark: published_table(&checker, "published.benchmark", &section.benchmark)?,
+                preferences: published_table(&checker, "published.preferences", &section.preferences)?,
+                claims: published_table(&checker, "published.claims", &section.claims)?,
+            },
+        };
+        Ok(Self {
+            path: path.into(),
+            configurations,
+            comparisons,
+            groups,
+            target,
+            responses,
+            published,
+            file,
+        })
+    }
+
+    /// The object of a configuration.
+    pub fn object(&self, configuration: &Configuration) -> &ObjectSection {
+        &self.file.objects[configuration.object]
+    }
+
+    /// The methods of the study: arrangements crossed with clusterings, in the file's order.
+    pub fn methods(&self) -> Vec<Method> {
+        methods(&self.file)
+    }
+
+    /// A path written in the study file, resolved against the file's folder.
+    pub fn resolve(&self, written: &str) -> PathBuf {
+        Checker { file: &self.path }.resolve(written)
+    }
+
+    /// Code names: one a configuration, then one a comparison, in the study's order.
+    pub fn code_names(&self) -> (Vec<String>, Vec<String>) {
+        let count = self.configurations.len() + self.comparisons.len();
+        let mut names = crate::code_names::draw(self.file.study.seed, count);
+        let pairs = names.split_off(self.configurations.len());
+        (names, pairs)
+    }
+}
+
+fn parse_toml<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ConfigError> {
+    toml::from_str(text).map_err(|error| ConfigError::Syntax {
+        file: path.into(),
+        message: error.to_string().trim_end().to_owned(),
+    })
+}
+
+fn published_table<T: DeserializeOwned>(
+    c: &Checker<'_>,
+    key: &str,
+    written: &Option<String>,
+) -> Result<Vec<T>, ConfigError> {
+    written.as_ref().map_or(Ok(Vec::new()), |written| read_table(&c.existing(key, written, "")?))
+}
+
+fn read_table<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ConfigError> {
+    let table_error =
+        |error: csv::Error| ConfigError::Table { file: path.into(), message: error.to_string() };
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(path).map_err(table_error)?;
+    reader.deserialize().collect::<Result<_, _>>().map_err(table_error)
+}
+
+/// Everything that does not need another section to judge.
+fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigError> {
+    if file.schema != 1 {
+        return c.refuse("schema", file.schema, "this version reads schema 1");
+    }
+    let id = &file.study.id;
+    let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-';
+    if id.is_empty() || id.len() > 64 || !id.bytes().all(plain) {
+        return c.refuse("study.id", id, "must be 1 to 64 lower-case letters, digits or hyphens");
+    }
+    // TOML integers are signed: a larger seed could not be written back.
+    if i64::try_from(file.study.seed).is_err() {
+        return c.refuse("study.seed", file.study.seed, "must be below 2^63");
+    }
+    c.positive("limits.memory_gib", file.limits.memory_gib, 1024.0)?;
+    c.count("extraction.accumulation_chunks", file.extraction.accumulation_chunks, 1, 4096)?;
+
+    let t = &file.turntable;
+    c.count("turntable.width", t.width, 16, 4096)?;
+    c.count("turntable.height", t.height, 16, 4096)?;
+    c.count("turntable.frames", t.frames, 1, 3600)?;
+    c.number("turntable.duration_s", t.duration_s, 0.01, 600.0)?;
+    let delay_cs = (100.0 * t.duration_s / f64::from(t.frames)).floor();
+    if !(1.0..=65535.0).contains(&delay_cs) {
+        return c.refuse(
+            "turntable.duration_s",
+            t.duration_s,
+            format!("gives {delay_cs} centiseconds a frame; a GIF holds 1 to 65535"),
+        );
+    }
+    c.number("turntable.elevation_rad", t.elevation_rad, -1.5, 1.5)?;
+    c.positive("turntable.near", t.near, 1e3)?;
+    c.positive("turntable.far", t.far, 1e9)?;
+    if t.far <= t.near {
+        return c.refuse("turntable.far", t.far, format!("must be above turntable.near = {}", t.near));
+    }
+    c.count("turntable.supersampling", t.supersampling, 1, 4)?;
+
+    let s = &file.shading;
+    c.numbers("shading.light", &s.light, -10.0, 10.0)?;
+    for (key, colour) in [
+        ("shading.lit", &s.lit),
+        ("shading.shade", &s.shade),
+        ("shading.highlight", &s.highlight),
+        ("shading.background", &s.background),
+    ] {
+        c.numbers(key, colour, 0.0, 1.0)?;
+    }
+    c.count("stimuli.pair_scale", file.stimuli.pair_scale, 1, 4)?;
+
+    let b = &file.benchmark;
+    c.count("benchmark.warmup", b.warmup, 0, 10_000)?;
+    c.count("benchmark.iterations", b.iterations, 1, 100_000)?;
+    c.count("benchmark.short_iterations", b.short_iterations, 1, 100_000)?;
+    c.count("benchmark.threads", b.threads, 0, 1024)?;
+    Ok(())
+}
+
+fn check_objects(c: &Checker<'_>, objects: &[ObjectSection]) -> Result<(), ConfigError> {
+    if objects.is_empty() {
+        return c.refuse("objects", "[]", "must list at least one object");
+    }
+    let ids: Vec<String> = objects.iter().map(|o| o.id.clone()).collect();
+    c.distinct(|i| format!("objects[{i}].id"), &ids)?;
+    for (i, object) in objects.iter().enumerate() {
+        let key = |name: &str| format!("objects[{i}].{name}");
+        if object.id.is_empty() || !object.id.bytes().all(|b| b.is_ascii_alphanumeric()) {
+            return c.refuse(key("id"), &object.id, "must be letters and digits");
+        }
+        c.number(&key("isovalue"), object.isovalue, -1e9, 1e9)?;
+        c.numbers(&key("min"), &object.min, -1e6, 1e6)?;
+        c.numbers(&key("max"), &object.max, -1e6, 1e6)?;
+        for axis in 0..3 {
+            if object.max[axis] <= object.min[axis] {
+                let limit = format!("must be above {} = {}", key("min"), object.min[axis]);
+                return c.refuse(format!("{}[{axis}]", key("max")), object.max[axis], limit);
+            }
+        }
+        c.positive(&key("benchmark_spacing"), object.benchmark_spacing, 1e6)?;
+        c.positive(&key("stimulus_spacing"), object.stimulus_spacing, 1e6)?;
+        c.positive(&key("camera.distance"), object.camera.distance, 1e6)?;
+        c.number(&key("camera.vertical_fov_rad"), object.camera.vertical_fov_rad, 0.01, 3.1)?;
+        check_field(c, &key("field"), &object.field)?;
+    }
+    Ok(())
+}
+
+fn check_field(c: &Checker<'_>, key: &str, field: &FieldSection) -> Result<(), ConfigError> {
+    match field {
+        FieldSection::Sphere { radius } => c.positive(&format!("{key}.radius"), *radius, 1e6),
+        FieldSection::Asteroid => Ok(()),
+        FieldSection::Mesh { sources } => {
+            for (i, source) in sources.iter().enumerate() {
+                let key = |name: &str| format!("{key}.sources[{i}].{name}");
+                let mut letters: Vec<&str> =
+                    source.axes.iter().map(|axis| axis.strip_prefix('-').unwrap_or(axis)).collect();
+                letters.sort_unstable();
+                if letters != ["x", "y", "z"] {
+                    let limit = "must name x, y and z once each, with an optional minus";
+                    return c.refuse(key("axes"), format!("{:?}", source.axes), limit);
+                }
+                if source.sha256.len() != 64 || !source.sha256.bytes().all(|b| b.is_ascii_hexdigit()) {
+                    return c.refuse(key("sha256"), &source.sha256, "must be 64 hexadecimal digits");
+                }
+                c.positive(&key("scale"), source.scale, 1e6)?;
+                c.numbers(&key("offset"), &source.offset, -1e6, 1e6)?;
+            }
+            let there = |file: &str| c.resolve(file).is_file();
+            match sources.first() {
+                None => c.refuse(format!("{key}.sources"), "[]", "must list at least one file"),
+                Some(_) if sources.iter().any(|source| there(&source.file)) => Ok(()),
+                Some(first) => {
+                    c.existing(&format!("{key}.sources[0].file"), &first.file, FETCH_HINT).map(|_| ())
+                }
+            }
+        }
+    }
+}
+
+fn methods(file: &StudyFile) -> Vec<Method> {
+    let with =
+        |arrangement| file.clusterings.iter().map(move |&clustering| Method { arrangement, clustering });
+    file.arrangements.iter().copied().flat_map(with).collect()
+}
+
+fn cross(file: &StudyFile) -> Vec<Configuration> {
+    let mut configurations = Vec::new();
+    for (object, section) in file.objects.iter().enumerate() {
+        for method in methods(file) {
+            let id = ConfigurationId { object: section.id.clone(), method };
+            configurations.push(Configuration { id, object });
+        }
+    }
+    configurations
+}
+
+fn groups(
+    c: &Checker<'_>,
+    file: &StudyFile,
+    configurations: &[Configuration],
+) -> Result<Vec<Group>, ConfigError> {
+    let arrangements: Vec<String> = file.arrangements.iter().map(|a| a.label().into()).collect();
+    c.distinct(|i| format!("arrangements[{i}]"), &arrangements)?;
+    let clusterings: Vec<String> = file.clusterings.iter().map(|a| a.label().into()).collect();
+    c.distinct(|i| format!("clusterings[{i}]"), &clusterings)?;
+    if configurations.is_empty() {
+        let limit = "arrangements and clusterings must list at least one each";
+        return c.refuse("arrangements", "[]", limit);
+    }
+    let ids: Vec<String> = file.groups.iter().map(|g| g.id.clone()).collect();
+    c.distinct(|i| format!("groups[{i}].id"), &ids)?;
+    let known = methods(file);
+    for (i, group) in file.groups.iter().enumerate() {
+        let members: Vec<String> = group.members.iter().map(ToString::to_string).collect();
+        c.distinct(|j| format!("groups[{i}].members[{j}]"), &members)?;
+        if members.len() < 2 {
+            return c.refuse(format!("groups[{i}].members"), members.join(", "), "must list at least two");
+        }
+        if let Some(j) = group.members.iter().position(|member| !known.contains(member)) {
+            let limit = "is not among the arrangements and clusterings of this study";
+            return c.refuse(format!("groups[{i}].members[{j}]"), group.members[j], limit);
+        }
+    }
+    let group = |section: &crate::config::GroupSection| Group {
+        id: section.id.clone(),
+        label: section.label.clone(),
+        members: section.members.clone(),
+        comparisons: Vec::new(),
+    };
+    Ok(file.groups.iter().map(group).collect())
+}
+
+fn comparisons(
+    c: &Checker<'_>,
+    file: &StudyFile,
+    configurations: &[Configuration],
+    groups: &mut [Group],
+) -> Result<Vec<Comparison>, ConfigError> {
+    let questions: Vec<String> = file.comparisons.iter().map(|q| q.question.clone()).collect();
+    c.distinct(|i| format!("comparisons[{i}].question"), &questions)?;
+    let mut comparisons = Vec::new();
+    for (i, section) in file.comparisons.iter().enumerate() {
+        let key = |name: &str| format!("comparisons[{i}].{name}");
+        let find = |name: &str, id: &ConfigurationId| match configurations
+            .iter()
+            .find(|configuration| configuration.id == *id)
+        {
+            Some(configuration) => Ok(configuration.object),
+            None => c.refuse(key(name), id, "is not a configuration of this study"),
+        };
+        let object = find("left", &section.left)?;
+        if find("right", &section.right)? != object {
+            let limit = format!("must show the same object as the left side, {}", section.left);
+            return c.refuse(key("right"), &section.right, limit);
+        }
+        if section.left == section.right {
+            return c.refuse(key("right"), &section.right, "must differ from the left side");
+        }
+        let holds = |group: &Group| {
+            group.members.contains(&section.left.method) && group.members.contains(&section.right.method)
+        };
+        let mut held_by = (0..groups.len()).filter(|&g| holds(&groups[g]));
+        let (group, second) = (held_by.next(), held_by.next());
+        let pair = format!("{} against {}", section.left.method, section.right.method);
+        let group = match (group, second) {
+            (Some(group), None) => group,
+            (None, _) => return c.refuse(key("question"), &section.question, format!("no group has {pair}")),
+            (Some(first), Some(second)) => {
+                let limit = format!(
+                    "{pair} is in groups {} and {}; it may be in one",
+                    groups[first].id, groups[second].id
+                );
+                return c.refuse(key("question"), &section.question, limit);
+            }
+        };
+        groups[group].comparisons.push(i);
+        comparisons.push(Comparison {
+            question: section.question.clone(),
+            object,
+            group,
+            left: section.left.clone(),
+            right: section.right.clone(),
+        });
+    }
+    if configurations.len() + comparisons.len() > 4900 {
+        return c.refuse("comparisons", comparisons.len(), "configurations and comparisons: at most 4900");
+    }
+    Ok(comparisons)
+}
+
+fn check_stills(
+    c: &Checker<'_>,
+    file: &StudyFile,
+    configurations: &[Configuration],
+) -> Result<(), ConfigError> {
+    let ids: Vec<String> = file.stills.iter().map(|still| still.id.clone()).collect();
+    c.distinct(|i| format!("stills[{i}].id"), &ids)?;
+    for (i, still) in file.stills.iter().enumerate() {
+        let key = |name: &str| format!("stills[{i}].{name}");
+        let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_';
+        if still.id.is_empty() || !still.id.bytes().all(plain) {
+            return c.refuse(key("id"), &still.id, "must be lower-case letters, digits or underscores");
+        }
+        if !configurations.iter().any(|configuration| configuration.id == still.configuration) {
+            return c.refuse(
+                key("configuration"),
+                &still.configuration,
+                "is not a configuration of this study",
+            );
+        }
+        c.positive(&key("spacing"), still.spacing, 1e6)?;
+        if still.looks.is_empty() {
+            return c.refuse(key("looks"), "[]", "must list at least one look");
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The paper's file with one passage replaced, its mesh source pointing at a file that is always there.
+    fn paper_with(from: &str, to: &str) -> Result<Study, ConfigError> {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/paper.toml");
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(text.contains(from), "{from} is not in {}", path.display());
+        let text = text.replacen(from, to, 1).replace("../cache/bunny.ply", "paper.toml");
+        Study::parse(&text, &path)
+    }
+
+    fn error_with(from: &str, to: &str) -> String {
+        paper_with(from, to).map(|_| ()).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn the_papers_design_is_whole() {
+        let study = paper_with("schema = 1", "schema = 1").unwrap();
+        assert_eq!(study.configurations.len(), 18);
+        let ids: Vec<String> = study.configurations.iter().map(|c| c.id.to_string()).collect();
+        assert_eq!(ids[..6], ["ss_bu", "ss_bi", "ss_bp", "ss_su", "ss_si", "ss_sp"]);
+        assert_eq!(ids[17], "bs_sp");
+        assert_eq!(study.comparisons.len(), 27);
+        let sizes: Vec<usize> = study.groups.iter().map(|g| g.comparisons.len()).collect();
+        assert_eq!(sizes, [9, 9, 3, 3, 3]);
+        assert_eq!(study.published.benchmark.len(), 18);
+        assert_eq!(study.published.preferences.len(), 12 + 6 + 5);
+        let (turntables, pairs) = study.code_names();
+        assert_eq!((turntables.len(), pairs.len()), (18, 27));
+    }
+
+    #[test]
+    fn an_error_names_file_key_and_limit() {
+        let error = error_with("isovalue = 0.0", "isovalue = nan");
+        assert!(error.contains("paper.toml: objects[0].isovalue = NaN: must be a finite number"), "{error}");
+        let error = error_with("benchmark_spacing = 0.04", "benchmark_spacing = -0.04");
+        assert!(error.contains("objects[0].benchmark_spacing = -0.04: must be above 0"), "{error}");
+        let error = error_with("supersampling = 2", "supersampling = 9");
+        assert!(error.contains("turntable.supersampling = 9: must lie between 1 and 4"), "{error}");
+        let error = error_with("max = [1.0, 1.0, 1.0]", "max = [1.0, -2.0, 1.0]");
+        assert!(error.contains("objects[0].max[1] = -2: must be above objects[0].min = -1"), "{error}");
+    }
+
+    #[test]
+    fn unknown_keys_and_missing_files_are_named() {
+        let error = error_with("memory_gib = 8.0", "memory_gib = 8.0\nmemory_gb = 1");
+        assert!(error.contains("memory_gb") && error.contains("paper.toml"), "{error}");
+        let error = error_with("radius = 1.0", "radius = 1.0, diameter = 2.0");
+        assert!(error.contains("diameter"), "{error}");
+        let error = error_with("../study/paper/responses.csv", "../study/paper/nobody.csv");
+        assert!(error.contains("responses.file") && error.contains("nobody.csv"), "{error}");
+        let path = Path::new("/nowhere/study.toml");
+        assert!(Study::load(path).unwrap_err().to_string().contains("/nowhere/study.toml"));
+    }
+
+    #[test]
+    fn comparisons_must_make_sense() {
+        let error = error_with("left = \"ss_bu\", right = \"ss_bi\"", "left = \"ss_bu\", right = \"as_bi\"");
+        assert!(error.contains("comparisons[0].right = as_bi: must show the same object"), "{error}");
+        let error = error_with("left = \"ss_bu\", right = \"ss_bi\"", "left = \"ss_bu\", right = \"ss_si\"");
+        assert!(error.contains("no group has bu against si"), "{error}");
+        let error = error_with("question = \"Q2\"", "question = \"Q1\"");
+        assert!(
+            error.contains("comparisons[1].question = Q1: already used by comparisons[0].question"),
+            "{error}"
+        );
+        let error = error_with("members = [\"si\", \"bi\"]", "members = [\"su\", \"bu\"]");
+        assert!(error.contains("is in groups U and I"), "{error}");
+    }
+}
