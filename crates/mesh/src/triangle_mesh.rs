@@ -66,6 +66,16 @@ impl TriangleMesh {
             .sum()
     }
 
+    /// The mesh with every vertex moved by `place`; without normals, which a map need not keep.
+    /// A map that mirrors must be followed by [`crate::repair::flip`].
+    pub fn transformed(&self, place: impl Fn(Vec3) -> Vec3) -> Self {
+        Self {
+            positions: self.positions.iter().map(|&p| place(p)).collect(),
+            normals: Vec::new(),
+            triangles: self.triangles.clone(),
+        }
+    }
+
     fn double_area_vector(&self, t: usize) -> DVec3 {
         let [a, b, c] = self.corners(t).map(|p| p.as_dvec3());
         (b - a).cross(c - a)
