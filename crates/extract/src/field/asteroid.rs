@@ -1,0 +1,132 @@
+//! The asteroid of the evaluation: a flattened ball with value noise on its directions.
+
+use glam::Vec3;
+
+use super::ScalarField;
+use super::sine::sin;
+
+/// A lumpy ball: `f(p) = radius - |p/k| + amplitude * fbm(frequency * ((p/|p|)/k))`, `/k` by component.
+///
+/// The noise depends on the direction alone, so every ray from the origin leaves the solid once. It is a sum of
+/// octaves of value noise, smoothly blended between hashed whole-number points, scaled to [-1, 1]. All arithmetic
+/// is in `f32`, operation by operation, with a sine of the crate's own: the field is the same on every machine. The
+/// hash multiplies that sine by 43758.5, so another library's last bit moves it by up to 0.003.
+///
+/// Source: Costen (2026), evaluation object "asteroid"; [`Default`] gives its parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Asteroid {
+    /// Radius without noise; also the value at the origin, where the formula is 0/0.
+    pub radius: f32,
+    /// Stretch `k` of each axis.
+    pub stretch: Vec3,
+    /// Largest change of the radius by the noise.
+    pub amplitude: f32,
+    /// Noise frequency of the first octave, in features a unit direction.
+    pub frequency: f32,
+    /// How many octaves are summed.
+    pub octaves: u32,
+    /// Frequency ratio of an octave to the one before.
+    pub lacunarity: f32,
+    /// Amplitude ratio of an octave to the one before.
+    pub gain: f32,
+}
+
+impl Default for Asteroid {
+    fn default() -> Self {
+        Self {
+            radius: 0.65,
+            stretch: Vec3::new(0.9, 1.0, 0.9),
+            amplitude: 0.35,
+            frequency: 1.5,
+            octaves: 3,
+            lacunarity: 3.0,
+            gain: 0.15,
+        }
+    }
+}
+
+impl ScalarField for Asteroid {
+    fn sample(&self, p: Vec3) -> f32 {
+        let distance = p.length();
+        if distance == 0.0 {
+            return self.radius;
+        }
+        let direction = (p / distance) / self.stretch;
+        (self.radius - (p / self.stretch).length()) + self.amplitude * self.noise(direction * self.frequency)
+    }
+}
+
+impl Asteroid {
+    /// Octaves of value noise at `q`, as their weighted mean: within [-1, 1].
+    fn noise(&self, q: Vec3) -> f32 {
+        let (mut sum, mut weights) = (0.0, 0.0);
+        let (mut weight, mut frequency) = (1.0, 1.0);
+        for _ in 0..self.octaves {
+            sum += value_noise(q * frequency) * weight;
+            weights += weight;
+            frequency *= self.lacunarity;
+            weight *= self.gain;
+        }
+        if weights == 0.0 { 0.0 } else { sum / weights }
+    }
+}
+
+/// Smoothly interpolated hashes of the eight whole-number points round `q`, scaled from [0, 1) to [-1, 1).
+fn value_noise(q: Vec3) -> f32 {
+    let base = Vec3::new(libm::floorf(q.x), libm::floorf(q.y), libm::floorf(q.z));
+    let t = q - base;
+    let w = t * t * (Vec3::splat(3.0) - Vec3::splat(2.0) * t);
+    let along_x = |dy: f32, dz: f32| {
+        let left = hash(base + Vec3::new(0.0, dy, dz));
+        let right = hash(base + Vec3::new(1.0, dy, dz));
+        blend(left, right, w.x)
+    };
+    let near = blend(along_x(0.0, 0.0), along_x(1.0, 0.0), w.y);
+    let far = blend(along_x(0.0, 1.0), along_x(1.0, 1.0), w.y);
+    blend(near, far, w.z) * 2.0 - 1.0
+}
+
+/// A fraction in [0, 1) for a whole-number point.
+fn hash(point: Vec3) -> f32 {
+    let scaled = sin(point.dot(Vec3::new(12.98, 78.23, 35.63))) * 43758.5;
+    scaled - libm::floorf(scaled)
+}
+
+fn blend(a: f32, b: f32, weight: f32) -> f32 {
+    a + (b - a) * weight
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn origin_has_the_plain_radius() {
+        assert_eq!(Asteroid::default().sample(Vec3::ZERO), 0.65);
+    }
+
+    #[test]
+    fn noise_is_the_hash_at_whole_numbers_and_blends_between() {
+        let (a, b) = (Vec3::new(2.0, -3.0, 1.0), Vec3::new(3.0, -3.0, 1.0));
+        assert_eq!(value_noise(a), hash(a) * 2.0 - 1.0);
+        let middle = value_noise(a.midpoint(b));
+        assert!((middle - (hash(a) + hash(b) - 1.0)).abs() < 1e-6, "{middle}");
+    }
+
+    #[test]
+    fn radius_stays_within_the_amplitude() {
+        let asteroid = Asteroid { stretch: Vec3::ONE, ..Asteroid::default() };
+        for i in 0..500 {
+            let angle = i as f32 * 0.7;
+            let p = Vec3::new(angle.cos(), angle.sin(), (i as f32 - 250.0) / 100.0);
+            let bump = asteroid.sample(p) - (asteroid.radius - p.length());
+            assert!(bump.abs() <= asteroid.amplitude + 1e-5, "{bump} at {p}");
+        }
+    }
+
+    #[test]
+    fn no_octaves_leave_the_plain_ball() {
+        let ball = Asteroid { octaves: 0, stretch: Vec3::ONE, ..Asteroid::default() };
+        assert_eq!(ball.sample(Vec3::X), 0.65 - 1.0);
+    }
+}

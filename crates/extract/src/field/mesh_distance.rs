@@ -1,0 +1,150 @@
+//! The signed distance to a closed triangle mesh.
+
+mod nearest;
+mod winding;
+
+use glam::Vec3;
+use mesh::TriangleMesh;
+use mesh::topology::topology;
+use thiserror::Error;
+
+use self::nearest::NearestTriangles;
+use self::winding::WindingColumns;
+use super::ScalarField;
+
+/// Coordinates up to here have finite squares and cubes of differences in the precisions used.
+const COORDINATE_LIMIT: f32 = 1e18;
+
+/// Why a mesh has no inside to measure from.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum MeshFieldError {
+    /// There are no triangles.
+    #[error("the mesh has no triangles")]
+    Empty,
+    /// A triangle refers to a vertex that does not exist.
+    #[error("triangle {triangle} refers to vertex {index} of {vertices}")]
+    IndexOutOfRange {
+        /// The triangle.
+        triangle: usize,
+        /// The index.
+        index: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// A vertex is NaN, infinite or beyond the limit.
+    #[error("vertex {vertex} is at {position}; coordinates must be numbers up to {COORDINATE_LIMIT:e}")]
+    Coordinate {
+        /// The vertex.
+        vertex: usize,
+        /// Where it is.
+        position: Vec3,
+    },
+    /// The surface is open, branches, or changes its orientation.
+    #[error(
+        "the mesh is not a closed manifold: {boundary_edges} boundary, {non_manifold_edges} non-manifold and \
+         {misoriented_edges} mis-oriented edges, {non_manifold_vertices} non-manifold vertices, \
+         {duplicate_faces} duplicate and {collapsed_triangles} collapsed triangles"
+    )]
+    NotClosedManifold {
+        /// Edges with one triangle.
+        boundary_edges: u64,
+        /// Edges with more than two.
+        non_manifold_edges: u64,
+        /// Edges whose two triangles face opposite ways.
+        misoriented_edges: u64,
+        /// Fans beyond one at a vertex.
+        non_manifold_vertices: u64,
+        /// Triangles on the same three vertices as an earlier one.
+        duplicate_faces: u64,
+        /// Triangles that repeat a vertex.
+        collapsed_triangles: u64,
+    },
+    /// The triangles face inward, so that inside and outside would be swapped.
+    #[error("the mesh encloses a volume of {volume}; it must be positive, with triangles that face outward")]
+    InsideOut {
+        /// The signed volume.
+        volume: f64,
+    },
+}
+
+/// The Euclidean distance to the surface of a solid: positive inside, negative outside, zero on it.
+///
+/// The distance is that to the nearest triangle, in single precision (relative error of a few 1e-7 of the
+/// distance and the size of the nearest triangles). The sign comes from a different computation altogether: the
+/// winding number of the surface around the point, a whole number counted along a ray, inside where it is
+/// positive. Normals at the nearest point, the usual shortcut, give a wrong sign where rounding picks the wrong one
+/// of several nearest triangles, and a single wrong sign is a bubble in the isosurface. Where a solid overlaps
+/// itself, the overlap is inside, and the distance there is still that to the nearest triangle.
+///
+/// Every call computes from scratch: the value at a point is the same on any thread and after any other point.
+///
+/// Costen (2026) samples his bunny with an approximate search and the sign and size of a plane distance, which
+/// differs from this field away from the surface.
+#[derive(Debug, Clone)]
+pub struct MeshDistance {
+    nearest: NearestTriangles,
+    winding: WindingColumns,
+}
+
+impl MeshDistance {
+    /// Builds the search structures, O(n log n), about 250 bytes a triangle.
+    ///
+    /// # Errors
+    /// If `mesh` is empty, has a bad index or coordinate, is not a closed oriented manifold, or faces inward.
+    /// [`mesh::repair::closed_solid`] mends open and inward meshes.
+    pub fn try_new(mesh: &TriangleMesh) -> Result<Self, MeshFieldError> {
+        check(mesh)?;
+        let triangles: Vec<[Vec3; 3]> = (0..mesh.triangles.len()).map(|t| mesh.corners(t)).collect();
+        Ok(Self { nearest: NearestTriangles::new(&triangles), winding: WindingColumns::new(triangles) })
+    }
+
+    /// The winding number of the surface around `p`: 0 outside, 1 inside, 2 where the solid overlaps itself.
+    /// On the surface it is that of one of the sides; 0 where `p` is not a number.
+    pub fn winding_number(&self, p: Vec3) -> i32 {
+        self.winding.at(p)
+    }
+}
+
+impl ScalarField for MeshDistance {
+    /// `NaN`, which counts as outside, where `p` is beyond the limit for coordinates or no point at all.
+    fn sample(&self, p: Vec3) -> f32 {
+        if !is_sound(p) {
+            return f32::NAN;
+        }
+        let distance = self.nearest.distance(p);
+        if self.winding.at(p) > 0 { distance } else { -distance }
+    }
+}
+
+/// A comparison with NaN is false.
+fn is_sound(p: Vec3) -> bool {
+    p.abs().max_element() <= COORDINATE_LIMIT && !p.is_nan()
+}
+
+fn check(mesh: &TriangleMesh) -> Result<(), MeshFieldError> {
+    if mesh.triangles.is_empty() {
+        return Err(MeshFieldError::Empty);
+    }
+    let vertices = mesh.positions.len();
+    for (triangle, corners) in mesh.triangles.iter().enumerate() {
+        if let Some(&index) = corners.iter().find(|&&v| v as usize >= vertices) {
+            return Err(MeshFieldError::IndexOutOfRange { triangle, index, vertices });
+        }
+    }
+    if let Some(vertex) = mesh.positions.iter().position(|&p| !is_sound(p)) {
+        return Err(MeshFieldError::Coordinate { vertex, position: mesh.positions[vertex] });
+    }
+    let report = topology(mesh);
+    if !report.is_closed_manifold() {
+        return Err(MeshFieldError::NotClosedManifold {
+            boundary_edges: report.boundary_edges,
+            non_manifold_edges: report.non_manifold_edges,
+            misoriented_edges: report.misoriented_edges,
+            non_manifold_vertices: report.non_manifold_vertices,
+            duplicate_faces: report.duplicate_faces,
+            collapsed_triangles: report.collapsed_triangles,
+        });
+    }
+    let volume = mesh.volume();
+    if volume > 0.0 { Ok(()) } else { Err(MeshFieldError::InsideOut { volume }) }
+}

@@ -1,0 +1,101 @@
+//! How many points, edges and tetrahedra a lattice has, and what storing them takes.
+
+use super::layout::PADDING_LAYERS;
+use super::{Arrangement, DIRECTIONS, Lattice};
+
+/// A vertex number for each of the fourteen edges, and a set of the edges that cross the surface.
+const BYTES_PER_EDGE_RECORD: u64 = (DIRECTIONS * size_of::<u32>() + size_of::<u16>()) as u64;
+/// The value of the field.
+const BYTES_PER_SAMPLE: u64 = size_of::<f32>() as u64;
+/// Scratch of the vertex stage: inside or outside.
+const BYTES_PER_SIDE: u64 = 1;
+
+/// Counts of the whole lattice. `x`, `y`, `z` are the cells along each axis.
+impl Lattice {
+    /// Sample points that are stored, all of them sampled: `(x+2)(y+2)(2z+3)` body-centred, which includes unused
+    /// fillers, and `(x+1)(y+1)(z+1)` simple cubic.
+    pub fn stored_samples(&self) -> u64 {
+        self.stored_grid().iter().map(|&n| u64::from(n)).product()
+    }
+
+    /// Sample points that belong to a tetrahedron: `2xyz + 3(xy+xz+yz) + (x+y+z) + 1` body-centred,
+    /// `(x+1)(y+1)(z+1)` simple cubic.
+    pub fn needed_samples(&self) -> u64 {
+        self.polynomial(match self.arrangement {
+            Arrangement::BodyCentred => [2, 3, 1, 1],
+            Arrangement::SimpleCubic => [1, 1, 1, 1],
+        })
+    }
+
+    /// [`needed_samples`](Self::needed_samples) as Costen (2026) has it: simple cubic as `(x-1)(y-1)(z-1)`, a wrong
+    /// sign that makes the published allocation ratio 112.75 % where it is 100 %.
+    pub fn needed_samples_as_published(&self) -> u64 {
+        match self.arrangement {
+            Arrangement::BodyCentred => self.needed_samples(),
+            Arrangement::SimpleCubic => self.polynomial([1, -1, 1, -1]),
+        }
+    }
+
+    /// Places for an edge's vertex that are stored: fourteen a stored sample point.
+    pub fn stored_edges(&self) -> u64 {
+        DIRECTIONS as u64 * self.stored_samples()
+    }
+
+    /// Edges that belong to a tetrahedron: `14xyz + 11(xy+xz+yz) + (x+y+z)` body-centred,
+    /// `7xyz + 3(xy+xz+yz) + (x+y+z)` simple cubic.
+    pub fn needed_edges(&self) -> u64 {
+        self.polynomial(match self.arrangement {
+            Arrangement::BodyCentred => [14, 11, 1, 0],
+            Arrangement::SimpleCubic => [7, 3, 1, 0],
+        })
+    }
+
+    /// [`needed_edges`](Self::needed_edges) as Costen (2026) has it: simple cubic with `-3(xy+xz+yz)`, a wrong sign.
+    pub fn needed_edges_as_published(&self) -> u64 {
+        match self.arrangement {
+            Arrangement::BodyCentred => self.needed_edges(),
+            Arrangement::SimpleCubic => self.polynomial([7, -3, 1, 0]),
+        }
+    }
+
+    /// Tetrahedra: `12xyz + 4(xy+xz+yz)` body-centred, `6xyz` simple cubic.
+    pub fn tetrahedra(&self) -> u64 {
+        self.polynomial(match self.arrangement {
+            Arrangement::BodyCentred => [12, 4, 0, 0],
+            Arrangement::SimpleCubic => [6, 0, 0, 0],
+        })
+    }
+
+    /// What [`extract`](crate::extract) allocates before it knows the surface: samples, edge records and scratch.
+    /// The mesh comes on top.
+    pub fn memory_bytes(&self) -> u64 {
+        let layer: u64 = self.stored_grid()[..2].iter().map(|&n| u64::from(n)).product();
+        let padding = 2 * PADDING_LAYERS as u64 * layer * BYTES_PER_SIDE;
+        self.stored_samples() * (BYTES_PER_SAMPLE + BYTES_PER_EDGE_RECORD + BYTES_PER_SIDE) + padding
+    }
+
+    /// Bytes of the stored samples.
+    pub(crate) fn sample_bytes(&self) -> u64 {
+        self.stored_samples() * BYTES_PER_SAMPLE
+    }
+
+    /// Bytes of the stored edge records.
+    pub(crate) fn edge_bytes(&self) -> u64 {
+        self.stored_samples() * BYTES_PER_EDGE_RECORD
+    }
+
+    /// Stored sample points along x, y and z.
+    pub(crate) fn stored_grid(&self) -> [u32; 3] {
+        let [x, y, z] = self.cells;
+        match self.arrangement {
+            Arrangement::BodyCentred => [x + 2, y + 2, 2 * z + 3],
+            Arrangement::SimpleCubic => [x + 1, y + 1, z + 1],
+        }
+    }
+
+    /// `a xyz + b (xy + xz + yz) + c (x + y + z) + d`. No overflow: stored samples fit 32 bits.
+    fn polynomial(&self, [a, b, c, d]: [i64; 4]) -> u64 {
+        let [x, y, z] = self.cells.map(i64::from);
+        (a * x * y * z + b * (x * y + x * z + y * z) + c * (x + y + z) + d) as u64
+    }
+}

@@ -1,0 +1,202 @@
+//! Vertex stage: edge crossings, which end each is nearer to, and the vertices made of them.
+//!
+//! Each sample point with a crossing works alone: it looks at its fourteen neighbours, keeps the crossings that are
+//! nearer to it than to the other end, partitions them into clusters and places one vertex a cluster. Vertices are
+//! numbered in storage order of their points, then by direction.
+
+use glam::Vec3;
+
+use crate::ExtractError;
+use crate::clusters::Clusters;
+use crate::edges::EdgeTable;
+use crate::lattice::{
+    Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout, PADDING_LAYERS, members,
+};
+use crate::settings::{Clustering, ExtractSettings};
+
+/// One byte a sample point, 1 inside, with room at both ends so that every step to a neighbour stays in it.
+#[derive(Debug)]
+pub(crate) struct Sides {
+    bytes: Vec<u8>,
+    padding: usize,
+}
+
+impl Sides {
+    pub(crate) fn new(layout: &Layout) -> Self {
+        let padding = PADDING_LAYERS * layout.layer_len();
+        Self { bytes: vec![0; layout.len() + 2 * padding], padding }
+    }
+
+    /// Inside is a value above the isovalue; equal is outside, and so is `NaN`.
+    fn fill(&mut self, samples: &[f32], isovalue: f32) {
+        for (side, value) in self.bytes[self.padding..].iter_mut().zip(samples) {
+            *side = u8::from(isovalue - value < 0.0);
+        }
+    }
+
+    pub(crate) fn is_inside(&self, point: usize) -> bool {
+        self.bytes[self.padding + point] != 0
+    }
+
+    /// Marks the points of a row that differ from any of their fourteen neighbours.
+    fn mark_active(&self, first: usize, steps: &[isize; DIRECTIONS], active: &mut [u8]) {
+        let row = |start: usize| &self.bytes[start..start + active.len()];
+        let here = row(self.padding + first);
+        let rows = steps.map(|step| row((self.padding + first).strict_add_signed(step)));
+        for (i, mark) in active.iter_mut().enumerate() {
+            *mark = rows.iter().fold(0, |mark, row| mark | (row[i] ^ here[i]));
+        }
+    }
+}
+
+/// Places all vertices. Returns their positions and the number of lattice edges that cross the surface.
+///
+/// # Errors
+/// [`ExtractError::TooManyVertices`] when a 32-bit index cannot name them.
+pub(crate) fn place_vertices(
+    lattice: &Lattice,
+    layout: &Layout,
+    samples: &[f32],
+    settings: &ExtractSettings,
+    sides: &mut Sides,
+    edges: &mut EdgeTable,
+) -> Result<(Vec<Vec3>, u64), ExtractError> {
+    sides.fill(samples, settings.isovalue);
+    let coordinates = Coordinates::measured(lattice, layout, settings.positions);
+    let mut stage = VertexStage {
+        lattice,
+        directions: lattice.arrangement().directions(),
+        samples,
+        settings,
+        sides,
+        edges,
+        positions: Vec::new(),
+        crossing_ends: 0,
+    };
+    let mut active = vec![0; layout.grid()[0]];
+    for (layer, &z) in coordinates.z().iter().enumerate() {
+        let kind = layout.kind(layer);
+        let [nx, ny] = layout.used(kind);
+        let steps = layout.steps(kind);
+        for row in 0..ny {
+            let first = layout.index([0, row, layer]);
+            stage.sides.mark_active(first, steps, &mut active[..nx]);
+            for column in (0..nx).filter(|&i| active[i] != 0) {
+                let incident = layout.incident(kind, [column, row, layer]);
+                let position = Vec3::new(coordinates.x(kind)[column], coordinates.y(kind)[row], z);
+                stage.visit(first + column, position, steps, incident)?;
+            }
+        }
+    }
+    // Each crossing was seen from both ends.
+    Ok((stage.positions, stage.crossing_ends / 2))
+}
+
+struct VertexStage<'a> {
+    lattice: &'a Lattice,
+    directions: &'static Directions,
+    samples: &'a [f32],
+    settings: &'a ExtractSettings,
+    sides: &'a Sides,
+    edges: &'a mut EdgeTable,
+    positions: Vec<Vec3>,
+    crossing_ends: u64,
+}
+
+impl VertexStage<'_> {
+    /// Finds the crossings round one point and places the vertices of the near ones.
+    fn visit(
+        &mut self,
+        point: usize,
+        position: Vec3,
+        steps: &[isize; DIRECTIONS],
+        incident: DirectionSet,
+    ) -> Result<(), ExtractError> {
+        let inside = self.sides.is_inside(point);
+        let value = self.samples[point];
+        let difference = self.settings.isovalue - value;
+        let mut crossing = 0;
+        let mut near = 0;
+        let mut offsets = [Vec3::ZERO; DIRECTIONS];
+        for direction in members(incident) {
+            let neighbour = point.strict_add_signed(steps[direction]);
+            if self.sides.is_inside(neighbour) == inside {
+                continue;
+            }
+            crossing |= 1 << direction;
+            let neighbour_value = self.samples[neighbour];
+            if !is_nearer(inside, difference, self.settings.isovalue - neighbour_value) {
+                continue;
+            }
+            near |= 1 << direction;
+            let ratio = difference / (neighbour_value - value);
+            // Samples that are not numbers, or two infinities, say nothing about the place.
+            let ratio = if ratio.is_finite() { ratio } else { 0.5 };
+            offsets[direction] = self.edge_vector(direction) * ratio;
+        }
+        self.edges.set_crossing(point, crossing);
+        self.crossing_ends += u64::from(crossing.count_ones());
+        let clusters = match self.settings.clustering {
+            Clustering::Integrated => Clusters::integrated(near, self.directions),
+            Clustering::None | Clustering::EdgeCollapse => Clusters::single(near),
+        };
+        for &cluster in clusters.sets() {
+            self.place(point, position, cluster, &offsets)?;
+        }
+        Ok(())
+    }
+
+    /// One vertex at the unweighted mean of the cluster's crossings, clamped to the box.
+    fn place(
+        &mut self,
+        point: usize,
+        position: Vec3,
+        cluster: DirectionSet,
+        offsets: &[Vec3; DIRECTIONS],
+    ) -> Result<(), ExtractError> {
+        // The largest number is kept free: the edge table stores one more.
+        let vertex = u32::try_from(self.positions.len())
+            .ok()
+            .filter(|&vertex| vertex < u32::MAX)
+            .ok_or(ExtractError::TooManyVertices { limit: u32::MAX })?;
+        let mut sum = Vec3::ZERO;
+        for direction in members(cluster) {
+            sum += offsets[direction] + position;
+            self.edges.set_vertex(point, direction, vertex);
+        }
+        let bounds = self.lattice.bounds();
+        self.positions.push((sum / cluster.count_ones() as f32).min(bounds.max).max(bounds.min));
+        Ok(())
+    }
+
+    /// From a point to its neighbour.
+    fn edge_vector(&self, direction: usize) -> Vec3 {
+        let [x, y, z] = self.directions.offsets[direction].map(f32::from);
+        Vec3::new(x, y, z) * (self.lattice.spacing() / 2.0)
+    }
+}
+
+/// Whether a crossing belongs to this end: it is nearer to the smaller difference from the isovalue. A crossing in
+/// the middle belongs to both ends, as published. A difference that is not a number leaves it to the inside end.
+fn is_nearer(inside: bool, here: f32, there: f32) -> bool {
+    let (here, there) = (here.abs(), there.abs());
+    here <= there || inside && there.is_nan()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_crossing_belongs_to_an_end() {
+        let values = [0.0, 0.5, 2.0, f32::INFINITY, f32::NAN];
+        for outside in values {
+            for inside in &values[1..4] {
+                let (d_out, d_in) = (outside, -inside);
+                let owners = [is_nearer(true, d_in, d_out), is_nearer(false, d_out, d_in)];
+                assert!(owners.contains(&true), "{outside} {inside}");
+                assert_eq!(owners == [true, true], outside == *inside, "a tie has both: {outside} {inside}");
+            }
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Lattice sizes, and every way to ask for an impossible one.
+
+use extract::{
+    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Lattice, LatticeError, Positions,
+    ScalarField, Sphere, extract,
+};
+use glam::Vec3;
+use mesh::Bounds;
+
+const UNIT: Bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+
+fn body_centred(bounds: Bounds, spacing: f32) -> Result<Lattice, LatticeError> {
+    Lattice::try_new(Arrangement::BodyCentred, bounds, spacing)
+}
+
+#[test]
+fn twenty_cells_a_side_as_the_original_shows_them() {
+    let lattice = body_centred(UNIT, 0.1).unwrap();
+    assert_eq!(lattice.cells(), [20; 3]);
+    assert_eq!(lattice.stored_samples(), 20_812);
+    assert_eq!(lattice.needed_samples(), 19_661);
+    assert_eq!(lattice.stored_edges(), 291_368);
+    assert_eq!(lattice.needed_edges(), 125_260);
+    assert_eq!(lattice.tetrahedra(), 100_800);
+    let counts = extract(&Sphere::default(), &lattice, &ExtractSettings::default(), &Execution::default());
+    assert_eq!(counts.unwrap().counts.tetrahedra_evaluated, 25_056);
+}
+
+#[test]
+fn cells_are_counted_in_single_precision() {
+    // 1.1 / 0.02 is 55.000004 in f32, so 56 cells; the published bunny has them.
+    let bounds = Bounds { min: Vec3::new(-0.7, -0.4, -0.5), max: Vec3::new(0.8, 0.4, 0.6) };
+    let lattice = body_centred(bounds, 0.02).unwrap();
+    assert_eq!(lattice.cells(), [75, 40, 56]);
+    assert_eq!((lattice.stored_samples(), lattice.needed_samples()), (371_910, 364_492));
+    assert_eq!((lattice.needed_edges(), lattice.tetrahedra()), (2_456_011, 2_053_760));
+    let simple = Lattice::try_new(Arrangement::SimpleCubic, bounds, 0.02).unwrap();
+    assert_eq!(
+        (simple.needed_samples_as_published(), simple.needed_edges_as_published()),
+        (158_730, 1_147_851)
+    );
+}
+
+#[test]
+fn spacing_must_be_positive_and_finite() {
+    for spacing in [0.0, -0.0, -1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let error = body_centred(UNIT, spacing).unwrap_err();
+        assert!(matches!(error, LatticeError::Spacing { .. }), "{spacing}: {error}");
+    }
+}
+
+#[test]
+fn bounds_must_be_finite_and_ordered_on_every_axis() {
+    for (i, axis) in ['x', 'y', 'z'].into_iter().enumerate() {
+        for (low, high) in [
+            (1.0, 1.0),
+            (2.0, 1.0),
+            (f32::NAN, 1.0),
+            (0.0, f32::NAN),
+            (0.0, f32::INFINITY),
+            (f32::NEG_INFINITY, 0.0),
+        ] {
+            let mut bounds = UNIT;
+            bounds.min[i] = low;
+            bounds.max[i] = high;
+            match body_centred(bounds, 0.1).unwrap_err() {
+                LatticeError::Bounds { axis: named, .. } => assert_eq!(named, axis),
+                other => panic!("{low} to {high}: {other}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn absurd_sizes_are_refused_or_can_be_seen() {
+    let refused = |bounds, spacing| body_centred(bounds, spacing).unwrap_err();
+    assert!(matches!(refused(UNIT, 1e-8), LatticeError::TooManyCells { axis: 'x', .. }));
+    let samples = 20_002u128.pow(2) * 40_003;
+    assert_eq!(refused(UNIT, 1e-4), LatticeError::TooManySamples { samples, limit: u32::MAX.into() });
+    let huge = Bounds { min: Vec3::splat(f32::MIN), max: Vec3::splat(f32::MAX) };
+    assert!(matches!(refused(huge, 1.0), LatticeError::TooManyCells { .. }));
+    assert!(matches!(refused(UNIT, f32::MAX), LatticeError::OutOfRange { .. }));
+    // Possible to name, too large to want: the caller can tell beforehand.
+    let large = body_centred(UNIT, 0.0016).unwrap();
+    assert!(large.memory_bytes() > 200_000_000_000, "{}", large.memory_bytes());
+}
+
+#[test]
+fn memory_covers_what_the_counts_say() {
+    for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
+        let lattice = Lattice::try_new(arrangement, UNIT, 0.1).unwrap();
+        let counts =
+            extract(&Sphere::default(), &lattice, &ExtractSettings::default(), &Execution::default())
+                .unwrap()
+                .counts;
+        let tables = counts.sample_bytes + counts.edge_bytes;
+        assert!(lattice.memory_bytes() > tables && lattice.memory_bytes() < tables * 11 / 10);
+    }
+}
+
+#[test]
+fn settings_are_checked() {
+    let lattice = body_centred(UNIT, 0.5).unwrap();
+    let run = |settings| extract(&Sphere::default(), &lattice, &settings, &Execution::default()).map(drop);
+    for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let error = run(ExtractSettings { isovalue: value, ..ExtractSettings::default() }).unwrap_err();
+        assert!(matches!(error, ExtractError::Isovalue { .. }), "{error}");
+    }
+    let none = Positions::Accumulated { chunks: 0 };
+    assert_eq!(
+        run(ExtractSettings { positions: none, ..ExtractSettings::default() }),
+        Err(ExtractError::NoChunks)
+    );
+    let many = Positions::Accumulated { chunks: u32::MAX };
+    assert_eq!(run(ExtractSettings { positions: many, ..ExtractSettings::default() }), Ok(()));
+}
+
+/// A field of one repeated odd value, and a ball where it is not.
+struct Odd(f32);
+
+impl ScalarField for Odd {
+    fn sample(&self, p: Vec3) -> f32 {
+        if p.x > 0.3 { self.0 } else { 0.8 - p.length() }
+    }
+}
+
+#[test]
+fn odd_values_give_a_mesh_of_numbers() {
+    for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 0.0, f32::MIN_POSITIVE] {
+        for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
+            for clustering in [Clustering::None, Clustering::Integrated, Clustering::EdgeCollapse] {
+                let lattice = Lattice::try_new(arrangement, UNIT, 0.15).unwrap();
+                let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
+                let mesh = extract(&Odd(value), &lattice, &settings, &Execution::default()).unwrap().mesh;
+                assert!(mesh.triangles.len() > 100, "{value}");
+                let bounds = lattice.bounds();
+                for &p in &mesh.positions {
+                    assert!(
+                        p.is_finite() && p.cmpge(bounds.min).all() && p.cmple(bounds.max).all(),
+                        "{value}: {p}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn not_a_number_is_outside() {
+    let lattice = body_centred(UNIT, 0.15).unwrap();
+    let settings = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
+    let run = |field: Odd| extract(&field, &lattice, &settings, &Execution::default()).unwrap();
+    assert_eq!(run(Odd(f32::NAN)).counts.crossings, run(Odd(-1.0)).counts.crossings);
+    assert_ne!(run(Odd(f32::NAN)).counts.crossings, run(Odd(1.0)).counts.crossings);
+}
+
+#[test]
+fn nothing_inside_is_an_empty_mesh() {
+    let lattice = body_centred(UNIT, 0.2).unwrap();
+    for radius in [-1.0, 9.0] {
+        let extraction =
+            extract(&Sphere { radius }, &lattice, &ExtractSettings::default(), &Execution::default())
+                .unwrap();
+        assert_eq!(extraction.mesh, mesh::TriangleMesh::default());
+        assert_eq!((extraction.counts.crossings, extraction.counts.tetrahedra_evaluated), (0, 0));
+    }
+}
+
+#[test]
+fn one_cell_is_a_lattice() {
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
+        // The quotient of size and spacing underflows to zero cells; one is made.
+        let tiny = Bounds { min: Vec3::ZERO, max: Vec3::splat(1e-30) };
+        assert_eq!(Lattice::try_new(arrangement, tiny, 1e20).unwrap().cells(), [1; 3]);
+        let lattice = Lattice::try_new(arrangement, bounds, 2.0).unwrap();
+        let corner_ball = |p: Vec3| 1.0 - p.distance(Vec3::ONE);
+        struct Of<F>(F);
+        impl<F: Fn(Vec3) -> f32 + Sync> ScalarField for Of<F> {
+            fn sample(&self, p: Vec3) -> f32 {
+                (self.0)(p)
+            }
+        }
+        let settings = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
+        let counts = extract(&Of(corner_ball), &lattice, &settings, &Execution::default()).unwrap().counts;
+        // The corner inside sees its three cube edges, and per arrangement its diagonals.
+        assert_eq!(counts.crossings, 7);
+    }
+}
