@@ -1,0 +1,103 @@
+//! The sample grid: depth and exposure level of what is nearest.
+
+use crate::Viewport;
+use glam::Vec4;
+
+/// Level of a sample that shows the background.
+pub(crate) const BACKGROUND: f32 = 0.0;
+/// Level of a sample that shows a line.
+pub(crate) const WIRE: f32 = 65536.0;
+/// Highest level of a surface, the lowest is 1.
+pub(crate) const TOP_LEVEL: f32 = 16383.0;
+/// Samples the fill works on at once; rows have as many to spare at their end.
+pub(crate) const LANES: usize = 4;
+
+/// Exposures as levels from 1 to [`TOP_LEVEL`], evenly over `-max..=max`; fractions are kept until a pixel is looked
+/// up. By default a whole level is 0.00012 in d, and under 0.08 of an 8-bit level in every channel.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LevelScale {
+    max: f32,
+    per_unit: f32,
+}
+
+impl LevelScale {
+    pub(crate) fn new(max_exposure: f32) -> LevelScale {
+        let max = max_exposure.max(f32::MIN_POSITIVE.sqrt());
+        LevelScale { max, per_unit: (TOP_LEVEL - 1.0) / (2.0 * max) }
+    }
+
+    /// The levels of four exposures, clamped.
+    #[inline]
+    pub(crate) fn levels(&self, exposures: Vec4) -> Vec4 {
+        let levels = (exposures + self.max) * self.per_unit + 1.0;
+        levels.clamp(Vec4::ONE, Vec4::splat(TOP_LEVEL))
+    }
+
+    pub(crate) fn exposure(&self, level: f32) -> f32 {
+        (level - 1.0) / self.per_unit - self.max
+    }
+}
+
+/// Samples of one picture, row by row.
+#[derive(Debug)]
+pub(crate) struct Samples {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    /// From a row's start to the next; more than `width`. What lies between is never shown.
+    pub(crate) stride: usize,
+    /// 1 / distance along the line of sight; 0 where nothing is.
+    pub(crate) nearness: Vec<f32>,
+    pub(crate) level: Vec<f32>,
+    /// Rows and columns that may differ from the background.
+    touched: Touched,
+}
+
+/// A half-open rectangle of samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Touched {
+    x: [usize; 2],
+    y: [usize; 2],
+}
+
+const NOTHING: Touched = Touched { x: [usize::MAX, 0], y: [usize::MAX, 0] };
+
+impl Samples {
+    pub(crate) fn new(viewport: &Viewport) -> Samples {
+        let [width, height] =
+            [viewport.width, viewport.height].map(|v| v as usize * viewport.supersampling as usize);
+        let stride = width + LANES;
+        Samples {
+            width,
+            height,
+            stride,
+            nearness: vec![0.0; stride * height],
+            level: vec![BACKGROUND; stride * height],
+            touched: NOTHING,
+        }
+    }
+
+    /// Back to the background; costs only what was touched.
+    pub(crate) fn clear(&mut self) {
+        let Touched { x, y } = self.touched;
+        for row in y[0]..y[1] {
+            let row = row * self.stride;
+            self.nearness[row + x[0]..row + x[1]].fill(0.0);
+            self.level[row + x[0]..row + x[1]].fill(BACKGROUND);
+        }
+        self.touched = NOTHING;
+    }
+
+    #[inline]
+    pub(crate) fn touch(&mut self, x: [usize; 2], y: [usize; 2]) {
+        let t = &mut self.touched;
+        t.x = [t.x[0].min(x[0]), t.x[1].max(x[1])];
+        t.y = [t.y[0].min(y[0]), t.y[1].max(y[1])];
+    }
+
+    /// The pixels (half-open ranges of columns and rows) that may differ from the background.
+    pub(crate) fn touched_pixels(&self, supersampling: usize) -> [std::ops::Range<usize>; 2] {
+        let Touched { x, y } = self.touched;
+        [x, y]
+            .map(|[from, to]| if from < to { from / supersampling..to.div_ceil(supersampling) } else { 0..0 })
+    }
+}

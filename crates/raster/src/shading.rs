@@ -1,0 +1,116 @@
+//! The material: a colour from one number.
+
+use glam::Vec3;
+
+/// How a surface is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Look {
+    /// Vertex normals, interpolated.
+    Smooth,
+    /// One normal a triangle, from its corners.
+    Flat,
+    /// Triangle edges in the smooth surface's colour on the background. Hidden edges are left out: with them the
+    /// far side's net crosses the near side's and neither can be read.
+    Wireframe,
+    /// The smooth surface with its triangle edges over it, in [`Shading::wire`].
+    SmoothWireframe,
+}
+
+/// Light, material and line colours, red, green, blue in 0..1 as written to the 8-bit frame (no gamma step).
+///
+/// The default is the shader of Costen (2026) with its constants; `wire` and `wire_width_px` are ours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shading {
+    /// The direction light travels, L. Not normalised: the original's has length 1.0198.
+    pub light: [f32; 3],
+    /// Colour towards the light, A.
+    pub lit: [f32; 3],
+    /// Colour at the terminator, B; a tenth of it faces away from the light.
+    pub shade: [f32; 3],
+    /// Colour of the highlight, W.
+    pub highlight: [f32; 3],
+    /// Colour where there is no surface.
+    pub background: [f32; 3],
+    /// Colour of the lines in [`Look::SmoothWireframe`].
+    pub wire: [f32; 3],
+    /// Width of lines in pixels, half of it on either side of an edge.
+    pub wire_width_px: f32,
+}
+
+impl Default for Shading {
+    fn default() -> Self {
+        Shading {
+            light: [-0.6, 0.2, -0.8],
+            lit: [0.949, 0.553, 0.027],
+            shade: [0.212, 0.071, 0.310],
+            highlight: [1.0, 0.95, 0.8],
+            background: [0.004, 0.509, 0.506],
+            wire: [0.03, 0.02, 0.05],
+            wire_width_px: 1.0,
+        }
+    }
+}
+
+impl Shading {
+    /// `d = n . (-L)`: 1.0198 facing the light by default, negative when turned away. The normal is taken as it
+    /// comes: an interpolated one is shorter than 1 and stays so.
+    pub fn exposure(&self, normal: Vec3) -> f32 {
+        -normal.dot(Vec3::from(self.light))
+    }
+
+    /// The largest `d` of a unit normal, `|L|`.
+    pub fn max_exposure(&self) -> f32 {
+        Vec3::from(self.light).length()
+    }
+
+    /// The surface colour at exposure `d`, clamped to 0..1 a channel (what an 8-bit frame does):
+    /// `back = mix(B, 0.1 B, -d)`, `front = mix(A, W, d^3)`, `mix(back, front, clamp(d, 0, 1))` with
+    /// `mix(a, b, t) = a + (b - a) t`, t unclamped.
+    pub fn colour(&self, d: f32) -> [f32; 3] {
+        let (lit, shade, highlight) =
+            (Vec3::from(self.lit), Vec3::from(self.shade), Vec3::from(self.highlight));
+        let back = mix(shade, shade * 0.1, -d);
+        let front = mix(lit, highlight, d * d * d);
+        mix(back, front, d.clamp(0.0, 1.0)).clamp(Vec3::ZERO, Vec3::ONE).to_array()
+    }
+}
+
+/// A colour in 0..1 to the nearest of 256 levels.
+pub(crate) fn to_levels(colour: [f32; 3]) -> [u8; 3] {
+    colour.map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8)
+}
+
+fn mix(a: Vec3, b: Vec3, t: f32) -> Vec3 {
+    a + (b - a) * t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand, from the formula: d = 0 gives B; d = 1 gives W; d = -1 gives a tenth of B; d = 0.5 gives
+    /// 0.5 (1.45 B) + 0.5 (A + (W - A) / 8).
+    #[test]
+    fn colours_are_the_formulas() {
+        let shading = Shading::default();
+        let close = |d: f32, expected: [f32; 3]| {
+            let got = shading.colour(d);
+            assert!(
+                (0..3).all(|c| (got[c] - expected[c]).abs() < 1e-6),
+                "d = {d}: {got:?} is not {expected:?}"
+            );
+        };
+        close(0.0, [0.212, 0.071, 0.310]);
+        close(1.0, [1.0, 0.95, 0.8]);
+        close(-1.0, [0.0212, 0.0071, 0.0310]);
+        close(0.5, [0.6313875, 0.3527875, 0.2865625]);
+    }
+
+    #[test]
+    fn the_light_is_not_normalised() {
+        let shading = Shading::default();
+        assert!((shading.max_exposure() - 1.0198039).abs() < 1e-6);
+        assert_eq!(shading.exposure(Vec3::Z), 0.8);
+        assert_eq!(shading.exposure(Vec3::Z * 0.5), 0.4);
+    }
+}
