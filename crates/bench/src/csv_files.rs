@@ -1,0 +1,61 @@
+//! A run as CSV: every sample, and the machine beside its target.
+
+use crate::profile::compare_profile;
+use design::record::BenchRun;
+use serde::Serialize;
+
+/// Every sample in the order measured, a line each, under the column names of
+/// [`BenchSample`](design::record::BenchSample). Numbers are written so that they read back unchanged.
+pub fn samples_csv(run: &BenchRun) -> String {
+    table(&run.samples)
+}
+
+/// What is known of the machine, a property a line: `property,target,machine,matches`, the last `true`, `false` or,
+/// where nothing is asked, empty. The rules are those of [`compare_profile`].
+pub fn machine_csv(run: &BenchRun) -> String {
+    table(&compare_profile(&run.target, &run.machine))
+}
+
+/// # Panics
+/// Never: records are flat, and neither serialising them nor writing to memory can fail.
+fn table<T: Serialize>(rows: &[T]) -> String {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.serialize(row).expect("a flat record has a line");
+    }
+    let bytes = writer.into_inner().expect("memory can be written to");
+    String::from_utf8(bytes).expect("text was written")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::tests::mock_run;
+    use design::record::BenchSample;
+
+    #[test]
+    fn samples_read_back_unchanged() {
+        let run = mock_run();
+        let text = samples_csv(&run);
+        let header = "id,iteration,place,allocation_s,sampling_s,vertex_s,geometry_s,normals_s,total_s";
+        assert_eq!(text.lines().next(), Some(header));
+        let samples: Vec<BenchSample> =
+            csv::Reader::from_reader(text.as_bytes()).deserialize().collect::<Result<_, _>>().unwrap();
+        assert_eq!(samples, run.samples);
+    }
+
+    #[test]
+    fn the_machine_is_told_property_by_property() {
+        let mut run = mock_run();
+        run.target.cores = Some(4);
+        run.target.threads = Some(16);
+        let text = machine_csv(&run);
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[0], "property,target,machine,matches");
+        assert_eq!(lines[1], "model,,11th Gen Intel(R) Core(TM) i7-11700 @ 2.50GHz,");
+        assert_eq!(lines[2], "cores,4,8,false");
+        assert_eq!(lines[3], "threads,16,16,true");
+        assert!(lines.contains(&"governor,,unknown,"), "{text}");
+        assert!(lines.contains(&"compiler,,rustc 1.95.0,"), "{text}");
+    }
+}

@@ -1,0 +1,207 @@
+//! What Linux writes about the machine under `/proc` and `/sys`. Elsewhere the files are not there and all is `None`.
+//!
+//! Reading and parsing are apart: parsers take text, so that tests can hand them machines that are not at hand.
+
+use std::collections::HashSet;
+use std::fs::{read_dir, read_to_string};
+use std::path::{Path, PathBuf};
+
+const CPU_FOLDER: &str = "/sys/devices/system/cpu";
+/// A container's memory limit, as cgroups version 2 and 1 write it.
+const MEMORY_LIMITS: [&str; 2] = ["/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"];
+
+pub(crate) fn model() -> Option<String> {
+    parse_model(&read("/proc/cpuinfo")?)
+}
+
+pub(crate) fn cores() -> Option<u32> {
+    parse_cores(&read("/proc/cpuinfo")?).or_else(|| count_siblings(per_cpu("topology/thread_siblings_list")))
+}
+
+pub(crate) fn memory_bytes() -> Option<u64> {
+    let total = parse_memory_bytes(&read("/proc/meminfo")?)?;
+    let limits = MEMORY_LIMITS.iter().filter_map(|path| parse_limit_bytes(&read(path)?));
+    Some(limits.fold(total, u64::min))
+}
+
+pub(crate) fn governor() -> Option<String> {
+    join_governors(per_cpu("cpufreq/scaling_governor"))
+}
+
+pub(crate) fn load() -> Option<f64> {
+    parse_load(&read("/proc/loadavg")?)
+}
+
+/// Text with runs of blanks made one; `None` if nothing is left.
+pub(crate) fn one_line(text: &str) -> Option<String> {
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    (!line.is_empty()).then_some(line)
+}
+
+fn read(path: impl AsRef<Path>) -> Option<String> {
+    read_to_string(path).ok()
+}
+
+/// One file of every CPU's folder, where it is there.
+fn per_cpu(file: &str) -> Vec<String> {
+    let is_cpu = |folder: &PathBuf| {
+        let name = folder.file_name().and_then(|name| name.to_str());
+        let number = name.and_then(|name| name.strip_prefix("cpu"));
+        number.is_some_and(|number| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()))
+    };
+    let folders = read_dir(CPU_FOLDER).into_iter().flatten().flatten().map(|entry| entry.path());
+    folders.filter(is_cpu).filter_map(|folder| read(folder.join(file))).collect()
+}
+
+/// The value of the first line `key : value` with this key.
+fn value<'a>(text: &'a str, key: &str) -> Option<&'a str> {
+    text.lines().find_map(|line| {
+        let (name, value) = line.split_once(':')?;
+        (name.trim() == key).then_some(value.trim())
+    })
+}
+
+/// x86 has `model name`, MIPS `cpu model`, POWER `cpu`, RISC-V `uarch`. 64-bit ARM has codes only, which are given as
+/// they are: a table of names would be out of date.
+fn parse_model(cpuinfo: &str) -> Option<String> {
+    let named = ["model name", "cpu model", "cpu", "uarch"].into_iter().find_map(|key| value(cpuinfo, key));
+    if let Some(named) = named {
+        return one_line(named);
+    }
+    let (implementer, part) = (value(cpuinfo, "CPU implementer")?, value(cpuinfo, "CPU part")?);
+    Some(format!("ARM implementer {implementer} part {part}"))
+}
+
+/// Different pairs of socket and core; `None` unless every processor has both.
+fn parse_cores(cpuinfo: &str) -> Option<u32> {
+    let mut cores = HashSet::new();
+    for processor in cpuinfo.split("\n\n").filter(|block| value(block, "processor").is_some()) {
+        cores.insert((value(processor, "physical id")?, value(processor, "core id")?));
+    }
+    positive(cores.len())
+}
+
+/// Threads of one core list the same siblings, so different lists are different cores.
+fn count_siblings(lists: Vec<String>) -> Option<u32> {
+    positive(lists.iter().map(|list| list.trim()).collect::<HashSet<_>>().len())
+}
+
+fn positive(count: usize) -> Option<u32> {
+    u32::try_from(count).ok().filter(|count| *count > 0)
+}
+
+/// `MemTotal`, which the kernel gives in units of 1024 bytes and calls kB.
+fn parse_memory_bytes(meminfo: &str) -> Option<u64> {
+    let (number, unit) = value(meminfo, "MemTotal")?.split_once(' ')?;
+    if unit.trim() != "kB" {
+        return None;
+    }
+    number.parse::<u64>().ok()?.checked_mul(1024)
+}
+
+/// A number of bytes; version 2 writes `max` where there is no limit, version 1 a number larger than any memory.
+fn parse_limit_bytes(limit: &str) -> Option<u64> {
+    limit.trim().parse().ok()
+}
+
+/// Every governor in use, sorted: CPUs may have different ones.
+fn join_governors(mut governors: Vec<String>) -> Option<String> {
+    governors.sort();
+    governors.dedup();
+    one_line(&governors.join(" "))
+}
+
+fn parse_load(loadavg: &str) -> Option<f64> {
+    loadavg.split_whitespace().next()?.parse().ok().filter(|load: &f64| load.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two sockets, two cores each, two threads a core; core numbers start anew on each socket.
+    fn two_sockets() -> String {
+        let mut text = String::new();
+        for processor in 0..8 {
+            let (socket, core) = (processor % 2, processor / 2 % 2);
+            text += &format!(
+                "processor\t: {processor}\nvendor_id\t: GenuineIntel\nmodel\t\t: 79\n\
+                 model name\t: Intel(R) Xeon(R) CPU           E5-2680 v4 @ 2.40GHz\ncpu MHz\t\t: 2400.0\n\
+                 physical id\t: {socket}\nsiblings\t: 4\ncore id\t\t: {core}\ncpu cores\t: 2\npower management:\n\n"
+            );
+        }
+        text
+    }
+
+    const ARM: &str = "processor\t: 0\nBogoMIPS\t: 243.75\nFeatures\t: fp asimd evtstrm aes\n\
+        CPU implementer\t: 0x41\nCPU architecture: 8\nCPU variant\t: 0x3\nCPU part\t: 0xd0c\nCPU revision\t: 1\n\n\
+        processor\t: 1\nBogoMIPS\t: 243.75\nCPU implementer\t: 0x41\nCPU part\t: 0xd0c\n\n";
+
+    #[test]
+    fn two_sockets_have_cores_of_their_own() {
+        assert_eq!(parse_cores(&two_sockets()), Some(4));
+        let name = "Intel(R) Xeon(R) CPU E5-2680 v4 @ 2.40GHz";
+        assert_eq!(parse_model(&two_sockets()).as_deref(), Some(name));
+    }
+
+    #[test]
+    fn arm_tells_codes_and_no_cores() {
+        assert_eq!(parse_model(ARM).as_deref(), Some("ARM implementer 0x41 part 0xd0c"));
+        assert_eq!(parse_cores(ARM), None);
+        let siblings = ["0\n", "1\n"].map(String::from).into();
+        assert_eq!(count_siblings(siblings), Some(2));
+        let siblings = ["0,4\n", "1,5\n", "0,4\n", "1,5\n"].map(String::from).into();
+        assert_eq!(count_siblings(siblings), Some(2));
+    }
+
+    #[test]
+    fn other_architectures_have_names_of_their_own() {
+        assert_eq!(
+            parse_model("processor\t: 0\ncpu\t\t: POWER9, altivec\n").as_deref(),
+            Some("POWER9, altivec")
+        );
+        assert_eq!(parse_model("processor : 0\nuarch : sifive,u74-mc\n").as_deref(), Some("sifive,u74-mc"));
+    }
+
+    #[test]
+    fn nothing_there_is_none() {
+        for text in ["", "\n\n", "processor\t: 0\n", "model name\t:\n", "garbage \u{0} without a colon"] {
+            assert_eq!(parse_model(text), None, "{text:?}");
+            assert_eq!(parse_cores(text), None, "{text:?}");
+            assert_eq!(parse_memory_bytes(text), None, "{text:?}");
+            assert_eq!(parse_limit_bytes(text), None, "{text:?}");
+            assert_eq!(parse_load(text), None, "{text:?}");
+        }
+        assert_eq!(count_siblings(Vec::new()), None);
+        assert_eq!(join_governors(Vec::new()), None);
+    }
+
+    #[test]
+    fn one_processor_without_a_core_number_makes_the_count_unknown() {
+        let text = two_sockets() + "processor\t: 8\nmodel name\t: ?\n\n";
+        assert_eq!(parse_cores(&text), None);
+    }
+
+    #[test]
+    fn memory_is_in_kibibytes() {
+        let meminfo = "MemTotal:       32637952 kB\nMemFree:         1021004 kB\n";
+        assert_eq!(parse_memory_bytes(meminfo), Some(32_637_952 * 1024));
+        assert_eq!(parse_memory_bytes("MemTotal: 32637952 pages\n"), None);
+        assert_eq!(parse_memory_bytes("MemTotal: 99999999999999999999 kB\n"), None);
+        assert_eq!(parse_memory_bytes("MemTotal: 18446744073709551615 kB\n"), None, "would overflow");
+    }
+
+    #[test]
+    fn a_container_may_have_a_limit() {
+        assert_eq!(parse_limit_bytes("4294967296\n"), Some(4 << 30));
+        assert_eq!(parse_limit_bytes("max\n"), None);
+        assert_eq!(parse_limit_bytes("9223372036854771712\n"), Some(9_223_372_036_854_771_712));
+    }
+
+    #[test]
+    fn load_and_governors() {
+        assert_eq!(parse_load("0.52 0.58 0.59 1/467 12345\n"), Some(0.52));
+        let mixed = ["powersave\n", "performance\n", "powersave\n"].map(String::from).into();
+        assert_eq!(join_governors(mixed).as_deref(), Some("performance powersave"));
+    }
+}
