@@ -42,10 +42,8 @@ pub fn drop_unused_vertices(mesh: &TriangleMesh) -> TriangleMesh {
     for &v in mesh.triangles.iter().flatten() {
         moved_to[v as usize] = 0;
     }
-    let mut next = 0;
-    for target in moved_to.iter_mut().filter(|target| **target != UNUSED) {
-        *target = next;
-        next += 1;
+    for (next, target) in moved_to.iter_mut().filter(|target| **target != UNUSED).enumerate() {
+        *target = next as u32;
     }
     let kept = |values: &[glam::Vec3]| {
         values.iter().zip(&moved_to).filter(|(_, to)| **to != UNUSED).map(|(v, _)| *v).collect()

@@ -26,7 +26,7 @@ pub(super) fn read(header: &Header, bytes: &[u8], start: usize) -> Result<Triang
 }
 
 fn read_vertices(element: &Element, cursor: &mut Cursor, mesh: &mut TriangleMesh) -> Result<(), PlyError> {
-    let slots = element.properties.iter().map(|p| coordinate(p)).collect::<Vec<_>>();
+    let slots = element.properties.iter().map(coordinate).collect::<Vec<_>>();
     let has = |names: std::ops::Range<usize>| names.clone().all(|k| slots.contains(&Some(k)));
     if element.count > 0 && !has(0..3) {
         return Err(PlyError::Lacks { element: "vertex", what: "a scalar x, y or z" });
