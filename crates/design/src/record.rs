@@ -61,7 +61,8 @@ pub struct Counts {
 pub struct Quality {
     /// Triangles in the mesh.
     pub triangles: u64,
-    /// Triangles with zero area or a zero-length edge; left out of every distribution but the area.
+    /// Triangles with zero area or a zero-length edge; left out of every distribution but the area. The published
+    /// moments of the aspect ratio count them as 0 instead.
     pub degenerate: u64,
     /// The published ratio: longer over shorter of the two edges at the first corner.
     pub published_aspect_ratio: Distribution,

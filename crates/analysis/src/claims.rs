@@ -1,0 +1,90 @@
+//! The claims of the published text, computed again.
+//!
+//! A claim is found by its id; ids that are not known here, and claims about configurations that the study lacks, are
+//! left out. Each is computed three times where that makes sense: from the published tables (does the text follow
+//! from its own numbers?), from ours as the text defines it, and from ours with the definition put right.
+
+mod meshes;
+mod numbers;
+mod preferences;
+mod setup;
+mod shapes;
+mod times;
+
+use crate::inputs::Inputs;
+use crate::table::{Cell, Table};
+use crate::tally::Tally;
+use crate::verdict::{Verdict, prints_alike, relative_difference};
+
+/// What a claim comes to.
+#[derive(Debug, Clone)]
+pub(crate) struct Finding {
+    /// From the published tables, by the published definition.
+    pub(crate) from_published: Option<f64>,
+    /// From our numbers, by the published definition.
+    pub(crate) as_published: Option<f64>,
+    /// From our numbers, by the right definition; the same unless the reason says otherwise.
+    pub(crate) ours: Option<f64>,
+    pub(crate) decimals: usize,
+    /// What the verdict does not say; may be empty.
+    pub(crate) remark: String,
+    pub(crate) verdict: Verdict,
+}
+
+/// The claims and what they come to, in the order they are listed.
+pub(crate) fn table(inputs: &Inputs<'_>, tally: Option<&Tally>) -> Option<Table> {
+    let mut table = Table::new(
+        "claims",
+        format!("Claims of the text, {}", inputs.study.published.source),
+        &[
+            ("id", "Id"),
+            ("statement", "Claim"),
+            ("unit", "Unit"),
+            ("published", "Published"),
+            ("from_published_tables", "From its tables"),
+            ("ours_as_published", "Ours, as defined there"),
+            ("ours", "Ours"),
+            ("verdict", "Verdict"),
+            ("reason", "Reason"),
+        ],
+    );
+    for claim in &inputs.study.published.claims {
+        let found = meshes::find(inputs, claim)
+            .or_else(|| times::find(inputs, claim))
+            .or_else(|| shapes::find(inputs, claim))
+            .or_else(|| tally.and_then(|tally| preferences::find(inputs.study, tally, claim)))
+            .or_else(|| setup::find(inputs.study, claim));
+        let Some(found) = found else { continue };
+        table.push(vec![
+            Cell::text(&claim.id),
+            Cell::text(&claim.statement),
+            Cell::text(&claim.unit),
+            Cell::number(claim.value, found.decimals),
+            Cell::number(found.from_published, found.decimals),
+            Cell::number(found.as_published, found.decimals),
+            Cell::number(found.ours, found.decimals),
+            Cell::text(found.verdict.label()),
+            Cell::text([found.verdict.reason(), &found.remark].join(" ").trim()),
+        ]);
+    }
+    table.notes.push(
+        "From its tables: computed from the published tables. Ours, as defined there: from our numbers by the \
+         published definition. Ours: by the right definition, where the reason names another."
+            .into(),
+    );
+    (!table.rows.is_empty()).then_some(table)
+}
+
+/// Equal as printed, else within 3 % for `near`'s reason, else different for `far`'s.
+pub(crate) fn judge(published: f64, ours: f64, decimals: usize, near: &str, far: &str) -> Verdict {
+    if prints_alike(published, ours, decimals) {
+        Verdict::Equal
+    } else if relative_difference(published, ours) <= 0.03 {
+        Verdict::within("3 %", near)
+    } else {
+        Verdict::differs(far)
+    }
+}
+
+#[cfg(test)]
+mod tests;

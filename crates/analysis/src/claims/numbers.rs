@@ -1,0 +1,112 @@
+//! The numbers of each case, from the published benchmark or from ours, under one roof.
+
+use crate::inputs::Inputs;
+use crate::mesh_set::MeshSet;
+use crate::stage_times::StageTimes;
+use design::published::BenchmarkRow;
+use design::record::{MeshRecord, Purpose};
+use design::{Arrangement, Clustering, ConfigurationId, Method};
+
+/// A number of one configuration, and where each side keeps it.
+#[derive(Clone, Copy)]
+pub(super) struct Measure {
+    pub(super) published: fn(&BenchmarkRow) -> f64,
+    pub(super) ours: Ours,
+}
+
+/// Where our side keeps it.
+#[derive(Clone, Copy)]
+pub(super) enum Ours {
+    Mesh(fn(&MeshRecord) -> f64),
+    Times(fn(&StageTimes) -> f64),
+}
+
+/// Whose numbers.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Side {
+    Published,
+    Ours,
+}
+
+/// Looks numbers up.
+pub(super) struct Numbers<'a> {
+    inputs: &'a Inputs<'a>,
+    meshes: MeshSet<'a>,
+}
+
+impl<'a> Numbers<'a> {
+    pub(super) fn of(inputs: &'a Inputs<'a>) -> Self {
+        Self { inputs, meshes: MeshSet::of(inputs, Purpose::Benchmark) }
+    }
+
+    pub(super) fn get(&self, side: Side, measure: Measure, object: usize, method: Method) -> Option<f64> {
+        let id = ConfigurationId { object: self.inputs.study.file.objects[object].id.clone(), method };
+        match (side, measure.ours) {
+            (Side::Published, _) => {
+                let rows = &self.inputs.study.published.benchmark;
+                rows.iter().find(|row| row.id == id).map(measure.published)
+            }
+            (Side::Ours, Ours::Mesh(of)) => self.meshes.get(&id).map(of),
+            (Side::Ours, Ours::Times(of)) => {
+                self.inputs.bench.and_then(|run| StageTimes::of(run, &id)).map(|times| of(&times))
+            }
+        }
+    }
+
+    /// Objects crossed with arrangements: the text's six cases.
+    pub(super) fn lattice_cases(&self) -> Vec<(usize, Arrangement)> {
+        let file = &self.inputs.study.file;
+        let with = |object| file.arrangements.iter().map(move |&arrangement| (object, arrangement));
+        (0..file.objects.len()).flat_map(with).collect()
+    }
+
+    /// Objects crossed with some clusterings.
+    pub(super) fn clustering_cases(&self, of: &[Clustering]) -> Vec<(usize, Clustering)> {
+        let known = &self.inputs.study.file.clusterings;
+        let of: Vec<Clustering> = of.iter().copied().filter(|c| known.contains(c)).collect();
+        let objects = 0..self.inputs.study.file.objects.len();
+        objects.flat_map(|object| of.iter().map(move |&c| (object, c)).collect::<Vec<_>>()).collect()
+    }
+
+    /// `measure` with one clustering over that with another, for every lattice case that has both.
+    pub(super) fn over_clustering(
+        &self,
+        side: Side,
+        measure: Measure,
+        top: Clustering,
+        bottom: Clustering,
+    ) -> Vec<f64> {
+        let ratio = |&(object, arrangement): &(usize, Arrangement)| {
+            let get = |clustering| self.get(side, measure, object, Method { arrangement, clustering });
+            Some(get(top)? / get(bottom)?)
+        };
+        self.lattice_cases().iter().filter_map(ratio).collect()
+    }
+
+    /// `measure` of body-centred over that of simple cubic, for every object and some clusterings.
+    pub(super) fn over_arrangement(&self, side: Side, measure: Measure, of: &[Clustering]) -> Vec<f64> {
+        let ratio = |&(object, clustering): &(usize, Clustering)| {
+            let get = |arrangement| self.get(side, measure, object, Method { arrangement, clustering });
+            Some(get(Arrangement::BodyCentred)? / get(Arrangement::SimpleCubic)?)
+        };
+        self.clustering_cases(of).iter().filter_map(ratio).collect()
+    }
+
+    /// `measure` of one clustering in every lattice case.
+    pub(super) fn each(&self, side: Side, measure: Measure, clustering: Clustering) -> Vec<f64> {
+        let get = |&(object, arrangement): &(usize, Arrangement)| {
+            self.get(side, measure, object, Method { arrangement, clustering })
+        };
+        self.lattice_cases().iter().filter_map(get).collect()
+    }
+}
+
+/// Arithmetic mean; `None` of nothing.
+pub(super) fn mean(values: &[f64]) -> Option<f64> {
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+/// Mean of ratios as a change in per cent.
+pub(super) fn mean_change(ratios: &[f64]) -> Option<f64> {
+    mean(ratios).map(|ratio| 100.0 * (ratio - 1.0))
+}

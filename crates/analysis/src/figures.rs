@@ -1,0 +1,88 @@
+//! Every figure of a study, as SVG and PNG from the same drawing.
+
+mod answers;
+mod axis;
+mod bars;
+mod canvas;
+mod distributions;
+mod legend;
+mod meshes;
+mod preferences;
+mod stages;
+mod style;
+
+use crate::inputs::{AnalysisError, Inputs};
+use crate::tally::Tally;
+use canvas::Canvas;
+use legend::Swatch;
+
+/// A figure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// File name without extension.
+    pub name: String,
+    /// Caption: what is shown, and what is left out.
+    pub caption: String,
+    /// The drawing as SVG. Text stays text, in DejaVu Sans or what the viewer has instead.
+    pub svg: String,
+    /// The drawing as PNG, 2000 pixels wide, 8-bit RGB.
+    pub png: Vec<u8>,
+}
+
+/// Every figure whose inputs are there, in the order of the paper's and then our own.
+///
+/// # Errors
+/// If counting the answers or drawing fails, neither of which is to be expected.
+pub fn figures(inputs: &Inputs<'_>) -> Result<Vec<Figure>, AnalysisError> {
+    drafts(inputs)?.into_iter().map(Draft::finish).collect()
+}
+
+fn drafts(inputs: &Inputs<'_>) -> Result<Vec<Draft>, AnalysisError> {
+    let mut drafts = Vec::new();
+    drafts.extend(meshes::triangles(inputs));
+    drafts.extend(meshes::pass_times(inputs));
+    drafts.extend(meshes::aspect_ratios(inputs));
+    drafts.extend(stages::stage_times(inputs));
+    drafts.extend(distributions::aspect_ratios(inputs));
+    if let (Some(answers), false) = (inputs.answers, inputs.study.comparisons.is_empty()) {
+        let tally = Tally::of(answers, inputs.study)?;
+        drafts.push(answers::per_question(inputs.study, &tally));
+        drafts.push(preferences::per_object(inputs.study, &tally));
+        drafts.push(preferences::overall(inputs.study, &tally));
+    }
+    Ok(drafts)
+}
+
+/// Width of every figure in units.
+const WIDTH: f64 = 1000.0;
+
+/// A figure before it is painted.
+struct Draft {
+    name: &'static str,
+    caption: String,
+    canvas: Canvas,
+}
+
+impl Draft {
+    fn finish(self) -> Result<Figure, AnalysisError> {
+        Ok(Figure {
+            svg: self.canvas.to_svg(self.name)?,
+            png: self.canvas.to_png(self.name)?,
+            name: self.name.into(),
+            caption: self.caption,
+        })
+    }
+}
+
+/// A canvas with its legend drawn, and where the space under the legend begins.
+fn canvas_with_legend(entries: &[(Swatch, String)], content_height: f64) -> (Canvas, f64) {
+    const MARGIN: f64 = 10.0;
+    const LEFT: f64 = 80.0;
+    let top = MARGIN + legend::height(entries, WIDTH - LEFT);
+    let mut canvas = Canvas::new(WIDTH, top + content_height + MARGIN);
+    legend::draw(&mut canvas, entries, LEFT, MARGIN);
+    (canvas, top)
+}
+
+#[cfg(test)]
+mod tests;

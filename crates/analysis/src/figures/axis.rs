@@ -1,0 +1,129 @@
+//! Value axes: where a value falls, and which values are marked.
+
+/// Steps that an axis is cut into, at most; a last one begun counts as a whole.
+const MOST_STEPS: f64 = 7.0;
+
+/// A value axis that runs upwards.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Axis {
+    pub(super) low: f64,
+    pub(super) high: f64,
+    pub(super) ticks: Vec<f64>,
+    logarithmic: bool,
+}
+
+impl Axis {
+    /// From 0 to the first tick at or above `largest`, marked at steps of 1, 2 or 5 times a power of ten.
+    pub(super) fn from_zero(largest: f64) -> Self {
+        let largest = if largest > 0.0 && largest.is_finite() { largest } else { 1.0 };
+        let power = 10_f64.powf((largest / MOST_STEPS).log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0].map(|s| s * power).into_iter().find(|s| largest / s <= MOST_STEPS);
+        let step = step.unwrap_or(10.0 * power);
+        let count = (largest / step - 1e-9).ceil() as u32;
+        let ticks: Vec<f64> = (0..=count).map(|i| f64::from(i) * step).collect();
+        Self { low: 0.0, high: f64::from(count) * step, ticks, logarithmic: false }
+    }
+
+    /// From 0 to exactly `high`.
+    pub(super) fn up_to(high: f64) -> Self {
+        let mut axis = Self::from_zero(high);
+        axis.ticks.retain(|tick| *tick <= high * (1.0 + 1e-9));
+        axis.high = high;
+        axis
+    }
+
+    /// Logarithmic, from 1 to `largest` or a little more, marked at 1, 1.5, 2, 3, 5, 7 and their tenfolds.
+    pub(super) fn logarithmic(largest: f64) -> Self {
+        let mut ticks = vec![];
+        let mut decade = 1.0;
+        while decade <= 1e6 && ticks.last().is_none_or(|&last| last < largest) {
+            for tick in [1.0, 1.5, 2.0, 3.0, 5.0, 7.0].map(|t| t * decade) {
+                if ticks.last().is_none_or(|&last| last < largest) {
+                    ticks.push(tick);
+                }
+            }
+            decade *= 10.0;
+        }
+        let high = *ticks.last().expect("at least 1 is marked");
+        Self { low: 1.0, high, ticks, logarithmic: true }
+    }
+
+    /// Where a value falls between the axis's bottom and top; cut to both.
+    pub(super) fn place(&self, value: f64, bottom: f64, top: f64) -> f64 {
+        let value = value.clamp(self.low, self.high);
+        let share = if self.logarithmic {
+            (value / self.low).ln() / (self.high / self.low).ln()
+        } else {
+            (value - self.low) / (self.high - self.low)
+        };
+        bottom + share * (top - bottom)
+    }
+
+    /// The marks' labels: just the decimals they need, thousands set apart.
+    pub(super) fn labels(&self) -> Vec<String> {
+        let needs = |&tick: &f64| (0..6).find(|&d| round(tick, d) == round(tick, 9)).unwrap_or(6);
+        if self.logarithmic {
+            return self.ticks.iter().map(|t| number(*t, needs(t))).collect();
+        }
+        let decimals = self.ticks.iter().map(needs).max().unwrap_or(0);
+        self.ticks.iter().map(|&tick| number(tick, decimals)).collect()
+    }
+}
+
+fn round(value: f64, decimals: usize) -> f64 {
+    let unit = 10_f64.powi(decimals as i32);
+    (value * unit).round() / unit
+}
+
+/// A number with so many decimals, thousands set apart by commas.
+pub(super) fn number(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let (whole, rest) =
+        text.split_once('.').map_or((text.as_str(), String::new()), |(w, r)| (w, format!(".{r}")));
+    let digits = whole.trim_start_matches('-');
+    let mut out = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i) % 3 == 0 {
+            out.push(',');
+        }
+        out.push(digit);
+    }
+    let sign = if whole.starts_with('-') { "-" } else { "" };
+    format!("{sign}{out}{rest}")
+}
+
+/// A value in about three digits, for a label over a bar.
+pub(super) fn short(value: f64) -> String {
+    let decimals = if value >= 100.0 {
+        0
+    } else if value >= 10.0 {
+        1
+    } else {
+        2
+    };
+    number(value, decimals)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_cover() {
+        let axis = Axis::from_zero(101_720.0);
+        assert_eq!(axis.labels(), ["0", "20,000", "40,000", "60,000", "80,000", "100,000", "120,000"]);
+        assert_eq!(Axis::from_zero(0.87).labels(), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(Axis::from_zero(0.0).high, 1.0);
+        assert_eq!(Axis::up_to(10.0).ticks, [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
+        assert_eq!(Axis::logarithmic(4.0).labels(), ["1", "1.5", "2", "3", "5"]);
+    }
+
+    #[test]
+    fn values_beyond_the_axis_stop_at_its_ends() {
+        let axis = Axis::up_to(10.0);
+        assert_eq!(axis.place(5.0, 100.0, 0.0), 50.0);
+        assert_eq!(axis.place(775.0, 100.0, 0.0), 0.0);
+        assert_eq!(Axis::logarithmic(9.0).place(0.0, 100.0, 0.0), 100.0);
+        assert_eq!((short(775.93), short(24.65), short(1.304)), ("776".into(), "24.6".into(), "1.30".into()));
+    }
+}

@@ -1,0 +1,89 @@
+//! Distributions of the two aspect ratios: a box a configuration.
+
+use super::axis::Axis;
+use super::bars::frame;
+use super::canvas::{Align, BLACK, Canvas};
+use super::meshes::method_legend;
+use super::{Draft, WIDTH, canvas_with_legend, style};
+use crate::inputs::Inputs;
+use crate::mesh_set::MeshSet;
+use design::Method;
+use design::record::{Distribution, MeshRecord, Purpose};
+
+const ROW: f64 = 290.0;
+const PER_ROW: usize = 3;
+
+type Measure = (&'static str, fn(&MeshRecord) -> &Distribution);
+
+const MEASURES: [Measure; 2] = [
+    ("longest / shortest edge", |m| &m.quality.edge_ratio),
+    ("published ratio", |m| &m.quality.published_aspect_ratio),
+];
+
+pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Draft> {
+    let meshes = MeshSet::of(inputs, Purpose::Benchmark);
+    if meshes.is_empty() {
+        return None;
+    }
+    let objects: Vec<usize> = (0..inputs.study.file.objects.len()).collect();
+    let blocks: Vec<&[usize]> = objects.chunks(PER_ROW).collect();
+    let legend = method_legend(inputs, false);
+    let (mut canvas, top) = canvas_with_legend(&legend, 2.0 * ROW * blocks.len() as f64);
+    let mut y = top;
+    for block in blocks {
+        for (label, of) in MEASURES {
+            // One scale a row, so that objects can be compared.
+            let q95 = meshes.in_order().map(|(_, mesh)| of(mesh).q95).fold(1.0, f64::max);
+            let axis = Axis::logarithmic(q95);
+            let width = WIDTH / block.len() as f64;
+            for (i, &object) in block.iter().enumerate() {
+                let boxes: Vec<(Method, Option<&Distribution>)> = inputs
+                    .study
+                    .methods()
+                    .into_iter()
+                    .map(|method| (method, meshes.at(object, method).map(of).filter(|d| d.count > 0)))
+                    .collect();
+                let x = width * i as f64;
+                let name = &inputs.study.file.objects[object].name;
+                panel(&mut canvas, &axis, label, name, &boxes, (x, y), (x + width, y + ROW));
+            }
+            y += ROW;
+        }
+    }
+    let caption = "Aspect ratios of the triangles, at the benchmark spacing. Box: quartiles and median; whiskers: 5 % and 95 %; \
+                   logarithmic scale. Above: longest over shortest of all three edges; below: the published ratio of \
+                   the two edges at the first corner. Degenerate triangles are left out."
+        .into();
+    Some(Draft { name: "aspect_ratio_distributions", caption, canvas })
+}
+
+fn panel(
+    canvas: &mut Canvas,
+    axis: &Axis,
+    label: &str,
+    name: &str,
+    boxes: &[(Method, Option<&Distribution>)],
+    from: (f64, f64),
+    to: (f64, f64),
+) {
+    let (left, right) = (from.0 + 80.0, to.0 - 10.0);
+    let (top, bottom) = (from.1 + 16.0, to.1 - 44.0);
+    frame(canvas, axis, label, (left, right), (bottom, top));
+    let pitch = (right - left) / boxes.len() as f64;
+    let half = (0.32 * pitch).min(24.0);
+    for (i, (method, distribution)) in boxes.iter().enumerate() {
+        let x = left + pitch * (i as f64 + 0.5);
+        canvas.text(method.to_string(), (x, bottom + 14.0), 11.0, Align::Middle);
+        let Some(d) = distribution else { continue };
+        let y = |value: f64| axis.place(value, bottom, top);
+        for (inner, outer) in [(d.q25, d.q05), (d.q75, d.q95)] {
+            canvas.line(vec![(x, y(inner)), (x, y(outer))], BLACK, 1.0);
+            canvas.line(vec![(x - half / 2.0, y(outer)), (x + half / 2.0, y(outer))], BLACK, 1.0);
+        }
+        let fill = style::method(*method);
+        fill.paint(canvas, (x - half, y(d.q25)), (x + half, y(d.q75)));
+        canvas.line(vec![(x - half, y(d.median)), (x + half, y(d.median))], fill.ink(), 2.0);
+    }
+    canvas.line(vec![(left, bottom), (right, bottom)], BLACK, 1.0);
+    canvas.text(name, ((left + right) / 2.0, bottom + 31.0), 12.0, Align::Middle);
+}

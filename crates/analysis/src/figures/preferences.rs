@@ -1,0 +1,141 @@
+//! Preference factors: per object with intervals, and the paper's sums.
+
+use super::axis::Axis;
+use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
+use super::canvas::{BLACK, WHITE};
+use super::legend::Swatch;
+use super::style::{self, Fill};
+use super::{Draft, WIDTH, canvas_with_legend};
+use crate::interval::t_over_respondents;
+use crate::preference::{self, GroupFactor};
+use crate::tables::preferences::scores;
+use crate::tally::Tally;
+use design::published::PreferenceKind;
+use design::{Method, Study};
+
+const ROW: f64 = 306.0;
+
+fn legend_of(study: &Study) -> Vec<(Swatch, String)> {
+    let entry = |m: Method| (Swatch::Area(style::method(m)), format!("{m}: {}", m.label()));
+    study.methods().into_iter().map(entry).collect()
+}
+
+pub(super) fn per_object(study: &Study, tally: &Tally) -> Draft {
+    let mut legend = legend_of(study);
+    legend.push((Swatch::Whisker, "95 % t interval over respondents".into()));
+    legend.push((Swatch::Dashes, "largest possible".into()));
+    let rows = rows_of_groups(study);
+    let (mut canvas, top) = canvas_with_legend(&legend, ROW * rows.len() as f64);
+    for (r, row) in rows.iter().enumerate() {
+        let (width, y) = (WIDTH / row.len() as f64, top + ROW * r as f64);
+        for (i, &group) in row.iter().enumerate() {
+            let x = width * i as f64;
+            group_panel(study, tally, group).draw(&mut canvas, (x, y), (x + width, y + ROW));
+        }
+    }
+    let caption = "Preference factors per object and comparison group: answers for a configuration over all answers to \
+                   the group's questions. Intervals count each respondent as one observation; they are cut at 0 and 1."
+        .into();
+    Draft { name: "preference_objects", caption, canvas }
+}
+
+/// Groups with questions, in rows of up to three; a row holds groups of one size.
+fn rows_of_groups(study: &Study) -> Vec<Vec<usize>> {
+    let mut rows: Vec<Vec<usize>> = Vec::new();
+    for (g, group) in study.groups.iter().enumerate().filter(|(_, group)| !group.comparisons.is_empty()) {
+        let fits =
+            |row: &Vec<usize>| row.len() < 3 && study.groups[row[0]].members.len() == group.members.len();
+        match rows.last_mut().filter(|row| fits(row)) {
+            Some(row) => row.push(g),
+            None => rows.push(vec![g]),
+        }
+    }
+    rows
+}
+
+fn group_panel(study: &Study, tally: &Tally, group: usize) -> BarPanel {
+    let mut cap: f64 = 0.0;
+    let mut clusters = Vec::new();
+    for (o, object) in study.file.objects.iter().enumerate() {
+        let factors = preference::group_factors(study, tally, |other| other == o);
+        let of_group: Vec<&GroupFactor> = factors.iter().filter(|f| f.group == group).collect();
+        cap = of_group.iter().map(|f| f.cap().value()).fold(cap, f64::max);
+        let slot = |factor: &&GroupFactor| Slot {
+            label: factor.method.to_string(),
+            bars: vec![Bar {
+                interval: t_over_respondents(&scores(tally, factor, o)),
+                ..Bar::of(Some(factor.share.factor().value()), style::method(factor.method), None)
+            }],
+        };
+        if !of_group.is_empty() {
+            let label = object.name.clone();
+            clusters.push(Cluster { label, slots: of_group.iter().map(slot).collect() });
+        }
+    }
+    BarPanel {
+        heading: format!("{}: {}", study.groups[group].id, study.groups[group].label),
+        axis_label: "preference factor".into(),
+        axis: Axis::up_to(1.0),
+        clusters,
+        broken: false,
+        cap: Some(cap),
+    }
+}
+
+/// What a group compares: its part of a sum is drawn accordingly.
+fn compares_arrangements(study: &Study, group: usize) -> bool {
+    let members = &study.groups[group].members;
+    members.iter().any(|m| m.arrangement != members[0].arrangement)
+}
+
+pub(super) fn overall(study: &Study, tally: &Tally) -> Draft {
+    let factors = preference::group_factors(study, tally, |_| true);
+    let published = |method: Method| {
+        let mut cells = study.published.preferences.iter();
+        cells.find(|c| c.kind == PreferenceKind::Overall && c.method() == Some(method)).map(|c| c.factor)
+    };
+    let slot = |(method, sum): (Method, crate::Fraction)| {
+        let fill = style::method(method);
+        let of_method = factors.iter().filter(|f| f.method == method);
+        let segment = |f: &GroupFactor| {
+            let arrangements = compares_arrangements(study, f.group);
+            (f.share.factor().value(), if arrangements { fill.striped() } else { fill })
+        };
+        let bar = Bar {
+            segments: of_method.map(segment).collect(),
+            published: published(method),
+            label: Some(format!("{:.3}", sum.value())),
+            interval: None,
+        };
+        Slot { label: method.to_string(), bars: vec![bar] }
+    };
+    let slots: Vec<Slot> = preference::overall(study, &factors).into_iter().map(slot).collect();
+    let mut legend = legend_of(study);
+    let white = Fill { outline: BLACK, ..Fill::plain(WHITE) };
+    let any = |arrangements| factors.iter().any(|f| compares_arrangements(study, f.group) == arrangements);
+    if any(false) {
+        legend.push((Swatch::Area(white), "from clustering groups".into()));
+    }
+    if any(true) {
+        legend.push((Swatch::Area(white.striped()), "from arrangement groups".into()));
+    }
+    if slots.iter().flat_map(|s| &s.bars).any(|bar| bar.published.is_some()) {
+        legend.push((Swatch::Diamond, "published".into()));
+    }
+    let clusters = vec![Cluster { label: "all objects".into(), slots }];
+    let panel = BarPanel {
+        heading: String::new(),
+        axis_label: "sum of preference factors".into(),
+        axis: Axis::from_zero(1.05 * largest(&clusters)),
+        clusters,
+        broken: false,
+        cap: None,
+    };
+    let (mut canvas, top) = canvas_with_legend(&legend, 380.0);
+    panel.draw(&mut canvas, (0.0, top), (WIDTH, top + 380.0));
+    let caption =
+        "Overall preference: the sum of a configuration's factors over its comparison groups. Groups of \
+                   different size are on different scales, so the sum favours neither half by design."
+            .into();
+    Draft { name: "preference_overall", caption, canvas }
+}

@@ -1,0 +1,104 @@
+//! Colours and fills: told apart by lightness as well as by hue (after Okabe and Ito 2008).
+//!
+//! Hue and lightness tell the clustering; a light tint with a dark outline tells simple cubic from body-centred; stripes
+//! tell the second stage or half of a bar.
+
+use super::canvas::{BLACK, Canvas, Colour, WHITE};
+use design::{Arrangement, Clustering, Method};
+use plotters::style::RGBColor;
+
+/// How an area is filled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Fill {
+    pub(super) colour: Colour,
+    pub(super) outline: Colour,
+    pub(super) stripes: bool,
+}
+
+pub(super) const GRID: Colour = RGBColor(0xdd, 0xdd, 0xdd);
+pub(super) const LEFT: Colour = RGBColor(0x00, 0x72, 0xb2);
+pub(super) const NONE: Colour = RGBColor(0xdc, 0xdc, 0xdc);
+pub(super) const RIGHT: Colour = RGBColor(0xe6, 0x9f, 0x00);
+
+impl Fill {
+    pub(super) fn plain(colour: Colour) -> Self {
+        Self { colour, outline: colour, stripes: false }
+    }
+
+    pub(super) fn striped(self) -> Self {
+        Self { stripes: true, ..self }
+    }
+
+    /// Black or white, whichever stands out.
+    pub(super) fn ink(self) -> Colour {
+        ink_on(self.colour)
+    }
+
+    /// Fills a rectangle; nothing if it is empty.
+    pub(super) fn paint(self, canvas: &mut Canvas, from: (f64, f64), to: (f64, f64)) {
+        let (x0, x1) = (from.0.min(to.0), from.0.max(to.0));
+        let (y0, y1) = (from.1.min(to.1), from.1.max(to.1));
+        if y1 - y0 < 0.25 || x1 - x0 < 0.25 {
+            return;
+        }
+        canvas.rectangle((x0, y0), (x1, y1), self.colour);
+        if self.stripes {
+            stripes(canvas, (x0, y0), (x1, y1), self.ink());
+        }
+        let corners = vec![(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)];
+        canvas.line(corners, self.outline, 1.0);
+    }
+}
+
+/// Rising diagonal stripes, cut to the rectangle.
+fn stripes(canvas: &mut Canvas, from: (f64, f64), to: (f64, f64), colour: Colour) {
+    const STEP: f64 = 5.0;
+    let ((x0, y0), (x1, y1)) = (from, to);
+    // Lines x + y = c.
+    let mut c = ((x0 + y0) / STEP).ceil() * STEP;
+    while c < x1 + y1 {
+        let start = (c - y1).max(x0);
+        let end = (c - y0).min(x1);
+        if end - start > 0.5 {
+            canvas.line(vec![(start, c - start), (end, c - end)], colour, 0.5);
+        }
+        c += STEP;
+    }
+}
+
+/// Black or white, whichever stands out from a colour.
+pub(super) fn ink_on(colour: Colour) -> Colour {
+    let RGBColor(r, g, b) = colour;
+    let lightness = 0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b);
+    if lightness < 128.0 { WHITE } else { BLACK }
+}
+
+/// The fill of a method.
+pub(super) fn method(method: Method) -> Fill {
+    let colour = match method.clustering {
+        Clustering::None => RGBColor(0x4d, 0x4d, 0x4d),
+        Clustering::Integrated => RGBColor(0xe6, 0x9f, 0x00),
+        Clustering::EdgeCollapse => RGBColor(0x00, 0x72, 0xb2),
+    };
+    match method.arrangement {
+        Arrangement::BodyCentred => Fill::plain(colour),
+        Arrangement::SimpleCubic => Fill { colour: tint(colour), outline: colour, stripes: false },
+    }
+}
+
+/// The fills of the five stages, in their order.
+pub(super) fn stages() -> [(&'static str, Fill); 5] {
+    [
+        ("allocation", Fill::plain(RGBColor(0x33, 0x33, 0x33))),
+        ("sampling", Fill::plain(RGBColor(0x56, 0xb4, 0xe9))),
+        ("vertex", Fill::plain(RGBColor(0xe6, 0x9f, 0x00))),
+        ("geometry", Fill::plain(RGBColor(0x00, 0x72, 0xb2)).striped()),
+        ("normals", Fill::plain(RGBColor(0xcc, 0x79, 0xa7))),
+    ]
+}
+
+fn tint(colour: Colour) -> Colour {
+    let RGBColor(r, g, b) = colour;
+    let lighter = |c: u8| (f64::from(c) * 0.38 + 255.0 * 0.62).round() as u8;
+    RGBColor(lighter(r), lighter(g), lighter(b))
+}

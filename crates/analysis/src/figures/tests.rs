@@ -1,0 +1,135 @@
+use super::*;
+use crate::fixture::{self, Everything};
+
+/// Every tag is closed in order, attributes are quoted, and no bare `&` or `<` is left in text.
+fn is_well_formed(svg: &str) -> bool {
+    let mut open: Vec<&str> = Vec::new();
+    let mut rest = svg;
+    while let Some(start) = rest.find('<') {
+        let text = &rest[..start];
+        if text
+            .replace("&amp;", "")
+            .replace("&lt;", "")
+            .replace("&gt;", "")
+            .replace("&quot;", "")
+            .contains('&')
+        {
+            return false;
+        }
+        let Some(end) = rest.find('>') else { return false };
+        let tag = &rest[start + 1..end];
+        if tag.contains('<') || tag.matches('"').count() % 2 == 1 {
+            return false;
+        }
+        let name = tag.trim_start_matches('/').split([' ', '/']).next().unwrap_or_default();
+        if tag.starts_with('/') {
+            if open.pop() != Some(name) {
+                return false;
+            }
+        } else if !tag.ends_with('/') {
+            open.push(name);
+        }
+        rest = &rest[end + 1..];
+    }
+    open.is_empty() && rest.trim().is_empty()
+}
+
+#[test]
+fn the_check_itself_can_fail() {
+    assert!(is_well_formed("<a b=\"c\"><d/>x &amp; y</a>"));
+    for bad in ["<a>", "<a></b>", "<a b=\"c></a>", "<a>x & y</a>", "<a/>x"] {
+        assert!(!is_well_formed(bad), "{bad}");
+    }
+}
+
+#[test]
+fn every_figure_is_there_and_sound() {
+    let all = Everything::of(fixture::study());
+    let figures = figures(&all.inputs()).unwrap();
+    let expected = [
+        ("triangles", vec!["triangles", "120,000", "sphere", "asteroid", "bunny", "published"]),
+        ("pass_times", vec!["time, ms", "geometry pass (right bar)", "bp: body-centred, edge collapse"]),
+        ("aspect_ratio", vec!["mean aspect ratio", "10", "777", "sp: simple cubic, edge collapse"]),
+        ("stage_times", vec!["sampling", "bunny, without sampling", "time, s"]),
+        ("aspect_ratio_distributions", vec!["longest / shortest edge", "published ratio", "1.5"]),
+        ("answers", vec!["Q1", "Q27", "as_sp", "left preferred", "18"]),
+        ("preference_objects", vec!["B: clustering within body-centred", "largest possible"]),
+        ("preference_overall", vec!["0.340", "1.062", "from arrangement groups", "published"]),
+    ];
+    assert_eq!(figures.len(), expected.len());
+    for (figure, (name, labels)) in figures.iter().zip(expected) {
+        assert_eq!(figure.name, name);
+        assert!(is_well_formed(&figure.svg), "{name}");
+        for label in labels {
+            assert!(figure.svg.contains(&format!(">\n{label}\n</text>")), "{name}: {label}");
+        }
+        assert!(figure.svg.contains("DejaVu Sans, Verdana, Helvetica, Arial, sans-serif"), "{name}");
+        assert!(figure.caption.ends_with('.'), "{name}");
+
+        let reader = png::Decoder::new(std::io::Cursor::new(&figure.png)).read_info();
+        let mut reader = reader.unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut pixels).unwrap();
+        assert_eq!(info.width, 2000, "{name}");
+        let dark = pixels.chunks_exact(3).filter(|p| p.iter().all(|&c| c < 0x60)).count();
+        assert!(dark > 2000, "{name} has text and axes");
+        let viewbox = format!("viewBox=\"0 0 {} {}\"", info.width, info.height);
+        assert!(figure.svg.contains(&viewbox), "{name}");
+    }
+}
+
+#[test]
+fn the_same_inputs_give_the_same_bytes() {
+    let mut all = Everything::of(fixture::study());
+    let before = figures(&all.inputs()).unwrap();
+    all.meshes.reverse();
+    assert!(figures(&all.inputs()).unwrap() == before);
+}
+
+#[test]
+fn no_text_leaves_the_drawing() {
+    let all = Everything::of(fixture::study());
+    for draft in drafts(&all.inputs()).unwrap() {
+        assert_eq!(draft.canvas.texts_outside(), Vec::<String>::new(), "{}", draft.name);
+    }
+}
+
+#[test]
+fn captions_say_what_is_left_out() {
+    let all = Everything::of(fixture::study());
+    let caption = meshes::aspect_ratios(&all.inputs()).unwrap().caption;
+    assert!(
+        caption.contains("192 degenerate triangles, whose ratio is infinite, are left out."),
+        "{caption}"
+    );
+    assert!(caption.contains("ss_bu 775.93, ss_su 1207.37"), "{caption}");
+    let caption = meshes::pass_times(&all.inputs()).unwrap().caption;
+    assert!(caption.contains("Published times are from another machine."), "{caption}");
+}
+
+#[test]
+#[ignore = "for a look: writes figures and tables to ANALYSIS_OUT, from the mesh records under ANALYSIS_MESHES if set"]
+fn dump() {
+    let out = std::path::PathBuf::from(std::env::var("ANALYSIS_OUT").unwrap());
+    let mut all = Everything::of(fixture::study());
+    if let Ok(records) = std::env::var("ANALYSIS_MESHES") {
+        all.meshes.clear();
+        for purpose in ["benchmark", "stimulus", "indexed"] {
+            for entry in std::fs::read_dir(std::path::Path::new(&records).join(purpose)).unwrap() {
+                let path = entry.unwrap().path();
+                if path.extension().is_some_and(|extension| extension == "json") {
+                    all.meshes.push(serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap());
+                }
+            }
+        }
+    }
+    for f in figures(&all.inputs()).unwrap() {
+        std::fs::write(out.join(format!("{}.svg", f.name)), &f.svg).unwrap();
+        std::fs::write(out.join(format!("{}.png", f.name)), &f.png).unwrap();
+    }
+    for t in crate::tables(&all.inputs()).unwrap() {
+        std::fs::write(out.join(format!("{}.csv", t.name)), t.to_csv()).unwrap();
+        std::fs::write(out.join(format!("{}.md", t.name)), t.to_markdown()).unwrap();
+        std::fs::write(out.join(format!("{}.tex", t.name)), t.to_latex()).unwrap();
+    }
+}

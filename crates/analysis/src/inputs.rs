@@ -1,0 +1,34 @@
+//! What tables and figures are made from.
+
+use crate::answers::Answers;
+use design::Study;
+use design::record::{BenchRun, MeshRecord};
+
+/// What tables and figures are made from. Absent or empty parts leave out what depends on them.
+#[derive(Debug, Clone, Copy)]
+pub struct Inputs<'a> {
+    /// The study.
+    pub study: &'a Study,
+    /// Meshes of any purpose, in any order; configurations may be missing.
+    pub meshes: &'a [MeshRecord],
+    /// The benchmark run.
+    pub bench: Option<&'a BenchRun>,
+    /// The answers.
+    pub answers: Option<&'a Answers>,
+}
+
+/// Why tables or figures could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum AnalysisError {
+    /// A table verb failed.
+    #[error("counting answers: {0}")]
+    Counting(#[from] polars::error::PolarsError),
+    /// A figure could not be drawn.
+    #[error("figure {figure}: {message}")]
+    Drawing {
+        /// The figure's name.
+        figure: String,
+        /// What the drawing library said.
+        message: String,
+    },
+}

@@ -1,0 +1,42 @@
+//! The meshes of one purpose, in the study's order.
+
+use crate::inputs::Inputs;
+use design::record::{MeshRecord, Purpose};
+use design::{Configuration, ConfigurationId, Method, Study};
+
+/// The records of one purpose, found by configuration.
+#[derive(Debug, Clone)]
+pub(crate) struct MeshSet<'a> {
+    study: &'a Study,
+    records: Vec<&'a MeshRecord>,
+}
+
+impl<'a> MeshSet<'a> {
+    pub(crate) fn of(inputs: &Inputs<'a>, purpose: Purpose) -> Self {
+        let records = inputs.meshes.iter().filter(|mesh| mesh.purpose == purpose).collect();
+        Self { study: inputs.study, records }
+    }
+
+    pub(crate) fn get(&self, id: &ConfigurationId) -> Option<&'a MeshRecord> {
+        self.records.iter().copied().find(|mesh| mesh.id == *id)
+    }
+
+    /// The record of an object, by index, and a method.
+    pub(crate) fn at(&self, object: usize, method: Method) -> Option<&'a MeshRecord> {
+        self.get(&ConfigurationId { object: self.study.file.objects[object].id.clone(), method })
+    }
+
+    /// Configurations that have a record, in the study's order.
+    pub(crate) fn in_order(&self) -> impl Iterator<Item = (&'a Configuration, &'a MeshRecord)> {
+        self.study.configurations.iter().filter_map(|c| self.get(&c.id).map(|mesh| (c, mesh)))
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.in_order().next().is_none()
+    }
+}
+
+/// The share of triangles that merging discarded, `discarded / (discarded + kept)`, in 0..=1; 0 of none.
+pub(crate) fn discard_fraction(discarded: u64, kept: u64) -> f64 {
+    if discarded == 0 { 0.0 } else { discarded as f64 / (discarded + kept) as f64 }
+}

@@ -1,0 +1,94 @@
+//! Stage times of each configuration, over the samples of a benchmark run.
+
+use design::ConfigurationId;
+use design::record::{BenchRun, BenchSample};
+
+/// Mean seconds a stage.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct StageTimes {
+    pub(crate) allocation_s: f64,
+    pub(crate) sampling_s: f64,
+    pub(crate) vertex_s: f64,
+    pub(crate) geometry_s: f64,
+    pub(crate) normals_s: f64,
+    /// Median of the samples' totals without normals.
+    pub(crate) median_without_normals_s: f64,
+}
+
+impl StageTimes {
+    /// Means over a configuration's samples; `None` if it has none.
+    pub(crate) fn of(run: &BenchRun, id: &ConfigurationId) -> Option<Self> {
+        let samples: Vec<&BenchSample> = run.samples.iter().filter(|sample| sample.id == *id).collect();
+        if samples.is_empty() {
+            return None;
+        }
+        let mean = |stage: fn(&BenchSample) -> f64| {
+            samples.iter().map(|sample| stage(sample)).sum::<f64>() / samples.len() as f64
+        };
+        let mut totals: Vec<f64> = samples.iter().map(|s| s.total_s - s.normals_s).collect();
+        totals.sort_unstable_by(f64::total_cmp);
+        let middle = totals.len() / 2;
+        let median =
+            if totals.len() % 2 == 1 { totals[middle] } else { (totals[middle - 1] + totals[middle]) / 2.0 };
+        Some(Self {
+            allocation_s: mean(|s| s.allocation_s),
+            sampling_s: mean(|s| s.sampling_s),
+            vertex_s: mean(|s| s.vertex_s),
+            geometry_s: mean(|s| s.geometry_s),
+            normals_s: mean(|s| s.normals_s),
+            median_without_normals_s: median,
+        })
+    }
+
+    /// The published total: the first four stages.
+    pub(crate) fn total_without_normals_s(&self) -> f64 {
+        self.allocation_s + self.sampling_s + self.vertex_s + self.geometry_s
+    }
+}
+
+/// Where and how often a run was measured, for a note under a table.
+pub(crate) fn conditions(run: &BenchRun) -> String {
+    let model = run.machine.model.as_deref().unwrap_or("an unnamed CPU");
+    let matches = if run.differences.is_empty() {
+        format!("which matches the target {}", run.target.name)
+    } else {
+        let list: Vec<String> = run
+            .differences
+            .iter()
+            .map(|d| format!("{}: {} instead of {}", d.property, d.machine, d.target))
+            .collect();
+        format!("which does not match the target {} ({})", run.target.name, list.join("; "))
+    };
+    format!(
+        "Times: means over {} iterations after {} of warm-up, on {model}, {} sampling threads, {matches}.",
+        run.iterations, run.warmup, run.threads
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn means_medians_and_conditions() {
+        let study = fixture::study();
+        let mut run = fixture::bench(&study);
+        let id = study.configurations[0].id.clone();
+        run.samples.retain(|s| s.id == id);
+        for (sample, vertex_s) in run.samples.iter_mut().zip([1.0, 2.0, 6.0]) {
+            sample.vertex_s = vertex_s;
+            sample.total_s =
+                sample.allocation_s + sample.sampling_s + vertex_s + sample.geometry_s + sample.normals_s;
+        }
+        run.samples.truncate(3);
+        let times = StageTimes::of(&run, &id).unwrap();
+        assert_eq!(times.vertex_s, 3.0);
+        let without_vertex = times.total_without_normals_s() - 3.0;
+        assert!((times.median_without_normals_s - 2.0 - without_vertex).abs() < 1e-3);
+        assert_eq!(StageTimes::of(&run, &study.configurations[1].id), None);
+        assert!(conditions(&run).contains("does not match the target Intel Core i7-11700"));
+        run.differences.clear();
+        assert!(conditions(&run).contains("which matches the target"));
+    }
+}

@@ -1,0 +1,222 @@
+//! A table that prints itself as CSV, Markdown, LaTeX and HTML.
+
+mod html;
+mod latex;
+mod markdown;
+
+/// One cell.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Cell {
+    /// Nothing there; prints as nothing.
+    Missing,
+    /// Text.
+    Text(String),
+    /// A whole number.
+    Count(i64),
+    /// A number: in full in CSV, to so many decimals elsewhere.
+    Number(f64, usize),
+}
+
+/// A column's name in CSV and its heading elsewhere.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Name in CSV: stable, for scripts.
+    pub name: String,
+    /// Heading in Markdown, LaTeX and HTML: for people.
+    pub heading: String,
+}
+
+/// A table: columns, rows, and how it is printed for people.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// File name without extension.
+    pub name: String,
+    /// Caption; may be empty for a part of another table.
+    pub caption: String,
+    /// The columns.
+    pub columns: Vec<Column>,
+    /// The rows, as long as `columns` each.
+    pub rows: Vec<Vec<Cell>>,
+    /// Printed under the table, one paragraph each.
+    pub notes: Vec<String>,
+    /// What Markdown, LaTeX and HTML print instead of one wide table: blocks of columns, or another arrangement of the
+    /// same numbers. Empty prints the table itself. CSV is always the table itself.
+    pub parts: Vec<Table>,
+}
+
+impl Cell {
+    pub(crate) fn text(text: impl ToString) -> Self {
+        Self::Text(text.to_string())
+    }
+
+    /// # Panics
+    /// If the count is above 2^63.
+    pub(crate) fn count(count: u64) -> Self {
+        Self::Count(i64::try_from(count).expect("counts fit 63 bits"))
+    }
+
+    pub(crate) fn number(value: Option<f64>, decimals: usize) -> Self {
+        value.map_or(Self::Missing, |value| Self::Number(value, decimals))
+    }
+
+    /// In full, as in CSV: the shortest text that reads back as the same number.
+    pub fn in_full(&self) -> String {
+        match self {
+            Self::Missing => String::new(),
+            Self::Text(text) => text.clone(),
+            Self::Count(count) => count.to_string(),
+            Self::Number(value, _) => value.to_string(),
+        }
+    }
+
+    /// For people: numbers to the column's decimals.
+    pub fn shown(&self) -> String {
+        match self {
+            Self::Number(value, decimals) => format!("{value:.decimals$}"),
+            other => other.in_full(),
+        }
+    }
+
+    fn is_text(&self) -> bool {
+        matches!(self, Self::Text(_))
+    }
+}
+
+impl Table {
+    /// A table without rows; columns are `(name, heading)`.
+    pub(crate) fn new(name: &str, caption: impl Into<String>, columns: &[(&str, &str)]) -> Self {
+        let column = |&(name, heading): &(&str, &str)| Column { name: name.into(), heading: heading.into() };
+        Self {
+            name: name.into(),
+            caption: caption.into(),
+            columns: columns.iter().map(column).collect(),
+            rows: Vec::new(),
+            notes: Vec::new(),
+            parts: Vec::new(),
+        }
+    }
+
+    /// # Panics
+    /// If the row is not as long as the header.
+    pub(crate) fn push(&mut self, row: Vec<Cell>) {
+        assert_eq!(row.len(), self.columns.len(), "table {}", self.name);
+        self.rows.push(row);
+    }
+
+    /// Prints the table as blocks of some of its columns, by name; names that are not there are skipped.
+    pub(crate) fn print_in_blocks(&mut self, blocks: &[(&str, &[&str])]) {
+        self.parts = blocks.iter().map(|(caption, columns)| self.block(caption, columns)).collect();
+    }
+
+    /// Some of the columns, by name, as a table without notes; names that are not there are skipped.
+    pub(crate) fn block(&self, caption: &str, columns: &[&str]) -> Self {
+        let index = |name: &&str| self.columns.iter().position(|column| column.name == *name);
+        let picked: Vec<usize> = columns.iter().filter_map(index).collect();
+        Self {
+            name: self.name.clone(),
+            caption: caption.into(),
+            columns: picked.iter().map(|&i| self.columns[i].clone()).collect(),
+            rows: self.rows.iter().map(|row| picked.iter().map(|&i| row[i].clone()).collect()).collect(),
+            notes: Vec::new(),
+            parts: Vec::new(),
+        }
+    }
+
+    /// Headings, for people.
+    pub fn headings(&self) -> Vec<&str> {
+        self.columns.iter().map(|column| column.heading.as_str()).collect()
+    }
+
+    /// Rows as text, for people.
+    pub fn shown_rows(&self) -> Vec<Vec<String>> {
+        self.rows.iter().map(|row| row.iter().map(Cell::shown).collect()).collect()
+    }
+
+    /// The table itself, if it has no parts, or its parts.
+    pub fn printed(&self) -> &[Table] {
+        if self.parts.is_empty() { std::slice::from_ref(self) } else { &self.parts }
+    }
+
+    /// Whether a column holds text (and is set flush left) rather than numbers.
+    pub fn is_text_column(&self, column: usize) -> bool {
+        self.rows.iter().any(|row| row[column].is_text())
+    }
+
+    /// Comma-separated values: a header of column names, then every row, numbers in full; LF line ends, quotes where
+    /// needed. Captions and notes are left out.
+    pub fn to_csv(&self) -> String {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let into_memory = "writing to memory cannot fail";
+        writer.write_record(self.columns.iter().map(|column| &column.name)).expect(into_memory);
+        for row in &self.rows {
+            writer.write_record(row.iter().map(Cell::in_full)).expect(into_memory);
+        }
+        String::from_utf8(writer.into_inner().expect(into_memory)).expect("made of strings")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn awkward() -> Table {
+        let mut table =
+            Table::new("awkward", "50 % of a_b & c", &[("id", "The id"), ("n_|x|", "|x|"), ("m", "mean")]);
+        table.push(vec![Cell::text("ss_bi, \"q\""), Cell::Count(-3), Cell::Number(1.0 / 3.0, 2)]);
+        table.push(vec![Cell::text("a|b\\c\n*d* <e> ~^{}"), Cell::Missing, Cell::Number(2.0, 2)]);
+        table.notes.push("100 % & more".into());
+        table
+    }
+
+    #[test]
+    fn csv_quotes_and_keeps_digits() {
+        let want = "id,n_|x|,m\n\"ss_bi, \"\"q\"\"\",-3,0.3333333333333333\n\"a|b\\c\n*d* <e> ~^{}\",,2\n";
+        assert_eq!(awkward().to_csv(), want);
+    }
+
+    #[test]
+    fn markdown_escapes() {
+        let want = "\
+**50 % of a\\_b &amp; c**
+
+| The id | \\|x\\| | mean |
+|:---|---:|---:|
+| ss\\_bi, \"q\" | -3 | 0.33 |
+| a\\|b\\\\c \\*d\\* &lt;e> ~^{} |  | 2.00 |
+
+100 % &amp; more
+";
+        assert_eq!(awkward().to_markdown(), want);
+    }
+
+    #[test]
+    fn latex_escapes() {
+        let latex = awkward().to_latex();
+        assert!(latex.contains("\\caption{50 \\% of a\\_b \\& c}"), "{latex}");
+        assert!(latex.contains("ss\\_bi, \"q\" & -3 & 0.33 \\\\"), "{latex}");
+        let row = "a\\textbar{}b\\textbackslash{}c *d* \\textless{}e\\textgreater{} \\textasciitilde{}\\textasciicircum{}\\{\\}";
+        assert!(latex.contains(row), "{latex}");
+        assert!(latex.contains("\\begin{tabular}{lrr}"), "{latex}");
+        assert!(latex.contains("\\label{tab:awkward}"), "{latex}");
+    }
+
+    #[test]
+    fn html_escapes() {
+        let html = awkward().to_html();
+        assert!(html.contains("<caption>50 % of a_b &amp; c</caption>"), "{html}");
+        assert!(html.contains("<td>ss_bi, &quot;q&quot;</td><td class=\"number\">-3</td>"), "{html}");
+        assert!(html.contains("&lt;e&gt;"), "{html}");
+    }
+
+    #[test]
+    fn blocks_print_apart_but_csv_stays_whole() {
+        let mut table = awkward();
+        table.print_in_blocks(&[("First", &["id", "m"]), ("Second", &["id", "n_|x|", "absent"])]);
+        assert_eq!(table.to_csv(), awkward().to_csv());
+        assert_eq!(table.printed()[1].headings(), ["The id", "|x|"]);
+        let markdown = table.to_markdown();
+        assert!(markdown.contains("| The id | mean |") && markdown.contains("**Second**"), "{markdown}");
+        let latex = table.to_latex();
+        assert!(latex.matches("\\begin{tabular}").count() == 2 && latex.matches("\\caption").count() == 1);
+    }
+}

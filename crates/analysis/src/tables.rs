@@ -1,0 +1,42 @@
+//! Every table of a study.
+
+mod answers;
+mod benchmark;
+mod design;
+mod mesh_quality;
+pub(crate) mod preferences;
+
+use crate::inputs::{AnalysisError, Inputs};
+use crate::table::Table;
+use crate::tally::Tally;
+use crate::{claims, comparison};
+
+/// Every table whose inputs are there, in the order of the paper's and then our own.
+///
+/// # Errors
+/// If counting the answers fails, which is not to be expected of answers read for this study.
+pub fn tables(inputs: &Inputs<'_>) -> Result<Vec<Table>, AnalysisError> {
+    let tally = match inputs.answers {
+        Some(answers) if !inputs.study.comparisons.is_empty() => Some(Tally::of(answers, inputs.study)?),
+        _ => None,
+    };
+    let tally = tally.as_ref();
+    let mut tables = vec![design::configurations(inputs.study)];
+    tables.extend(benchmark::benchmark(inputs));
+    tables.extend(benchmark::asteroid(inputs));
+    tables.extend(design::questionnaire(inputs.study));
+    if let (Some(answers), Some(tally)) = (inputs.answers, tally) {
+        tables.push(answers::answers(inputs.study, answers));
+        tables.push(answers::counts(inputs.study, tally));
+        tables.extend(preferences::all(inputs.study, tally));
+    }
+    tables.extend(mesh_quality::quality(inputs));
+    tables.extend(mesh_quality::topology(inputs));
+    tables.extend(mesh_quality::positions(inputs));
+    tables.extend(comparison::tables(inputs, tally));
+    tables.extend(claims::table(inputs, tally));
+    Ok(tables)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,185 @@
+//! The benchmark: counts, times, memory and the published aspect ratio of every configuration (appendix B).
+
+use crate::inputs::Inputs;
+use crate::mesh_set::{MeshSet, discard_fraction};
+use crate::published_ratio;
+use crate::stage_times::{StageTimes, conditions};
+use crate::table::{Cell, Table};
+use design::config::FieldSection;
+use design::record::{MeshRecord, Purpose};
+
+/// A column: name in CSV, heading, and its cell.
+type Entry = (&'static str, &'static str, fn(&MeshRecord) -> Cell);
+
+const MESH_COLUMNS: &[Entry] = &[
+    ("resolution", "Cubes", |m| Cell::text(format!("{}x{}x{}", m.cells[0], m.cells[1], m.cells[2]))),
+    ("arrangement", "Arrangement", |m| Cell::text(m.id.method.arrangement.label())),
+    ("clustering", "Clustering", |m| Cell::text(m.id.method.clustering.label())),
+    ("tetrahedra", "Tetrahedra", |m| Cell::count(m.counts.tetrahedra)),
+    ("tetrahedra_evaluated", "Evaluated", |m| Cell::count(m.counts.tetrahedra_evaluated)),
+    ("evaluated_fraction", "Evaluated fraction", |m| {
+        Cell::number(ratio(m.counts.tetrahedra_evaluated, m.counts.tetrahedra), 4)
+    }),
+    ("vertices", "Vertices", |m| Cell::count(m.counts.vertices)),
+    ("triangles", "Triangles", |m| Cell::count(m.counts.triangles)),
+    ("discarded_triangles", "Discarded", |m| Cell::count(m.counts.discarded_triangles)),
+    ("discarded_as_published", "Discarded, as published", |m| Cell::count(m.counts.discarded_as_published)),
+    ("discard_fraction", "Discard fraction", |m| {
+        Cell::Number(discard_fraction(m.counts.discarded_triangles, m.counts.triangles), 4)
+    }),
+    ("discard_fraction_as_published", "as published", |m| {
+        Cell::Number(discard_fraction(m.counts.discarded_as_published, m.counts.triangles), 4)
+    }),
+    ("stored_samples", "Samples stored", |m| Cell::count(m.counts.stored_samples)),
+    ("needed_samples", "Samples needed", |m| Cell::count(m.counts.needed_samples)),
+    ("stored_edges", "Edges stored", |m| Cell::count(m.counts.stored_edges)),
+    ("needed_edges", "Edges needed", |m| Cell::count(m.counts.needed_edges)),
+    ("sample_bytes", "Lattice bytes", |m| Cell::count(m.counts.sample_bytes)),
+    ("edge_bytes", "Edge bytes", |m| Cell::count(m.counts.edge_bytes)),
+    ("vertex_bytes", "Vertex bytes", |m| Cell::count(m.counts.vertex_bytes)),
+    ("index_bytes", "Index bytes", |m| Cell::count(m.counts.index_bytes)),
+    ("aspect_ratio_mean", "Aspect ratio mean", |m| Cell::Number(m.quality.published_aspect_ratio.mean, 3)),
+    ("aspect_ratio_sd", "Aspect ratio SD", |m| Cell::Number(m.quality.published_aspect_ratio.sd, 3)),
+    ("aspect_ratio_mean_as_published", "mean, as published", |m| {
+        Cell::Number(published_ratio::mean(&m.quality), 3)
+    }),
+    ("aspect_ratio_sd_as_published", "SD, as published", |m| {
+        Cell::Number(published_ratio::sd(&m.quality), 3)
+    }),
+    ("degenerate_triangles", "Degenerate", |m| Cell::count(m.quality.degenerate)),
+];
+
+/// As for meshes; seconds in full in CSV, microseconds' precision for people.
+type TimeEntry = (&'static str, &'static str, fn(&StageTimes) -> Cell);
+
+const TIME_COLUMNS: &[TimeEntry] = &[
+    ("total_without_normals_s", "Total, s", |t| Cell::Number(t.total_without_normals_s(), 6)),
+    ("total_without_normals_median_s", "Median, s", |t| Cell::Number(t.median_without_normals_s, 6)),
+    ("allocation_s", "Allocation, s", |t| Cell::Number(t.allocation_s, 6)),
+    ("sampling_s", "Sampling, s", |t| Cell::Number(t.sampling_s, 6)),
+    ("sampling_fraction", "Sampling fraction", |t| fraction(t, t.sampling_s)),
+    ("vertex_s", "Vertex, s", |t| Cell::Number(t.vertex_s, 6)),
+    ("vertex_fraction", "Vertex fraction", |t| fraction(t, t.vertex_s)),
+    ("geometry_s", "Geometry, s", |t| Cell::Number(t.geometry_s, 6)),
+    ("geometry_fraction", "Geometry fraction", |t| fraction(t, t.geometry_s)),
+    ("normals_s", "Normals, s", |t| Cell::Number(t.normals_s, 6)),
+];
+
+/// The four blocks that the paper prints.
+const BLOCKS: &[(&str, &[&str])] = &[
+    (
+        "Resolution and counts",
+        &[
+            "id",
+            "resolution",
+            "arrangement",
+            "clustering",
+            "tetrahedra",
+            "vertices",
+            "triangles",
+            "discarded_triangles",
+            "discarded_as_published",
+        ],
+    ),
+    (
+        "Times",
+        &[
+            "id",
+            "total_without_normals_s",
+            "total_without_normals_median_s",
+            "sampling_s",
+            "sampling_fraction",
+            "vertex_s",
+            "vertex_fraction",
+            "geometry_s",
+            "geometry_fraction",
+        ],
+    ),
+    ("Memory", &["id", "sample_bytes", "edge_bytes", "vertex_bytes", "index_bytes"]),
+    (
+        "Work and shape",
+        &[
+            "id",
+            "tetrahedra_evaluated",
+            "evaluated_fraction",
+            "discard_fraction",
+            "discard_fraction_as_published",
+            "aspect_ratio_mean",
+            "aspect_ratio_sd",
+            "degenerate_triangles",
+            "aspect_ratio_mean_as_published",
+            "aspect_ratio_sd_as_published",
+        ],
+    ),
+];
+
+fn ratio(part: u64, whole: u64) -> Option<f64> {
+    (whole > 0).then(|| part as f64 / whole as f64)
+}
+
+fn fraction(times: &StageTimes, stage_s: f64) -> Cell {
+    let total = times.total_without_normals_s();
+    Cell::number((total > 0.0).then(|| stage_s / total), 3)
+}
+
+/// The whole benchmark, one row a configuration.
+pub(super) fn benchmark(inputs: &Inputs<'_>) -> Option<Table> {
+    let mut table = whole(inputs, |_| true)?;
+    let blocks: Vec<_> =
+        BLOCKS.iter().copied().filter(|(name, _)| inputs.bench.is_some() || *name != "Times").collect();
+    table.print_in_blocks(&blocks);
+    Some(table)
+}
+
+/// The paper's extract: the asteroid alone, in fewer columns. `None` for a study without an asteroid.
+pub(super) fn asteroid(inputs: &Inputs<'_>) -> Option<Table> {
+    const COLUMNS: &[&str] = &[
+        "id",
+        "vertex_s",
+        "geometry_s",
+        "vertices",
+        "triangles",
+        "aspect_ratio_mean",
+        "aspect_ratio_sd",
+        "discard_fraction",
+        "discard_fraction_as_published",
+    ];
+    let is_asteroid = |o: usize| matches!(inputs.study.file.objects[o].field, FieldSection::Asteroid);
+    let whole = whole(inputs, is_asteroid)?;
+    let mut table = whole.block("Benchmark of the asteroid", COLUMNS);
+    table.name = "asteroid".into();
+    table.notes = whole.notes;
+    Some(table)
+}
+
+fn whole(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Option<Table> {
+    let meshes = MeshSet::of(inputs, Purpose::Benchmark);
+    let mut columns = vec![("id", "Id")];
+    columns.extend(MESH_COLUMNS.iter().map(|&(name, heading, _)| (name, heading)));
+    if inputs.bench.is_some() {
+        columns.extend(TIME_COLUMNS.iter().map(|&(name, heading, _)| (name, heading)));
+    }
+    let mut table = Table::new("benchmark", "Benchmark", &columns);
+    for (configuration, mesh) in meshes.in_order().filter(|(c, _)| holds(c.object)) {
+        let mut row = vec![Cell::text(&mesh.id)];
+        row.extend(MESH_COLUMNS.iter().map(|(_, _, cell)| cell(mesh)));
+        if let Some(run) = inputs.bench {
+            let times = StageTimes::of(run, &configuration.id);
+            let cell = |entry: &TimeEntry| times.as_ref().map_or(Cell::Missing, entry.2);
+            row.extend(TIME_COLUMNS.iter().map(cell));
+        }
+        table.push(row);
+    }
+    if let Some(run) = inputs.bench {
+        table
+            .notes
+            .push(format!("{} Total and fractions leave the normals out, as published.", conditions(run)));
+    }
+    table.notes.push(
+        "Discarded, as published, counts some triangles twice; discarded is the true number. The aspect ratio is \
+         the published one, longer over shorter of the two edges at a triangle's first corner; degenerate triangles \
+         (zero area or a zero-length edge) are left out of it, and counted as 0 in the columns as published."
+            .into(),
+    );
+    (!table.rows.is_empty()).then_some(table)
+}

@@ -1,0 +1,188 @@
+//! Triangle quality, topology, and what accumulated positions change.
+
+use crate::inputs::Inputs;
+use crate::mesh_set::MeshSet;
+use crate::table::{Cell, Column, Table};
+use design::record::{Distribution, MeshRecord, Purpose};
+
+fn purpose_label(purpose: Purpose) -> &'static str {
+    match purpose {
+        Purpose::Benchmark => "benchmark",
+        Purpose::Stimulus => "stimulus",
+        Purpose::Indexed => "indexed",
+    }
+}
+
+/// A measure: name, heading, decimals for people, and the distribution.
+type Measure = (&'static str, &'static str, usize, fn(&MeshRecord) -> &Distribution);
+
+const MEASURES: &[Measure] = &[
+    ("edge_ratio", "Edge ratio", 3, |m| &m.quality.edge_ratio),
+    ("published_aspect_ratio", "Published ratio", 3, |m| &m.quality.published_aspect_ratio),
+    ("radius_ratio", "Radius ratio", 3, |m| &m.quality.radius_ratio),
+    ("min_angle_deg", "Smallest angle, deg", 1, |m| &m.quality.min_angle_deg),
+    ("max_angle_deg", "Largest angle, deg", 1, |m| &m.quality.max_angle_deg),
+    ("area", "Area", 6, |m| &m.quality.area),
+];
+
+type Statistic = (&'static str, &'static str, fn(&Distribution) -> f64);
+
+const STATISTICS: &[Statistic] = &[
+    ("mean", "mean", |d| d.mean),
+    ("sd", "SD", |d| d.sd),
+    ("min", "min", |d| d.min),
+    ("q05", "5 %", |d| d.q05),
+    ("q25", "25 %", |d| d.q25),
+    ("median", "median", |d| d.median),
+    ("q75", "75 %", |d| d.q75),
+    ("q95", "95 %", |d| d.q95),
+    ("max", "max", |d| d.max),
+];
+
+/// Quality of the triangles at both spacings: every statistic in CSV; for people one block a measure.
+pub(super) fn quality(inputs: &Inputs<'_>) -> Option<Table> {
+    let mut table = Table::new(
+        "quality",
+        "Quality of the triangles",
+        &[("id", "Id"), ("purpose", "Mesh"), ("triangles", "Triangles"), ("degenerate", "Degenerate")],
+    );
+    for (measure, heading, ..) in MEASURES {
+        for (statistic, short, _) in STATISTICS {
+            let (name, heading) = (format!("{measure}_{statistic}"), format!("{heading}, {short}"));
+            table.columns.push(Column { name, heading });
+        }
+    }
+    for purpose in [Purpose::Benchmark, Purpose::Stimulus] {
+        for (_, mesh) in MeshSet::of(inputs, purpose).in_order() {
+            let mut row = vec![
+                Cell::text(&mesh.id),
+                Cell::text(purpose_label(purpose)),
+                Cell::count(mesh.quality.triangles),
+                Cell::count(mesh.quality.degenerate),
+            ];
+            for (_, _, decimals, of) in MEASURES {
+                let distribution = of(mesh);
+                let known = |value| (distribution.count > 0).then_some(value);
+                row.extend(STATISTICS.iter().map(|s| Cell::number(known((s.2)(distribution)), *decimals)));
+            }
+            table.push(row);
+        }
+    }
+    let blocks: Vec<(&str, Vec<String>)> = MEASURES
+        .iter()
+        .map(|(measure, heading, ..)| {
+            let fixed = ["id", "purpose", "degenerate"].map(String::from);
+            let all = STATISTICS.iter().map(|(statistic, ..)| format!("{measure}_{statistic}"));
+            (*heading, fixed.into_iter().chain(all).collect())
+        })
+        .collect();
+    for (heading, columns) in &blocks {
+        let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+        let mut part = table.block(heading, &columns);
+        for (column, (_, short, _)) in part.columns[3..].iter_mut().zip(STATISTICS) {
+            column.heading = (*short).into();
+        }
+        table.parts.push(part);
+    }
+    table.notes.push(
+        "Edge ratio: longest over shortest edge. Published ratio: longer over shorter of the two edges at the first \
+         corner. Radius ratio: twice the inscribed over the circumscribed radius, 1 for an equilateral triangle. \
+         SD: population standard deviation. Degenerate triangles are left out of everything but the area."
+            .into(),
+    );
+    (!table.rows.is_empty()).then_some(table)
+}
+
+/// Topology of the meshes at both spacings.
+pub(super) fn topology(inputs: &Inputs<'_>) -> Option<Table> {
+    let mut table = Table::new(
+        "topology",
+        "Topology of the meshes",
+        &[
+            ("id", "Id"),
+            ("purpose", "Mesh"),
+            ("vertices", "V"),
+            ("edges", "E"),
+            ("triangles", "T"),
+            ("euler_characteristic", "Euler characteristic"),
+            ("components", "Components"),
+            ("boundary_edges", "Boundary edges"),
+            ("non_manifold_edges", "Non-manifold edges"),
+            ("non_manifold_vertices", "Non-manifold vertices"),
+            ("misoriented_edges", "Misoriented edges"),
+            ("duplicate_faces", "Duplicate faces"),
+            ("folded_faces", "Folded faces"),
+        ],
+    );
+    for purpose in [Purpose::Benchmark, Purpose::Stimulus] {
+        for (_, mesh) in MeshSet::of(inputs, purpose).in_order() {
+            let t = &mesh.topology;
+            table.push(vec![
+                Cell::text(&mesh.id),
+                Cell::text(purpose_label(purpose)),
+                Cell::count(t.vertices),
+                Cell::count(t.edges),
+                Cell::count(t.triangles),
+                Cell::Count(t.euler_characteristic),
+                Cell::count(t.components),
+                Cell::count(t.boundary_edges),
+                Cell::count(t.non_manifold_edges),
+                Cell::count(t.non_manifold_vertices),
+                Cell::count(t.misoriented_edges),
+                Cell::count(t.duplicate_faces),
+                Cell::count(t.folded_faces),
+            ]);
+        }
+    }
+    (!table.rows.is_empty()).then_some(table)
+}
+
+/// Meshes from the study's positions beside meshes from indexed positions.
+pub(super) fn positions(inputs: &Inputs<'_>) -> Option<Table> {
+    let studied = MeshSet::of(inputs, Purpose::Benchmark);
+    let indexed = MeshSet::of(inputs, Purpose::Indexed);
+    let mut table = Table::new(
+        "positions",
+        "What accumulated lattice positions change",
+        &[
+            ("id", "Id"),
+            ("vertices", "Vertices"),
+            ("vertices_indexed", "indexed"),
+            ("triangles", "Triangles"),
+            ("triangles_indexed", "indexed"),
+            ("boundary_edges", "Boundary edges"),
+            ("boundary_edges_indexed", "indexed"),
+            ("euler_characteristic", "Euler characteristic"),
+            ("euler_characteristic_indexed", "indexed"),
+            ("degenerate", "Degenerate"),
+            ("degenerate_indexed", "indexed"),
+            ("edge_ratio_mean", "Edge ratio mean"),
+            ("edge_ratio_mean_indexed", "indexed"),
+            ("published_aspect_ratio_mean", "Published ratio mean"),
+            ("published_aspect_ratio_mean_indexed", "indexed"),
+        ],
+    );
+    for (configuration, a) in studied.in_order() {
+        let Some(b) = indexed.get(&configuration.id) else { continue };
+        let mut row = vec![Cell::text(&configuration.id)];
+        for of in [
+            |m: &MeshRecord| Cell::count(m.counts.vertices),
+            |m: &MeshRecord| Cell::count(m.counts.triangles),
+            |m: &MeshRecord| Cell::count(m.topology.boundary_edges),
+            |m: &MeshRecord| Cell::Count(m.topology.euler_characteristic),
+            |m: &MeshRecord| Cell::count(m.quality.degenerate),
+            |m: &MeshRecord| Cell::Number(m.quality.edge_ratio.mean, 3),
+            |m: &MeshRecord| Cell::Number(m.quality.published_aspect_ratio.mean, 3),
+        ] {
+            row.extend([of(a), of(b)]);
+        }
+        table.push(row);
+    }
+    table.notes.push(
+        "First of each pair: the study's positions, summed up in single precision as the original program does; \
+         second: positions computed from indices. Where a surface touches its volume, rounding decides whether it \
+         is cut open."
+            .into(),
+    );
+    (!table.rows.is_empty()).then_some(table)
+}

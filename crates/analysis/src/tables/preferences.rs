@@ -1,0 +1,196 @@
+//! The preference factors: per group, overall, margins, per object, and the direct contest of arrangements.
+
+use crate::interval::t_over_respondents;
+use crate::preference::{self, GroupFactor, Margin};
+use crate::table::{Cell, Column, Table};
+use crate::tally::Tally;
+use design::{Method, Study};
+
+pub(super) fn all(study: &Study, tally: &Tally) -> Vec<Table> {
+    let factors = preference::group_factors(study, tally, |_| true);
+    let mut tables = vec![groups(study, &factors), overall(study, &factors), margins(study, &factors)];
+    tables.push(objects(study, tally));
+    tables.extend(contests(study, tally));
+    tables.retain(|table| !table.rows.is_empty());
+    tables
+}
+
+fn groups(study: &Study, factors: &[GroupFactor]) -> Table {
+    let mut table = Table::new(
+        "preference_groups",
+        "Preference factors per comparison group",
+        &[
+            ("group", "Group"),
+            ("configuration", "Configuration"),
+            ("wins", "Wins"),
+            ("ties", "Ties"),
+            ("answers", "Answers"),
+            ("factor", "Factor"),
+            ("cap", "Largest possible"),
+            ("appearances", "Appearances"),
+            ("appearance_share", "Wins / appearances"),
+        ],
+    );
+    for factor in factors {
+        table.push(vec![
+            Cell::text(&study.groups[factor.group].id),
+            Cell::text(factor.method),
+            Cell::count(factor.share.wins),
+            Cell::count(factor.share.ties),
+            Cell::count(factor.share.answers),
+            Cell::Number(factor.share.factor().value(), 3),
+            Cell::Number(factor.cap().value(), 3),
+            Cell::count(factor.appearances),
+            Cell::number(factor.appearance_share().map(|share| share.value()), 3),
+        ]);
+    }
+    table.notes.push(
+        "Factor: wins over all answers to the group's questions. Ties: the group's answers without preference. A \
+         configuration that is shown in only some of its group's questions cannot reach 1, so factors of groups of \
+         different size are not on one scale; wins over appearances are."
+            .into(),
+    );
+    table
+}
+
+fn overall(study: &Study, factors: &[GroupFactor]) -> Table {
+    let overall = preference::overall(study, factors);
+    let mut table = Table::new(
+        "preference_overall",
+        "Overall preference: sums of group factors",
+        &[("configuration", "Configuration"), ("factor", "Sum of factors")],
+    );
+    for &(method, sum) in &overall {
+        table.push(vec![Cell::text(method), Cell::Number(sum.value(), 3)]);
+    }
+    table.parts = vec![grid(study, &overall)];
+    table.notes.push(
+        "A sum adds factors of different scale. The clustering groups' part of an arrangement's mean is the same \
+         for any outcome but for ties, so it says nothing about arrangements."
+            .into(),
+    );
+    table
+}
+
+/// The paper's arrangement: arrangements down, clusterings across, means at the ends.
+fn grid(study: &Study, overall: &[(Method, crate::Fraction)]) -> Table {
+    let margins = preference::margins(study, overall);
+    let mut table = Table::new("preference_overall", "", &[("arrangement", "Arrangement")]);
+    let heading = |text: &str| Column { name: text.into(), heading: text.into() };
+    table.columns.extend(study.file.clusterings.iter().map(|c| heading(c.label())));
+    table.columns.push(heading("mean"));
+    let margin = |of: Margin| margins.iter().find(|(m, _)| *m == of).map(|(_, mean)| mean.value());
+    for &arrangement in &study.file.arrangements {
+        let mut row = vec![Cell::text(arrangement.label())];
+        for &clustering in &study.file.clusterings {
+            let method = Method { arrangement, clustering };
+            let sum = overall.iter().find(|(m, _)| *m == method).map(|(_, sum)| sum.value());
+            row.push(Cell::number(sum, 3));
+        }
+        row.push(Cell::number(margin(Margin::Arrangement(arrangement)), 3));
+        table.push(row);
+    }
+    let mut row = vec![Cell::text("mean")];
+    row.extend(study.file.clusterings.iter().map(|&c| Cell::number(margin(Margin::Clustering(c)), 3)));
+    row.push(Cell::Missing);
+    table.push(row);
+    table
+}
+
+fn margins(study: &Study, factors: &[GroupFactor]) -> Table {
+    let mut table = Table::new(
+        "preference_margins",
+        "Means of overall preference",
+        &[("margin", "Mean over"), ("code", "Code"), ("label", "Methods"), ("factor", "Mean of sums")],
+    );
+    for (margin, mean) in preference::margins(study, &preference::overall(study, factors)) {
+        let kind = match margin {
+            Margin::Arrangement(_) => "arrangement",
+            Margin::Clustering(_) => "clustering",
+        };
+        table.push(vec![
+            Cell::text(kind),
+            Cell::text(margin.code()),
+            Cell::text(margin.label()),
+            Cell::Number(mean.value(), 3),
+        ]);
+    }
+    table
+}
+
+fn objects(study: &Study, tally: &Tally) -> Table {
+    let mut table = Table::new(
+        "preference_objects",
+        "Preference factors per object",
+        &[
+            ("object", "Object"),
+            ("group", "Group"),
+            ("configuration", "Configuration"),
+            ("wins", "Wins"),
+            ("ties", "Ties"),
+            ("answers", "Answers"),
+            ("factor", "Factor"),
+            ("low", "from"),
+            ("high", "to"),
+        ],
+    );
+    for (o, object) in study.file.objects.iter().enumerate() {
+        for factor in preference::group_factors(study, tally, |other| other == o) {
+            let interval = t_over_respondents(&scores(tally, &factor, o));
+            table.push(vec![
+                Cell::text(&object.name),
+                Cell::text(&study.groups[factor.group].id),
+                Cell::text(factor.method),
+                Cell::count(factor.share.wins),
+                Cell::count(factor.share.ties),
+                Cell::count(factor.share.answers),
+                Cell::Number(factor.share.factor().value(), 3),
+                Cell::number(interval.map(|i| i.low), 3),
+                Cell::number(interval.map(|i| i.high), 3),
+            ]);
+        }
+    }
+    table.notes.push(
+        "From and to: t interval at 95 % over respondents, each person's factor counting as one observation; not \
+         cut at 0 or at the largest possible factor."
+            .into(),
+    );
+    table
+}
+
+/// Each respondent's own factor of a method in a group on one object.
+pub(crate) fn scores(tally: &Tally, factor: &GroupFactor, object: usize) -> Vec<f64> {
+    let each = factor.share.answers as f64 / tally.respondents as f64;
+    let mut wins = vec![0.0; tally.respondents];
+    for row in &tally.rows {
+        if row.group == factor.group && row.object == object && row.chosen == Some(factor.method) {
+            wins[row.respondent] += row.answers as f64;
+        }
+    }
+    wins.into_iter().map(|wins| wins / each).collect()
+}
+
+fn contests(study: &Study, tally: &Tally) -> Option<Table> {
+    let mut table = Table::new(
+        "preference_arrangements",
+        "Body-centred against simple cubic, where nothing else differs",
+        &[
+            ("object", "Object"),
+            ("group", "Group"),
+            ("body_centred", "Body-centred"),
+            ("no_preference", "No preference"),
+            ("simple_cubic", "Simple cubic"),
+        ],
+    );
+    for contest in preference::arrangement_contests(study, tally) {
+        table.push(vec![
+            Cell::text(contest.object.map_or("all", |o| &study.file.objects[o].name)),
+            Cell::text(contest.group.map_or("all", |g| &study.groups[g].id)),
+            Cell::count(contest.body_centred),
+            Cell::count(contest.none),
+            Cell::count(contest.simple_cubic),
+        ]);
+    }
+    table.notes.push("Counts of answers; the direct evidence on arrangements.".into());
+    (!table.rows.is_empty()).then_some(table)
+}
