@@ -1,1 +1,163 @@
-fn main() {}
+//! The `isostudy` command: arguments, files, progress and exit codes. What is computed is computed in the rooms.
+
+mod args;
+mod picture;
+mod pipeline;
+mod progress;
+mod records;
+mod rooms;
+mod store;
+mod subject;
+
+use anyhow::{Context, Result};
+use args::{Analyse, Cli, Command, Run, Selection};
+use bench::Summary;
+use clap::Parser;
+use design::record::BenchRun;
+use design::{ConfigurationId, Study};
+use pipeline::{Pipeline, PlanLength};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use store::Store;
+
+/// Wrong usage or input; clap uses the same.
+const INPUT_ERROR: u8 = 2;
+
+fn main() -> ExitCode {
+    match run(Cli::parse().command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("isostudy: {error:#}");
+            ExitCode::from(INPUT_ERROR)
+        }
+    }
+}
+
+fn run(command: Command) -> Result<()> {
+    match command {
+        Command::Study(run) => with_pipeline(&run, |pipeline, out| {
+            pipeline.study()?;
+            say(&out.join("index.html").display().to_string())
+        }),
+        Command::Extract(selection) => with_selection(&selection, |pipeline, only, out| {
+            pipeline.meshes(only)?;
+            say(&out.join("meshes").display().to_string())
+        }),
+        Command::Turntable(selection) => with_selection(&selection, |pipeline, only, out| {
+            let meshes = pipeline.meshes(only)?;
+            pipeline.turntables(&meshes, only)?;
+            say(&out.join("stimuli/turntables").display().to_string())
+        }),
+        Command::Pairs(run) => with_pipeline(&run, |pipeline, out| {
+            let meshes = pipeline.meshes(&[])?;
+            let turntables = pipeline.turntables(&meshes, &[])?;
+            pipeline.pairs(&turntables)?;
+            say(&out.join("stimuli/pairs").display().to_string())
+        }),
+        Command::Bench(bench) => with_pipeline(&bench.run, |pipeline, _| {
+            let length = if bench.short { PlanLength::Short } else { PlanLength::Full };
+            let stamp = pipeline.timings(length)?;
+            say_summary(&pipeline.bench_run(&stamp)?)
+        }),
+        Command::Analyse(arguments) => analyse(&arguments),
+        Command::Report(run) => with_pipeline(&run, |pipeline, out| {
+            pipeline.report()?;
+            say(&out.join("index.html").display().to_string())
+        }),
+        Command::Validate(arguments) => validate(&arguments.study),
+    }
+}
+
+fn with_pipeline(run: &Run, work: impl FnOnce(Pipeline<'_>, &Path) -> Result<()>) -> Result<()> {
+    let study = load(&run.study)?;
+    if run.threads > 0 {
+        rayon::ThreadPoolBuilder::new().num_threads(run.threads).build_global()?;
+    }
+    let out = run.out.clone().unwrap_or_else(|| default_folder(&study));
+    let store = Store::open(&out, run.force)?;
+    work(Pipeline::new(&study, store, run.threads), &out)
+}
+
+fn with_selection(
+    selection: &Selection,
+    work: impl FnOnce(Pipeline<'_>, &[ConfigurationId], &Path) -> Result<()>,
+) -> Result<()> {
+    let study = load(&selection.run.study)?;
+    let mut only = Vec::new();
+    for text in &selection.only {
+        let id: ConfigurationId = text.parse().with_context(|| format!("--only {text}"))?;
+        if !study.configurations.iter().any(|configuration| configuration.id == id) {
+            let known: Vec<String> = study.configurations.iter().map(|c| c.id.to_string()).collect();
+            anyhow::bail!("--only {text}: this study has {}", known.join(", "));
+        }
+        only.push(id);
+    }
+    with_pipeline(&selection.run, |pipeline, out| work(pipeline, &only, out))
+}
+
+fn analyse(arguments: &Analyse) -> Result<()> {
+    let study = Study::load(&arguments.study)?;
+    let responses = arguments.responses.as_ref().or(study.responses.as_ref());
+    let no_answers = || format!("{} names no responses; give --responses", arguments.study.display());
+    let responses = responses.with_context(no_answers)?;
+    let out = arguments.out.clone().unwrap_or_else(|| default_folder(&study).join("answers"));
+    // Reading answers takes milliseconds: always done again, so that the tables can be printed.
+    let tables = pipeline::write_answers_only(&study, responses, &Store::open(&out, true)?)?;
+    for table in tables.iter().filter(|table| table.name.starts_with("preference_")) {
+        say(&table.to_markdown())?;
+    }
+    say(&out.display().to_string())
+}
+
+fn validate(path: &Path) -> Result<()> {
+    let study = load(path)?;
+    for configuration in &study.configurations {
+        let object = study.object(configuration);
+        let spacing = object.benchmark_spacing;
+        let lattice = subject::lattice(object, configuration.id.method.arrangement, spacing)?;
+        let [x, y, z] = lattice.cells();
+        say(&format!(
+            "{}  {}, {}, {x} x {y} x {z} cubes",
+            configuration.id,
+            object.name,
+            configuration.id.method.label()
+        ))?;
+    }
+    let respondents = match &study.responses {
+        None => "no answers".to_owned(),
+        Some(path) => format!("{} respondents", analysis::read_answers(path, &study)?.respondents()),
+    };
+    let (questions, groups) = (study.comparisons.len(), study.groups.len());
+    say(&format!("{}: valid; {questions} questions in {groups} groups, {respondents}", path.display()))
+}
+
+/// Reads and checks a study, lattices and memory included.
+fn load(path: &Path) -> Result<Study> {
+    let study = Study::load(path)?;
+    subject::check_lattices(&study, bench::read_machine().memory_bytes)?;
+    Ok(study)
+}
+
+fn default_folder(study: &Study) -> PathBuf {
+    Path::new("results").join(&study.file.study.id)
+}
+
+/// The medians of a run, one line a configuration.
+fn say_summary(run: &BenchRun) -> Result<()> {
+    say(&format!("{}\nmedians in ms:", bench::caption(run)))?;
+    for of_configuration in bench::summarise(run).chunk_by(|a, b| a.id == b.id) {
+        let stage = |summary: &Summary| format!("{} {:.3}", summary.stage.label(), 1e3 * summary.median_s);
+        let stages: Vec<String> = of_configuration.iter().map(stage).collect();
+        say(&format!("{}  {}", of_configuration[0].id, stages.join("  ")))?;
+    }
+    Ok(())
+}
+
+/// Prints a line on standard output. A reader that has gone away is no error.
+fn say(line: &str) -> Result<()> {
+    match writeln!(std::io::stdout(), "{line}") {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,85 @@
+//! The command line.
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Isosurface extraction methods in front of a clock, a ruler and people.
+#[derive(Debug, Parser)]
+#[command(name = "isostudy", version, arg_required_else_help = true, max_term_width = 100)]
+#[command(after_help = "Exit codes: 0 done, 1 a check failed, 2 wrong usage or input.")]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Do everything: meshes, animations, short benchmark, tables, figures, index.html
+    Study(Run),
+    /// Extract the meshes and measure them
+    Extract(Selection),
+    /// Render the turntable animations
+    Turntable(Selection),
+    /// Compose the side-by-side pairs and write the key
+    Pairs(Run),
+    /// Time every configuration, with the study's full number of rounds
+    Bench(Bench),
+    /// Read the answers; print and write the preference tables and figures
+    Analyse(Analyse),
+    /// Write tables, figures and index.html again from the results that are there
+    Report(Run),
+    /// Check a study file and everything it names, without doing any work
+    Validate(Validate),
+}
+
+/// Where a study is read from and written to.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct Run {
+    /// Study file, such as configs/paper.toml
+    pub(crate) study: PathBuf,
+    /// Folder for results [default: results/<study id>]
+    #[arg(long, short, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Redo what is up to date as well
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Threads to work with; 0 takes every core. Results are the same bytes with any number
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pub(crate) threads: usize,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Selection {
+    #[command(flatten)]
+    pub(crate) run: Run,
+    /// Only these configurations, such as ss_bi [default: all]
+    #[arg(long, value_name = "ID", value_delimiter = ',')]
+    pub(crate) only: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Bench {
+    #[command(flatten)]
+    pub(crate) run: Run,
+    /// Take the short plan of `isostudy study` instead
+    #[arg(long)]
+    pub(crate) short: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Analyse {
+    /// Study file, such as configs/paper.toml
+    pub(crate) study: PathBuf,
+    /// Answers to read instead of the study's own: one row a respondent, one column a question, cells L, NP, R
+    #[arg(long, value_name = "CSV")]
+    pub(crate) responses: Option<PathBuf>,
+    /// Folder for tables and figures [default: results/<study id>/answers]
+    #[arg(long, short, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Validate {
+    /// Study file, such as configs/paper.toml
+    pub(crate) study: PathBuf,
+}

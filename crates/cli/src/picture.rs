@@ -1,0 +1,98 @@
+//! From a study's words to the rasteriser's, and figures of still pictures. The one place where `design` meets `raster`.
+
+use anyhow::Result;
+use base64::Engine;
+use design::config::{CameraSection, Look, ShadingSection, TurntableSection};
+use mesh::TriangleMesh;
+use raster::{Panel, Shading, Sheet, Turntable};
+
+/// A figure as a picture and as a scalable page with the pictures in it and captions as text.
+pub(crate) struct StillSheet {
+    pub(crate) png: Vec<u8>,
+    pub(crate) svg: String,
+}
+
+pub(crate) fn turntable(section: &TurntableSection, camera: &CameraSection) -> Turntable {
+    Turntable {
+        width: section.width,
+        height: section.height,
+        frames: section.frames,
+        duration_s: section.duration_s,
+        distance: camera.distance as f32,
+        elevation_rad: section.elevation_rad as f32,
+        vertical_fov_rad: camera.vertical_fov_rad as f32,
+        near: section.near as f32,
+        far: section.far as f32,
+        supersampling: section.supersampling,
+    }
+}
+
+pub(crate) fn shading(section: &ShadingSection) -> Shading {
+    let colour = |c: [f64; 3]| c.map(|x| x as f32);
+    Shading {
+        light: colour(section.light),
+        lit: colour(section.lit),
+        shade: colour(section.shade),
+        highlight: colour(section.highlight),
+        background: colour(section.background),
+        ..Shading::default()
+    }
+}
+
+/// The first frame of the turntable in several looks, side by side.
+///
+/// # Errors
+/// If the rasteriser refuses mesh or camera.
+pub(crate) fn still_sheet(
+    mesh: &TriangleMesh,
+    turntable: &Turntable,
+    shading: &Shading,
+    looks: &[Look],
+) -> Result<StillSheet> {
+    let mut pictures = Vec::new();
+    for (i, &look) in looks.iter().enumerate() {
+        let label = format!("({}) {}", char::from(b'a' + (i % 26) as u8), look.label());
+        let camera = turntable.camera(0);
+        let picture = raster::render(mesh, &camera, turntable.viewport(), shading, raster_look(look))?;
+        pictures.push((picture, label));
+    }
+    let panels: Vec<Panel<'_>> = pictures.iter().map(|(picture, label)| Panel { picture, label }).collect();
+    let sheet = Sheet { columns: looks.len(), ..Sheet::default() };
+    let png = raster::pixmap_to_png(&raster::panels(&panels, &sheet)?);
+    Ok(StillSheet { png, svg: svg(&panels) })
+}
+
+fn raster_look(look: Look) -> raster::Look {
+    match look {
+        Look::Smooth => raster::Look::Smooth,
+        Look::Flat => raster::Look::Flat,
+        Look::Wireframe => raster::Look::Wireframe,
+        Look::SmoothWireframe => raster::Look::SmoothWireframe,
+    }
+}
+
+/// A shaded surface has no better scalable form than its pixels; the captions have.
+fn svg(panels: &[Panel<'_>]) -> String {
+    const GAP: u32 = 12;
+    const TEXT: u32 = 18;
+    let (w, h) = panels.first().map_or((0, 0), |p| (p.picture.width(), p.picture.height()));
+    let width = panels.len() as u32 * (w + GAP) + GAP;
+    let height = h + 3 * GAP + TEXT;
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
+         height=\"{height}\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
+    );
+    for (i, panel) in panels.iter().enumerate() {
+        let x = GAP + i as u32 * (w + GAP);
+        let png = base64::engine::general_purpose::STANDARD.encode(raster::pixmap_to_png(panel.picture));
+        svg += &format!(
+            "<image x=\"{x}\" y=\"{GAP}\" width=\"{w}\" height=\"{h}\" href=\"data:image/png;base64,{png}\"/>\n\
+             <text x=\"{}\" y=\"{}\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"{TEXT}\" \
+             text-anchor=\"middle\" fill=\"#222\">{}</text>\n",
+            x + w / 2,
+            GAP + h + GAP + TEXT,
+            panel.label,
+        );
+    }
+    svg + "</svg>\n"
+}

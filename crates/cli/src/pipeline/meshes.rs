@@ -1,0 +1,134 @@
+//! Every configuration's mesh, once a purpose, with its record.
+
+use super::Pipeline;
+use crate::progress::Step;
+use crate::records::mesh_record;
+use crate::store::{Inputs, Stamp};
+use crate::{rooms, subject};
+use anyhow::{Context, Result};
+use design::config::Positions;
+use design::record::{MeshRecord, Purpose};
+use design::{Configuration, ConfigurationId};
+use extract::{Execution, Extraction};
+use mesh::TriangleMesh;
+
+/// The finished mesh stages, in the study's order.
+pub(crate) struct Meshes {
+    entries: Vec<(ConfigurationId, Purpose, Stamp)>,
+}
+
+impl Meshes {
+    pub(crate) fn stamps(&self) -> impl Iterator<Item = &Stamp> {
+        self.entries.iter().map(|(_, _, stamp)| stamp)
+    }
+
+    pub(super) fn stamp(&self, id: &ConfigurationId, purpose: Purpose) -> &Stamp {
+        let same = |(i, p, _): &&(ConfigurationId, Purpose, Stamp)| i == id && *p == purpose;
+        let (_, _, stamp) = self.entries.iter().find(same).expect("every selected mesh has been made");
+        stamp
+    }
+}
+
+impl Pipeline<'_> {
+    /// Extracts and measures the configurations in `only`, or all if it is empty.
+    pub(crate) fn meshes(&self, only: &[ConfigurationId]) -> Result<Meshes> {
+        let mut purposes = vec![Purpose::Benchmark, Purpose::Stimulus];
+        if self.study.file.extraction.positions == Positions::Accumulated {
+            purposes.push(Purpose::Indexed);
+        }
+        let selected = self.selected(only);
+        let count = selected.len() * purposes.len();
+        let step = Step::begin("meshes", count, count);
+        let mut entries = Vec::new();
+        for &purpose in &purposes {
+            for configuration in &selected {
+                let stamp = self.mesh(configuration, purpose)?;
+                step.tick(1);
+                step.count(stamp.redone);
+                entries.push((configuration.id.clone(), purpose, stamp));
+            }
+        }
+        step.end();
+        Ok(Meshes { entries })
+    }
+
+    pub(super) fn selected(&self, only: &[ConfigurationId]) -> Vec<&Configuration> {
+        let wanted = |c: &&Configuration| only.is_empty() || only.contains(&c.id);
+        self.study.configurations.iter().filter(wanted).collect()
+    }
+
+    fn mesh(&self, configuration: &Configuration, purpose: Purpose) -> Result<Stamp> {
+        let object = self.study.object(configuration);
+        let (spacing, _) = subject::spacing(object, purpose);
+        let name = purpose_name(purpose);
+        let inputs = self.extraction_inputs(configuration, purpose)?.value("spacing", &spacing);
+        self.stage(&format!("mesh/{name}/{}", configuration.id), inputs, |writer| {
+            let lattice = subject::lattice(object, configuration.id.method.arrangement, spacing)?;
+            let extraction = self.extract(configuration, purpose, spacing)?;
+            let record = mesh_record(&configuration.id, purpose, spacing, &lattice, &extraction);
+            // The indexed variant is only measured: nothing is rendered from it.
+            if purpose != Purpose::Indexed {
+                let mut ply = Vec::new();
+                mesh::write_ply(&extraction.mesh, &mut ply)?;
+                writer.write(&format!("meshes/{name}/{}.ply", configuration.id), &ply)?;
+            }
+            writer.write_json(&format!("meshes/{name}/{}.json", configuration.id), &record)
+        })
+    }
+
+    /// Everything that an extraction depends on except its spacing.
+    pub(super) fn extraction_inputs(
+        &self,
+        configuration: &Configuration,
+        purpose: Purpose,
+    ) -> Result<Inputs> {
+        let object = self.study.object(configuration);
+        Ok(Inputs::of_rooms(rooms::MESHES)
+            .value("id", &configuration.id)
+            .value("purpose", &purpose)
+            .value("volume", &(object.min, object.max))
+            .value("isovalue", &object.isovalue)
+            .value("extraction", &self.study.file.extraction)
+            .text("field", &subject::field_inputs(self.study, object)?))
+    }
+
+    /// Extracts one configuration at a spacing.
+    pub(super) fn extract(
+        &self,
+        configuration: &Configuration,
+        purpose: Purpose,
+        spacing: f64,
+    ) -> Result<Extraction> {
+        let object = self.study.object(configuration);
+        let lattice = subject::lattice(object, configuration.id.method.arrangement, spacing)?;
+        let settings = subject::settings(self.study, configuration, purpose);
+        let execution = Execution { threads: self.threads };
+        let field = self.fields.get(configuration.object)?;
+        Ok(extract::extract(field, &lattice, &settings, &execution)?)
+    }
+
+    /// The records of finished meshes.
+    pub(super) fn mesh_records(&self, meshes: &Meshes) -> Result<Vec<MeshRecord>> {
+        let read = |stamp: &Stamp| {
+            let file = stamp.files.last().expect("every mesh stage writes its record last");
+            let text = std::fs::read(self.store.root().join(&file.path))?;
+            serde_json::from_slice(&text).with_context(|| file.path.clone())
+        };
+        meshes.stamps().map(read).collect()
+    }
+
+    /// A finished mesh.
+    pub(super) fn read_mesh(&self, stamp: &Stamp) -> Result<TriangleMesh> {
+        let file = &stamp.files[0];
+        let bytes = std::fs::read(self.store.root().join(&file.path))?;
+        mesh::read_ply(bytes.as_slice()).with_context(|| file.path.clone())
+    }
+}
+
+fn purpose_name(purpose: Purpose) -> &'static str {
+    match purpose {
+        Purpose::Benchmark => "benchmark",
+        Purpose::Stimulus => "stimulus",
+        Purpose::Indexed => "indexed",
+    }
+}

@@ -1,0 +1,70 @@
+//! The chain of stages from a study file to the page that shows it all.
+//!
+//! ```text
+//! objects ─ meshes ─┬─ turntables ─ pairs, key ─┐
+//!                   └─ stills ──────────────────┤
+//! objects ─ timings ─┐                          ├─ page ─ manifest
+//! answers ───────────┴─ tables, figures ────────┘
+//! ```
+
+mod meshes;
+mod page;
+mod stimuli;
+mod tables;
+mod timings;
+
+pub(crate) use meshes::Meshes;
+pub(crate) use tables::write_answers_only;
+pub(crate) use timings::PlanLength;
+
+use crate::store::{Inputs, Stamp, Store, Writer};
+use crate::subject::Fields;
+use anyhow::{Context, Result};
+use design::Study;
+
+/// One study being worked on.
+pub(crate) struct Pipeline<'a> {
+    study: &'a Study,
+    store: Store,
+    fields: Fields<'a>,
+    threads: usize,
+    /// Meshes, animations and timings are only looked up, never made.
+    frozen: bool,
+}
+
+impl<'a> Pipeline<'a> {
+    pub(crate) fn new(study: &'a Study, store: Store, threads: usize) -> Self {
+        Self { study, store, fields: Fields::new(study), threads, frozen: false }
+    }
+
+    /// The whole study.
+    pub(crate) fn study(&self) -> Result<()> {
+        let meshes = self.meshes(&[])?;
+        let turntables = self.turntables(&meshes, &[])?;
+        let pairs = self.pairs(&turntables)?;
+        let stills = self.stills()?;
+        let timings = self.timings(PlanLength::Short)?;
+        let tables = self.tables(&meshes, &timings)?;
+        self.page(&meshes, &[turntables, pairs, stills, vec![timings, tables]].concat())
+    }
+
+    /// Tables, figures and the page again, from what is there.
+    pub(crate) fn report(mut self) -> Result<()> {
+        self.frozen = true;
+        self.study()
+    }
+
+    /// Does a stage that makes meshes, animations or timings; when frozen, only looks it up.
+    fn stage(
+        &self,
+        name: &str,
+        inputs: Inputs,
+        make: impl FnOnce(&mut Writer<'_>) -> Result<()>,
+    ) -> Result<Stamp> {
+        if self.frozen {
+            let missing = || format!("{name} is not up to date: run `isostudy study` first");
+            return self.store.peek(name, inputs).with_context(missing);
+        }
+        self.store.stage(name, inputs, make).with_context(|| name.to_owned())
+    }
+}

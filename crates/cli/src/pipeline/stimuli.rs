@@ -1,0 +1,156 @@
+//! Animations and still pictures of the meshes, and the key to their names.
+
+use super::{Meshes, Pipeline};
+use crate::picture;
+use crate::progress::Step;
+use crate::rooms;
+use crate::store::{Inputs, Stamp};
+use anyhow::{Context, Result};
+use design::config::StillSection;
+use design::record::Purpose;
+use design::{Comparison, Configuration, ConfigurationId};
+use raster::{Animation, Look};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+const TURNTABLES: &str = "stimuli/turntables";
+const PAIRS: &str = "stimuli/pairs";
+
+impl Pipeline<'_> {
+    /// Renders the configurations in `only`, or all if it is empty. Files are named by code name.
+    pub(crate) fn turntables(&self, meshes: &Meshes, only: &[ConfigurationId]) -> Result<Vec<Stamp>> {
+        let (codes, _) = self.study.code_names();
+        let selected = self.selected(only);
+        let frames = self.study.file.turntable.frames as usize;
+        let step = Step::begin("turntables", selected.len(), selected.len() * frames);
+        let mut stamps = Vec::new();
+        for configuration in selected {
+            let place = self.study.configurations.iter().position(|c| c == configuration);
+            let code = &codes[place.expect("selected from the study's own")];
+            let stamp = self.turntable(configuration, code, meshes, &step)?;
+            step.count(stamp.redone);
+            stamps.push(stamp);
+        }
+        step.end();
+        Ok(stamps)
+    }
+
+    fn turntable(
+        &self,
+        configuration: &Configuration,
+        code: &str,
+        meshes: &Meshes,
+        step: &Step,
+    ) -> Result<Stamp> {
+        let object = self.study.object(configuration);
+        let mesh = meshes.stamp(&configuration.id, Purpose::Stimulus);
+        let inputs = Inputs::of_rooms(rooms::PICTURES)
+            .stamp(mesh)
+            .text("code", code)
+            .value("camera", &object.camera)
+            .value("turntable", &self.study.file.turntable)
+            .value("shading", &self.study.file.shading);
+        let stamp = self.stage(&format!("turntable/{}", configuration.id), inputs, |writer| {
+            let settings = picture::turntable(&self.study.file.turntable, &object.camera);
+            let shading = picture::shading(&self.study.file.shading);
+            let mesh = self.read_mesh(mesh)?;
+            let animation = raster::turntable(&mesh, &settings, &shading, Look::Smooth, &|| step.tick(1))?;
+            let mut gif = Vec::new();
+            animation.write_gif(&mut gif)?;
+            writer.write(&format!("{TURNTABLES}/{code}.gif"), &gif)
+        })?;
+        Ok(stamp)
+    }
+
+    /// Composes every comparison from two finished turntables, and writes the key. The last stamp is the key's.
+    pub(crate) fn pairs(&self, turntables: &[Stamp]) -> Result<Vec<Stamp>> {
+        let (_, codes) = self.study.code_names();
+        let by_id: HashMap<&ConfigurationId, &Stamp> =
+            self.study.configurations.iter().map(|c| &c.id).zip(turntables).collect();
+        let count = self.study.comparisons.len();
+        let step = Step::begin("pairs", count, count);
+        let one = |(comparison, code): (&Comparison, &String)| {
+            let stamp = self.pair(comparison, code, by_id[&comparison.left], by_id[&comparison.right])?;
+            step.tick(1);
+            step.count(stamp.redone);
+            Ok(stamp)
+        };
+        let mut stamps: Vec<Stamp> =
+            self.study.comparisons.par_iter().zip(&codes).map(one).collect::<Result<_>>()?;
+        step.end();
+        stamps.push(self.key()?);
+        Ok(stamps)
+    }
+
+    fn pair(&self, comparison: &Comparison, code: &str, left: &Stamp, right: &Stamp) -> Result<Stamp> {
+        let scale = self.study.file.stimuli.pair_scale;
+        let inputs = Inputs::of_rooms(rooms::PICTURES)
+            .stamp(left)
+            .stamp(right)
+            .text("code", code)
+            .value("scale", &scale);
+        self.stage(&format!("pair/{}", comparison.question), inputs, |writer| {
+            let (left, right) = (self.read_animation(left)?, self.read_animation(right)?);
+            let mut gif = Vec::new();
+            left.side_by_side(&right)?.scaled(scale).write_gif(&mut gif)?;
+            writer.write(&format!("{PAIRS}/{code}.gif"), &gif)
+        })
+    }
+
+    fn read_animation(&self, stamp: &Stamp) -> Result<Animation> {
+        let file = &stamp.files[0];
+        let bytes = std::fs::read(self.store.root().join(&file.path))?;
+        Animation::read_gif(bytes.as_slice()).with_context(|| file.path.clone())
+    }
+
+    /// The key is kept apart from the stimuli, so that a folder of stimuli can be given away.
+    fn key(&self) -> Result<Stamp> {
+        let (turntables, pairs) = self.study.code_names();
+        let mut key = String::from("file,question,left,right\n");
+        for (configuration, code) in self.study.configurations.iter().zip(&turntables) {
+            key += &format!("{TURNTABLES}/{code}.gif,,{},\n", configuration.id);
+        }
+        for (comparison, code) in self.study.comparisons.iter().zip(&pairs) {
+            let Comparison { question, left, right, .. } = comparison;
+            key += &format!("{PAIRS}/{code}.gif,{question},{left},{right}\n");
+        }
+        let inputs = Inputs::of_rooms(rooms::PAGES).text("key", &key);
+        self.store.stage("key", inputs, |writer| writer.write("key/stimuli.csv", key.as_bytes()))
+    }
+
+    /// The figures of still pictures.
+    pub(crate) fn stills(&self) -> Result<Vec<Stamp>> {
+        let stills = &self.study.file.stills;
+        let step = Step::begin("stills", stills.len(), stills.len());
+        let mut stamps = Vec::new();
+        for still in stills {
+            let stamp = self.still(still)?;
+            step.tick(1);
+            step.count(stamp.redone);
+            stamps.push(stamp);
+        }
+        step.end();
+        Ok(stamps)
+    }
+
+    fn still(&self, still: &StillSection) -> Result<Stamp> {
+        let named = self.study.configurations.iter().find(|c| c.id == still.configuration);
+        let configuration = named.expect("checked when the study was read");
+        let object = self.study.object(configuration);
+        let inputs = self
+            .extraction_inputs(configuration, Purpose::Stimulus)?
+            .text("room", &rooms::PICTURES.concat())
+            .value("still", still)
+            .value("camera", &object.camera)
+            .value("turntable", &self.study.file.turntable)
+            .value("shading", &self.study.file.shading);
+        self.stage(&format!("still/{}", still.id), inputs, |writer| {
+            let mesh = self.extract(configuration, Purpose::Stimulus, still.spacing)?.mesh;
+            let settings = picture::turntable(&self.study.file.turntable, &object.camera);
+            let shading = picture::shading(&self.study.file.shading);
+            let sheet = picture::still_sheet(&mesh, &settings, &shading, &still.looks)?;
+            writer.write(&format!("figures/{}.png", still.id), &sheet.png)?;
+            writer.write(&format!("figures/{}.svg", still.id), sheet.svg.as_bytes())
+        })
+    }
+}

@@ -1,0 +1,114 @@
+//! Tables and figures, from records, timings and answers.
+
+use super::{Meshes, Pipeline};
+use crate::progress::Step;
+use crate::rooms;
+use crate::store::{Inputs, Stamp, Store, Writer, sha256};
+use analysis::{Answers, Figure, Table};
+use anyhow::{Context, Result};
+use design::Study;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+impl Pipeline<'_> {
+    /// Every table and figure of the study.
+    pub(crate) fn tables(&self, meshes: &Meshes, timings: &Stamp) -> Result<Stamp> {
+        let step = Step::begin("tables", 1, 1);
+        let mut inputs = study_inputs(self.study)?.stamp(timings);
+        for stamp in meshes.stamps() {
+            inputs = inputs.stamp(stamp);
+        }
+        let stamp = self.store.stage("tables", inputs, |writer| {
+            let records = self.mesh_records(meshes)?;
+            let run = self.bench_run(timings)?;
+            let answers = read_answers(self.study, self.study.responses.as_deref())?;
+            let inputs = analysis::Inputs {
+                study: self.study,
+                meshes: &records,
+                bench: Some(&run),
+                answers: answers.as_ref(),
+            };
+            write(writer, &inputs)?;
+            Ok(())
+        })?;
+        step.count(stamp.redone);
+        step.end();
+        Ok(stamp)
+    }
+}
+
+/// The preference tables and figures alone, into a folder of their own.
+///
+/// # Errors
+/// If the answers cannot be read or the files cannot be written.
+pub(crate) fn write_answers_only(study: &Study, responses: &Path, store: &Store) -> Result<Vec<Table>> {
+    let answers = read_answers(study, Some(responses))?;
+    let inputs = analysis::Inputs { study, meshes: &[], bench: None, answers: answers.as_ref() };
+    let mut tables = Vec::new();
+    let digest = study_inputs(study)?.text("responses", &sha256(&std::fs::read(responses)?));
+    store.stage("answers", digest, |writer| {
+        tables = write(writer, &inputs)?;
+        Ok(())
+    })?;
+    Ok(tables)
+}
+
+fn read_answers(study: &Study, responses: Option<&Path>) -> Result<Option<Answers>> {
+    let read = |path: &Path| analysis::read_answers(path, study);
+    Ok(responses.map(read).transpose()?)
+}
+
+/// What the page needs to know of a table: `tables/contents.json` lists these.
+#[derive(Serialize, Deserialize)]
+pub(super) struct TableEntry {
+    pub(super) name: String,
+    pub(super) caption: String,
+    pub(super) html: String,
+}
+
+/// What the page needs to know of a figure: `figures/contents.json` lists these.
+#[derive(Serialize, Deserialize)]
+pub(super) struct FigureEntry {
+    pub(super) name: String,
+    pub(super) caption: String,
+}
+
+pub(super) const TABLE_CONTENTS: &str = "tables/contents.json";
+pub(super) const FIGURE_CONTENTS: &str = "figures/contents.json";
+
+fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>) -> Result<Vec<Table>> {
+    let tables = analysis::tables(inputs).context("tables")?;
+    let mut entries = Vec::new();
+    for table in &tables {
+        let path = format!("tables/{}", table.name);
+        writer.write(&format!("{path}.csv"), table.to_csv().as_bytes())?;
+        writer.write(&format!("{path}.md"), table.to_markdown().as_bytes())?;
+        writer.write(&format!("{path}.tex"), table.to_latex().as_bytes())?;
+        let (name, caption) = (table.name.clone(), table.caption.clone());
+        entries.push(TableEntry { name, caption, html: table.to_html() });
+    }
+    writer.write_json(TABLE_CONTENTS, &entries)?;
+    let mut entries = Vec::new();
+    for Figure { name, caption, svg, png } in analysis::figures(inputs).context("figures")? {
+        writer.write(&format!("figures/{name}.svg"), svg.as_bytes())?;
+        writer.write(&format!("figures/{name}.png"), &png)?;
+        entries.push(FigureEntry { name, caption });
+    }
+    writer.write_json(FIGURE_CONTENTS, &entries)?;
+    Ok(tables)
+}
+
+/// The study file, its answers and its published numbers.
+fn study_inputs(study: &Study) -> Result<Inputs> {
+    let published = &study.published;
+    let mut inputs = Inputs::of_rooms(rooms::TABLES)
+        .value("study", &study.file)
+        .value("benchmark", &published.benchmark)
+        .value("preferences", &published.preferences)
+        .value("claims", &published.claims);
+    if let Some(path) = &study.responses {
+        let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+        inputs = inputs.text("responses", &sha256(&bytes));
+    }
+    Ok(inputs)
+}

@@ -1,0 +1,96 @@
+//! From what `extract` and `mesh` measured to the records that `analysis` reads. Field by field, on purpose: the
+//! geometry crates know nothing of studies, and the statistics know nothing of geometry.
+
+use design::ConfigurationId;
+use design::record::{Counts, Distribution, Histogram, MeshRecord, Purpose, Quality, Topology};
+use extract::Extraction;
+use extract::Lattice;
+
+pub(crate) fn mesh_record(
+    id: &ConfigurationId,
+    purpose: Purpose,
+    spacing: f64,
+    lattice: &Lattice,
+    extraction: &Extraction,
+) -> MeshRecord {
+    MeshRecord {
+        id: id.clone(),
+        purpose,
+        spacing,
+        cells: lattice.cells(),
+        counts: counts(&extraction.counts),
+        quality: quality(&mesh::quality::quality(&extraction.mesh)),
+        topology: topology(&mesh::topology::topology(&extraction.mesh)),
+    }
+}
+
+fn counts(c: &extract::Counts) -> Counts {
+    Counts {
+        stored_samples: c.stored_samples,
+        needed_samples: c.needed_samples,
+        stored_edges: c.stored_edges,
+        needed_edges: c.needed_edges,
+        tetrahedra: c.tetrahedra,
+        tetrahedra_evaluated: c.tetrahedra_evaluated,
+        crossings: c.crossings,
+        vertices: c.vertices,
+        triangles: c.triangles,
+        discarded_triangles: c.discarded_triangles,
+        discarded_as_published: c.discarded_as_published,
+        sample_bytes: c.sample_bytes,
+        edge_bytes: c.edge_bytes,
+        vertex_bytes: c.vertex_bytes,
+        index_bytes: c.index_bytes,
+    }
+}
+
+fn quality(q: &mesh::quality::QualityReport) -> Quality {
+    Quality {
+        triangles: q.triangles,
+        degenerate: q.degenerate,
+        published_aspect_ratio: distribution(&q.published_aspect_ratio),
+        edge_ratio: distribution(&q.edge_ratio),
+        radius_ratio: distribution(&q.radius_ratio),
+        min_angle_deg: distribution(&q.min_angle_deg),
+        max_angle_deg: distribution(&q.max_angle_deg),
+        area: distribution(&q.area),
+    }
+}
+
+fn distribution(d: &mesh::distribution::Distribution) -> Distribution {
+    Distribution {
+        count: d.count,
+        mean: d.mean,
+        sd: d.sd,
+        min: d.min,
+        q05: d.q05,
+        q25: d.q25,
+        median: d.median,
+        q75: d.q75,
+        q95: d.q95,
+        max: d.max,
+        histogram: Histogram {
+            low: d.histogram.low,
+            high: d.histogram.high,
+            counts: d.histogram.counts.clone(),
+            below: d.histogram.below,
+            above: d.histogram.above,
+        },
+    }
+}
+
+fn topology(t: &mesh::topology::TopologyReport) -> Topology {
+    Topology {
+        vertices: t.vertices,
+        edges: t.edges,
+        triangles: t.triangles,
+        boundary_edges: t.boundary_edges,
+        non_manifold_edges: t.non_manifold_edges,
+        misoriented_edges: t.misoriented_edges,
+        non_manifold_vertices: t.non_manifold_vertices,
+        duplicate_faces: t.duplicate_faces,
+        folded_faces: t.folded_faces,
+        components: t.components,
+        euler_characteristic: t.euler_characteristic,
+    }
+}

@@ -1,0 +1,20 @@
+//! Digests of the sources that make each kind of result; see `build.rs`.
+
+const MESH: &str = env!("ISOSTUDY_ROOM_MESH");
+const DESIGN: &str = env!("ISOSTUDY_ROOM_DESIGN");
+const EXTRACT: &str = env!("ISOSTUDY_ROOM_EXTRACT");
+const RASTER: &str = env!("ISOSTUDY_ROOM_RASTER");
+const BENCH: &str = env!("ISOSTUDY_ROOM_BENCH");
+const ANALYSIS: &str = env!("ISOSTUDY_ROOM_ANALYSIS");
+const CLI: &str = env!("ISOSTUDY_ROOM_CLI");
+
+/// What makes meshes.
+pub(crate) const MESHES: &[&str] = &[MESH, EXTRACT, CLI];
+/// What makes pictures of meshes.
+pub(crate) const PICTURES: &[&str] = &[MESH, RASTER, CLI];
+/// What makes timings.
+pub(crate) const TIMINGS: &[&str] = &[MESH, EXTRACT, BENCH, CLI];
+/// What makes tables and figures.
+pub(crate) const TABLES: &[&str] = &[DESIGN, ANALYSIS, CLI];
+/// What makes the key and the page.
+pub(crate) const PAGES: &[&str] = &[DESIGN, CLI];

@@ -1,0 +1,334 @@
+//! Where results are kept: stages that are redone only when their inputs changed, files that appear whole or not at all.
+//!
+//! A stage is a name, a list of inputs and a closure that writes files. When it ends, a stamp with the digest of the inputs
+//! and of every file is written beside the results, in `.stages/`. The next run trusts a stamp whose digest is the same
+//! and whose files are all still there and unchanged. Files and stamps are written to a temporary sibling and renamed, so a
+//! run may be killed at any moment: a stage without its stamp is redone from its start.
+
+use anyhow::{Context, Result, bail};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+const STAMPS: &str = ".stages";
+const PARTIAL: &str = "partial";
+
+/// A folder of results.
+pub(crate) struct Store {
+    root: PathBuf,
+    force: bool,
+    /// Held as long as the store is: one run at a time.
+    _lock: File,
+}
+
+/// What a finished stage left behind.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Stamp {
+    /// The stage's name.
+    pub(crate) stage: String,
+    /// Digest of its inputs.
+    pub(crate) inputs: String,
+    /// The files it wrote.
+    pub(crate) files: Vec<FileStamp>,
+    /// Whether this run made them.
+    #[serde(skip)]
+    pub(crate) redone: bool,
+}
+
+/// A file that a stage wrote.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct FileStamp {
+    /// Relative to the store, with forward slashes.
+    pub(crate) path: String,
+    /// Size.
+    pub(crate) bytes: u64,
+    /// SHA-256 in hexadecimal.
+    pub(crate) sha256: String,
+    /// Modification time in nanoseconds since 1970; while it is the same the content is not read again.
+    pub(crate) modified_ns: u64,
+}
+
+/// What a stage depends on: labelled texts, digested in order.
+#[derive(Default)]
+pub(crate) struct Inputs {
+    digest: Sha256,
+}
+
+/// Writes the files of one stage.
+pub(crate) struct Writer<'a> {
+    root: &'a Path,
+    files: Vec<FileStamp>,
+}
+
+impl Store {
+    /// Opens or makes the folder, and clears away what a killed run left half-written.
+    ///
+    /// # Errors
+    /// If the folder cannot be made, or another run holds it.
+    pub(crate) fn open(root: &Path, force: bool) -> Result<Self> {
+        let stamps = root.join(STAMPS);
+        fs::create_dir_all(&stamps).with_context(|| format!("cannot make {}", stamps.display()))?;
+        let lock = File::create(stamps.join("lock")).context("cannot make the lock file")?;
+        if let Err(error) = lock.try_lock() {
+            bail!("{} is in use by another run ({error})", root.display());
+        }
+        sweep(root)?;
+        Ok(Self { root: root.into(), force, _lock: lock })
+    }
+
+    /// The folder.
+    pub(crate) fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// Does a stage, or finds it done.
+    ///
+    /// # Errors
+    /// What `make` returns, or a file that cannot be written; the stage then has no stamp.
+    pub(crate) fn stage(
+        &self,
+        name: &str,
+        inputs: Inputs,
+        make: impl FnOnce(&mut Writer<'_>) -> Result<()>,
+    ) -> Result<Stamp> {
+        let inputs = inputs.finish();
+        let before = self.stamp(name);
+        if let Some(stamp) = self.fresh(before.as_ref(), &inputs)
+            && !self.force
+        {
+            return Ok(stamp);
+        }
+        let stamp_path = self.stamp_path(name);
+        remove_if_there(&stamp_path)?;
+        let mut writer = Writer { root: &self.root, files: Vec::new() };
+        make(&mut writer)?;
+        // What the stage wrote last time and not this time is nobody's now.
+        for old in before.iter().flat_map(|stamp| &stamp.files) {
+            if !writer.files.iter().any(|file| file.path == old.path) {
+                remove_if_there(&self.root.join(&old.path))?;
+            }
+        }
+        let stamp = Stamp { stage: name.into(), inputs, files: writer.files, redone: true };
+        write_whole(&stamp_path, &serde_json::to_vec_pretty(&stamp)?)?;
+        Ok(stamp)
+    }
+
+    /// The stamp of a stage if it is fresh for these inputs; nothing is done.
+    pub(crate) fn peek(&self, name: &str, inputs: Inputs) -> Option<Stamp> {
+        self.fresh(self.stamp(name).as_ref(), &inputs.finish())
+    }
+
+    fn stamp_path(&self, name: &str) -> PathBuf {
+        self.root.join(STAMPS).join(format!("{}.json", name.replace('/', ".")))
+    }
+
+    fn stamp(&self, name: &str) -> Option<Stamp> {
+        let text = fs::read(self.stamp_path(name)).ok()?;
+        serde_json::from_slice(&text).ok()
+    }
+
+    fn fresh(&self, stamp: Option<&Stamp>, inputs: &str) -> Option<Stamp> {
+        let stamp = stamp?;
+        let whole = stamp.inputs == inputs && stamp.files.iter().all(|file| self.unchanged(file));
+        whole.then(|| stamp.clone())
+    }
+
+    fn unchanged(&self, file: &FileStamp) -> bool {
+        let path = self.root.join(&file.path);
+        let Ok(metadata) = fs::metadata(&path) else { return false };
+        metadata.len() == file.bytes
+            && (modified_ns(&metadata) == file.modified_ns
+                || fs::read(&path).is_ok_and(|bytes| sha256(&bytes) == file.sha256))
+    }
+}
+
+impl Inputs {
+    /// Starts from the sources of the rooms whose code makes the files.
+    pub(crate) fn of_rooms(rooms: &[&str]) -> Self {
+        rooms.iter().fold(Self::default(), |inputs, room| inputs.text("room", room))
+    }
+
+    /// Adds a text.
+    pub(crate) fn text(mut self, label: &str, text: &str) -> Self {
+        // Lengths first, so that no two lists of inputs read the same.
+        self.digest.update(format!("{}:{label}{}:", label.len(), text.len()));
+        self.digest.update(text);
+        self
+    }
+
+    /// Adds any plain value, through its JSON.
+    pub(crate) fn value(self, label: &str, value: &impl Serialize) -> Self {
+        let json = serde_json::to_string(value).expect("plain data serialises");
+        self.text(label, &json)
+    }
+
+    /// Adds the files that another stage left.
+    pub(crate) fn stamp(self, stamp: &Stamp) -> Self {
+        stamp.files.iter().fold(self, |inputs, file| inputs.text(&file.path, &file.sha256))
+    }
+
+    fn finish(self) -> String {
+        hexadecimal(&self.digest.finalize())
+    }
+}
+
+impl Writer<'_> {
+    /// What has been written so far.
+    pub(crate) fn files(&self) -> &[FileStamp] {
+        &self.files
+    }
+
+    /// Writes one file, `path` relative to the store.
+    pub(crate) fn write(&mut self, path: &str, bytes: &[u8]) -> Result<()> {
+        let full = self.root.join(path);
+        write_whole(&full, bytes)?;
+        let metadata = fs::metadata(&full).with_context(|| format!("cannot read {}", full.display()))?;
+        self.files.push(FileStamp {
+            path: path.into(),
+            bytes: metadata.len(),
+            sha256: sha256(bytes),
+            modified_ns: modified_ns(&metadata),
+        });
+        Ok(())
+    }
+
+    /// Writes one file as JSON.
+    pub(crate) fn write_json(&mut self, path: &str, value: &impl Serialize) -> Result<()> {
+        let mut bytes = serde_json::to_vec_pretty(value)?;
+        bytes.push(b'\n');
+        self.write(path, &bytes)
+    }
+}
+
+/// SHA-256 in hexadecimal.
+pub(crate) fn sha256(bytes: &[u8]) -> String {
+    hexadecimal(&Sha256::digest(bytes))
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Writes a file so that it is there whole or not at all.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let partial = folder.join(format!(".{name}.{PARTIAL}"));
+    let write = || -> std::io::Result<()> {
+        let mut file = File::create(&partial)?;
+        file.write_all(bytes)?;
+        fs::rename(&partial, path)
+    };
+    write().with_context(|| format!("cannot write {}", path.display()))
+}
+
+fn remove_if_there(path: &Path) -> Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(error).with_context(|| format!("cannot remove {}", path.display()))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn sweep(folder: &Path) -> Result<()> {
+    for entry in fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))? {
+        let path = entry?.path();
+        if path.is_dir() {
+            sweep(&path)?;
+        } else if path.extension().is_some_and(|extension| extension == PARTIAL) {
+            remove_if_there(&path)?;
+        }
+    }
+    Ok(())
+}
+
+fn modified_ns(metadata: &fs::Metadata) -> u64 {
+    let since_1970 = metadata.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+    since_1970.map_or(0, |time| time.as_nanos() as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    struct Fixture {
+        folder: tempfile::TempDir,
+        made: Cell<u32>,
+    }
+
+    impl Fixture {
+        fn new() -> Self {
+            Self { folder: tempfile::tempdir().unwrap(), made: Cell::new(0) }
+        }
+
+        fn run(&self, force: bool, input: &str, file: &str) -> Stamp {
+            let store = Store::open(self.folder.path(), force).unwrap();
+            let make = |writer: &mut Writer<'_>| {
+                self.made.set(self.made.get() + 1);
+                writer.write(file, input.as_bytes())
+            };
+            store.stage("a/b", Inputs::default().text("input", input), make).unwrap()
+        }
+    }
+
+    #[test]
+    fn a_stage_is_redone_only_when_something_changed() {
+        let fixture = Fixture::new();
+        assert!(fixture.run(false, "one", "x/file").redone);
+        assert!(!fixture.run(false, "one", "x/file").redone);
+        assert!(fixture.run(false, "two", "x/file").redone, "inputs changed");
+        assert!(fixture.run(true, "two", "x/file").redone, "forced");
+        let file = fixture.folder.path().join("x/file");
+        fs::write(&file, "two").unwrap();
+        assert!(!fixture.run(false, "two", "x/file").redone, "touched, same content");
+        fs::write(&file, "2wo").unwrap();
+        assert!(fixture.run(false, "two", "x/file").redone, "content changed");
+        fs::remove_file(&file).unwrap();
+        assert!(fixture.run(false, "two", "x/file").redone, "file gone");
+        assert_eq!(fs::read_to_string(&file).unwrap(), "two");
+    }
+
+    #[test]
+    fn files_that_a_stage_no_longer_writes_go() {
+        let fixture = Fixture::new();
+        fixture.run(false, "one", "old");
+        fixture.run(false, "two", "new");
+        assert!(!fixture.folder.path().join("old").exists());
+        assert!(fixture.folder.path().join("new").exists());
+    }
+
+    #[test]
+    fn a_failed_stage_has_no_stamp_and_half_written_files_are_swept() {
+        let fixture = Fixture::new();
+        fixture.run(false, "one", "file");
+        {
+            let store = Store::open(fixture.folder.path(), false).unwrap();
+            let inputs = Inputs::default().text("input", "two");
+            assert!(store.stage("a/b", inputs, |_| bail!("no")).is_err());
+        }
+        fs::write(fixture.folder.path().join(".file.partial"), "half").unwrap();
+        assert!(fixture.run(false, "one", "file").redone);
+        assert!(!fixture.folder.path().join(".file.partial").exists());
+    }
+
+    #[test]
+    fn one_run_at_a_time() {
+        let fixture = Fixture::new();
+        let _held = Store::open(fixture.folder.path(), false).unwrap();
+        assert!(Store::open(fixture.folder.path(), false).is_err());
+    }
+
+    #[test]
+    fn inputs_do_not_run_together() {
+        let digest = |parts: [(&str, &str); 2]| {
+            parts.iter().fold(Inputs::default(), |inputs, (l, t)| inputs.text(l, t)).finish()
+        };
+        assert_ne!(digest([("a", "bc"), ("d", "e")]), digest([("a", "b"), ("cd", "e")]));
+    }
+}

@@ -1,0 +1,188 @@
+//! From a study's words to the extractor's: fields, lattices, settings. The one place where `design` meets `extract`.
+
+use crate::store::sha256;
+use anyhow::{Context, Result, bail};
+use design::config::{FieldSection, MeshSourceSection, ObjectSection, Positions};
+use design::record::Purpose;
+use design::{Arrangement, Clustering, Configuration, Study};
+use extract::{ExtractSettings, Lattice, ScalarField};
+use glam::{DVec3, Vec3};
+use mesh::{Bounds, TriangleMesh};
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+/// The scalar fields of a study's objects, each made when it is first asked for.
+pub(crate) struct Fields<'a> {
+    study: &'a Study,
+    made: Vec<OnceLock<Box<dyn ScalarField + Send>>>,
+}
+
+impl<'a> Fields<'a> {
+    pub(crate) fn new(study: &'a Study) -> Self {
+        let made = study.file.objects.iter().map(|_| OnceLock::new()).collect();
+        Self { study, made }
+    }
+
+    /// The field of an object. Fields are made from one thread, so none is made twice.
+    ///
+    /// # Errors
+    /// If a mesh cannot be read, is not the one the study names, or is not closed.
+    pub(crate) fn get(&self, object: usize) -> Result<&dyn ScalarField> {
+        if self.made[object].get().is_none() {
+            let section = &self.study.file.objects[object];
+            let field = make_field(self.study, &section.field)
+                .with_context(|| format!("{}: objects[{object}].field", self.study.path.display()))?;
+            let _ = self.made[object].set(field);
+        }
+        Ok(&**self.made[object].get().expect("made above"))
+    }
+}
+
+fn make_field(study: &Study, section: &FieldSection) -> Result<Box<dyn ScalarField + Send>> {
+    Ok(match section {
+        FieldSection::Sphere { radius } => Box::new(extract::Sphere { radius: *radius as f32 }),
+        FieldSection::Asteroid => Box::new(extract::Asteroid::default()),
+        FieldSection::Mesh { sources } => {
+            let (source, path) = present_source(study, sources)?;
+            let mesh = read_placed(source, &path).with_context(|| path.display().to_string())?;
+            Box::new(extract::MeshDistance::try_new(&mesh).with_context(|| path.display().to_string())?)
+        }
+    })
+}
+
+/// The first of the sources that is there.
+fn present_source<'s>(
+    study: &Study,
+    sources: &'s [MeshSourceSection],
+) -> Result<(&'s MeshSourceSection, PathBuf)> {
+    let resolved = sources.iter().map(|source| (source, study.resolve(&source.file)));
+    let mut present = resolved.filter(|(_, path)| path.is_file());
+    present.next().context("none of the mesh files is there any more")
+}
+
+/// What a field is made from, for the digest of a stage's inputs: the section, and which mesh file is used.
+pub(crate) fn field_inputs(study: &Study, object: &ObjectSection) -> Result<String> {
+    let section = serde_json::to_string(&object.field)?;
+    Ok(match &object.field {
+        FieldSection::Mesh { sources } => format!("{section} {}", present_source(study, sources)?.0.sha256),
+        _ => section,
+    })
+}
+
+fn read_placed(source: &MeshSourceSection, path: &std::path::Path) -> Result<TriangleMesh> {
+    let bytes = std::fs::read(path)?;
+    let found = sha256(&bytes);
+    if found != source.sha256.to_lowercase() {
+        bail!("has SHA-256 {found}, but the study asks for {}", source.sha256);
+    }
+    let mesh = match path.extension().and_then(|extension| extension.to_str()) {
+        Some("obj") => mesh::read_obj(bytes.as_slice())?,
+        Some("ply") => mesh::read_ply(bytes.as_slice())?,
+        _ => bail!("is neither .obj nor .ply"),
+    };
+    let solid = mesh::repair::closed_solid(&mesh)?;
+    let axes = source.axes.each_ref().map(|axis| axis_vector(axis));
+    let offset = DVec3::from_array(source.offset);
+    Ok(solid.transformed(|p| {
+        let p = p.as_dvec3();
+        let turned = DVec3::new(axes[0].dot(p), axes[1].dot(p), axes[2].dot(p));
+        (turned * source.scale + offset).as_vec3()
+    }))
+}
+
+/// The file axis that `design` has checked to be x, y or z with an optional minus.
+fn axis_vector(axis: &str) -> DVec3 {
+    let (sign, letter) = match axis.strip_prefix('-') {
+        Some(letter) => (-1.0, letter),
+        None => (1.0, axis),
+    };
+    sign * match letter {
+        "x" => DVec3::X,
+        "y" => DVec3::Y,
+        _ => DVec3::Z,
+    }
+}
+
+/// The spacing of an object for a purpose, and the key it comes from.
+pub(crate) fn spacing(object: &ObjectSection, purpose: Purpose) -> (f64, &'static str) {
+    match purpose {
+        Purpose::Benchmark | Purpose::Indexed => (object.benchmark_spacing, "benchmark_spacing"),
+        Purpose::Stimulus => (object.stimulus_spacing, "stimulus_spacing"),
+    }
+}
+
+/// The lattice of an arrangement over an object's volume.
+///
+/// # Errors
+/// If the extractor refuses it; the caller knows the key to name.
+pub(crate) fn lattice(object: &ObjectSection, arrangement: Arrangement, spacing: f64) -> Result<Lattice> {
+    let corner = |p: [f64; 3]| Vec3::from_array(p.map(|x| x as f32));
+    let bounds = Bounds { min: corner(object.min), max: corner(object.max) };
+    let arrangement = match arrangement {
+        Arrangement::BodyCentred => extract::Arrangement::BodyCentred,
+        Arrangement::SimpleCubic => extract::Arrangement::SimpleCubic,
+    };
+    Ok(Lattice::try_new(arrangement, bounds, spacing as f32)?)
+}
+
+/// The extractor's settings for a configuration. Meshes made for [`Purpose::Indexed`] have indexed positions whatever the
+/// study says.
+pub(crate) fn settings(study: &Study, configuration: &Configuration, purpose: Purpose) -> ExtractSettings {
+    let section = &study.file.extraction;
+    let positions = match (purpose, section.positions) {
+        (Purpose::Indexed, _) | (_, Positions::Indexed) => extract::Positions::Indexed,
+        (_, Positions::Accumulated) => {
+            extract::Positions::Accumulated { chunks: section.accumulation_chunks }
+        }
+    };
+    let clustering = match configuration.id.method.clustering {
+        Clustering::None => extract::Clustering::None,
+        Clustering::Integrated => extract::Clustering::Integrated,
+        Clustering::EdgeCollapse => extract::Clustering::EdgeCollapse,
+    };
+    let isovalue = study.object(configuration).isovalue as f32;
+    ExtractSettings { isovalue, clustering, positions }
+}
+
+/// Checks that every lattice of the study can be made and fits into memory.
+///
+/// # Errors
+/// The first that cannot, naming file, key and limit.
+pub(crate) fn check_lattices(study: &Study, machine_bytes: Option<u64>) -> Result<()> {
+    let file = study.path.display();
+    let allowed = (study.file.limits.memory_gib * GIB) as u64;
+    let (limit, limit_name) = match machine_bytes {
+        Some(machine) if machine < allowed => (machine, "this machine has"),
+        _ => (allowed, "limits.memory_gib allows"),
+    };
+    let check = |key: String, object: &ObjectSection, arrangement, spacing: f64| -> Result<()> {
+        let lattice =
+            lattice(object, arrangement, spacing).with_context(|| format!("{file}: {key} = {spacing}"))?;
+        let needed = lattice.memory_bytes();
+        if needed > limit {
+            bail!(
+                "{file}: {key} = {spacing}: the {} lattice needs {:.1} GiB, {limit_name} {:.1} GiB",
+                arrangement.label(),
+                needed as f64 / GIB,
+                limit as f64 / GIB,
+            );
+        }
+        Ok(())
+    };
+    for (i, object) in study.file.objects.iter().enumerate() {
+        for purpose in [Purpose::Benchmark, Purpose::Stimulus] {
+            let (spacing, name) = spacing(object, purpose);
+            for &arrangement in &study.file.arrangements {
+                check(format!("objects[{i}].{name}"), object, arrangement, spacing)?;
+            }
+        }
+    }
+    for (i, still) in study.file.stills.iter().enumerate() {
+        let named = study.configurations.iter().find(|c| c.id == still.configuration);
+        let object = study.object(named.expect("checked when the study was read"));
+        check(format!("stills[{i}].spacing"), object, still.configuration.method.arrangement, still.spacing)?;
+    }
+    Ok(())
+}
+
+const GIB: f64 = (1u64 << 30) as f64;

@@ -1,0 +1,258 @@
+//! The whole chain as a user runs it: the `isostudy` command on a small study with real answers.
+
+mod fixture;
+
+use fixture::{Fixture, files, without_measured_times};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::Duration;
+
+#[test]
+fn a_study_makes_everything_once_and_then_nothing() {
+    let fixture = Fixture::new();
+    fixture.command("study").assert().success().stdout(predicates::str::ends_with("index.html\n"));
+    let made = files(fixture.out());
+
+    let count = |folder: &str, extension: &str| {
+        let under = |path: &&String| path.starts_with(folder) && path.ends_with(extension);
+        made.keys().filter(under).count()
+    };
+    assert_eq!(count("meshes/benchmark/", ".ply"), 18);
+    assert_eq!(count("meshes/stimulus/", ".ply"), 18);
+    assert_eq!(count("meshes/indexed/", ".json"), 18);
+    assert_eq!(count("stimuli/turntables/", ".gif"), 18);
+    assert_eq!(count("stimuli/pairs/", ".gif"), 27);
+    for name in ["benchmark", "preference_groups", "preference_overall", "questionnaire", "answers"] {
+        for extension in ["csv", "md", "tex"] {
+            assert!(made.contains_key(&format!("tables/{name}.{extension}")), "{name}.{extension}");
+        }
+    }
+    assert_eq!(count("figures/", ".svg"), count("figures/", ".png"));
+    assert!(count("figures/", ".svg") >= 9);
+
+    let again = fixture.command("study").output().unwrap();
+    let said = String::from_utf8(again.stderr).unwrap();
+    assert!(again.status.success() && !said.contains(" made, "), "{said}");
+    assert_eq!(files(fixture.out()), made);
+}
+
+#[test]
+fn every_file_is_in_the_manifest_with_its_digest() {
+    use sha2::Digest;
+    let fixture = Fixture::new();
+    fixture.command("study").assert().success();
+    let made = files(fixture.out());
+    let manifest: serde_json::Value = serde_json::from_slice(&made["manifest.json"]).unwrap();
+    let listed = manifest["files"].as_object().unwrap();
+    for (path, bytes) in made.iter().filter(|(path, _)| *path != "manifest.json") {
+        let digest: String = sha2::Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect();
+        assert_eq!(listed[path]["sha256"], digest.as_str(), "{path}");
+    }
+    assert_eq!(listed.len(), made.len() - 1);
+    assert_eq!(manifest["seed"], 2026);
+}
+
+#[test]
+fn stimuli_say_nothing_about_what_they_show() {
+    let fixture = Fixture::new();
+    fixture.command("pairs").assert().success();
+    let made = files(fixture.out());
+    for path in made.keys().filter(|path| path.starts_with("stimuli/")) {
+        let name = Path::new(path).file_name().unwrap().to_str().unwrap();
+        let stem = name.strip_suffix(".gif").unwrap_or_else(|| panic!("{path} among the stimuli"));
+        assert!(stem.len() == 4 && stem.bytes().all(|b| b.is_ascii_lowercase()), "{path}");
+        assert_eq!(extensions(&made[path]), ["NETSCAPE2.0"], "{path}: extensions that hold text");
+    }
+    let key = String::from_utf8(made["key/stimuli.csv"].clone()).unwrap();
+    assert_eq!(key.lines().count(), 1 + 18 + 27);
+    assert!(key.contains(",Q1,ss_bu,ss_bi\n"));
+    for line in key.lines().skip(1) {
+        assert!(made.contains_key(line.split(',').next().unwrap()), "{line}");
+    }
+}
+
+/// Killed again and again at moments spread over the run, a study ends with the bytes of one that was left alone.
+#[test]
+fn a_killed_study_resumes_to_the_same_bytes() {
+    let whole = Fixture::new();
+    whole.command("study").assert().success();
+    let expected = without_measured_times(files(whole.out()));
+
+    let killed = Fixture::new();
+    let mut kills = 0;
+    for round in 1.. {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
+        command.arg("study").arg(killed.config()).arg("--out").arg(killed.out());
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        // Ever longer, so that the run gets to its end on a machine of any speed.
+        std::thread::sleep(Duration::from_millis(20 * round));
+        match child.try_wait().unwrap() {
+            Some(status) => {
+                assert!(status.success());
+                break;
+            }
+            None => {
+                child.kill().unwrap();
+                child.wait().unwrap();
+                kills += 1;
+            }
+        }
+    }
+    assert!(kills >= 3, "killed only {kills} times");
+    let found = without_measured_times(files(killed.out()));
+    assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>());
+    for (path, bytes) in &expected {
+        assert!(found[path] == *bytes, "{path} differs");
+    }
+}
+
+#[test]
+fn threads_change_no_byte() {
+    let run = |threads: &str| -> BTreeMap<String, Vec<u8>> {
+        let fixture = Fixture::new();
+        fixture.command("pairs").args(["--threads", threads]).assert().success();
+        files(fixture.out())
+    };
+    let (one, three) = (run("1"), run("3"));
+    assert_eq!(one.keys().collect::<Vec<_>>(), three.keys().collect::<Vec<_>>());
+    assert!(one.iter().all(|(path, bytes)| three[path] == *bytes));
+}
+
+#[test]
+fn force_redoes_and_a_changed_seed_renames() {
+    let fixture = Fixture::new();
+    let extract = |arguments: &[&str]| {
+        let output = fixture.command("extract").args(arguments).output().unwrap();
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(extract(&["--only", "ss_bi"]).contains("3 of 3 made"));
+    assert!(extract(&["--only", "ss_bi"]).contains("up to date"));
+    assert!(extract(&["--only", "ss_bi", "--force"]).contains("3 of 3 made"));
+
+    let turntable = || fixture.command("turntable").args(["--only", "ss_bi"]).assert().success();
+    let names = || -> Vec<String> {
+        files(fixture.out()).into_keys().filter(|path| path.starts_with("stimuli/")).collect()
+    };
+    turntable();
+    let before = names();
+    fixture.edit("seed = 2026", "seed = 2027");
+    turntable();
+    assert_eq!((before.len(), names().len()), (1, 1));
+    assert_ne!(before, names());
+}
+
+#[test]
+fn report_draws_again_but_never_extracts() {
+    let fixture = Fixture::new();
+    let first = fixture.command("report").assert().code(2);
+    first.stderr(predicates::str::contains("run `isostudy study` first"));
+    fixture.command("study").assert().success();
+    std::fs::remove_file(fixture.out().join("tables/answers.csv")).unwrap();
+    fixture.command("report").assert().success();
+    assert!(fixture.out().join("tables/answers.csv").exists());
+}
+
+#[test]
+fn wrong_input_is_refused_before_anything_is_made() {
+    let refused = |from: &str, to: &str, expected: &[&str]| {
+        let fixture = Fixture::new();
+        fixture.edit(from, to);
+        let output = fixture.command("study").output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        for part in expected.iter().chain(&["study.toml"]) {
+            assert!(said.contains(part), "{part:?} is not in: {said}");
+        }
+        assert!(!said.contains("panicked"), "{said}");
+        assert!(!fixture.out().exists(), "something was written");
+    };
+    refused("seed = 2026", "seed = 2026\ncolour = 1", &["colour"]);
+    refused("isovalue = 0.0", "isovalue = nan", &["objects[0].isovalue", "finite"]);
+    refused("responses.csv", "nobody.csv", &["responses.file", "nobody.csv", "no such file"]);
+    refused("solid.obj", "nothing.obj", &["field.sources[0].file", "nothing.obj", "make bunny"]);
+    let key = "objects[0].benchmark_spacing";
+    refused("benchmark_spacing = 0.125", "benchmark_spacing = 0.002", &[key, "0.002", "GiB"]);
+    refused("benchmark_spacing = 0.125", "benchmark_spacing = 1e-4", &[key, "sample points"]);
+    refused("spacing = 0.4", "spacing = 1e-9", &["stills[1].spacing"]);
+    refused("schema = 1", "schema = [", &["line"]);
+}
+
+#[test]
+fn a_mesh_with_another_digest_is_refused() {
+    let fixture = Fixture::new();
+    fixture.edit("sha256 = \"", "sha256 = \"00");
+    fixture.edit_with(|text| {
+        // Keep the length right: drop the last two digits of the same line.
+        let start = text.find("sha256 = \"00").unwrap() + "sha256 = \"".len();
+        format!("{}{}", &text[..start + 64], &text[start + 66..])
+    });
+    let output = fixture.command("study").output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(said.contains("solid.obj") && said.contains("has SHA-256"), "{said}");
+}
+
+#[test]
+fn analyse_prints_the_papers_numbers() {
+    let fixture = Fixture::new();
+    let output = fixture.command("analyse").output().unwrap();
+    assert!(output.status.success());
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("1.06"), "simple cubic, integrated, overall: {said}");
+    let groups = std::fs::read_to_string(fixture.out().join("tables/preference_groups.csv")).unwrap();
+    let mut lines = groups.lines();
+    assert!(lines.next().unwrap().starts_with("group,configuration,wins,ties,answers,factor"));
+    assert_eq!(lines.count(), 12);
+    let of = |start: &str| groups.lines().find(|line| line.starts_with(start)).unwrap().to_owned();
+    assert!(of("B,bi,").starts_with("B,bi,68,19,162,0.41975"), "{}", of("B,bi,"));
+    let overall = std::fs::read_to_string(fixture.out().join("tables/preference_overall.csv")).unwrap();
+    assert!(overall.starts_with("configuration,factor"));
+    assert_eq!(overall.lines().count(), 7);
+}
+
+#[test]
+fn answers_that_do_not_fit_are_refused_with_their_place() {
+    let fixture = Fixture::new();
+    let path = fixture.folder().join("answers.csv");
+    std::fs::write(&path, "Q1,Q2\nL,R\nX,NP\n").unwrap();
+    let output = fixture.command("analyse").arg("--responses").arg(&path).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("answers.csv") && said.contains("Q3"), "{said}");
+}
+
+/// The text extensions of a GIF: comments, plain texts, and the names of application extensions.
+fn extensions(gif: &[u8]) -> Vec<String> {
+    const GRAPHIC_CONTROL: u8 = 0xf9;
+    let table = |flags: u8| if flags & 0x80 == 0 { 0 } else { 3 << ((flags & 7) + 1) };
+    let mut at = 13 + table(gif[10]);
+    let mut found = Vec::new();
+    loop {
+        let label = match gif[at] {
+            0x21 => {
+                at += 2;
+                Some(gif[at - 1])
+            }
+            0x2c => {
+                at += 10 + table(gif[at + 9]) + 1;
+                None
+            }
+            0x3b => return found,
+            other => panic!("block {other:#x} at {at}"),
+        };
+        let mut first = String::new();
+        while gif[at] != 0 {
+            let size = gif[at] as usize;
+            if first.is_empty() {
+                first = String::from_utf8_lossy(&gif[at + 1..at + 1 + size]).into_owned();
+            }
+            at += 1 + size;
+        }
+        at += 1;
+        if label.is_some_and(|label| label != GRAPHIC_CONTROL) {
+            found.push(first);
+        }
+    }
+}
