@@ -1,0 +1,37 @@
+# The entries a reader needs. `make help` lists them.
+
+ISOSTUDY = cargo run --release --locked --quiet --package cli --bin isostudy --
+BUNNY ?=
+
+.PHONY: help study test quick bench figures check bunny clean
+
+help: ## list these entries
+	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):[^#]*## /\1\t/' | expand -t 10
+
+study: bunny ## regenerate every mesh, animation, table and figure of the paper into results/paper/
+	$(ISOSTUDY) study configs/paper.toml
+
+test: bunny ## run every test
+	cargo test --release --locked --workspace
+
+quick: bunny ## the same study made small, into results/quick/
+	$(ISOSTUDY) study configs/quick.toml
+
+bench: bunny ## time every configuration 100 times, as the paper does, and renew the tables
+	$(ISOSTUDY) bench configs/paper.toml
+	$(ISOSTUDY) study configs/paper.toml
+
+figures: bunny ## draw tables, figures and index.html again from the results that are there
+	$(ISOSTUDY) report configs/paper.toml
+
+check: ## formatting, lints and licences
+	cargo fmt --all --check
+	cargo clippy --release --locked --workspace --all-targets -- -D warnings
+	@if command -v cargo-deny >/dev/null; then cargo deny --locked check bans licenses sources; else echo "cargo-deny is not installed: licences and bans not checked"; fi
+
+bunny: ## fetch and verify the Stanford bunny into cache/ (BUNNY=path takes a file of yours)
+	@scripts/fetch-bunny.sh $(BUNNY)
+
+clean: ## remove what was built and made; the bunny stays
+	cargo clean
+	rm -rf results
