@@ -30,7 +30,7 @@ check: ## formatting, lints and licences
 	@if command -v cargo-deny >/dev/null; then cargo deny --locked check bans licenses sources; else echo "cargo-deny is not installed: licences and bans not checked"; fi
 
 bunny: ## fetch and verify the Stanford bunny into cache/ (BUNNY=path takes a file of yours)
-	@scripts/fetch-bunny.sh $(BUNNY)
+	@scripts/fetch-bunny.sh $(BUNNY) >/dev/null
 
 clean: ## remove what was built and made; the bunny stays
 	cargo clean
