@@ -2,7 +2,7 @@
 
 mod fixture;
 
-use fixture::{Fixture, files, without_measured_times};
+use fixture::{Fixture, Run, files, without_measured_times};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Stdio;
@@ -11,7 +11,7 @@ use std::time::Duration;
 #[test]
 fn a_study_makes_everything_once_and_then_nothing() {
     let fixture = Fixture::new();
-    fixture.command("study").assert().success().stdout(predicates::str::ends_with("index.html\n"));
+    assert!(fixture.succeed("study", &[]).stdout.ends_with("index.html\n"));
     let made = files(fixture.out());
 
     let count = |folder: &str, extension: &str| {
@@ -31,9 +31,8 @@ fn a_study_makes_everything_once_and_then_nothing() {
     assert_eq!(count("figures/", ".svg"), count("figures/", ".png"));
     assert!(count("figures/", ".svg") >= 9);
 
-    let again = fixture.command("study").output().unwrap();
-    let said = String::from_utf8(again.stderr).unwrap();
-    assert!(again.status.success() && !said.contains(" made, "), "{said}");
+    let again = fixture.succeed("study", &[]);
+    assert!(!again.stderr.contains(" made, "), "{}", again.stderr);
     assert_eq!(files(fixture.out()), made);
 }
 
@@ -41,7 +40,7 @@ fn a_study_makes_everything_once_and_then_nothing() {
 fn every_file_is_in_the_manifest_with_its_digest() {
     use sha2::Digest;
     let fixture = Fixture::new();
-    fixture.command("study").assert().success();
+    fixture.succeed("study", &[]);
     let made = files(fixture.out());
     let manifest: serde_json::Value = serde_json::from_slice(&made["manifest.json"]).unwrap();
     let listed = manifest["files"].as_object().unwrap();
@@ -56,7 +55,7 @@ fn every_file_is_in_the_manifest_with_its_digest() {
 #[test]
 fn stimuli_say_nothing_about_what_they_show() {
     let fixture = Fixture::new();
-    fixture.command("pairs").assert().success();
+    fixture.succeed("pairs", &[]);
     let made = files(fixture.out());
     for path in made.keys().filter(|path| path.starts_with("stimuli/")) {
         let name = Path::new(path).file_name().unwrap().to_str().unwrap();
@@ -76,14 +75,13 @@ fn stimuli_say_nothing_about_what_they_show() {
 #[test]
 fn a_killed_study_resumes_to_the_same_bytes() {
     let whole = Fixture::new();
-    whole.command("study").assert().success();
+    whole.succeed("study", &[]);
     let expected = without_measured_times(files(whole.out()));
 
     let killed = Fixture::new();
     let mut kills = 0;
     for round in 1.. {
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
-        command.arg("study").arg(killed.config()).arg("--out").arg(killed.out());
+        let mut command = killed.command("study");
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         // Ever longer, so that the run gets to its end on a machine of any speed.
         std::thread::sleep(Duration::from_millis(20 * round));
@@ -111,7 +109,7 @@ fn a_killed_study_resumes_to_the_same_bytes() {
 fn threads_change_no_byte() {
     let run = |threads: &str| -> BTreeMap<String, Vec<u8>> {
         let fixture = Fixture::new();
-        fixture.command("pairs").args(["--threads", threads]).assert().success();
+        fixture.succeed("pairs", &["--threads", threads]);
         files(fixture.out())
     };
     let (one, three) = (run("1"), run("3"));
@@ -122,16 +120,12 @@ fn threads_change_no_byte() {
 #[test]
 fn force_redoes_and_a_changed_seed_renames() {
     let fixture = Fixture::new();
-    let extract = |arguments: &[&str]| {
-        let output = fixture.command("extract").args(arguments).output().unwrap();
-        assert!(output.status.success());
-        String::from_utf8(output.stderr).unwrap()
-    };
+    let extract = |arguments: &[&str]| fixture.succeed("extract", arguments).stderr;
     assert!(extract(&["--only", "ss_bi"]).contains("3 of 3 made"));
     assert!(extract(&["--only", "ss_bi"]).contains("up to date"));
     assert!(extract(&["--only", "ss_bi", "--force"]).contains("3 of 3 made"));
 
-    let turntable = || fixture.command("turntable").args(["--only", "ss_bi"]).assert().success();
+    let turntable = || fixture.succeed("turntable", &["--only", "ss_bi"]);
     let names = || -> Vec<String> {
         files(fixture.out()).into_keys().filter(|path| path.starts_with("stimuli/")).collect()
     };
@@ -146,11 +140,12 @@ fn force_redoes_and_a_changed_seed_renames() {
 #[test]
 fn report_draws_again_but_never_extracts() {
     let fixture = Fixture::new();
-    let first = fixture.command("report").assert().code(2);
-    first.stderr(predicates::str::contains("run `isostudy study` first"));
-    fixture.command("study").assert().success();
+    let first = fixture.run("report", &[]);
+    assert_eq!(first.code, Some(2));
+    assert!(first.stderr.contains("run `isostudy study` first"), "{}", first.stderr);
+    fixture.succeed("study", &[]);
     std::fs::remove_file(fixture.out().join("tables/answers.csv")).unwrap();
-    fixture.command("report").assert().success();
+    fixture.succeed("report", &[]);
     assert!(fixture.out().join("tables/answers.csv").exists());
 }
 
@@ -159,9 +154,8 @@ fn wrong_input_is_refused_before_anything_is_made() {
     let refused = |from: &str, to: &str, expected: &[&str]| {
         let fixture = Fixture::new();
         fixture.edit(from, to);
-        let output = fixture.command("study").output().unwrap();
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{said}");
+        let Run { code, stderr: said, .. } = fixture.run("study", &[]);
+        assert_eq!(code, Some(2), "{said}");
         for part in expected.iter().chain(&["study.toml"]) {
             assert!(said.contains(part), "{part:?} is not in: {said}");
         }
@@ -188,18 +182,15 @@ fn a_mesh_with_another_digest_is_refused() {
         let start = text.find("sha256 = \"00").unwrap() + "sha256 = \"".len();
         format!("{}{}", &text[..start + 64], &text[start + 66..])
     });
-    let output = fixture.command("study").output().unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2));
+    let Run { code, stderr: said, .. } = fixture.run("study", &[]);
+    assert_eq!(code, Some(2));
     assert!(said.contains("solid.obj") && said.contains("has SHA-256"), "{said}");
 }
 
 #[test]
 fn analyse_prints_the_papers_numbers() {
     let fixture = Fixture::new();
-    let output = fixture.command("analyse").output().unwrap();
-    assert!(output.status.success());
-    let said = String::from_utf8(output.stdout).unwrap();
+    let said = fixture.succeed("analyse", &[]).stdout;
     assert!(said.contains("1.06"), "simple cubic, integrated, overall: {said}");
     let groups = std::fs::read_to_string(fixture.out().join("tables/preference_groups.csv")).unwrap();
     let mut lines = groups.lines();
@@ -217,9 +208,8 @@ fn answers_that_do_not_fit_are_refused_with_their_place() {
     let fixture = Fixture::new();
     let path = fixture.folder().join("answers.csv");
     std::fs::write(&path, "Q1,Q2\nL,R\nX,NP\n").unwrap();
-    let output = fixture.command("analyse").arg("--responses").arg(&path).output().unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{said}");
+    let Run { code, stderr: said, .. } = fixture.run("analyse", &["--responses", path.to_str().unwrap()]);
+    assert_eq!(code, Some(2), "{said}");
     assert!(said.contains("answers.csv") && said.contains("Q3"), "{said}");
 }
 

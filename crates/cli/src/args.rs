@@ -44,8 +44,8 @@ pub(crate) struct Run {
     #[arg(long)]
     pub(crate) force: bool,
     /// Threads to work with; 0 takes every core. Results are the same bytes with any number
-    #[arg(long, default_value_t = 0, value_name = "N")]
-    pub(crate) threads: usize,
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1024))]
+    pub(crate) threads: u32,
 }
 
 #[derive(Debug, Args)]

@@ -71,12 +71,13 @@ fn run(command: Command) -> Result<()> {
 
 fn with_pipeline(run: &Run, work: impl FnOnce(Pipeline<'_>, &Path) -> Result<()>) -> Result<()> {
     let study = load(&run.study)?;
-    if run.threads > 0 {
-        rayon::ThreadPoolBuilder::new().num_threads(run.threads).build_global()?;
+    let threads = run.threads as usize;
+    if threads > 0 {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     }
     let out = run.out.clone().unwrap_or_else(|| default_folder(&study));
     let store = Store::open(&out, run.force)?;
-    work(Pipeline::new(&study, store, run.threads), &out)
+    work(Pipeline::new(&study, store, threads), &out)
 }
 
 fn with_selection(

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
 const STAMPS: &str = ".stages";
-const PARTIAL: &str = "partial";
+const PARTIAL: &str = ".partial";
 
 /// A folder of results.
 pub(crate) struct Store {
@@ -216,14 +216,22 @@ fn hexadecimal(bytes: &[u8]) -> String {
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let partial = folder.join(format!(".{name}.{PARTIAL}"));
     let write = || -> std::io::Result<()> {
-        let mut file = File::create(&partial)?;
-        file.write_all(bytes)?;
-        fs::rename(&partial, path)
+        let mut partial = partial_file().tempfile_in(folder)?;
+        partial.write_all(bytes)?;
+        partial.persist(path)?;
+        Ok(())
     };
     write().with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// A temporary file becomes a result, so it gets a result's permissions, not its owner's alone.
+fn partial_file() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".").suffix(PARTIAL);
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder
 }
 
 fn remove_if_there(path: &Path) -> Result<()> {
@@ -240,7 +248,7 @@ fn sweep(folder: &Path) -> Result<()> {
         let path = entry?.path();
         if path.is_dir() {
             sweep(&path)?;
-        } else if path.extension().is_some_and(|extension| extension == PARTIAL) {
+        } else if path.to_string_lossy().ends_with(PARTIAL) {
             remove_if_there(&path)?;
         }
     }
