@@ -3,7 +3,7 @@
 mod fixture;
 
 use fixture::{Fixture, Run, files, without_measured_times};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::process::Stdio;
 use std::time::Duration;
@@ -171,6 +171,7 @@ fn wrong_input_is_refused_before_anything_is_made() {
     refused("benchmark_spacing = 0.125", "benchmark_spacing = 1e-4", &[key, "sample points"]);
     refused("spacing = 0.4", "spacing = 1e-9", &["stills[1].spacing"]);
     refused("schema = 1", "schema = [", &["line"]);
+    refused("frames = 12", "frames = -12", &["frames", "-12", "whole number"]);
 }
 
 #[test]
@@ -185,6 +186,69 @@ fn a_mesh_with_another_digest_is_refused() {
     let Run { code, stderr: said, .. } = fixture.run("study", &[]);
     assert_eq!(code, Some(2));
     assert!(said.contains("solid.obj") && said.contains("has SHA-256"), "{said}");
+    assert!(!fixture.out().exists(), "something was written");
+    let validated = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"))
+        .arg("validate")
+        .arg(fixture.config())
+        .output()
+        .unwrap();
+    assert_eq!(validated.status.code(), Some(2));
+}
+
+#[test]
+fn answers_are_read_before_anything_is_made() {
+    for (answers, expected) in [("", "responses.csv"), ("Q1,Q2\n", "Q3"), ("Q1,Q2\nL,X\n", "Q3")] {
+        let fixture = Fixture::new();
+        let path = fixture.folder().join("responses.csv");
+        std::fs::write(&path, answers).unwrap();
+        fixture.edit_with(|text| {
+            let line = text.lines().find(|line| line.contains("responses.csv")).unwrap();
+            text.replace(line, &format!("file = {path:?}"))
+        });
+        let Run { code, stderr: said, .. } = fixture.run("study", &[]);
+        assert_eq!(code, Some(2), "{said}");
+        assert!(said.contains(expected), "{expected} is not in: {said}");
+        assert!(!fixture.out().exists(), "something was written");
+    }
+}
+
+#[test]
+fn a_surface_that_misses_the_volume_is_refused() {
+    let fixture = Fixture::new();
+    fixture.edit("isovalue = 0.0", "isovalue = 50.0");
+    let Run { code, stderr: said, .. } = fixture.run("extract", &[]);
+    assert_eq!(code, Some(2));
+    assert!(said.contains("objects[0]") && said.contains("isovalue 50"), "{said}");
+}
+
+/// What a study no longer has, its folder no longer has either: nothing that the key does not name is given away.
+#[test]
+fn what_an_edited_study_drops_goes() {
+    let fixture = Fixture::new();
+    fixture.succeed("study", &[]);
+    fixture.edit_with(|text| {
+        let asteroid = text.find("[[objects]]\nid = \"as\"").unwrap();
+        let bunny = text.find("[[objects]]\nid = \"bs\"").unwrap();
+        let without: String = text[..asteroid]
+            .lines()
+            .filter(|line| !line.contains("as_"))
+            .fold(String::new(), |text, line| text + line + "\n");
+        format!("{without}{}", &text[bunny..])
+    });
+    fixture.edit_with(|text| {
+        // The answers have columns for the asteroid's questions.
+        let from = text.find("[responses]").unwrap();
+        let to = text.find("[published]").unwrap();
+        format!("{}{}", &text[..from], &text[to..])
+    });
+    fixture.succeed("study", &[]);
+    let made = files(fixture.out());
+    let manifest: serde_json::Value = serde_json::from_slice(&made["manifest.json"]).unwrap();
+    let listed: BTreeSet<&String> = manifest["files"].as_object().unwrap().keys().collect();
+    let found: BTreeSet<&String> = made.keys().filter(|path| *path != "manifest.json").collect();
+    let differing: Vec<_> = listed.symmetric_difference(&found).collect();
+    assert!(differing.is_empty(), "{differing:?}");
+    assert_eq!(found.iter().filter(|path| path.starts_with("stimuli/pairs/")).count(), 18);
 }
 
 #[test]

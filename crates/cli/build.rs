@@ -17,21 +17,26 @@ fn main() {
     for room in ROOMS {
         let folder = root.join("crates").join(room);
         println!("cargo::rerun-if-changed={}", folder.join("src").display());
-        // A fixed-key hash: nobody forges a source file here, it only has to notice change.
-        #[expect(deprecated, reason = "the one hasher in std with a fixed key and a fixed algorithm")]
-        let mut hasher = std::hash::SipHasher::new();
         let mut files = Vec::new();
         for path in shared.iter().cloned().chain([folder.join("src"), folder.join("Cargo.toml")]) {
             collect(&path, &mut files);
         }
+        // Arguments, progress and the page change no other result; the page's digest is a room of its own.
+        let aside = ["args.rs", "main.rs", "progress.rs", "page.rs", "index.html"];
+        files.retain(|file| room != "cli" || !aside.iter().any(|name| file.ends_with(name)));
         files.sort();
+        let mut parts = Vec::new();
         for file in files {
-            let name = file.strip_prefix(&root).unwrap_or(&file).to_string_lossy().into_owned();
-            hasher.write(name.as_bytes());
-            hasher.write(&std::fs::read(&file).unwrap_or_default());
+            parts.push(file.strip_prefix(&root).unwrap_or(&file).to_string_lossy().into_owned().into_bytes());
+            parts.push(std::fs::read(&file).unwrap_or_default());
         }
-        println!("cargo::rustc-env=ISOSTUDY_ROOM_{}={:016x}", room.to_uppercase(), hasher.finish());
+        let parts: Vec<&[u8]> = parts.iter().map(Vec::as_slice).collect();
+        println!("cargo::rustc-env=ISOSTUDY_ROOM_{}={:016x}", room.to_uppercase(), digest(&parts));
     }
+    let page = root.join("crates/cli/src/page/index.html");
+    let driver = root.join("crates/cli/src/pipeline/page.rs");
+    let text = [page, driver].map(|path| std::fs::read(path).unwrap_or_default()).concat();
+    println!("cargo::rustc-env=ISOSTUDY_ROOM_PAGE={:016x}", digest(&[&text]));
 }
 
 fn collect(path: &Path, files: &mut Vec<PathBuf>) {
@@ -42,4 +47,12 @@ fn collect(path: &Path, files: &mut Vec<PathBuf>) {
     } else {
         files.push(path.into());
     }
+}
+
+/// A fixed-key hash: nobody forges a source file here, it only has to notice change.
+fn digest(parts: &[&[u8]]) -> u64 {
+    #[expect(deprecated, reason = "the one hasher in std with a fixed key and a fixed algorithm")]
+    let mut hasher = std::hash::SipHasher::new();
+    parts.iter().for_each(|part| hasher.write(part));
+    hasher.finish()
 }

@@ -43,7 +43,8 @@ pub(crate) struct Run {
     /// Redo what is up to date as well
     #[arg(long)]
     pub(crate) force: bool,
-    /// Threads to work with; 0 takes every core. Results are the same bytes with any number
+    /// Threads to work with; 0 takes every core. Meshes and pictures are the same bytes with any number; timings
+    /// take the study's own
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1024))]
     pub(crate) threads: u32,
 }
@@ -73,7 +74,7 @@ pub(crate) struct Analyse {
     /// Answers to read instead of the study's own: one row a respondent, one column a question, cells L, NP, R
     #[arg(long, value_name = "CSV")]
     pub(crate) responses: Option<PathBuf>,
-    /// Folder for tables and figures [default: results/<study id>/answers]
+    /// Folder for tables and figures [default: results/<study id>-answers]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 }

@@ -1,6 +1,7 @@
 //! The `isostudy` command: arguments, files, progress and exit codes. What is computed is computed in the rooms.
 
 mod args;
+mod manifest;
 mod picture;
 mod pipeline;
 mod progress;
@@ -9,12 +10,14 @@ mod rooms;
 mod store;
 mod subject;
 
+use analysis::Answers;
 use anyhow::{Context, Result};
 use args::{Analyse, Cli, Command, Run, Selection};
 use bench::Summary;
 use clap::Parser;
+
 use design::record::BenchRun;
-use design::{ConfigurationId, Study};
+use design::{ConfigurationId, Published, Study};
 use pipeline::{Pipeline, PlanLength};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -41,16 +44,16 @@ fn run(command: Command) -> Result<()> {
             say(&out.join("index.html").display().to_string())
         }),
         Command::Extract(selection) => with_selection(&selection, |pipeline, only, out| {
-            pipeline.meshes(only)?;
+            pipeline.all_meshes(only)?;
             say(&out.join("meshes").display().to_string())
         }),
         Command::Turntable(selection) => with_selection(&selection, |pipeline, only, out| {
-            let meshes = pipeline.meshes(only)?;
+            let meshes = pipeline.stimulus_meshes(only)?;
             pipeline.turntables(&meshes, only)?;
             say(&out.join("stimuli/turntables").display().to_string())
         }),
         Command::Pairs(run) => with_pipeline(&run, |pipeline, out| {
-            let meshes = pipeline.meshes(&[])?;
+            let meshes = pipeline.stimulus_meshes(&[])?;
             let turntables = pipeline.turntables(&meshes, &[])?;
             pipeline.pairs(&turntables)?;
             say(&out.join("stimuli/pairs").display().to_string())
@@ -69,7 +72,7 @@ fn run(command: Command) -> Result<()> {
     }
 }
 
-fn with_pipeline(run: &Run, work: impl FnOnce(Pipeline<'_>, &Path) -> Result<()>) -> Result<()> {
+fn with_pipeline(run: &Run, work: impl FnOnce(&mut Pipeline<'_>, &Path) -> Result<()>) -> Result<()> {
     let study = load(&run.study)?;
     let threads = run.threads as usize;
     if threads > 0 {
@@ -77,12 +80,14 @@ fn with_pipeline(run: &Run, work: impl FnOnce(Pipeline<'_>, &Path) -> Result<()>
     }
     let out = run.out.clone().unwrap_or_else(|| default_folder(&study));
     let store = Store::open(&out, run.force)?;
-    work(Pipeline::new(&study, store, threads), &out)
+    let mut pipeline = Pipeline::new(&study, store, threads);
+    work(&mut pipeline, &out)?;
+    pipeline.finish()
 }
 
 fn with_selection(
     selection: &Selection,
-    work: impl FnOnce(Pipeline<'_>, &[ConfigurationId], &Path) -> Result<()>,
+    work: impl FnOnce(&mut Pipeline<'_>, &[ConfigurationId], &Path) -> Result<()>,
 ) -> Result<()> {
     let study = load(&selection.run.study)?;
     let mut only = Vec::new();
@@ -98,13 +103,21 @@ fn with_selection(
 }
 
 fn analyse(arguments: &Analyse) -> Result<()> {
-    let study = Study::load(&arguments.study)?;
-    let responses = arguments.responses.as_ref().or(study.responses.as_ref());
+    let mut study = Study::load(&arguments.study)?;
+    if arguments.responses.is_some() {
+        // Published numbers are about the answers that were published.
+        study.published = Published::default();
+        study.responses.clone_from(&arguments.responses);
+    }
     let no_answers = || format!("{} names no responses; give --responses", arguments.study.display());
-    let responses = responses.with_context(no_answers)?;
-    let out = arguments.out.clone().unwrap_or_else(|| default_folder(&study).join("answers"));
-    // Reading answers takes milliseconds: always done again, so that the tables can be printed.
-    let tables = pipeline::write_answers_only(&study, responses, &Store::open(&out, true)?)?;
+    let responses = study.responses.as_ref().with_context(no_answers)?;
+    let folder = || Path::new("results").join(format!("{}-answers", study.file.study.id));
+    let out = arguments.out.clone().unwrap_or_else(folder);
+    let answers = analysis::read_answers(responses, &study)?;
+    let store = Store::open(&out, false)?;
+    let tables = pipeline::write_answers_only(&study, &answers, &store)?;
+    store.remove_retired()?;
+    manifest::write(&study, &store)?;
     for table in tables.iter().filter(|table| table.name.starts_with("preference_")) {
         say(&table.to_markdown())?;
     }
@@ -125,19 +138,26 @@ fn validate(path: &Path) -> Result<()> {
             configuration.id.method.label()
         ))?;
     }
-    let respondents = match &study.responses {
+    let respondents = match read_answers(&study)? {
         None => "no answers".to_owned(),
-        Some(path) => format!("{} respondents", analysis::read_answers(path, &study)?.respondents()),
+        Some(answers) => format!("{} respondents", answers.respondents()),
     };
     let (questions, groups) = (study.comparisons.len(), study.groups.len());
     say(&format!("{}: valid; {questions} questions in {groups} groups, {respondents}", path.display()))
 }
 
-/// Reads and checks a study, lattices and memory included.
+/// Reads and checks a study and everything it names: lattices and memory, mesh files, answers.
 fn load(path: &Path) -> Result<Study> {
     let study = Study::load(path)?;
     subject::check_lattices(&study, bench::read_machine().memory_bytes)?;
+    subject::check_mesh_files(&study)?;
+    read_answers(&study)?;
     Ok(study)
+}
+
+fn read_answers(study: &Study) -> Result<Option<Answers>> {
+    let read = |path: &PathBuf| analysis::read_answers(path, study);
+    Ok(study.responses.as_ref().map(read).transpose()?)
 }
 
 fn default_folder(study: &Study) -> PathBuf {

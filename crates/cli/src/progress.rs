@@ -32,6 +32,11 @@ impl Step {
         self.redone.fetch_add(usize::from(redone), Ordering::Relaxed);
     }
 
+    /// Counts all items at once.
+    pub(crate) fn count_all(&self, redone: bool) {
+        self.redone.store(if redone { self.items } else { 0 }, Ordering::Relaxed);
+    }
+
     /// Ends the step and says what was done.
     pub(crate) fn end(self) {
         self.bar.finish_and_clear();

@@ -6,6 +6,7 @@ const EXTRACT: &str = env!("ISOSTUDY_ROOM_EXTRACT");
 const RASTER: &str = env!("ISOSTUDY_ROOM_RASTER");
 const BENCH: &str = env!("ISOSTUDY_ROOM_BENCH");
 const ANALYSIS: &str = env!("ISOSTUDY_ROOM_ANALYSIS");
+const PAGE: &str = env!("ISOSTUDY_ROOM_PAGE");
 const CLI: &str = env!("ISOSTUDY_ROOM_CLI");
 
 /// What makes meshes.
@@ -16,5 +17,7 @@ pub(crate) const PICTURES: &[&str] = &[MESH, RASTER, CLI];
 pub(crate) const TIMINGS: &[&str] = &[MESH, EXTRACT, BENCH, CLI];
 /// What makes tables and figures.
 pub(crate) const TABLES: &[&str] = &[DESIGN, ANALYSIS, CLI];
-/// What makes the key and the page.
-pub(crate) const PAGES: &[&str] = &[DESIGN, CLI];
+/// What makes the key.
+pub(crate) const KEYS: &[&str] = &[DESIGN, CLI];
+/// What makes the page.
+pub(crate) const PAGES: &[&str] = &[DESIGN, CLI, PAGE];

@@ -8,9 +8,11 @@
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::collections::BTreeSet;
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use std::time::UNIX_EPOCH;
 
 const STAMPS: &str = ".stages";
@@ -20,8 +22,10 @@ const PARTIAL: &str = ".partial";
 pub(crate) struct Store {
     root: PathBuf,
     force: bool,
+    /// The stages that this run did or found done.
+    touched: Mutex<BTreeSet<String>>,
     /// Held as long as the store is: one run at a time.
-    _lock: File,
+    _lock: Option<File>,
 }
 
 /// What a finished stage left behind.
@@ -33,6 +37,9 @@ pub(crate) struct Stamp {
     pub(crate) inputs: String,
     /// The files it wrote.
     pub(crate) files: Vec<FileStamp>,
+    /// Files that it wrote before and may have to be removed.
+    #[serde(default)]
+    pub(crate) retired: Vec<String>,
     /// Whether this run made them.
     #[serde(skip)]
     pub(crate) redone: bool,
@@ -71,12 +78,11 @@ impl Store {
     pub(crate) fn open(root: &Path, force: bool) -> Result<Self> {
         let stamps = root.join(STAMPS);
         fs::create_dir_all(&stamps).with_context(|| format!("cannot make {}", stamps.display()))?;
-        let lock = File::create(stamps.join("lock")).context("cannot make the lock file")?;
-        if let Err(error) = lock.try_lock() {
-            bail!("{} is in use by another run ({error})", root.display());
+        let lock = lock(&stamps.join("lock"))?;
+        if lock.is_some() {
+            sweep(root)?;
         }
-        sweep(root)?;
-        Ok(Self { root: root.into(), force, _lock: lock })
+        Ok(Self { root: root.into(), force, touched: Mutex::default(), _lock: lock })
     }
 
     /// The folder.
@@ -96,29 +102,81 @@ impl Store {
     ) -> Result<Stamp> {
         let inputs = inputs.finish();
         let before = self.stamp(name);
+        self.touch(name);
         if let Some(stamp) = self.fresh(before.as_ref(), &inputs)
             && !self.force
         {
             return Ok(stamp);
         }
-        let stamp_path = self.stamp_path(name);
-        remove_if_there(&stamp_path)?;
+        // The old stamp stays until the new one replaces it: killed in between, it still says which files were ours, and
+        // cannot pass for fresh unless they are.
         let mut writer = Writer { root: &self.root, files: Vec::new() };
         make(&mut writer)?;
-        // What the stage wrote last time and not this time is nobody's now.
-        for old in before.iter().flat_map(|stamp| &stamp.files) {
-            if !writer.files.iter().any(|file| file.path == old.path) {
-                remove_if_there(&self.root.join(&old.path))?;
-            }
+        let mut retired = Vec::new();
+        if let Some(stamp) = before {
+            retired.extend(stamp.files.into_iter().map(|file| file.path).chain(stamp.retired));
         }
-        let stamp = Stamp { stage: name.into(), inputs, files: writer.files, redone: true };
-        write_whole(&stamp_path, &serde_json::to_vec_pretty(&stamp)?)?;
+        retired.retain(|path| !writer.files.iter().any(|file| file.path == *path));
+        let stamp = Stamp { stage: name.into(), inputs, files: writer.files, retired, redone: true };
+        write_whole(&self.stamp_path(name), &serde_json::to_vec_pretty(&stamp)?)?;
         Ok(stamp)
     }
 
     /// The stamp of a stage if it is fresh for these inputs; nothing is done.
     pub(crate) fn peek(&self, name: &str, inputs: Inputs) -> Option<Stamp> {
-        self.fresh(self.stamp(name).as_ref(), &inputs.finish())
+        let found = self.fresh(self.stamp(name).as_ref(), &inputs.finish())?;
+        self.touch(name);
+        Some(found)
+    }
+
+    /// Every stage that has a stamp, by name.
+    pub(crate) fn stamps(&self) -> Result<Vec<Stamp>> {
+        let mut stamps = Vec::new();
+        for entry in fs::read_dir(self.root.join(STAMPS))? {
+            let path = entry?.path();
+            if path.extension().is_some_and(|extension| extension == "json") {
+                stamps.extend(fs::read(&path).ok().and_then(|text| serde_json::from_slice(&text).ok()));
+            }
+        }
+        stamps.sort_by(|a: &Stamp, b: &Stamp| a.stage.cmp(&b.stage));
+        Ok(stamps)
+    }
+
+    /// Removes the stages that this run had no use for: what an earlier form of the study left. Their files go with
+    /// [`Store::remove_retired`].
+    pub(crate) fn retire_untouched(&self, keep: impl Fn(&str) -> bool) -> Result<()> {
+        let touched = self.touched.lock().expect("no thread panics with the lock").clone();
+        for mut stamp in self.stamps()? {
+            if !touched.contains(&stamp.stage) && !keep(&stamp.stage) {
+                stamp.retired.extend(stamp.files.drain(..).map(|file| file.path));
+                stamp.inputs.clear();
+                write_whole(&self.stamp_path(&stamp.stage), &serde_json::to_vec_pretty(&stamp)?)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes files that stages wrote once and no stage writes now. Not done stage by stage, since what one stage no
+    /// longer writes another may: code names move from pair to pair when a study changes.
+    pub(crate) fn remove_retired(&self) -> Result<()> {
+        let stamps = self.stamps()?;
+        let written = |path: &str| stamps.iter().flat_map(|stamp| &stamp.files).any(|file| file.path == path);
+        for mut stamp in stamps.iter().filter(|stamp| !stamp.retired.is_empty()).cloned() {
+            for path in stamp.retired.drain(..).filter(|path| !written(path)) {
+                remove_if_there(&self.root.join(path))?;
+            }
+            let path = self.stamp_path(&stamp.stage);
+            if stamp.files.is_empty() {
+                remove_if_there(&path)?;
+            } else {
+                write_whole(&path, &serde_json::to_vec_pretty(&stamp)?)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn touch(&self, name: &str) {
+        self.touched.lock().expect("no thread panics with the lock").insert(name.into());
     }
 
     fn stamp_path(&self, name: &str) -> PathBuf {
@@ -176,11 +234,6 @@ impl Inputs {
 }
 
 impl Writer<'_> {
-    /// What has been written so far.
-    pub(crate) fn files(&self) -> &[FileStamp] {
-        &self.files
-    }
-
     /// Writes one file, `path` relative to the store.
     pub(crate) fn write(&mut self, path: &str, bytes: &[u8]) -> Result<()> {
         let full = self.root.join(path);
@@ -200,6 +253,32 @@ impl Writer<'_> {
         let mut bytes = serde_json::to_vec_pretty(value)?;
         bytes.push(b'\n');
         self.write(path, &bytes)
+    }
+}
+
+impl Stamp {
+    /// The file of a stage whose path ends like this.
+    ///
+    /// # Panics
+    /// If the stage writes no such file.
+    pub(crate) fn file(&self, ending: &str) -> &str {
+        let file = self.files.iter().find(|file| file.path.ends_with(ending));
+        &file.unwrap_or_else(|| panic!("{} writes no {ending}", self.stage)).path
+    }
+}
+
+/// Takes the lock, or `None` where the folder cannot be written and so no other run can either.
+fn lock(path: &Path) -> Result<Option<File>> {
+    let file = match File::create(path) {
+        Ok(file) => file,
+        Err(error) if matches!(error.kind(), ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem) => {
+            return Ok(None);
+        }
+        Err(error) => return Err(error).with_context(|| format!("cannot make {}", path.display())),
+    };
+    match file.try_lock() {
+        Ok(()) => Ok(Some(file)),
+        Err(_) => bail!("{} says that another run is at work there", path.display()),
     }
 }
 
@@ -236,7 +315,7 @@ fn partial_file() -> tempfile::Builder<'static, 'static> {
 
 fn remove_if_there(path: &Path) -> Result<()> {
     match fs::remove_file(path) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+        Err(error) if error.kind() != ErrorKind::NotFound => {
             Err(error).with_context(|| format!("cannot remove {}", path.display()))
         }
         _ => Ok(()),
@@ -281,7 +360,9 @@ mod tests {
                 self.made.set(self.made.get() + 1);
                 writer.write(file, input.as_bytes())
             };
-            store.stage("a/b", Inputs::default().text("input", input), make).unwrap()
+            let stamp = store.stage("a/b", Inputs::default().text("input", input), make).unwrap();
+            store.remove_retired().unwrap();
+            stamp
         }
     }
 
@@ -312,13 +393,17 @@ mod tests {
     }
 
     #[test]
-    fn a_failed_stage_has_no_stamp_and_half_written_files_are_swept() {
+    fn a_failed_stage_is_redone_and_half_written_files_are_swept() {
         let fixture = Fixture::new();
         fixture.run(false, "one", "file");
         {
             let store = Store::open(fixture.folder.path(), false).unwrap();
             let inputs = Inputs::default().text("input", "two");
-            assert!(store.stage("a/b", inputs, |_| bail!("no")).is_err());
+            let half_done = |writer: &mut Writer<'_>| {
+                writer.write("file", b"two")?;
+                bail!("no")
+            };
+            assert!(store.stage("a/b", inputs, half_done).is_err());
         }
         fs::write(fixture.folder.path().join(".file.partial"), "half").unwrap();
         assert!(fixture.run(false, "one", "file").redone);

@@ -69,12 +69,33 @@ pub(crate) fn field_inputs(study: &Study, object: &ObjectSection) -> Result<Stri
     })
 }
 
-fn read_placed(source: &MeshSourceSection, path: &std::path::Path) -> Result<TriangleMesh> {
+/// Checks that the mesh file each field would be made from is the one the study names.
+///
+/// # Errors
+/// If it cannot be read or has another digest.
+pub(crate) fn check_mesh_files(study: &Study) -> Result<()> {
+    for (i, object) in study.file.objects.iter().enumerate() {
+        if let FieldSection::Mesh { sources } = &object.field {
+            let (source, path) = present_source(study, sources)?;
+            read_checked(source, &path).with_context(|| {
+                format!("{}: objects[{i}].field: {}", study.path.display(), path.display())
+            })?;
+        }
+    }
+    Ok(())
+}
+
+fn read_checked(source: &MeshSourceSection, path: &std::path::Path) -> Result<Vec<u8>> {
     let bytes = std::fs::read(path)?;
     let found = sha256(&bytes);
     if found != source.sha256.to_lowercase() {
         bail!("has SHA-256 {found}, but the study asks for {}", source.sha256);
     }
+    Ok(bytes)
+}
+
+fn read_placed(source: &MeshSourceSection, path: &std::path::Path) -> Result<TriangleMesh> {
+    let bytes = read_checked(source, path)?;
     let mesh = match path.extension().and_then(|extension| extension.to_str()) {
         Some("obj") => mesh::read_obj(bytes.as_slice())?,
         Some("ply") => mesh::read_ply(bytes.as_slice())?,
@@ -160,12 +181,9 @@ pub(crate) fn check_lattices(study: &Study, machine_bytes: Option<u64>) -> Resul
             lattice(object, arrangement, spacing).with_context(|| format!("{file}: {key} = {spacing}"))?;
         let needed = lattice.memory_bytes();
         if needed > limit {
-            bail!(
-                "{file}: {key} = {spacing}: the {} lattice needs {:.1} GiB, {limit_name} {:.1} GiB",
-                arrangement.label(),
-                needed as f64 / GIB,
-                limit as f64 / GIB,
-            );
+            let (needed, limit) = (gibibytes(needed), gibibytes(limit));
+            let lattice = arrangement.label();
+            bail!("{file}: {key} = {spacing}: the {lattice} lattice needs {needed}, {limit_name} {limit}");
         }
         Ok(())
     };
@@ -183,6 +201,11 @@ pub(crate) fn check_lattices(study: &Study, machine_bytes: Option<u64>) -> Resul
         check(format!("stills[{i}].spacing"), object, still.configuration.method.arrangement, still.spacing)?;
     }
     Ok(())
+}
+
+fn gibibytes(bytes: u64) -> String {
+    let gib = bytes as f64 / GIB;
+    if gib < 1.0 { format!("{:.1} MiB", 1024.0 * gib) } else { format!("{gib:.1} GiB") }
 }
 
 const GIB: f64 = (1u64 << 30) as f64;

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct StudyFile {
     /// Version of this layout; 1.
+    #[serde(deserialize_with = "whole")]
     pub schema: u32,
     /// What the study is called, and its seed.
     pub study: StudySection,
@@ -35,9 +36,11 @@ pub struct StudyFile {
     pub stills: Vec<StillSection>,
     /// What is timed, and how often.
     pub benchmark: BenchmarkSection,
-    /// The questions: what is shown on which side.
+    /// The questions: what is shown on which side; none for a study of meshes and times alone.
+    #[serde(default)]
     pub comparisons: Vec<ComparisonSection>,
     /// Comparison groups over which preference factors are computed.
+    #[serde(default)]
     pub groups: Vec<GroupSection>,
     /// The answers to analyse; leave out for a study that has none yet.
     pub responses: Option<ResponsesSection>,
@@ -54,6 +57,7 @@ pub struct StudySection {
     /// One line for headings.
     pub title: String,
     /// Seed of code names and of the benchmark's order.
+    #[serde(deserialize_with = "whole")]
     pub seed: u64,
 }
 
@@ -82,6 +86,7 @@ pub struct ExtractionSection {
     /// Where lattice positions come from.
     pub positions: Positions,
     /// With accumulated positions: into how many runs of layers the z axis is cut, each starting its sum anew.
+    #[serde(deserialize_with = "whole")]
     pub accumulation_chunks: u32,
 }
 
@@ -158,10 +163,13 @@ pub struct CameraSection {
 #[serde(deny_unknown_fields)]
 pub struct TurntableSection {
     /// Frame width in pixels.
+    #[serde(deserialize_with = "whole")]
     pub width: u32,
     /// Frame height in pixels.
+    #[serde(deserialize_with = "whole")]
     pub height: u32,
     /// Frames a turn.
+    #[serde(deserialize_with = "whole")]
     pub frames: u32,
     /// Nominal seconds a turn; a frame's delay is rounded down to whole centiseconds.
     pub duration_s: f64,
@@ -172,6 +180,7 @@ pub struct TurntableSection {
     /// Far plane.
     pub far: f64,
     /// Samples along each side of a pixel.
+    #[serde(deserialize_with = "whole")]
     pub supersampling: u32,
 }
 
@@ -196,6 +205,7 @@ pub struct ShadingSection {
 #[serde(deny_unknown_fields)]
 pub struct StimuliSection {
     /// Whole-number enlargement of a pair in the file, nearest neighbour.
+    #[serde(deserialize_with = "whole")]
     pub pair_scale: u32,
 }
 
@@ -246,12 +256,16 @@ pub struct StillSection {
 #[serde(deny_unknown_fields)]
 pub struct BenchmarkSection {
     /// Rounds run and thrown away before measuring.
+    #[serde(deserialize_with = "whole")]
     pub warmup: u32,
     /// Rounds of `isostudy bench`.
+    #[serde(deserialize_with = "whole")]
     pub iterations: u32,
     /// Rounds of the short plan that `isostudy study` takes.
+    #[serde(deserialize_with = "whole")]
     pub short_iterations: u32,
     /// Threads in the sampling stage; 0 takes every core.
+    #[serde(deserialize_with = "whole")]
     pub threads: u32,
     /// TOML file that describes the CPU the numbers are meant for.
     pub target: String,
@@ -301,4 +315,13 @@ pub struct PublishedSection {
     pub preferences: Option<String>,
     /// Claims in the text; columns as in [`crate::published::Claim`].
     pub claims: Option<String>,
+}
+
+/// A whole number, refused with the range its type holds; the checks narrow it further.
+fn whole<'de, D: serde::Deserializer<'de>, T: TryFrom<i64>>(deserializer: D) -> Result<T, D::Error> {
+    let number = i64::deserialize(deserializer)?;
+    T::try_from(number).map_err(|_| {
+        let digits = 8 * size_of::<T>();
+        serde::de::Error::custom(format!("{number} is not a whole number from 0 to 2^{} - 1", digits.min(63)))
+    })
 }

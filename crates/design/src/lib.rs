@@ -19,4 +19,4 @@ mod study;
 
 pub use check::ConfigError;
 pub use method::{Arrangement, Clustering, ConfigurationId, Method, ParseIdError};
-pub use study::{Comparison, Configuration, Group, Study};
+pub use study::{Comparison, Configuration, Group, Published, Study};

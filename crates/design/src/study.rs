@@ -193,10 +193,6 @@ fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigError> 
     if id.is_empty() || id.len() > 64 || !id.bytes().all(plain) {
         return c.refuse("study.id", id, "must be 1 to 64 lower-case letters, digits or hyphens");
     }
-    // TOML integers are signed: a larger seed could not be written back.
-    if i64::try_from(file.study.seed).is_err() {
-        return c.refuse("study.seed", file.study.seed, "must be below 2^63");
-    }
     c.positive("limits.memory_gib", file.limits.memory_gib, 1024.0)?;
     c.count("extraction.accumulation_chunks", file.extraction.accumulation_chunks, 1, 4096)?;
 

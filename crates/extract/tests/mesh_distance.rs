@@ -6,8 +6,8 @@ use std::path::Path;
 use std::thread;
 
 use extract::{
-    Arrangement, Clustering, Execution, ExtractSettings, Lattice, MeshDistance, MeshFieldError, ScalarField,
-    extract,
+    Arrangement, Clustering, Execution, ExtractSettings, Lattice, MeshDistance, MeshFieldError, Positions,
+    ScalarField, extract,
 };
 use glam::{DVec3, Vec3};
 use mesh::topology::topology;
@@ -214,19 +214,24 @@ fn meshes_without_an_inside_are_refused_by_name_and_number() {
     assert_eq!(refusal(&lost), want);
 }
 
-/// The bunny as a closed solid in the evaluation's scene, or `None`, loudly, without `scripts/fetch-bunny.sh`.
+/// The bunny as a closed solid in the evaluation's scene, or `None` where going without it was asked for.
 ///
 /// Axes (x, y, z) -> (x, -z, y). Scale and offset were fitted: they put the bounds where the published output has
-/// them and the published counts within 1.5 %. Debian's file is Stanford's, centred on its bounds and scaled to a
+/// them and the published counts within 1.6 %, as in `configs/paper.toml`. Debian's file is Stanford's, centred on its bounds and scaled to a
 /// width of 2.
 fn bunny() -> Option<TriangleMesh> {
     let cache = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cache");
     let (scan, scale, offset) = if let Ok(file) = File::open(cache.join("bunny.ply")) {
-        (read_ply(file).unwrap(), 6.35, Vec3::new(0.1, 0.0, -0.615))
+        (read_ply(file).unwrap(), 6.35, Vec3::new(0.104, 0.002, -0.617))
     } else if let Ok(file) = File::open(cache.join("bunny.obj")) {
-        (read_obj(file).unwrap(), 0.494_344, Vec3::new(-0.006_94, 0.009_76, 0.084_48))
+        (read_obj(file).unwrap(), 0.494_344, Vec3::new(-0.002_937, 0.011_76, 0.082_479))
     } else {
-        eprintln!("SKIPPED: NO BUNNY IN cache/ - run scripts/fetch-bunny.sh, this test has checked nothing");
+        // A test that quietly checks nothing is worse than none: going without has to be asked for.
+        let without = std::env::var_os("ISOSTUDY_WITHOUT_BUNNY").is_some();
+        assert!(
+            without,
+            "no bunny in cache/: run `make bunny`, or set ISOSTUDY_WITHOUT_BUNNY=1 to go without"
+        );
         return None;
     };
     let solid = repair::closed_solid(&scan).unwrap();
@@ -294,6 +299,30 @@ fn the_extracted_bunny_is_one_closed_surface_of_the_published_size() {
         if clustering != Clustering::EdgeCollapse {
             assert!(report.is_closed_manifold(), "{arrangement:?} {clustering:?}: {report:?}");
             assert_eq!(report.euler_characteristic, 2, "{arrangement:?} {clustering:?}");
+        }
+    }
+}
+
+/// At both spacings of the study and with both kinds of positions. The published rule does not promise this: at
+/// other offsets of a few thousandths integrated clustering joins two sheets, or the coarse lattice itself does.
+#[test]
+fn the_studys_bunny_has_no_handle_and_no_bubble() {
+    let Some(bunny) = bunny() else { return };
+    let field = MeshDistance::try_new(&bunny).unwrap();
+    let bounds = Bounds { min: Vec3::new(-0.7, -0.4, -0.5), max: Vec3::new(0.8, 0.4, 0.6) };
+    for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
+        for clustering in [Clustering::None, Clustering::Integrated] {
+            for spacing in [0.02, 0.03] {
+                for positions in [Positions::Indexed, Positions::Accumulated { chunks: 16 }] {
+                    let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
+                    let settings = ExtractSettings { clustering, positions, ..ExtractSettings::default() };
+                    let extraction = extract(&field, &lattice, &settings, &Execution::default()).unwrap();
+                    let report = topology(&extraction.mesh);
+                    let case = format!("{arrangement:?} {clustering:?} {spacing} {positions:?}: {report:?}");
+                    assert!(report.is_closed_manifold() && report.components == 1, "{case}");
+                    assert_eq!(report.euler_characteristic, 2, "{case}");
+                }
+            }
         }
     }
 }

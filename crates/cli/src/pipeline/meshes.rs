@@ -5,7 +5,7 @@ use crate::progress::Step;
 use crate::records::mesh_record;
 use crate::store::{Inputs, Stamp};
 use crate::{rooms, subject};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use design::config::Positions;
 use design::record::{MeshRecord, Purpose};
 use design::{Configuration, ConfigurationId};
@@ -30,17 +30,27 @@ impl Meshes {
 }
 
 impl Pipeline<'_> {
-    /// Extracts and measures the configurations in `only`, or all if it is empty.
-    pub(crate) fn meshes(&self, only: &[ConfigurationId]) -> Result<Meshes> {
+    /// The meshes of every purpose: what is measured, and what is shown.
+    pub(crate) fn all_meshes(&self, only: &[ConfigurationId]) -> Result<Meshes> {
         let mut purposes = vec![Purpose::Benchmark, Purpose::Stimulus];
         if self.study.file.extraction.positions == Positions::Accumulated {
             purposes.push(Purpose::Indexed);
         }
+        self.meshes(&purposes, only)
+    }
+
+    /// The meshes that animations show.
+    pub(crate) fn stimulus_meshes(&self, only: &[ConfigurationId]) -> Result<Meshes> {
+        self.meshes(&[Purpose::Stimulus], only)
+    }
+
+    /// Extracts and measures the configurations in `only`, or all if it is empty.
+    fn meshes(&self, purposes: &[Purpose], only: &[ConfigurationId]) -> Result<Meshes> {
         let selected = self.selected(only);
         let count = selected.len() * purposes.len();
         let step = Step::begin("meshes", count, count);
         let mut entries = Vec::new();
-        for &purpose in &purposes {
+        for &purpose in purposes {
             for configuration in &selected {
                 let stamp = self.mesh(configuration, purpose)?;
                 step.tick(1);
@@ -104,24 +114,33 @@ impl Pipeline<'_> {
         let settings = subject::settings(self.study, configuration, purpose);
         let execution = Execution { threads: self.threads };
         let field = self.fields.get(configuration.object)?;
-        Ok(extract::extract(field, &lattice, &settings, &execution)?)
+        let extraction = extract::extract(field, &lattice, &settings, &execution)?;
+        if extraction.mesh.triangles.is_empty() {
+            bail!(
+                "{}: objects[{}]: no surface at isovalue {} with spacing {spacing}: every sample lies on one side",
+                self.study.path.display(),
+                configuration.object,
+                object.isovalue,
+            );
+        }
+        Ok(extraction)
     }
 
     /// The records of finished meshes.
     pub(super) fn mesh_records(&self, meshes: &Meshes) -> Result<Vec<MeshRecord>> {
         let read = |stamp: &Stamp| {
-            let file = stamp.files.last().expect("every mesh stage writes its record last");
-            let text = std::fs::read(self.store.root().join(&file.path))?;
-            serde_json::from_slice(&text).with_context(|| file.path.clone())
+            let file = stamp.file(".json");
+            let text = std::fs::read(self.store.root().join(file))?;
+            serde_json::from_slice(&text).with_context(|| file.to_owned())
         };
         meshes.stamps().map(read).collect()
     }
 
     /// A finished mesh.
     pub(super) fn read_mesh(&self, stamp: &Stamp) -> Result<TriangleMesh> {
-        let file = &stamp.files[0];
-        let bytes = std::fs::read(self.store.root().join(&file.path))?;
-        mesh::read_ply(bytes.as_slice()).with_context(|| file.path.clone())
+        let file = stamp.file(".ply");
+        let bytes = std::fs::read(self.store.root().join(file))?;
+        mesh::read_ply(bytes.as_slice()).with_context(|| file.to_owned())
     }
 }
 

@@ -37,21 +37,28 @@ impl<'a> Pipeline<'a> {
         Self { study, store, fields: Fields::new(study), threads, frozen: false }
     }
 
-    /// The whole study.
+    /// The whole study. What an earlier form of it left behind goes; a full benchmark run stays.
     pub(crate) fn study(&self) -> Result<()> {
-        let meshes = self.meshes(&[])?;
+        let meshes = self.all_meshes(&[])?;
         let turntables = self.turntables(&meshes, &[])?;
         let pairs = self.pairs(&turntables)?;
         let stills = self.stills()?;
         let timings = self.timings(PlanLength::Short)?;
         let tables = self.tables(&meshes, &timings)?;
-        self.page(&meshes, &[turntables, pairs, stills, vec![timings, tables]].concat())
+        self.page(&meshes, &[turntables, pairs, stills, vec![timings, tables]].concat())?;
+        self.store.retire_untouched(|stage| stage.starts_with("bench/"))
     }
 
     /// Tables, figures and the page again, from what is there.
-    pub(crate) fn report(mut self) -> Result<()> {
+    pub(crate) fn report(&mut self) -> Result<()> {
         self.frozen = true;
         self.study()
+    }
+
+    /// Clears away what is no longer part of the study, and writes the manifest of what is.
+    pub(crate) fn finish(&self) -> Result<()> {
+        self.store.remove_retired()?;
+        crate::manifest::write(self.study, &self.store)
     }
 
     /// Does a stage that makes meshes, animations or timings; when frozen, only looks it up.

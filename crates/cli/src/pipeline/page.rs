@@ -1,40 +1,19 @@
-//! The page that shows a study, and the manifest of everything that was written.
+//! The page that shows a study.
 
 use super::tables::{FIGURE_CONTENTS, FigureEntry, TABLE_CONTENTS, TableEntry};
 use super::{Meshes, Pipeline};
 use crate::progress::Step;
 use crate::rooms;
-use crate::store::{Inputs, Stamp, sha256};
+use crate::store::{Inputs, Stamp};
 use anyhow::{Context, Result};
-use design::machine::Machine;
 use design::{Comparison, Configuration, Study};
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
 use minijinja::{Environment, context};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::collections::BTreeMap;
 
 const TEMPLATE: &str = include_str!("../page/index.html");
-
-/// What `manifest.json` says.
-#[derive(Serialize)]
-struct Manifest<'a> {
-    schema: u32,
-    tool: &'static str,
-    version: &'static str,
-    study: &'a str,
-    study_sha256: String,
-    seed: u64,
-    machine: Machine,
-    files: BTreeMap<&'a str, ManifestFile<'a>>,
-}
-
-#[derive(Serialize)]
-struct ManifestFile<'a> {
-    bytes: u64,
-    sha256: &'a str,
-}
 
 /// A turntable or a pair on the page.
 #[derive(Serialize)]
@@ -45,33 +24,16 @@ struct Card {
 }
 
 impl Pipeline<'_> {
-    /// Writes `index.html` and `manifest.json`. `made` are the stamps of all stages but the meshes'.
+    /// Writes `index.html`. `made` are the stamps of all stages but the meshes'.
     pub(super) fn page(&self, meshes: &Meshes, made: &[Stamp]) -> Result<()> {
         let step = Step::begin("page", 1, 1);
-        let all: Vec<&Stamp> = meshes.stamps().chain(made).collect();
         let mut inputs = Inputs::of_rooms(rooms::PAGES).value("study", &self.study.file);
-        for stamp in &all {
+        for stamp in meshes.stamps().chain(made) {
             inputs = inputs.stamp(stamp);
         }
-        let stamp = self.store.stage("page", inputs, |writer| {
-            writer.write("index.html", self.render_page()?.as_bytes())?;
-            let page = writer.files().to_vec();
-            let files = all.iter().flat_map(|stamp| &stamp.files).chain(&page);
-            let files = files.map(|f| (f.path.as_str(), ManifestFile { bytes: f.bytes, sha256: &f.sha256 }));
-            let manifest = Manifest {
-                schema: 1,
-                tool: "isostudy",
-                version: env!("CARGO_PKG_VERSION"),
-                study: &self.study.file.study.id,
-                study_sha256: sha256(&std::fs::read(&self.study.path)?),
-                seed: self.study.file.study.seed,
-                // How busy the machine is now says nothing about results made earlier.
-                machine: Machine { load: None, ..bench::read_machine() },
-                files: files.collect(),
-            };
-            let json = serde_json::to_string_pretty(&manifest)?;
-            writer.write("manifest.json", json.as_bytes())
-        })?;
+        let stamp = self
+            .store
+            .stage("page", inputs, |writer| writer.write("index.html", self.render_page()?.as_bytes()))?;
         step.count(stamp.redone);
         step.end();
         Ok(())

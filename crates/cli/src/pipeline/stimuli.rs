@@ -17,7 +17,8 @@ const TURNTABLES: &str = "stimuli/turntables";
 const PAIRS: &str = "stimuli/pairs";
 
 impl Pipeline<'_> {
-    /// Renders the configurations in `only`, or all if it is empty. Files are named by code name.
+    /// Renders the configurations in `only`, or all if it is empty, and writes the key to their code names. The last
+    /// stamp is the key's.
     pub(crate) fn turntables(&self, meshes: &Meshes, only: &[ConfigurationId]) -> Result<Vec<Stamp>> {
         let (codes, _) = self.study.code_names();
         let selected = self.selected(only);
@@ -32,6 +33,7 @@ impl Pipeline<'_> {
             stamps.push(stamp);
         }
         step.end();
+        stamps.push(self.key()?);
         Ok(stamps)
     }
 
@@ -62,7 +64,7 @@ impl Pipeline<'_> {
         Ok(stamp)
     }
 
-    /// Composes every comparison from two finished turntables, and writes the key. The last stamp is the key's.
+    /// Composes every comparison from two finished turntables.
     pub(crate) fn pairs(&self, turntables: &[Stamp]) -> Result<Vec<Stamp>> {
         let (_, codes) = self.study.code_names();
         let by_id: HashMap<&ConfigurationId, &Stamp> =
@@ -75,10 +77,9 @@ impl Pipeline<'_> {
             step.count(stamp.redone);
             Ok(stamp)
         };
-        let mut stamps: Vec<Stamp> =
+        let stamps: Vec<Stamp> =
             self.study.comparisons.par_iter().zip(&codes).map(one).collect::<Result<_>>()?;
         step.end();
-        stamps.push(self.key()?);
         Ok(stamps)
     }
 
@@ -98,9 +99,9 @@ impl Pipeline<'_> {
     }
 
     fn read_animation(&self, stamp: &Stamp) -> Result<Animation> {
-        let file = &stamp.files[0];
-        let bytes = std::fs::read(self.store.root().join(&file.path))?;
-        Animation::read_gif(bytes.as_slice()).with_context(|| file.path.clone())
+        let file = stamp.file(".gif");
+        let bytes = std::fs::read(self.store.root().join(file))?;
+        Animation::read_gif(bytes.as_slice()).with_context(|| file.to_owned())
     }
 
     /// The key is kept apart from the stimuli, so that a folder of stimuli can be given away.
@@ -114,7 +115,7 @@ impl Pipeline<'_> {
             let Comparison { question, left, right, .. } = comparison;
             key += &format!("{PAIRS}/{code}.gif,{question},{left},{right}\n");
         }
-        let inputs = Inputs::of_rooms(rooms::PAGES).text("key", &key);
+        let inputs = Inputs::of_rooms(rooms::KEYS).text("key", &key);
         self.store.stage("key", inputs, |writer| writer.write("key/stimuli.csv", key.as_bytes()))
     }
 

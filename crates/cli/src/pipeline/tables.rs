@@ -8,7 +8,6 @@ use analysis::{Answers, Figure, Table};
 use anyhow::{Context, Result};
 use design::Study;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 
 impl Pipeline<'_> {
     /// Every table and figure of the study.
@@ -21,15 +20,14 @@ impl Pipeline<'_> {
         let stamp = self.store.stage("tables", inputs, |writer| {
             let records = self.mesh_records(meshes)?;
             let run = self.bench_run(timings)?;
-            let answers = read_answers(self.study, self.study.responses.as_deref())?;
+            let answers = crate::read_answers(self.study)?;
             let inputs = analysis::Inputs {
                 study: self.study,
                 meshes: &records,
                 bench: Some(&run),
                 answers: answers.as_ref(),
             };
-            write(writer, &inputs)?;
-            Ok(())
+            write(writer, &inputs)
         })?;
         step.count(stamp.redone);
         step.end();
@@ -40,22 +38,11 @@ impl Pipeline<'_> {
 /// The preference tables and figures alone, into a folder of their own.
 ///
 /// # Errors
-/// If the answers cannot be read or the files cannot be written.
-pub(crate) fn write_answers_only(study: &Study, responses: &Path, store: &Store) -> Result<Vec<Table>> {
-    let answers = read_answers(study, Some(responses))?;
-    let inputs = analysis::Inputs { study, meshes: &[], bench: None, answers: answers.as_ref() };
-    let mut tables = Vec::new();
-    let digest = study_inputs(study)?.text("responses", &sha256(&std::fs::read(responses)?));
-    store.stage("answers", digest, |writer| {
-        tables = write(writer, &inputs)?;
-        Ok(())
-    })?;
-    Ok(tables)
-}
-
-fn read_answers(study: &Study, responses: Option<&Path>) -> Result<Option<Answers>> {
-    let read = |path: &Path| analysis::read_answers(path, study);
-    Ok(responses.map(read).transpose()?)
+/// If the files cannot be written.
+pub(crate) fn write_answers_only(study: &Study, answers: &Answers, store: &Store) -> Result<Vec<Table>> {
+    let inputs = analysis::Inputs { study, meshes: &[], bench: None, answers: Some(answers) };
+    store.stage("answers", study_inputs(study)?, |writer| write(writer, &inputs).map(|_| ()))?;
+    Ok(analysis::tables(&inputs)?)
 }
 
 /// What the page needs to know of a table: `tables/contents.json` lists these.
@@ -76,7 +63,7 @@ pub(super) struct FigureEntry {
 pub(super) const TABLE_CONTENTS: &str = "tables/contents.json";
 pub(super) const FIGURE_CONTENTS: &str = "figures/contents.json";
 
-fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>) -> Result<Vec<Table>> {
+fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>) -> Result<()> {
     let tables = analysis::tables(inputs).context("tables")?;
     let mut entries = Vec::new();
     for table in &tables {
@@ -94,8 +81,7 @@ fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>) -> Result<Vec<T
         writer.write(&format!("figures/{name}.png"), &png)?;
         entries.push(FigureEntry { name, caption });
     }
-    writer.write_json(FIGURE_CONTENTS, &entries)?;
-    Ok(tables)
+    writer.write_json(FIGURE_CONTENTS, &entries)
 }
 
 /// The study file, its answers and its published numbers.

@@ -41,16 +41,14 @@ impl Pipeline<'_> {
             writer.write(&format!("{folder}/samples.csv"), bench::samples_csv(&run).as_bytes())?;
             writer.write(&format!("{folder}/machine.csv"), bench::machine_csv(&run).as_bytes())
         })?;
-        if stamp.redone {
-            (0..count * plan.iterations as usize).for_each(|_| step.count(true));
-        }
+        step.count_all(stamp.redone);
         step.end();
         Ok(stamp)
     }
 
     /// A finished run.
     pub(crate) fn bench_run(&self, stamp: &Stamp) -> Result<BenchRun> {
-        let text = std::fs::read(self.store.root().join(&stamp.files[0].path))?;
+        let text = std::fs::read(self.store.root().join(&stamp.file("run.json")))?;
         Ok(serde_json::from_slice(&text)?)
     }
 

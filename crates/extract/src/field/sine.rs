@@ -1,5 +1,6 @@
 //! The sine behind the asteroid's hash, the same on every machine.
 
+// Coefficients: Arm's optimised routines, sincosf_data.c, copyright (c) 2018 Arm Limited, MIT licence.
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
 /// Beyond this the simple reduction to one quadrant loses digits.

@@ -1,0 +1,57 @@
+//! The manifest of a results folder: every file with its digest, and what made them.
+
+use crate::store::{Store, sha256, write_whole};
+use anyhow::Result;
+use design::Study;
+use design::machine::Machine;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+const FILE: &str = "manifest.json";
+
+/// What `manifest.json` says.
+#[derive(Serialize)]
+struct Manifest<'a> {
+    schema: u32,
+    tool: &'static str,
+    version: &'static str,
+    study: &'a str,
+    study_sha256: String,
+    seed: u64,
+    machine: Machine,
+    files: BTreeMap<&'a str, ManifestFile<'a>>,
+}
+
+#[derive(Serialize)]
+struct ManifestFile<'a> {
+    bytes: u64,
+    sha256: &'a str,
+}
+
+/// Writes the manifest, unless it is there and says the same.
+///
+/// # Errors
+/// If the study or a stamp cannot be read, or the file cannot be written.
+pub(crate) fn write(study: &Study, store: &Store) -> Result<()> {
+    let stamps = store.stamps()?;
+    let files = stamps.iter().flat_map(|stamp| &stamp.files);
+    let files = files.map(|f| (f.path.as_str(), ManifestFile { bytes: f.bytes, sha256: &f.sha256 }));
+    let manifest = Manifest {
+        schema: 1,
+        tool: "isostudy",
+        version: env!("CARGO_PKG_VERSION"),
+        study: &study.file.study.id,
+        study_sha256: sha256(&std::fs::read(&study.path)?),
+        seed: study.file.study.seed,
+        // How busy the machine is now says nothing about results made earlier.
+        machine: Machine { load: None, ..bench::read_machine() },
+        files: files.collect(),
+    };
+    let mut json = serde_json::to_vec_pretty(&manifest)?;
+    json.push(b'\n');
+    let path = store.root().join(FILE);
+    if std::fs::read(&path).is_ok_and(|before| before == json) {
+        return Ok(());
+    }
+    write_whole(&path, &json)
+}
