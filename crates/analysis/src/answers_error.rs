@@ -6,7 +6,7 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum AnswersError {
     /// The file cannot be read.
-    #[error("{}: cannot be read: {source}", file.display())]
+    #[error("{}: cannot be read", file.display())]
     Read {
         /// The file.
         file: PathBuf,
@@ -105,4 +105,21 @@ pub enum AnswersError {
         /// What polars said.
         message: String,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::error::Error;
+
+    #[test]
+    fn a_source_is_said_once_in_the_chain() {
+        let source = std::io::Error::other("disk on fire");
+        let error = AnswersError::Read { file: "a.csv".into(), source };
+        assert_eq!(error.to_string(), "a.csv: cannot be read");
+        assert_eq!(error.source().unwrap().to_string(), "disk on fire");
+        let error = crate::AnalysisError::from(polars::error::PolarsError::ComputeError("no column".into()));
+        assert_eq!(error.to_string(), "counting answers");
+        assert!(error.source().unwrap().to_string().contains("no column"));
+    }
 }

@@ -15,6 +15,7 @@ use crate::inputs::Inputs;
 use crate::table::{Cell, Table};
 use crate::tally::Tally;
 use crate::verdict::{Verdict, prints_alike, relative_difference};
+use design::published::Claim;
 
 /// What a claim comes to.
 #[derive(Debug, Clone)]
@@ -29,6 +30,24 @@ pub(crate) struct Finding {
     /// What the verdict does not say; may be empty.
     pub(crate) remark: String,
     pub(crate) verdict: Verdict,
+}
+
+/// The claims that can be computed and what they come to, in the order they are listed.
+pub(crate) fn all<'a>(inputs: &Inputs<'a>, tally: Option<&Tally>) -> Vec<(&'a Claim, Finding)> {
+    let find = |claim| {
+        let found = meshes::find(inputs, claim)
+            .or_else(|| times::find(inputs, claim))
+            .or_else(|| shapes::find(inputs, claim))
+            .or_else(|| tally.and_then(|tally| preferences::find(inputs.study, tally, claim)))
+            .or_else(|| setup::find(inputs.study, claim));
+        Some((claim, found?))
+    };
+    inputs.study.published.claims.iter().filter_map(find).collect()
+}
+
+/// What is not empty, with semicolons between.
+fn joined<const N: usize>(parts: [&str; N]) -> String {
+    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ")
 }
 
 /// The claims and what they come to, in the order they are listed.
@@ -48,13 +67,7 @@ pub(crate) fn table(inputs: &Inputs<'_>, tally: Option<&Tally>) -> Option<Table>
             ("reason", "Reason"),
         ],
     );
-    for claim in &inputs.study.published.claims {
-        let found = meshes::find(inputs, claim)
-            .or_else(|| times::find(inputs, claim))
-            .or_else(|| shapes::find(inputs, claim))
-            .or_else(|| tally.and_then(|tally| preferences::find(inputs.study, tally, claim)))
-            .or_else(|| setup::find(inputs.study, claim));
-        let Some(found) = found else { continue };
+    for (claim, found) in all(inputs, tally) {
         table.push(vec![
             Cell::text(&claim.id),
             Cell::text(&claim.statement),
@@ -64,7 +77,7 @@ pub(crate) fn table(inputs: &Inputs<'_>, tally: Option<&Tally>) -> Option<Table>
             Cell::number(found.as_published, found.decimals),
             Cell::number(found.ours, found.decimals),
             Cell::text(found.verdict.label()),
-            Cell::text([found.verdict.reason(), &found.remark].join(" ").trim()),
+            Cell::text(joined([found.verdict.reason(), &found.remark])),
         ]);
     }
     table.notes.push(
@@ -75,14 +88,12 @@ pub(crate) fn table(inputs: &Inputs<'_>, tally: Option<&Tally>) -> Option<Table>
     (!table.rows.is_empty()).then_some(table)
 }
 
-/// Equal as printed, else within 3 % for `near`'s reason, else different for `far`'s.
-pub(crate) fn judge(published: f64, ours: f64, decimals: usize, near: &str, far: &str) -> Verdict {
-    if prints_alike(published, ours, decimals) {
-        Verdict::Equal
-    } else if relative_difference(published, ours) <= 0.03 {
-        Verdict::within("3 %", near)
-    } else {
-        Verdict::differs(far)
+/// Equal as printed, else within 3 % for `near`'s reason if there is one, else different for `far`'s.
+fn judge(published: f64, ours: f64, decimals: usize, near: Option<&str>, far: &str) -> Verdict {
+    match near {
+        _ if prints_alike(published, ours, decimals) => Verdict::Equal,
+        Some(near) if relative_difference(published, ours) <= 0.03 => Verdict::within("3 %", near),
+        _ => Verdict::differs(far),
     }
 }
 

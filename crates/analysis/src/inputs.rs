@@ -21,7 +21,7 @@ pub struct Inputs<'a> {
 #[derive(Debug, thiserror::Error)]
 pub enum AnalysisError {
     /// A table verb failed.
-    #[error("counting answers: {0}")]
+    #[error("counting answers")]
     Counting(#[from] polars::error::PolarsError),
     /// A figure could not be drawn.
     #[error("figure {figure}: {message}")]

@@ -35,6 +35,7 @@ mod fixture;
 
 pub use answers::{Answers, Choice, read_answers};
 pub use answers_error::AnswersError;
+pub use comparison::unexplained_differences;
 pub use figures::{Figure, figures};
 pub use fraction::Fraction;
 pub use inputs::{AnalysisError, Inputs};

@@ -1,7 +1,7 @@
 //! The meshes of one purpose, in the study's order.
 
 use crate::inputs::Inputs;
-use design::record::{MeshRecord, Purpose};
+use design::record::{Distribution, MeshRecord, Purpose};
 use design::{Configuration, ConfigurationId, Method, Study};
 
 /// The records of one purpose, found by configuration.
@@ -34,6 +34,11 @@ impl<'a> MeshSet<'a> {
     pub(crate) fn is_empty(&self) -> bool {
         self.in_order().next().is_none()
     }
+}
+
+/// A statistic of a distribution; `None` of nothing, whose statistics are written as 0.
+pub(crate) fn known(of: &Distribution, statistic: fn(&Distribution) -> f64) -> Option<f64> {
+    (of.count > 0).then(|| statistic(of))
 }
 
 /// The share of triangles that merging discarded, `discarded / (discarded + kept)`, in 0..=1; 0 of none.

@@ -18,7 +18,17 @@ pub(crate) struct StageTimes {
 impl StageTimes {
     /// Means over a configuration's samples; `None` if it has none.
     pub(crate) fn of(run: &BenchRun, id: &ConfigurationId) -> Option<Self> {
-        let samples: Vec<&BenchSample> = run.samples.iter().filter(|sample| sample.id == *id).collect();
+        Self::over(run.samples.iter().filter(|sample| sample.id == *id).collect())
+    }
+
+    /// Of one round alone; `None` if the configuration has no sample in it.
+    pub(crate) fn of_round(run: &BenchRun, id: &ConfigurationId, round: u32) -> Option<Self> {
+        Self::over(
+            run.samples.iter().filter(|sample| sample.id == *id && sample.iteration == round).collect(),
+        )
+    }
+
+    fn over(samples: Vec<&BenchSample>) -> Option<Self> {
         if samples.is_empty() {
             return None;
         }

@@ -201,6 +201,27 @@ mod tests {
     }
 
     #[test]
+    fn latex_breaks_text_before_it_turns_the_page() {
+        let mut table = Table::new("wide", "", &[("id", "Id"), ("why", "Why"), ("n", "Of all cases")]);
+        let why =
+            "a reason that takes more than a line of the page to tell, and then goes on for a while more";
+        table.push(vec![Cell::text("a"), Cell::text(why), Cell::Count(1)]);
+        let latex = table.to_latex();
+        assert!(latex.starts_with("% needs \\usepackage{array}\n\\begin{table}"), "{latex}");
+        assert!(latex.contains("{l>{\\raggedright\\arraybackslash}p{0."), "{latex}");
+        assert!(latex.contains("Why & \\shortstack[r]{Of\\\\all\\\\cases} \\\\"), "{latex}");
+        for _ in 0..35 {
+            table.push(vec![Cell::text("unbroken".repeat(12)), Cell::text(why), Cell::Count(1)]);
+        }
+        let latex = table.to_latex();
+        assert!(
+            latex.starts_with("% needs \\usepackage{array,longtable,lscape}\n\\begin{landscape}"),
+            "{latex}"
+        );
+        assert!(latex.contains("\\endfirsthead") && latex.ends_with("\\end{landscape}\n"), "{latex}");
+    }
+
+    #[test]
     fn html_escapes() {
         let html = awkward().to_html();
         assert!(html.contains("<caption>50 % of a_b &amp; c</caption>"), "{html}");

@@ -16,10 +16,7 @@ use crate::{claims, comparison};
 /// # Errors
 /// If counting the answers fails, which is not to be expected of answers read for this study.
 pub fn tables(inputs: &Inputs<'_>) -> Result<Vec<Table>, AnalysisError> {
-    let tally = match inputs.answers {
-        Some(answers) if !inputs.study.comparisons.is_empty() => Some(Tally::of(answers, inputs.study)?),
-        _ => None,
-    };
+    let tally = Tally::of_inputs(inputs)?;
     let tally = tally.as_ref();
     let mut tables = vec![design::configurations(inputs.study)];
     tables.extend(benchmark::benchmark(inputs));

@@ -1,6 +1,7 @@
 //! From answers to counts: the long table and what is counted over it.
 
 use crate::answers::{Answers, Choice};
+use crate::inputs::Inputs;
 use design::{Method, Study};
 use polars::prelude::*;
 
@@ -53,6 +54,19 @@ impl Tally {
             rows: count_choices(long.clone(), study)?,
             questions: count_questions(long, study)?,
         })
+    }
+
+    /// Counts the answers, if there are any to questions.
+    ///
+    /// # Errors
+    /// As [`Tally::of`].
+    pub(crate) fn of_inputs(inputs: &Inputs<'_>) -> PolarsResult<Option<Self>> {
+        match inputs.answers {
+            Some(answers) if !inputs.study.comparisons.is_empty() => {
+                Self::of(answers, inputs.study).map(Some)
+            }
+            _ => Ok(None),
+        }
     }
 
     /// The number of answers in the rows that `holds` picks.

@@ -50,6 +50,11 @@ impl Verdict {
         }
     }
 
+    /// Whether the numbers differ and no rule says why.
+    pub fn is_unexplained(&self) -> bool {
+        matches!(self, Self::Differs { reason } if reason.starts_with(UNEXPLAINED))
+    }
+
     /// The reason; empty for equal numbers.
     pub fn reason(&self) -> &str {
         match self {

@@ -2,6 +2,7 @@
 
 use super::numbers::{Measure, Numbers, Ours, Side, mean, mean_change};
 use super::{Finding, judge};
+use crate::comparison::benchmark::double_count;
 use crate::inputs::Inputs;
 use crate::mesh_set::discard_fraction;
 use design::published::Claim;
@@ -29,8 +30,6 @@ const EDGES_STORED: Measure = Measure {
     published: |p| p.stored_edges as f64 / p.needed_edges as f64,
     ours: Ours::Mesh(|m| m.counts.stored_edges as f64 / m.counts.needed_edges as f64),
 };
-
-const NEAR: &str = "another bunny mesh, another mathematics library";
 
 pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
     let numbers = Numbers::of(inputs);
@@ -66,9 +65,7 @@ fn discarded(numbers: &Numbers<'_>, value: f64, clustering: Clustering) -> Optio
     let ours = percent(Side::Ours, DISCARD)?;
     let as_published = percent(Side::Ours, DISCARD_AS_PUBLISHED)?;
     let far = match as_published > ours {
-        true => {
-            format!("over-counted by {:.2} points: triangles counted twice when q1 = q2", as_published - ours)
-        }
+        true => double_count(format!("{:.2} points", as_published - ours)),
         false => crate::verdict::UNEXPLAINED.into(),
     };
     Some(Finding {
@@ -77,7 +74,7 @@ fn discarded(numbers: &Numbers<'_>, value: f64, clustering: Clustering) -> Optio
         ours: Some(ours),
         decimals: 2,
         remark: String::new(),
-        verdict: judge(value, ours, 2, NEAR, &far),
+        verdict: judge(value, ours, 2, numbers.causes(DISCARD_AS_PUBLISHED, &[clustering]).as_deref(), &far),
     })
 }
 
@@ -98,7 +95,7 @@ fn more_triangles(numbers: &Numbers<'_>, value: f64) -> Option<Finding> {
         ours: Some(ours),
         decimals: 2,
         remark: String::new(),
-        verdict: judge(value, ours, 2, NEAR, &far),
+        verdict: judge(value, ours, 2, numbers.causes(TRIANGLES, &ALL).as_deref(), &far),
     })
 }
 
@@ -113,6 +110,6 @@ fn stored(numbers: &Numbers<'_>, value: f64, measure: Measure) -> Option<Finding
         ours: Some(ours),
         decimals: 2,
         remark: String::new(),
-        verdict: judge(value, ours, 2, NEAR, far),
+        verdict: judge(value, ours, 2, None, far),
     })
 }

@@ -1,11 +1,16 @@
 //! The numbers of each case, from the published benchmark or from ours, under one roof.
 
+use crate::comparison::benchmark::{Cause, cause};
 use crate::inputs::Inputs;
 use crate::mesh_set::MeshSet;
 use crate::stage_times::StageTimes;
+use crate::verdict::relative_difference;
 use design::published::BenchmarkRow;
 use design::record::{MeshRecord, Purpose};
 use design::{Arrangement, Clustering, ConfigurationId, Method};
+
+/// Published numbers are known to about this.
+const PRINTED: f64 = 1e-6;
 
 /// A number of one configuration, and where each side keeps it.
 #[derive(Clone, Copy)]
@@ -18,6 +23,8 @@ pub(super) struct Measure {
 #[derive(Clone, Copy)]
 pub(super) enum Ours {
     Mesh(fn(&MeshRecord) -> f64),
+    /// Of the triangles' shapes: nothing if there is no triangle.
+    Shape(fn(&MeshRecord) -> Option<f64>),
     Times(fn(&StageTimes) -> f64),
 }
 
@@ -26,6 +33,8 @@ pub(super) enum Ours {
 pub(super) enum Side {
     Published,
     Ours,
+    /// Ours, with the times of one round of the benchmark alone.
+    Round(u32),
 }
 
 /// Looks numbers up.
@@ -46,9 +55,15 @@ impl<'a> Numbers<'a> {
                 let rows = &self.inputs.study.published.benchmark;
                 rows.iter().find(|row| row.id == id).map(measure.published)
             }
-            (Side::Ours, Ours::Mesh(of)) => self.meshes.get(&id).map(of),
-            (Side::Ours, Ours::Times(of)) => {
-                self.inputs.bench.and_then(|run| StageTimes::of(run, &id)).map(|times| of(&times))
+            (_, Ours::Mesh(of)) => self.meshes.get(&id).map(of),
+            (_, Ours::Shape(of)) => self.meshes.get(&id).and_then(of),
+            (_, Ours::Times(of)) => {
+                let run = self.inputs.bench?;
+                let times = match side {
+                    Side::Round(round) => StageTimes::of_round(run, &id, round),
+                    _ => StageTimes::of(run, &id),
+                };
+                times.map(|times| of(&times))
             }
         }
     }
@@ -94,10 +109,50 @@ impl<'a> Numbers<'a> {
 
     /// `measure` of one clustering in every lattice case.
     pub(super) fn each(&self, side: Side, measure: Measure, clustering: Clustering) -> Vec<f64> {
-        let get = |&(object, arrangement): &(usize, Arrangement)| {
-            self.get(side, measure, object, Method { arrangement, clustering })
+        self.each_case(side, measure, clustering).into_iter().map(|(.., value)| value).collect()
+    }
+
+    /// The same, with the object and the method of each.
+    pub(super) fn each_case(
+        &self,
+        side: Side,
+        measure: Measure,
+        clustering: Clustering,
+    ) -> Vec<(usize, Method, f64)> {
+        let get = |(object, arrangement): (usize, Arrangement)| {
+            let method = Method { arrangement, clustering };
+            Some((object, method, self.get(side, measure, object, method)?))
         };
-        self.lattice_cases().iter().filter_map(get).collect()
+        self.lattice_cases().into_iter().filter_map(get).collect()
+    }
+
+    /// What may move an object's numbers; `None` if nothing may.
+    pub(super) fn cause(&self, object: usize) -> Option<Cause> {
+        cause(&self.inputs.study.file.objects[object].field)
+    }
+
+    /// What moves `measure` with these clusterings: the causes of the objects on which it is not the published one.
+    /// `None` if there are none, or one of these objects has no cause.
+    pub(super) fn causes(&self, measure: Measure, of: &[Clustering]) -> Option<String> {
+        let mut causes: Vec<&str> = Vec::new();
+        for &clustering in of {
+            for (object, method, ours) in self.each_case(Side::Ours, measure, clustering) {
+                let published = self.get(Side::Published, measure, object, method);
+                if published.is_none_or(|published| relative_difference(published, ours) <= PRINTED) {
+                    continue;
+                }
+                let cause = self.cause(object)?.short;
+                if !causes.contains(&cause) {
+                    causes.push(cause);
+                }
+            }
+        }
+        (!causes.is_empty()).then(|| causes.join(", "))
+    }
+
+    /// The id of a configuration, for people.
+    pub(super) fn id(&self, object: usize, method: Method) -> String {
+        ConfigurationId { object: self.inputs.study.file.objects[object].id.clone(), method }.to_string()
     }
 }
 

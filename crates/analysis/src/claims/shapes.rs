@@ -4,23 +4,26 @@ use super::numbers::{Measure, Numbers, Ours, Side};
 use super::{Finding, judge};
 use crate::comparison::benchmark::zero_ratios;
 use crate::inputs::Inputs;
+use crate::mesh_set::known;
 use crate::published_ratio;
-use crate::verdict::Verdict;
+use crate::verdict::{UNEXPLAINED, Verdict, prints_alike};
 use design::Clustering::{self, EdgeCollapse, Integrated};
 use design::published::Claim;
 
 const RATIO_MEAN: Measure =
-    Measure { published: |p| p.aspect_ratio_mean, ours: Ours::Mesh(|m| published_ratio::mean(&m.quality)) };
+    Measure { published: |p| p.aspect_ratio_mean, ours: Ours::Shape(|m| published_ratio::mean(&m.quality)) };
 const RATIO_SD: Measure =
-    Measure { published: |p| p.aspect_ratio_sd, ours: Ours::Mesh(|m| published_ratio::sd(&m.quality)) };
+    Measure { published: |p| p.aspect_ratio_sd, ours: Ours::Shape(|m| published_ratio::sd(&m.quality)) };
 /// The same, with degenerate triangles left out.
 const RATIO_MEAN_WITHOUT: Measure =
-    Measure { ours: Ours::Mesh(|m| m.quality.published_aspect_ratio.mean), ..RATIO_MEAN };
+    Measure { ours: Ours::Shape(|m| known(&m.quality.published_aspect_ratio, |d| d.mean)), ..RATIO_MEAN };
 const RATIO_SD_WITHOUT: Measure =
-    Measure { ours: Ours::Mesh(|m| m.quality.published_aspect_ratio.sd), ..RATIO_SD };
+    Measure { ours: Ours::Shape(|m| known(&m.quality.published_aspect_ratio, |d| d.sd)), ..RATIO_SD };
 /// The published side has no order-free ratio; its own stands in and is not shown as ours.
-const EDGE_RATIO_MEAN: Measure =
-    Measure { published: |p| p.aspect_ratio_mean, ours: Ours::Mesh(|m| m.quality.edge_ratio.mean) };
+const EDGE_RATIO_MEAN: Measure = Measure {
+    published: |p| p.aspect_ratio_mean,
+    ours: Ours::Shape(|m| known(&m.quality.edge_ratio, |d| d.mean)),
+};
 /// Not published.
 const DEGENERATE: Measure = Measure { published: |_| 0.0, ours: Ours::Mesh(|m| m.quality.degenerate as f64) };
 const TRIANGLES: Measure =
@@ -51,35 +54,47 @@ pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
 }
 
 /// The smallest or largest over all cases; `measures` are as published and without degenerate triangles.
+///
+/// What explains a difference is what holds our extreme: its object's cause, or its degenerate triangles.
 fn extreme_of(
     numbers: &Numbers<'_>,
     value: f64,
-    measures: [Measure; 2],
+    [with, without]: [Measure; 2],
     clustering: Clustering,
     largest: bool,
 ) -> Option<Finding> {
     let extreme = |side, measure| {
-        let pick: fn(f64, f64) -> f64 = if largest { f64::max } else { f64::min };
-        numbers.each(side, measure, clustering).into_iter().reduce(pick)
+        let cases = numbers.each_case(side, measure, clustering).into_iter();
+        cases.reduce(|a, b| if (b.2 > a.2) == largest && a.2 != b.2 { b } else { a })
     };
-    let [as_published, ours] = measures.map(|measure| extreme(Side::Ours, measure));
-    let ours = ours?;
-    let degenerate = numbers.each(Side::Ours, DEGENERATE, clustering).into_iter().reduce(f64::max)?;
-    let far = match clustering {
-        Clustering::None => "led by the thinnest slivers; another bunny mesh",
-        _ => "led by a few slivers where the surface touches its volume; another bunny mesh",
+    let (there, as_published) = (extreme(Side::Published, with), extreme(Side::Ours, with));
+    let (object, method, ours) = extreme(Side::Ours, without)?;
+    let degenerate = numbers.get(Side::Ours, DEGENERATE, object, method).unwrap_or_default();
+    let cause = numbers.cause(object);
+    let verdict = match cause {
+        _ if prints_alike(value, ours, 2) => Verdict::Equal,
+        _ if degenerate > 0.0 => Verdict::differs(zero_ratios(degenerate as u64)),
+        Some(cause) => {
+            let far = match cause.beyond {
+                true => format!("{}; led by a few slivers", cause.short),
+                false => UNEXPLAINED.into(),
+            };
+            judge(value, ours, 2, Some(cause.short), &far)
+        }
+        None => Verdict::differs(UNEXPLAINED),
     };
-    let near = "another bunny mesh, another mathematics library";
-    let verdict = match as_published == Some(ours) {
-        true => judge(value, ours, 2, near, far),
-        false => Verdict::differs(zero_ratios(degenerate as u64)),
+    let remark = match there {
+        Some((o, m, _)) if (o, m) != (object, method) => {
+            format!("held by {}, in the published tables by {}", numbers.id(object, method), numbers.id(o, m))
+        }
+        _ => String::new(),
     };
     Some(Finding {
-        from_published: extreme(Side::Published, measures[0]),
-        as_published,
+        from_published: there.map(|(.., value)| value),
+        as_published: as_published.map(|(.., value)| value),
         ours: Some(ours),
         decimals: 2,
-        remark: String::new(),
+        remark,
         verdict,
     })
 }

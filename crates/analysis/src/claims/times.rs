@@ -3,7 +3,8 @@
 use super::Finding;
 use super::numbers::{Measure, Numbers, Ours, Side, mean_change};
 use crate::inputs::Inputs;
-use crate::verdict::{Verdict, prints_alike};
+use crate::interval::{Interval, t_over_respondents as over_rounds};
+use crate::verdict::Verdict;
 use design::Clustering::{self, EdgeCollapse, Integrated};
 use design::published::Claim;
 
@@ -13,36 +14,55 @@ const ALL: [Clustering; 3] = [Clustering::None, Integrated, EdgeCollapse];
 
 pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
     let numbers = Numbers::of(inputs);
-    let against_none = |side, measure, clustering| {
-        mean_change(&numbers.over_clustering(side, measure, clustering, Clustering::None))
-    };
-    let against_simple = |side, measure| mean_change(&numbers.over_arrangement(side, measure, &ALL));
-    let change = |side| match claim.id.as_str() {
+    let against_none =
+        |side, measure, clustering| numbers.over_clustering(side, measure, clustering, Clustering::None);
+    let against_simple = |side, measure| numbers.over_arrangement(side, measure, &ALL);
+    let ratios = |side| match claim.id.as_str() {
         "vertex_integrated" => against_none(side, VERTEX, Integrated),
         "geometry_integrated" => against_none(side, GEOMETRY, Integrated),
         "vertex_edge_collapse" => against_none(side, VERTEX, EdgeCollapse),
         "geometry_edge_collapse" => against_none(side, GEOMETRY, EdgeCollapse),
         "arrangement_vertex" => against_simple(side, VERTEX),
         "arrangement_geometry" => against_simple(side, GEOMETRY),
-        _ => None,
+        _ => Vec::new(),
     };
     let (value, run) = (claim.value?, inputs.bench?);
-    let ours = change(Side::Ours)?;
-    let verdict = if prints_alike(value, ours, 2) {
-        Verdict::Equal
-    } else if run.differences.is_empty() {
-        Verdict::differs("measured on a matching machine")
-    } else {
+    let cases = ratios(Side::Ours);
+    let ours = mean_change(&cases)?;
+    // Cases are paired within a round, so that what slows a whole round down cancels. A round that lacks a case would
+    // be a mean over others.
+    let whole = |of: &Vec<f64>| of.len() == cases.len();
+    let rounds = (0..run.iterations).map(|round| ratios(Side::Round(round))).filter(whole);
+    let changes: Vec<f64> = rounds.filter_map(|of| mean_change(&of)).collect();
+    let interval = over_rounds(&changes);
+    let direction = direction(value, interval);
+    let verdict = if !run.differences.is_empty() {
         let model = run.machine.model.as_deref().unwrap_or("an unnamed CPU");
-        let same = if ours.signum() == value.signum() { "same direction" } else { "opposite direction" };
-        Verdict::not_comparable(format!("{same}; measured on {model}, not on {}", run.target.name))
+        Verdict::not_comparable(format!("{direction}; measured on {model}, not on {}", run.target.name))
+    } else if interval.is_some_and(|i| (i.low..=i.high).contains(&value)) {
+        Verdict::within("the interval", format!("{direction}; measured on a matching machine"))
+    } else {
+        Verdict::differs(format!("{direction}; measured on a matching machine"))
     };
     Some(Finding {
-        from_published: change(Side::Published),
+        from_published: mean_change(&ratios(Side::Published)),
         as_published: Some(ours),
         ours: Some(ours),
         decimals: 2,
         remark: String::new(),
         verdict,
     })
+}
+
+/// Whether we see the published direction at all; noise has a sign too.
+fn direction(published: f64, interval: Option<Interval>) -> String {
+    let Some(Interval { low, high }) = interval else {
+        return "too few rounds to tell a change from noise".into();
+    };
+    let what = match () {
+        () if low <= 0.0 && 0.0 <= high => "no change measurable here",
+        () if low.signum() == published.signum() => "same direction",
+        () => "opposite direction",
+    };
+    format!("{what} (95 % interval over rounds {low:.2} to {high:.2} %)")
 }

@@ -5,7 +5,7 @@ use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
 use super::legend::Swatch;
 use super::{Draft, WIDTH, canvas_with_legend, style};
 use crate::inputs::Inputs;
-use crate::mesh_set::MeshSet;
+use crate::mesh_set::{MeshSet, known};
 use crate::stage_times::StageTimes;
 use design::published::BenchmarkRow;
 use design::record::{MeshRecord, Purpose};
@@ -55,7 +55,7 @@ fn draft(name: &'static str, caption: String, panel: &BarPanel, legend: &[(Swatc
 /// One bar a configuration, from its benchmark mesh.
 fn mesh_clusters(
     inputs: &Inputs<'_>,
-    ours: fn(&MeshRecord) -> f64,
+    ours: fn(&MeshRecord) -> Option<f64>,
     published: fn(&BenchmarkRow) -> f64,
 ) -> Option<Vec<Cluster>> {
     let meshes = MeshSet::of(inputs, Purpose::Benchmark);
@@ -63,7 +63,7 @@ fn mesh_clusters(
         return None;
     }
     Some(clusters(inputs, |id, row| {
-        vec![Bar::of(meshes.get(id).map(ours), style::method(id.method), row.map(published))]
+        vec![Bar::of(meshes.get(id).and_then(ours), style::method(id.method), row.map(published))]
     }))
 }
 
@@ -72,7 +72,7 @@ fn has_published(clusters: &[Cluster]) -> bool {
 }
 
 pub(super) fn triangles(inputs: &Inputs<'_>) -> Option<Draft> {
-    let clusters = mesh_clusters(inputs, |m| m.counts.triangles as f64, |p| p.triangles as f64)?;
+    let clusters = mesh_clusters(inputs, |m| Some(m.counts.triangles as f64), |p| p.triangles as f64)?;
     let published = has_published(&clusters);
     let panel = BarPanel {
         heading: String::new(),
@@ -127,7 +127,11 @@ pub(super) fn pass_times(inputs: &Inputs<'_>) -> Option<Draft> {
 }
 
 pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Draft> {
-    let clusters = mesh_clusters(inputs, |m| m.quality.published_aspect_ratio.mean, |p| p.aspect_ratio_mean)?;
+    let clusters = mesh_clusters(
+        inputs,
+        |m| known(&m.quality.published_aspect_ratio, |d| d.mean),
+        |p| p.aspect_ratio_mean,
+    )?;
     let published = has_published(&clusters);
     let degenerate: u64 =
         MeshSet::of(inputs, Purpose::Benchmark).in_order().map(|(_, m)| m.quality.degenerate).sum();

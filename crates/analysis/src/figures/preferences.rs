@@ -6,9 +6,8 @@ use super::canvas::{BLACK, WHITE};
 use super::legend::Swatch;
 use super::style::{self, Fill};
 use super::{Draft, WIDTH, canvas_with_legend};
-use crate::interval::t_over_respondents;
 use crate::preference::{self, GroupFactor};
-use crate::tables::preferences::scores;
+use crate::tables::preferences::interval;
 use crate::tally::Tally;
 use design::published::PreferenceKind;
 use design::{Method, Study};
@@ -34,7 +33,8 @@ pub(super) fn per_object(study: &Study, tally: &Tally) -> Draft {
         }
     }
     let caption = "Preference factors per object and comparison group: answers for a configuration over all answers to \
-                   the group's questions. Intervals count each respondent as one observation; they are cut at 0 and 1."
+                   the group's questions. Intervals count each respondent as one observation; they are cut at 0 and \
+                   at the largest possible factor."
         .into();
     Draft { name: "preference_objects", caption, canvas }
 }
@@ -63,7 +63,7 @@ fn group_panel(study: &Study, tally: &Tally, group: usize) -> BarPanel {
         let slot = |factor: &&GroupFactor| Slot {
             label: factor.method.to_string(),
             bars: vec![Bar {
-                interval: t_over_respondents(&scores(tally, factor, o)),
+                interval: interval(tally, factor, o),
                 ..Bar::of(Some(factor.share.factor().value()), style::method(factor.method), None)
             }],
         };
@@ -86,6 +86,28 @@ fn group_panel(study: &Study, tally: &Tally, group: usize) -> BarPanel {
 fn compares_arrangements(study: &Study, group: usize) -> bool {
     let members = &study.groups[group].members;
     members.iter().any(|m| m.arrangement != members[0].arrangement)
+}
+
+/// Which half of a sum weighs more, and why; nothing if both reach equally far or there is one alone.
+fn weights(study: &Study, factors: &[GroupFactor]) -> String {
+    let reach = |arrangements| {
+        let of_kind = factors.iter().filter(|f| compares_arrangements(study, f.group) == arrangements);
+        of_kind.map(GroupFactor::cap).max_by(|a, b| a.value().total_cmp(&b.value()))
+    };
+    let (Some(arrangement), Some(clustering)) = (reach(true), reach(false)) else { return String::new() };
+    let half = match arrangement.value() - clustering.value() {
+        more if more > 0.0 => "arrangement",
+        less if less < 0.0 => "clustering",
+        _ => return String::new(),
+    };
+    let [arrangement, clustering] = [arrangement, clustering].map(|cap| {
+        let text = cap.to_string();
+        text.strip_suffix("/1").map_or(text.clone(), str::to_owned)
+    });
+    format!(
+        " A factor of an arrangement group can reach {arrangement}, one of a clustering group {clustering}, so the \
+         sum weighs the {half} half more."
+    )
 }
 
 pub(super) fn overall(study: &Study, tally: &Tally) -> Draft {
@@ -133,9 +155,8 @@ pub(super) fn overall(study: &Study, tally: &Tally) -> Draft {
     };
     let (mut canvas, top) = canvas_with_legend(&legend, 380.0);
     panel.draw(&mut canvas, (0.0, top), (WIDTH, top + 380.0));
-    let caption =
-        "Overall preference: the sum of a configuration's factors over its comparison groups. Groups of \
-                   different size are on different scales, so the sum favours neither half by design."
-            .into();
+    let mut caption =
+        String::from("Overall preference: the sum of a configuration's factors over its comparison groups.");
+    caption.push_str(&weights(study, &factors));
     Draft { name: "preference_overall", caption, canvas }
 }

@@ -103,6 +103,10 @@ fn captions_say_what_is_left_out() {
         "{caption}"
     );
     assert!(caption.contains("ss_bu 775.93, ss_su 1207.37"), "{caption}");
+    let caption = &figures(&all.inputs()).unwrap().pop().unwrap().caption;
+    let want = "A factor of an arrangement group can reach 1, one of a clustering group 2/3, so the sum weighs the \
+                arrangement half more.";
+    assert!(caption.ends_with(want), "{caption}");
     let caption = meshes::pass_times(&all.inputs()).unwrap().caption;
     assert!(caption.contains("Published times are from another machine."), "{caption}");
 }

@@ -1,7 +1,7 @@
 //! Triangle quality, topology, and what accumulated positions change.
 
 use crate::inputs::Inputs;
-use crate::mesh_set::MeshSet;
+use crate::mesh_set::{MeshSet, known};
 use crate::table::{Cell, Column, Table};
 use design::record::{Distribution, MeshRecord, Purpose};
 
@@ -62,8 +62,7 @@ pub(super) fn quality(inputs: &Inputs<'_>) -> Option<Table> {
             ];
             for (_, _, decimals, of) in MEASURES {
                 let distribution = of(mesh);
-                let known = |value| (distribution.count > 0).then_some(value);
-                row.extend(STATISTICS.iter().map(|s| Cell::number(known((s.2)(distribution)), *decimals)));
+                row.extend(STATISTICS.iter().map(|s| Cell::number(known(distribution, s.2), *decimals)));
             }
             table.push(row);
         }
@@ -171,8 +170,8 @@ pub(super) fn positions(inputs: &Inputs<'_>) -> Option<Table> {
             |m: &MeshRecord| Cell::count(m.topology.boundary_edges),
             |m: &MeshRecord| Cell::Count(m.topology.euler_characteristic),
             |m: &MeshRecord| Cell::count(m.quality.degenerate),
-            |m: &MeshRecord| Cell::Number(m.quality.edge_ratio.mean, 3),
-            |m: &MeshRecord| Cell::Number(m.quality.published_aspect_ratio.mean, 3),
+            |m: &MeshRecord| Cell::number(known(&m.quality.edge_ratio, |d| d.mean), 3),
+            |m: &MeshRecord| Cell::number(known(&m.quality.published_aspect_ratio, |d| d.mean), 3),
         ] {
             row.extend([of(a), of(b)]);
         }

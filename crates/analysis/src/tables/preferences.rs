@@ -1,6 +1,6 @@
 //! The preference factors: per group, overall, margins, per object, and the direct contest of arrangements.
 
-use crate::interval::t_over_respondents;
+use crate::interval::{Interval, t_over_respondents};
 use crate::preference::{self, GroupFactor, Margin};
 use crate::table::{Cell, Column, Table};
 use crate::tally::Tally;
@@ -136,7 +136,7 @@ fn objects(study: &Study, tally: &Tally) -> Table {
     );
     for (o, object) in study.file.objects.iter().enumerate() {
         for factor in preference::group_factors(study, tally, |other| other == o) {
-            let interval = t_over_respondents(&scores(tally, &factor, o));
+            let interval = interval(tally, &factor, o);
             table.push(vec![
                 Cell::text(&object.name),
                 Cell::text(&study.groups[factor.group].id),
@@ -151,15 +151,22 @@ fn objects(study: &Study, tally: &Tally) -> Table {
         }
     }
     table.notes.push(
-        "From and to: t interval at 95 % over respondents, each person's factor counting as one observation; not \
-         cut at 0 or at the largest possible factor."
+        "From and to: t interval at 95 % over respondents, each person's factor counting as one observation; cut at \
+         0 and at the largest possible factor."
             .into(),
     );
     table
 }
 
+/// The t interval over respondents of a method's factor in a group on one object, cut at 0 and at its cap.
+pub(crate) fn interval(tally: &Tally, factor: &GroupFactor, object: usize) -> Option<Interval> {
+    let cut = |end: f64| end.clamp(0.0, factor.cap().value());
+    t_over_respondents(&scores(tally, factor, object))
+        .map(|i| Interval { low: cut(i.low), high: cut(i.high) })
+}
+
 /// Each respondent's own factor of a method in a group on one object.
-pub(crate) fn scores(tally: &Tally, factor: &GroupFactor, object: usize) -> Vec<f64> {
+fn scores(tally: &Tally, factor: &GroupFactor, object: usize) -> Vec<f64> {
     let each = factor.share.answers as f64 / tally.respondents as f64;
     let mut wins = vec![0.0; tally.respondents];
     for row in &tally.rows {

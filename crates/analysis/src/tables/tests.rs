@@ -1,6 +1,7 @@
 use super::*;
 use crate::answers::Answers;
 use crate::fixture::{self, Everything};
+use crate::table::Cell;
 use std::path::Path;
 
 fn named<'a>(tables: &'a [Table], name: &str) -> &'a Table {
@@ -76,6 +77,83 @@ fn rows_of_the_scripted_tables() {
     assert!(positions.contains("\nss_bi,13605,13606,27200,27200,8,8,"), "{positions}");
     let times = named(&tables, "benchmark");
     assert!(times.notes[0].contains("means over 5 iterations") && times.notes[0].contains("does not match"));
+}
+
+#[test]
+fn statistics_of_nothing_are_missing() {
+    let mut all = Everything::of(fixture::study());
+    for mesh in all.meshes.iter_mut().filter(|mesh| mesh.id.to_string() == "bs_bi") {
+        let quality = &mut mesh.quality;
+        for of in [
+            &mut quality.published_aspect_ratio,
+            &mut quality.edge_ratio,
+            &mut quality.radius_ratio,
+            &mut quality.min_angle_deg,
+            &mut quality.max_angle_deg,
+            &mut quality.area,
+        ] {
+            (of.count, of.mean, of.sd, of.min, of.max) = (0, 0.0, 0.0, 0.0, 0.0);
+            (of.q05, of.q25, of.median, of.q75, of.q95) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        }
+    }
+    let is_shape = |name: &str| ["ratio_", "angle_", "area_"].iter().any(|of| name.contains(of));
+    let mut missing = 0;
+    for table in &tables(&all.inputs()).unwrap() {
+        let numbers = table.name == "comparison";
+        let of_mesh = |row: &&Vec<Cell>| {
+            row[usize::from(numbers)].in_full() == "bs_bi" && (!numbers || is_shape(&row[2].in_full()))
+        };
+        for row in table.rows.iter().filter(of_mesh) {
+            let columns = table.columns.iter().zip(row);
+            for (column, cell) in columns
+                .filter(|(column, _)| if numbers { column.name == "ours" } else { is_shape(&column.name) })
+            {
+                assert_eq!(*cell, Cell::Missing, "{}, {}", table.name, column.name);
+                missing += 1;
+            }
+        }
+    }
+    // Benchmark: 4; quality: 9 of 6 at two spacings; positions: 2 twice; comparison: 6.
+    assert_eq!(missing, 4 + 2 * 9 * 6 + 2 * 2 + 6);
+    assert!(crate::unexplained_differences(&all.inputs()).unwrap().is_empty());
+}
+
+#[test]
+fn intervals_stay_within_what_is_possible() {
+    let all = Everything::of(fixture::study());
+    let tables = tables(&all.inputs()).unwrap();
+    let caps: std::collections::BTreeMap<(String, String), f64> = named(&tables, "preference_groups")
+        .rows
+        .iter()
+        .map(|row| ((row[0].in_full(), row[1].in_full()), row[6].in_full().parse().unwrap()))
+        .collect();
+    let (mut at_zero, mut at_cap) = (0, 0);
+    for row in &named(&tables, "preference_objects").rows {
+        let cap = caps[&(row[1].in_full(), row[2].in_full())];
+        let [factor, low, high] = [6, 7, 8].map(|i| row[i].in_full().parse::<f64>().unwrap());
+        assert!(0.0 <= low && low <= factor && factor <= high && high <= cap, "{row:?}");
+        at_zero += u32::from(low == 0.0);
+        at_cap += u32::from(high == cap);
+    }
+    assert!(at_zero > 0 && at_cap > 0, "some would pass without the cut");
+}
+
+#[test]
+fn latex_names_its_packages_and_breaks_long_tables() {
+    let all = Everything::of(fixture::study());
+    for table in tables(&all.inputs()).unwrap() {
+        let latex = table.to_latex();
+        let needs = latex.lines().next().unwrap();
+        for (package, used) in
+            [("array", "\\arraybackslash"), ("longtable", "{longtable}"), ("lscape", "{landscape}")]
+        {
+            assert_eq!(needs.contains(package), latex.contains(used), "{}: {package}", table.name);
+        }
+        let rows: usize = table.printed().iter().map(|part| part.rows.len()).sum();
+        assert!(rows <= 35 || needs.contains("longtable"), "{}", table.name);
+        let many = table.printed().iter().any(|part| part.columns.len() > 7);
+        assert!(!many || latex.contains("\\setlength{\\tabcolsep}"), "{}", table.name);
+    }
 }
 
 #[test]
