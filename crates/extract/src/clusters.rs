@@ -70,7 +70,7 @@ impl Clusters {
     }
 
     /// Connected components of `set` among adjacent directions.
-    fn islands(set: DirectionSet, directions: &Directions) -> Self {
+    pub(crate) fn islands(set: DirectionSet, directions: &Directions) -> Self {
         let mut islands = Self::none();
         let mut rest = set;
         while rest != 0 {

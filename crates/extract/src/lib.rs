@@ -47,6 +47,16 @@
 //! - C. Costen: undergraduate dissertation and program (2026). The evaluation this repeats: rules, fields, sizes and
 //!   the numbers that the tests compare with.
 
+// The fields and the survey of the integration tests, for the tests that need to see inside.
+#[cfg(test)]
+extern crate self as extract;
+#[cfg(test)]
+#[path = "../tests/fields/mod.rs"]
+mod fields;
+#[cfg(test)]
+#[path = "../tests/survey/mod.rs"]
+mod survey;
+
 mod clusters;
 mod collapse;
 mod edges;

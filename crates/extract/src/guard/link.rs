@@ -170,6 +170,11 @@ impl Link {
     }
 
     #[cfg(test)]
+    pub(super) fn is_connected_for_tests(&self, set: u16) -> bool {
+        self.is_connected(set)
+    }
+
+    #[cfg(test)]
     pub(super) fn nodes(&self) -> u16 {
         self.nodes
     }

@@ -13,6 +13,8 @@ mod link;
 mod shapes;
 
 #[cfg(test)]
+mod certificate;
+#[cfg(test)]
 mod lemmas;
 
 use std::sync::OnceLock;
