@@ -49,8 +49,8 @@ pub enum Topology {
     ///
     /// Every crossing belongs to one end of its lattice edge: to the one with the smaller difference from the
     /// isovalue, and to the inside end when they are equal or a difference is not a number. Edges are collapsed
-    /// shortest first, onto the midpoint, where neither topology nor a triangle's side changes; vertices on the
-    /// boundary stay where they are.
+    /// shortest first, onto the midpoint or an end, whichever makes the better triangles, and only where neither the
+    /// topology nor a triangle's side changes; vertices on the boundary stay where they are.
     #[default]
     Guarded,
     /// The published rules, to reproduce published numbers (Costen 2026). Integrated clustering joins surfaces that
