@@ -3,7 +3,7 @@
 //! A sample point sees a set of near crossings, by direction. Two are adjacent when their edges share a tetrahedron
 //! face. Connected components of that graph are islands; an island that is a disc on the sphere of directions can
 //! become one vertex. The published rules below look at the number of crossings and at the holes between them; they
-//! do not always keep the surface manifold.
+//! do not always keep the surface manifold. The `guard` module's do.
 
 use crate::guard::Partition;
 use crate::lattice::{ALL_DIRECTIONS as ALL, DIRECTIONS, DirectionSet, Directions, members};

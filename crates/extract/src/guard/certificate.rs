@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
+use super::{Class, Guard};
 use crate::clusters::Clusters;
 use crate::edges::EdgeTable;
 use crate::fields::{FAMILIES, Family, Volume, image};
@@ -13,7 +14,9 @@ use crate::settings::{Clustering, Execution, ExtractSettings, Positions, Topolog
 use crate::survey::survey;
 use crate::triangles::triangulate;
 use crate::vertices::{Sides, place_vertices};
-use crate::{Arrangement, sampling};
+use crate::{Arrangement, Asteroid, Lattice, ScalarField, sampling};
+use glam::Vec3;
+use mesh::Bounds;
 
 const BOTH: [Arrangement; 2] = [Arrangement::BodyCentred, Arrangement::SimpleCubic];
 
@@ -42,21 +45,31 @@ fn guarded(volume: &Volume, plain: &Unclustered) -> (Vec<u32>, Vec<[u32; 3]>) {
 }
 
 fn stages(volume: &Volume, clustering: Clustering) -> ((EdgeTable, std::ops::Range<usize>), Vec<[u32; 3]>) {
-    let lattice = volume.lattice();
+    stages_of(volume, &volume.lattice(), clustering)
+}
+
+fn stages_of(
+    field: &dyn ScalarField,
+    lattice: &Lattice,
+    clustering: Clustering,
+) -> ((EdgeTable, std::ops::Range<usize>), Vec<[u32; 3]>) {
     let settings = ExtractSettings { clustering, topology: Topology::Guarded, ..Default::default() };
-    let layout = Layout::new(&lattice);
+    let layout = Layout::new(lattice);
     let mut samples = vec![0.0; layout.len()];
-    let coordinates = Coordinates::sampled(&lattice, &layout, Positions::Indexed);
-    sampling::sample(volume, &layout, &coordinates, &Execution { threads: 1 }, &mut samples).unwrap();
+    let coordinates = Coordinates::sampled(lattice, &layout, Positions::Indexed);
+    sampling::sample(field, &layout, &coordinates, &Execution { threads: 1 }, &mut samples).unwrap();
     let (mut sides, mut edges) = (Sides::new(&layout), EdgeTable::new(layout.len()));
-    place_vertices(&lattice, &layout, &samples, &settings, &mut sides, &mut edges).unwrap();
-    let triangles = triangulate(&lattice, &layout, &sides, &edges).triangles;
+    place_vertices(lattice, &layout, &samples, &settings, &mut sides, &mut edges).unwrap();
+    let triangles = triangulate(lattice, &layout, &sides, &edges).triangles;
     ((edges, 0..layout.len()), triangles)
 }
 
+/// Two vertices or two clusters, the smaller first.
+type Edge = (u32, u32);
+
 /// Checks V, E and T for the map that takes vertex `v` to `map[v]`.
 fn certify(triangles: &[[u32; 3]], map: &[u32]) -> Result<(), String> {
-    let mut uses: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+    let mut uses: BTreeMap<Edge, u32> = BTreeMap::new();
     for &[a, b, c] in triangles {
         for (a, b) in [(a, b), (b, c), (c, a)] {
             *uses.entry((a.min(b), a.max(b))).or_default() += 1;
@@ -73,7 +86,7 @@ fn certify(triangles: &[[u32; 3]], map: &[u32]) -> Result<(), String> {
     for &cluster in map {
         count[cluster as usize] += 1;
     }
-    let mut contacts: BTreeMap<(u32, u32), Vec<(u32, u32)>> = BTreeMap::new();
+    let mut contacts: BTreeMap<Edge, Vec<Edge>> = BTreeMap::new();
     for (&(a, b), &uses) in &uses {
         if uses == 1 {
             on_boundary[to(a) as usize].insert(a);
@@ -105,7 +118,7 @@ fn certify(triangles: &[[u32; 3]], map: &[u32]) -> Result<(), String> {
     }
 
     // E: the edges between two clusters, joined by the triangles between them, are one path.
-    let mut links: BTreeMap<(u32, u32), Vec<[(u32, u32); 2]>> = BTreeMap::new();
+    let mut links: BTreeMap<Edge, Vec<[Edge; 2]>> = BTreeMap::new();
     for &[a, b, c] in triangles {
         let between: Vec<_> = [(a, b), (b, c), (c, a)]
             .into_iter()
@@ -289,19 +302,60 @@ fn detection_loses_a_handle_unless_it_starts_from_discs() {
     }
 }
 
-/// From islands it goes wrong unseen all the time; from discs the certificate never objects, on closed surfaces.
+/// From islands it goes wrong unseen all the time; from discs the certificate never objects, on closed surfaces. At
+/// the volume's boundary it does: what is a disc inside may fall apart there or meet it in two arcs, and no edge is repeated.
 #[test]
 fn detection_from_discs_is_safe_where_nothing_meets_the_boundary() {
-    let mut unseen = 0;
+    let (mut unseen, mut unseen_at_boundary) = (0, 0);
+    let is_wrong_unseen = |arrangement, volume: &Volume, start| {
+        let plain = unclustered(volume);
+        let (map, whole) = detect_and_unmerge(arrangement, &plain, start);
+        let components_differ = || {
+            let identity: Vec<u32> = (0..plain.owners.len() as u32).collect();
+            components(&plain, &map) != components(&plain, &identity)
+        };
+        (whole, certify(&plain.triangles, &map).is_err(), components_differ())
+    };
     for family in FAMILIES.into_iter().filter(|&family| family != Family::Odd) {
         for (seed, arrangement) in (0..10).flat_map(|seed| BOTH.map(|arrangement| (seed, arrangement))) {
-            let plain = unclustered(&Volume::random(arrangement, 4, family, seed).closed());
-            let (map, whole) = detect_and_unmerge(arrangement, &plain, Start::Islands);
-            unseen += usize::from(whole && certify(&plain.triangles, &map).is_err());
-            let (map, whole) = detect_and_unmerge(arrangement, &plain, Start::Published);
-            let certified = certify(&plain.triangles, &map);
-            assert!(whole && certified.is_ok(), "{family:?} {seed} {arrangement:?}: {certified:?}");
+            let open = Volume::random(arrangement, 4, family, seed);
+            let closed = open.clone().closed();
+            let (whole, wrong, differ) = is_wrong_unseen(arrangement, &closed, Start::Islands);
+            unseen += usize::from(whole && wrong && differ);
+            let result = is_wrong_unseen(arrangement, &closed, Start::Published);
+            assert_eq!(result, (true, false, false), "{family:?} {seed} {arrangement:?}");
+            let (_, wrong, differ) = is_wrong_unseen(arrangement, &open, Start::Published);
+            unseen_at_boundary += usize::from(wrong && differ);
         }
     }
-    assert!(unseen > 20, "{unseen}");
+    println!("of 280 volumes: from islands, closed {unseen}; from discs, open {unseen_at_boundary}");
+    assert!(unseen > 20 && unseen_at_boundary > 20, "{unseen} {unseen_at_boundary}");
+}
+
+/// On a well-resolved surface the tables decide nearly everywhere.
+#[test]
+fn one_point_in_hundreds_has_to_ask_on_the_asteroid() {
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    for arrangement in BOTH {
+        let start = std::time::Instant::now();
+        let guard = Guard::new(arrangement);
+        let building = start.elapsed();
+        let lattice = Lattice::try_new(arrangement, bounds, 0.04).unwrap();
+        let (edges, _) = stages_of(&Asteroid::default(), &lattice, Clustering::None);
+        let (mut active, mut asking) = (0, 0);
+        for point in edges.1 {
+            let near = (0..DIRECTIONS).filter(|&d| edges.0.vertex_here(point, d).is_some());
+            let near = near.fold(0, |set, d| set | 1 << d);
+            match guard.class(edges.0.crossing(point), near) {
+                Class::Empty => {}
+                Class::One => active += 1,
+                Class::Ask => {
+                    active += 1;
+                    asking += 1;
+                }
+            }
+        }
+        println!("{arrangement:?}: tables in {building:?}, {asking} of {active} points ask");
+        assert!(asking > 0 && asking * 200 < active, "{asking} of {active}");
+    }
 }
