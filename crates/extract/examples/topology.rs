@@ -2,14 +2,12 @@
 //!
 //! `cargo run --release -p extract --example topology`
 
-use std::time::Instant;
-
 use extract::{
     Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Lattice, ScalarField, Sphere, Topology,
     extract,
 };
 use glam::Vec3;
-use mesh::quality::quality;
+use mesh::quality::{TriangleQuality, quality};
 use mesh::topology::topology;
 use mesh::{Bounds, TriangleMesh};
 
@@ -45,15 +43,12 @@ fn row(
     let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     let lattice = Lattice::try_new(arrangement, bounds, 0.04).expect("a lattice");
     let settings = ExtractSettings { clustering, topology: guard, ..ExtractSettings::default() };
-    let run = || extract(field, &lattice, &settings, &Execution { threads: 1 }).expect("a surface");
-    let start = Instant::now();
-    let extraction = run();
-    let _whole = start.elapsed();
+    let extraction = extract(field, &lattice, &settings, &Execution { threads: 1 }).expect("a surface");
     let mesh = extraction.mesh;
     let report = topology(&mesh);
     let ratios: Vec<f64> = (0..mesh.triangles.len())
         .map(|t| {
-            let quality = mesh::quality::TriangleQuality::of(mesh.corners(t));
+            let quality = TriangleQuality::of(mesh.corners(t));
             quality.shape.map_or(0.0, |shape| shape.radius_ratio)
         })
         .collect();
