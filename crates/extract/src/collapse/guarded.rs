@@ -22,9 +22,10 @@ const PASSES: usize = 3;
 /// - a triangle would turn away from the mean normal of those that are there now.
 ///
 /// Normals are compared with the mean and not each with its own, because slivers have normals of noise. What gets
-/// rid of slivers is the choice of three places and the later passes: with midpoints only and one pass the evaluation's
-/// body-centred sphere keeps 1,140 triangles of radius ratio below 0.1, and none with both. Refusing a collapse because the
-/// worst triangle gets worse was tried and leaves twice the triangles: the way to a good one leads through bad ones.
+/// rid of slivers is the choice of three places and the later passes: with midpoints and one pass the evaluation's
+/// body-centred sphere keeps 1,140 triangles of radius ratio below 0.1, with both none. Refusing a collapse because
+/// the worst triangle gets worse was tried and leaves twice the triangles: the way to a good one leads through bad
+/// ones.
 ///
 /// Equal lengths go by vertex numbers, so the result depends on nothing else. The mesh must be a manifold, with or
 /// without boundary.
