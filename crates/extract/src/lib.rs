@@ -45,7 +45,7 @@
 //!   Computers & Graphics 23 (1999). The clustering.
 //! - S. L. Chan, E. O. Purisima: A new tetrahedral tesselation scheme for isosurface generation. Computers & Graphics
 //!   22 (1998). The body-centred tetrahedra.
-//! - C. Costen: undergraduate dissertation and program (2026). The evaluation this repeats: rules, fields, sizes and
+//! - Costen: dissertation and program (2026). The evaluation this repeats: rules, fields, sizes and
 //!   the numbers that the tests compare with.
 
 // The fields and the survey of the integration tests, for the tests that need to see inside.
