@@ -2,7 +2,7 @@
 
 use crate::store::sha256;
 use anyhow::{Context, Result, bail};
-use design::config::{FieldSection, MeshSourceSection, ObjectSection, Positions};
+use design::config::{FieldSection, MeshSourceSection, ObjectSection, Positions, Topology};
 use design::record::Purpose;
 use design::{Arrangement, Clustering, Configuration, Study};
 use extract::{ExtractSettings, Lattice, ScalarField};
@@ -160,9 +160,14 @@ pub(crate) fn settings(study: &Study, configuration: &Configuration, purpose: Pu
         Clustering::None => extract::Clustering::None,
         Clustering::Integrated => extract::Clustering::Integrated,
         Clustering::EdgeCollapse => extract::Clustering::EdgeCollapse,
+        Clustering::IntegratedCollapse => extract::Clustering::IntegratedCollapse,
+    };
+    let topology = match section.topology {
+        Topology::Guarded => extract::Topology::Guarded,
+        Topology::Published => extract::Topology::Published,
     };
     let isovalue = study.object(configuration).isovalue as f32;
-    ExtractSettings { isovalue, clustering, positions }
+    ExtractSettings { isovalue, clustering, positions, topology }
 }
 
 /// Checks that every lattice of the study can be made and fits into memory.

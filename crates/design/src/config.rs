@@ -79,12 +79,24 @@ pub enum Positions {
     Accumulated,
 }
 
+/// Whether clustering must keep the surface a manifold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Topology {
+    /// It must: the mesh is an oriented manifold with the topology of the unclustered surface.
+    Guarded,
+    /// The published rules as they are, defects and all.
+    Published,
+}
+
 /// What holds for every extraction.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExtractionSection {
     /// Where lattice positions come from.
     pub positions: Positions,
+    /// Whether clustering must keep the surface a manifold.
+    pub topology: Topology,
     /// With accumulated positions: into how many runs of layers the z axis is cut, each starting its sum anew.
     #[serde(deserialize_with = "whole")]
     pub accumulation_chunks: u32,

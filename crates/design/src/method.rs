@@ -24,6 +24,8 @@ pub enum Clustering {
     Integrated,
     /// Short edges collapsed after extraction. Code `p`.
     EdgeCollapse,
+    /// Merging inside the vertex stage, then short edges collapsed. Code `c`; not in the paper.
+    IntegratedCollapse,
 }
 
 impl Arrangement {
@@ -51,6 +53,7 @@ impl Clustering {
             Self::None => 'u',
             Self::Integrated => 'i',
             Self::EdgeCollapse => 'p',
+            Self::IntegratedCollapse => 'c',
         }
     }
 
@@ -60,6 +63,7 @@ impl Clustering {
             Self::None => "none",
             Self::Integrated => "integrated",
             Self::EdgeCollapse => "edge collapse",
+            Self::IntegratedCollapse => "integrated + collapse",
         }
     }
 }
@@ -90,7 +94,9 @@ impl fmt::Display for Method {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ParseIdError {
     /// Not a two-letter method code.
-    #[error("\"{0}\" is not a method: write an arrangement (b, s) and a clustering (u, i, p), as in \"bi\"")]
+    #[error(
+        "\"{0}\" is not a method: write an arrangement (b, s) and a clustering (u, i, p, c), as in \"bi\""
+    )]
     Method(String),
     /// Not of the form object, underscore, method.
     #[error("\"{0}\" is not a configuration: write an object, an underscore and a method, as in \"ss_bi\"")]
@@ -111,6 +117,7 @@ impl FromStr for Method {
             Some('u') => Clustering::None,
             Some('i') => Clustering::Integrated,
             Some('p') => Clustering::EdgeCollapse,
+            Some('c') => Clustering::IntegratedCollapse,
             _ => return Err(ParseIdError::Method(text.into())),
         };
         match letters.next() {

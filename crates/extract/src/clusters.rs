@@ -3,11 +3,11 @@
 //! A sample point sees a set of near crossings, by direction. Two are adjacent when their edges share a tetrahedron
 //! face. Connected components of that graph are islands; an island that is a disc on the sphere of directions can
 //! become one vertex. The published rules below look at the number of crossings and at the holes between them; they
-//! do not always keep the surface manifold.
+//! do not always keep the surface manifold. The `guard` module's do.
 
-use crate::lattice::{DIRECTIONS, DirectionSet, Directions, members};
+use crate::guard::Partition;
+use crate::lattice::{ALL_DIRECTIONS as ALL, DIRECTIONS, DirectionSet, Directions, members};
 
-const ALL: DirectionSet = (1 << DIRECTIONS) - 1;
 /// From this many near crossings on, none are merged. Costen's text says more than 10, the program 12 or more; on
 /// the evaluation's asteroid the results are the same.
 const CROWDED: u32 = 12;
@@ -48,13 +48,29 @@ impl Clusters {
         }
     }
 
+    /// All crossings one vertex; none if there are none.
+    pub(crate) fn whole(near: DirectionSet) -> Self {
+        if near == 0 { Self::none() } else { Self::none().with(near) }
+    }
+
+    /// By cluster number.
+    pub(crate) fn from_partition(partition: &Partition) -> Self {
+        let mut clusters = Self { sets: [0; DIRECTIONS], len: usize::from(partition.count) };
+        for (direction, &cluster) in partition.of.iter().enumerate() {
+            if cluster != Partition::NONE {
+                clusters.sets[usize::from(cluster)] |= 1 << direction;
+            }
+        }
+        clusters
+    }
+
     /// The clusters, each a set of directions.
     pub(crate) fn sets(&self) -> &[DirectionSet] {
         &self.sets[..self.len]
     }
 
     /// Connected components of `set` among adjacent directions.
-    fn islands(set: DirectionSet, directions: &Directions) -> Self {
+    pub(crate) fn islands(set: DirectionSet, directions: &Directions) -> Self {
         let mut islands = Self::none();
         let mut rest = set;
         while rest != 0 {

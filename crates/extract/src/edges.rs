@@ -34,6 +34,12 @@ impl EdgeTable {
         self.vertices[point][direction] = vertex + 1;
     }
 
+    /// The vertex of the edge at `point` in `direction`, if it belongs to this end.
+    #[cfg(test)]
+    pub(crate) fn vertex_here(&self, point: usize, direction: usize) -> Option<u32> {
+        self.vertices[point][direction].checked_sub(1)
+    }
+
     /// The vertex of a crossing edge, seen from the end `point` in `direction`, or else from its other end.
     ///
     /// # Panics

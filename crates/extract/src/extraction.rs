@@ -4,13 +4,13 @@ use std::time::{Duration, Instant};
 
 use mesh::TriangleMesh;
 
-use crate::collapse::collapse_short_edges;
+use crate::collapse;
 use crate::edges::EdgeTable;
 use crate::field::ScalarField;
 use crate::lattice::{Coordinates, Lattice, Layout};
 use crate::normals::vertex_normals;
 use crate::sampling::sample;
-use crate::settings::{Clustering, Execution, ExtractSettings, Positions};
+use crate::settings::{Clustering, Execution, ExtractSettings, Positions, Topology};
 use crate::triangles::triangulate;
 use crate::vertices::{Sides, place_vertices};
 
@@ -153,10 +153,13 @@ pub fn extract(
     let vertex = clock.lap();
 
     let mut surface = triangulate(lattice, &layout, &sides, &edges);
-    if settings.clustering == Clustering::EdgeCollapse {
+    if matches!(settings.clustering, Clustering::EdgeCollapse | Clustering::IntegratedCollapse) {
         let before = surface.triangles.len();
-        (positions, surface.triangles) =
-            collapse_short_edges(positions, &surface.triangles, lattice.spacing());
+        let collapse = match settings.topology {
+            Topology::Guarded => collapse::guarded,
+            Topology::Published => collapse::published,
+        };
+        (positions, surface.triangles) = collapse(positions, &surface.triangles, lattice.spacing());
         let dropped = (before - surface.triangles.len()) as u64;
         surface.discarded += dropped;
         surface.discarded_as_published += dropped;

@@ -25,17 +25,18 @@
 //! - The same field, lattice and settings give the same mesh to the byte, on any number of threads. The fields here
 //!   use no platform mathematics, so the mesh is also the same on every machine.
 //! - Vertices lie in the lattice's box.
-//! - [`Clustering::None`] gives a closed, oriented 2-manifold where the surface stays clear of the box: every
-//!   directed edge has its opposite exactly once.
+//! - With [`Topology::Guarded`], the default, and any [`Clustering`]: whatever the samples, the mesh is an oriented
+//!   2-manifold that uses all its vertices, closed where the surface stays clear of the box. No two triangles have
+//!   the same vertices. Components, genus and boundary loops are those of the unclustered surface. Why: DESIGN.md.
 //! - No input panics; what cannot be done is an error.
 //!
 //! # Not guaranteed
 //!
-//! - [`Clustering::Integrated`] follows its published rules, which do not keep every surface manifold; on
-//!   well-resolved ones it does. [`Clustering::EdgeCollapse`] leaves folded pairs of triangles nearly always.
+//! - Anything of that kind with [`Topology::Published`]: integrated clustering keeps well-resolved surfaces manifold
+//!   and breaks others, the edge collapse leaves folded pairs of triangles nearly always.
 //! - A surface that reaches the box is open there, and vertices beyond the box are flattened onto it.
 //! - A sample equal to the isovalue puts all its crossings in one place, as vertices of their own: triangles without
-//!   area. A crossing in the very middle of an edge has a vertex at each end, of which one is used.
+//!   area. As published, a crossing in the very middle of an edge has a vertex at each end, of which one is used.
 //! - Nothing is said about triangles that intersect, and a feature thinner than the spacing can be missed.
 //!
 //! # Sources
@@ -44,14 +45,25 @@
 //!   Computers & Graphics 23 (1999). The clustering.
 //! - S. L. Chan, E. O. Purisima: A new tetrahedral tesselation scheme for isosurface generation. Computers & Graphics
 //!   22 (1998). The body-centred tetrahedra.
-//! - C. Costen: undergraduate dissertation and program (2026). The evaluation this repeats: rules, fields, sizes and
+//! - Costen: dissertation and program (2026). The evaluation this repeats: rules, fields, sizes and
 //!   the numbers that the tests compare with.
+
+// The fields and the survey of the integration tests, for the tests that need to see inside.
+#[cfg(test)]
+extern crate self as extract;
+#[cfg(test)]
+#[path = "../tests/fields/mod.rs"]
+mod fields;
+#[cfg(test)]
+#[path = "../tests/survey/mod.rs"]
+mod survey;
 
 mod clusters;
 mod collapse;
 mod edges;
 mod extraction;
 mod field;
+mod guard;
 mod lattice;
 mod normals;
 mod sampling;
@@ -63,4 +75,4 @@ mod vertices;
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
 pub use field::{Asteroid, MeshDistance, MeshFieldError, ScalarField, Sphere};
 pub use lattice::{Arrangement, Lattice, LatticeError};
-pub use settings::{Clustering, Execution, ExtractSettings, Positions};
+pub use settings::{Clustering, Execution, ExtractSettings, Positions, Topology};

@@ -7,14 +7,21 @@ pub struct ExtractSettings {
     pub isovalue: f32,
     /// How vertices are merged.
     pub clustering: Clustering,
+    /// Whether merging keeps the surface a manifold.
+    pub topology: Topology,
     /// How the positions of sample points are computed.
     pub positions: Positions,
 }
 
 impl Default for ExtractSettings {
-    /// Isovalue 0, integrated clustering, indexed positions.
+    /// Isovalue 0, integrated clustering, guarded topology, indexed positions.
     fn default() -> Self {
-        Self { isovalue: 0.0, clustering: Clustering::Integrated, positions: Positions::Indexed }
+        Self {
+            isovalue: 0.0,
+            clustering: Clustering::Integrated,
+            topology: Topology::Guarded,
+            positions: Positions::Indexed,
+        }
     }
 }
 
@@ -23,13 +30,34 @@ impl Default for ExtractSettings {
 pub enum Clustering {
     /// Not at all: one vertex an edge crossing.
     None,
-    /// While vertices are placed: the crossings nearest to one sample point become one vertex, where its published
-    /// rules allow (Treece, Prager & Gee 1999; Costen 2026).
+    /// While vertices are placed: crossings that are nearest to the same sample point become one vertex, where the
+    /// rules of the [`Topology`] allow (after Treece, Prager & Gee 1999).
     #[default]
     Integrated,
-    /// After an unclustered mesh is made: every mesh edge not longer than half the spacing is collapsed to its
-    /// midpoint, in one pass (Costen 2026).
+    /// After an unclustered mesh is made: mesh edges not longer than half the spacing are collapsed, by the rules of
+    /// the [`Topology`].
     EdgeCollapse,
+    /// Integrated clustering, then an edge collapse of what it leaves.
+    IntegratedCollapse,
+}
+
+/// What merging may do to the surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Topology {
+    /// Whatever the samples, the mesh is an oriented 2-manifold with the components, genus and boundary loops of the
+    /// unclustered surface, and no two triangles share all vertices.
+    ///
+    /// Every crossing belongs to one end of its lattice edge: to the one with the smaller difference from the
+    /// isovalue, and to the inside end when they are equal or a difference is not a number. Edges are collapsed
+    /// shortest first, onto the midpoint or an end, whichever makes the better triangles, and only where neither the
+    /// topology nor a triangle's side changes; vertices on the boundary stay where they are.
+    #[default]
+    Guarded,
+    /// The published rules, to reproduce published numbers (Costen 2026). Integrated clustering joins surfaces that
+    /// pass close to each other; the edge collapse, one pass in order of vertex numbers, folds fins nearly always.
+    ///
+    /// A crossing in the middle of its edge belongs to both ends and has two vertices, of which one is used.
+    Published,
 }
 
 /// How the positions of sample points are computed.

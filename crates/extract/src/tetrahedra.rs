@@ -5,7 +5,7 @@
 //! spoke's two ends and two consecutive points of its ring, always turning the same way. So corners have roles: base,
 //! far end, then the two ring points. The roles fix which edge comes first in a triangle.
 
-use crate::lattice::{Directions, members};
+use crate::lattice::{Arrangement, Directions, members};
 
 /// The tetrahedra round one lattice edge.
 #[derive(Debug, Clone)]
@@ -73,6 +73,27 @@ pub(crate) const CASES: [Case; 16] = [
     Empty,
 ];
 
+/// The lattice edges at a cell's base point round which its tetrahedra stand.
+pub(crate) fn spokes(arrangement: Arrangement) -> Vec<Spoke> {
+    let directions = arrangement.directions();
+    (0..directions.offsets.len() as u8)
+        .filter(|&d| {
+            let offset = directions.offsets[d as usize];
+            match arrangement {
+                Arrangement::BodyCentred => offset.contains(&0),
+                Arrangement::SimpleCubic => offset == [2, 2, 2],
+            }
+        })
+        .map(|d| Spoke::new(directions, d))
+        .collect()
+}
+
+/// Two centres share the tetrahedra round the edge between them; the lower one has them, unless it lies outside.
+pub(crate) fn belongs_to_an_earlier_cell(arrangement: Arrangement, spoke: &Spoke, cell: [usize; 3]) -> bool {
+    let offset = arrangement.directions().offsets[spoke.direction as usize];
+    (0..3).any(|axis| offset[axis] < 0 && cell[axis] > 0)
+}
+
 impl Spoke {
     /// All tetrahedra round the edge that leaves the base point in `direction`.
     pub(crate) fn new(directions: &Directions, direction: u8) -> Self {
@@ -128,7 +149,6 @@ fn turn(directions: &Directions, [a, b, c]: [u8; 3]) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lattice::Arrangement;
     use glam::Vec3;
     use std::collections::BTreeSet;
 

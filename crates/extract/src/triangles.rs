@@ -2,7 +2,7 @@
 
 use crate::edges::EdgeTable;
 use crate::lattice::{Arrangement, DirectionSet, Lattice, Layout};
-use crate::tetrahedra::{CASES, Case, Spoke, Tetrahedron};
+use crate::tetrahedra::{CASES, Case, Tetrahedron, belongs_to_an_earlier_cell, spokes};
 use crate::vertices::Sides;
 
 /// Triangles, and how many there would have been.
@@ -94,21 +94,6 @@ impl Triangulation {
     }
 }
 
-/// The lattice edges at a cell's base point round which its tetrahedra stand.
-fn spokes(arrangement: Arrangement) -> Vec<Spoke> {
-    let directions = arrangement.directions();
-    (0..directions.offsets.len() as u8)
-        .filter(|&d| {
-            let offset = directions.offsets[d as usize];
-            match arrangement {
-                Arrangement::BodyCentred => offset.contains(&0),
-                Arrangement::SimpleCubic => offset == [2, 2, 2],
-            }
-        })
-        .map(|d| Spoke::new(directions, d))
-        .collect()
-}
-
 /// The edges at the base point that tell whether the surface meets the cell: all of a centre's, and of a lowest
 /// corner those to the cube's other seven corners.
 fn deciding_edges(arrangement: Arrangement) -> DirectionSet {
@@ -116,12 +101,6 @@ fn deciding_edges(arrangement: Arrangement) -> DirectionSet {
     (0..offsets.len())
         .filter(|&d| arrangement == Arrangement::BodyCentred || offsets[d].iter().all(|&o| o >= 0))
         .fold(0, |set, d| set | 1 << d)
-}
-
-/// Two centres share the tetrahedra round the edge between them; the lower one has them, unless it lies outside.
-fn belongs_to_an_earlier_cell(arrangement: Arrangement, spoke: &Spoke, cell: [usize; 3]) -> bool {
-    let offset = arrangement.directions().offsets[spoke.direction as usize];
-    (0..3).any(|axis| offset[axis] < 0 && cell[axis] > 0)
 }
 
 /// The number of the case: one bit a corner.

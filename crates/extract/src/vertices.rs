@@ -9,10 +9,12 @@ use glam::Vec3;
 use crate::ExtractError;
 use crate::clusters::Clusters;
 use crate::edges::EdgeTable;
+use crate::guard::{Class, Guard};
 use crate::lattice::{
-    Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout, PADDING_LAYERS, members,
+    ALL_DIRECTIONS, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout, PADDING_LAYERS,
+    members,
 };
-use crate::settings::{Clustering, ExtractSettings};
+use crate::settings::{Clustering, ExtractSettings, Topology};
 
 /// One byte a sample point, 1 inside, with room at both ends so that every step to a neighbour stays in it.
 #[derive(Debug)]
@@ -66,6 +68,7 @@ pub(crate) fn place_vertices(
     let mut stage = VertexStage {
         lattice,
         directions: lattice.arrangement().directions(),
+        guard: Guard::get(lattice.arrangement()),
         samples,
         settings,
         sides,
@@ -95,6 +98,7 @@ pub(crate) fn place_vertices(
 struct VertexStage<'a> {
     lattice: &'a Lattice,
     directions: &'static Directions,
+    guard: &'static Guard,
     samples: &'a [f32],
     settings: &'a ExtractSettings,
     sides: &'a Sides,
@@ -125,7 +129,8 @@ impl VertexStage<'_> {
             }
             crossing |= 1 << direction;
             let neighbour_value = self.samples[neighbour];
-            if !is_nearer(inside, difference, self.settings.isovalue - neighbour_value) {
+            let there = self.settings.isovalue - neighbour_value;
+            if !is_nearer(self.settings.topology, inside, difference, there) {
                 continue;
             }
             near |= 1 << direction;
@@ -136,14 +141,28 @@ impl VertexStage<'_> {
         }
         self.edges.set_crossing(point, crossing);
         self.crossing_ends += u64::from(crossing.count_ones());
-        let clusters = match self.settings.clustering {
-            Clustering::Integrated => Clusters::integrated(near, self.directions),
-            Clustering::None | Clustering::EdgeCollapse => Clusters::single(near),
-        };
+        let clusters = self.clusters(crossing, near, incident);
         for &cluster in clusters.sets() {
             self.place(point, position, cluster, &offsets)?;
         }
         Ok(())
+    }
+
+    fn clusters(&self, crossing: DirectionSet, near: DirectionSet, incident: DirectionSet) -> Clusters {
+        match (self.settings.clustering, self.settings.topology) {
+            (Clustering::None | Clustering::EdgeCollapse, _) => Clusters::single(near),
+            (Clustering::Integrated | Clustering::IntegratedCollapse, Topology::Published) => {
+                Clusters::integrated(near, self.directions)
+            }
+            (Clustering::Integrated | Clustering::IntegratedCollapse, Topology::Guarded) => {
+                let inner = incident == ALL_DIRECTIONS;
+                if inner && self.guard.class(crossing, near) != Class::Ask {
+                    Clusters::whole(near)
+                } else {
+                    Clusters::from_partition(&self.guard.partition(crossing, near, incident))
+                }
+            }
+        }
     }
 
     /// One vertex at the unweighted mean of the cluster's crossings, clamped to the box.
@@ -176,11 +195,16 @@ impl VertexStage<'_> {
     }
 }
 
-/// Whether a crossing belongs to this end: it is nearer to the smaller difference from the isovalue. A crossing in
-/// the middle belongs to both ends, as published. A difference that is not a number leaves it to the inside end.
-fn is_nearer(inside: bool, here: f32, there: f32) -> bool {
+/// Whether a crossing belongs to this end: it is nearer to the smaller difference from the isovalue. A difference
+/// that is not a number leaves it to the inside end. A crossing in the middle belongs to the inside end too; as
+/// published, to both.
+fn is_nearer(topology: Topology, inside: bool, here: f32, there: f32) -> bool {
     let (here, there) = (here.abs(), there.abs());
-    here <= there || inside && there.is_nan()
+    match topology {
+        Topology::Published => here <= there || inside && there.is_nan(),
+        Topology::Guarded if inside => here <= there || there.is_nan(),
+        Topology::Guarded => here < there,
+    }
 }
 
 #[cfg(test)]
@@ -193,9 +217,18 @@ mod tests {
         for outside in values {
             for inside in &values[1..4] {
                 let (d_out, d_in) = (outside, -inside);
-                let owners = [is_nearer(true, d_in, d_out), is_nearer(false, d_out, d_in)];
-                assert!(owners.contains(&true), "{outside} {inside}");
-                assert_eq!(owners == [true, true], outside == *inside, "a tie has both: {outside} {inside}");
+                let owners = |topology| {
+                    [is_nearer(topology, true, d_in, d_out), is_nearer(topology, false, d_out, d_in)]
+                };
+                let published = owners(Topology::Published);
+                assert!(published.contains(&true), "{outside} {inside}");
+                assert_eq!(
+                    published == [true, true],
+                    outside == *inside,
+                    "a tie has both: {outside} {inside}"
+                );
+                let inside_end = !matches!(outside.partial_cmp(inside), Some(std::cmp::Ordering::Less));
+                assert_eq!(owners(Topology::Guarded), [inside_end, !inside_end], "{outside} {inside}");
             }
         }
     }

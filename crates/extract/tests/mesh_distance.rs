@@ -7,7 +7,7 @@ use std::thread;
 
 use extract::{
     Arrangement, Clustering, Execution, ExtractSettings, Lattice, MeshDistance, MeshFieldError, Positions,
-    ScalarField, extract,
+    ScalarField, Topology, extract,
 };
 use glam::{DVec3, Vec3};
 use mesh::topology::topology;
@@ -285,7 +285,8 @@ fn the_extracted_bunny_is_one_closed_surface_of_the_published_size() {
         (Arrangement::SimpleCubic, Clustering::EdgeCollapse, [7_616, 15_228, 50_910]),
     ] {
         let lattice = Lattice::try_new(arrangement, bounds, 0.02).unwrap();
-        let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
+        let rules = Topology::Published;
+        let settings = ExtractSettings { clustering, topology: rules, ..ExtractSettings::default() };
         let extraction = extract(&field, &lattice, &settings, &Execution::default()).unwrap();
         let counts = extraction.counts;
         for (got, want) in
@@ -315,7 +316,8 @@ fn the_studys_bunny_has_no_handle_and_no_bubble() {
             for spacing in [0.02, 0.03] {
                 for positions in [Positions::Indexed, Positions::Accumulated { chunks: 16 }] {
                     let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
-                    let settings = ExtractSettings { clustering, positions, ..ExtractSettings::default() };
+                    let rules = Topology::Published;
+                    let settings = ExtractSettings { isovalue: 0.0, clustering, positions, topology: rules };
                     let extraction = extract(&field, &lattice, &settings, &Execution::default()).unwrap();
                     let report = topology(&extraction.mesh);
                     let case = format!("{arrangement:?} {clustering:?} {spacing} {positions:?}: {report:?}");

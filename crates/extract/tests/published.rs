@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use extract::{
     Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Lattice, Positions,
-    ScalarField, Sphere, extract,
+    ScalarField, Sphere, Topology, extract,
 };
 use glam::Vec3;
 use mesh::{Bounds, TriangleMesh};
@@ -64,7 +64,8 @@ fn extract_row(row: &Row) -> Extraction {
         b'p' => Clustering::EdgeCollapse,
         other => panic!("{other}"),
     };
-    let settings = ExtractSettings { isovalue: 0.0, clustering, positions: PUBLISHED };
+    let topology = Topology::Published;
+    let settings = ExtractSettings { isovalue: 0.0, clustering, topology, positions: PUBLISHED };
     extract(field, &lattice_of(row), &settings, &Execution::default()).unwrap()
 }
 

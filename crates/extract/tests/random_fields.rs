@@ -56,11 +56,7 @@ proptest! {
         prop_assume!(!extraction.mesh.triangles.is_empty());
         assert_closed_manifold(&extraction.mesh);
         prop_assert_eq!(extraction.counts.discarded_triangles, 0);
-        // One vertex a crossing, and a second one where a crossing is in the middle of its edge.
-        prop_assert!(extraction.counts.vertices >= extraction.counts.crossings);
-        if field.levels > 1_000_000 {
-            prop_assert_eq!(extraction.counts.vertices, extraction.counts.crossings);
-        }
+        prop_assert_eq!(extraction.counts.vertices, extraction.counts.crossings);
         prop_assert!(extraction.mesh.volume() > 0.0, "outward");
     }
 

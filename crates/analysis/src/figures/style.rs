@@ -79,6 +79,7 @@ pub(super) fn method(method: Method) -> Fill {
         Clustering::None => RGBColor(0x4d, 0x4d, 0x4d),
         Clustering::Integrated => RGBColor(0xe6, 0x9f, 0x00),
         Clustering::EdgeCollapse => RGBColor(0x00, 0x72, 0xb2),
+        Clustering::IntegratedCollapse => RGBColor(0x00, 0x9e, 0x73),
     };
     match method.arrangement {
         Arrangement::BodyCentred => Fill::plain(colour),

@@ -15,6 +15,9 @@ pub(crate) type DirectionSet = u16;
 /// An offset in half cells.
 pub(crate) type Offset = [i8; 3];
 
+/// All of them.
+pub(crate) const ALL_DIRECTIONS: DirectionSet = (1 << DIRECTIONS) - 1;
+
 /// The directions of one arrangement.
 #[derive(Debug)]
 pub(crate) struct Directions {
@@ -98,6 +101,14 @@ impl Directions {
         find(&self.offsets, difference(self.offsets[b as usize], self.offsets[a as usize]))
     }
 
+    /// Of simple cubic directions, each one's number on the body-centred lattice, by the linear map.
+    pub(crate) fn in_body_centred(&self) -> [u8; DIRECTIONS] {
+        self.offsets.map(|[x, y, z]| {
+            let image = [(y + z - x) / 2, (x + z - y) / 2, (x + y - z) / 2];
+            find(&BODY_CENTRED.offsets, image).expect("the map takes neighbours to neighbours")
+        })
+    }
+
     /// Whether the neighbour in this direction is stored later than the point.
     pub(crate) fn is_forward(&self, direction: u8) -> bool {
         let [x, y, z] = self.offsets[direction as usize];
@@ -174,9 +185,7 @@ mod tests {
     fn the_linear_map_takes_one_lattice_to_the_other() {
         let simple = Arrangement::SimpleCubic.directions();
         let body = Arrangement::BodyCentred.directions();
-        let image = |[x, y, z]: Offset| [(y + z - x) / 2, (x + z - y) / 2, (x + y - z) / 2];
-        let map: Vec<usize> =
-            simple.offsets.iter().map(|&o| find(&body.offsets, image(o)).unwrap() as usize).collect();
+        let map = simple.in_body_centred().map(usize::from);
         for a in 0..DIRECTIONS {
             let mapped = members(simple.links[a]).fold(0, |set, b| set | 1 << map[b]);
             assert_eq!(mapped, body.links[map[a]], "links of {:?}", simple.offsets[a]);

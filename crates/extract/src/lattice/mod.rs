@@ -6,7 +6,7 @@ mod directions;
 mod layout;
 
 pub(crate) use coordinates::Coordinates;
-pub(crate) use directions::{DIRECTIONS, DirectionSet, Directions, members};
+pub(crate) use directions::{ALL_DIRECTIONS, DIRECTIONS, DirectionSet, Directions, Offset, members};
 pub(crate) use layout::{Layout, PADDING_LAYERS, PointKind};
 
 use mesh::Bounds;

@@ -1,6 +1,8 @@
-//! Edge collapse: the post-process that the evaluation compares with integrated clustering.
+//! The published edge collapse: the post-process that the evaluation compares with integrated clustering.
 
 use glam::Vec3;
+
+use super::{Merged, rebuild, unique_edges};
 
 /// Collapses short edges of an unclustered mesh in one pass and renumbers what is left.
 ///
@@ -12,7 +14,7 @@ use glam::Vec3;
 /// Returns positions and triangles; vertices are numbered by first use.
 ///
 /// Source: Costen (2026), "post-processed" clustering.
-pub(crate) fn collapse_short_edges(
+pub(crate) fn published(
     mut positions: Vec<Vec3>,
     triangles: &[[u32; 3]],
     spacing: f32,
@@ -30,54 +32,6 @@ pub(crate) fn collapse_short_edges(
     rebuild(&positions, triangles, &mut merged)
 }
 
-/// Which vertex each vertex was merged into, directly or through others.
-struct Merged {
-    into: Vec<u32>,
-}
-
-impl Merged {
-    /// Follows the chain to its end and shortens it on the way.
-    fn survivor(&mut self, vertex: u32) -> u32 {
-        let mut vertex = vertex as usize;
-        while self.into[vertex] as usize != vertex {
-            self.into[vertex] = self.into[self.into[vertex] as usize];
-            vertex = self.into[vertex] as usize;
-        }
-        vertex as u32
-    }
-}
-
-fn unique_edges(triangles: &[[u32; 3]]) -> Vec<(u32, u32)> {
-    let ordered = |a: u32, b: u32| (a.min(b), a.max(b));
-    let mut edges: Vec<_> =
-        triangles.iter().flat_map(|&[a, b, c]| [ordered(a, b), ordered(b, c), ordered(c, a)]).collect();
-    edges.sort_unstable();
-    edges.dedup();
-    edges
-}
-
-fn rebuild(positions: &[Vec3], triangles: &[[u32; 3]], merged: &mut Merged) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    const UNSEEN: u32 = u32::MAX;
-    let mut numbers = vec![UNSEEN; positions.len()];
-    let mut kept_positions = Vec::new();
-    let mut kept_triangles = Vec::new();
-    for triangle in triangles {
-        let triangle @ [a, b, c] = triangle.map(|vertex| merged.survivor(vertex));
-        if a == b || b == c || c == a {
-            continue;
-        }
-        kept_triangles.push(triangle.map(|vertex| {
-            let number = &mut numbers[vertex as usize];
-            if *number == UNSEEN {
-                *number = kept_positions.len() as u32;
-                kept_positions.push(positions[vertex as usize]);
-            }
-            *number
-        }));
-    }
-    (kept_positions, kept_triangles)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -92,7 +46,7 @@ mod tests {
     #[test]
     fn short_edge_goes_to_its_midpoint() {
         let (positions, triangles) = strip();
-        let (positions, triangles) = collapse_short_edges(positions, &triangles, 1.0);
+        let (positions, triangles) = published(positions, &triangles, 1.0);
         assert_eq!(triangles, [[0, 1, 2]]);
         assert_eq!(positions, [Vec3::new(0.2, 0.0, 0.0), Vec3::new(2.0, 2.0, 0.0), Vec3::new(0.0, 2.0, 0.0)]);
     }
@@ -100,11 +54,11 @@ mod tests {
     #[test]
     fn half_the_spacing_is_the_limit_and_counts() {
         let (positions, triangles) = strip();
-        let longer = collapse_short_edges(positions.clone(), &triangles, 0.79);
+        let longer = published(positions.clone(), &triangles, 0.79);
         assert_eq!(longer.1, triangles);
         let mut exact = positions;
         exact[1].x = 0.5;
-        assert_eq!(collapse_short_edges(exact, &triangles, 1.0).1.len(), 1);
+        assert_eq!(published(exact, &triangles, 1.0).1.len(), 1);
     }
 
     #[test]
@@ -112,7 +66,7 @@ mod tests {
         // Three points 0.4 apart: the first collapse moves the pair to 0.2, and 0.8 is then too far away.
         let positions =
             vec![Vec3::ZERO, Vec3::new(0.4, 0.0, 0.0), Vec3::new(0.8, 0.0, 0.0), Vec3::new(0.0, 9.0, 0.0)];
-        let (positions, triangles) = collapse_short_edges(positions, &[[0, 1, 3], [1, 2, 3]], 1.0);
+        let (positions, triangles) = published(positions, &[[0, 1, 3], [1, 2, 3]], 1.0);
         assert_eq!(triangles.len(), 1);
         assert!(
             positions.contains(&Vec3::new(0.2, 0.0, 0.0)) && positions.contains(&Vec3::new(0.8, 0.0, 0.0))
