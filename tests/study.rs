@@ -221,6 +221,23 @@ fn a_surface_that_misses_the_volume_is_refused() {
     assert!(said.contains("objects[0]") && said.contains("isovalue 50"), "{said}");
 }
 
+#[test]
+fn a_published_number_that_nothing_explains_fails_the_study() {
+    let fixture = Fixture::new();
+    let path = fixture.folder().join("preferences.csv");
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let text = std::fs::read_to_string(root.join("study/paper/published_preferences.csv")).unwrap();
+    assert!(text.contains("group,S,si,0.562"));
+    std::fs::write(&path, text.replace("group,S,si,0.562", "group,S,si,0.662")).unwrap();
+    fixture.edit_with(|text| {
+        let line = text.lines().find(|line| line.starts_with("preferences = ")).unwrap();
+        text.replace(line, &format!("preferences = {path:?}"))
+    });
+    let Run { code, stdout, stderr } = fixture.run("study", &[]);
+    assert_eq!(code, Some(1), "{stderr}");
+    assert!(stderr.contains("0.662") && stdout.ends_with("index.html\n"), "{stderr}");
+}
+
 /// What a study no longer has, its folder no longer has either: nothing that the key does not name is given away.
 #[test]
 fn what_an_edited_study_drops_goes() {

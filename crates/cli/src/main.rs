@@ -24,12 +24,15 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use store::Store;
 
+/// The work was done, but something in it is not as it should be.
+const CHECK_FAILED: u8 = 1;
 /// Wrong usage or input; clap uses the same.
 const INPUT_ERROR: u8 = 2;
 
 fn main() -> ExitCode {
     match run(Cli::parse().command) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(Outcome::Sound) => ExitCode::SUCCESS,
+        Ok(Outcome::CheckFailed) => ExitCode::from(CHECK_FAILED),
         Err(error) => {
             eprintln!("isostudy: {error:#}");
             ExitCode::from(INPUT_ERROR)
@@ -37,12 +40,17 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(command: Command) -> Result<()> {
+/// How work that could be done came out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    Sound,
+    CheckFailed,
+}
+
+fn run(command: Command) -> Result<Outcome> {
     match command {
-        Command::Study(run) => with_pipeline(&run, |pipeline, out| {
-            pipeline.study()?;
-            say(&out.join("index.html").display().to_string())
-        }),
+        Command::Study(run) => return with_page(&run, |pipeline| pipeline.study()),
+        Command::Report(run) => return with_page(&run, |pipeline| pipeline.report()),
         Command::Extract(selection) => with_selection(&selection, |pipeline, only, out| {
             pipeline.all_meshes(only)?;
             say(&out.join("meshes").display().to_string())
@@ -64,12 +72,22 @@ fn run(command: Command) -> Result<()> {
             say_summary(&pipeline.bench_run(&stamp)?)
         }),
         Command::Analyse(arguments) => analyse(&arguments),
-        Command::Report(run) => with_pipeline(&run, |pipeline, out| {
-            pipeline.report()?;
-            say(&out.join("index.html").display().to_string())
-        }),
         Command::Validate(arguments) => validate(&arguments.study),
-    }
+    }?;
+    Ok(Outcome::Sound)
+}
+
+/// Work that ends with the page. A published number that differs from ours without a known reason fails it.
+fn with_page(run: &Run, work: impl FnOnce(&mut Pipeline<'_>) -> Result<Vec<String>>) -> Result<Outcome> {
+    let mut outcome = Outcome::Sound;
+    with_pipeline(run, |pipeline, out| {
+        for difference in work(pipeline)? {
+            eprintln!("differs from what was published: {difference}");
+            outcome = Outcome::CheckFailed;
+        }
+        say(&out.join("index.html").display().to_string())
+    })?;
+    Ok(outcome)
 }
 
 fn with_pipeline(run: &Run, work: impl FnOnce(&mut Pipeline<'_>, &Path) -> Result<()>) -> Result<()> {

@@ -27,11 +27,19 @@ impl Pipeline<'_> {
                 bench: Some(&run),
                 answers: answers.as_ref(),
             };
-            write(writer, &inputs)
+            write(writer, &inputs)?;
+            writer.write_json(UNEXPLAINED, &analysis::unexplained_differences(&inputs)?)
         })?;
         step.count(stamp.redone);
         step.end();
         Ok(stamp)
+    }
+
+    /// The published numbers that ours differ from without a known reason, as the tables stage found them.
+    pub(super) fn unexplained(&self) -> Result<Vec<String>> {
+        let path = self.store.root().join(UNEXPLAINED);
+        let text = std::fs::read(&path).with_context(|| path.display().to_string())?;
+        Ok(serde_json::from_slice(&text)?)
     }
 }
 
@@ -60,6 +68,7 @@ pub(super) struct FigureEntry {
     pub(super) caption: String,
 }
 
+const UNEXPLAINED: &str = "tables/unexplained.json";
 pub(super) const TABLE_CONTENTS: &str = "tables/contents.json";
 pub(super) const FIGURE_CONTENTS: &str = "figures/contents.json";
 
