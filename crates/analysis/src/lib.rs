@@ -10,8 +10,7 @@
 //! - Nothing is indexed by the paper's ids: any objects, methods and groups will do. Parts that are not there (no
 //!   benchmark, no answers, nothing published) leave out their tables and figures.
 //!
-//! # Not here yet
-//! Tests and models of preference. The intervals shown are descriptive: see [`interval`].
+//! Tests and models of preference are in [`statistics`], over plain ballots.
 
 mod answers;
 mod answers_error;
@@ -25,6 +24,7 @@ mod mesh_set;
 pub mod preference;
 mod published_ratio;
 mod stage_times;
+pub mod statistics;
 mod table;
 mod tables;
 mod tally;

@@ -1,0 +1,49 @@
+//! Statistics of paired comparisons with ties, where one participant answers several questions.
+//!
+//! Takes [`Ballot`]s: participant, question, left item, right item, outcome. Knows nothing of files, tables, plots or
+//! geometry; only [`contrast`] knows what a study is.
+//!
+//! # Guarantees
+//! - Participants are what is independent; answers of one participant are not. [`sign_flip`] assumes nothing else.
+//! - Estimates say how they were got: the level of every interval is [`LEVEL`](crate::interval::LEVEL), a penalised fit says
+//!   that it is, and what a design cannot answer is an error with the reason, never a number.
+//! - The order of participants and the number of threads change nothing.
+//!
+//! # Not guaranteed
+//! - "Not significant" is not "equal": read the interval.
+//! - A model's independence standard errors ([`WorthFit::covariance`]) are too small for clustered answers; they are there
+//!   to be compared with other programs.
+
+mod ballot;
+pub mod bootstrap;
+pub mod contrast;
+mod fit;
+mod friedman;
+mod kendall;
+mod krippendorff;
+mod model;
+mod multiplicity;
+mod newton;
+mod pairs;
+mod screening;
+mod separation;
+mod side;
+mod sign_flip;
+pub mod sign_test;
+
+#[cfg(test)]
+mod golden;
+
+pub use ballot::{Ballot, Outcome};
+pub use fit::{FitError, WorthFit, clustered_covariance, fit};
+pub use friedman::{ChiSquareTest, friedman};
+pub use kendall::{Agreement, Triads, agreement, outcome_counts, triads, zeta};
+pub use krippendorff::{Metric, alpha};
+pub use model::Model;
+pub use multiplicity::{benjamini_hochberg, holm};
+pub use newton::Matrix;
+pub use pairs::{Pair, Pairs};
+pub use screening::{Screening, screening};
+pub use separation::{Separation, separation};
+pub use side::{SideDesign, side_design};
+pub use sign_flip::{RATIO_LIMIT, SignFlip, sign_flip};

@@ -1,0 +1,251 @@
+//! Contrasts of a study: which answers speak for one property over another, with everything else equal.
+
+use super::ballot::Ballot;
+use super::bootstrap::{BootstrapInterval, Resampling, bca};
+use super::sign_flip::{SignFlip, sign_flip};
+use crate::interval::{Interval, t_over_respondents};
+use design::{Arrangement, Clustering, Study};
+use std::collections::BTreeMap;
+
+/// The families within which p values are adjusted, declared before looking.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Family {
+    /// Clusterings pooled over arrangements, arrangements pooled over clusterings.
+    Pooled,
+    /// Clusterings within each arrangement, arrangements within each clustering.
+    Groups,
+    /// Arrangements by object.
+    Objects,
+    /// Differences of contrasts: do preferences depend on the other property, or on the object?
+    Interactions,
+}
+
+impl Family {
+    /// The name in files.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Pooled => "pooled",
+            Self::Groups => "groups",
+            Self::Objects => "objects",
+            Self::Interactions => "interactions",
+        }
+    }
+}
+
+/// A weighted sum of answers; each question's weight is for its left side.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Contrast {
+    /// Where p is adjusted.
+    pub family: Family,
+    /// What is compared, such as `U-I`.
+    pub name: String,
+    /// Over which answers, such as `within B`.
+    pub scope: String,
+    /// Question index to weight.
+    pub weights: BTreeMap<usize, i64>,
+}
+
+/// What answers say about a contrast.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContrastTest {
+    /// Answers for the first, none, for the second; of a contrast with weights other than 1 and -1, `None`.
+    pub counts: Option<[u64; 3]>,
+    /// One integer a participant who answered at least one of the questions: sum of weight times sign.
+    pub differences: Vec<i64>,
+    /// Each participant's difference over the weights of the questions answered: -1..=1.
+    pub scores: Vec<f64>,
+    /// The exact test.
+    pub sign_flip: SignFlip,
+    /// Mean of the scores; 0 without participants.
+    pub mean: f64,
+    /// t interval for it over participants.
+    pub interval: Option<Interval>,
+}
+
+impl Contrast {
+    /// Tests it on ballots, whose questions are the study's.
+    pub fn test(&self, ballots: &[Ballot]) -> ContrastTest {
+        let mut of: BTreeMap<usize, (i64, i64)> = BTreeMap::new();
+        let mut counts = [0; 3];
+        for ballot in ballots {
+            if let Some(&weight) = self.weights.get(&ballot.question) {
+                let (sum, size) = of.entry(ballot.participant).or_default();
+                let signed = weight * ballot.outcome.sign();
+                *sum += signed;
+                *size += weight.abs();
+                counts[(1 - signed.signum()) as usize] += 1;
+            }
+        }
+        let differences: Vec<i64> = of.values().map(|&(sum, _)| sum).collect();
+        let scores: Vec<f64> = of.values().map(|&(sum, size)| sum as f64 / size as f64).collect();
+        let simple = self.family != Family::Interactions;
+        ContrastTest {
+            counts: simple.then_some(counts),
+            sign_flip: sign_flip(&differences),
+            mean: if scores.is_empty() { 0.0 } else { scores.iter().sum::<f64>() / scores.len() as f64 },
+            interval: t_over_respondents(&scores),
+            differences,
+            scores,
+        }
+    }
+}
+
+impl ContrastTest {
+    /// Smallest and largest p when each participant in turn is left out; `None` for fewer than two.
+    pub fn leave_one_out(&self) -> Option<(f64, f64)> {
+        let without = |left_out: usize| {
+            let mut others = self.differences.clone();
+            others.remove(left_out);
+            sign_flip(&others).p()
+        };
+        let all = (self.differences.len() > 1).then(|| (0..self.differences.len()).map(without));
+        all.map(|p| p.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p))))
+    }
+
+    /// BCa interval for the mean score, resampling participants.
+    pub fn bca(&self, resampling: Resampling) -> Option<BootstrapInterval> {
+        let mean = |draws: &[usize]| {
+            let sum: f64 = draws.iter().map(|&p| self.scores[p]).sum();
+            (!draws.is_empty()).then(|| sum / draws.len() as f64)
+        };
+        bca(self.scores.len(), resampling, mean)
+    }
+}
+
+/// What a question compares, if its sides differ in one property alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Single {
+    Clustering { within: Arrangement, left: Clustering, right: Clustering },
+    Arrangement { within: Clustering, left: Arrangement, right: Arrangement },
+}
+
+fn single(study: &Study, question: usize) -> Option<Single> {
+    let (left, right) = (study.comparisons[question].left.method, study.comparisons[question].right.method);
+    match (left.arrangement == right.arrangement, left.clustering == right.clustering) {
+        (true, false) => Some(Single::Clustering {
+            within: left.arrangement,
+            left: left.clustering,
+            right: right.clustering,
+        }),
+        (false, true) => Some(Single::Arrangement {
+            within: left.clustering,
+            left: left.arrangement,
+            right: right.arrangement,
+        }),
+        _ => None,
+    }
+}
+
+/// Weights of one sign for `(first, second)` as shown left and right, of the other for the reverse.
+fn weights(questions: &[(usize, Single)], weight: impl Fn(usize, Single) -> i64) -> BTreeMap<usize, i64> {
+    questions.iter().map(|&(q, single)| (q, weight(q, single))).filter(|&(_, weight)| weight != 0).collect()
+}
+
+/// Every contrast that the study's questions allow, by family, then in the study's order.
+///
+/// `A-B` counts answers for A as positive; A is the code that a question shows on the left first. Interactions are
+/// differences of two contrasts, and those of one object against the others.
+pub fn contrasts(study: &Study) -> Vec<Contrast> {
+    let questions: Vec<(usize, Single)> =
+        (0..study.comparisons.len()).filter_map(|q| single(study, q).map(|single| (q, single))).collect();
+    let mut clusterings: Vec<(Clustering, Clustering)> = Vec::new();
+    let mut arrangements: Vec<(Arrangement, Arrangement)> = Vec::new();
+    for &(_, single) in &questions {
+        match single {
+            Single::Clustering { left, right, .. } => push_pair(&mut clusterings, left, right),
+            Single::Arrangement { left, right, .. } => push_pair(&mut arrangements, left, right),
+        }
+    }
+    let mut found = Vec::new();
+    let mut add = |family, name: &str, scope: String, weights: BTreeMap<usize, i64>| {
+        found.push(Contrast { family, name: name.into(), scope, weights });
+    };
+    for &(a, b) in &clusterings {
+        let name = format!("{}-{}", a.code().to_ascii_uppercase(), b.code().to_ascii_uppercase());
+        let sign = |single| match single {
+            Single::Clustering { left, right, .. } => sign_of((a, b), (left, right)),
+            Single::Arrangement { .. } => 0,
+        };
+        let inside = |single| match single {
+            Single::Clustering { within, .. } => Some(within),
+            Single::Arrangement { .. } => None,
+        };
+        add(Family::Pooled, &name, "all".into(), weights(&questions, |_, s| sign(s)));
+        let arrangements = &study.file.arrangements;
+        for &arrangement in arrangements {
+            let scope = format!("within {}", arrangement.code().to_ascii_uppercase());
+            let here = weights(&questions, |_, s| if inside(s) == Some(arrangement) { sign(s) } else { 0 });
+            add(Family::Groups, &name, scope, here);
+        }
+        if let [first, second] = arrangements[..] {
+            let parts = [first, second]
+                .map(|of| weights(&questions, |_, s| i64::from(inside(s) == Some(of)) * sign(s)));
+            let scope = format!("{} - {}", first.code(), second.code()).to_ascii_uppercase();
+            add(Family::Interactions, &name, scope, difference(&parts[0], &parts[1]));
+        }
+    }
+    for &(a, b) in &arrangements {
+        let name = format!("{}-{}", a.code(), b.code()).to_ascii_uppercase();
+        let sign = |single| match single {
+            Single::Arrangement { left, right, .. } => sign_of((a, b), (left, right)),
+            Single::Clustering { .. } => 0,
+        };
+        let inside = |single| match single {
+            Single::Arrangement { within, .. } => Some(within),
+            Single::Clustering { .. } => None,
+        };
+        let all = weights(&questions, |_, s| sign(s));
+        add(Family::Pooled, &name, "all".into(), all.clone());
+        let of = |clustering: Clustering| {
+            weights(&questions, |_, s| i64::from(inside(s) == Some(clustering)) * sign(s))
+        };
+        let clusterings = &study.file.clusterings;
+        for (i, &clustering) in clusterings.iter().enumerate() {
+            let code = clustering.code().to_ascii_uppercase();
+            add(Family::Groups, &name, format!("within {code}"), of(clustering));
+            for &other in &clusterings[i + 1..] {
+                let scope = format!("{code} - {}", other.code().to_ascii_uppercase());
+                add(Family::Interactions, &name, scope, difference(&of(clustering), &of(other)));
+            }
+        }
+        for (o, object) in study.file.objects.iter().enumerate() {
+            let here = |q: &usize| study.comparisons[*q].object == o;
+            let (own, rest): (BTreeMap<_, _>, BTreeMap<_, _>) = all.iter().partition(|(q, _)| here(q));
+            add(Family::Objects, &name, object.name.clone(), own.clone());
+            add(Family::Interactions, &name, format!("{} - others", object.name), difference(&own, &rest));
+        }
+    }
+    found.retain(|contrast| !contrast.weights.is_empty());
+    found.sort_by_key(|contrast| contrast.family);
+    found
+}
+
+fn push_pair<T: PartialEq + Copy>(pairs: &mut Vec<(T, T)>, left: T, right: T) {
+    if !pairs.contains(&(left, right)) && !pairs.contains(&(right, left)) {
+        pairs.push((left, right));
+    }
+}
+
+fn sign_of<T: PartialEq>((a, b): (T, T), (left, right): (T, T)) -> i64 {
+    if left == a && right == b {
+        1
+    } else if left == b && right == a {
+        -1
+    } else {
+        0
+    }
+}
+
+/// The first mean minus the second as whole weights; empty if one side is.
+fn difference(first: &BTreeMap<usize, i64>, second: &BTreeMap<usize, i64>) -> BTreeMap<usize, i64> {
+    if first.is_empty() || second.is_empty() {
+        return BTreeMap::new();
+    }
+    let (n, m) = (first.len() as i64, second.len() as i64);
+    let divisor = (1..=n.min(m)).rev().find(|d| n % d == 0 && m % d == 0).unwrap_or(1);
+    let plus = first.iter().map(|(&q, &weight)| (q, weight * m / divisor));
+    plus.chain(second.iter().map(|(&q, &weight)| (q, -weight * n / divisor))).collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,165 @@
+//! Maximum likelihood estimates of a model of paired comparison, with their covariance.
+
+use super::model::{Layout, Model};
+use super::newton::{Matrix, inverse, maximise, quadratic};
+use super::pairs::Pairs;
+use super::separation::{Separation, separation};
+use super::side::side_design;
+use crate::interval::{Interval, LEVEL};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Why there is no estimate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum FitError {
+    /// Nothing was answered or there are fewer than two items.
+    #[error("not answerable here, because fewer than two items were compared")]
+    Nothing,
+    /// Not one scale.
+    #[error("not answerable here, because some items were never compared, not even through others")]
+    Disconnected,
+    /// Nobody ever decided.
+    #[error("not answerable here, because every answer was no preference")]
+    OnlyTies,
+    /// The design cannot tell sides from worths.
+    #[error("{0}")]
+    Side(&'static str),
+    /// The likelihood keeps rising.
+    #[error("not answerable here, because the likelihood has no maximum")]
+    NoMaximum,
+}
+
+/// Estimates of one model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WorthFit {
+    /// Which model.
+    pub model: Model,
+    /// Natural logarithms of the worths; the first item's is 0.
+    pub log_worths: Vec<f64>,
+    /// ln nu of Davidson's models (symmetric form), minus infinity without a tie; `None` for the others.
+    pub ln_nu: Option<f64>,
+    /// ln theta of Rao and Kupper's, 0 without a tie; `None` for the others.
+    pub ln_theta: Option<f64>,
+    /// The left side's bonus in log-odds, if the model has one.
+    pub side: Option<f64>,
+    /// Log-likelihood of the answers at the estimates, without multinomial constants. For Bradley-Terry a tie is half a
+    /// win and half a loss, so that its value is comparable with that of no model that keeps ties.
+    pub log_likelihood: f64,
+    /// Half a win each way was added to every compared pair, because the answers were separated.
+    pub penalised: bool,
+    /// Parameters in the order of `covariance`: worths of items 1.., then ln nu or ln theta if there was a tie, then side.
+    pub parameters: Vec<f64>,
+    /// Inverse of the exact information at the estimates: right if all answers are independent, which the answers of one
+    /// participant are not. See [`clustered_covariance`].
+    pub covariance: Matrix,
+}
+
+/// Fits a model; separated answers are fitted with [half a win each way](Pairs::with_half_wins), and say so.
+///
+/// Joint maximum likelihood by Newton's method with the exact second derivatives; estimates to about 1e-12.
+///
+/// # Errors
+/// See [`FitError`].
+pub fn fit(model: Model, pairs: &Pairs) -> Result<WorthFit, FitError> {
+    if pairs.items < 2 || pairs.answers() == 0.0 {
+        return Err(FitError::Nothing);
+    }
+    let judged = separation(pairs);
+    if judged == Separation::Disconnected {
+        return Err(FitError::Disconnected);
+    }
+    if pairs.ties() == pairs.answers() {
+        return Err(FitError::OnlyTies);
+    }
+    if let (Model::DavidsonSide, Some(objection)) = (model, side_design(pairs).objection()) {
+        return Err(FitError::Side(objection));
+    }
+    let separated = match model {
+        // Half a win each way on every tied pair is a win in both directions.
+        Model::BradleyTerry => {
+            let split = |p: &super::pairs::Pair| {
+                let half = 0.5 * p.answers[1];
+                (p.left, p.right, [p.answers[0] + half, 0.0, p.answers[2] + half])
+            };
+            separation(&Pairs::new(pairs.items, pairs.pairs.iter().map(split))) != Separation::None
+        }
+        _ => judged == Separation::Separated,
+    };
+    let first = if separated { None } else { estimate(model, pairs, pairs, false) };
+    first.or_else(|| estimate(model, &pairs.with_half_wins(), pairs, true)).ok_or(FitError::NoMaximum)
+}
+
+fn estimate(model: Model, fitted: &Pairs, answered: &Pairs, penalised: bool) -> Option<WorthFit> {
+    let layout = Layout::of(model, fitted);
+    let maximum = maximise(layout.start(), |at| layout.likelihood(fitted, at))?;
+    let at = maximum.at;
+    let tie = layout.tie().map(|tie| at[tie]);
+    let davidson = matches!(model, Model::Davidson | Model::DavidsonSide);
+    Some(WorthFit {
+        model,
+        log_worths: std::iter::once(0.0).chain(at[..layout.items - 1].iter().copied()).collect(),
+        ln_nu: davidson.then(|| tie.unwrap_or(f64::NEG_INFINITY)),
+        ln_theta: (model == Model::RaoKupper).then(|| tie.unwrap_or(0.0)),
+        side: layout.side().map(|side| at[side]),
+        log_likelihood: layout.likelihood(answered, &at).value,
+        penalised,
+        covariance: maximum.covariance,
+        parameters: at,
+    })
+}
+
+impl WorthFit {
+    /// Standard error of l_item - l_other under a covariance of the parameters.
+    ///
+    /// # Panics
+    /// If there is no such item.
+    pub fn standard_error(&self, covariance: &Matrix, item: usize, other: usize) -> f64 {
+        assert!(item.max(other) < self.log_worths.len(), "no item {}", item.max(other));
+        let mut x = vec![0.0; self.parameters.len()];
+        for (place, sign) in [(item, 1.0), (other, -1.0)] {
+            if place > 0 {
+                x[place - 1] += sign;
+            }
+        }
+        quadratic(&x, covariance, &x).max(0.0).sqrt()
+    }
+
+    /// t interval at [`LEVEL`] for l_item - l_other with the sandwich of `participants` and m - 1 degrees of freedom.
+    pub fn clustered_interval(&self, participants: &[Pairs], item: usize, other: usize) -> Option<Interval> {
+        let covariance = clustered_covariance(self, participants)?;
+        let middle = self.log_worths[item] - self.log_worths[other];
+        let t = StudentsT::new(0.0, 1.0, participants.len() as f64 - 1.0).expect("two participants or more");
+        let half = t.inverse_cdf(0.5 + LEVEL / 2.0) * self.standard_error(&covariance, item, other);
+        Some(Interval { low: middle - half, high: middle + half })
+    }
+}
+
+/// The sandwich covariance with participants as clusters: m/(m-1) H^-1 (sum of s s') H^-1, where s is one participant's
+/// gradient and H the information of the unpenalised answers (Liang and Zeger 1986, Biometrika 73:13).
+///
+/// `None` with fewer than two participants, for a penalised fit (whose gradients do not add up to zero), or if H is
+/// singular.
+pub fn clustered_covariance(fit: &WorthFit, participants: &[Pairs]) -> Option<Matrix> {
+    let m = participants.len() as f64;
+    if participants.len() < 2 || fit.penalised {
+        return None;
+    }
+    let items = fit.log_worths.len();
+    let all = Pairs::sum(items, participants);
+    let layout = Layout::of(fit.model, &all);
+    let bread = inverse(&layout.likelihood(&all, &fit.parameters).information)?;
+    let size = fit.parameters.len();
+    let mut covariance = vec![vec![0.0; size]; size];
+    for participant in participants {
+        let score = layout.likelihood(participant, &fit.parameters).gradient;
+        let influence = super::newton::times(&bread, &score);
+        for i in 0..size {
+            for j in 0..size {
+                covariance[i][j] += m / (m - 1.0) * influence[i] * influence[j];
+            }
+        }
+    }
+    Some(covariance)
+}
+
+#[cfg(test)]
+mod tests;

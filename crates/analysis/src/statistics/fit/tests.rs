@@ -1,0 +1,222 @@
+use super::*;
+use crate::statistics::golden;
+use proptest::prelude::*;
+
+#[track_caller]
+fn close(got: f64, want: f64, tolerance: f64) {
+    assert!((got - want).abs() < tolerance, "{got} is not {want}");
+}
+
+/// Three items, every pair in both orders.
+fn both_orders() -> Pairs {
+    let counts = [
+        (0, 1, [9., 3., 5.]),
+        (1, 0, [4., 4., 8.]),
+        (0, 2, [12., 2., 4.]),
+        (2, 0, [3., 3., 10.]),
+        (1, 2, [8., 5., 6.]),
+        (2, 1, [5., 2., 9.]),
+    ];
+    Pairs::new(3, counts)
+}
+
+#[track_caller]
+fn check(fit: &WorthFit, estimates: &[f64], errors: &[f64], log_likelihood: f64) {
+    fit.parameters.iter().zip(estimates).for_each(|(got, want)| close(*got, *want, 1e-10));
+    errors.iter().enumerate().for_each(|(i, want)| close(fit.covariance[i][i].sqrt(), *want, 1e-8));
+    close(fit.log_likelihood, log_likelihood, 1e-9);
+    assert_eq!((fit.parameters.len(), fit.penalised), (estimates.len(), false));
+}
+
+#[test]
+fn davidson_as_a_poisson_regression_in_r() {
+    // R 4.2.2: glm(n ~ match + X + t + s, family = poisson), one nuisance a pair; X the worths' half credits, t the tie,
+    // s = 1/2, 0, -1/2 the side. gnm 1.1-2 with GenDavidson gives the same: home.adv -0.07315209523281066,
+    // tie.max -1.39632341764234291 = ln(nu / 2).
+    let side = fit(Model::DavidsonSide, &both_orders()).unwrap();
+    check(
+        &side,
+        &[-0.665_524_300_511_539_4, -1.145_019_375_032_576, -0.703_176_237_082_398, -0.073_152_095_232_810_5],
+        &[0.332_563_655_448_696_9, 0.345_508_673_519_588_7, 0.258_275_911_078_007_5, 0.234_269_135_288_211_2],
+        -100.433_285_994_610_5,
+    );
+    close(side.ln_nu.unwrap() - 2.0_f64.ln(), -1.396_323_417_642_343, 1e-10);
+    let plain = fit(Model::Davidson, &both_orders()).unwrap();
+    check(
+        &plain,
+        &[-0.664_015_842_451_607_2, -1.138_013_569_877_277, -0.703_843_663_054_271_2],
+        &[0.332_353_160_089_016_6, 0.344_320_968_662_006_1, 0.258_240_863_685_804_3],
+        -100.482_109_857_987_8,
+    );
+}
+
+#[test]
+fn ties_can_hold_an_item_that_never_lost() {
+    // The same regression in R converges: no separation, although item 0 never lost.
+    let held = Pairs::new(3, [(0, 1, [6., 3., 0.]), (0, 2, [5., 4., 0.]), (1, 2, [4., 2., 3.])]);
+    let fit = fit(Model::Davidson, &held).unwrap();
+    check(
+        &fit,
+        &[-2.465_001_512_417_430_7, -2.615_513_770_721_105, 0.421_658_914_996_931_5],
+        &[1.009_006_844_679_951, 1.031_307_961_436_057],
+        -23.795_947_188_722_64,
+    );
+}
+
+#[test]
+fn bradley_terry_as_bradley_terry_2_has_it() {
+    // R, BradleyTerry2 1.1-2: BTm(cbind(w1, w2), p1, p2), ties as half a win each.
+    let fit = fit(Model::BradleyTerry, &both_orders()).unwrap();
+    check(
+        &fit,
+        &[-0.529_783_465_923_214_3, -0.908_091_803_613_091_6],
+        &[0.294_712_264_034_842, 0.301_651_073_120_763_1],
+        -65.793_671_347_438_94,
+    );
+    assert_eq!((fit.ln_nu, fit.ln_theta, fit.side), (None, None, None));
+}
+
+#[test]
+fn rao_kupper_as_a_direct_maximum_in_r() {
+    // R: nlminb on the log-likelihood written out with plogis, the study's clustering answers, items U, P, I.
+    let study = golden::study();
+    let fit = fit(Model::RaoKupper, &Pairs::of(3, &golden::clusterings(&study, None))).unwrap();
+    close(fit.log_worths[1], 1.093_311_447_480_199, 1e-6);
+    close(fit.log_worths[2], 1.973_583_048_715_374, 1e-6);
+    close(fit.ln_theta.unwrap(), 0.246_849_727_862_148_5, 1e-6);
+    close(fit.log_likelihood, -236.455_320_585_920_2, 1e-9);
+}
+
+#[test]
+fn two_items_in_closed_form() {
+    // STATISTICS 3.4 and 3.6: Davidson ln(36/10) = 1.2809, nu = 8 / sqrt(360) = 0.4216; Rao-Kupper 1.0874, theta 1.4832.
+    let pairs = Pairs::new(2, [(0, 1, [36., 8., 10.])]);
+    let davidson = fit(Model::Davidson, &pairs).unwrap();
+    close(-davidson.log_worths[1], 1.280_933_845_462_064, 1e-12);
+    close(davidson.ln_nu.unwrap().exp(), 0.421_637_021_355_783_9, 1e-12);
+    let threshold = fit(Model::RaoKupper, &pairs).unwrap();
+    close(-threshold.log_worths[1], 1.087_375_860_742_08, 1e-12);
+    close(threshold.ln_theta.unwrap().exp(), 1.483_239_697_419_133, 1e-12);
+}
+
+#[test]
+fn clustered_errors_as_sandwich_has_them() {
+    // R, sandwich 3.0-2: glm(y ~ factor(answer) + x2 + x3 + t - 1, poisson) with a row an answer and outcome;
+    // vcovCL(m, cluster = participant, type = "HC0", cadjust = TRUE).
+    let study = golden::study();
+    let ballots = golden::clusterings(&study, None);
+    let participants = Pairs::by_participant(3, &ballots);
+    assert_eq!(participants.len(), 18);
+    let fitted = fit(Model::Davidson, &Pairs::of(3, &ballots)).unwrap();
+    let covariance = clustered_covariance(&fitted, &participants).unwrap();
+    close(fitted.standard_error(&covariance, 1, 0), 0.409_735_500_836_181_8, 1e-9);
+    close(fitted.standard_error(&covariance, 0, 2), 0.542_410_510_133_580_2, 1e-9);
+    close(covariance[0][1], 0.207_142_499_724_814_55, 1e-9);
+    close(covariance[2][2].sqrt(), 0.292_205_606_375_258_3, 1e-6);
+    let difference = covariance[0][0] + covariance[1][1] - 2.0 * covariance[0][1];
+    close(fitted.standard_error(&covariance, 2, 1), difference.sqrt(), 1e-12);
+    // t(17) at 0.975 is 2.1098155778331806 (scipy.stats.t.ppf).
+    let interval = fitted.clustered_interval(&participants, 2, 0).unwrap();
+    close(interval.high - fitted.log_worths[2], 2.109_815_577_833_180_6 * 0.542_410_510_133_580_2, 1e-8);
+    assert_eq!(clustered_covariance(&fitted, &participants[..1]), None);
+}
+
+#[test]
+fn what_cannot_be_answered_says_why() {
+    let two = |answers| Pairs::new(2, [(0, 1, answers)]);
+    assert_eq!(fit(Model::Davidson, &two([0., 0., 0.])), Err(FitError::Nothing));
+    assert_eq!(fit(Model::Davidson, &two([0., 7., 0.])), Err(FitError::OnlyTies));
+    assert_eq!(fit(Model::Davidson, &Pairs::new(3, [(0, 1, [4., 1., 3.])])), Err(FitError::Disconnected));
+    let confounded = fit(Model::DavidsonSide, &two([36., 8., 10.])).unwrap_err();
+    assert!(
+        confounded.to_string().starts_with("not answerable here, because no pair was shown in both orders")
+    );
+}
+
+#[test]
+fn separated_answers_get_half_a_win_each_way() {
+    for model in [Model::Davidson, Model::RaoKupper, Model::BradleyTerry] {
+        let fit = fit(model, &Pairs::new(2, [(0, 1, [7., 0., 0.])])).unwrap();
+        assert!(fit.penalised, "{model:?}");
+        // No tie: all three are ln(7.5 / 0.5), and the answers themselves have probability (15/16)^7.
+        close(-fit.log_worths[1], 15.0_f64.ln(), 1e-12);
+        close(fit.log_likelihood, 7.0 * (15.0_f64 / 16.0).ln(), 1e-12);
+        assert_eq!(clustered_covariance(&fit, &[Pairs::new(2, []), Pairs::new(2, [])]), None);
+    }
+    let tied = fit(Model::Davidson, &Pairs::new(2, [(0, 1, [7., 2., 0.])])).unwrap();
+    close(-tied.log_worths[1], 15.0_f64.ln(), 1e-12);
+    close(tied.ln_nu.unwrap(), (2.0 / (7.5_f64 * 0.5).sqrt()).ln(), 1e-12);
+    // A tie is half a win for both, so Bradley-Terry needs no penalty: 8 to 1.
+    let halves = fit(Model::BradleyTerry, &Pairs::new(2, [(0, 1, [7., 2., 0.])])).unwrap();
+    assert!(!halves.penalised);
+    close(-halves.log_worths[1], 8.0_f64.ln(), 1e-12);
+}
+
+fn any_answers() -> impl Strategy<Value = Vec<[f64; 3]>> {
+    prop::collection::vec([1..9u8, 0..6u8, 1..9u8].prop_map(|a| a.map(f64::from)), 6)
+}
+
+const ORDERED: [(usize, usize); 6] = [(0, 1), (1, 0), (0, 2), (2, 0), (1, 2), (2, 1)];
+
+fn pairs_of(answers: &[[f64; 3]], label: [usize; 3]) -> Pairs {
+    Pairs::new(3, ORDERED.iter().zip(answers).map(|(&(l, r), &a)| (label[l], label[r], a)))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn labels_do_not_matter(answers in any_answers()) {
+        for model in Model::ALL {
+            let straight = fit(model, &pairs_of(&answers, [0, 1, 2])).unwrap();
+            let turned = fit(model, &pairs_of(&answers, [2, 0, 1])).unwrap();
+            prop_assert!((straight.log_likelihood - turned.log_likelihood).abs() < 1e-9);
+            for (i, j) in ORDERED {
+                let label = [2, 0, 1];
+                let a = straight.log_worths[i] - straight.log_worths[j];
+                let b = turned.log_worths[label[i]] - turned.log_worths[label[j]];
+                prop_assert!((a - b).abs() < 1e-8);
+                let error = |fit: &WorthFit, i, j| fit.standard_error(&fit.covariance, i, j);
+                prop_assert!((error(&straight, i, j) - error(&turned, label[i], label[j])).abs() < 1e-8);
+            }
+        }
+    }
+
+    #[test]
+    fn swapping_sides_turns_the_side_effect_alone(answers in any_answers()) {
+        let swapped = Pairs::new(3, ORDERED.iter().zip(&answers).map(|(&(l, r), &[a, t, b])| (r, l, [b, t, a])));
+        for model in Model::ALL {
+            let straight = fit(model, &pairs_of(&answers, [0, 1, 2])).unwrap();
+            let turned = fit(model, &swapped).unwrap();
+            prop_assert!(straight.log_worths.iter().zip(&turned.log_worths).all(|(a, b)| (a - b).abs() < 1e-8));
+            prop_assert!((straight.side.unwrap_or(0.0) + turned.side.unwrap_or(0.0)).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn a_win_more_raises_the_winner(answers in any_answers(), pair in 0..6usize) {
+        let mut more = answers.clone();
+        more[pair][0] += 1.0;
+        let (left, right) = ORDERED[pair];
+        for model in [Model::Davidson, Model::RaoKupper, Model::BradleyTerry] {
+            let difference = |answers: &[[f64; 3]]| {
+                let fit = fit(model, &pairs_of(answers, [0, 1, 2])).unwrap();
+                fit.log_worths[left] - fit.log_worths[right]
+            };
+            prop_assert!(difference(&more) > difference(&answers));
+        }
+    }
+
+    #[test]
+    fn parameters_match_the_sufficient_statistics(answers in any_answers()) {
+        // At Davidson's maximum the expected number of ties is the number of ties.
+        let pairs = pairs_of(&answers, [0, 1, 2]);
+        let fit = fit(Model::Davidson, &pairs).unwrap();
+        let expected: f64 = pairs.pairs.iter().map(|pair| {
+            let half = 0.5 * (fit.log_worths[pair.left] - fit.log_worths[pair.right]);
+            let nu = fit.ln_nu.unwrap().exp();
+            pair.answers.iter().sum::<f64>() * nu / (half.exp() + nu + (-half).exp())
+        }).sum();
+        prop_assert!((expected - pairs.ties()).abs() < 1e-8);
+    }
+}

@@ -1,0 +1,240 @@
+//! The study's 18 x 27 answers against the golden numbers of STATISTICS 3.12, each to its printed digit.
+
+use super::*;
+use crate::interval::Interval;
+use design::{Arrangement, Clustering, Study};
+use std::path::Path;
+
+/// The paper's study; its bunny is any file that is always there.
+pub(super) fn study() -> Study {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/paper.toml");
+    let text = std::fs::read_to_string(&path).unwrap().replace("../cache/bunny.ply", "paper.toml");
+    Study::parse(&text, &path).unwrap()
+}
+
+/// All 486 answers; items are methods in the study's order.
+pub(super) fn ballots(study: &Study) -> Vec<Ballot> {
+    let text = std::fs::read_to_string(study.responses.as_deref().unwrap()).unwrap();
+    let methods = study.methods();
+    let item = |method| methods.iter().position(|&m| m == method).unwrap();
+    let mut ballots = Vec::new();
+    for (participant, line) in text.lines().skip(1).enumerate() {
+        for (question, cell) in line.trim().split(',').enumerate() {
+            let comparison = &study.comparisons[question];
+            assert_eq!(comparison.question, format!("Q{}", question + 1));
+            let outcome = match cell {
+                "L" => Outcome::Left,
+                "NP" => Outcome::Tie,
+                "R" => Outcome::Right,
+                other => panic!("{other}"),
+            };
+            let (left, right) = (item(comparison.left.method), item(comparison.right.method));
+            ballots.push(Ballot { participant, question, left, right, outcome });
+        }
+    }
+    ballots
+}
+
+/// The clustering questions as items U, P, I (the order the golden worths are printed in), of one arrangement or both.
+pub(super) fn clusterings(study: &Study, of: Option<Arrangement>) -> Vec<Ballot> {
+    let order = [Clustering::None, Clustering::EdgeCollapse, Clustering::Integrated];
+    let item = |clustering| order.iter().position(|&c| c == clustering).unwrap();
+    let mut kept = ballots(study);
+    kept.retain_mut(|ballot| {
+        let comparison = &study.comparisons[ballot.question];
+        let (left, right) = (comparison.left.method, comparison.right.method);
+        (ballot.left, ballot.right) = (item(left.clustering), item(right.clustering));
+        left.arrangement == right.arrangement && of.is_none_or(|of| of == left.arrangement)
+    });
+    kept
+}
+
+fn tested(name: &str, scope: &str) -> contrast::ContrastTest {
+    let study = study();
+    let contrasts = contrast::contrasts(&study);
+    let found: Vec<_> = contrasts.iter().filter(|c| c.name == name && c.scope == scope).collect();
+    assert_eq!(found.len(), 1, "{name} {scope}");
+    found[0].test(&ballots(&study))
+}
+
+#[track_caller]
+fn prints(value: f64, want: &str) {
+    let decimals = want.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let got = format!("{value:.decimals$}");
+    assert_eq!(got, want, "{value}");
+}
+
+#[test]
+fn counts() {
+    let study = study();
+    let all = outcome_counts(&ballots(&study));
+    let sum = |o: usize| all.iter().map(|counts| counts[o]).sum::<u64>();
+    assert_eq!([sum(0), sum(1), sum(2)], [144, 49, 293]);
+    let cases = [
+        ("U-I", "within B", [7, 1, 46]),
+        ("U-I", "within S", [7, 1, 46]),
+        ("U-P", "within B", [10, 1, 43]),
+        ("U-P", "within S", [18, 1, 35]),
+        ("P-I", "within B", [15, 17, 22]),
+        ("P-I", "within S", [3, 6, 45]),
+        ("B-S", "within U", [36, 8, 10]),
+        ("B-S", "within I", [20, 7, 27]),
+        ("B-S", "within P", [28, 7, 19]),
+        ("B-S", "all", [84, 22, 56]),
+        ("B-S", "sphere", [44, 5, 5]),
+    ];
+    for (name, scope, counts) in cases {
+        assert_eq!(tested(name, scope).counts, Some(counts), "{name} {scope}");
+    }
+}
+
+#[test]
+fn sign_flip_of_the_pooled_contrasts() {
+    let cases =
+        [("B-S", 28, "0.00940"), ("U-I", -78, "0.00033"), ("U-P", -50, "0.00259"), ("P-I", -49, "0.00009")];
+    for (name, net, p) in cases {
+        let test = tested(name, "all");
+        assert_eq!(test.sign_flip.net, net);
+        prints(test.sign_flip.p(), p);
+    }
+    prints(sign_test::binomial(84, 56), "0.0222");
+}
+
+#[test]
+fn sign_flip_of_arrangements_within_clusterings() {
+    for (scope, p) in [("within U", "0.00563"), ("within I", "0.30530"), ("within P", "0.29755")] {
+        prints(tested("B-S", scope).sign_flip.p(), p);
+    }
+    // STATISTICS 1.4: the sphere against the other two.
+    prints(tested("B-S", "sphere - others").sign_flip.p(), "0.00005");
+}
+
+#[test]
+fn mean_score_with_its_interval() {
+    let test = tested("B-S", "all");
+    let Interval { low, high } = test.interval.unwrap();
+    prints(test.mean, "0.173");
+    prints(low, "0.056");
+    prints(high, "0.290");
+}
+
+#[test]
+fn holm_over_the_nine_group_contrasts() {
+    let (study, mut p, mut names) = (study(), Vec::new(), Vec::new());
+    for contrast in contrast::contrasts(&study) {
+        if contrast.family == contrast::Family::Groups {
+            p.push(contrast.test(&ballots(&study)).sign_flip.p());
+            names.push(format!("{} {}", contrast.name, contrast.scope));
+        }
+    }
+    assert_eq!(p.len(), 9);
+    let adjusted = holm(&p);
+    let want = [
+        ("U-I within B", "0.0027"),
+        ("U-P within B", "0.0071"),
+        ("P-I within B", "0.8243"),
+        ("U-I within S", "0.0044"),
+        ("U-P within S", "0.2381"),
+        ("P-I within S", "0.0003"),
+        ("B-S within U", "0.0282"),
+        ("B-S within I", "0.8243"),
+        ("B-S within P", "0.8243"),
+    ];
+    for (name, p) in want {
+        prints(adjusted[names.iter().position(|n| n == name).unwrap()], p);
+    }
+}
+
+#[test]
+fn leave_one_out_range() {
+    let (low, high) = tested("B-S", "all").leave_one_out().unwrap();
+    prints(low, "0.0063");
+    prints(high, "0.0188");
+}
+
+#[test]
+fn davidson_of_the_clusterings() {
+    let study = study();
+    let fitted = |of| fit(Model::Davidson, &Pairs::of(3, &clusterings(&study, of))).unwrap();
+    let pooled = fitted(None);
+    prints(pooled.log_worths[1], "1.08196");
+    prints(pooled.log_worths[2], "2.13788");
+    prints(pooled.ln_nu.unwrap(), "-1.46240");
+    for (i, want) in ["0.1980", "0.2282", "0.2061"].into_iter().enumerate() {
+        prints(pooled.covariance[i][i].sqrt(), want);
+    }
+    prints(pooled.log_likelihood, "-238.0987");
+    let cases = [
+        (Arrangement::BodyCentred, ["1.7531", "2.0989", "-1.0629", "-126.4937"]),
+        (Arrangement::SimpleCubic, ["0.5169", "2.3888", "-1.9525", "-100.2690"]),
+    ];
+    for (of, [edge_collapse, integrated, ln_nu, log_likelihood]) in cases {
+        let fit = fitted(Some(of));
+        prints(fit.log_worths[1], edge_collapse);
+        prints(fit.log_worths[2], integrated);
+        prints(fit.ln_nu.unwrap(), ln_nu);
+        prints(fit.log_likelihood, log_likelihood);
+    }
+}
+
+#[test]
+fn side_term_by_likelihood_ratio() {
+    // STATISTICS 1.2: 0.09 (B), 2.08 (S), 0.12 (pooled).
+    let study = study();
+    for (of, want) in
+        [(Some(Arrangement::BodyCentred), "0.09"), (Some(Arrangement::SimpleCubic), "2.08"), (None, "0.12")]
+    {
+        let pairs = Pairs::of(3, &clusterings(&study, of));
+        let [with, without] = [Model::DavidsonSide, Model::Davidson].map(|model| fit(model, &pairs).unwrap());
+        prints(2.0 * (with.log_likelihood - without.log_likelihood), want);
+        assert_eq!(side_design(&pairs), SideDesign::ThroughAdditivity);
+    }
+}
+
+#[test]
+fn friedman_on_clustering_scores() {
+    let study = study();
+    let mut scores = vec![vec![0.0; 3]; 18];
+    for ballot in clusterings(&study, None) {
+        scores[ballot.participant][ballot.left] += ballot.outcome.sign() as f64;
+        scores[ballot.participant][ballot.right] -= ballot.outcome.sign() as f64;
+    }
+    let test = friedman(&scores).unwrap();
+    prints(test.statistic, "23.690");
+    assert_eq!(format!("{:.2e}", test.p), "7.17e-6");
+}
+
+#[test]
+fn agreement_between_participants() {
+    let counts = outcome_counts(&ballots(&study()));
+    prints(alpha(&counts, Metric::Nominal).unwrap(), "0.2465");
+    prints(alpha(&counts, Metric::Ordinal).unwrap(), "0.3063");
+}
+
+#[test]
+fn triads_of_the_clusterings() {
+    let study = study();
+    let mut all = Triads::default();
+    for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
+        for object in 0..3 {
+            let mut of = clusterings(&study, Some(arrangement));
+            of.retain(|ballot| study.comparisons[ballot.question].object == object);
+            all = all.and(triads(&of));
+        }
+    }
+    assert_eq!((all.all, all.decided, all.strict_cycles), (108, 82, 5));
+}
+
+#[test]
+fn one_respondent_answers_against_the_others() {
+    // STATISTICS 1.5: row 16 agrees on 0.37, everyone else on 0.64 to 0.95; 19 left against 8 right.
+    let screened = screening(&ballots(&study()));
+    let shares: Vec<f64> = screened.iter().map(|s| s.agreement().unwrap()).collect();
+    prints(shares[15], "0.37");
+    let others = || shares.iter().enumerate().filter(|(i, _)| *i != 15).map(|(_, &share)| share);
+    prints(others().fold(1.0, f64::min), "0.64");
+    prints(others().fold(0.0, f64::max), "0.95");
+    assert_eq!(screened[15].answers, [19, 0, 8]);
+    let leaning: Vec<[u64; 3]> = screened.iter().map(|s| s.answers).filter(|a| a[0] > a[2]).collect();
+    assert_eq!(leaning.iter().map(|a| [a[0], a[2]]).collect::<Vec<_>>(), [[12, 10], [19, 8]]);
+}

@@ -1,0 +1,191 @@
+//! Models of paired comparison with ties: the chance of each outcome of a pair, given worths.
+//!
+//! Worths are on the log scale, the first item's is 0. With u = l_left - l_right:
+//!
+//! - **Davidson** (1970, J. Amer. Statist. Assoc. 65:317): weights e^{u/2} : nu : e^{-u/2}.
+//! - **Davidson with side** (Davidson and Beaver 1977, Biometrics 33:693), symmetric form: u + delta in place of u, so
+//!   left e^delta pi_l, tie nu e^{delta/2} sqrt(pi_l pi_r), right pi_r. Their own form has gamma = e^-delta and
+//!   nu_o = nu e^{-delta/2}: the same model, but another nu.
+//! - **Rao and Kupper** (1967, J. Amer. Statist. Assoc. 62:194): left pi_l / (pi_l + theta pi_r), right likewise, the rest
+//!   ties; eta = ln theta >= 0. Its worths are on another scale than Davidson's: compare orders, not sizes.
+//! - **Bradley and Terry** (1952, Biometrika 39:324): pi_l / (pi_l + pi_r), a tie counting as half a win for each.
+
+use super::newton::Curvature;
+use super::pairs::{Pair, Pairs};
+
+/// Which model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Model {
+    /// Ties have their own weight.
+    Davidson,
+    /// Davidson's with a bonus for the left side.
+    DavidsonSide,
+    /// Ties by a threshold.
+    RaoKupper,
+    /// Ties are half a win each.
+    BradleyTerry,
+}
+
+impl Model {
+    /// Every model, the primary one first.
+    pub const ALL: [Self; 4] = [Self::Davidson, Self::DavidsonSide, Self::RaoKupper, Self::BradleyTerry];
+
+    /// The name in files.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Davidson => "davidson",
+            Self::DavidsonSide => "davidson-side",
+            Self::RaoKupper => "rao-kupper",
+            Self::BradleyTerry => "bradley-terry",
+        }
+    }
+}
+
+/// Which parameters there are, in order: worths of items 1.., the tie parameter, the side.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Layout {
+    pub(super) model: Model,
+    pub(super) items: usize,
+    /// Without a single tie the tie parameter is at its limit, and is not estimated.
+    pub(super) ties: bool,
+}
+
+impl Layout {
+    pub(super) fn of(model: Model, pairs: &Pairs) -> Self {
+        Self { model, items: pairs.items, ties: model != Model::BradleyTerry && pairs.ties() > 0.0 }
+    }
+
+    /// Index of ln nu or eta.
+    pub(super) fn tie(&self) -> Option<usize> {
+        self.ties.then_some(self.items - 1)
+    }
+
+    /// Index of delta.
+    pub(super) fn side(&self) -> Option<usize> {
+        (self.model == Model::DavidsonSide).then_some(self.items - 1 + usize::from(self.ties))
+    }
+
+    pub(super) fn parameters(&self) -> usize {
+        self.items - 1 + usize::from(self.ties) + usize::from(self.side().is_some())
+    }
+
+    /// Equal worths, no side; eta must start above zero.
+    pub(super) fn start(&self) -> Vec<f64> {
+        let mut start = vec![0.0; self.parameters()];
+        if let (Model::RaoKupper, Some(tie)) = (self.model, self.tie()) {
+            start[tie] = 0.5;
+        }
+        start
+    }
+
+    /// Log-likelihood, without the multinomial constants, and its derivatives.
+    pub(super) fn likelihood(&self, pairs: &Pairs, parameters: &[f64]) -> Curvature {
+        let mut sum = Curvature::zero(self.parameters());
+        for pair in &pairs.pairs {
+            match (self.model, self.tie()) {
+                (Model::RaoKupper, Some(tie)) => self.add_threshold(&mut sum, pair, parameters, tie),
+                _ => self.add_weights(&mut sum, pair, parameters),
+            }
+        }
+        sum
+    }
+
+    /// Derivative of l_left - l_right + delta by the parameters.
+    fn difference(&self, pair: &Pair) -> Vec<f64> {
+        let mut x = vec![0.0; self.parameters()];
+        if pair.left > 0 {
+            x[pair.left - 1] = 1.0;
+        }
+        if pair.right > 0 {
+            x[pair.right - 1] = -1.0;
+        }
+        if let Some(side) = self.side() {
+            x[side] = 1.0;
+        }
+        x
+    }
+
+    /// Davidson and Bradley-Terry: a log-linear exponential family, so the information is n times a covariance.
+    fn add_weights(&self, sum: &mut Curvature, pair: &Pair, parameters: &[f64]) {
+        let x = self.difference(pair);
+        let half: Vec<f64> = x.iter().map(|x| 0.5 * x).collect();
+        let negative: Vec<f64> = half.iter().map(|x| -x).collect();
+        let mut tie = vec![0.0; x.len()];
+        let [left, ties, right] = pair.answers;
+        let (mut features, mut counts) = (vec![half, negative], vec![left, right]);
+        match self.tie() {
+            Some(index) => {
+                tie[index] = 1.0;
+                features.push(tie);
+                counts.push(ties);
+            }
+            None => counts.iter_mut().for_each(|count| *count += 0.5 * ties),
+        }
+        let dot = |feature: &Vec<f64>| -> f64 { feature.iter().zip(parameters).map(|(f, p)| f * p).sum() };
+        let logs: Vec<f64> = features.iter().map(dot).collect();
+        let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let total = largest + logs.iter().map(|log| (log - largest).exp()).sum::<f64>().ln();
+        let n: f64 = counts.iter().sum();
+        let chances: Vec<f64> = logs.iter().map(|log| (log - total).exp()).collect();
+        let mean: Vec<f64> = (0..x.len())
+            .map(|i| features.iter().zip(&chances).map(|(feature, chance)| feature[i] * chance).sum())
+            .collect();
+        for (k, feature) in features.iter().enumerate() {
+            sum.value += counts[k] * (logs[k] - total);
+            for i in 0..x.len() {
+                sum.gradient[i] += counts[k] * (feature[i] - mean[i]);
+                for j in 0..x.len() {
+                    let spread = (feature[i] - mean[i]) * (feature[j] - mean[j]);
+                    sum.information[i][j] += n * chances[k] * spread;
+                }
+            }
+        }
+    }
+
+    /// Rao and Kupper: a logistic cut in three at -eta and eta.
+    fn add_threshold(&self, sum: &mut Curvature, pair: &Pair, parameters: &[f64], tie: usize) {
+        let x = self.difference(pair);
+        let u: f64 = x.iter().zip(parameters).map(|(x, p)| x * p).sum();
+        let eta = parameters[tie];
+        let towards = |sign: f64| {
+            let mut d: Vec<f64> = x.iter().map(|x| sign * x).collect();
+            d[tie] = -1.0;
+            d
+        };
+        let [left, ties, right] = pair.answers;
+        let cuts = [(left, u - eta, towards(1.0)), (right, -u - eta, towards(-1.0))];
+        let logistic = |z: f64| 1.0 / (1.0 + (-z).exp());
+        for (count, z, d) in &cuts {
+            let chance = logistic(*z);
+            sum.value -= count * (-z).exp().ln_1p();
+            for i in 0..x.len() {
+                sum.gradient[i] += count * (1.0 - chance) * d[i];
+                for j in 0..x.len() {
+                    sum.information[i][j] += count * chance * (1.0 - chance) * d[i] * d[j];
+                }
+            }
+        }
+        if ties == 0.0 {
+            return;
+        }
+        // P(tie) = 1 - F(u - eta) - F(-u - eta), factored so that nothing cancels: (e^{2 eta} - 1) F(u - eta) F(-u - eta).
+        let [(_, a, da), (_, b, db)] = &cuts;
+        let (fa, fb) = (logistic(*a), logistic(*b));
+        if eta <= 0.0 {
+            sum.value = f64::NEG_INFINITY;
+            return;
+        }
+        let growth = (2.0 * eta).exp_m1();
+        sum.value += ties * (growth.ln() - (-a).exp().ln_1p() - (-b).exp().ln_1p());
+        for i in 0..x.len() {
+            let free = if i == tie { 2.0 * (1.0 + 1.0 / growth) } else { 0.0 };
+            sum.gradient[i] += ties * (free + (1.0 - fa) * da[i] + (1.0 - fb) * db[i]);
+            for j in 0..x.len() {
+                let curved = fa * (1.0 - fa) * da[i] * da[j] + fb * (1.0 - fb) * db[i] * db[j];
+                // d2/d eta2 of ln(e^{2 eta} - 1) = -4 e^{2 eta} / (e^{2 eta} - 1)^2.
+                let free = if i == tie && j == tie { 4.0 * (growth + 1.0) / (growth * growth) } else { 0.0 };
+                sum.information[i][j] += ties * (curved + free);
+            }
+        }
+    }
+}

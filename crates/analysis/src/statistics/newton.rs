@@ -1,0 +1,130 @@
+//! Newton's method on a concave log-likelihood, and the small dense algebra it needs.
+
+/// A square matrix by rows.
+pub type Matrix = Vec<Vec<f64>>;
+
+/// A log-likelihood at one point.
+#[derive(Debug, Clone)]
+pub(super) struct Curvature {
+    /// The log-likelihood.
+    pub(super) value: f64,
+    /// Its gradient.
+    pub(super) gradient: Vec<f64>,
+    /// Minus its matrix of second derivatives.
+    pub(super) information: Matrix,
+}
+
+impl Curvature {
+    /// Zero in `parameters` dimensions.
+    pub(super) fn zero(parameters: usize) -> Self {
+        let information = vec![vec![0.0; parameters]; parameters];
+        Self { value: 0.0, gradient: vec![0.0; parameters], information }
+    }
+}
+
+/// The maximum, and the inverse of the information there: the covariance of the estimates.
+pub(super) struct Maximum {
+    pub(super) at: Vec<f64>,
+    pub(super) covariance: Matrix,
+}
+
+/// No estimate is taken seriously beyond this log-odds: the likelihood is then flat towards infinity.
+const FARTHEST: f64 = 40.0;
+
+/// Climbs from `start` with halved steps until the gain left, g' H^-1 g, is below 1e-13, then takes one step more: the
+/// convergence being quadratic, what is left is rounding.
+///
+/// `None` if the information is singular or the climb leads to infinity.
+pub(super) fn maximise(start: Vec<f64>, likelihood: impl Fn(&[f64]) -> Curvature) -> Option<Maximum> {
+    let mut at = start;
+    let mut here = likelihood(&at);
+    for _ in 0..200 {
+        let covariance = inverse(&here.information)?;
+        let step = times(&covariance, &here.gradient);
+        let gain: f64 = step.iter().zip(&here.gradient).map(|(s, g)| s * g).sum();
+        let forward = |part: f64| -> Vec<f64> { at.iter().zip(&step).map(|(a, s)| a + part * s).collect() };
+        if gain < 1e-13 {
+            at = forward(1.0);
+            let covariance = inverse(&likelihood(&at).information)?;
+            return Some(Maximum { at, covariance });
+        }
+        let mut part = 1.0;
+        let next = loop {
+            let there = likelihood(&forward(part));
+            if there.value >= here.value {
+                break there;
+            }
+            part *= 0.5;
+            if part < 1e-9 {
+                return None;
+            }
+        };
+        at = forward(part);
+        here = next;
+        if at.iter().any(|x| x.abs() > FARTHEST) {
+            return None;
+        }
+    }
+    None
+}
+
+/// The inverse of a symmetric positive definite matrix by Cholesky's factors; `None` if it is not one.
+pub(super) fn inverse(matrix: &Matrix) -> Option<Matrix> {
+    let n = matrix.len();
+    let mut factor = vec![vec![0.0; n]; n];
+    for i in 0..n {
+        for j in 0..=i {
+            let sum: f64 = (0..j).map(|k| factor[i][k] * factor[j][k]).sum();
+            let rest = matrix[i][j] - sum;
+            if i != j {
+                factor[i][j] = rest / factor[j][j];
+            } else if rest > 1e-11 * matrix[i][i].abs() && rest > 0.0 {
+                factor[i][i] = rest.sqrt();
+            } else {
+                return None;
+            }
+        }
+    }
+    // Symmetric: its columns are its rows.
+    let mut inverse = Vec::with_capacity(n);
+    for column in 0..n {
+        let mut x = vec![0.0; n];
+        for i in 0..n {
+            let sum: f64 = (0..i).map(|k| factor[i][k] * x[k]).sum();
+            x[i] = (f64::from(i == column) - sum) / factor[i][i];
+        }
+        for i in (0..n).rev() {
+            let sum: f64 = (i + 1..n).map(|k| factor[k][i] * x[k]).sum();
+            x[i] = (x[i] - sum) / factor[i][i];
+        }
+        inverse.push(x);
+    }
+    Some(inverse)
+}
+
+/// Matrix times vector.
+pub(super) fn times(matrix: &Matrix, vector: &[f64]) -> Vec<f64> {
+    matrix.iter().map(|row| row.iter().zip(vector).map(|(a, b)| a * b).sum()).collect()
+}
+
+/// a' M b.
+pub(super) fn quadratic(a: &[f64], matrix: &Matrix, b: &[f64]) -> f64 {
+    a.iter().zip(times(matrix, b)).map(|(x, y)| x * y).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverts_and_refuses() {
+        let matrix = vec![vec![4.0, 2.0, 0.6], vec![2.0, 3.0, 0.4], vec![0.6, 0.4, 2.0]];
+        let inverted = inverse(&matrix).unwrap();
+        for (i, row) in matrix.iter().enumerate() {
+            let unit = times(&inverted, row);
+            assert!(unit.iter().enumerate().all(|(j, x)| (x - f64::from(i == j)).abs() < 1e-14), "{unit:?}");
+        }
+        assert_eq!(inverse(&vec![vec![1.0, 1.0], vec![1.0, 1.0]]), None);
+        assert_eq!(inverse(&vec![vec![-1.0]]), None);
+    }
+}

@@ -1,0 +1,86 @@
+//! Answers added up by who stood left and who stood right: all that the models need to know.
+
+use super::ballot::{Ballot, Outcome};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Answers to one item on the left of another; parts of answers where a penalty was added.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pair {
+    /// Item on the left.
+    pub left: usize,
+    /// Item on the right.
+    pub right: usize,
+    /// Answers `[left, tie, right]`.
+    pub answers: [f64; 3],
+}
+
+/// All pairs of a group of items, ordered by left and right item, without repeats.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pairs {
+    /// How many items.
+    pub items: usize,
+    /// Pairs with an answer at least, or kept by [`Pairs::by_participant`].
+    pub pairs: Vec<Pair>,
+}
+
+impl Pairs {
+    /// Adds up answers given as `(left, right, [left, tie, right])`; the same pair may come more than once.
+    ///
+    /// # Panics
+    /// If an item is not below `items`, or is compared with itself.
+    pub fn new(items: usize, answers: impl IntoIterator<Item = (usize, usize, [f64; 3])>) -> Self {
+        let mut sums: BTreeMap<(usize, usize), [f64; 3]> = BTreeMap::new();
+        for (left, right, counts) in answers {
+            assert!(left < items && right < items && left != right, "items {left}, {right} of {items}");
+            let sum = sums.entry((left, right)).or_default();
+            (0..3).for_each(|o| sum[o] += counts[o]);
+        }
+        let pair = |((left, right), answers)| Pair { left, right, answers };
+        Self { items, pairs: sums.into_iter().map(pair).collect() }
+    }
+
+    /// Adds up ballots.
+    ///
+    /// # Panics
+    /// As [`Pairs::new`].
+    pub fn of<'a>(items: usize, ballots: impl IntoIterator<Item = &'a Ballot>) -> Self {
+        let one = |b: &Ballot| (b.left, b.right, Outcome::ALL.map(|o| f64::from(u8::from(o == b.outcome))));
+        Self::new(items, ballots.into_iter().map(one))
+    }
+
+    /// One a participant who answered at all, in the order of participants.
+    pub fn by_participant(items: usize, ballots: &[Ballot]) -> Vec<Self> {
+        let mut of: BTreeMap<usize, Vec<&Ballot>> = BTreeMap::new();
+        ballots.iter().for_each(|ballot| of.entry(ballot.participant).or_default().push(ballot));
+        of.into_values().map(|ballots| Self::of(items, ballots)).collect()
+    }
+
+    /// The sum of several, as of resampled participants.
+    pub fn sum<'a>(items: usize, parts: impl IntoIterator<Item = &'a Self>) -> Self {
+        let all = parts.into_iter().flat_map(|part| part.pairs.iter());
+        Self::new(items, all.map(|pair| (pair.left, pair.right, pair.answers)))
+    }
+
+    /// Half a win each way on every compared pair, shared by its two orders if both were shown: the stated penalty that
+    /// keeps separated estimates finite. Pulls every worth towards its neighbours'.
+    pub fn with_half_wins(&self) -> Self {
+        let orders: BTreeSet<(usize, usize)> = self.pairs.iter().map(|p| (p.left, p.right)).collect();
+        let mut penalised = self.clone();
+        for pair in &mut penalised.pairs {
+            let part = if orders.contains(&(pair.right, pair.left)) { 0.25 } else { 0.5 };
+            pair.answers[0] += part;
+            pair.answers[2] += part;
+        }
+        penalised
+    }
+
+    /// Sum of the ties.
+    pub fn ties(&self) -> f64 {
+        self.pairs.iter().map(|pair| pair.answers[1]).sum()
+    }
+
+    /// Sum of all answers.
+    pub fn answers(&self) -> f64 {
+        self.pairs.iter().flat_map(|pair| pair.answers).sum()
+    }
+}

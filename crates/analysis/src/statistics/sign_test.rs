@@ -1,0 +1,56 @@
+//! Tests of one question, where each participant answers once: the sign test, and what it does about ties.
+
+use super::sign_flip::two_sided;
+use statrs::distribution::{ContinuousCDF, Normal};
+use statrs::function::factorial::ln_binomial;
+
+/// Two-sided sign test of `wins` against `losses`, ties dropped: twice the upper tail of Binomial(wins + losses, 1/2),
+/// at most 1 (Dixon and Mood 1946). 1 if nothing was decided.
+///
+/// Over several answers of one person it claims more than it knows: use [`sign_flip`](super::sign_flip::sign_flip).
+pub fn binomial(wins: u64, losses: u64) -> f64 {
+    walk(wins + losses, wins.abs_diff(losses))
+}
+
+/// P(|wins - losses| >= difference) among `decided` fair answers: the sign-flip test with one answer each.
+fn walk(decided: u64, difference: u64) -> f64 {
+    if difference == 0 { 1.0 } else { two_sided(&[(1, decided)], difference as i64).p() }
+}
+
+/// The asymptotically uniformly most powerful test of Coakley and Heise (1996, Biometrics 52:1242):
+/// z = (wins - losses) / sqrt(wins + losses) and its two-sided normal p. `None` if nothing was decided.
+pub fn coakley_heise(wins: u64, losses: u64) -> Option<(f64, f64)> {
+    let decided = wins + losses;
+    let z = (wins as f64 - losses as f64) / (decided as f64).sqrt();
+    (decided > 0).then(|| (z, 2.0 * Normal::standard().cdf(-z.abs())))
+}
+
+/// The trinomial test (Bian, McAleer and Wong 2011, Math. Comput. Simul. 81:1153), two-sided: P(|D| >= |wins - losses|)
+/// where D adds up `n` independent steps of +1, 0, -1 with P(0) = ties / n and the rest shared evenly.
+///
+/// Computed by conditioning on the number of decided answers, a Binomial(n, 1 - ties/n). Treats the observed share of
+/// ties as known: a sensitivity check, not the default. 1 if nothing was decided.
+pub fn trinomial(wins: u64, ties: u64, losses: u64) -> f64 {
+    let (n, difference) = (wins + ties + losses, wins.abs_diff(losses));
+    if difference == 0 {
+        return 1.0;
+    }
+    if ties == 0 {
+        return binomial(wins, losses);
+    }
+    let decided_share = (wins + losses) as f64 / n as f64;
+    let ln_density = |decided: u64| {
+        let (k, rest) = (decided as f64, (n - decided) as f64);
+        ln_binomial(n, decided) + k * decided_share.ln() + rest * (1.0 - decided_share).ln()
+    };
+    // Beyond 40 standard deviations a binomial holds less than any double.
+    let spread = 40.0 * (n as f64 * decided_share * (1.0 - decided_share)).sqrt() + 40.0;
+    let middle = wins + losses;
+    let (low, high) = (difference.max(middle.saturating_sub(spread as u64)), n.min(middle + spread as u64));
+    // A walk of k steps reaches the difference or the next sum of k's parity.
+    let p = |k: u64| ln_density(k).exp() * walk(k, difference + (k - difference) % 2);
+    (low..=high).filter(|&k| difference + (k - difference) % 2 <= k).map(p).sum::<f64>().min(1.0)
+}
+
+#[cfg(test)]
+mod tests;
