@@ -14,6 +14,7 @@
 
 mod answers;
 mod answers_error;
+mod ballots;
 mod claims;
 mod comparison;
 mod figures;
@@ -36,10 +37,13 @@ mod fixture;
 pub use answers::{Answers, Choice, read_answers};
 pub use answers_error::AnswersError;
 pub use comparison::unexplained_differences;
+pub use ballots::{BallotGroup, ballot_groups, ballots};
 pub use figures::{Figure, figures};
 pub use fraction::Fraction;
 pub use inputs::{AnalysisError, Inputs};
 pub use table::{Cell, Column, Table};
+pub use tables::contrasts::pair_tests;
+pub use tables::models::model_tables;
 pub use tables::tables;
 pub use tally::{QuestionCount, Tally};
 pub use verdict::Verdict;

@@ -1,15 +1,20 @@
 //! Every table of a study.
 
+mod agreement;
 mod answers;
 mod benchmark;
+pub(crate) mod contrasts;
 mod design;
 mod mesh_quality;
+pub(crate) mod models;
 pub(crate) mod preferences;
 
+use crate::answers::Answers;
 use crate::inputs::{AnalysisError, Inputs};
 use crate::table::Table;
 use crate::tally::Tally;
-use crate::{claims, comparison};
+use crate::{ballots, claims, comparison};
+use ::design::Study;
 
 /// Every table whose inputs are there, in the order of the paper's and then our own.
 ///
@@ -26,6 +31,7 @@ pub fn tables(inputs: &Inputs<'_>) -> Result<Vec<Table>, AnalysisError> {
         tables.push(answers::answers(inputs.study, answers));
         tables.push(answers::counts(inputs.study, tally));
         tables.extend(preferences::all(inputs.study, tally));
+        tables.extend(statistics(inputs.study, answers));
     }
     tables.extend(mesh_quality::quality(inputs));
     tables.extend(mesh_quality::topology(inputs));
@@ -33,6 +39,17 @@ pub fn tables(inputs: &Inputs<'_>) -> Result<Vec<Table>, AnalysisError> {
     tables.extend(comparison::tables(inputs, tally));
     tables.extend(claims::table(inputs, tally));
     Ok(tables)
+}
+
+/// What holds up beside the factors: tests, models, agreement, screening.
+fn statistics(study: &Study, answers: &Answers) -> Vec<Table> {
+    let ballots = ballots::ballots(study, answers);
+    let groups = ballots::ballot_groups(study, &ballots);
+    let mut tables = vec![contrasts::study_tests(study, &ballots), contrasts::omnibus(study, &ballots)];
+    tables.extend(models::model_tables(&groups));
+    tables.extend([agreement::agreement(study, &ballots), agreement::respondents(&ballots)]);
+    tables.retain(|table| !table.rows.is_empty());
+    tables
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
 //! Contrasts of a study: which answers speak for one property over another, with everything else equal.
 
-use super::ballot::Ballot;
+use super::ballot::{Ballot, Outcome};
 use super::bootstrap::{BootstrapInterval, Resampling, bca};
 use super::sign_flip::{SignFlip, sign_flip};
 use crate::interval::{Interval, t_over_respondents};
 use design::{Arrangement, Clustering, Study};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The families within which p values are adjusted, declared before looking.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -65,22 +65,33 @@ pub struct ContrastTest {
 impl Contrast {
     /// Tests it on ballots, whose questions are the study's.
     pub fn test(&self, ballots: &[Ballot]) -> ContrastTest {
+        let weighted = |ballot: &Ballot| {
+            let weight = self.weights.get(&ballot.question)?;
+            Some((ballot.participant, *weight, ballot.outcome))
+        };
+        let test = ContrastTest::of(ballots.iter().filter_map(weighted));
+        // Counts of answers mean something only if all weigh the same.
+        let counts = test.counts.filter(|_| self.family != Family::Interactions);
+        ContrastTest { counts, ..test }
+    }
+}
+
+impl ContrastTest {
+    /// Tests answers given as `(participant, weight, outcome)`; a positive weight speaks for the left side.
+    pub fn of(answers: impl IntoIterator<Item = (usize, i64, Outcome)>) -> Self {
         let mut of: BTreeMap<usize, (i64, i64)> = BTreeMap::new();
         let mut counts = [0; 3];
-        for ballot in ballots {
-            if let Some(&weight) = self.weights.get(&ballot.question) {
-                let (sum, size) = of.entry(ballot.participant).or_default();
-                let signed = weight * ballot.outcome.sign();
-                *sum += signed;
-                *size += weight.abs();
-                counts[(1 - signed.signum()) as usize] += 1;
-            }
+        for (participant, weight, outcome) in answers {
+            let (sum, size) = of.entry(participant).or_default();
+            let signed = weight * outcome.sign();
+            *sum += signed;
+            *size += weight.abs();
+            counts[(1 - signed.signum()) as usize] += 1;
         }
         let differences: Vec<i64> = of.values().map(|&(sum, _)| sum).collect();
         let scores: Vec<f64> = of.values().map(|&(sum, size)| sum as f64 / size as f64).collect();
-        let simple = self.family != Family::Interactions;
-        ContrastTest {
-            counts: simple.then_some(counts),
+        Self {
+            counts: Some(counts),
             sign_flip: sign_flip(&differences),
             mean: if scores.is_empty() { 0.0 } else { scores.iter().sum::<f64>() / scores.len() as f64 },
             interval: t_over_respondents(&scores),
@@ -88,17 +99,17 @@ impl Contrast {
             scores,
         }
     }
-}
 
-impl ContrastTest {
     /// Smallest and largest p when each participant in turn is left out; `None` for fewer than two.
     pub fn leave_one_out(&self) -> Option<(f64, f64)> {
-        let without = |left_out: usize| {
+        let without = |left_out: &i64| {
             let mut others = self.differences.clone();
-            others.remove(left_out);
+            others.remove(others.iter().position(|d| d == left_out).expect("one of them"));
             sign_flip(&others).p()
         };
-        let all = (self.differences.len() > 1).then(|| (0..self.differences.len()).map(without));
+        // Participants with the same difference leave the same p behind.
+        let distinct: BTreeSet<i64> = self.differences.iter().copied().collect();
+        let all = (self.differences.len() > 1).then(|| distinct.iter().map(without));
         all.map(|p| p.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p))))
     }
 

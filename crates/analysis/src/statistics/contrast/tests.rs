@@ -1,5 +1,4 @@
 use super::*;
-use crate::statistics::Outcome;
 use crate::statistics::golden;
 use proptest::prelude::*;
 

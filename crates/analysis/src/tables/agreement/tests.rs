@@ -1,0 +1,37 @@
+use super::*;
+use crate::ballots::ballots;
+use crate::fixture;
+
+#[test]
+fn the_papers_participants() {
+    let study = fixture::study();
+    let ballots = ballots(&study, &fixture::answers(&study));
+    let table = agreement(&study, &ballots);
+    let shown = table.shown_rows();
+    let scopes: Vec<&str> = shown.iter().map(|row| row[0].as_str()).collect();
+    assert_eq!(scopes, ["all", "B", "S", "U", "I", "P"]);
+    // STATISTICS 3.12: alpha 0.2465 and 0.3063; triads 108, 82 decided, 5 circular.
+    assert_eq!(shown[0][1..4], ["27", "0.2465", "0.3063"]);
+    assert_eq!(shown[0][8..11], ["108", "82", "5"]);
+    let circles = |row: usize| shown[row][10].parse::<u64>().unwrap();
+    assert_eq!(circles(1) + circles(2), 5);
+    // Groups of two items have no triads.
+    assert!(shown[3..].iter().all(|row| row[1] == "3" && row[8..].iter().all(String::is_empty)));
+}
+
+#[test]
+fn respondent_sixteen_stands_out() {
+    // STATISTICS 1.5.
+    let study = fixture::study();
+    let table = respondents(&ballots(&study, &fixture::answers(&study)));
+    assert_eq!(table.rows.len(), 18);
+    let row = &table.shown_rows()[15];
+    assert_eq!(row[..4], ["16", "19", "0", "8"]);
+    let agreement = |row: &[Cell]| match row[8] {
+        Cell::Number(share, _) => share,
+        _ => panic!("no share"),
+    };
+    assert_eq!(format!("{:.2}", agreement(&table.rows[15])), "0.37");
+    let others = table.rows.iter().enumerate().filter(|(i, _)| *i != 15);
+    assert!(others.map(|(_, row)| agreement(row)).all(|share| (0.635..0.955).contains(&share)));
+}
