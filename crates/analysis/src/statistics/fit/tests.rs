@@ -51,6 +51,20 @@ fn davidson_as_a_poisson_regression_in_r() {
 }
 
 #[test]
+fn davidson_as_psychotools_has_it() {
+    // R, psychotools 0.7-2: btmodel(paircomp(answers, labels = c("U", "P", "I"), mscale = -1:1), ref = "U", undecided = TRUE)
+    let study = golden::study();
+    let fit = fit(Model::Davidson, &Pairs::of(3, &golden::clusterings(&study, None))).unwrap();
+    let want = [(1.081_960_316_899_948, 0.198_009_574), (2.137_880_081_239_614, 0.228_184_016)];
+    for (i, (estimate, error)) in want.into_iter().enumerate() {
+        close(fit.log_worths[i + 1], estimate, 1e-8);
+        close(fit.covariance[i][i].sqrt(), error, 1e-6);
+    }
+    close(fit.ln_nu.unwrap(), -1.462_395_353_930_313, 1e-8);
+    close(fit.log_likelihood, -238.098_689_966_514_1, 1e-9);
+}
+
+#[test]
 fn ties_can_hold_an_item_that_never_lost() {
     // The same regression in R converges: no separation, although item 0 never lost.
     let held = Pairs::new(3, [(0, 1, [6., 3., 0.]), (0, 2, [5., 4., 0.]), (1, 2, [4., 2., 3.])]);
@@ -163,7 +177,7 @@ fn pairs_of(answers: &[[f64; 3]], label: [usize; 3]) -> Pairs {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
     fn labels_do_not_matter(answers in any_answers()) {
@@ -204,6 +218,22 @@ proptest! {
                 fit.log_worths[left] - fit.log_worths[right]
             };
             prop_assert!(difference(&more) > difference(&answers));
+        }
+    }
+
+    #[test]
+    fn separation_is_judged_as_the_climb_finds_it(
+        answers in prop::collection::vec([0..3u8, 0..3u8, 0..3u8].prop_map(|a| a.map(f64::from)), 6),
+        sparse in 1..4usize,
+    ) {
+        let kept: Vec<[f64; 3]> =
+            answers.iter().enumerate().map(|(i, &a)| if i % sparse == 0 { a } else { [0.0; 3] }).collect();
+        let pairs = pairs_of(&kept, [0, 1, 2]);
+        let judged = separation(&pairs);
+        prop_assume!(judged != Separation::Disconnected && pairs.ties() < pairs.answers());
+        for model in [Model::Davidson, Model::RaoKupper] {
+            let found = estimate(model, &pairs, &pairs, false).is_some();
+            prop_assert_eq!(found, judged != Separation::Separated, "{:?} {:?}", model, judged);
         }
     }
 
