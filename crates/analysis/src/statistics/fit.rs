@@ -123,13 +123,21 @@ impl WorthFit {
         quadratic(&x, covariance, &x).max(0.0).sqrt()
     }
 
-    /// t interval at [`LEVEL`] for l_item - l_other with the sandwich of `participants` and m - 1 degrees of freedom.
-    pub fn clustered_interval(&self, participants: &[Pairs], item: usize, other: usize) -> Option<Interval> {
-        let covariance = clustered_covariance(self, participants)?;
+    /// t interval at [`LEVEL`] for l_item - l_other with the sandwich of so many participants, on m - 1 degrees of freedom.
+    ///
+    /// # Panics
+    /// If there is no such item, or with fewer than two participants.
+    pub fn clustered_interval(
+        &self,
+        sandwich: &Matrix,
+        participants: usize,
+        item: usize,
+        other: usize,
+    ) -> Interval {
         let middle = self.log_worths[item] - self.log_worths[other];
-        let t = StudentsT::new(0.0, 1.0, participants.len() as f64 - 1.0).expect("two participants or more");
-        let half = t.inverse_cdf(0.5 + LEVEL / 2.0) * self.standard_error(&covariance, item, other);
-        Some(Interval { low: middle - half, high: middle + half })
+        let t = StudentsT::new(0.0, 1.0, participants as f64 - 1.0).expect("two participants or more");
+        let half = t.inverse_cdf(0.5 + LEVEL / 2.0) * self.standard_error(sandwich, item, other);
+        Interval { low: middle - half, high: middle + half }
     }
 }
 

@@ -68,8 +68,9 @@ fn add_worths(table: &mut Table, group: &BallotGroup, fitted: &WorthFit, partici
     for (item, name) in group.items.iter().enumerate() {
         let estimated = item > 0;
         let error = |covariance| fitted.standard_error(covariance, item, 0);
-        let interval = fitted.clustered_interval(participants, item, 0).filter(|_| estimated);
-        let resampled = resampled(fitted, participants, item).filter(|_| estimated);
+        let sandwich = clustered.as_ref().filter(|_| estimated);
+        let interval = sandwich.map(|s| fitted.clustered_interval(s, participants.len(), item, 0));
+        let resampled = resampled(fitted, participants, item);
         table.push(vec![
             Cell::text(&group.name),
             Cell::text(name),

@@ -130,7 +130,7 @@ fn clustered_errors_as_sandwich_has_them() {
     let difference = covariance[0][0] + covariance[1][1] - 2.0 * covariance[0][1];
     close(fitted.standard_error(&covariance, 2, 1), difference.sqrt(), 1e-12);
     // t(17) at 0.975 is 2.1098155778331806 (scipy.stats.t.ppf).
-    let interval = fitted.clustered_interval(&participants, 2, 0).unwrap();
+    let interval = fitted.clustered_interval(&covariance, 18, 2, 0);
     close(interval.high - fitted.log_worths[2], 2.109_815_577_833_180_6 * 0.542_410_510_133_580_2, 1e-8);
     assert_eq!(clustered_covariance(&fitted, &participants[..1]), None);
 }
