@@ -91,6 +91,18 @@ fn bradley_terry_as_bradley_terry_2_has_it() {
 }
 
 #[test]
+fn without_ties_every_model_is_what_choix_has() {
+    // PyPI choix 0.4.1: mm_pairwise(3, decided answers, alpha=0, tol=1e-14), less the first.
+    let mut decided = both_orders();
+    decided.pairs.iter_mut().for_each(|pair| pair.answers[1] = 0.0);
+    for model in [Model::Davidson, Model::RaoKupper, Model::BradleyTerry] {
+        let fit = fit(model, &decided).unwrap();
+        close(fit.log_worths[1], -0.660_795_805_670_238_2, 1e-10);
+        close(fit.log_worths[2], -1.117_939_393_056_340_4, 1e-10);
+    }
+}
+
+#[test]
 fn rao_kupper_as_a_direct_maximum_in_r() {
     // R: nlminb on the log-likelihood written out with plogis, the study's clustering answers, items U, P, I.
     let study = golden::study();
