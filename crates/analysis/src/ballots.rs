@@ -105,7 +105,8 @@ mod tests {
         for ((name, items, ballots), want) in seen.iter().zip(want) {
             let mut sorted: Vec<&str> = items.split(' ').collect();
             let mut wanted: Vec<&str> = want.1.split(' ').collect();
-            (sorted.sort_unstable(), wanted.sort_unstable());
+            sorted.sort_unstable();
+            wanted.sort_unstable();
             assert_eq!((*name, sorted, *ballots), (want.0, wanted, want.2));
         }
         // Q7 shows bu on the left of su; sixteen of eighteen chose it.

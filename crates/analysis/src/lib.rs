@@ -36,8 +36,8 @@ mod fixture;
 
 pub use answers::{Answers, Choice, read_answers};
 pub use answers_error::AnswersError;
-pub use comparison::unexplained_differences;
 pub use ballots::{BallotGroup, ballot_groups, ballots};
+pub use comparison::unexplained_differences;
 pub use figures::{Figure, figures};
 pub use fraction::Fraction;
 pub use inputs::{AnalysisError, Inputs};
