@@ -3,16 +3,19 @@
 ISOSTUDY = cargo run --release --locked --quiet --package cli --bin isostudy --
 BUNNY ?=
 
-.PHONY: help study test quick bench figures check bunny clean
+.PHONY: help study test test-long quick bench figures check bunny clean
 
 help: ## list these entries
-	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):[^#]*## /\1\t/' | expand -t 10
+	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 11
 
 study: bunny ## regenerate every mesh, animation, table and figure of the paper into results/paper/
 	$(ISOSTUDY) study configs/paper.toml
 
 test: bunny ## run every test
 	cargo test --release --locked --workspace
+
+test-long: bunny ## run the tests that take minutes: 74,640 volumes against the manifold guarantee, and more
+	cargo test --release --locked --workspace -- --ignored
 
 quick: bunny ## the same study made small, into results/quick/
 	$(ISOSTUDY) study configs/quick.toml
