@@ -252,7 +252,7 @@ fn bunny_signs_agree_with_solid_angles() {
 }
 
 #[test]
-#[ignore = "a minute of computing"]
+#[ignore = "a minute: run by make test-long"]
 fn bunny_signs_agree_with_solid_angles_at_30_000_points() {
     check_bunny_signs(30_000);
 }

@@ -110,30 +110,3 @@ fn captions_say_what_is_left_out() {
     let caption = meshes::pass_times(&all.inputs()).unwrap().caption;
     assert!(caption.contains("Published times are from another machine."), "{caption}");
 }
-
-#[test]
-#[ignore = "for a look: writes figures and tables to ANALYSIS_OUT, from the mesh records under ANALYSIS_MESHES if set"]
-fn dump() {
-    let out = std::path::PathBuf::from(std::env::var("ANALYSIS_OUT").unwrap());
-    let mut all = Everything::of(fixture::study());
-    if let Ok(records) = std::env::var("ANALYSIS_MESHES") {
-        all.meshes.clear();
-        for purpose in ["benchmark", "stimulus", "indexed"] {
-            for entry in std::fs::read_dir(std::path::Path::new(&records).join(purpose)).unwrap() {
-                let path = entry.unwrap().path();
-                if path.extension().is_some_and(|extension| extension == "json") {
-                    all.meshes.push(serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap());
-                }
-            }
-        }
-    }
-    for f in figures(&all.inputs()).unwrap() {
-        std::fs::write(out.join(format!("{}.svg", f.name)), &f.svg).unwrap();
-        std::fs::write(out.join(format!("{}.png", f.name)), &f.png).unwrap();
-    }
-    for t in crate::tables(&all.inputs()).unwrap() {
-        std::fs::write(out.join(format!("{}.csv", t.name)), t.to_csv()).unwrap();
-        std::fs::write(out.join(format!("{}.md", t.name)), t.to_markdown()).unwrap();
-        std::fs::write(out.join(format!("{}.tex", t.name)), t.to_latex()).unwrap();
-    }
-}
