@@ -4,6 +4,8 @@
 //! nearer to it than to the other end, partitions them into clusters and places one vertex a cluster. Vertices are
 //! numbered in storage order of their points, then by direction.
 
+use std::cmp::Ordering;
+
 use glam::Vec3;
 
 use crate::ExtractError;
@@ -71,6 +73,7 @@ pub(crate) fn place_vertices(
         guard: Guard::get(lattice.arrangement()),
         samples,
         settings,
+        ties: Ties::of(settings.topology),
         sides,
         edges,
         positions: Vec::new(),
@@ -101,6 +104,7 @@ struct VertexStage<'a> {
     guard: &'static Guard,
     samples: &'a [f32],
     settings: &'a ExtractSettings,
+    ties: Ties,
     sides: &'a Sides,
     edges: &'a mut EdgeTable,
     positions: Vec<Vec3>,
@@ -130,7 +134,7 @@ impl VertexStage<'_> {
             crossing |= 1 << direction;
             let neighbour_value = self.samples[neighbour];
             let there = self.settings.isovalue - neighbour_value;
-            if !is_nearer(self.settings.topology, inside, difference, there) {
+            if !self.ties.is_near(inside, difference, there) {
                 continue;
             }
             near |= 1 << direction;
@@ -195,15 +199,33 @@ impl VertexStage<'_> {
     }
 }
 
-/// Whether a crossing belongs to this end: it is nearer to the smaller difference from the isovalue. A difference
-/// that is not a number leaves it to the inside end. A crossing in the middle belongs to the inside end too; as
-/// published, to both.
-fn is_nearer(topology: Topology, inside: bool, here: f32, there: f32) -> bool {
-    let (here, there) = (here.abs(), there.abs());
-    match topology {
-        Topology::Published => here <= there || inside && there.is_nan(),
-        Topology::Guarded if inside => here <= there || there.is_nan(),
-        Topology::Guarded => here < there,
+/// What becomes of a crossing in the very middle of its edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Ties {
+    /// It belongs to both ends, as published.
+    BothEnds,
+    /// It belongs to the inside end, so that every crossing has one owner.
+    InsideEnd,
+}
+
+impl Ties {
+    fn of(topology: Topology) -> Self {
+        match topology {
+            Topology::Guarded => Self::InsideEnd,
+            Topology::Published => Self::BothEnds,
+        }
+    }
+
+    /// Whether a crossing belongs to this end: it is nearer to the smaller difference from the isovalue. A
+    /// difference that is not a number leaves it to the inside end.
+    #[inline(always)]
+    pub(crate) fn is_near(self, inside: bool, here: f32, there: f32) -> bool {
+        let (here, there) = (here.abs(), there.abs());
+        match self {
+            Self::BothEnds => here <= there || inside && there.is_nan(),
+            Self::InsideEnd if inside => !matches!(there.partial_cmp(&here), Some(Ordering::Less)),
+            Self::InsideEnd => here < there,
+        }
     }
 }
 
@@ -217,18 +239,14 @@ mod tests {
         for outside in values {
             for inside in &values[1..4] {
                 let (d_out, d_in) = (outside, -inside);
-                let owners = |topology| {
-                    [is_nearer(topology, true, d_in, d_out), is_nearer(topology, false, d_out, d_in)]
-                };
-                let published = owners(Topology::Published);
-                assert!(published.contains(&true), "{outside} {inside}");
-                assert_eq!(
-                    published == [true, true],
-                    outside == *inside,
-                    "a tie has both: {outside} {inside}"
-                );
-                let inside_end = !matches!(outside.partial_cmp(inside), Some(std::cmp::Ordering::Less));
-                assert_eq!(owners(Topology::Guarded), [inside_end, !inside_end], "{outside} {inside}");
+                let owners =
+                    |ties: Ties| [ties.is_near(true, d_in, d_out), ties.is_near(false, d_out, d_in)];
+                let both = owners(Ties::BothEnds);
+                assert!(both.contains(&true), "{outside} {inside}");
+                assert_eq!(both == [true, true], outside == *inside, "a tie has both: {outside} {inside}");
+                let one = owners(Ties::InsideEnd);
+                assert_ne!(one[0], one[1], "{outside} {inside}");
+                assert_eq!(one[0], both[0], "the inside end wins: {outside} {inside}");
             }
         }
     }

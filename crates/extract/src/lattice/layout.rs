@@ -119,14 +119,11 @@ impl Layout {
         }
     }
 
-    /// Place in storage of a point.
-    pub(crate) fn index(&self, [x, y, z]: [usize; 3]) -> usize {
-        (z * self.grid[1] + y) * self.grid[0] + x
-    }
-
+    /// The step to a neighbour, apart: points along the row, rows, layers.
+    ///
     /// The centre grid is half a cube lower than the corner grid, so that from a centre the corner on the high side
     /// has the centre's own number, and from a corner the centre on the low side has the corner's.
-    fn step(&self, kind: PointKind, [x, y, z]: Offset) -> isize {
+    pub(crate) fn hop(&self, kind: PointKind, [x, y, z]: Offset) -> [isize; 3] {
         let halve = |offset: i8| match kind {
             PointKind::Centre => isize::from(offset).div_euclid(2),
             PointKind::Corner => (isize::from(offset) + 1).div_euclid(2),
@@ -135,7 +132,17 @@ impl Layout {
             Arrangement::BodyCentred => isize::from(z),
             Arrangement::SimpleCubic => isize::from(z / 2),
         };
-        (layers * self.grid[1] as isize + halve(y)) * self.grid[0] as isize + halve(x)
+        [halve(x), halve(y), layers]
+    }
+
+    /// Place in storage of a point.
+    pub(crate) fn index(&self, [x, y, z]: [usize; 3]) -> usize {
+        (z * self.grid[1] + y) * self.grid[0] + x
+    }
+
+    fn step(&self, kind: PointKind, offset: Offset) -> isize {
+        let [x, y, z] = self.hop(kind, offset);
+        (z * self.grid[1] as isize + y) * self.grid[0] as isize + x
     }
 }
 
