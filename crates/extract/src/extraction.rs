@@ -1,21 +1,17 @@
-//! The stages in order, timed and counted.
+//! What an extraction gives: the surface, counts, times, errors.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use mesh::TriangleMesh;
 
-use crate::collapse;
-use crate::edges::EdgeTable;
 use crate::field::ScalarField;
-use crate::lattice::{Coordinates, Lattice, Layout};
-use crate::normals::vertex_normals;
-use crate::sampling::sample;
-use crate::settings::{Clustering, Execution, ExtractSettings, Positions, Topology};
-use crate::triangles::triangulate;
-use crate::vertices::{Sides, place_vertices};
+use crate::lattice::Lattice;
+use crate::settings::{Execution, ExtractSettings, Positions};
+use crate::sweep::{Extractor, Source};
+use crate::triangles::Triangulation;
 
 /// A surface, what it took and what was seen on the way.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Extraction {
     /// The surface, with normals.
     pub mesh: TriangleMesh,
@@ -104,6 +100,20 @@ pub enum ExtractError {
         /// [`Lattice::memory_bytes`].
         bytes: u64,
     },
+    /// The mesh outgrew the memory that is left.
+    #[error("no memory for a mesh this large")]
+    NoMemoryForMesh,
+    /// Samples that are not as many as the lattice stores.
+    #[error("{given} samples for a lattice of {wanted}")]
+    SampleCount {
+        /// What was given.
+        given: u64,
+        /// [`Lattice::stored_samples`].
+        wanted: u64,
+    },
+    /// Given samples and [`Positions::Accumulated`], which says where a field is sampled.
+    #[error("given samples have no accumulated positions")]
+    SamplesAccumulated,
     /// The sampling threads could not be started.
     #[error("cannot start {threads} sampling threads: {reason}")]
     Threads {
@@ -134,63 +144,10 @@ pub fn extract(
     settings: &ExtractSettings,
     execution: &Execution,
 ) -> Result<Extraction, ExtractError> {
-    check(settings)?;
-    let mut clock = Clock::start();
-
-    let layout = Layout::new(lattice);
-    reserve(lattice)?;
-    let mut samples = vec![0.0; layout.len()];
-    let mut sides = Sides::new(&layout);
-    let mut edges = EdgeTable::new(layout.len());
-    let allocation = clock.lap();
-
-    let coordinates = Coordinates::sampled(lattice, &layout, settings.positions);
-    sample(field, &layout, &coordinates, execution, &mut samples)?;
-    let sampling = clock.lap();
-
-    let (mut positions, crossings) =
-        place_vertices(lattice, &layout, &samples, settings, &mut sides, &mut edges)?;
-    let vertex = clock.lap();
-
-    let mut surface = triangulate(lattice, &layout, &sides, &edges);
-    if matches!(settings.clustering, Clustering::EdgeCollapse | Clustering::IntegratedCollapse) {
-        let before = surface.triangles.len();
-        let collapse = match settings.topology {
-            Topology::Guarded => collapse::guarded,
-            Topology::Published => collapse::published,
-        };
-        (positions, surface.triangles) = collapse(positions, &surface.triangles, lattice.spacing());
-        let dropped = (before - surface.triangles.len()) as u64;
-        surface.discarded += dropped;
-        surface.discarded_as_published += dropped;
-    }
-    let geometry = clock.lap();
-
-    let normals = vertex_normals(&positions, &surface.triangles);
-    let times = StageTimes { allocation, sampling, vertex, geometry, normals: clock.lap() };
-
-    let (vertices, triangles) = (positions.len() as u64, surface.triangles.len() as u64);
-    let counts = Counts {
-        stored_samples: lattice.stored_samples(),
-        needed_samples: lattice.needed_samples(),
-        stored_edges: lattice.stored_edges(),
-        needed_edges: lattice.needed_edges(),
-        tetrahedra: lattice.tetrahedra(),
-        tetrahedra_evaluated: surface.tetrahedra_evaluated,
-        crossings,
-        vertices,
-        triangles,
-        discarded_triangles: surface.discarded,
-        discarded_as_published: surface.discarded_as_published,
-        sample_bytes: lattice.sample_bytes(),
-        edge_bytes: lattice.edge_bytes(),
-        vertex_bytes: 24 * vertices,
-        index_bytes: 12 * triangles,
-    };
-    Ok(Extraction { mesh: TriangleMesh { positions, normals, triangles: surface.triangles }, counts, times })
+    Extractor::new().extract(Source::Field(field), lattice, settings, execution)
 }
 
-fn check(settings: &ExtractSettings) -> Result<(), ExtractError> {
+pub(crate) fn check(settings: &ExtractSettings) -> Result<(), ExtractError> {
     if !settings.isovalue.is_finite() {
         return Err(ExtractError::Isovalue { value: settings.isovalue });
     }
@@ -200,27 +157,31 @@ fn check(settings: &ExtractSettings) -> Result<(), ExtractError> {
     }
 }
 
-/// Asks for the memory once and gives it back, so that a lattice beyond the machine is an error and not an abort.
-/// Filling a vector that reserved fallibly would write all of it; zeroed memory is not written before it is used.
-fn reserve(lattice: &Lattice) -> Result<(), ExtractError> {
-    let bytes = lattice.memory_bytes();
-    let error = ExtractError::OutOfMemory { bytes };
-    let length = usize::try_from(bytes).map_err(|_| error.clone())?;
-    Vec::<u8>::new().try_reserve_exact(length).map_err(|_| error)
-}
-
-/// Laps without a gap.
-struct Clock {
-    last: Instant,
-}
-
-impl Clock {
-    fn start() -> Self {
-        Self { last: Instant::now() }
-    }
-
-    fn lap(&mut self) -> Duration {
-        let now = Instant::now();
-        now - std::mem::replace(&mut self.last, now)
+impl Counts {
+    /// What is known of a lattice and the surface in it.
+    pub(crate) fn of(
+        lattice: &Lattice,
+        mesh: &TriangleMesh,
+        surface: &Triangulation,
+        crossings: u64,
+    ) -> Self {
+        let (vertices, triangles) = (mesh.positions.len() as u64, mesh.triangles.len() as u64);
+        Self {
+            stored_samples: lattice.stored_samples(),
+            needed_samples: lattice.needed_samples(),
+            stored_edges: lattice.stored_edges(),
+            needed_edges: lattice.needed_edges(),
+            tetrahedra: lattice.tetrahedra(),
+            tetrahedra_evaluated: surface.tetrahedra_evaluated,
+            crossings,
+            vertices,
+            triangles,
+            discarded_triangles: surface.discarded,
+            discarded_as_published: surface.discarded_as_published,
+            sample_bytes: lattice.sample_bytes(),
+            edge_bytes: lattice.edge_bytes(),
+            vertex_bytes: 24 * vertices,
+            index_bytes: 12 * triangles,
+        }
     }
 }

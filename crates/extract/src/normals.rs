@@ -6,17 +6,44 @@ use glam::Vec3;
 /// Outward, as the triangles are. Zero for a vertex that no triangle with an area uses.
 pub(crate) fn vertex_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut normals = vec![Vec3::ZERO; positions.len()];
+    accumulate(positions, triangles, &mut normals);
+    normals
+}
+
+/// The same into `normals`, which are zero.
+pub(crate) fn accumulate(positions: &[Vec3], triangles: &[[u32; 3]], normals: &mut [Vec3]) {
     for &triangle in triangles {
-        let [a, b, c] = triangle.map(|vertex| positions[vertex as usize]);
-        let doubled_area = (b - a).cross(c - a);
+        let doubled_area = doubled_area(positions, triangle);
         for vertex in triangle {
             normals[vertex as usize] += doubled_area;
         }
     }
-    for normal in &mut normals {
+    normalise(normals);
+}
+
+/// The same for the vertices from `first` on only, of which `normals` has as many as there are to do.
+pub(crate) fn accumulate_some(positions: &[Vec3], triangles: &[[u32; 3]], first: u32, normals: &mut [Vec3]) {
+    for &triangle in triangles {
+        let doubled_area = doubled_area(positions, triangle);
+        for vertex in triangle {
+            if let Some(normal) = normals.get_mut(vertex.wrapping_sub(first) as usize) {
+                *normal += doubled_area;
+            }
+        }
+    }
+    normalise(normals);
+}
+
+#[inline]
+fn doubled_area(positions: &[Vec3], triangle: [u32; 3]) -> Vec3 {
+    let [a, b, c] = triangle.map(|vertex| positions[vertex as usize]);
+    (b - a).cross(c - a)
+}
+
+fn normalise(normals: &mut [Vec3]) {
+    for normal in normals {
         *normal = normal.normalize_or_zero();
     }
-    normals
 }
 
 #[cfg(test)]

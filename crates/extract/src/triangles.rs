@@ -66,7 +66,7 @@ pub(crate) fn triangulate(
 }
 
 impl Triangulation {
-    fn add(&mut self, case: Case, vertex: impl Fn(u8) -> u32) {
+    pub(crate) fn add(&mut self, case: Case, vertex: impl Fn(u8) -> u32) {
         match case {
             Case::Empty => {}
             Case::Triangle(edges) => {
@@ -96,7 +96,7 @@ impl Triangulation {
 
 /// The edges at the base point that tell whether the surface meets the cell: all of a centre's, and of a lowest
 /// corner those to the cube's other seven corners.
-fn deciding_edges(arrangement: Arrangement) -> DirectionSet {
+pub(crate) fn deciding_edges(arrangement: Arrangement) -> DirectionSet {
     let offsets = &arrangement.directions().offsets;
     (0..offsets.len())
         .filter(|&d| arrangement == Arrangement::BodyCentred || offsets[d].iter().all(|&o| o >= 0))

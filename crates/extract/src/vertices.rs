@@ -239,8 +239,7 @@ mod tests {
         for outside in values {
             for inside in &values[1..4] {
                 let (d_out, d_in) = (outside, -inside);
-                let owners =
-                    |ties: Ties| [ties.is_near(true, d_in, d_out), ties.is_near(false, d_out, d_in)];
+                let owners = |ties: Ties| [ties.is_near(true, d_in, d_out), ties.is_near(false, d_out, d_in)];
                 let both = owners(Ties::BothEnds);
                 assert!(both.contains(&true), "{outside} {inside}");
                 assert_eq!(both == [true, true], outside == *inside, "a tie has both: {outside} {inside}");

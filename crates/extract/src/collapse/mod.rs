@@ -3,10 +3,33 @@
 mod guarded;
 mod published;
 
-pub(crate) use guarded::guarded;
-pub(crate) use published::published;
-
 use glam::Vec3;
+
+use crate::settings::{Clustering, ExtractSettings, Topology};
+use crate::triangles::Triangulation;
+
+/// Collapses short edges by the rules of the settings, if they ask for it. Returns whether they do.
+pub(crate) fn collapse(
+    settings: &ExtractSettings,
+    spacing: f32,
+    positions: &mut Vec<Vec3>,
+    surface: &mut Triangulation,
+) -> bool {
+    match settings.clustering {
+        Clustering::None | Clustering::Integrated => return false,
+        Clustering::EdgeCollapse | Clustering::IntegratedCollapse => {}
+    }
+    let rule = match settings.topology {
+        Topology::Guarded => guarded::guarded,
+        Topology::Published => published::published,
+    };
+    let before = surface.triangles.len();
+    (*positions, surface.triangles) = rule(std::mem::take(positions), &surface.triangles, spacing);
+    let dropped = (before - surface.triangles.len()) as u64;
+    surface.discarded += dropped;
+    surface.discarded_as_published += dropped;
+    true
+}
 
 /// Which vertex each vertex was merged into, directly or through others.
 struct Merged {

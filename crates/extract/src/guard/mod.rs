@@ -105,6 +105,7 @@ impl Guard {
     }
 
     /// What becomes of the near crossings of a point that has all fourteen lattice edges: two loads.
+    #[inline]
     pub(crate) fn class(&self, crossing: DirectionSet, near: DirectionSet) -> Class {
         match self.classes[usize::from(near)] {
             Class::One if self.has_thread(crossing) => Class::Ask,
@@ -168,6 +169,7 @@ impl Guard {
             .fold(0, |blocked, ring| blocked | ring)
     }
 
+    #[inline]
     fn has_thread(&self, crossing: DirectionSet) -> bool {
         self.threads[usize::from(crossing / 64)] >> (crossing % 64) & 1 == 1
     }

@@ -74,6 +74,19 @@ impl Lattice {
         self.stored_samples() * (BYTES_PER_SAMPLE + BYTES_PER_EDGE_RECORD + BYTES_PER_SIDE) + padding
     }
 
+    /// What streaming extraction (indexed positions) holds of the lattice at a time on `threads` threads: a few
+    /// layers of samples, sign bits and point records each. The mesh comes on top.
+    pub fn sweep_bytes(&self, threads: u64) -> u64 {
+        let [x, y, _] = self.stored_grid().map(u64::from);
+        let slots = match self.arrangement {
+            Arrangement::BodyCentred => 5,
+            Arrangement::SimpleCubic => 3,
+        };
+        let words = x.div_ceil(64);
+        let row = x * (BYTES_PER_SAMPLE + 8) + 8 * (words + 2) + 8 * words + 1;
+        threads * slots * y * row
+    }
+
     /// Bytes of the stored samples.
     pub(crate) fn sample_bytes(&self) -> u64 {
         self.stored_samples() * BYTES_PER_SAMPLE

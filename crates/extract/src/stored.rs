@@ -1,0 +1,80 @@
+//! The stored extractor: the original's way, with all samples and edge records of the lattice in memory.
+//!
+//! It serves accumulated positions, and is what the streaming one is compared with.
+
+use std::time::{Duration, Instant};
+
+use mesh::TriangleMesh;
+
+use crate::collapse::collapse;
+use crate::edges::EdgeTable;
+use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
+use crate::field::ScalarField;
+use crate::lattice::{Coordinates, Lattice, Layout};
+use crate::normals::vertex_normals;
+use crate::sampling::sample;
+use crate::settings::{Execution, ExtractSettings};
+use crate::triangles::triangulate;
+use crate::vertices::{Sides, place_vertices};
+
+/// The stages in order, timed and counted.
+pub(crate) fn extract(
+    field: &dyn ScalarField,
+    lattice: &Lattice,
+    settings: &ExtractSettings,
+    execution: &Execution,
+) -> Result<Extraction, ExtractError> {
+    check(settings)?;
+    let mut clock = Clock::start();
+
+    let layout = Layout::new(lattice);
+    reserve(lattice)?;
+    let mut samples = vec![0.0; layout.len()];
+    let mut sides = Sides::new(&layout);
+    let mut edges = EdgeTable::new(layout.len());
+    let allocation = clock.lap();
+
+    let coordinates = Coordinates::sampled(lattice, &layout, settings.positions);
+    sample(field, &layout, &coordinates, execution, &mut samples)?;
+    let sampling = clock.lap();
+
+    let (mut positions, crossings) =
+        place_vertices(lattice, &layout, &samples, settings, &mut sides, &mut edges)?;
+    let vertex = clock.lap();
+
+    let mut surface = triangulate(lattice, &layout, &sides, &edges);
+    collapse(settings, lattice.spacing(), &mut positions, &mut surface);
+    let geometry = clock.lap();
+
+    let normals = vertex_normals(&positions, &surface.triangles);
+    let times = StageTimes { allocation, sampling, vertex, geometry, normals: clock.lap() };
+
+    let mesh = TriangleMesh { positions, normals, triangles: std::mem::take(&mut surface.triangles) };
+    let counts = Counts::of(lattice, &mesh, &surface, crossings);
+    Ok(Extraction { mesh, counts, times })
+}
+
+/// Asks for the memory once and gives it back, so that a lattice beyond the machine is an error and not an abort.
+/// Filling a vector that reserved fallibly would write all of it; zeroed memory is not written before it is used.
+fn reserve(lattice: &Lattice) -> Result<(), ExtractError> {
+    let bytes = lattice.memory_bytes();
+    let error = ExtractError::OutOfMemory { bytes };
+    let length = usize::try_from(bytes).map_err(|_| error.clone())?;
+    Vec::<u8>::new().try_reserve_exact(length).map_err(|_| error)
+}
+
+/// Laps without a gap.
+struct Clock {
+    last: Instant,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self { last: Instant::now() }
+    }
+
+    fn lap(&mut self) -> Duration {
+        let now = Instant::now();
+        now - std::mem::replace(&mut self.last, now)
+    }
+}

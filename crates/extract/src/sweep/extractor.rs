@@ -1,0 +1,347 @@
+//! The driver: slabs to threads, pieces to one mesh.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use glam::Vec3;
+use mesh::TriangleMesh;
+
+use super::faces::FaceTables;
+use super::grid::Grid;
+use super::rule::{ClusterRule, Guarded, Published, Unclustered};
+use super::slab::{Job, Piece, SlabTimes, Workspace, sweep};
+use super::source::Source;
+use crate::collapse::collapse;
+use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
+use crate::lattice::Lattice;
+use crate::settings::{Clustering, Execution, ExtractSettings, Positions, Topology};
+use crate::stored;
+
+/// Slabs a thread, so that an uneven surface still keeps all threads busy.
+const SLABS_PER_THREAD: usize = 2;
+/// A slab has at least this many layers: the halo on either side costs up to four more.
+const LEAST_LAYERS: usize = 16;
+
+/// Told how many layers of how many are done.
+type Progress = Box<dyn Fn(usize, usize) + Send + Sync>;
+
+/// An extractor that keeps its buffers, for one surface after another.
+///
+/// With indexed positions it streams: memory grows with a layer of the lattice and with the mesh. From the second
+/// volume of a size on, with one thread and unless edges are collapsed, [`extract_into`](Self::extract_into)
+/// allocates nothing.
+///
+/// ```
+/// use extract::{Arrangement, Execution, ExtractSettings, Extraction, Extractor, Lattice, ScalarField, Sphere};
+/// # use glam::Vec3;
+/// # use mesh::Bounds;
+/// # let bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) };
+/// let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.1)?;
+/// let mut extractor = Extractor::new();
+/// let mut extraction = Extraction::default();
+/// for radius in [0.8, 0.9, 1.0] {
+///     let sphere: &dyn ScalarField = &Sphere { radius };
+///     let (settings, execution) = (ExtractSettings::default(), Execution { threads: 1 });
+///     extractor.extract_into(sphere.into(), &lattice, &settings, &execution, &mut extraction)?;
+///     assert_eq!(extraction.counts.vertices * 2, extraction.counts.triangles + 4);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Default)]
+pub struct Extractor {
+    plan: Option<Plan>,
+    workspaces: Vec<Workspace>,
+    pieces: Vec<Piece>,
+    progress: Option<Progress>,
+}
+
+/// What depends on the lattice alone.
+struct Plan {
+    grid: Grid,
+    tables: FaceTables,
+}
+
+impl Plan {
+    fn new(lattice: &Lattice) -> Self {
+        let grid = Grid::new(lattice);
+        let tables = FaceTables::new(&grid);
+        Self { grid, tables }
+    }
+}
+
+impl Extractor {
+    /// An extractor without buffers yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Calls `progress` with the layers done and the layers there are, from any of the threads, while extracting.
+    /// Does not apply to accumulated positions.
+    pub fn with_progress(mut self, progress: impl Fn(usize, usize) + Send + Sync + 'static) -> Self {
+        self.progress = Some(Box::new(progress));
+        self
+    }
+
+    /// Extracts a surface, as [`extract`](crate::extract).
+    ///
+    /// # Errors
+    /// As [`extract_into`](Self::extract_into).
+    pub fn extract(
+        &mut self,
+        source: Source,
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        execution: &Execution,
+    ) -> Result<Extraction, ExtractError> {
+        let mut extraction = Extraction::default();
+        self.extract_into(source, lattice, settings, execution, &mut extraction)?;
+        Ok(extraction)
+    }
+
+    /// Extracts a surface into `extraction`, whose vectors are used again. After an error it holds no surface.
+    ///
+    /// # Errors
+    /// As [`extract`](crate::extract); [`ExtractError::SampleCount`] when given samples are not as many as the
+    /// lattice has, [`ExtractError::SamplesAccumulated`] when they come with accumulated positions.
+    pub fn extract_into(
+        &mut self,
+        source: Source,
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        execution: &Execution,
+        extraction: &mut Extraction,
+    ) -> Result<(), ExtractError> {
+        check(settings)?;
+        if let Source::Samples(samples) = source {
+            let (given, wanted) = (samples.len() as u64, lattice.stored_samples());
+            if given != wanted {
+                return Err(ExtractError::SampleCount { given, wanted });
+            }
+        }
+        if settings.positions != Positions::Indexed {
+            let Source::Field(field) = source else { return Err(ExtractError::SamplesAccumulated) };
+            *extraction = stored::extract(field, lattice, settings, execution)?;
+            return Ok(());
+        }
+        let start = Instant::now();
+        let plan = match self.plan.take() {
+            Some(plan) if plan.grid.lattice == *lattice => plan,
+            _ => Plan::new(lattice),
+        };
+        let arrangement = lattice.arrangement();
+        let merges = match settings.clustering {
+            Clustering::None | Clustering::EdgeCollapse => false,
+            Clustering::Integrated | Clustering::IntegratedCollapse => true,
+        };
+        let result = match (merges, settings.topology) {
+            (false, Topology::Guarded) => {
+                self.run(&plan, &Unclustered::<false>, source, settings, execution, extraction, start)
+            }
+            (false, Topology::Published) => {
+                self.run(&plan, &Unclustered::<true>, source, settings, execution, extraction, start)
+            }
+            (true, Topology::Guarded) => {
+                let rule = Guarded::new(arrangement);
+                self.run(&plan, &rule, source, settings, execution, extraction, start)
+            }
+            (true, Topology::Published) => {
+                let rule = Published::new(arrangement);
+                self.run(&plan, &rule, source, settings, execution, extraction, start)
+            }
+        };
+        self.plan = Some(plan);
+        result
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "the rest of `extract_into` for one rule")]
+    fn run<R: ClusterRule>(
+        &mut self,
+        plan: &Plan,
+        rule: &R,
+        source: Source,
+        settings: &ExtractSettings,
+        execution: &Execution,
+        extraction: &mut Extraction,
+        start: Instant,
+    ) -> Result<(), ExtractError> {
+        let grid = &plan.grid;
+        let layers = grid.size[2];
+        let threads = match execution.threads {
+            0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
+            threads => threads,
+        };
+        let slabs = if threads == 1 { 1 } else { (threads * SLABS_PER_THREAD).min(layers / LEAST_LAYERS).max(1) };
+        let threads = threads.min(slabs);
+        let bytes = grid.lattice.sweep_bytes(threads as u64);
+        self.workspaces.resize_with(threads, Workspace::default);
+        self.pieces.resize_with(slabs, Piece::default);
+        for workspace in &mut self.workspaces {
+            workspace.fit(grid, source).map_err(|_| ExtractError::OutOfMemory { bytes })?;
+        }
+        // The first piece is written where the whole mesh will be.
+        self.pieces[0].positions = std::mem::take(&mut extraction.mesh.positions);
+        self.pieces[0].surface.triangles = std::mem::take(&mut extraction.mesh.triangles);
+        let allocation = start.elapsed();
+
+        let sweeping = Instant::now();
+        let done = AtomicUsize::new(0);
+        let progress = |more: usize| {
+            if let Some(progress) = &self.progress {
+                progress(done.fetch_add(more, Ordering::Relaxed) + more, layers);
+            }
+        };
+        let job =
+            Job { grid, tables: &plan.tables, rule, source, isovalue: settings.isovalue, progress: &progress };
+        sweep_all(&job, &mut self.workspaces, &mut self.pieces)?;
+        let mut times = shares(&self.pieces, sweeping.elapsed());
+        times.allocation = allocation;
+
+        let joining = Instant::now();
+        let seams = join(&mut self.pieces)?;
+        let (first, rest) = self.pieces.split_first_mut().expect("there is a slab");
+        let crossing_ends: u64 = first.crossing_ends + rest.iter().map(|piece| piece.crossing_ends).sum::<u64>();
+        let mesh = &mut extraction.mesh;
+        mesh.positions = std::mem::take(&mut first.positions);
+        let surface = &mut first.surface;
+        let collapsed = collapse(settings, grid.lattice.spacing(), &mut mesh.positions, surface);
+        mesh.triangles = std::mem::take(&mut surface.triangles);
+        times.geometry += joining.elapsed();
+
+        let making_normals = Instant::now();
+        let seams = if collapsed { None } else { Some(&seams) };
+        make_normals(mesh, seams, threads)?;
+        times.normals = making_normals.elapsed();
+
+        extraction.times = times;
+        extraction.counts = Counts::of(&grid.lattice, mesh, surface, crossing_ends / 2);
+        Ok(())
+    }
+}
+
+/// Sweeps all slabs, each by the thread that comes first. Which one that is does not show.
+fn sweep_all<R: ClusterRule>(
+    job: &Job<R>,
+    workspaces: &mut [Workspace],
+    pieces: &mut [Piece],
+) -> Result<(), ExtractError> {
+    let layers = job.grid.size[2];
+    let slabs = pieces.len();
+    let slab = |i: usize| i * layers / slabs..(i + 1) * layers / slabs;
+    if let ([workspace], [piece]) = (&mut *workspaces, &mut *pieces) {
+        return sweep(job, slab(0), workspace, piece);
+    }
+    let threads = workspaces.len();
+    let queue = std::sync::Mutex::new(pieces.iter_mut().enumerate());
+    let work = |workspace: &mut Workspace| -> Result<(), ExtractError> {
+        loop {
+            let next = queue.lock().expect("no thread panics").next();
+            let Some((i, piece)) = next else { return Ok(()) };
+            sweep(job, slab(i), workspace, piece)?;
+        }
+    };
+    std::thread::scope(|scope| {
+        let (own, others) = workspaces.split_first_mut().expect("there is a thread");
+        let handles = others
+            .iter_mut()
+            .map(|workspace| {
+                std::thread::Builder::new()
+                    .spawn_scoped(scope, || work(workspace))
+                    .map_err(|error| ExtractError::Threads { threads, reason: error.to_string() })
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        work(own)?;
+        handles.into_iter().try_for_each(|handle| {
+            handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        })
+    })
+}
+
+/// Wall-clock time, divided as the threads spent theirs.
+fn shares(pieces: &[Piece], elapsed: Duration) -> StageTimes {
+    let sum = |of: fn(&SlabTimes) -> Duration| pieces.iter().map(|piece| of(&piece.times)).sum::<Duration>();
+    let [sampling, vertex, geometry] = [sum(|t| t.sampling), sum(|t| t.vertex), sum(|t| t.geometry)];
+    let all = (sampling + vertex + geometry).as_secs_f64().max(f64::MIN_POSITIVE);
+    let share = |part: Duration| elapsed.mul_f64((part.as_secs_f64() / all).min(1.0));
+    let (sampling, vertex) = (share(sampling), share(vertex));
+    // The rest, so that nothing is lost to rounding.
+    let geometry = elapsed.saturating_sub(sampling + vertex);
+    StageTimes { sampling, vertex, geometry, ..StageTimes::default() }
+}
+
+/// A slab's part of the whole mesh.
+#[derive(Debug, Clone, Copy)]
+struct Seam {
+    /// Vertices before the slab's own.
+    vertices: usize,
+    /// Triangles before `head` may touch vertices of the slab below; those from `tail` on, of the slab above.
+    head: usize,
+    tail: usize,
+}
+
+/// Appends all pieces to the first one, with vertex numbers of the whole.
+fn join(pieces: &mut [Piece]) -> Result<Vec<Seam>, ExtractError> {
+    let (first, rest) = pieces.split_first_mut().expect("there is a slab");
+    let mut seams = Vec::new();
+    if rest.is_empty() {
+        return Ok(seams);
+    }
+    let total: usize = first.positions.len() + rest.iter().map(|piece| piece.positions.len()).sum::<usize>();
+    if total > u32::MAX as usize {
+        return Err(ExtractError::TooManyVertices { limit: u32::MAX });
+    }
+    let triangles: usize = rest.iter().map(|piece| piece.surface.triangles.len()).sum();
+    first.positions.try_reserve(total - first.positions.len()).map_err(|_| ExtractError::NoMemoryForMesh)?;
+    first.surface.triangles.try_reserve(triangles).map_err(|_| ExtractError::NoMemoryForMesh)?;
+    seams.push(Seam { vertices: 0, head: first.head, tail: first.tail });
+    for piece in rest {
+        let base = first.surface.triangles.len();
+        seams.push(Seam {
+            vertices: first.positions.len(),
+            head: base + piece.head,
+            tail: base + piece.tail,
+        });
+        let shift = (first.positions.len() as u32).wrapping_sub(piece.below as u32);
+        let global = |triangle: &[u32; 3]| triangle.map(|vertex| vertex.wrapping_add(shift));
+        first.surface.triangles.extend(piece.surface.triangles.iter().map(global));
+        first.positions.extend_from_slice(&piece.positions);
+        first.surface.tetrahedra_evaluated += piece.surface.tetrahedra_evaluated;
+        first.surface.discarded += piece.surface.discarded;
+        first.surface.discarded_as_published += piece.surface.discarded_as_published;
+    }
+    Ok(seams)
+}
+
+/// Area-weighted mean normals, as [`vertex_normals`](crate::normals::vertex_normals), to the bit: each vertex adds up
+/// its triangles in their order. With seams, each thread does the vertices of a run of slabs.
+fn make_normals(mesh: &mut TriangleMesh, seams: Option<&Vec<Seam>>, threads: usize) -> Result<(), ExtractError> {
+    let TriangleMesh { positions, normals, triangles } = mesh;
+    normals.clear();
+    super::refill(normals, positions.len(), Vec3::ZERO).map_err(|_| ExtractError::NoMemoryForMesh)?;
+    let seams = seams.filter(|seams| threads > 1 && seams.len() > 1);
+    let Some(seams) = seams else {
+        crate::normals::accumulate(positions, triangles, normals);
+        return Ok(());
+    };
+    std::thread::scope(|scope| {
+        let mut rest: &mut [Vec3] = normals;
+        for thread in 0..threads {
+            let [first, end] = [thread, thread + 1].map(|t| t * seams.len() / threads);
+            let low = seams[first].vertices;
+            let high = seams.get(end).map_or(positions.len(), |seam| seam.vertices);
+            let from = if first == 0 { 0 } else { seams[first - 1].tail };
+            let to = seams.get(end).map_or(triangles.len(), |seam| seam.head);
+            let (mine, others) = rest.split_at_mut(high - low);
+            rest = others;
+            let (positions, triangles) = (&*positions, &triangles[from..to]);
+            let mut work = move || crate::normals::accumulate_some(positions, triangles, low as u32, mine);
+            if thread + 1 == threads {
+                work();
+            } else {
+                std::thread::Builder::new()
+                    .spawn_scoped(scope, work)
+                    .map_err(|error| ExtractError::Threads { threads, reason: error.to_string() })?;
+            }
+        }
+        Ok(())
+    })
+}

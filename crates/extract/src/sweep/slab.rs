@@ -1,0 +1,178 @@
+//! A slab of layers, streamed from the bottom up: sampled, then searched for vertices, then for triangles, each pass
+//! as many layers behind the one before as a lattice edge can reach.
+
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+use glam::Vec3;
+
+use super::faces::{FaceTables, triangulate_layer};
+use super::grid::Grid;
+use super::points::{Placed, PointPass, Samples};
+use super::records::Records;
+use super::rule::ClusterRule;
+use super::signs::Signs;
+use super::source::Source;
+use crate::ExtractError;
+use crate::triangles::Triangulation;
+
+/// What all slabs of an extraction share.
+pub(super) struct Job<'a, R> {
+    pub(super) grid: &'a Grid,
+    pub(super) tables: &'a FaceTables,
+    pub(super) rule: &'a R,
+    pub(super) source: Source<'a>,
+    pub(super) isovalue: f32,
+    /// Called with the number of layers sampled since the last call.
+    pub(super) progress: &'a (dyn Fn(usize) + Sync),
+}
+
+/// Buffers of one thread, a few layers each, kept between slabs and between extractions.
+#[derive(Debug, Default)]
+pub(super) struct Workspace {
+    samples: Vec<f32>,
+    signs: Signs,
+    records: Records,
+}
+
+/// The surface in a slab.
+///
+/// Vertices are numbered from the lowest layer that the slab's triangles can touch, so that the numbers of the whole
+/// surface are these plus a constant, in the layers above and below the slab too.
+#[derive(Debug, Default)]
+pub(super) struct Piece {
+    /// Of the slab's own layers.
+    pub(super) positions: Vec<Vec3>,
+    pub(super) surface: Triangulation,
+    /// Vertices numbered in the layers below the slab.
+    pub(super) below: u64,
+    pub(super) crossing_ends: u64,
+    /// Triangles that may touch a vertex below the slab, all before this one.
+    pub(super) head: usize,
+    /// Triangles that may touch a vertex above the slab, all from this one on.
+    pub(super) tail: usize,
+    pub(super) times: SlabTimes,
+}
+
+/// Time spent in the passes.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct SlabTimes {
+    pub(super) sampling: Duration,
+    pub(super) vertex: Duration,
+    pub(super) geometry: Duration,
+}
+
+impl Workspace {
+    /// Makes room; keeps what is large enough.
+    pub(super) fn fit(&mut self, grid: &Grid, source: Source) -> Result<(), std::collections::TryReserveError> {
+        if matches!(source, Source::Field(_)) {
+            super::refill(&mut self.samples, grid.layer_len() * grid.slots(), 0.0)?;
+        }
+        self.signs.fit(grid)?;
+        self.records.fit(grid)
+    }
+}
+
+impl Piece {
+    fn clear(&mut self) {
+        self.positions.clear();
+        self.surface.triangles.clear();
+        let triangles = std::mem::take(&mut self.surface.triangles);
+        self.surface = Triangulation { triangles, ..Triangulation::default() };
+        (self.below, self.crossing_ends, self.head, self.tail) = (0, 0, 0, 0);
+        self.times = SlabTimes::default();
+    }
+}
+
+/// Extracts the layers `own`, vertices and triangles.
+pub(super) fn sweep<R: ClusterRule>(
+    job: &Job<R>,
+    own: Range<usize>,
+    workspace: &mut Workspace,
+    piece: &mut Piece,
+) -> Result<(), ExtractError> {
+    let Job { grid, isovalue, .. } = *job;
+    let (reach, layers) = (grid.reach, grid.size[2]);
+    let recorded = own.start.saturating_sub(reach)..layers.min(own.end + reach);
+    let sampled = own.start.saturating_sub(2 * reach)..layers.min(own.end + 2 * reach);
+    let out_of_memory = |_| ExtractError::NoMemoryForMesh;
+
+    piece.clear();
+    let mut placed = Placed::default();
+    let mut last = Instant::now();
+    let mut lap = || {
+        let now = Instant::now();
+        now - std::mem::replace(&mut last, now)
+    };
+    for step in sampled.start..own.end + 2 * reach {
+        if sampled.contains(&step) {
+            sample_layer(job, step, workspace);
+            if own.contains(&step) {
+                (job.progress)(1);
+            }
+        }
+        piece.times.sampling += lap();
+
+        if let Some(layer) = step.checked_sub(reach).filter(|layer| recorded.contains(layer)) {
+            let size = [grid.size[0], grid.size[1]];
+            let samples = match job.source {
+                Source::Samples(values) => Samples { values, slots: layers, size },
+                Source::Field(_) => Samples { values: &workspace.samples, slots: grid.slots(), size },
+            };
+            let pass = PointPass { grid, rule: job.rule, samples, signs: &workspace.signs, isovalue };
+            if layer == own.start {
+                piece.below = placed.numbered;
+            }
+            if own.contains(&layer) {
+                let seen = placed.crossing_ends;
+                pass.layer(layer, &mut workspace.records, &mut placed, Some(&mut piece.positions))
+                    .map_err(out_of_memory)?;
+                piece.crossing_ends += placed.crossing_ends - seen;
+            } else {
+                pass.layer(layer, &mut workspace.records, &mut placed, None).map_err(out_of_memory)?;
+            }
+            if placed.numbered > u64::from(u32::MAX) {
+                return Err(ExtractError::TooManyVertices { limit: u32::MAX });
+            }
+        }
+        piece.times.vertex += lap();
+
+        if let Some(layer) = step.checked_sub(2 * reach).filter(|layer| own.contains(layer)) {
+            if layer + 2 * reach <= own.end {
+                piece.tail = piece.surface.triangles.len();
+            }
+            triangulate_layer(grid, job.tables, R::TIES, &workspace.records, layer, &mut piece.surface)
+                .map_err(out_of_memory)?;
+            if layer < own.start + 2 * reach {
+                piece.head = piece.surface.triangles.len();
+            }
+        }
+        piece.times.geometry += lap();
+    }
+    Ok(())
+}
+
+/// Samples a layer, if the samples are not there already, and takes its signs.
+fn sample_layer<R>(job: &Job<R>, layer: usize, workspace: &mut Workspace) {
+    let grid = job.grid;
+    let kind = grid.layout.kind(layer);
+    let [points, rows] = grid.layout.used(kind);
+    let [stride, _, layers] = grid.size;
+    match job.source {
+        Source::Samples(values) => {
+            for row in 0..rows {
+                let start = (layer % layers * grid.size[1] + row) * stride;
+                workspace.signs.fill(row, layer, &values[start..start + points], job.isovalue);
+            }
+        }
+        Source::Field(field) => {
+            let (x, y, z) = (grid.coordinates.x(kind), grid.coordinates.y(kind), grid.coordinates.z()[layer]);
+            for row in 0..rows {
+                let start = (layer % grid.slots() * grid.size[1] + row) * stride;
+                let values = &mut workspace.samples[start..start + points];
+                field.sample_row(&x[..points], y[row], z, values);
+                workspace.signs.fill(row, layer, values, job.isovalue);
+            }
+        }
+    }
+}

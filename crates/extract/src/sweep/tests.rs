@@ -1,0 +1,185 @@
+//! The streaming extractor against the stored one: the same mesh to the byte, and the same counts.
+
+use glam::Vec3;
+use mesh::Bounds;
+use proptest::prelude::*;
+
+use crate::{
+    Arrangement, Asteroid, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Lattice,
+    Positions, ScalarField, Source, Sphere, Topology, stored,
+};
+
+/// Noise by position. Values are multiples of `1 / levels`; of `odd` points in 64, some are not numbers, some infinite.
+#[derive(Debug, Clone, Copy)]
+struct Noise {
+    seed: u32,
+    levels: u32,
+    odd: u32,
+    /// Neighbouring points in cubes of this size share a value.
+    grain: f32,
+}
+
+impl ScalarField for Noise {
+    fn sample(&self, p: Vec3) -> f32 {
+        let bits = (p / self.grain).floor().to_array().map(|v| v as i32 as u32);
+        let mut mixed = bits.iter().fold(self.seed ^ 0x9e37_79b9, |h, &b| {
+            let h = (h ^ b).wrapping_mul(0x85eb_ca6b);
+            (h ^ h >> 13).wrapping_mul(0xc2b2_ae35) ^ h >> 16
+        });
+        mixed ^= mixed >> 15;
+        match (mixed >> 8) % 64 {
+            n if n < self.odd => [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0][mixed as usize % 4],
+            _ => (mixed % (2 * self.levels + 1)) as f32 / self.levels as f32 - 1.0,
+        }
+    }
+}
+
+const BOTH: [Arrangement; 2] = [Arrangement::BodyCentred, Arrangement::SimpleCubic];
+
+fn lattice(arrangement: Arrangement, cells: [u32; 3]) -> Lattice {
+    let max = Vec3::from_array(cells.map(|n| n as f32));
+    Lattice::try_new(arrangement, Bounds { min: Vec3::ZERO, max }, 1.0).unwrap()
+}
+
+fn assert_same(left: &Extraction, right: &Extraction) {
+    assert_eq!(left.counts, right.counts);
+    let bits = |points: &[Vec3]| points.iter().map(|p| p.to_array().map(f32::to_bits)).collect::<Vec<_>>();
+    assert!(bits(&left.mesh.positions) == bits(&right.mesh.positions), "positions differ");
+    assert!(left.mesh.triangles == right.mesh.triangles, "triangles differ");
+    assert!(bits(&left.mesh.normals) == bits(&right.mesh.normals), "normals differ");
+}
+
+/// All ways of the streaming extractor against the stored one.
+fn check(field: &dyn ScalarField, lattice: &Lattice, isovalue: f32) {
+    let mut extractor = Extractor::new();
+    for settings in all_settings(isovalue) {
+        let one = Execution { threads: 1 };
+        let expected = stored::extract(field, lattice, &settings, &one).unwrap();
+        let samples = all_samples(field, lattice);
+        for threads in [1, 3] {
+            let execution = Execution { threads };
+            let called = extractor.extract(Source::Field(field), lattice, &settings, &execution).unwrap();
+            assert_same(&called, &expected);
+            let given = extractor.extract(Source::Samples(&samples), lattice, &settings, &execution).unwrap();
+            assert_same(&given, &expected);
+        }
+    }
+}
+
+/// Every clustering by every topology.
+fn all_settings(isovalue: f32) -> impl Iterator<Item = ExtractSettings> {
+    let clusterings =
+        [Clustering::None, Clustering::Integrated, Clustering::EdgeCollapse, Clustering::IntegratedCollapse];
+    clusterings.into_iter().flat_map(move |clustering| {
+        [Topology::Guarded, Topology::Published].map(|topology| ExtractSettings {
+            isovalue,
+            clustering,
+            topology,
+            positions: Positions::Indexed,
+        })
+    })
+}
+
+/// What the stored extractor has in memory.
+fn all_samples(field: &dyn ScalarField, lattice: &Lattice) -> Vec<f32> {
+    let layout = crate::lattice::Layout::new(lattice);
+    let coordinates = crate::lattice::Coordinates::sampled(lattice, &layout, Positions::Indexed);
+    let mut samples = vec![0.0; layout.len()];
+    crate::sampling::sample(field, &layout, &coordinates, &Execution { threads: 1 }, &mut samples).unwrap();
+    samples
+}
+
+fn noise() -> impl Strategy<Value = Noise> {
+    let levels = prop_oneof![Just(1), Just(2), Just(5), Just(10_000_000)];
+    let odd = prop_oneof![3 => Just(0), 1 => Just(4), 1 => Just(40)];
+    let grain = prop_oneof![Just(0.25), Just(1.7), Just(3.1)];
+    (any::<u32>(), levels, odd, grain).prop_map(|(seed, levels, odd, grain)| Noise { seed, levels, odd, grain })
+}
+
+fn arrangement() -> impl Strategy<Value = Arrangement> {
+    prop_oneof![Just(Arrangement::BodyCentred), Just(Arrangement::SimpleCubic)]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Surfaces through every boundary, ties, zeros, and samples that are not numbers.
+    #[test]
+    fn noise_gives_the_stored_mesh(
+        field in noise(),
+        arrangement in arrangement(),
+        cells in [1u32..8, 1u32..8, 1u32..24],
+        isovalue in prop_oneof![Just(0.0f32), Just(0.2), Just(-1.0), Just(5.0)],
+    ) {
+        check(&field, &lattice(arrangement, cells), isovalue);
+    }
+
+    /// Rows about a word long.
+    #[test]
+    fn long_rows_give_the_stored_mesh(
+        field in noise(),
+        arrangement in arrangement(),
+        x in prop_oneof![60u32..67, 124u32..130],
+        z in 1u32..3,
+    ) {
+        check(&field, &lattice(arrangement, [x, 2, z]), 0.0);
+    }
+}
+
+#[test]
+fn one_cell_of_every_pattern() {
+    /// Inside where the bit of the cell's corner is set; a centre is the middle of its corners.
+    struct Corners(u32);
+    impl ScalarField for Corners {
+        fn sample(&self, p: Vec3) -> f32 {
+            let value = |i: u32| if self.0 >> i & 1 != 0 { 1.0 } else { -0.7 };
+            let near = |v: f32| v.clamp(0.0, 1.0);
+            let (x, y, z) = (near(p.x), near(p.y), near(p.z));
+            let along = |y: u32, z: u32| value(2 * y + 4 * z) * (1.0 - x) + value(1 + 2 * y + 4 * z) * x;
+            (along(0, 0) * (1.0 - y) + along(1, 0) * y) * (1.0 - z) + (along(0, 1) * (1.0 - y) + along(1, 1) * y) * z
+        }
+    }
+    for arrangement in BOTH {
+        for pattern in 0..256 {
+            check(&Corners(pattern), &lattice(arrangement, [1, 1, 1]), 0.0);
+        }
+    }
+}
+
+#[test]
+fn smooth_fields_give_the_stored_mesh() {
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    for arrangement in BOTH {
+        for spacing in [0.04, 0.031] {
+            let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
+            check(&Sphere { radius: 1.0 }, &lattice, 0.0);
+            check(&Sphere { radius: 0.8 }, &lattice, 0.1);
+            check(&Asteroid::default(), &lattice, 0.0);
+        }
+    }
+}
+
+#[test]
+fn given_samples_must_be_as_many_as_the_lattice_has() {
+    let lattice = lattice(Arrangement::BodyCentred, [2, 2, 2]);
+    let samples = vec![0.0; 5];
+    let settings = ExtractSettings::default();
+    let error = Extractor::new()
+        .extract(Source::Samples(&samples), &lattice, &settings, &Execution::default())
+        .unwrap_err();
+    assert_eq!(error, ExtractError::SampleCount { given: 5, wanted: lattice.stored_samples() });
+}
+
+#[test]
+fn progress_ends_with_all_layers() {
+    use std::sync::{Arc, Mutex};
+    let seen = Arc::new(Mutex::new(Vec::new()));
+    let log = Arc::clone(&seen);
+    let lattice = lattice(Arrangement::BodyCentred, [4, 4, 40]);
+    let field: &dyn ScalarField = &Sphere { radius: 3.0 };
+    let mut extractor = Extractor::new().with_progress(move |done, all| log.lock().unwrap().push((done, all)));
+    extractor.extract(field.into(), &lattice, &ExtractSettings::default(), &Execution { threads: 2 }).unwrap();
+    let mut seen = seen.lock().unwrap().clone();
+    seen.sort_unstable();
+    assert_eq!(seen, (1..=83).map(|done| (done, 83)).collect::<Vec<_>>());
+}
