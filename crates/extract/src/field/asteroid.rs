@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::ScalarField;
+use super::asteroid_table::AsteroidTable;
 use super::sine::sin;
 
 /// A lumpy ball: `f(p) = radius - |p/k| + amplitude * fbm(frequency * ((p/|p|)/k))`, `/k` by component.
@@ -54,6 +55,11 @@ impl ScalarField for Asteroid {
         let direction = (p / distance) / self.stretch;
         (self.radius - (p / self.stretch).length()) + self.amplitude * self.noise(direction * self.frequency)
     }
+
+    /// With the hashes in tables, and bounds.
+    fn prepared(&self) -> Option<Box<dyn ScalarField + '_>> {
+        AsteroidTable::new(self).map(|table| Box::new(table) as Box<dyn ScalarField>)
+    }
 }
 
 impl Asteroid {
@@ -87,12 +93,13 @@ fn value_noise(q: Vec3) -> f32 {
 }
 
 /// A fraction in [0, 1) for a whole-number point.
-fn hash(point: Vec3) -> f32 {
+pub(super) fn hash(point: Vec3) -> f32 {
     let scaled = sin(point.dot(Vec3::new(12.98, 78.23, 35.63))) * 43758.5;
     scaled - libm::floorf(scaled)
 }
 
-fn blend(a: f32, b: f32, weight: f32) -> f32 {
+#[inline(always)]
+pub(super) fn blend(a: f32, b: f32, weight: f32) -> f32 {
     a + (b - a) * weight
 }
 

@@ -4,13 +4,13 @@ mod nearest;
 mod winding;
 
 use glam::Vec3;
-use mesh::TriangleMesh;
+use mesh::{Bounds, TriangleMesh};
 use mesh::topology::topology;
 use thiserror::Error;
 
 use self::nearest::NearestTriangles;
 use self::winding::WindingColumns;
-use super::ScalarField;
+use super::{SAFE, ScalarField};
 
 /// Coordinates up to here have finite squares and cubes of differences in the precisions used.
 const COORDINATE_LIMIT: f32 = 1e18;
@@ -113,6 +113,21 @@ impl ScalarField for MeshDistance {
         }
         let distance = self.nearest.distance(p);
         if self.winding.at(p) > 0 { distance } else { -distance }
+    }
+
+    /// The search starts from the distance that the nearby value leaves possible, and the side is known where no
+    /// surface can be between.
+    fn sample_after(&self, p: Vec3, before: Option<(Vec3, f32)>) -> f32 {
+        let Some((q, value)) = before.filter(|_| is_sound(p)) else { return self.sample(p) };
+        let step = p.distance(q);
+        let distance = self.nearest.distance_within(p, (value.abs() + step) * SAFE + 1e-6 * p.abs().max_element());
+        let is_inside = if step * SAFE < value.abs() { value > 0.0 } else { self.winding.at(p) > 0 };
+        if is_inside { distance } else { -distance }
+    }
+
+    /// A distance changes no faster than one goes.
+    fn slope(&self, bounds: Bounds) -> Option<f32> {
+        (is_sound(bounds.min) && is_sound(bounds.max)).then_some(1.0)
     }
 }
 

@@ -1,15 +1,19 @@
 //! Scalar fields: what is sampled.
 
 mod asteroid;
+mod asteroid_table;
+mod gyroid;
 mod mesh_distance;
 mod sine;
 mod sphere;
 
 pub use asteroid::Asteroid;
+pub use gyroid::Gyroid;
 pub use mesh_distance::{MeshDistance, MeshFieldError};
 pub use sphere::Sphere;
 
 use glam::Vec3;
+use mesh::Bounds;
 
 /// A real function of space. A point is inside the solid where the value is above the isovalue.
 ///
@@ -28,4 +32,41 @@ pub trait ScalarField: Sync {
             *value = self.sample(Vec3::new(x, y, z));
         }
     }
+
+    /// The value at `p`, where the value at a point nearby may be known already.
+    ///
+    /// Must agree with [`sample`](Self::sample) to the bit; override it where the known value saves work.
+    fn sample_after(&self, p: Vec3, _before: Option<(Vec3, f32)>) -> f32 {
+        self.sample(p)
+    }
+
+    /// A bound on how fast the value changes in a box: `|sample(p) - sample(q)| <= slope * |p - q|` for all `p` and
+    /// `q` in it, up to rounding of 1e-5 of the values; and no value in it is `NaN`. `None` where nothing is known.
+    ///
+    /// With a bound, samples that cannot lie next to the surface are never taken. The mesh is the same, to the byte,
+    /// as long as the promise holds.
+    fn slope(&self, _bounds: Bounds) -> Option<f32> {
+        None
+    }
+
+    /// The least and the greatest value that a point of the box can have, or more. `value` is the one in the middle,
+    /// `(min + max) / 2`. `None` where nothing is known.
+    ///
+    /// By default what [`slope`](Self::slope) says; override it where more is known.
+    fn range(&self, bounds: Bounds, value: f32) -> Option<(f32, f32)> {
+        let slope = self.slope(bounds)?;
+        let centre = (bounds.min + bounds.max) * 0.5;
+        let size = centre.abs().max_element() + bounds.size().max_element();
+        let radius = bounds.size().length() * 0.5 * SAFE + size * (SAFE - 1.0);
+        let change = slope * radius + value.abs() * (SAFE - 1.0);
+        Some((value - change, value + change))
+    }
+
+    /// The same field, value by value to the bit, made ready for very many samples, where that is worth while.
+    fn prepared(&self) -> Option<Box<dyn ScalarField + '_>> {
+        None
+    }
 }
+
+/// More than one, by more than the rounding of a sample and of a bound.
+pub(crate) const SAFE: f32 = 1.0 + 2e-5;

@@ -1,6 +1,7 @@
 //! The sphere of the evaluation.
 
 use glam::Vec3;
+use mesh::Bounds;
 
 use super::ScalarField;
 
@@ -24,6 +25,10 @@ impl Default for Sphere {
 impl ScalarField for Sphere {
     fn sample(&self, p: Vec3) -> f32 {
         self.radius - p.length()
+    }
+
+    fn slope(&self, _: Bounds) -> Option<f32> {
+        Some(1.0)
     }
 }
 

@@ -124,6 +124,11 @@ impl Extractor {
             return Ok(());
         }
         let start = Instant::now();
+        let prepared = match source {
+            Source::Field(field) => field.prepared(),
+            Source::Samples(_) => None,
+        };
+        let source = prepared.as_deref().map_or(source, Source::Field);
         let plan = match self.plan.take() {
             Some(plan) if plan.grid.lattice == *lattice => plan,
             _ => Plan::new(lattice),

@@ -27,6 +27,8 @@ pub(super) struct Grid {
     pub(super) words: usize,
     /// No neighbour is more layers away.
     pub(super) reach: usize,
+    /// The length of the longest lattice edge, in cells.
+    pub(super) longest_edge: f32,
     /// From a point to its neighbours in space.
     pub(super) edges: [Vec3; DIRECTIONS],
     /// By kind of point.
@@ -55,9 +57,9 @@ impl Grid {
         let directions = lattice.arrangement().directions();
         let half = lattice.spacing() / 2.0;
         let neighbourhood = |kind| Neighbourhood::new(&layout, kind, directions);
-        let (reach, base_offset) = match lattice.arrangement() {
-            Arrangement::BodyCentred => (2, 1),
-            Arrangement::SimpleCubic => (1, 0),
+        let (reach, base_offset, longest_edge) = match lattice.arrangement() {
+            Arrangement::BodyCentred => (2, 1, 1.0),
+            Arrangement::SimpleCubic => (1, 0, 3f32.sqrt()),
         };
         Self {
             coordinates: Coordinates::sampled(lattice, &layout, Positions::Indexed),
@@ -70,6 +72,7 @@ impl Grid {
             spokes: spokes(lattice.arrangement()),
             deciding: deciding_edges(lattice.arrangement()),
             base_offset,
+            longest_edge,
             layout,
             lattice: lattice.clone(),
         }

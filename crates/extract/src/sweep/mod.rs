@@ -15,6 +15,7 @@ mod rule;
 mod signs;
 mod slab;
 mod source;
+mod tiles;
 #[cfg(test)]
 mod tests;
 

@@ -13,8 +13,10 @@ use super::records::Records;
 use super::rule::ClusterRule;
 use super::signs::Signs;
 use super::source::Source;
-use crate::ExtractError;
+use super::tiles::{TILE, Tile, Tiles};
+use crate::field::SAFE;
 use crate::triangles::Triangulation;
+use crate::{ExtractError, ScalarField};
 
 /// What all slabs of an extraction share.
 pub(super) struct Job<'a, R> {
@@ -33,6 +35,8 @@ pub(super) struct Workspace {
     samples: Vec<f32>,
     signs: Signs,
     records: Records,
+    tiles: Tiles,
+    bits: Vec<u64>,
 }
 
 /// The surface in a slab.
@@ -67,6 +71,7 @@ impl Workspace {
     pub(super) fn fit(&mut self, grid: &Grid, source: Source) -> Result<(), std::collections::TryReserveError> {
         if matches!(source, Source::Field(_)) {
             super::refill(&mut self.samples, grid.layer_len() * grid.slots(), 0.0)?;
+            self.tiles.fit(grid)?;
         }
         self.signs.fit(grid)?;
         self.records.fit(grid)
@@ -167,12 +172,101 @@ fn sample_layer<R>(job: &Job<R>, layer: usize, workspace: &mut Workspace) {
         }
         Source::Field(field) => {
             let (x, y, z) = (grid.coordinates.x(kind), grid.coordinates.y(kind), grid.coordinates.z()[layer]);
+            workspace.tiles.turn_to(layer, grid, field, job.isovalue);
             for row in 0..rows {
                 let start = (layer % grid.slots() * grid.size[1] + row) * stride;
                 let values = &mut workspace.samples[start..start + points];
-                field.sample_row(&x[..points], y[row], z, values);
-                workspace.signs.fill(row, layer, values, job.isovalue);
+                let tiles = workspace.tiles.row(row);
+                if tiles.iter().all(|tile| *tile == tiles[0]) && is_plain(tiles[0]) {
+                    match tiles[0] {
+                        Tile::Sampled { .. } => {
+                            field.sample_row(&x[..points], y[row], z, values);
+                            workspace.signs.fill(row, layer, values, job.isovalue);
+                        }
+                        side => workspace.signs.set_all(row, layer, side == Tile::Inside, points),
+                    }
+                    continue;
+                }
+                let (step, reach) = (grid.lattice.spacing(), grid.longest_edge);
+                let line = SparseRow { field, isovalue: job.isovalue, step, reach, y: y[row], z };
+                workspace.bits.clear();
+                workspace.bits.resize(grid.words, 0);
+                line.sample(tiles, &x[..points], values, &mut workspace.bits);
+                workspace.signs.set(row, layer, &workspace.bits, points);
             }
         }
+    }
+}
+
+/// Whether a row of such tiles is sampled in one go, or not at all.
+fn is_plain(tile: Tile) -> bool {
+    !matches!(tile, Tile::Sampled { slope } if slope.is_finite())
+}
+
+/// A row of which some parts are known to be on one side.
+struct SparseRow<'a> {
+    field: &'a dyn ScalarField,
+    isovalue: f32,
+    step: f32,
+    /// Of a lattice edge, in steps.
+    reach: f32,
+    y: f32,
+    z: f32,
+}
+
+impl SparseRow<'_> {
+    fn sample(&self, tiles: &[Tile], x: &[f32], values: &mut [f32], bits: &mut [u64]) {
+        let mut tile = 0;
+        while tile * TILE < x.len() {
+            let first = tile * TILE;
+            let mut slope = 0.0;
+            while let Some(Tile::Sampled { slope: here }) = tiles.get(tile) {
+                slope = here.max(slope);
+                tile += 1;
+            }
+            if first == tile * TILE {
+                if tiles[tile] == Tile::Inside {
+                    set_bits(bits, first, x.len().min(first + TILE));
+                }
+                tile += 1;
+            } else {
+                self.run(first, x.len().min(tile * TILE), slope, x, values, bits);
+            }
+        }
+    }
+
+    /// Samples from `first` to `end`, leaving out points that are too far from the surface to be next to it. The
+    /// slope is that of all tiles that the run goes through, which lie one beside the other.
+    fn run(&self, first: usize, end: usize, slope: f32, x: &[f32], values: &mut [f32], bits: &mut [u64]) {
+        if slope.is_infinite() {
+            self.field.sample_row(&x[first..end], self.y, self.z, &mut values[first..end]);
+            for i in first..end {
+                bits[i / 64] |= u64::from(values[i] > self.isovalue) << (i % 64);
+            }
+            return;
+        }
+        let steps_a_unit = 1.0 / (slope * self.step * SAFE);
+        let mut before = None;
+        let mut i = first;
+        while i < end {
+            let p = Vec3::new(x[i], self.y, self.z);
+            let value = self.field.sample_after(p, before);
+            before = Some((p, value));
+            values[i] = value;
+            // How far the surface is at least, in steps. Points so near that no edge from them gets there have all their
+            // neighbours on the same side. Not a number becomes 0.
+            let free = (value - self.isovalue).abs() * steps_a_unit - self.reach * (1.0 + 1e-3);
+            let next = end.min(i + 1 + free as usize);
+            if value > self.isovalue {
+                set_bits(bits, i, next);
+            }
+            i = next;
+        }
+    }
+}
+
+fn set_bits(bits: &mut [u64], first: usize, end: usize) {
+    for i in first..end {
+        bits[i / 64] |= 1 << (i % 64);
     }
 }

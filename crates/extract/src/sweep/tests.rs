@@ -1,11 +1,13 @@
 //! The streaming extractor against the stored one: the same mesh to the byte, and the same counts.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use glam::Vec3;
 use mesh::Bounds;
 use proptest::prelude::*;
 
 use crate::{
-    Arrangement, Asteroid, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Lattice,
+    Arrangement, Asteroid, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Gyroid, Lattice,
     Positions, ScalarField, Source, Sphere, Topology, stored,
 };
 
@@ -155,7 +157,38 @@ fn smooth_fields_give_the_stored_mesh() {
             check(&Sphere { radius: 1.0 }, &lattice, 0.0);
             check(&Sphere { radius: 0.8 }, &lattice, 0.1);
             check(&Asteroid::default(), &lattice, 0.0);
+            check(&Asteroid { amplitude: 0.6, gain: 0.5, ..Asteroid::default() }, &lattice, 0.05);
+            check(&Gyroid::default(), &lattice, 0.0);
+            check(&Gyroid { frequency: 20.0 }, &lattice, 0.9);
         }
+    }
+}
+
+/// Counts samples.
+struct Counting<F>(F, AtomicUsize);
+
+impl<F: ScalarField> ScalarField for Counting<F> {
+    fn sample(&self, p: Vec3) -> f32 {
+        self.1.fetch_add(1, Ordering::Relaxed);
+        self.0.sample(p)
+    }
+
+    fn slope(&self, bounds: Bounds) -> Option<f32> {
+        self.0.slope(bounds)
+    }
+}
+
+#[test]
+fn far_from_the_surface_nothing_is_sampled() {
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    for arrangement in BOTH {
+        let lattice = Lattice::try_new(arrangement, bounds, 2.0 / 128.0).unwrap();
+        let field = Counting(Sphere { radius: 0.8 }, AtomicUsize::new(0));
+        let execution = Execution { threads: 1 };
+        let source = Source::Field(&field);
+        Extractor::new().extract(source, &lattice, &ExtractSettings::default(), &execution).unwrap();
+        let taken = field.1.load(Ordering::Relaxed) as f64 / lattice.stored_samples() as f64;
+        assert!(taken < 0.12, "{arrangement:?}: {taken} of all points");
     }
 }
 

@@ -253,8 +253,21 @@ impl NearestTriangles {
 
     /// The distance from `p`, which must be finite, to the nearest triangle.
     pub(super) fn distance(&self, p: Vec3) -> f32 {
+        self.squared_distance_below(p, f32::INFINITY).sqrt()
+    }
+
+    /// The same, and quicker, where it is thought to be below `limit`.
+    pub(super) fn distance_within(&self, p: Vec3, limit: f32) -> f32 {
+        let limit = limit * limit;
+        let squared = self.squared_distance_below(p, limit);
+        // Nothing was nearer than the limit: it was too tight.
+        if squared < limit { squared.sqrt() } else { self.distance(p) }
+    }
+
+    /// The squared distance to the nearest triangle, or `limit` if that is less.
+    fn squared_distance_below(&self, p: Vec3, limit: f32) -> f32 {
         let lanes = Lanes::splat(p);
-        let mut best = f32::INFINITY;
+        let mut best = limit;
         let mut waiting = [(0.0f32, 0u32); STACK];
         let mut top = 1; // the root waits
         while top > 0 {
@@ -283,7 +296,7 @@ impl NearestTriangles {
                 top += 1;
             }
         }
-        best.sqrt()
+        best
     }
 }
 

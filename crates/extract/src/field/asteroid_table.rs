@@ -1,0 +1,293 @@
+//! The asteroid with its hashes in tables: no sines, and bounds on how steep its noise is.
+
+use glam::Vec3;
+use mesh::Bounds;
+
+use super::asteroid::{Asteroid, blend, hash};
+use super::{SAFE, ScalarField};
+
+/// The most whole-number points of an octave.
+const MOST_POINTS: usize = 1 << 20;
+/// The most noise cells that a bound looks at.
+const MOST_CELLS: i32 = 64;
+
+/// An asteroid ready for many samples; the same values to the bit.
+#[derive(Debug)]
+pub(super) struct AsteroidTable {
+    asteroid: Asteroid,
+    octaves: Vec<Octave>,
+    weights: f32,
+}
+
+/// The hashed points that an octave can reach.
+#[derive(Debug)]
+struct Octave {
+    weight: f32,
+    frequency: f32,
+    low: [i32; 3],
+    size: [i32; 3],
+    hashes: Vec<f32>,
+    /// By cell: the steepest that the noise can be, a unit of its own coordinates.
+    slopes: Vec<f32>,
+    steepest: f32,
+}
+
+impl AsteroidTable {
+    /// `None` if the tables would be too large to be worth it.
+    pub(super) fn new(asteroid: &Asteroid) -> Option<Self> {
+        let mut octaves = Vec::new();
+        let (mut weight, mut frequency, mut weights) = (1.0, 1.0, 0.0);
+        for _ in 0..asteroid.octaves {
+            octaves.push(Octave::new(asteroid, weight, frequency)?);
+            weights += weight;
+            frequency *= asteroid.lacunarity;
+            weight *= asteroid.gain;
+        }
+        let is_sound = weights > 0.0
+            && asteroid.stretch.min_element() > 0.0
+            && asteroid.gain >= 0.0
+            && asteroid.radius.is_finite()
+            && asteroid.amplitude.is_finite();
+        is_sound.then_some(Self { asteroid: *asteroid, octaves, weights })
+    }
+
+    /// The noise in a direction already stretched; `None` beyond the tables.
+    #[inline]
+    fn noise(&self, q: Vec3) -> Option<f32> {
+        let mut sum = 0.0;
+        for octave in &self.octaves {
+            sum += octave.value(q * octave.frequency)? * octave.weight;
+        }
+        Some(sum / self.weights)
+    }
+
+    #[inline]
+    fn direction(&self, p: Vec3, distance: f32) -> Vec3 {
+        (p / distance) / self.asteroid.stretch * self.asteroid.frequency
+    }
+
+    /// How much the noise changes at most a unit of direction, in the directions of a box; and the box's distance
+    /// from the origin.
+    fn noise_slope(&self, bounds: Bounds) -> Option<(f32, f32)> {
+        let nearest = Vec3::ZERO.clamp(bounds.min, bounds.max).length();
+        let centre = (bounds.min + bounds.max) * 0.5;
+        let distance = centre.length();
+        let radius = bounds.size().length() * 0.5 * SAFE;
+        if !(nearest > 0.0 && distance.is_finite()) {
+            return None;
+        }
+        let per_direction = self.asteroid.frequency.abs() / self.asteroid.stretch.min_element();
+        // Directions of the box differ from the centre's by at most this much.
+        let spread = (radius / nearest).min(2.0) * per_direction * SAFE;
+        let q = self.direction(centre, distance);
+        let slope = |octave: &Octave| {
+            octave.slope(q * octave.frequency, spread * octave.frequency.abs())
+                * octave.frequency.abs()
+                * octave.weight
+        };
+        let slope = self.octaves.iter().map(slope).sum::<f32>() / self.weights * per_direction;
+        Some((slope * SAFE, nearest))
+    }
+}
+
+impl ScalarField for AsteroidTable {
+    #[inline]
+    fn sample(&self, p: Vec3) -> f32 {
+        let asteroid = &self.asteroid;
+        let distance = p.length();
+        if distance == 0.0 {
+            return asteroid.radius;
+        }
+        match self.noise(self.direction(p, distance)) {
+            Some(noise) => (asteroid.radius - (p / asteroid.stretch).length()) + asteroid.amplitude * noise,
+            None => asteroid.sample(p),
+        }
+    }
+
+    fn slope(&self, bounds: Bounds) -> Option<f32> {
+        let (noise, nearest) = self.noise_slope(bounds)?;
+        let ball = 1.0 / self.asteroid.stretch.min_element();
+        Some((ball + self.asteroid.amplitude.abs() * noise / nearest) * SAFE)
+    }
+
+    /// The ball's part from the nearest and farthest point of the box, the noise's from its middle and its slope.
+    fn range(&self, bounds: Bounds, value: f32) -> Option<(f32, f32)> {
+        let Asteroid { radius, stretch, amplitude, .. } = self.asteroid;
+        let near = (Vec3::ZERO.clamp(bounds.min, bounds.max) / stretch).length();
+        let far = (bounds.min.abs().max(bounds.max.abs()) / stretch).length();
+        let centre = (bounds.min + bounds.max) * 0.5;
+        let (noise, change) = match self.noise_slope(bounds) {
+            Some((slope, nearest)) if !value.is_nan() => {
+                let noise = value - (radius - (centre / stretch).length());
+                (noise, amplitude.abs() * slope * bounds.size().length() * 0.5 / nearest)
+            }
+            _ => (0.0, f32::INFINITY),
+        };
+        let (low, high) = ((noise - change).max(-amplitude.abs()), (noise + change).min(amplitude.abs()));
+        let slack = (radius.abs() + far + amplitude.abs()) * (SAFE - 1.0);
+        let range = (radius - far + low - slack, radius - near + high + slack);
+        (!range.0.is_nan() && !range.1.is_nan()).then_some(range)
+    }
+}
+
+impl Octave {
+    fn new(asteroid: &Asteroid, weight: f32, frequency: f32) -> Option<Self> {
+        let reach = (Vec3::ONE / asteroid.stretch * (asteroid.frequency * frequency)).abs().to_array();
+        if reach.iter().any(|&r| !(r < 1000.0)) || !weight.is_finite() {
+            return None;
+        }
+        let low = reach.map(|r| -(r.ceil() as i32) - 1);
+        let size = low.map(|low| 1 - 2 * low);
+        let points = size.iter().map(|&n| n as usize).product::<usize>();
+        if points > MOST_POINTS {
+            return None;
+        }
+        let mut hashes = Vec::with_capacity(points);
+        for z in 0..size[2] {
+            for y in 0..size[1] {
+                for x in 0..size[0] {
+                    let at = [x + low[0], y + low[1], z + low[2]].map(|i| i as f32);
+                    hashes.push(hash(Vec3::from_array(at)));
+                }
+            }
+        }
+        let mut octave = Self { weight, frequency, low, size, hashes, slopes: Vec::new(), steepest: 0.0 };
+        octave.slopes = (0..points).map(|i| octave.cell_slope(i)).collect();
+        octave.steepest = octave.slopes.iter().fold(0.0, |a: f32, &b| a.max(b));
+        Some(octave)
+    }
+
+    /// Steps to the next point along x, y and z.
+    fn steps(&self) -> [usize; 3] {
+        [1, self.size[0] as usize, (self.size[0] * self.size[1]) as usize]
+    }
+
+    /// The blend is no steeper along an axis than 1.5 times the cell's largest difference along it, and the noise is
+    /// twice the blend. Points of the last rows have no cell, and none is asked for.
+    fn cell_slope(&self, at: usize) -> f32 {
+        let steps = self.steps();
+        let hash = |i: usize| self.hashes.get(i).copied().unwrap_or(0.0);
+        let along = |axis: usize| {
+            let (a, b) = (steps[(axis + 1) % 3], steps[(axis + 2) % 3]);
+            [0, a, b, a + b]
+                .map(|corner| (hash(at + corner + steps[axis]) - hash(at + corner)).abs())
+                .into_iter()
+                .fold(0.0, f32::max)
+        };
+        3.0 * Vec3::new(along(0), along(1), along(2)).length()
+    }
+
+    #[inline]
+    fn place(&self, [x, y, z]: [i32; 3]) -> usize {
+        ((z * self.size[1] + y) * self.size[0] + x) as usize
+    }
+
+    /// The noise at `q`.
+    #[inline]
+    fn value(&self, q: Vec3) -> Option<f32> {
+        let base = Vec3::new(floor(q.x), floor(q.y), floor(q.z));
+        let t = q - base;
+        let w = t * t * (Vec3::splat(3.0) - Vec3::splat(2.0) * t);
+        let [x, y, z] = [base.x as i32 - self.low[0], base.y as i32 - self.low[1], base.z as i32 - self.low[2]];
+        let is_in = |i: i32, n: i32| (0..n - 1).contains(&i);
+        if !(is_in(x, self.size[0]) && is_in(y, self.size[1]) && is_in(z, self.size[2])) {
+            return None;
+        }
+        let [_, up, back] = self.steps();
+        let at = self.place([x, y, z]);
+        let near = &self.hashes[at..at + up + 2];
+        let far = &self.hashes[at + back..at + back + up + 2];
+        let plane = |h: &[f32]| blend(blend(h[0], h[1], w.x), blend(h[up], h[up + 1], w.x), w.y);
+        Some(blend(plane(near), plane(far), w.z) * 2.0 - 1.0)
+    }
+
+    /// The steepest within `spread` of `q` along each axis.
+    fn slope(&self, q: Vec3, spread: f32) -> f32 {
+        let cell = |v: f32, axis: usize| {
+            (floor(v) as i32 - self.low[axis]).clamp(0, self.size[axis] - 2)
+        };
+        let (low, high) = (q - spread * SAFE, q + spread * SAFE);
+        let ranges = [0, 1, 2].map(|axis| cell(low[axis], axis)..=cell(high[axis], axis));
+        let cells = |range: &std::ops::RangeInclusive<i32>| range.end() - range.start() + 1;
+        if !(spread < 8.0) || ranges.iter().map(cells).product::<i32>() > MOST_CELLS {
+            return self.steepest;
+        }
+        let [xs, ys, zs] = ranges;
+        let mut steepest = 0.0f32;
+        for z in zs {
+            for y in ys.clone() {
+                let start = self.place([*xs.start(), y, z]);
+                let row = &self.slopes[start..start + cells(&xs) as usize];
+                steepest = row.iter().fold(steepest, |a, &b| a.max(b));
+            }
+        }
+        steepest
+    }
+}
+
+/// As `floorf`, for values that fit 32 bits.
+#[inline]
+fn floor(v: f32) -> f32 {
+    let whole = v as i32 as f32;
+    if whole > v { whole - 1.0 } else { whole }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn point(size: f32) -> impl Strategy<Value = Vec3> {
+        prop::array::uniform3(-size..size).prop_map(Vec3::from)
+    }
+
+    fn asteroid() -> impl Strategy<Value = Asteroid> {
+        let rough = Asteroid { amplitude: 0.5, frequency: 4.0, gain: 0.5, ..Asteroid::default() };
+        let tall = Asteroid { stretch: Vec3::new(0.5, 2.0, 0.7), octaves: 2, ..Asteroid::default() };
+        prop_oneof![Just(Asteroid::default()), Just(rough), Just(tall)]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        #[test]
+        fn the_table_changes_no_bit(asteroid in asteroid(), p in prop_oneof![point(1.5), point(1e-3), point(1e30)]) {
+            let table = AsteroidTable::new(&asteroid).unwrap();
+            prop_assert_eq!(table.sample(p).to_bits(), asteroid.sample(p).to_bits());
+        }
+
+        #[test]
+        fn values_stay_in_range_and_below_the_slope(
+            asteroid in asteroid(),
+            min in point(1.2),
+            size in prop_oneof![point(0.05), point(0.5)],
+            points in prop::collection::vec(prop::array::uniform3(0.0..=1.0f32), 20),
+        ) {
+            let table = AsteroidTable::new(&asteroid).unwrap();
+            let bounds = Bounds { min, max: min + size.abs() };
+            let centre = (bounds.min + bounds.max) * 0.5;
+            let (low, high) = table.range(bounds, table.sample(centre)).unwrap();
+            let slope = table.slope(bounds);
+            let mut before: Option<Vec3> = None;
+            for t in points {
+                let p = (min + size.abs() * Vec3::from(t)).clamp(bounds.min, bounds.max);
+                let value = table.sample(p);
+                prop_assert!(low <= value && value <= high, "{low} {value} {high}");
+                if let (Some(q), Some(slope)) = (before, slope) {
+                    prop_assert!((table.sample(q) - value).abs() <= slope * p.distance(q) + 1e-5);
+                }
+                before = Some(p);
+            }
+        }
+    }
+
+    #[test]
+    fn the_origin_and_what_is_no_number() {
+        let asteroid = Asteroid::default();
+        let table = AsteroidTable::new(&asteroid).unwrap();
+        for p in [Vec3::ZERO, Vec3::splat(f32::NAN), Vec3::splat(f32::INFINITY), -Vec3::X, Vec3::Z] {
+            let (a, b) = (table.sample(p), asteroid.sample(p));
+            assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(), "{p}: {a} {b}");
+        }
+    }
+}
