@@ -1,0 +1,161 @@
+//! Field to mesh and samples to mesh, one thread; `cargo bench -p extract`, or a part of it by name.
+//!
+//! `whole` calls the field where the surface can be; `all_samples` has the samples in memory; the other benches are
+//! single stages of the whole, as the extractor times them itself. Body-centred, integrated, `CELLS` cells along the
+//! axes of the box (the bunny: the spacing that this gives a box of side 2).
+
+use std::fs::File;
+use std::path::Path;
+use std::sync::LazyLock;
+use std::time::Duration;
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use extract::{
+    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Gyroid, Lattice,
+    MeshDistance, ScalarField, Source, Sphere, StageTimes,
+};
+use glam::Vec3;
+use mesh::{Bounds, read_ply, repair};
+
+const CELLS: [u32; 3] = [64, 128, 256];
+const FIELDS: [&str; 4] = ["sphere", "asteroid", "gyroid", "bunny"];
+
+fn main() {
+    if BUNNY.is_none() {
+        eprintln!("SKIPPED: NO BUNNY IN cache/ - run make bunny; the benches named bunny measure nothing");
+    }
+    divan::main();
+}
+
+static BUNNY: LazyLock<Option<MeshDistance>> = LazyLock::new(|| {
+    let cache = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cache/bunny.ply");
+    let scan = read_ply(File::open(cache).ok()?).expect("the cached bunny is a mesh");
+    let solid = repair::closed_solid(&scan).expect("the bunny can be closed");
+    let placed = solid.transformed(|p| Vec3::new(p.x, -p.z, p.y) * 6.35 + Vec3::new(0.1, 0.0, -0.615));
+    Some(MeshDistance::try_new(&placed).expect("the bunny is a solid"))
+});
+
+/// `None` for a bunny that is not there.
+fn field(name: &str) -> Option<(Box<dyn ScalarField>, Bounds)> {
+    let cube = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    Some(match name {
+        "sphere" => (Box::new(Sphere { radius: 0.8 }), cube),
+        "asteroid" => (Box::new(Asteroid::default()), cube),
+        "gyroid" => (Box::new(Gyroid::default()), cube),
+        "bunny" => {
+            let bounds = Bounds { min: Vec3::new(-0.7, -0.4, -0.5), max: Vec3::new(0.8, 0.4, 0.6) };
+            (Box::new(BUNNY.clone()?), bounds)
+        }
+        other => panic!("no field is called {other}"),
+    })
+}
+
+struct Subject {
+    field: Box<dyn ScalarField>,
+    lattice: Lattice,
+    extractor: Extractor,
+    extraction: Extraction,
+}
+
+impl Subject {
+    fn new(name: &str, cells: u32) -> Option<Self> {
+        let (field, bounds) = field(name)?;
+        let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 2.0 / cells as f32).expect("a sound lattice");
+        Some(Self { field, lattice, extractor: Extractor::new(), extraction: Extraction::default() })
+    }
+
+    fn run(&mut self, samples: Option<&[f32]>, clustering: Clustering, threads: usize) {
+        let source = samples.map_or(Source::Field(&*self.field), Source::Samples);
+        let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
+        let execution = Execution { threads };
+        self.extractor
+            .extract_into(source, &self.lattice, &settings, &execution, &mut self.extraction)
+            .expect("the subjects can be extracted");
+    }
+
+    /// All samples in storage order.
+    fn samples(&self) -> Vec<f32> {
+        let [x, y, z] = self.lattice.cells().map(|n| n as usize);
+        let (min, h) = (self.lattice.bounds().min, self.lattice.spacing());
+        let [nx, ny, nz] = [x + 2, y + 2, 2 * z + 3];
+        let mut values = vec![0.0; nx * ny * nz];
+        for (k, layer) in values.chunks_mut(nx * ny).enumerate() {
+            let half = if k % 2 == 0 { 0.5 } else { 0.0 };
+            let at = |i: usize| (i as f32 - half) * h;
+            let xs: Vec<f32> = (0..nx).map(|i| min.x + at(i)).collect();
+            for (j, row) in layer.chunks_mut(nx).enumerate() {
+                self.field.sample_row(&xs, min.y + at(j), min.z + at(k / 2), row);
+            }
+        }
+        values
+    }
+}
+
+#[divan::bench(args = FIELDS, consts = CELLS)]
+fn whole<const N: u32>(bencher: Bencher, name: &str) {
+    let Some(mut subject) = Subject::new(name, N) else { return };
+    bencher.counter(ItemsCount::new(subject.lattice.stored_samples())).bench_local(|| {
+        subject.run(None, Clustering::Integrated, 1);
+    });
+}
+
+#[divan::bench(args = ["sphere", "asteroid", "gyroid"], consts = CELLS)]
+fn all_samples<const N: u32>(bencher: Bencher, name: &str) {
+    let Some(mut subject) = Subject::new(name, N) else { return };
+    let samples = subject.samples();
+    bencher.counter(ItemsCount::new(samples.len())).bench_local(|| {
+        subject.run(Some(&samples), Clustering::Integrated, 1);
+    });
+}
+
+#[divan::bench(args = ["sphere", "asteroid", "gyroid"], consts = CELLS)]
+fn all_samples_two_threads<const N: u32>(bencher: Bencher, name: &str) {
+    let Some(mut subject) = Subject::new(name, N) else { return };
+    let samples = subject.samples();
+    bencher.bench_local(|| subject.run(Some(&samples), Clustering::Integrated, 2));
+}
+
+#[divan::bench(args = ["sphere", "asteroid", "gyroid"], consts = CELLS)]
+fn all_samples_unclustered<const N: u32>(bencher: Bencher, name: &str) {
+    let Some(mut subject) = Subject::new(name, N) else { return };
+    let samples = subject.samples();
+    bencher.bench_local(|| subject.run(Some(&samples), Clustering::None, 1));
+}
+
+/// Stages are not functions of their own but run turn and turn about, layer by layer: each is timed inside, and its
+/// share is spun away again for the benchmark to see. So every sample takes the whole and its stage on top.
+fn stage<const N: u32>(bencher: Bencher, name: &str, of: fn(&StageTimes) -> Duration) {
+    let Some(mut subject) = Subject::new(name, N) else { return };
+    bencher
+        .with_inputs(|| {
+            subject.run(None, Clustering::Integrated, 1);
+            of(&subject.extraction.times)
+        })
+        .bench_local_values(|time| {
+            let start = std::time::Instant::now();
+            while start.elapsed() < time {
+                std::hint::spin_loop();
+            }
+        });
+}
+
+#[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
+fn stage_sampling<const N: u32>(bencher: Bencher, name: &str) {
+    stage::<N>(bencher, name, |times| times.sampling);
+}
+
+#[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
+fn stage_vertex<const N: u32>(bencher: Bencher, name: &str) {
+    stage::<N>(bencher, name, |times| times.vertex);
+}
+
+#[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
+fn stage_geometry<const N: u32>(bencher: Bencher, name: &str) {
+    stage::<N>(bencher, name, |times| times.geometry);
+}
+
+#[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
+fn stage_normals<const N: u32>(bencher: Bencher, name: &str) {
+    stage::<N>(bencher, name, |times| times.normals);
+}

@@ -1,0 +1,80 @@
+//! Best-of-many CPU and stage times of the streaming extractor with samples in memory, for quick comparisons.
+//! Arguments: cells along an axis, repetitions.
+
+use extract::{
+    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, ScalarField, Source,
+    Sphere,
+};
+use glam::Vec3;
+use mesh::Bounds;
+
+/// The field at all points of the lattice, in storage order.
+fn samples(field: &dyn ScalarField, lattice: &Lattice) -> Vec<f32> {
+    let [x, y, z] = lattice.cells().map(|n| n as usize);
+    let (min, h) = (lattice.bounds().min, lattice.spacing());
+    let body = lattice.arrangement() == Arrangement::BodyCentred;
+    let (nx, ny, nz) = if body { (x + 2, y + 2, 2 * z + 3) } else { (x + 1, y + 1, z + 1) };
+    let mut values = vec![0.0; nx * ny * nz];
+    for (k, layer) in values.chunks_mut(nx * ny).enumerate() {
+        let offset = if body && k % 2 == 0 { -0.5 } else { 0.0 };
+        let place = |i: usize| i as f32 + offset;
+        let xs: Vec<f32> = (0..nx).map(|i| min.x + place(i) * h).collect();
+        let pz = min.z + place(if body { k / 2 } else { k }) * h;
+        for (j, row) in layer.chunks_mut(nx).enumerate() {
+            field.sample_row(&xs, min.y + place(j) * h, pz, row);
+        }
+    }
+    values
+}
+
+/// Time this thread has run, which other work on the machine does not add to.
+fn cpu_ms() -> f64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").expect("Linux");
+    text.split(' ').next().and_then(|ns| ns.parse::<f64>().ok()).expect("a number") / 1e6
+}
+
+fn main() {
+    let mut arguments = std::env::args().skip(1);
+    let cells: u32 = arguments.next().map_or(256, |a| a.parse().unwrap());
+    let repetitions: usize = arguments.next().map_or(20, |a| a.parse().unwrap());
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
+        let lattice = Lattice::try_new(arrangement, bounds, 2.0 / cells as f32).unwrap();
+        let fields: [(&str, &dyn ScalarField); 2] =
+            [("sphere 0.8", &Sphere { radius: 0.8 }), ("asteroid", &Asteroid::default())];
+        for (name, field) in fields {
+            let values = samples(field, &lattice);
+            for clustering in [Clustering::Integrated, Clustering::None] {
+                for threads in [1, 2] {
+                    let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
+                    let (mut extractor, mut extraction) = (Extractor::new(), Extraction::default());
+                    let mut best: Option<(f64, Extraction)> = None;
+                    for _ in 0..repetitions {
+                        let start = cpu_ms();
+                        let execution = Execution { threads };
+                        extractor
+                            .extract_into(Source::Samples(&values), &lattice, &settings, &execution, &mut extraction)
+                            .unwrap();
+                        let ms = cpu_ms() - start;
+                        if best.as_ref().is_none_or(|b| ms < b.0) {
+                            best = Some((ms, extraction.clone()));
+                        }
+                    }
+                    let (ms, e) = best.unwrap();
+                    let t = |d: std::time::Duration| d.as_secs_f64() * 1e3;
+                    println!(
+                        "{arrangement:?} {name} {clustering:?} threads {threads}: {ms:.1} ms (alloc {:.1} signs {:.1} \
+                         vertex {:.1} geometry {:.1} normals {:.1}) V {} T {}",
+                        t(e.times.allocation),
+                        t(e.times.sampling),
+                        t(e.times.vertex),
+                        t(e.times.geometry),
+                        t(e.times.normals),
+                        e.counts.vertices,
+                        e.counts.triangles
+                    );
+                }
+            }
+        }
+    }
+}
