@@ -49,7 +49,7 @@ fn main() {
     let cube = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     let box_of_the_bunny = Bounds { min: Vec3::new(-0.7, -0.4, -0.5), max: Vec3::new(0.8, 0.4, 0.6) };
     let spacing = 2.0 / cells as f32;
-    let bunny = if cells == 256 { None } else { bunny() };
+    let bunny = bunny();
     let mut cases: Vec<(&str, &dyn ScalarField, Bounds, f32)> = vec![
         ("sphere 0.8", &Sphere { radius: 0.8 }, cube, spacing),
         ("asteroid", const { &Asteroid { radius: 0.65, stretch: Vec3::new(0.9, 1.0, 0.9), amplitude: 0.35, frequency: 1.5, octaves: 3, lacunarity: 3.0, gain: 0.15 } }, cube, spacing),

@@ -1,5 +1,5 @@
 //! Best-of-many CPU and stage times of the streaming extractor with samples in memory, for quick comparisons.
-//! Arguments: cells along an axis, repetitions.
+//! Arguments: cells along an axis, repetitions, part of a case's name.
 
 use extract::{
     Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, ScalarField, Source,
@@ -37,6 +37,7 @@ fn main() {
     let mut arguments = std::env::args().skip(1);
     let cells: u32 = arguments.next().map_or(256, |a| a.parse().unwrap());
     let repetitions: usize = arguments.next().map_or(20, |a| a.parse().unwrap());
+    let wanted = arguments.next().unwrap_or_default();
     let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
         let lattice = Lattice::try_new(arrangement, bounds, 2.0 / cells as f32).unwrap();
@@ -46,6 +47,10 @@ fn main() {
             let values = samples(field, &lattice);
             for clustering in [Clustering::Integrated, Clustering::None] {
                 for threads in [1, 2] {
+                    let id = format!("{arrangement:?} {name} {clustering:?} {threads}");
+                    if !id.contains(&wanted) {
+                        continue;
+                    }
                     let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
                     let (mut extractor, mut extraction) = (Extractor::new(), Extraction::default());
                     let mut best: Option<(f64, Extraction)> = None;

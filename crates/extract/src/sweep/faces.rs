@@ -167,7 +167,8 @@ impl<'a> CellRow<'a> {
     ) -> Self {
         let kind = grid.layout.base_kind();
         let around = grid.neighbourhood(kind);
-        let lines = grid.lines(kind, row, layer);
+        let layers = grid.layers(kind, layer);
+        let lines = grid.rows(kind, row, layer, &layers).map(|(line, row)| [row, layers[line]]);
         let direction = |d: usize| d % DIRECTIONS;
         let neighbours = std::array::from_fn(|d| {
             let d = direction(d);

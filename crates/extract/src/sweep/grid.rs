@@ -1,6 +1,6 @@
 //! What a sweep needs to know about its lattice, worked out once.
 
-use glam::Vec3;
+use glam::Vec3A;
 
 use crate::lattice::{
     Arrangement, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout, PointKind, members,
@@ -30,7 +30,10 @@ pub(super) struct Grid {
     /// The length of the longest lattice edge, in cells.
     pub(super) longest_edge: f32,
     /// From a point to its neighbours in space.
-    pub(super) edges: [Vec3; DIRECTIONS],
+    pub(super) edges: [Vec3A; 16],
+    /// The box.
+    pub(super) low: Vec3A,
+    pub(super) high: Vec3A,
     /// By kind of point.
     pub(super) neighbourhoods: [Neighbourhood; 2],
     /// Round which lattice edges at a cell's base point its tetrahedra stand.
@@ -49,6 +52,9 @@ pub(super) struct Neighbourhood {
     /// For each direction, the number of the line, and -1, 0 or 1 along it.
     pub(super) line: [usize; DIRECTIONS],
     pub(super) shift: [isize; DIRECTIONS],
+    /// For each direction, how to get the sign bits of the neighbours of a word of points: from which of the words
+    /// before and at it to start, and how far that is shifted.
+    pub(super) funnel: [(usize, u32); DIRECTIONS],
 }
 
 impl Grid {
@@ -67,7 +73,11 @@ impl Grid {
             size: layout.grid(),
             words: layout.grid()[0].div_ceil(64),
             reach,
-            edges: directions.offsets.map(|[x, y, z]| Vec3::from_array([x, y, z].map(f32::from)) * half),
+            edges: std::array::from_fn(|d| {
+                Vec3A::from_array(directions.offsets[d % DIRECTIONS].map(f32::from)) * half
+            }),
+            low: lattice.bounds().min.into(),
+            high: lattice.bounds().max.into(),
             neighbourhoods: [PointKind::Centre, PointKind::Corner].map(neighbourhood),
             spokes: spokes(lattice.arrangement()),
             deciding: deciding_edges(lattice.arrangement()),
@@ -108,18 +118,34 @@ impl Grid {
         [0, 1.min(last), last].map(|column| self.layout.incident(kind, [column, row, layer]))
     }
 
-    /// The row and layer of each line round a row; where there is none, the row itself, whose points are never
-    /// reached from there.
+    /// The layer of each line round a layer; where there is none, the layer itself.
+    pub(super) fn layers(&self, kind: PointKind, layer: usize) -> [usize; LINES] {
+        let mut result = [layer; LINES];
+        for (line, &[_, layers]) in result.iter_mut().zip(&self.neighbourhood(kind).lines) {
+            *line = Some(layer.wrapping_add_signed(layers)).filter(|&z| z < self.size[2]).unwrap_or(layer);
+        }
+        result
+    }
+
+    /// For each line round a row, the line whose layer it is in, and its row; where there is no such row, the row
+    /// itself, whose points are never reached from there.
     #[inline]
-    pub(super) fn lines(&self, kind: PointKind, row: usize, layer: usize) -> [[usize; 2]; LINES] {
-        let mut lines = [[row, layer]; LINES];
-        for (line, &[rows, layers]) in lines.iter_mut().zip(&self.neighbourhood(kind).lines) {
-            let (y, z) = (row.wrapping_add_signed(rows), layer.wrapping_add_signed(layers));
-            if y < self.size[1] && z < self.size[2] {
-                *line = [y, z];
+    pub(super) fn rows(
+        &self,
+        kind: PointKind,
+        row: usize,
+        layer: usize,
+        layers: &[usize; LINES],
+    ) -> [(usize, usize); LINES] {
+        let mut result = [(0, row); LINES];
+        for (i, &[rows, away]) in self.neighbourhood(kind).lines.iter().enumerate() {
+            let y = row.wrapping_add_signed(rows);
+            let is_there = y < self.size[1] && (away == 0 || layers[i % LINES] != layer);
+            if is_there {
+                result[i % LINES] = (i, y);
             }
         }
-        lines
+        result
     }
 }
 
@@ -131,6 +157,11 @@ impl Neighbourhood {
             let known = result.lines.iter().position(|&line| line == [rows, layers]);
             result.line[direction] = known.unwrap_or(result.lines.len());
             result.shift[direction] = shift;
+            result.funnel[direction] = match shift {
+                -1 => (0, 63),
+                0 => (1, 0),
+                _ => (1, 1),
+            };
             if known.is_none() {
                 result.lines.push([rows, layers]);
             }

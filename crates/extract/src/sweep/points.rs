@@ -3,13 +3,13 @@
 //! Signs are compared 64 points at a time. A point whose side differs from that of a neighbour builds the set of its
 //! crossing edges and of those that are nearer to it, all by itself; every crossing is looked at from both its ends.
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 use super::grid::{Grid, LINES};
 use super::records::{Numbering, Record, Records};
 use super::rule::ClusterRule;
 use super::signs::{MIXED, Signs, used_bits};
-use crate::lattice::{DIRECTIONS, DirectionSet, members};
+use crate::lattice::{DIRECTIONS, DirectionSet};
 
 /// Samples, by row.
 #[derive(Clone, Copy)]
@@ -17,14 +17,6 @@ pub(super) struct Samples<'a> {
     pub(super) values: &'a [f32],
     /// Layers kept: a ring, or all there are.
     pub(super) slots: usize,
-    pub(super) size: [usize; 2],
-}
-
-impl Samples<'_> {
-    #[inline]
-    pub(super) fn row_start(&self, row: usize, layer: usize) -> usize {
-        (layer % self.slots * self.size[1] + row) * self.size[0]
-    }
 }
 
 /// What the pass reads.
@@ -66,26 +58,31 @@ impl<R: ClusterRule> PointPass<'_, R> {
         records.open_layer(layer);
         let kind = self.grid.layout.kind(layer);
         let rows = self.grid.layout.used(kind)[1];
+        let layers = self.grid.layers(kind, layer);
+        let [signs, samples] = [self.grid.slots(), self.samples.slots]
+            .map(|slots| layers.map(|layer| layer % slots * self.grid.size[1]));
         for row in 0..rows {
-            let lines = self.grid.lines(kind, row, layer);
-            let state = self.signs.state(row, layer);
-            if state != MIXED && lines.iter().all(|&[y, z]| self.signs.state(y, z) == state) {
+            let rows = self.grid.rows(kind, row, layer, &layers);
+            let signs: [usize; LINES] = std::array::from_fn(|i| signs[rows[i].0] + rows[i].1);
+            let state = self.signs.states[signs[0]];
+            if state != MIXED && signs.iter().all(|&place| self.signs.states[place] == state) {
                 continue;
             }
+            let samples = std::array::from_fn(|i| (samples[rows[i].0] + rows[i].1) * self.grid.size[0]);
             if let Some(positions) = positions.as_deref_mut() {
                 // So that memory running out is an error, and pushing never grows by itself.
                 positions.try_reserve(self.grid.size[0] * DIRECTIONS)?;
             }
-            self.row(row, layer, &lines, records, placed, positions.as_deref_mut());
+            self.row([row, layer], &signs, &samples, records, placed, positions.as_deref_mut());
         }
         Ok(())
     }
 
     fn row(
         &self,
-        row: usize,
-        layer: usize,
-        lines: &[[usize; 2]; LINES],
+        [row, layer]: [usize; 2],
+        signs: &[usize; LINES],
+        samples: &[usize; LINES],
         records: &mut Records,
         placed: &mut Placed,
         mut positions: Option<&mut Vec<Vec3>>,
@@ -95,10 +92,11 @@ impl<R: ClusterRule> PointPass<'_, R> {
         let around = grid.neighbourhood(kind);
         let used = grid.layout.used(kind)[0];
         let incident = grid.incident(kind, row, layer);
-        let signs = lines.map(|[y, z]| self.signs.row(y, z));
-        let samples = lines.map(|[y, z]| self.samples.row_start(y, z));
-        let neighbours: [usize; DIRECTIONS] =
-            std::array::from_fn(|d| samples[around.line[d]].wrapping_add_signed(around.shift[d]));
+        let signs: [&[u64]; LINES] = std::array::from_fn(|i| self.signs.row_at(signs[i]));
+        let neighbours: [usize; 16] = std::array::from_fn(|d| {
+            let d = d % DIRECTIONS;
+            samples[around.line[d]].wrapping_add_signed(around.shift[d])
+        });
         let record_start = records.row_start(row, layer);
         let x = grid.coordinates.x(kind);
         let (y, z) = (grid.coordinates.y(kind)[row], grid.coordinates.z()[layer]);
@@ -111,7 +109,9 @@ impl<R: ClusterRule> PointPass<'_, R> {
             let mut differ = [0; DIRECTIONS];
             let mut any = 0;
             for (d, differ) in differ.iter_mut().enumerate() {
-                *differ = own ^ shifted(signs[around.line[d]], word + 1, around.shift[d]);
+                let line = signs[around.line[d] % LINES];
+                let (low, right) = around.funnel[d];
+                *differ = own ^ (line[word + low] >> right | line[word + low + 1] << 1 << (63 - right));
                 any |= *differ;
             }
             let mut active = any & used_bits(word, used);
@@ -141,13 +141,13 @@ impl<R: ClusterRule> PointPass<'_, R> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "the body of the innermost loop")]
     fn point(
         &self,
         point: &Point,
         row_start: usize,
-        neighbours: &[usize; DIRECTIONS],
+        neighbours: &[usize; 16],
         layer: usize,
         records: &mut Records,
         placed: &mut Placed,
@@ -161,9 +161,12 @@ impl<R: ClusterRule> PointPass<'_, R> {
 
         let mut near = 0;
         let mut there = [0.0; 16];
-        for direction in members(crossing) {
-            let neighbour = values[neighbours[direction & 15].wrapping_add(column)];
-            there[direction & 15] = neighbour;
+        let mut left = crossing;
+        while left != 0 {
+            let direction = left.trailing_zeros() as usize & 15;
+            left &= left - 1;
+            let neighbour = values[neighbours[direction].wrapping_add(column)];
+            there[direction] = neighbour;
             let is_near = R::TIES.is_near(inside, difference, self.isovalue - neighbour);
             near |= DirectionSet::from(is_near) << direction;
         }
@@ -196,7 +199,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
     }
 
     /// The unweighted mean of the cluster's crossings, clamped to the box.
-    #[inline]
+    #[inline(always)]
     fn place(
         &self,
         point: &Point,
@@ -205,20 +208,26 @@ impl<R: ClusterRule> PointPass<'_, R> {
         difference: f32,
         there: &[f32; 16],
     ) -> Vec3 {
-        let mut sum = Vec3::ZERO;
-        for direction in members(cluster) {
-            let ratio = difference / (there[direction & 15] - value);
+        let (grid, position) = (self.grid, Vec3A::from(point.position));
+        let mut sum = Vec3A::ZERO;
+        let mut left = cluster;
+        while left != 0 {
+            let direction = left.trailing_zeros() as usize & 15;
+            left &= left - 1;
+            let ratio = difference / (there[direction] - value);
             // Samples that are not numbers, or two infinities, say nothing about the place.
             let ratio = if ratio.is_finite() { ratio } else { 0.5 };
-            sum += self.grid.edges[direction] * ratio + point.position;
+            sum += grid.edges[direction] * ratio + position;
         }
-        let bounds = self.grid.lattice.bounds();
-        (sum / cluster.count_ones() as f32).min(bounds.max).max(bounds.min)
+        let mean = sum / cluster.count_ones() as f32;
+        let is_inside = mean.cmpgt(grid.low) & mean.cmplt(grid.high);
+        let bounds = grid.lattice.bounds();
+        if is_inside.all() { Vec3::from(mean) } else { Vec3::from(mean).min(bounds.max).max(bounds.min) }
     }
 }
 
 /// Whether the points of a word and all their neighbours are on one side.
-#[inline]
+#[inline(always)]
 fn is_uniform(signs: &[&[u64]; LINES], word: usize) -> bool {
     let (mut any, mut all) = (0, !0);
     for line in signs {
@@ -229,18 +238,8 @@ fn is_uniform(signs: &[&[u64]; LINES], word: usize) -> bool {
     any == 0 || all == !0
 }
 
-/// A word of the row as seen from one point earlier or later.
-#[inline]
-fn shifted(line: &[u64], word: usize, shift: isize) -> u64 {
-    match shift {
-        0 => line[word],
-        1 => line[word] >> 1 | line[word + 1] << 63,
-        _ => line[word] << 1 | line[word - 1] >> 63,
-    }
-}
-
 /// One bit of each word.
-#[inline]
+#[inline(always)]
 fn gather(words: &[u64; DIRECTIONS], bit: u32) -> DirectionSet {
     words.iter().enumerate().fold(0, |set, (d, &word)| set | ((word >> bit & 1) as DirectionSet) << d)
 }

@@ -13,7 +13,8 @@ pub(super) const MIXED: u8 = 2;
 #[derive(Debug, Default)]
 pub(super) struct Signs {
     words: Vec<u64>,
-    states: Vec<u8>,
+    /// By place.
+    pub(super) states: Vec<u8>,
     stride: usize,
     rows: usize,
     slots: usize,
@@ -31,15 +32,10 @@ impl Signs {
         layer % self.slots * self.rows + row
     }
 
+    /// The words of a row, by its place: rows, layer after layer.
     #[inline]
-    pub(super) fn row(&self, row: usize, layer: usize) -> &[u64] {
-        let start = self.place(row, layer) * self.stride;
-        &self.words[start..start + self.stride]
-    }
-
-    #[inline]
-    pub(super) fn state(&self, row: usize, layer: usize) -> u8 {
-        self.states[self.place(row, layer)]
+    pub(super) fn row_at(&self, place: usize) -> &[u64] {
+        &self.words[place * self.stride..(place + 1) * self.stride]
     }
 
     /// Inside is a value above the isovalue; equal is outside, and so is `NaN`.

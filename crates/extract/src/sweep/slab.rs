@@ -119,10 +119,9 @@ pub(super) fn sweep<R: ClusterRule>(
         piece.times.sampling += lap();
 
         if let Some(layer) = step.checked_sub(reach).filter(|layer| recorded.contains(layer)) {
-            let size = [grid.size[0], grid.size[1]];
             let samples = match job.source {
-                Source::Samples(values) => Samples { values, slots: layers, size },
-                Source::Field(_) => Samples { values: &workspace.samples, slots: grid.slots(), size },
+                Source::Samples(values) => Samples { values, slots: layers },
+                Source::Field(_) => Samples { values: &workspace.samples, slots: grid.slots() },
             };
             let pass = PointPass { grid, rule: job.rule, samples, signs: &workspace.signs, isovalue };
             if layer == own.start {
