@@ -61,7 +61,8 @@ struct Subject {
 impl Subject {
     fn new(name: &str, cells: u32) -> Option<Self> {
         let (field, bounds) = field(name)?;
-        let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 2.0 / cells as f32).expect("a sound lattice");
+        let lattice =
+            Lattice::try_new(Arrangement::BodyCentred, bounds, 2.0 / cells as f32).expect("a sound lattice");
         Some(Self { field, lattice, extractor: Extractor::new(), extraction: Extraction::default() })
     }
 

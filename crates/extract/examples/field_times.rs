@@ -1,8 +1,8 @@
 //! Best-of-many CPU times from field to mesh, one thread, with sampling only where the surface can be.
-//! Arguments: cells along an axis, repetitions. The bunny is at the paper's lattice.
+//! Arguments: cells along an axis, repetitions, part of a case's name. The bunny is at the paper's lattice.
 
 use extract::{
-    Arrangement, Asteroid, ExtractSettings, Execution, Extraction, Extractor, Gyroid, Lattice, MeshDistance,
+    Arrangement, Asteroid, Execution, ExtractSettings, Extraction, Extractor, Gyroid, Lattice, MeshDistance,
     ScalarField, Source, Sphere,
 };
 use glam::Vec3;
@@ -46,13 +46,29 @@ fn main() {
     let mut arguments = std::env::args().skip(1);
     let cells: u32 = arguments.next().map_or(256, |a| a.parse().unwrap());
     let repetitions: usize = arguments.next().map_or(10, |a| a.parse().unwrap());
+    let wanted = arguments.next().unwrap_or_default();
     let cube = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     let box_of_the_bunny = Bounds { min: Vec3::new(-0.7, -0.4, -0.5), max: Vec3::new(0.8, 0.4, 0.6) };
     let spacing = 2.0 / cells as f32;
     let bunny = bunny();
     let mut cases: Vec<(&str, &dyn ScalarField, Bounds, f32)> = vec![
         ("sphere 0.8", &Sphere { radius: 0.8 }, cube, spacing),
-        ("asteroid", const { &Asteroid { radius: 0.65, stretch: Vec3::new(0.9, 1.0, 0.9), amplitude: 0.35, frequency: 1.5, octaves: 3, lacunarity: 3.0, gain: 0.15 } }, cube, spacing),
+        (
+            "asteroid",
+            const {
+                &Asteroid {
+                    radius: 0.65,
+                    stretch: Vec3::new(0.9, 1.0, 0.9),
+                    amplitude: 0.35,
+                    frequency: 1.5,
+                    octaves: 3,
+                    lacunarity: 3.0,
+                    gain: 0.15,
+                }
+            },
+            cube,
+            spacing,
+        ),
         ("gyroid", &Gyroid { frequency: 9.424778 }, cube, spacing),
     ];
     if let Some(bunny) = &bunny {
@@ -60,13 +76,18 @@ fn main() {
     }
     for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
         for &(name, field, bounds, spacing) in &cases {
+            if !format!("{arrangement:?} {name}").contains(&wanted) {
+                continue;
+            }
             let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
             let (settings, execution) = (ExtractSettings::default(), Execution { threads: 1 });
             let (mut extractor, mut extraction) = (Extractor::new(), Extraction::default());
             let mut best: Option<(f64, extract::StageTimes)> = None;
             for _ in 0..repetitions {
                 let start = cpu_ms();
-                extractor.extract_into(Source::Field(field), &lattice, &settings, &execution, &mut extraction).unwrap();
+                extractor
+                    .extract_into(Source::Field(field), &lattice, &settings, &execution, &mut extraction)
+                    .unwrap();
                 let ms = cpu_ms() - start;
                 if best.is_none_or(|b| ms < b.0) {
                     best = Some((ms, extraction.times));

@@ -2,8 +2,8 @@
 //! Arguments: cells along an axis, repetitions, part of a case's name.
 
 use extract::{
-    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, ScalarField, Source,
-    Sphere,
+    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice,
+    ScalarField, Source, Sphere,
 };
 use glam::Vec3;
 use mesh::Bounds;
@@ -58,7 +58,13 @@ fn main() {
                         let start = cpu_ms();
                         let execution = Execution { threads };
                         extractor
-                            .extract_into(Source::Samples(&values), &lattice, &settings, &execution, &mut extraction)
+                            .extract_into(
+                                Source::Samples(&values),
+                                &lattice,
+                                &settings,
+                                &execution,
+                                &mut extraction,
+                            )
                             .unwrap();
                         let ms = cpu_ms() - start;
                         if best.as_ref().is_none_or(|b| ms < b.0) {

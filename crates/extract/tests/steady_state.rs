@@ -1,7 +1,8 @@
 //! An extractor that has seen a volume of a size allocates nothing for the next one.
 
 use extract::{
-    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, ScalarField, Source, Sphere,
+    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, ScalarField, Source,
+    Sphere,
 };
 use glam::Vec3;
 use mesh::Bounds;

@@ -1,6 +1,6 @@
 //! The asteroid with its hashes in tables: no sines, and bounds on how steep its noise is.
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A, Vec4};
 use mesh::Bounds;
 
 use super::asteroid::{Asteroid, blend, hash};
@@ -15,6 +15,7 @@ const MOST_CELLS: i32 = 64;
 #[derive(Debug)]
 pub(super) struct AsteroidTable {
     asteroid: Asteroid,
+    stretch: Vec3A,
     octaves: Vec<Octave>,
     weights: f32,
 }
@@ -48,12 +49,12 @@ impl AsteroidTable {
             && asteroid.gain >= 0.0
             && asteroid.radius.is_finite()
             && asteroid.amplitude.is_finite();
-        is_sound.then_some(Self { asteroid: *asteroid, octaves, weights })
+        is_sound.then_some(Self { asteroid: *asteroid, stretch: asteroid.stretch.into(), octaves, weights })
     }
 
     /// The noise in a direction already stretched; `None` beyond the tables.
     #[inline]
-    fn noise(&self, q: Vec3) -> Option<f32> {
+    fn noise(&self, q: Vec3A) -> Option<f32> {
         let mut sum = 0.0;
         for octave in &self.octaves {
             sum += octave.value(q * octave.frequency)? * octave.weight;
@@ -62,8 +63,32 @@ impl AsteroidTable {
     }
 
     #[inline]
-    fn direction(&self, p: Vec3, distance: f32) -> Vec3 {
-        (p / distance) / self.asteroid.stretch * self.asteroid.frequency
+    fn direction(&self, p: Vec3, distance: f32) -> Vec3A {
+        (Vec3A::from(p) / distance) / self.stretch * self.asteroid.frequency
+    }
+
+    /// Four points of a row, a lane each: the same operations in the same order. `None` where a point is the origin or
+    /// beyond the tables.
+    #[inline]
+    fn four(&self, x: Vec4, y: f32, z: f32) -> Option<[f32; 4]> {
+        let asteroid = &self.asteroid;
+        let (y, z) = (Vec4::splat(y), Vec4::splat(z));
+        let length = |x: Vec4, y: Vec4, z: Vec4| (x * x + y * y + z * z).sqrt();
+        let distance = length(x, y, z);
+        if distance.cmpeq(Vec4::ZERO).any() {
+            return None;
+        }
+        let Vec3 { x: kx, y: ky, z: kz } = asteroid.stretch;
+        let [qx, qy, qz] =
+            [x / distance / kx, y / distance / ky, z / distance / kz].map(|q| q * asteroid.frequency);
+        let mut sum = Vec4::ZERO;
+        for octave in &self.octaves {
+            sum += octave.four([qx, qy, qz].map(|q| q * octave.frequency))? * octave.weight;
+        }
+        let noise = sum / self.weights;
+        let value =
+            (Vec4::splat(asteroid.radius) - length(x / kx, y / ky, z / kz)) + asteroid.amplitude * noise;
+        Some(value.to_array())
     }
 
     /// How much the noise changes at most a unit of direction, in the directions of a box; and the box's distance
@@ -99,8 +124,24 @@ impl ScalarField for AsteroidTable {
             return asteroid.radius;
         }
         match self.noise(self.direction(p, distance)) {
-            Some(noise) => (asteroid.radius - (p / asteroid.stretch).length()) + asteroid.amplitude * noise,
+            Some(noise) => {
+                (asteroid.radius - Vec3::from(Vec3A::from(p) / self.stretch).length())
+                    + asteroid.amplitude * noise
+            }
             None => asteroid.sample(p),
+        }
+    }
+
+    fn sample_row(&self, x: &[f32], y: f32, z: f32, values: &mut [f32]) {
+        let (fours, rest) = x.as_chunks::<4>();
+        let (values_in_fours, values_left) = values.as_chunks_mut::<4>();
+        for (values, &x) in values_in_fours.iter_mut().zip(fours) {
+            *values = self
+                .four(Vec4::from_array(x), y, z)
+                .unwrap_or_else(|| x.map(|x| self.sample(Vec3::new(x, y, z))));
+        }
+        for (value, &x) in values_left.iter_mut().zip(rest) {
+            *value = self.sample(Vec3::new(x, y, z));
         }
     }
 
@@ -184,11 +225,11 @@ impl Octave {
 
     /// The noise at `q`.
     #[inline]
-    fn value(&self, q: Vec3) -> Option<f32> {
-        let base = Vec3::new(floor(q.x), floor(q.y), floor(q.z));
-        let t = q - base;
-        let w = t * t * (Vec3::splat(3.0) - Vec3::splat(2.0) * t);
-        let [x, y, z] = [base.x as i32 - self.low[0], base.y as i32 - self.low[1], base.z as i32 - self.low[2]];
+    fn value(&self, q: Vec3A) -> Option<f32> {
+        let [fx, fy, fz] = q.to_array().map(floor);
+        let t = q - Vec3A::new(fx, fy, fz);
+        let w = t * t * (Vec3A::splat(3.0) - Vec3A::splat(2.0) * t);
+        let [x, y, z] = [fx as i32 - self.low[0], fy as i32 - self.low[1], fz as i32 - self.low[2]];
         let is_in = |i: i32, n: i32| (0..n - 1).contains(&i);
         if !(is_in(x, self.size[0]) && is_in(y, self.size[1]) && is_in(z, self.size[2])) {
             return None;
@@ -197,15 +238,49 @@ impl Octave {
         let at = self.place([x, y, z]);
         let near = &self.hashes[at..at + up + 2];
         let far = &self.hashes[at + back..at + back + up + 2];
-        let plane = |h: &[f32]| blend(blend(h[0], h[1], w.x), blend(h[up], h[up + 1], w.x), w.y);
-        Some(blend(plane(near), plane(far), w.z) * 2.0 - 1.0)
+        // Blends as the asteroid does, several in the lanes of one.
+        let left = Vec4::new(near[0], near[up], far[0], far[up]);
+        let right = Vec4::new(near[1], near[up + 1], far[1], far[up + 1]);
+        let [a, b, c, d] = (left + (right - left) * w.x).to_array();
+        Some(blend(blend(a, b, w.y), blend(c, d, w.y), w.z) * 2.0 - 1.0)
+    }
+
+    /// The noise at four points.
+    #[inline]
+    fn four(&self, q: [Vec4; 3]) -> Option<Vec4> {
+        let base = q.map(|q| q.floor());
+        let weight = |axis: usize| {
+            let t = q[axis] - base[axis];
+            t * t * (Vec4::splat(3.0) - Vec4::splat(2.0) * t)
+        };
+        let mut places = [0; 4];
+        for axis in [2, 1, 0] {
+            let at = base[axis] - Vec4::splat(self.low[axis] as f32);
+            let last = Vec4::splat((self.size[axis] - 2) as f32);
+            if !(at.cmpge(Vec4::ZERO) & at.cmple(last)).all() {
+                return None;
+            }
+            // A small whole number is in the lowest bits of its sum with 2^23, without the care that `as` takes.
+            let whole = (at + Vec4::splat(8_388_608.0)).to_array().map(|v| v.to_bits() & 0x7f_ffff);
+            for (place, whole) in places.iter_mut().zip(whole) {
+                *place = *place * self.size[axis] as u32 + whole;
+            }
+        }
+        let [_, up, back] = self.steps();
+        let reach = back + up + 2;
+        let [a, b, c, d] = places.map(|place| &self.hashes[place as usize..place as usize + reach]);
+        let corner = |at: usize| Vec4::new(a[at], b[at], c[at], d[at]);
+        let blend = |a: Vec4, b: Vec4, weight: Vec4| a + (b - a) * weight;
+        let [wx, wy, wz] = [weight(0), weight(1), weight(2)];
+        let along_x = |at: usize| blend(corner(at), corner(at + 1), wx);
+        let near = blend(along_x(0), along_x(up), wy);
+        let far = blend(along_x(back), along_x(back + up), wy);
+        Some(blend(near, far, wz) * 2.0 - 1.0)
     }
 
     /// The steepest within `spread` of `q` along each axis.
-    fn slope(&self, q: Vec3, spread: f32) -> f32 {
-        let cell = |v: f32, axis: usize| {
-            (floor(v) as i32 - self.low[axis]).clamp(0, self.size[axis] - 2)
-        };
+    fn slope(&self, q: Vec3A, spread: f32) -> f32 {
+        let cell = |v: f32, axis: usize| (floor(v) as i32 - self.low[axis]).clamp(0, self.size[axis] - 2);
         let (low, high) = (q - spread * SAFE, q + spread * SAFE);
         let ranges = [0, 1, 2].map(|axis| cell(low[axis], axis)..=cell(high[axis], axis));
         let cells = |range: &std::ops::RangeInclusive<i32>| range.end() - range.start() + 1;
@@ -254,6 +329,12 @@ mod tests {
         fn the_table_changes_no_bit(asteroid in asteroid(), p in prop_oneof![point(1.5), point(1e-3), point(1e30)]) {
             let table = AsteroidTable::new(&asteroid).unwrap();
             prop_assert_eq!(table.sample(p).to_bits(), asteroid.sample(p).to_bits());
+            let x: [f32; 7] = std::array::from_fn(|i| p.x * (1.0 + i as f32 * 0.1));
+            let mut values = [0.0; 7];
+            table.sample_row(&x, p.y, p.z, &mut values);
+            for (value, x) in values.into_iter().zip(x) {
+                prop_assert_eq!(value.to_bits(), asteroid.sample(Vec3::new(x, p.y, p.z)).to_bits());
+            }
         }
 
         #[test]

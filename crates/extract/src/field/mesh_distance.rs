@@ -4,8 +4,8 @@ mod nearest;
 mod winding;
 
 use glam::Vec3;
-use mesh::{Bounds, TriangleMesh};
 use mesh::topology::topology;
+use mesh::{Bounds, TriangleMesh};
 use thiserror::Error;
 
 use self::nearest::NearestTriangles;
@@ -115,12 +115,35 @@ impl ScalarField for MeshDistance {
         if self.winding.at(p) > 0 { distance } else { -distance }
     }
 
+    fn sample_row(&self, x: &[f32], y: f32, z: f32, values: &mut [f32]) {
+        self.sample_row_after(x, y, z, values, None);
+    }
+
+    /// Each search starts from the distance before.
+    fn sample_row_after(
+        &self,
+        x: &[f32],
+        y: f32,
+        z: f32,
+        values: &mut [f32],
+        mut before: Option<(Vec3, f32)>,
+    ) {
+        for (value, &x) in values.iter_mut().zip(x) {
+            let p = Vec3::new(x, y, z);
+            *value = self.sample_after(p, before);
+            before = Some((p, *value));
+        }
+    }
+
     /// The search starts from the distance that the nearby value leaves possible, and the side is known where no
     /// surface can be between.
     fn sample_after(&self, p: Vec3, before: Option<(Vec3, f32)>) -> f32 {
-        let Some((q, value)) = before.filter(|_| is_sound(p)) else { return self.sample(p) };
+        let Some((q, value)) = before.filter(|(_, value)| is_sound(p) && value.is_finite()) else {
+            return self.sample(p);
+        };
         let step = p.distance(q);
-        let distance = self.nearest.distance_within(p, (value.abs() + step) * SAFE + 1e-6 * p.abs().max_element());
+        let distance =
+            self.nearest.distance_within(p, (value.abs() + step) * SAFE + 1e-6 * p.abs().max_element());
         let is_inside = if step * SAFE < value.abs() { value > 0.0 } else { self.winding.at(p) > 0 };
         if is_inside { distance } else { -distance }
     }

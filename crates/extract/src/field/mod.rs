@@ -40,6 +40,12 @@ pub trait ScalarField: Sync {
         self.sample(p)
     }
 
+    /// The values of a part of a row, as [`sample_row`](Self::sample_row), where the value at a point nearby may be
+    /// known already.
+    fn sample_row_after(&self, x: &[f32], y: f32, z: f32, values: &mut [f32], _before: Option<(Vec3, f32)>) {
+        self.sample_row(x, y, z, values);
+    }
+
     /// A bound on how fast the value changes in a box: `|sample(p) - sample(q)| <= slope * |p - q|` for all `p` and
     /// `q` in it, up to rounding of 1e-5 of the values; and no value in it is `NaN`. `None` where nothing is known.
     ///

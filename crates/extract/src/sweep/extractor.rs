@@ -175,7 +175,8 @@ impl Extractor {
             0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
             threads => threads,
         };
-        let slabs = if threads == 1 { 1 } else { (threads * SLABS_PER_THREAD).min(layers / LEAST_LAYERS).max(1) };
+        let slabs =
+            if threads == 1 { 1 } else { (threads * SLABS_PER_THREAD).min(layers / LEAST_LAYERS).max(1) };
         let threads = threads.min(slabs);
         let bytes = grid.lattice.sweep_bytes(threads as u64);
         self.workspaces.resize_with(threads, Workspace::default);
@@ -195,8 +196,14 @@ impl Extractor {
                 progress(done.fetch_add(more, Ordering::Relaxed) + more, layers);
             }
         };
-        let job =
-            Job { grid, tables: &plan.tables, rule, source, isovalue: settings.isovalue, progress: &progress };
+        let job = Job {
+            grid,
+            tables: &plan.tables,
+            rule,
+            source,
+            isovalue: settings.isovalue,
+            progress: &progress,
+        };
         sweep_all(&job, &mut self.workspaces, &mut self.pieces)?;
         let mut times = shares(&self.pieces, sweeping.elapsed());
         times.allocation = allocation;
@@ -204,7 +211,8 @@ impl Extractor {
         let joining = Instant::now();
         let seams = join(&mut self.pieces)?;
         let (first, rest) = self.pieces.split_first_mut().expect("there is a slab");
-        let crossing_ends: u64 = first.crossing_ends + rest.iter().map(|piece| piece.crossing_ends).sum::<u64>();
+        let crossing_ends: u64 =
+            first.crossing_ends + rest.iter().map(|piece| piece.crossing_ends).sum::<u64>();
         let mesh = &mut extraction.mesh;
         mesh.positions = std::mem::take(&mut first.positions);
         let surface = &mut first.surface;
@@ -255,9 +263,9 @@ fn sweep_all<R: ClusterRule>(
             })
             .collect::<Result<Vec<_>, _>>()?;
         work(own)?;
-        handles.into_iter().try_for_each(|handle| {
-            handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-        })
+        handles
+            .into_iter()
+            .try_for_each(|handle| handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
     })
 }
 
@@ -318,7 +326,11 @@ fn join(pieces: &mut [Piece]) -> Result<Vec<Seam>, ExtractError> {
 
 /// Area-weighted mean normals, as [`vertex_normals`](crate::normals::vertex_normals), to the bit: each vertex adds up
 /// its triangles in their order. With seams, each thread does the vertices of a run of slabs.
-fn make_normals(mesh: &mut TriangleMesh, seams: Option<&Vec<Seam>>, threads: usize) -> Result<(), ExtractError> {
+fn make_normals(
+    mesh: &mut TriangleMesh,
+    seams: Option<&Vec<Seam>>,
+    threads: usize,
+) -> Result<(), ExtractError> {
     let TriangleMesh { positions, normals, triangles } = mesh;
     normals.clear();
     super::refill(normals, positions.len(), Vec3::ZERO).map_err(|_| ExtractError::NoMemoryForMesh)?;

@@ -192,8 +192,7 @@ impl<'a> CellRow<'a> {
             corners[d as usize & 15] = record;
             all = all.or(record);
         }
-        let is_lowest =
-            self.grid.base_offset != 0 && (cell[0] == 0 || cell[1] == 0 || cell[2] == 0);
+        let is_lowest = self.grid.base_offset != 0 && (cell[0] == 0 || cell[1] == 0 || cell[2] == 0);
         // The table asks one end of an edge alone.
         if is_lowest || self.ties == Ties::BothEnds || !all.is_one() {
             return self.general(cell, column, base, result);
@@ -207,7 +206,8 @@ impl<'a> CellRow<'a> {
             cut &= cut - 1;
             let [a, b, c] = plan.corners;
             let [ab, ac, bc] = plan.directions;
-            let (at_a, at_b, at_c) = (corners[a as usize & 15], corners[b as usize & 15], corners[c as usize & 15]);
+            let (at_a, at_b, at_c) =
+                (corners[a as usize & 15], corners[b as usize & 15], corners[c as usize & 15]);
             let key = usize::from(base.inside())
                 | side(a) << 1
                 | side(b) << 2

@@ -15,9 +15,9 @@ mod rule;
 mod signs;
 mod slab;
 mod source;
-mod tiles;
 #[cfg(test)]
 mod tests;
+mod tiles;
 
 use std::collections::TryReserveError;
 

@@ -133,8 +133,15 @@ impl<R: ClusterRule> PointPass<'_, R> {
                 let position = Vec3::new(x[column], y, z);
                 let inside = own >> bit & 1 != 0;
                 let point = Point { column, position, inside, crossing, present };
-                let record =
-                    self.point(&point, samples[0], &neighbours, layer, records, placed, positions.as_deref_mut());
+                let record = self.point(
+                    &point,
+                    samples[0],
+                    &neighbours,
+                    layer,
+                    records,
+                    placed,
+                    positions.as_deref_mut(),
+                );
                 records.set(record_start + column, record);
             }
             records.set_active(row, layer, word, active);

@@ -18,6 +18,9 @@ use crate::field::SAFE;
 use crate::triangles::Triangulation;
 use crate::{ExtractError, ScalarField};
 
+/// Samples taken together near the surface.
+const BATCH: usize = 4;
+
 /// What all slabs of an extraction share.
 pub(super) struct Job<'a, R> {
     pub(super) grid: &'a Grid,
@@ -68,7 +71,11 @@ pub(super) struct SlabTimes {
 
 impl Workspace {
     /// Makes room; keeps what is large enough.
-    pub(super) fn fit(&mut self, grid: &Grid, source: Source) -> Result<(), std::collections::TryReserveError> {
+    pub(super) fn fit(
+        &mut self,
+        grid: &Grid,
+        source: Source,
+    ) -> Result<(), std::collections::TryReserveError> {
         if matches!(source, Source::Field(_)) {
             super::refill(&mut self.samples, grid.layer_len() * grid.slots(), 0.0)?;
             self.tiles.fit(grid)?;
@@ -199,7 +206,7 @@ fn sample_layer<R>(job: &Job<R>, layer: usize, workspace: &mut Workspace) {
 
 /// Whether a row of such tiles is sampled in one go, or not at all.
 fn is_plain(tile: Tile) -> bool {
-    !matches!(tile, Tile::Sampled { slope } if slope.is_finite())
+    !matches!(tile, Tile::Sampled { slope, .. } if slope.is_finite())
 }
 
 /// A row of which some parts are known to be on one side.
@@ -218,9 +225,10 @@ impl SparseRow<'_> {
         let mut tile = 0;
         while tile * TILE < x.len() {
             let first = tile * TILE;
-            let mut slope = 0.0;
-            while let Some(Tile::Sampled { slope: here }) = tiles.get(tile) {
+            let (mut slope, mut before) = (0.0, None);
+            while let Some(&Tile::Sampled { slope: here, known }) = tiles.get(tile) {
                 slope = here.max(slope);
+                before = before.or(Some(known));
                 tile += 1;
             }
             if first == tile * TILE {
@@ -229,36 +237,45 @@ impl SparseRow<'_> {
                 }
                 tile += 1;
             } else {
-                self.run(first, x.len().min(tile * TILE), slope, x, values, bits);
+                self.run(first..x.len().min(tile * TILE), slope, before, x, values, bits);
             }
         }
     }
 
-    /// Samples from `first` to `end`, leaving out points that are too far from the surface to be next to it. The
-    /// slope is that of all tiles that the run goes through, which lie one beside the other.
-    fn run(&self, first: usize, end: usize, slope: f32, x: &[f32], values: &mut [f32], bits: &mut [u64]) {
-        if slope.is_infinite() {
-            self.field.sample_row(&x[first..end], self.y, self.z, &mut values[first..end]);
-            for i in first..end {
-                bits[i / 64] |= u64::from(values[i] > self.isovalue) << (i % 64);
-            }
-            return;
-        }
+    /// Samples a run, leaving out points that are too far from the surface to be next to it. The slope is that of
+    /// all tiles that the run goes through, which lie one beside the other; `before` is a value known nearby.
+    fn run(
+        &self,
+        run: Range<usize>,
+        slope: f32,
+        mut before: Option<(Vec3, f32)>,
+        x: &[f32],
+        values: &mut [f32],
+        bits: &mut [u64],
+    ) {
+        let Range { start: mut i, end } = run;
+        // No bound leaves no point out.
         let steps_a_unit = 1.0 / (slope * self.step * SAFE);
-        let mut before = None;
-        let mut i = first;
+        let mut batch = if slope.is_infinite() { end - i } else { 1 };
         while i < end {
-            let p = Vec3::new(x[i], self.y, self.z);
-            let value = self.field.sample_after(p, before);
-            before = Some((p, value));
-            values[i] = value;
-            // How far the surface is at least, in steps. Points so near that no edge from them gets there have all their
-            // neighbours on the same side. Not a number becomes 0.
+            let points = i..end.min(i + batch);
+            i = points.end;
+            let values_of_points = &mut values[points.clone()];
+            self.field.sample_row_after(&x[points.clone()], self.y, self.z, values_of_points, before);
+            for point in points {
+                bits[point / 64] |= u64::from(values[point] > self.isovalue) << (point % 64);
+            }
+            // How far the surface is at least, in steps. Points so near that no edge from them gets there have all
+            // their neighbours on the same side. Not a number becomes 0.
+            let value = values[i - 1];
+            before = Some((Vec3::new(x[i - 1], self.y, self.z), value));
             let free = (value - self.isovalue).abs() * steps_a_unit - self.reach * (1.0 + 1e-3);
-            let next = end.min(i + 1 + free as usize);
+            let next = end.min(i + free as usize);
             if value > self.isovalue {
                 set_bits(bits, i, next);
             }
+            // Near the surface it takes them all: some at a time is quicker.
+            batch = if next > i { 1 } else { BATCH };
             i = next;
         }
     }

@@ -7,8 +7,8 @@ use mesh::Bounds;
 use proptest::prelude::*;
 
 use crate::{
-    Arrangement, Asteroid, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Gyroid, Lattice,
-    Positions, ScalarField, Source, Sphere, Topology, stored,
+    Arrangement, Asteroid, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor,
+    Gyroid, Lattice, Positions, ScalarField, Source, Sphere, Topology, stored,
 };
 
 /// Noise by position. Values are multiples of `1 / levels`; of `odd` points in 64, some are not numbers, some infinite.
@@ -95,7 +95,12 @@ fn noise() -> impl Strategy<Value = Noise> {
     let levels = prop_oneof![Just(1), Just(2), Just(5), Just(10_000_000)];
     let odd = prop_oneof![3 => Just(0), 1 => Just(4), 1 => Just(40)];
     let grain = prop_oneof![Just(0.25), Just(1.7), Just(3.1)];
-    (any::<u32>(), levels, odd, grain).prop_map(|(seed, levels, odd, grain)| Noise { seed, levels, odd, grain })
+    (any::<u32>(), levels, odd, grain).prop_map(|(seed, levels, odd, grain)| Noise {
+        seed,
+        levels,
+        odd,
+        grain,
+    })
 }
 
 fn arrangement() -> impl Strategy<Value = Arrangement> {
@@ -138,7 +143,8 @@ fn one_cell_of_every_pattern() {
             let near = |v: f32| v.clamp(0.0, 1.0);
             let (x, y, z) = (near(p.x), near(p.y), near(p.z));
             let along = |y: u32, z: u32| value(2 * y + 4 * z) * (1.0 - x) + value(1 + 2 * y + 4 * z) * x;
-            (along(0, 0) * (1.0 - y) + along(1, 0) * y) * (1.0 - z) + (along(0, 1) * (1.0 - y) + along(1, 1) * y) * z
+            (along(0, 0) * (1.0 - y) + along(1, 0) * y) * (1.0 - z)
+                + (along(0, 1) * (1.0 - y) + along(1, 1) * y) * z
         }
     }
     for arrangement in BOTH {
@@ -210,8 +216,11 @@ fn progress_ends_with_all_layers() {
     let log = Arc::clone(&seen);
     let lattice = lattice(Arrangement::BodyCentred, [4, 4, 40]);
     let field: &dyn ScalarField = &Sphere { radius: 3.0 };
-    let mut extractor = Extractor::new().with_progress(move |done, all| log.lock().unwrap().push((done, all)));
-    extractor.extract(field.into(), &lattice, &ExtractSettings::default(), &Execution { threads: 2 }).unwrap();
+    let mut extractor =
+        Extractor::new().with_progress(move |done, all| log.lock().unwrap().push((done, all)));
+    extractor
+        .extract(field.into(), &lattice, &ExtractSettings::default(), &Execution { threads: 2 })
+        .unwrap();
     let mut seen = seen.lock().unwrap().clone();
     seen.sort_unstable();
     assert_eq!(seen, (1..=83).map(|done| (done, 83)).collect::<Vec<_>>());

@@ -25,6 +25,8 @@ pub(super) enum Tile {
     /// To be sampled; the field changes by at most this much a unit of length in and around it.
     Sampled {
         slope: f32,
+        /// A value in the middle of it.
+        known: (Vec3, f32),
     },
 }
 
@@ -59,7 +61,8 @@ impl Tiles {
         self.brick = Some(brick);
         let layers = brick * depth..(brick + 1) * depth;
         let whole = [0..grid.size[0].next_multiple_of(TILE), 0..grid.size[1].next_multiple_of(TILE)];
-        let mut search = Search { grid, field, isovalue, layers, tiles: &mut self.tiles, columns: self.columns };
+        let mut search =
+            Search { grid, field, isovalue, layers, tiles: &mut self.tiles, columns: self.columns };
         search.part(whole, None);
     }
 }
@@ -104,7 +107,10 @@ impl Search<'_> {
                 }
                 return;
             }
-            _ => Tile::Sampled { slope: self.field.slope(around).unwrap_or(f32::INFINITY) },
+            _ => Tile::Sampled {
+                slope: self.field.slope(around).unwrap_or(f32::INFINITY),
+                known: (centre, value),
+            },
         };
         for row in rows.start / TILE..rows.end / TILE {
             let start = row * self.columns;
@@ -120,7 +126,8 @@ impl Search<'_> {
             Arrangement::BodyCentred => (-0.5, -1.0, 2.0),
             Arrangement::SimpleCubic => (0.0, -1.0, 1.0),
         };
-        let first = Vec3::new(part[0].start as f32, part[1].start as f32, part[2].start as f32 / layers_a_cell);
+        let first =
+            Vec3::new(part[0].start as f32, part[1].start as f32, part[2].start as f32 / layers_a_cell);
         let last = Vec3::new(part[0].end as f32, part[1].end as f32, part[2].end as f32 / layers_a_cell);
         let at = |cells: Vec3| lattice.bounds().min + cells * lattice.spacing();
         // A neighbour is at most one cell away along each axis; a little more for rounding.
