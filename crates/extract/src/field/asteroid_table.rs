@@ -174,7 +174,7 @@ impl ScalarField for AsteroidTable {
 impl Octave {
     fn new(asteroid: &Asteroid, weight: f32, frequency: f32) -> Option<Self> {
         let reach = (Vec3::ONE / asteroid.stretch * (asteroid.frequency * frequency)).abs().to_array();
-        if reach.iter().any(|&r| !(r < 1000.0)) || !weight.is_finite() {
+        if reach.iter().any(|r| r.is_nan() || *r >= 1000.0) || !weight.is_finite() {
             return None;
         }
         let low = reach.map(|r| -(r.ceil() as i32) - 1);
@@ -284,7 +284,7 @@ impl Octave {
         let (low, high) = (q - spread * SAFE, q + spread * SAFE);
         let ranges = [0, 1, 2].map(|axis| cell(low[axis], axis)..=cell(high[axis], axis));
         let cells = |range: &std::ops::RangeInclusive<i32>| range.end() - range.start() + 1;
-        if !(spread < 8.0) || ranges.iter().map(cells).product::<i32>() > MOST_CELLS {
+        if spread.is_nan() || spread >= 8.0 || ranges.iter().map(cells).product::<i32>() > MOST_CELLS {
             return self.steepest;
         }
         let [xs, ys, zs] = ranges;

@@ -179,14 +179,14 @@ fn sample_layer<R>(job: &Job<R>, layer: usize, workspace: &mut Workspace) {
         Source::Field(field) => {
             let (x, y, z) = (grid.coordinates.x(kind), grid.coordinates.y(kind), grid.coordinates.z()[layer]);
             workspace.tiles.turn_to(layer, grid, field, job.isovalue);
-            for row in 0..rows {
+            for (row, &y) in y[..rows].iter().enumerate() {
                 let start = (layer % grid.slots() * grid.size[1] + row) * stride;
                 let values = &mut workspace.samples[start..start + points];
                 let tiles = workspace.tiles.row(row);
                 if tiles.iter().all(|tile| *tile == tiles[0]) && is_plain(tiles[0]) {
                     match tiles[0] {
                         Tile::Sampled { .. } => {
-                            field.sample_row(&x[..points], y[row], z, values);
+                            field.sample_row(&x[..points], y, z, values);
                             workspace.signs.fill(row, layer, values, job.isovalue);
                         }
                         side => workspace.signs.set_all(row, layer, side == Tile::Inside, points),
@@ -194,7 +194,7 @@ fn sample_layer<R>(job: &Job<R>, layer: usize, workspace: &mut Workspace) {
                     continue;
                 }
                 let (step, reach) = (grid.lattice.spacing(), grid.longest_edge);
-                let line = SparseRow { field, isovalue: job.isovalue, step, reach, y: y[row], z };
+                let line = SparseRow { field, isovalue: job.isovalue, step, reach, y, z };
                 workspace.bits.clear();
                 workspace.bits.resize(grid.words, 0);
                 line.sample(tiles, &x[..points], values, &mut workspace.bits);

@@ -1,0 +1,47 @@
+//! A sphere on a lattice larger than memory, body-centred and integrated, with progress and the most memory used.
+//! Arguments: cells along an axis, threads, radius in a box from -1 to 1.
+
+use extract::{Arrangement, Execution, ExtractSettings, Extractor, Lattice, ScalarField, Source, Sphere};
+use glam::Vec3;
+use mesh::Bounds;
+use std::time::Instant;
+
+/// Every point is sampled: no bound is offered.
+struct Unbounded(Sphere);
+
+impl ScalarField for Unbounded {
+    fn sample(&self, p: Vec3) -> f32 {
+        self.0.sample(p)
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let cells: u32 = arguments.next().map_or(Ok(512), |a| a.parse())?;
+    let threads: usize = arguments.next().map_or(Ok(1), |a| a.parse())?;
+    let radius: f32 = arguments.next().map_or(Ok(0.8), |a| a.parse())?;
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 2.0 / cells as f32)?;
+    let field = Unbounded(Sphere { radius });
+    let start = Instant::now();
+    let mut extractor = Extractor::new().with_progress(|done, all| {
+        if done % (all / 8) == 0 {
+            eprintln!("{done} of {all} layers");
+        }
+    });
+    let extraction = extractor.extract(
+        Source::Field(&field),
+        &lattice,
+        &ExtractSettings::default(),
+        &Execution { threads },
+    )?;
+    println!(
+        "{} samples, {} triangles, {:.1} s",
+        extraction.counts.stored_samples,
+        extraction.counts.triangles,
+        start.elapsed().as_secs_f64()
+    );
+    let status = std::fs::read_to_string("/proc/self/status")?;
+    println!("{}", status.lines().find(|line| line.starts_with("VmHWM")).unwrap_or("no VmHWM"));
+    Ok(())
+}
