@@ -101,8 +101,12 @@ impl<R: ClusterRule> PointPass<'_, R> {
         let x = grid.coordinates.x(kind);
         let (y, z) = (grid.coordinates.y(kind)[row], grid.coordinates.z()[layer]);
 
+        let (mut before, mut here) = (Common::of(&signs, 0), Common::of(&signs, 1));
         for word in 0..grid.words {
-            if is_uniform(&signs, word + 1) {
+            let after = Common::of(&signs, word + 2);
+            let is_uniform = here.is_uniform(before, after);
+            (before, here) = (here, after);
+            if is_uniform {
                 continue;
             }
             let own = signs[0][word + 1];
@@ -233,16 +237,29 @@ impl<R: ClusterRule> PointPass<'_, R> {
     }
 }
 
-/// Whether the points of a word and all their neighbours are on one side.
-#[inline(always)]
-fn is_uniform(signs: &[&[u64]; LINES], word: usize) -> bool {
-    let (mut any, mut all) = (0, !0);
-    for line in signs {
-        let (before, here, after) = (line[word - 1], line[word], line[word + 1]);
-        any |= here | before >> 63 | after & 1;
-        all &= here & !(!before >> 63) & !(!after & 1);
+/// Bits that any of the rows round a word of points has, and bits that all have.
+#[derive(Debug, Clone, Copy)]
+struct Common {
+    any: u64,
+    all: u64,
+}
+
+impl Common {
+    #[inline(always)]
+    fn of(signs: &[&[u64]; LINES], word: usize) -> Self {
+        signs.iter().fold(Self { any: 0, all: !0 }, |common, line| Self {
+            any: common.any | line[word],
+            all: common.all & line[word],
+        })
     }
-    any == 0 || all == !0
+
+    /// Whether the points of the word and all their neighbours are on one side; `before` and `after` are the words
+    /// on either side.
+    #[inline(always)]
+    fn is_uniform(self, before: Self, after: Self) -> bool {
+        let outside = self.any | before.any >> 63 | after.any & 1;
+        outside == 0 || (self.all == !0 && before.all >> 63 & after.all & 1 != 0)
+    }
 }
 
 /// One bit of each word.
