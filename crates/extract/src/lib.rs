@@ -28,6 +28,9 @@
 //! - With [`Topology::Guarded`], the default, and any [`Clustering`]: whatever the samples, the mesh is an oriented
 //!   2-manifold that uses all its vertices, closed where the surface stays clear of the box. No two triangles have
 //!   the same vertices. Components, genus and boundary loops are those of the unclustered surface. Why: DESIGN.md.
+//! - Unless edges are collapsed, vertices stand in storage order of the sample points they are nearest to (x fastest,
+//!   then y, then z), triangles in that of their cells. Leaving samples out changes nothing, as long as a field keeps
+//!   what it promises.
 //! - No input panics; what cannot be done is an error.
 //!
 //! # Not guaranteed
@@ -36,8 +39,19 @@
 //!   and breaks others, the edge collapse leaves folded pairs of triangles nearly always.
 //! - A surface that reaches the box is open there, and vertices beyond the box are flattened onto it.
 //! - A sample equal to the isovalue puts all its crossings in one place, as vertices of their own: triangles without
-//!   area. As published, a crossing in the very middle of an edge has a vertex at each end, of which one is used.
+//!   area. As published, a crossing in the very middle of an edge has a vertex at each end, of which one is used;
+//!   guarded, it belongs to the inside end.
 //! - Nothing is said about triangles that intersect, and a feature thinner than the spacing can be missed.
+//!
+//! # Two ways
+//!
+//! With [`Positions::Indexed`] the lattice is streamed: a few layers in memory, then the mesh; slabs of layers on
+//! several threads; samples taken only where the field does not rule the surface out ([`ScalarField::slope`]), or
+//! given ([`Source::Samples`]). An [`Extractor`] keeps its buffers from one volume to the next. With
+//! [`Positions::Accumulated`], for comparison with the published evaluation, all samples and edges are stored.
+//!
+//! A sample that is `NaN` is outside and leaves the crossings round it to the inside end, in the middle of their
+//! edges; so are two infinities. One infinity puts the crossing on the other end.
 //!
 //! # Sources
 //!

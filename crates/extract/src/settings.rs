@@ -80,6 +80,6 @@ pub enum Positions {
 /// Settings that only change how the mesh is computed, never the mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Execution {
-    /// Threads to sample with; 0 takes all cores.
+    /// Threads: to sample with, or, with indexed positions, for everything. 0 takes all cores.
     pub threads: usize,
 }

@@ -12,15 +12,14 @@ use crate::tetrahedra::{CASES, Case, EDGES, Tetrahedron, belongs_to_an_earlier_c
 use crate::triangles::Triangulation;
 use crate::vertices::Ties;
 
-/// The triangles of a tetrahedron whose corners have one vertex each.
+/// The triangles of a tetrahedron whose corners have one vertex each, in 32 bits so that the table is small: six bits
+/// a triangle, two a corner; then how many are kept, how many discarded, and how many the original would count.
 #[derive(Debug, Clone, Copy, Default)]
-struct Faces {
-    /// Corners of the tetrahedron.
-    triangles: [[u8; 3]; 2],
-    kept: u8,
-    discarded: u8,
-    discarded_as_published: u8,
-}
+struct Faces(u32);
+
+const KEPT: u32 = 12;
+const DISCARDED: u32 = 14;
+const AS_PUBLISHED: u32 = 16;
 
 /// Corners and edges of a tetrahedron as bit numbers.
 #[derive(Debug, Clone, Copy)]
@@ -86,11 +85,11 @@ impl Faces {
         let mut add = |triangle: [u8; 3]| {
             let [a, b, c] = triangle;
             if a == b || b == c || c == a {
-                faces.discarded += 1;
-                faces.discarded_as_published += 1;
+                faces.0 += 1 << DISCARDED | 1 << AS_PUBLISHED;
             } else {
-                faces.triangles[faces.kept as usize] = triangle;
-                faces.kept += 1;
+                let corners = u32::from(a) | u32::from(b) << 2 | u32::from(c) << 4;
+                faces.0 |= corners << (6 * faces.kept());
+                faces.0 += 1 << KEPT;
             }
         };
         match CASES[key & 15] {
@@ -98,7 +97,7 @@ impl Faces {
             Case::Triangle(edges) => {
                 let triangle = edges.map(owner);
                 add(triangle);
-                faces.discarded_as_published += u8::from(triangle[1] == triangle[2]);
+                faces.0 += u32::from(triangle[1] == triangle[2]) << AS_PUBLISHED;
             }
             Case::Quad(edges) => {
                 let [q0, q1, q2, q3] = edges.map(owner);
@@ -107,6 +106,18 @@ impl Faces {
             }
         }
         faces
+    }
+
+    #[inline(always)]
+    fn kept(self) -> u32 {
+        self.0 >> KEPT & 3
+    }
+
+    /// A triangle of them, with the corners' vertices.
+    #[inline(always)]
+    fn triangle(self, i: u32, vertices: &[u32; 4]) -> [u32; 3] {
+        let corners = self.0 >> (6 * i);
+        [corners, corners >> 2, corners >> 4].map(|corner| vertices[(corner & 3) as usize])
     }
 }
 
@@ -218,15 +229,16 @@ impl<'a> CellRow<'a> {
                 | at_a.owns(ab) << 7
                 | at_a.owns(ac) << 8
                 | at_b.owns(bc) << 9;
-            let faces = &self.tables.faces[key % 1024];
-            result.discarded += u64::from(faces.discarded);
-            result.discarded_as_published += u64::from(faces.discarded_as_published);
-            if faces.kept == 0 {
+            let faces = self.tables.faces[key % 1024];
+            result.discarded += u64::from(faces.0 >> DISCARDED & 3);
+            result.discarded_as_published += u64::from(faces.0 >> AS_PUBLISHED);
+            if faces.kept() == 0 {
                 continue;
             }
             let vertices = [base.first(), at_a.first(), at_b.first(), at_c.first()];
-            for triangle in &faces.triangles[..usize::from(faces.kept)] {
-                result.triangles.push(triangle.map(|corner| vertices[usize::from(corner) & 3]));
+            result.triangles.push(faces.triangle(0, &vertices));
+            if faces.kept() == 2 {
+                result.triangles.push(faces.triangle(1, &vertices));
             }
         }
     }

@@ -108,7 +108,7 @@ fn arrangement() -> impl Strategy<Value = Arrangement> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(100))]
 
     /// Surfaces through every boundary, ties, zeros, and samples that are not numbers.
     #[test]
@@ -207,6 +207,34 @@ fn given_samples_must_be_as_many_as_the_lattice_has() {
         .extract(Source::Samples(&samples), &lattice, &settings, &Execution::default())
         .unwrap_err();
     assert_eq!(error, ExtractError::SampleCount { given: 5, wanted: lattice.stored_samples() });
+}
+
+#[test]
+fn odd_fields_have_a_mesh_and_odd_isovalues_an_error() {
+    struct Constant(f32);
+    impl ScalarField for Constant {
+        fn sample(&self, _: Vec3) -> f32 {
+            self.0
+        }
+    }
+    for arrangement in BOTH {
+        let lattice = lattice(arrangement, [3, 4, 20]);
+        for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, 1.0] {
+            for isovalue in [0.0, 1.0, f32::MAX, f32::MIN] {
+                check(&Constant(value), &lattice, isovalue);
+            }
+        }
+        for isovalue in [f32::NAN, f32::INFINITY] {
+            let settings = ExtractSettings { isovalue, ..ExtractSettings::default() };
+            let result = Extractor::new().extract(
+                Source::Field(&Constant(0.0)),
+                &lattice,
+                &settings,
+                &Execution::default(),
+            );
+            assert!(matches!(result, Err(ExtractError::Isovalue { .. })), "{isovalue}");
+        }
+    }
 }
 
 #[test]
