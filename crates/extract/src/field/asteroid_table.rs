@@ -323,7 +323,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(2000))]
+        #![proptest_config(ProptestConfig::with_cases(200))]
 
         #[test]
         fn the_table_changes_no_bit(asteroid in asteroid(), p in prop_oneof![point(1.5), point(1e-3), point(1e30)]) {

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use crate::{
     Arrangement, Asteroid, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor,
-    Gyroid, Lattice, Positions, ScalarField, Source, Sphere, Topology, stored,
+    Gyroid, Lattice, MeshDistance, Positions, ScalarField, Source, Sphere, Topology, stored,
 };
 
 /// Noise by position. Values are multiples of `1 / levels`; of `odd` points in 64, some are not numbers, some infinite.
@@ -168,6 +168,44 @@ fn smooth_fields_give_the_stored_mesh() {
             check(&Gyroid { frequency: 20.0 }, &lattice, 0.9);
         }
     }
+}
+
+/// Known distances and known sides are used, and change nothing.
+#[test]
+fn the_distance_to_a_mesh_gives_the_stored_mesh() {
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    let coarse = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.1).unwrap();
+    let rough = Asteroid { amplitude: 0.3, gain: 0.5, ..Asteroid::default() };
+    let settings = ExtractSettings::default();
+    let solid = Extractor::new()
+        .extract(Source::Field(&rough), &coarse, &settings, &Execution { threads: 1 })
+        .unwrap();
+    let field = MeshDistance::try_new(&solid.mesh).unwrap();
+    for arrangement in BOTH {
+        let lattice = Lattice::try_new(arrangement, bounds, 0.037).unwrap();
+        for isovalue in [0.0, 0.05, -0.1] {
+            check(&field, &lattice, isovalue);
+        }
+    }
+}
+
+/// The same on the evaluation's bunny, where it is.
+#[test]
+fn the_bunny_gives_the_stored_mesh() {
+    let cache = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cache/bunny.ply");
+    let Ok(file) = std::fs::File::open(cache) else {
+        eprintln!("SKIPPED: NO BUNNY IN cache/ - run make bunny, this test has checked nothing");
+        return;
+    };
+    let solid = mesh::repair::closed_solid(&mesh::read_ply(file).unwrap()).unwrap();
+    let placed = solid.transformed(|p| Vec3::new(p.x, -p.z, p.y) * 6.35 + Vec3::new(0.1, 0.0, -0.615));
+    let field = MeshDistance::try_new(&placed).unwrap();
+    let bounds = Bounds { min: Vec3::new(-0.7, -0.4, -0.5), max: Vec3::new(0.8, 0.4, 0.6) };
+    let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.02).unwrap();
+    let (settings, execution) = (ExtractSettings::default(), Execution { threads: 1 });
+    let expected = stored::extract(&field, &lattice, &settings, &execution).unwrap();
+    let streamed = Extractor::new().extract(Source::Field(&field), &lattice, &settings, &execution).unwrap();
+    assert_same(&streamed, &expected);
 }
 
 /// Counts samples.
