@@ -97,7 +97,7 @@ pub enum ExtractError {
     /// The lattice does not fit into memory.
     #[error("no memory for the {bytes} bytes of the lattice")]
     OutOfMemory {
-        /// [`Lattice::memory_bytes`].
+        /// [`Lattice::memory_bytes_for`] the settings.
         bytes: u64,
     },
     /// The mesh outgrew the memory that is left.

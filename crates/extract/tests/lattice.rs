@@ -99,6 +99,22 @@ fn memory_covers_what_the_counts_say() {
 }
 
 #[test]
+fn memory_is_that_of_the_extractor_the_settings_choose() {
+    let lattice = body_centred(UNIT, 0.0016).unwrap();
+    let indexed = ExtractSettings::default();
+    let accumulated = ExtractSettings { positions: Positions::Accumulated { chunks: 8 }, ..indexed };
+    let on = |threads| Execution { threads };
+    assert_eq!(lattice.memory_bytes_for(&accumulated, &on(1)), lattice.memory_bytes());
+    assert_eq!(lattice.memory_bytes_for(&indexed, &on(1)), lattice.sweep_bytes(1));
+    assert_eq!(lattice.memory_bytes_for(&indexed, &on(4)), lattice.sweep_bytes(4));
+    // No more threads than there is work for.
+    let most = lattice.memory_bytes_for(&indexed, &on(usize::MAX));
+    assert!(most < lattice.memory_bytes() / 4, "{most}");
+    let small = body_centred(UNIT, 0.5).unwrap();
+    assert_eq!(small.memory_bytes_for(&indexed, &on(64)), small.sweep_bytes(1));
+}
+
+#[test]
 fn settings_are_checked() {
     let lattice = body_centred(UNIT, 0.5).unwrap();
     let run = |settings| extract(&Sphere::default(), &lattice, &settings, &Execution::default()).map(drop);

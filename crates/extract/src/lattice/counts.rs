@@ -67,8 +67,8 @@ impl Lattice {
     }
 
     /// What [`extract`](crate::extract) allocates with accumulated positions before it knows the surface: samples, edge
-    /// records and scratch. With indexed positions it is [`sweep_bytes`](Self::sweep_bytes), far less.
-    /// The mesh comes on top.
+    /// records and scratch. With indexed positions it is [`sweep_bytes`](Self::sweep_bytes), far less;
+    /// [`memory_bytes_for`](Self::memory_bytes_for) chooses. The mesh comes on top.
     pub fn memory_bytes(&self) -> u64 {
         let layer: u64 = self.stored_grid()[..2].iter().map(|&n| u64::from(n)).product();
         let padding = 2 * PADDING_LAYERS as u64 * layer * BYTES_PER_SIDE;

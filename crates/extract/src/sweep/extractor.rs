@@ -171,13 +171,7 @@ impl Extractor {
     ) -> Result<(), ExtractError> {
         let grid = &plan.grid;
         let layers = grid.size[2];
-        let threads = match execution.threads {
-            0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
-            threads => threads,
-        };
-        let slabs =
-            if threads == 1 { 1 } else { (threads * SLABS_PER_THREAD).min(layers / LEAST_LAYERS).max(1) };
-        let threads = threads.min(slabs);
+        let (threads, slabs) = threads_and_slabs(execution, layers);
         let bytes = grid.lattice.sweep_bytes(threads as u64);
         self.workspaces.resize_with(threads, Workspace::default);
         self.pieces.resize_with(slabs, Piece::default);
@@ -229,6 +223,31 @@ impl Extractor {
         extraction.counts = Counts::of(&grid.lattice, mesh, surface, crossing_ends / 2);
         Ok(())
     }
+}
+
+impl Lattice {
+    /// What [`extract`](crate::extract) holds of the lattice at a time with these settings:
+    /// [`memory_bytes`](Self::memory_bytes) or [`sweep_bytes`](Self::sweep_bytes). The mesh comes on top.
+    pub fn memory_bytes_for(&self, settings: &ExtractSettings, execution: &Execution) -> u64 {
+        match settings.positions {
+            Positions::Indexed => {
+                let layers = self.stored_grid()[2] as usize;
+                self.sweep_bytes(threads_and_slabs(execution, layers).0 as u64)
+            }
+            Positions::Accumulated { .. } => self.memory_bytes(),
+        }
+    }
+}
+
+/// How many threads there is work for, and how many slabs they share.
+fn threads_and_slabs(execution: &Execution, layers: usize) -> (usize, usize) {
+    let threads = match execution.threads {
+        0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
+        threads => threads,
+    };
+    let most = (layers / LEAST_LAYERS).max(1);
+    let slabs = if threads == 1 { 1 } else { threads.saturating_mul(SLABS_PER_THREAD).min(most) };
+    (threads.min(slabs), slabs)
 }
 
 /// Sweeps all slabs, each by the thread that comes first. Which one that is does not show.

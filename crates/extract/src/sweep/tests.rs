@@ -54,10 +54,10 @@ fn assert_same(left: &Extraction, right: &Extraction) {
 /// All ways of the streaming extractor against the stored one.
 fn check(field: &dyn ScalarField, lattice: &Lattice, isovalue: f32) {
     let mut extractor = Extractor::new();
+    let samples = all_samples(field, lattice);
     for settings in all_settings(isovalue) {
         let one = Execution { threads: 1 };
         let expected = stored::extract(field, lattice, &settings, &one).unwrap();
-        let samples = all_samples(field, lattice);
         for threads in [1, 3] {
             let execution = Execution { threads };
             let called = extractor.extract(Source::Field(field), lattice, &settings, &execution).unwrap();
