@@ -158,7 +158,7 @@ fn one_cell_of_every_pattern() {
 fn smooth_fields_give_the_stored_mesh() {
     let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     for arrangement in BOTH {
-        for spacing in [0.04, 0.031] {
+        for spacing in [0.05, 0.041] {
             let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
             check(&Sphere { radius: 1.0 }, &lattice, 0.0);
             check(&Sphere { radius: 0.8 }, &lattice, 0.1);
