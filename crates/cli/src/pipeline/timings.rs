@@ -48,7 +48,7 @@ impl Pipeline<'_> {
 
     /// A finished run.
     pub(crate) fn bench_run(&self, stamp: &Stamp) -> Result<BenchRun> {
-        let text = std::fs::read(self.store.root().join(&stamp.file("run.json")))?;
+        let text = std::fs::read(self.store.root().join(stamp.file("run.json")))?;
         Ok(serde_json::from_slice(&text)?)
     }
 
