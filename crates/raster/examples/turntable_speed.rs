@@ -1,5 +1,5 @@
 //! Times the stages of the study's turntables, and leaves pictures to look at:
-//! `cargo run --release -p raster --example turntable_speed -- /tmp/raster_pictures`
+//! `cargo run --release -p raster --example turntable_speed -- FOLDER`
 
 #[path = "../tests/shapes/mod.rs"]
 mod shapes;
@@ -8,7 +8,7 @@ use raster::{Animation, Look, Panel, Shading, Sheet, Turntable, panels, pixmap_t
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let folder = std::path::PathBuf::from(std::env::args().nth(1).unwrap_or("/tmp/raster_pictures".into()));
+    let folder = std::env::args().nth(1).map_or_else(std::env::temp_dir, std::path::PathBuf::from);
     std::fs::create_dir_all(&folder)?;
     let (settings, shading) = (Turntable::default(), Shading::default());
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
