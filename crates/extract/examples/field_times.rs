@@ -26,7 +26,7 @@ impl ScalarField for Counting<'_> {
 }
 
 fn bunny() -> Option<MeshDistance> {
-    let cache = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../main/cache/bunny.ply");
+    let cache = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cache/bunny.ply");
     let Ok(file) = std::fs::File::open(&cache) else {
         eprintln!("SKIPPED: no bunny at {}", cache.display());
         return None;
