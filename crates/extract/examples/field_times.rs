@@ -94,8 +94,9 @@ fn main() {
                 }
             }
             let taken = AtomicUsize::new(0);
-            let prepared = field.prepared();
-            let counting = Counting(prepared.as_deref().unwrap_or(field), &taken);
+            let mut kept = extract::Kept::default();
+            let prepared = field.prepared(&mut kept);
+            let counting = Counting(prepared.unwrap_or(field), &taken);
             extractor.extract(Source::Field(&counting), &lattice, &settings, &execution).unwrap();
             let (ms, times) = best.unwrap();
             println!(

@@ -89,7 +89,7 @@ mod triangles;
 mod vertices;
 
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
-pub use field::{Asteroid, Gyroid, MeshDistance, MeshFieldError, ScalarField, Sphere};
+pub use field::{Asteroid, Gyroid, Kept, MeshDistance, MeshFieldError, ScalarField, Sphere};
 pub use lattice::{Arrangement, Lattice, LatticeError};
 pub use settings::{Clustering, Execution, ExtractSettings, Positions, Topology};
 pub use sweep::{Extractor, Source};

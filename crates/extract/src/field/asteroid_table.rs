@@ -52,6 +52,10 @@ impl AsteroidTable {
         is_sound.then_some(Self { asteroid: *asteroid, stretch: asteroid.stretch.into(), octaves, weights })
     }
 
+    pub(super) fn is_of(&self, asteroid: &Asteroid) -> bool {
+        self.asteroid == *asteroid
+    }
+
     /// The noise in a direction already stretched; `None` beyond the tables.
     #[inline]
     fn noise(&self, q: Vec3A) -> Option<f32> {

@@ -13,6 +13,7 @@ use super::slab::{Job, Piece, SlabTimes, Workspace, sweep};
 use super::source::Source;
 use crate::collapse::collapse;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
+use crate::field::Kept;
 use crate::lattice::Lattice;
 use crate::settings::{Clustering, Execution, ExtractSettings, Positions, Topology};
 use crate::stored;
@@ -29,7 +30,8 @@ type Progress = Box<dyn Fn(usize, usize) + Send + Sync>;
 ///
 /// With indexed positions it streams: memory grows with a layer of the lattice and with the mesh. From the second
 /// volume of a size on, with one thread and unless edges are collapsed, [`extract_into`](Self::extract_into)
-/// allocates nothing.
+/// allocates nothing, as long as the surface does not outgrow those before it; an [`Asteroid`](crate::Asteroid) other
+/// than the one before has its tables made again.
 ///
 /// ```
 /// use extract::{Arrangement, Execution, ExtractSettings, Extraction, Extractor, Lattice, ScalarField, Sphere};
@@ -52,6 +54,7 @@ pub struct Extractor {
     plan: Option<Plan>,
     workspaces: Vec<Workspace>,
     pieces: Vec<Piece>,
+    kept: Kept,
     progress: Option<Progress>,
 }
 
@@ -124,11 +127,12 @@ impl Extractor {
             return Ok(());
         }
         let start = Instant::now();
+        let mut kept = std::mem::take(&mut self.kept);
         let prepared = match source {
-            Source::Field(field) => field.prepared(),
+            Source::Field(field) => field.prepared(&mut kept),
             Source::Samples(_) => None,
         };
-        let source = prepared.as_deref().map_or(source, Source::Field);
+        let source = prepared.map_or(source, Source::Field);
         let plan = match self.plan.take() {
             Some(plan) if plan.grid.lattice == *lattice => plan,
             _ => Plan::new(lattice),
@@ -154,7 +158,7 @@ impl Extractor {
                 self.run(&plan, &rule, source, settings, execution, extraction, start)
             }
         };
-        self.plan = Some(plan);
+        (self.plan, self.kept) = (Some(plan), kept);
         result
     }
 
