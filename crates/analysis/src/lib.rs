@@ -22,6 +22,7 @@ mod fraction;
 mod inputs;
 pub mod interval;
 mod mesh_set;
+mod prediction;
 pub mod preference;
 mod published_ratio;
 mod stage_times;

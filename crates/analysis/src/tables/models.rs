@@ -10,7 +10,7 @@ use crate::table::{Cell, Table};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Up to so many participants the bootstrap refits; beyond, the sandwich's normal theory is as good.
-pub(super) const BOOTSTRAP_LIMIT: usize = 500;
+pub(crate) const BOOTSTRAP_LIMIT: usize = 500;
 
 /// `worths` and `models` of every group, with every model.
 ///
