@@ -19,6 +19,7 @@ mod claims;
 mod comparison;
 mod figures;
 mod fraction;
+mod hypotheses;
 mod inputs;
 pub mod interval;
 mod mesh_set;

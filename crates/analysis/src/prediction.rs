@@ -86,7 +86,10 @@ impl Prediction {
         let joint: Vec<Option<Vec<f64>>> = (0..study.comparisons.len()).map(complete).collect();
         let side: Vec<Option<Vec<f64>>> = joint.iter().map(|x| x.as_ref().map(|_| vec![1.0])).collect();
         let coefficients = regression(&joint, ballots).and_then(|fit| {
-            (0..metrics.len()).map(|i| fit.coefficient(i)).collect::<Option<Vec<_>>>().ok_or(FitError::Nothing)
+            (0..metrics.len())
+                .map(|i| fit.coefficient(i))
+                .collect::<Option<Vec<_>>>()
+                .ok_or(FitError::Nothing)
         });
         let used: Vec<usize> = (0..joint.len()).filter(|&q| joint[q].is_some()).collect();
         let (meshes, independent) = independent_differences(study, &used);
@@ -106,12 +109,7 @@ impl Prediction {
 }
 
 impl MetricPrediction {
-    fn of(
-        metric: &'static Metric,
-        advantages: Vec<Option<f64>>,
-        study: &Study,
-        ballots: &[Ballot],
-    ) -> Self {
+    fn of(metric: &'static Metric, advantages: Vec<Option<f64>>, study: &Study, ballots: &[Ballot]) -> Self {
         let known: Vec<f64> = advantages.iter().flatten().copied().collect();
         let unit = (known.iter().map(|a| a * a).sum::<f64>() / known.len() as f64).sqrt();
         let x: Vec<Option<Vec<f64>>> = advantages.iter().map(|a| a.map(|a| vec![a / unit])).collect();

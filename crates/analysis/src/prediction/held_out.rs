@@ -36,7 +36,8 @@ impl HeldOut {
         for &left_out in &objects {
             let (own, others): (Vec<Ballot>, Vec<Ballot>) = used.iter().partition(|b| object(b) == left_out);
             let fit = regression(covariates, &others).ok()?;
-            let ties = others.iter().filter(|b| b.outcome == Outcome::Tie).count() as f64 / others.len() as f64;
+            let ties =
+                others.iter().filter(|b| b.outcome == Outcome::Tie).count() as f64 / others.len() as f64;
             let constant = [0.5 * (1.0 - ties), ties, 0.5 * (1.0 - ties)];
             let (mut hits, mut decided) = (0.0, 0.0);
             for ballot in &own {

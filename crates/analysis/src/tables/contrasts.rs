@@ -2,70 +2,26 @@
 
 use super::models::BOOTSTRAP_LIMIT;
 use crate::ballots::BallotGroup;
+use crate::hypotheses::{self, Hypothesis, Subject};
 use crate::statistics::bootstrap::Resampling;
-use crate::statistics::contrast::{Contrast, ContrastTest, contrasts};
-use crate::statistics::{Ballot, ChiSquareTest, benjamini_hochberg, friedman, holm, sign_test};
+use crate::statistics::{Ballot, ChiSquareTest, friedman, sign_test};
 use crate::table::{Cell, Table};
 use design::{Arrangement, Clustering, Study};
 use std::collections::BTreeMap;
 
-/// One row before its p is adjusted.
-struct Row {
-    family: String,
-    contrast: String,
-    scope: String,
-    test: ContrastTest,
-}
-
-/// Family of the single questions: exploratory, adjusted by Benjamini and Hochberg instead of Holm.
-const QUESTIONS: &str = "questions";
-
 /// Every contrast of a study, then every question.
 pub(super) fn study_tests(study: &Study, ballots: &[Ballot]) -> Table {
-    let row = |contrast: Contrast| Row {
-        family: contrast.family.code().into(),
-        test: contrast.test(ballots),
-        contrast: contrast.name,
-        scope: contrast.scope,
-    };
-    let mut rows: Vec<Row> = contrasts(study).into_iter().map(row).collect();
-    for (question, comparison) in study.comparisons.iter().enumerate() {
-        let own = ballots.iter().filter(|b| b.question == question);
-        rows.push(Row {
-            family: QUESTIONS.into(),
-            contrast: format!("{}-{}", comparison.left.method, comparison.right.method),
-            scope: comparison.question.clone(),
-            test: ContrastTest::of(own.map(|b| (b.participant, 1, b.outcome))),
-        });
-    }
-    table(rows)
+    table(&hypotheses::of_study(study, ballots))
 }
 
 /// Every pair of items that was compared, group by group; the group is the family.
 ///
 /// Nothing but ballots is needed, so that answers without a study file have the same table.
 pub fn pair_tests(groups: &[BallotGroup]) -> Table {
-    let mut rows = Vec::new();
-    for group in groups {
-        for (i, first) in group.items.iter().enumerate() {
-            for (j, second) in group.items.iter().enumerate().skip(i + 1) {
-                let weight = |b: &Ballot| match (b.left, b.right) {
-                    (l, r) if (l, r) == (i, j) => Some((b.participant, 1, b.outcome)),
-                    (l, r) if (l, r) == (j, i) => Some((b.participant, -1, b.outcome)),
-                    _ => None,
-                };
-                let test = ContrastTest::of(group.ballots.iter().filter_map(weight));
-                let (family, contrast) = (group.name.clone(), format!("{first}-{second}"));
-                if !test.differences.is_empty() {
-                    rows.push(Row { family, contrast, scope: "all".into(), test });
-                }
-            }
-        }
-    }
-    table(rows)
+    table(&hypotheses::of_groups(groups))
 }
 
-fn table(rows: Vec<Row>) -> Table {
+fn table(rows: &[Hypothesis]) -> Table {
     let mut table = Table::new(
         "tests",
         "Tests of preference",
@@ -92,17 +48,7 @@ fn table(rows: Vec<Row>) -> Table {
             ("p_trinomial", "p trinomial"),
         ],
     );
-    let mut families: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
-    rows.iter().enumerate().for_each(|(i, row)| families.entry(&row.family).or_default().push(i));
-    let mut adjusted = vec![0.0; rows.len()];
-    for (family, members) in families {
-        let p: Vec<f64> = members.iter().map(|&i| rows[i].test.sign_flip.p()).collect();
-        let p = if family == QUESTIONS { benjamini_hochberg(&p) } else { holm(&p) };
-        members.iter().zip(p).for_each(|(&i, p)| adjusted[i] = p);
-    }
-    for (row, adjusted) in rows.iter().zip(adjusted) {
-        table.push(cells(row, adjusted));
-    }
+    rows.iter().for_each(|row| table.push(cells(row)));
     table.notes.push(
         "p: exact sign-flip test over participants, two-sided; net is answers for the first minus answers for the second. \
          Adjusted within the family: Holm, for single questions Benjamini and Hochberg. Mean score: a participant's net over \
@@ -115,8 +61,8 @@ fn table(rows: Vec<Row>) -> Table {
     table
 }
 
-fn cells(row: &Row, adjusted: f64) -> Vec<Cell> {
-    let (test, question) = (&row.test, row.family == QUESTIONS);
+fn cells(row: &Hypothesis) -> Vec<Cell> {
+    let (test, question) = (&row.test, matches!(row.subject, Subject::Question(_)));
     let small = test.differences.len() <= BOOTSTRAP_LIMIT;
     let resampled = if small && !question { test.bca(Resampling::default()) } else { None };
     let without = if small { test.leave_one_out() } else { None };
@@ -133,8 +79,8 @@ fn cells(row: &Row, adjusted: f64) -> Vec<Cell> {
         Cell::Count(test.sign_flip.net),
         Cell::count(test.sign_flip.participants as u64),
         Cell::Number(test.sign_flip.p(), 5),
-        Cell::Number(adjusted, 4),
-        Cell::text(if question { "Benjamini-Hochberg" } else { "Holm" }),
+        Cell::Number(row.adjusted, 4),
+        Cell::text(row.adjustment.label()),
         Cell::Number(test.mean, 3),
         Cell::number(test.interval.map(|i| i.low), 3),
         Cell::number(test.interval.map(|i| i.high), 3),

@@ -1,0 +1,123 @@
+//! Every hypothesis that is tested, with p adjusted within its family.
+
+use crate::ballots::BallotGroup;
+use crate::statistics::contrast::{Contrast, ContrastTest, Level, Over, contrasts};
+use crate::statistics::{Ballot, benjamini_hochberg, holm};
+use design::Study;
+use std::collections::BTreeMap;
+
+/// How p values of a family are adjusted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Adjustment {
+    /// Against any false rejection in the family.
+    Holm,
+    /// Against too large a share of false rejections: for what is exploratory.
+    BenjaminiHochberg,
+}
+
+impl Adjustment {
+    pub(crate) fn label(self) -> &'static str {
+        match self {
+            Self::Holm => "Holm",
+            Self::BenjaminiHochberg => "Benjamini-Hochberg",
+        }
+    }
+}
+
+/// What a hypothesis is about.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Subject {
+    /// A contrast of the study.
+    Contrast { levels: [Level; 2], over: Over },
+    /// One question of the study, by index.
+    Question(usize),
+    /// Two items of a group.
+    Items { group: String, first: String, second: String },
+}
+
+/// One hypothesis, tested.
+#[derive(Debug, Clone)]
+pub(crate) struct Hypothesis {
+    /// Name of the family.
+    pub(crate) family: String,
+    /// What is compared, such as `U-I`.
+    pub(crate) contrast: String,
+    /// Over which answers, such as `within B`.
+    pub(crate) scope: String,
+    pub(crate) subject: Subject,
+    pub(crate) test: ContrastTest,
+    /// The sign-flip p, adjusted within the family.
+    pub(crate) adjusted: f64,
+    pub(crate) adjustment: Adjustment,
+    /// How many hypotheses the family has.
+    pub(crate) family_size: usize,
+}
+
+impl Hypothesis {
+    fn new(family: &str, contrast: String, scope: &str, subject: Subject, test: ContrastTest) -> Self {
+        let (family, scope) = (family.into(), scope.into());
+        let (adjusted, adjustment, family_size) = (1.0, Adjustment::Holm, 1);
+        Self { family, contrast, scope, subject, test, adjusted, adjustment, family_size }
+    }
+}
+
+/// Every contrast of a study, then every question.
+pub(crate) fn of_study(study: &Study, ballots: &[Ballot]) -> Vec<Hypothesis> {
+    let of_contrast = |contrast: Contrast| {
+        let subject = Subject::Contrast { levels: contrast.levels, over: contrast.over };
+        let test = contrast.test(ballots);
+        Hypothesis::new(contrast.family.code(), contrast.name, &contrast.scope, subject, test)
+    };
+    let of_question = |(q, comparison): (usize, &design::Comparison)| {
+        let own = ballots.iter().filter(|b| b.question == q);
+        let test = ContrastTest::of(own.map(|b| (b.participant, 1, b.outcome)));
+        let contrast = format!("{}-{}", comparison.left.method, comparison.right.method);
+        Hypothesis::new("questions", contrast, &comparison.question, Subject::Question(q), test)
+    };
+    let mut all: Vec<Hypothesis> = contrasts(study).into_iter().map(of_contrast).collect();
+    adjust(&mut all, Adjustment::Holm);
+    let mut questions: Vec<Hypothesis> = study.comparisons.iter().enumerate().map(of_question).collect();
+    adjust(&mut questions, Adjustment::BenjaminiHochberg);
+    all.extend(questions);
+    all
+}
+
+/// Every pair of items that was compared, group by group; the group is the family.
+pub(crate) fn of_groups(groups: &[BallotGroup]) -> Vec<Hypothesis> {
+    let mut all = Vec::new();
+    for group in groups {
+        for (i, first) in group.items.iter().enumerate() {
+            for (j, second) in group.items.iter().enumerate().skip(i + 1) {
+                let weight = |b: &Ballot| match (b.left, b.right) {
+                    (l, r) if (l, r) == (i, j) => Some((b.participant, 1, b.outcome)),
+                    (l, r) if (l, r) == (j, i) => Some((b.participant, -1, b.outcome)),
+                    _ => None,
+                };
+                let test = ContrastTest::of(group.ballots.iter().filter_map(weight));
+                if !test.differences.is_empty() {
+                    let (first, second) = (first.clone(), second.clone());
+                    let contrast = format!("{first}-{second}");
+                    let subject = Subject::Items { group: group.name.clone(), first, second };
+                    all.push(Hypothesis::new(&group.name, contrast, "all", subject, test));
+                }
+            }
+        }
+    }
+    adjust(&mut all, Adjustment::Holm);
+    all
+}
+
+fn adjust(all: &mut [Hypothesis], adjustment: Adjustment) {
+    let mut families: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    all.iter().enumerate().for_each(|(i, h)| families.entry(h.family.clone()).or_default().push(i));
+    for members in families.into_values() {
+        let p: Vec<f64> = members.iter().map(|&i| all[i].test.sign_flip.p()).collect();
+        let adjusted = match adjustment {
+            Adjustment::Holm => holm(&p),
+            Adjustment::BenjaminiHochberg => benjamini_hochberg(&p),
+        };
+        for (&i, adjusted) in members.iter().zip(adjusted) {
+            (all[i].adjusted, all[i].adjustment, all[i].family_size) = (adjusted, adjustment, members.len());
+        }
+    }
+}
