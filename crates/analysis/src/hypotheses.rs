@@ -2,7 +2,7 @@
 
 use crate::ballots::BallotGroup;
 use crate::statistics::contrast::{Contrast, ContrastTest, Level, Over, contrasts};
-use crate::statistics::{Ballot, benjamini_hochberg, holm};
+use crate::statistics::{Ballot, MARGIN, benjamini_hochberg, equivalence, holm};
 use design::Study;
 use std::collections::BTreeMap;
 
@@ -23,6 +23,33 @@ impl Adjustment {
         }
     }
 }
+
+/// What both adjusted p allow to say, at [`ALPHA`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Conclusion {
+    /// There is a preference.
+    Differs,
+    /// There is one, and it is smaller than the margin.
+    DiffersWithinMargin,
+    /// If there is one, it is smaller than the margin.
+    Equal,
+    /// Neither can be said.
+    Open,
+}
+
+impl Conclusion {
+    pub(crate) fn label(self) -> &'static str {
+        match self {
+            Self::Differs => "differs",
+            Self::DiffersWithinMargin => "differs, within the margin",
+            Self::Equal => "equal within the margin",
+            Self::Open => "open",
+        }
+    }
+}
+
+/// Level of every test here.
+pub(crate) const ALPHA: f64 = 0.05;
 
 /// What a hypothesis is about.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,6 +75,8 @@ pub(crate) struct Hypothesis {
     pub(crate) test: ContrastTest,
     /// The sign-flip p, adjusted within the family.
     pub(crate) adjusted: f64,
+    /// p of the test that the mean score lies within [`MARGIN`] of zero, adjusted likewise; `None` for one participant.
+    pub(crate) equivalence: Option<f64>,
     pub(crate) adjustment: Adjustment,
     /// How many hypotheses the family has.
     pub(crate) family_size: usize,
@@ -57,7 +86,16 @@ impl Hypothesis {
     fn new(family: &str, contrast: String, scope: &str, subject: Subject, test: ContrastTest) -> Self {
         let (family, scope) = (family.into(), scope.into());
         let (adjusted, adjustment, family_size) = (1.0, Adjustment::Holm, 1);
-        Self { family, contrast, scope, subject, test, adjusted, adjustment, family_size }
+        Self { family, contrast, scope, subject, test, adjusted, equivalence: None, adjustment, family_size }
+    }
+
+    pub(crate) fn conclusion(&self) -> Conclusion {
+        match (self.adjusted <= ALPHA, self.equivalence.is_some_and(|p| p <= ALPHA)) {
+            (true, false) => Conclusion::Differs,
+            (true, true) => Conclusion::DiffersWithinMargin,
+            (false, true) => Conclusion::Equal,
+            (false, false) => Conclusion::Open,
+        }
     }
 }
 
@@ -108,16 +146,22 @@ pub(crate) fn of_groups(groups: &[BallotGroup]) -> Vec<Hypothesis> {
 }
 
 fn adjust(all: &mut [Hypothesis], adjustment: Adjustment) {
+    let adjusted = |p: Vec<f64>| match adjustment {
+        Adjustment::Holm => holm(&p),
+        Adjustment::BenjaminiHochberg => benjamini_hochberg(&p),
+    };
     let mut families: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     all.iter().enumerate().for_each(|(i, h)| families.entry(h.family.clone()).or_default().push(i));
     for members in families.into_values() {
-        let p: Vec<f64> = members.iter().map(|&i| all[i].test.sign_flip.p()).collect();
-        let adjusted = match adjustment {
-            Adjustment::Holm => holm(&p),
-            Adjustment::BenjaminiHochberg => benjamini_hochberg(&p),
-        };
-        for (&i, adjusted) in members.iter().zip(adjusted) {
-            (all[i].adjusted, all[i].adjustment, all[i].family_size) = (adjusted, adjustment, members.len());
+        let different = adjusted(members.iter().map(|&i| all[i].test.sign_flip.p()).collect());
+        let equal = |i: &usize| equivalence(&all[*i].test.scores, MARGIN).map(|test| test.p);
+        let tested: Vec<Option<f64>> = members.iter().map(equal).collect();
+        // One participant alone has no test of equivalence, and then adds none to the family.
+        let mut equal = adjusted(tested.iter().flatten().copied().collect()).into_iter();
+        for ((&i, different), tested) in members.iter().zip(different).zip(tested) {
+            let of = &mut all[i];
+            (of.adjusted, of.adjustment, of.family_size) = (different, adjustment, members.len());
+            of.equivalence = tested.and_then(|_| equal.next());
         }
     }
 }

@@ -8,7 +8,7 @@ mod better;
 mod held_out;
 mod metric;
 
-pub(crate) use better::{Better, PairCount};
+pub(crate) use better::Better;
 pub(crate) use held_out::HeldOut;
 pub(crate) use metric::{METRICS, Metric, Scale};
 

@@ -4,7 +4,6 @@ use crate::interval::Interval;
 use crate::statistics::bootstrap::{Resampling, bca};
 use crate::statistics::contrast::ContrastTest;
 use crate::statistics::{Ballot, ClusteredShare, clustered_share};
-use crate::tables::models::BOOTSTRAP_LIMIT;
 use std::collections::BTreeMap;
 
 /// Pairs by who won them.
@@ -64,17 +63,16 @@ impl Better {
             let [hits, misses] = of.values().fold([0, 0], |[a, b], [x, y]| [a + x, b + y]);
             (hits as f64, (hits + misses) as f64)
         });
-        let everyone: Vec<usize> = (0..people.len()).collect();
-        let resampled = if people.len() <= BOOTSTRAP_LIMIT {
-            bca(people.len(), Resampling::default(), |draws| pairs(&people, draws).share())
-        } else {
-            None
-        };
+        // People who answered alike are interchangeable.
+        let mut kinds: BTreeMap<&BTreeMap<usize, [u64; 2]>, u64> = BTreeMap::new();
+        people.iter().for_each(|of| *kinds.entry(of).or_default() += 1);
+        let (kinds, counts): (Vec<_>, Vec<u64>) = kinds.into_iter().unzip();
+        let resampled = bca(&counts, Resampling::default(), |weights| pairs(&kinds, weights).share());
         let with_values = |q: &usize| weight(*q) == Some(-1);
         Self {
             test: ContrastTest::of(ballots.iter().filter_map(weighted)),
             share: clustered_share(answers),
-            pairs: pairs(&people, &everyone),
+            pairs: pairs(&kinds, &counts),
             pairs_interval: resampled.map(|r| r.interval),
             better_right: (0..advantages.len()).filter(with_values).count(),
         }
@@ -86,12 +84,12 @@ impl Better {
     }
 }
 
-/// Who wins each pair among the drawn people.
-fn pairs(people: &[BTreeMap<usize, [u64; 2]>], draws: &[usize]) -> PairCount {
+/// Who wins each pair among so many people of each kind.
+fn pairs(kinds: &[&BTreeMap<usize, [u64; 2]>], weights: &[u64]) -> PairCount {
     let mut net: BTreeMap<usize, i64> = BTreeMap::new();
-    for &person in draws {
-        for (&question, &[hits, misses]) in &people[person] {
-            *net.entry(question).or_default() += hits as i64 - misses as i64;
+    for (kind, &weight) in kinds.iter().zip(weights).filter(|(_, weight)| **weight > 0) {
+        for (&question, &[hits, misses]) in *kind {
+            *net.entry(question).or_default() += weight as i64 * (hits as i64 - misses as i64);
         }
     }
     let mut count = PairCount::default();

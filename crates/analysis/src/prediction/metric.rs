@@ -61,6 +61,22 @@ pub(crate) const METRICS: &[Metric] = &[
         scale: Scale::LogRatio,
         value: |m| Some(m.counts.triangles as f64),
     },
+    Metric {
+        code: "normal_error",
+        label: "mean shading error",
+        better: "lower",
+        larger_is_better: false,
+        scale: Scale::LogRatio,
+        value: |m| known(&m.accuracy.normal_error_deg, |d| d.mean),
+    },
+    Metric {
+        code: "distance",
+        label: "mean distance to the surface",
+        better: "lower",
+        larger_is_better: false,
+        scale: Scale::LogRatio,
+        value: |m| known(&m.accuracy.distance, |d| d.mean),
+    },
 ];
 
 impl Metric {

@@ -1,3 +1,4 @@
+use super::better::PairCount;
 use super::*;
 use crate::ballots::ballots;
 use crate::fixture::{self, Everything};

@@ -1,11 +1,11 @@
 //! Contrasts of a study: which answers speak for one property over another, with everything else equal.
 
 use super::ballot::{Ballot, Outcome};
-use super::bootstrap::{BootstrapInterval, Resampling, bca};
-use super::sign_flip::{SignFlip, sign_flip};
+use super::bootstrap::{BootstrapInterval, Resampling, bca, kinds, mean, mean_and_error, studentised};
+use super::sign_flip::{SignFlip, sign_flip, sign_flip_of_counts};
 use crate::interval::{Interval, t_over_respondents};
 use design::{Arrangement, Clustering, Study};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// The families within which p values are adjusted, declared before looking.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -103,9 +103,12 @@ impl Level {
 impl Contrast {
     /// Tests it on ballots, whose questions are the study's.
     pub fn test(&self, ballots: &[Ballot]) -> ContrastTest {
+        let questions = self.weights.keys().last().map_or(0, |last| last + 1);
+        let weights: Vec<i64> =
+            (0..questions).map(|q| self.weights.get(&q).copied().unwrap_or_default()).collect();
         let weighted = |ballot: &Ballot| {
-            let weight = self.weights.get(&ballot.question)?;
-            Some((ballot.participant, *weight, ballot.outcome))
+            let weight = *weights.get(ballot.question).filter(|&&weight| weight != 0)?;
+            Some((ballot.participant, weight, ballot.outcome))
         };
         let test = ContrastTest::of(ballots.iter().filter_map(weighted));
         // Counts of answers mean something only if all weigh the same.
@@ -117,17 +120,21 @@ impl Contrast {
 impl ContrastTest {
     /// Tests answers given as `(participant, weight, outcome)`; a positive weight speaks for the left side.
     pub fn of(answers: impl IntoIterator<Item = (usize, i64, Outcome)>) -> Self {
-        let mut of: BTreeMap<usize, (i64, i64)> = BTreeMap::new();
+        // By participant: sum of weight times sign, and the weights' size, which is above zero for whoever answered.
+        let mut of: Vec<(i64, i64)> = Vec::new();
         let mut counts = [0; 3];
         for (participant, weight, outcome) in answers {
-            let (sum, size) = of.entry(participant).or_default();
+            if participant >= of.len() {
+                of.resize(participant + 1, (0, 0));
+            }
             let signed = weight * outcome.sign();
-            *sum += signed;
-            *size += weight.abs();
+            of[participant].0 += signed;
+            of[participant].1 += weight.abs();
             counts[(1 - signed.signum()) as usize] += 1;
         }
-        let differences: Vec<i64> = of.values().map(|&(sum, _)| sum).collect();
-        let scores: Vec<f64> = of.values().map(|&(sum, size)| sum as f64 / size as f64).collect();
+        of.retain(|&(_, size)| size > 0);
+        let differences: Vec<i64> = of.iter().map(|&(sum, _)| sum).collect();
+        let scores: Vec<f64> = of.iter().map(|&(sum, size)| sum as f64 / size as f64).collect();
         Self {
             counts: Some(counts),
             sign_flip: sign_flip(&differences),
@@ -140,24 +147,28 @@ impl ContrastTest {
 
     /// Smallest and largest p when each participant in turn is left out; `None` for fewer than two.
     pub fn leave_one_out(&self) -> Option<(f64, f64)> {
-        let without = |left_out: &i64| {
-            let mut others = self.differences.clone();
-            others.remove(others.iter().position(|d| d == left_out).expect("one of them"));
-            sign_flip(&others).p()
-        };
         // Participants with the same difference leave the same p behind.
-        let distinct: BTreeSet<i64> = self.differences.iter().copied().collect();
-        let all = (self.differences.len() > 1).then(|| distinct.iter().map(without));
+        let mut counts: BTreeMap<i64, u64> = BTreeMap::new();
+        self.differences.iter().for_each(|&d| *counts.entry(d).or_default() += 1);
+        let without = |left_out: &i64| {
+            let mut others = counts.clone();
+            *others.get_mut(left_out).expect("one of them") -= 1;
+            sign_flip_of_counts(&others).p()
+        };
+        let all = (self.differences.len() > 1).then(|| counts.keys().map(without));
         all.map(|p| p.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p))))
     }
 
     /// BCa interval for the mean score, resampling participants.
     pub fn bca(&self, resampling: Resampling) -> Option<BootstrapInterval> {
-        let mean = |draws: &[usize]| {
-            let sum: f64 = draws.iter().map(|&p| self.scores[p]).sum();
-            (!draws.is_empty()).then(|| sum / draws.len() as f64)
-        };
-        bca(self.scores.len(), resampling, mean)
+        let (scores, counts) = kinds(&self.scores);
+        bca(&counts, resampling, |weights| mean(&scores, weights))
+    }
+
+    /// Studentised bootstrap interval for the mean score, resampling participants.
+    pub fn studentised(&self, resampling: Resampling) -> Option<BootstrapInterval> {
+        let (scores, counts) = kinds(&self.scores);
+        studentised(&counts, resampling, |weights| mean_and_error(&scores, weights))
     }
 }
 

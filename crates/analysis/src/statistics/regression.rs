@@ -5,7 +5,7 @@
 //! l_left - l_right = beta'x; the adjacent-category logits of left, tie, right are u/2 -+ ln nu). Exchanging the sides
 //! of a question changes nothing. Without a tie among the answers it is the logistic model alone.
 
-use super::ballot::{Ballot, Outcome};
+use super::ballot::Ballot;
 use super::fit::FitError;
 use super::model::add_log_linear;
 use super::newton::{Curvature, Matrix, inverse, maximise, times};
@@ -44,7 +44,7 @@ pub fn regression(covariates: &[Option<Vec<f64>>], ballots: &[Ballot]) -> Result
         return Err(FitError::Nothing);
     }
     let mut answers = vec![[0.0; 3]; covariates.len()];
-    used.iter().for_each(|ballot| answers[ballot.question][place(ballot.outcome)] += 1.0);
+    used.iter().for_each(|ballot| answers[ballot.question][ballot.outcome.index()] += 1.0);
     let ties: f64 = answers.iter().map(|answers| answers[1]).sum();
     if ties == used.len() as f64 {
         return Err(FitError::OnlyTies);
@@ -78,7 +78,7 @@ pub fn regression(covariates: &[Option<Vec<f64>>], ballots: &[Ballot]) -> Result
     let mut sums: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     for ballot in &used {
         let sum = sums.entry(ballot.participant).or_insert_with(|| vec![0.0; size]);
-        let own = &scores[ballot.question][place(ballot.outcome)];
+        let own = &scores[ballot.question][ballot.outcome.index()];
         sum.iter_mut().zip(own).for_each(|(sum, score)| *sum += score);
     }
     let bread = inverse(&likelihood(&at).information).ok_or(FitError::NoMaximum)?;
@@ -90,10 +90,6 @@ pub fn regression(covariates: &[Option<Vec<f64>>], ballots: &[Ballot]) -> Result
         clustered: sandwich(&bread, sums.values()),
         participants: sums.len(),
     })
-}
-
-fn place(outcome: Outcome) -> usize {
-    Outcome::ALL.iter().position(|&o| o == outcome).expect("one of three")
 }
 
 /// m/(m-1) B (sum of s s') B over m gradients.

@@ -61,8 +61,8 @@ fn metrics(prediction: &Prediction) -> Table {
             Cell::number(better.share.map(|s| s.share), 3),
             Cell::number(share_interval.map(|i| i.low), 3),
             Cell::number(share_interval.map(|i| i.high), 3),
-            Cell::Number(better.test.sign_flip.p(), 5),
-            Cell::Number(found.adjusted, 4),
+            Cell::P(better.test.sign_flip.p(), 5),
+            Cell::P(found.adjusted, 4),
             Cell::count(better.pair_count() as u64),
             Cell::count(better.pairs.better as u64),
             Cell::count(better.pairs.drawn as u64),
@@ -75,7 +75,7 @@ fn metrics(prediction: &Prediction) -> Table {
             Cell::number(coefficient.map(|c| c.se), 3),
             Cell::number(coefficient.map(|c| c.interval.low), 3),
             Cell::number(coefficient.map(|c| c.interval.high), 3),
-            Cell::number(coefficient.map(|c| c.p), 5),
+            Cell::p(coefficient.map(|c| c.p), 5),
         ];
         row.extend(judged(found.held_out.as_ref()));
         table.push(row);
@@ -175,7 +175,7 @@ fn joint(prediction: &Prediction) -> Table {
             for (found, c) in prediction.metrics.iter().zip(coefficients) {
                 let numbers = [c.estimate, c.se, c.interval.low, c.interval.high].map(|x| Cell::Number(x, 3));
                 let name = std::iter::once(Cell::text(found.metric.label));
-                table.push(name.chain(numbers).chain([Cell::Number(c.p, 4)]).collect());
+                table.push(name.chain(numbers).chain([Cell::P(c.p, 4)]).collect());
             }
         }
         Err(reason) => table.notes.push(format!("No estimate: {reason}.")),

@@ -1,4 +1,5 @@
 use super::*;
+use crate::statistics::Outcome;
 use crate::statistics::golden;
 use design::{Clustering, ConfigurationId};
 
