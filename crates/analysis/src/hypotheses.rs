@@ -22,6 +22,13 @@ impl Adjustment {
             Self::BenjaminiHochberg => "Benjamini-Hochberg",
         }
     }
+
+    pub(crate) fn possessive(self) -> &'static str {
+        match self {
+            Self::Holm => "Holm's",
+            Self::BenjaminiHochberg => "Benjamini and Hochberg's",
+        }
+    }
 }
 
 /// What both adjusted p allow to say, at [`ALPHA`].

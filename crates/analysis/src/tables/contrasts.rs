@@ -118,6 +118,40 @@ pub(super) fn omnibus(study: &Study, ballots: &[Ballot]) -> Table {
             ("p", "p"),
         ],
     );
+    let StudyScores { clusterings, by_clustering, by_object } = study_scores(study, ballots);
+    let cases = [
+        ("clustering", "wins minus losses of each clustering", friedman(&clusterings)),
+        (
+            "arrangement x clustering",
+            "body-centred minus simple cubic, by clustering",
+            friedman(&by_clustering),
+        ),
+        ("object x arrangement", "body-centred minus simple cubic, by object", friedman(&by_object)),
+    ];
+    for (question, scores, test) in cases {
+        if let Some(ChiSquareTest { statistic, degrees, p }) = test {
+            let numbers = [Cell::Number(statistic, 3), Cell::Number(degrees, 0), Cell::P(p, 5)];
+            table.push([Cell::text(question), Cell::text(scores)].into_iter().chain(numbers).collect());
+        }
+    }
+    table
+        .notes
+        .push("Chi-square approximation with correction for ties; participants are the blocks.".into());
+    table
+}
+
+/// One row of sums a participant, for [`friedman`].
+pub(crate) struct StudyScores {
+    /// Wins less losses of each clustering.
+    pub(crate) clusterings: Vec<Vec<f64>>,
+    /// Body-centred less simple cubic, by clustering.
+    pub(crate) by_clustering: Vec<Vec<f64>>,
+    /// Body-centred less simple cubic, by object.
+    pub(crate) by_object: Vec<Vec<f64>>,
+}
+
+/// Sums over the questions that differ in one property alone.
+pub(crate) fn study_scores(study: &Study, ballots: &[Ballot]) -> StudyScores {
     let methods = study.methods();
     let at = |clustering: Clustering| study.file.clusterings.iter().position(|&c| c == clustering);
     let sign = |b: &Ballot| b.outcome.sign() as f64;
@@ -139,25 +173,7 @@ pub(super) fn omnibus(study: &Study, ballots: &[Ballot]) -> Table {
     let by_object = scores(ballots, study.file.objects.len(), |b| {
         [arrangement(b).map(|score| (study.comparisons[b.question].object, score)), None]
     });
-    let cases = [
-        ("clustering", "wins minus losses of each clustering", friedman(&clusterings)),
-        (
-            "arrangement x clustering",
-            "body-centred minus simple cubic, by clustering",
-            friedman(&by_clustering),
-        ),
-        ("object x arrangement", "body-centred minus simple cubic, by object", friedman(&by_object)),
-    ];
-    for (question, scores, test) in cases {
-        if let Some(ChiSquareTest { statistic, degrees, p }) = test {
-            let numbers = [Cell::Number(statistic, 3), Cell::Number(degrees, 0), Cell::P(p, 5)];
-            table.push([Cell::text(question), Cell::text(scores)].into_iter().chain(numbers).collect());
-        }
-    }
-    table
-        .notes
-        .push("Chi-square approximation with correction for ties; participants are the blocks.".into());
-    table
+    StudyScores { clusterings, by_clustering, by_object }
 }
 
 /// One row of sums a participant; participants and columns without any answer stay at zero.
