@@ -48,7 +48,7 @@ pub(super) fn agreement(study: &Study, ballots: &[Ballot]) -> Table {
             Cell::number(found.map(|found| found.u), 4),
             Cell::number(test.map(|test| test.statistic), 2),
             Cell::number(test.map(|test| test.degrees), 2),
-            Cell::number(test.map(|test| test.p), 5),
+            Cell::p(test.map(|test| test.p), 5),
             circle(circles.all),
             circle(circles.decided),
             circle(circles.strict_cycles),
