@@ -13,8 +13,8 @@ use crate::clusters::Clusters;
 use crate::edges::EdgeTable;
 use crate::guard::{Class, Guard};
 use crate::lattice::{
-    ALL_DIRECTIONS, Arrangement, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout, PADDING_LAYERS,
-    members,
+    ALL_DIRECTIONS, Arrangement, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout,
+    PADDING_LAYERS, members,
 };
 use crate::settings::{Clustering, ExtractSettings, Topology};
 

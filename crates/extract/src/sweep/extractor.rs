@@ -56,6 +56,18 @@ pub struct Extractor {
     pieces: Vec<Piece>,
     kept: Kept,
     progress: Option<Progress>,
+    pub(super) most_vertices: MostVertices,
+}
+
+/// How many vertices a mesh may have.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MostVertices(pub(super) u32);
+
+impl Default for MostVertices {
+    /// What a 32-bit index can name.
+    fn default() -> Self {
+        Self(u32::MAX)
+    }
 }
 
 /// What depends on the lattice alone.
@@ -200,6 +212,7 @@ impl Extractor {
             rule,
             source,
             isovalue: settings.isovalue,
+            most_vertices: self.most_vertices.0,
             progress: &progress,
         };
         sweep_all(&job, &mut self.workspaces, &mut self.pieces)?;
@@ -207,7 +220,7 @@ impl Extractor {
         times.allocation = allocation;
 
         let joining = Instant::now();
-        let seams = join(&mut self.pieces)?;
+        let seams = join(&mut self.pieces, self.most_vertices.0)?;
         let (first, rest) = self.pieces.split_first_mut().expect("there is a slab");
         let crossing_ends: u64 =
             first.crossing_ends + rest.iter().map(|piece| piece.crossing_ends).sum::<u64>();
@@ -315,15 +328,15 @@ struct Seam {
 }
 
 /// Appends all pieces to the first one, with vertex numbers of the whole.
-fn join(pieces: &mut [Piece]) -> Result<Vec<Seam>, ExtractError> {
+fn join(pieces: &mut [Piece], most_vertices: u32) -> Result<Vec<Seam>, ExtractError> {
     let (first, rest) = pieces.split_first_mut().expect("there is a slab");
     let mut seams = Vec::new();
     if rest.is_empty() {
         return Ok(seams);
     }
     let total: usize = first.positions.len() + rest.iter().map(|piece| piece.positions.len()).sum::<usize>();
-    if total > u32::MAX as usize {
-        return Err(ExtractError::TooManyVertices { limit: u32::MAX });
+    if total as u64 > u64::from(most_vertices) {
+        return Err(ExtractError::TooManyVertices { limit: most_vertices });
     }
     let triangles: usize = rest.iter().map(|piece| piece.surface.triangles.len()).sum();
     first.positions.try_reserve(total - first.positions.len()).map_err(|_| ExtractError::NoMemoryForMesh)?;

@@ -90,7 +90,8 @@ impl FieldSamples {
                 }
                 _ => {
                     taken.fill(0);
-                    let mut line = Line { pass, x: &x[..points], y, z, values, taken, bits: signs.open(row, layer) };
+                    let mut line =
+                        Line { pass, x: &x[..points], y, z, values, taken, bits: signs.open(row, layer) };
                     line.sample(spans, known);
                     signs.close(row, layer, points);
                 }
@@ -162,7 +163,12 @@ impl Line<'_> {
                 Tile::Outside => {}
                 Tile::Inside => set_bits(self.bits, first, end),
                 Tile::Unknown => {
-                    self.pass.field.sample_row(&self.x[first..end], self.y, self.z, &mut self.values[first..end]);
+                    self.pass.field.sample_row(
+                        &self.x[first..end],
+                        self.y,
+                        self.z,
+                        &mut self.values[first..end],
+                    );
                     set_bits(self.taken, first, end);
                     for i in first..end {
                         self.set_side(i, self.values[i] > self.pass.isovalue);

@@ -14,8 +14,8 @@ use super::rule::ClusterRule;
 use super::sampling::{FieldPass, FieldSamples, signs_of};
 use super::signs::Signs;
 use super::source::Source;
-use crate::triangles::Triangulation;
 use crate::ExtractError;
+use crate::triangles::Triangulation;
 
 /// What all slabs of an extraction share.
 pub(super) struct Job<'a, R> {
@@ -24,6 +24,7 @@ pub(super) struct Job<'a, R> {
     pub(super) rule: &'a R,
     pub(super) source: Source<'a>,
     pub(super) isovalue: f32,
+    pub(super) most_vertices: u32,
     /// Called with the number of layers sampled since the last call.
     pub(super) progress: &'a (dyn Fn(usize) + Sync),
 }
@@ -159,8 +160,8 @@ pub(super) fn sweep<R: ClusterRule>(
             } else {
                 pass.layer(layer, &mut workspace.records, &mut placed, None).map_err(out_of_memory)?;
             }
-            if placed.numbered > u64::from(u32::MAX) {
-                return Err(ExtractError::TooManyVertices { limit: u32::MAX });
+            if placed.numbered > u64::from(job.most_vertices) {
+                return Err(ExtractError::TooManyVertices { limit: job.most_vertices });
             }
         }
         piece.times.vertex += lap();
@@ -179,4 +180,3 @@ pub(super) fn sweep<R: ClusterRule>(
     }
     Ok(())
 }
-
