@@ -15,6 +15,7 @@ use super::signs::Signs;
 use super::source::Source;
 use super::tiles::{TILE, Tile, Tiles};
 use crate::field::SAFE;
+use crate::placement::CrossingPlacer;
 use crate::triangles::Triangulation;
 use crate::{ExtractError, ScalarField};
 
@@ -28,6 +29,7 @@ pub(super) struct Job<'a, R> {
     pub(super) rule: &'a R,
     pub(super) source: Source<'a>,
     pub(super) isovalue: f32,
+    pub(super) placer: Option<&'a CrossingPlacer<'a>>,
     /// Called with the number of layers sampled since the last call.
     pub(super) progress: &'a (dyn Fn(usize) + Sync),
 }
@@ -50,6 +52,8 @@ pub(super) struct Workspace {
 pub(super) struct Piece {
     /// Of the slab's own layers.
     pub(super) positions: Vec<Vec3>,
+    /// Where the placer wants them.
+    pub(super) targets: Vec<Vec3>,
     pub(super) surface: Triangulation,
     /// Vertices numbered in the layers below the slab.
     pub(super) below: u64,
@@ -88,6 +92,7 @@ impl Workspace {
 impl Piece {
     fn clear(&mut self) {
         self.positions.clear();
+        self.targets.clear();
         self.surface.triangles.clear();
         let triangles = std::mem::take(&mut self.surface.triangles);
         self.surface = Triangulation { triangles, ..Triangulation::default() };
@@ -130,7 +135,8 @@ pub(super) fn sweep<R: ClusterRule>(
                 Source::Samples(values) => Samples { values, slots: layers },
                 Source::Field(_) => Samples { values: &workspace.samples, slots: grid.slots() },
             };
-            let pass = PointPass { grid, rule: job.rule, samples, signs: &workspace.signs, isovalue };
+            let (signs, placer) = (&workspace.signs, job.placer);
+            let pass = PointPass { grid, rule: job.rule, samples, signs, isovalue, placer };
             if layer == own.start {
                 piece.below = placed.numbered;
             }
@@ -160,6 +166,7 @@ pub(super) fn sweep<R: ClusterRule>(
         }
         piece.times.geometry += lap();
     }
+    piece.targets = placed.targets;
     Ok(())
 }
 

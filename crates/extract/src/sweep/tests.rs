@@ -77,7 +77,7 @@ fn all_settings(isovalue: f32) -> impl Iterator<Item = ExtractSettings> {
             isovalue,
             clustering,
             topology,
-            positions: Positions::Indexed,
+            ..ExtractSettings::default()
         })
     })
 }
