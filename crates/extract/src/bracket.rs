@@ -16,9 +16,13 @@ impl Bracket {
         Self { low, high, last: None }
     }
 
-    /// Where a straight line has its root, or the middle where that is not strictly between.
+    /// Where a straight line has its root: an end whose value is zero, or else the middle where that is not strictly
+    /// between.
     pub(crate) fn guess(&self) -> f64 {
         let (low, high) = (self.low, self.high);
+        if low.1 == 0.0 || high.1 == 0.0 {
+            return if low.1 == 0.0 { low.0 } else { high.0 };
+        }
         let guess = low.0 + (high.0 - low.0) * (low.1 / (low.1 - high.1));
         if guess > low.0 && guess < high.0 { guess } else { 0.5 * (low.0 + high.0) }
     }
@@ -56,6 +60,18 @@ mod tests {
                 bracket.narrow(guess, f(guess));
             }
             assert!((bracket.guess() - root).abs() < 1e-9, "{}", bracket.guess());
+        }
+    }
+
+    #[test]
+    fn a_root_that_is_hit_stays() {
+        for sign in [1.0, -1.0] {
+            let f = |x: f64| sign * (x - 0.25);
+            let mut bracket = Bracket::new((0.0, f(0.0)), (1.0, f(1.0)));
+            for _ in 0..3 {
+                assert_eq!(bracket.guess(), 0.25);
+                bracket.narrow(0.25, 0.0);
+            }
         }
     }
 
