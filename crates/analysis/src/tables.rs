@@ -1,5 +1,6 @@
 //! Every table of a study.
 
+mod accuracy;
 mod agreement;
 mod answers;
 mod benchmark;
@@ -35,6 +36,7 @@ pub fn tables(inputs: &Inputs<'_>) -> Result<Vec<Table>, AnalysisError> {
     }
     tables.extend(mesh_quality::quality(inputs));
     tables.extend(mesh_quality::topology(inputs));
+    tables.extend(accuracy::accuracy(inputs));
     tables.extend(mesh_quality::positions(inputs));
     tables.extend(comparison::tables(inputs, tally));
     tables.extend(claims::table(inputs, tally));

@@ -2,7 +2,7 @@
 
 use crate::store::sha256;
 use anyhow::{Context, Result, bail};
-use design::config::{FieldSection, MeshSourceSection, ObjectSection, Positions, Topology};
+use design::config::{FieldSection, MeshSourceSection, ObjectSection, Placement, Positions, Topology};
 use design::record::Purpose;
 use design::{Arrangement, Clustering, Configuration, Study};
 use extract::{Execution, ExtractSettings, Lattice, ScalarField};
@@ -171,8 +171,15 @@ pub(crate) fn settings(study: &Study, configuration: &Configuration, purpose: Pu
         Topology::Guarded => extract::Topology::Guarded,
         Topology::Published => extract::Topology::Published,
     };
+    let placement = match section.placement {
+        Placement::MeanOfCrossings => extract::Placement::MeanOfCrossings,
+        Placement::CurvatureWeighted => extract::Placement::CurvatureWeighted,
+        Placement::Projected => extract::Placement::Projected,
+        Placement::Relaxed => extract::Placement::Relaxed,
+    };
     let isovalue = study.object(configuration).isovalue as f32;
-    ExtractSettings { isovalue, clustering, positions, topology }
+    let refine_crossings = section.refine_crossings;
+    ExtractSettings { isovalue, clustering, topology, positions, placement, refine_crossings }
 }
 
 /// Checks that every lattice of the study can be made, and that what the extractor holds of it fits into memory.

@@ -87,6 +87,8 @@ mod fields;
 #[path = "../tests/survey/mod.rs"]
 mod survey;
 
+mod accuracy;
+mod bracket;
 mod clusters;
 mod collapse;
 mod edges;
@@ -94,7 +96,9 @@ mod extraction;
 mod field;
 mod guard;
 mod lattice;
+mod level;
 mod normals;
+mod placement;
 mod sampling;
 mod settings;
 mod stored;
@@ -103,8 +107,9 @@ mod tetrahedra;
 mod triangles;
 mod vertices;
 
+pub use accuracy::{Accuracy, accuracy};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
 pub use field::{Asteroid, Gyroid, Kept, MeshDistance, MeshFieldError, ScalarField, Sphere};
 pub use lattice::{Arrangement, Lattice, LatticeError};
-pub use settings::{Clustering, Execution, ExtractSettings, Positions, Topology};
+pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use sweep::{Extractor, Source};

@@ -15,6 +15,7 @@ use super::sampling::{FieldPass, FieldSamples, signs_of};
 use super::signs::Signs;
 use super::source::Source;
 use crate::ExtractError;
+use crate::placement::CrossingPlacer;
 use crate::triangles::Triangulation;
 
 /// What all slabs of an extraction share.
@@ -25,6 +26,7 @@ pub(super) struct Job<'a, R> {
     pub(super) source: Source<'a>,
     pub(super) isovalue: f32,
     pub(super) most_vertices: u32,
+    pub(super) placer: Option<&'a CrossingPlacer<'a>>,
     /// Called with the number of layers sampled since the last call.
     pub(super) progress: &'a (dyn Fn(usize) + Sync),
 }
@@ -45,6 +47,8 @@ pub(super) struct Workspace {
 pub(super) struct Piece {
     /// Of the slab's own layers.
     pub(super) positions: Vec<Vec3>,
+    /// Where the placer wants them.
+    pub(super) targets: Vec<Vec3>,
     pub(super) surface: Triangulation,
     /// Vertices numbered in the layers below the slab.
     pub(super) below: u64,
@@ -83,6 +87,7 @@ impl Workspace {
 impl Piece {
     fn clear(&mut self) {
         self.positions.clear();
+        self.targets.clear();
         self.surface.triangles.clear();
         let triangles = std::mem::take(&mut self.surface.triangles);
         self.surface = Triangulation { triangles, ..Triangulation::default() };
@@ -114,6 +119,8 @@ pub(super) fn sweep<R: ClusterRule>(
     let lead = lead(grid, job.source);
     let signed = sampled.start.saturating_sub(lead)..layers.min(sampled.end + lead);
     let out_of_memory = |_| ExtractError::NoMemoryForMesh;
+    let everywhere = job.placer.is_some_and(CrossingPlacer::reads_neighbours);
+    let field_pass = |field| FieldPass { field, grid, isovalue, everywhere };
 
     piece.clear();
     let mut placed = Placed::default();
@@ -127,8 +134,7 @@ pub(super) fn sweep<R: ClusterRule>(
             match job.source {
                 Source::Samples(values) => signs_of(grid, values, isovalue, step, &mut workspace.signs),
                 Source::Field(field) => {
-                    let pass = FieldPass { field, grid, isovalue };
-                    workspace.samples.find_signs(pass, step, &mut workspace.signs);
+                    workspace.samples.find_signs(field_pass(field), step, &mut workspace.signs);
                 }
             }
             if own.contains(&step) {
@@ -139,7 +145,7 @@ pub(super) fn sweep<R: ClusterRule>(
         if let Source::Field(field) = job.source
             && sampled.contains(&step)
         {
-            workspace.samples.fill(FieldPass { field, grid, isovalue }, step, &workspace.signs);
+            workspace.samples.fill(field_pass(field), step, &workspace.signs);
         }
         piece.times.sampling += lap();
 
@@ -148,7 +154,8 @@ pub(super) fn sweep<R: ClusterRule>(
                 Source::Samples(values) => Samples { values, slots: layers },
                 Source::Field(_) => workspace.samples.samples(),
             };
-            let pass = PointPass { grid, rule: job.rule, samples, signs: &workspace.signs, isovalue };
+            let (signs, placer) = (&workspace.signs, job.placer);
+            let pass = PointPass { grid, rule: job.rule, samples, signs, isovalue, placer };
             if layer == own.start {
                 piece.below = placed.numbered;
             }
@@ -178,5 +185,6 @@ pub(super) fn sweep<R: ClusterRule>(
         }
         piece.times.geometry += lap();
     }
+    piece.targets = placed.targets;
     Ok(())
 }
