@@ -174,6 +174,26 @@ fn wrong_input_is_refused_before_anything_is_made() {
     refused("frames = 12", "frames = -12", &["frames", "-12", "whole number"]);
 }
 
+/// The same lattice streamed takes a few layers only, and those are held against the limit.
+#[test]
+fn memory_is_checked_for_the_extractor_that_runs() {
+    let validated = |limit: &str| {
+        let fixture = Fixture::new();
+        fixture.edit("benchmark_spacing = 0.125", "benchmark_spacing = 0.002");
+        fixture.edit("positions = \"accumulated\"", "positions = \"indexed\"");
+        fixture.edit("memory_gib = 8.0", limit);
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
+        let output = command.arg("validate").arg(fixture.config()).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert_eq!(validated("memory_gib = 1.0"), (Some(0), String::new()));
+    let (code, said) = validated("memory_gib = 0.001");
+    assert_eq!(code, Some(2), "{said}");
+    for part in ["benchmark_spacing = 0.002", "MiB", "limits.memory_gib allows 1.0 MiB"] {
+        assert!(said.contains(part), "{part:?} is not in: {said}");
+    }
+}
+
 #[test]
 fn a_mesh_with_another_digest_is_refused() {
     let fixture = Fixture::new();

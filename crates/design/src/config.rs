@@ -89,6 +89,21 @@ pub enum Topology {
     Published,
 }
 
+/// Where a vertex goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Placement {
+    /// To the mean of its cluster's crossings, as published.
+    #[default]
+    MeanOfCrossings,
+    /// To the mean weighted by how sharply the surface bends at each crossing.
+    CurvatureWeighted,
+    /// From the mean to the isosurface, along the field's gradient.
+    Projected,
+    /// Half the way to the mean of the neighbouring vertices, then to the isosurface.
+    Relaxed,
+}
+
 /// What holds for every extraction.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -100,6 +115,12 @@ pub struct ExtractionSection {
     /// With accumulated positions: into how many runs of layers the z axis is cut, each starting its sum anew.
     #[serde(deserialize_with = "whole")]
     pub accumulation_chunks: u32,
+    /// Where a vertex goes.
+    #[serde(default)]
+    pub placement: Placement,
+    /// Whether crossings are roots of the field rather than interpolated between samples.
+    #[serde(default)]
+    pub refine_crossings: bool,
 }
 
 /// One object of the study.

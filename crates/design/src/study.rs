@@ -497,6 +497,22 @@ mod tests {
     }
 
     #[test]
+    fn unknown_placements_are_told_what_there_is() {
+        let key = "placement = \"mean-of-crossings\"";
+        let error = error_with(key, "placement = \"nearest\"");
+        for part in
+            ["paper.toml", "placement = ", "nearest", "mean-of-crossings", "curvature-weighted", "relaxed"]
+        {
+            assert!(error.contains(part), "{error}");
+        }
+        let error = error_with("refine_crossings = false", "refine_crossings = 4");
+        assert!(error.contains("refine_crossings = 4") && error.contains("boolean"), "{error}");
+        let placement = |to| paper_with(key, to).unwrap().file.extraction.placement;
+        assert_eq!(placement(""), crate::config::Placement::MeanOfCrossings);
+        assert_eq!(placement("placement = \"relaxed\""), crate::config::Placement::Relaxed);
+    }
+
+    #[test]
     fn comparisons_must_make_sense() {
         let error = error_with("left = \"ss_bu\", right = \"ss_bi\"", "left = \"ss_bu\", right = \"as_bi\"");
         assert!(error.contains("comparisons[0].right = as_bi: must show the same object"), "{error}");

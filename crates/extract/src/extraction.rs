@@ -6,7 +6,7 @@ use mesh::TriangleMesh;
 
 use crate::field::ScalarField;
 use crate::lattice::Lattice;
-use crate::settings::{Execution, ExtractSettings, Positions};
+use crate::settings::{Execution, ExtractSettings, Placement, Positions};
 use crate::sweep::{Extractor, Source};
 use crate::triangles::Triangulation;
 
@@ -29,7 +29,7 @@ pub struct StageTimes {
     pub allocation: Duration,
     /// Evaluating the field at every stored point, with starting threads.
     pub sampling: Duration,
-    /// Finding, clustering and placing vertices.
+    /// Finding, clustering and placing vertices. Moving them to where the settings want them belongs to the geometry.
     pub vertex: Duration,
     /// Making triangles, and the edge collapse if asked for.
     pub geometry: Duration,
@@ -114,6 +114,14 @@ pub enum ExtractError {
     /// Given samples and [`Positions::Accumulated`], which says where a field is sampled.
     #[error("given samples have no accumulated positions")]
     SamplesAccumulated,
+    /// Given samples, and settings that call the field.
+    #[error("given samples say nothing between them: {placement:?}{} needs the field", if *refine_crossings { " with refined crossings" } else { "" })]
+    PlacementNeedsField {
+        /// What was asked for.
+        placement: Placement,
+        /// What was asked for.
+        refine_crossings: bool,
+    },
     /// The sampling threads could not be started.
     #[error("cannot start {threads} sampling threads: {reason}")]
     Threads {

@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
+use crate::bracket::Bracket;
 use crate::field::ScalarField;
 
 /// Half the width of a central difference, as a fraction of the spacing: wide against the rounding of a position,
@@ -54,7 +55,7 @@ impl Level<'_> {
     /// at most `reach` away. `None` where there is none, no gradient or no number.
     ///
     /// The first look is a little beyond where Newton's step ends; from there the way doubles until the side changes.
-    /// Regula falsi with the Illinois rule (Dowell & Jarratt 1971) then needs nothing of the field but its side.
+    /// Regula falsi does the rest.
     pub(crate) fn foot(&self, p: Vec3, reach: f32) -> Option<Foot> {
         let here = self.difference(p);
         if here == 0.0 {
@@ -78,7 +79,7 @@ impl Level<'_> {
         let reach = f64::from(reach);
         let mut near = (0.0, f64::from(here));
         let mut way = (f64::from(here.abs()) / steepness * 1.01 + tolerance).min(reach);
-        let mut far = loop {
+        let far = loop {
             let there = value(way);
             if there.is_nan() {
                 return None;
@@ -92,30 +93,40 @@ impl Level<'_> {
             }
             way = (2.0 * way).min(reach);
         };
+        let mut bracket = Bracket::new(near, far);
         let mut last = f64::INFINITY;
         for _ in 0..MOST_STEPS {
-            way = near.0 + (far.0 - near.0) * (near.1 / (near.1 - far.1));
-            // Infinite values, or an end that the rule has made too light.
-            if !(way > near.0 && way < far.0) {
-                way = 0.5 * (near.0 + far.0);
-            }
-            if (way - last).abs() <= tolerance || far.0 - near.0 <= tolerance {
+            way = bracket.guess();
+            if (way - last).abs() <= tolerance || bracket.width() <= tolerance {
                 break;
             }
             let there = value(way);
             if there.is_nan() {
                 return None;
             }
-            if (there > 0.0) == inside {
-                near = (way, there);
-                far.1 *= 0.5;
-            } else {
-                far = (way, there);
-                near.1 *= 0.5;
-            }
+            bracket.narrow(way, there);
             last = way;
         }
         Some(Foot { position: at(way), distance: way })
+    }
+
+    /// One Newton step along the gradient, towards the isosurface. `None` where it would be longer than `longest`, or
+    /// end where the field is no nearer to the isovalue.
+    pub(crate) fn newton(&self, p: Vec3, longest: f32) -> Option<Vec3> {
+        let here = self.difference(p);
+        if here == 0.0 {
+            return Some(p);
+        }
+        let gradient = self.gradient(p, here);
+        let step = gradient * (-f64::from(here) / gradient.length_squared());
+        let there = (p.as_dvec3() + step).as_vec3();
+        // Not a number fails either.
+        let near = step.length() <= f64::from(longest);
+        let nearer = || {
+            let value = self.field.sample_after(there, Some((p, here + self.isovalue)));
+            (value - self.isovalue).abs() <= here.abs()
+        };
+        (near && nearer()).then_some(there)
     }
 
     /// The outward direction at `p`: against the gradient, since inside is above. `None` where there is no gradient.

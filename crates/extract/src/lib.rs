@@ -50,6 +50,21 @@
 //! given ([`Source::Samples`]). An [`Extractor`] keeps its buffers from one volume to the next. With
 //! [`Positions::Accumulated`], for comparison with the published evaluation, all samples and edges are stored.
 //!
+//! # Odd input
+//!
+//! | input | what comes of it |
+//! |---|---|
+//! | isovalue infinite or `NaN` | [`ExtractError::Isovalue`] |
+//! | isovalue that no sample passes, surface between the samples | a mesh without vertices |
+//! | surface through the box | a mesh that is open there, and only there |
+//! | spacing zero, negative, infinite, `NaN` | [`LatticeError::Spacing`] |
+//! | spacing too small, too large for `f32` | [`LatticeError::TooManyCells`], [`LatticeError::TooManySamples`], [`LatticeError::OutOfRange`] |
+//! | spacing beyond the box | one cell, which reaches past it |
+//! | box empty, inverted, infinite, `NaN` | [`LatticeError::Bounds`] |
+//! | samples of another number than the lattice has | [`ExtractError::SampleCount`] |
+//! | memory that is not there | [`ExtractError::OutOfMemory`], [`ExtractError::NoMemoryForMesh`] |
+//! | more than 2^32 - 1 vertices | [`ExtractError::TooManyVertices`] |
+//!
 //! A sample that is `NaN` is outside and leaves the crossings round it to the inside end, in the middle of their
 //! edges; so are two infinities. One infinity puts the crossing on the other end.
 //!
@@ -73,6 +88,7 @@ mod fields;
 mod survey;
 
 mod accuracy;
+mod bracket;
 mod clusters;
 mod collapse;
 mod edges;
@@ -82,6 +98,7 @@ mod guard;
 mod lattice;
 mod level;
 mod normals;
+mod placement;
 mod sampling;
 mod settings;
 mod stored;
@@ -94,5 +111,5 @@ pub use accuracy::{Accuracy, accuracy};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
 pub use field::{Asteroid, Gyroid, Kept, MeshDistance, MeshFieldError, ScalarField, Sphere};
 pub use lattice::{Arrangement, Lattice, LatticeError};
-pub use settings::{Clustering, Execution, ExtractSettings, Positions, Topology};
+pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use sweep::{Extractor, Source};

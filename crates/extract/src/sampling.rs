@@ -48,3 +48,18 @@ pub(crate) fn on_threads<R: Send>(
     let pool = pool.map_err(|error| ExtractError::Threads { threads, reason: error.to_string() })?;
     Ok(pool.install(work))
 }
+
+/// Calls `work` with each item and its number, on as many threads as `execution` asks for.
+pub(crate) fn for_each_on_threads<T: Send>(
+    execution: &Execution,
+    items: &mut [T],
+    work: impl Fn(usize, &mut T) + Sync + Send,
+) -> Result<(), ExtractError> {
+    if execution.threads == 1 {
+        items.iter_mut().enumerate().for_each(|(i, item)| work(i, item));
+        return Ok(());
+    }
+    on_threads(execution, items.len().max(1), || {
+        items.par_iter_mut().enumerate().with_min_len(256).for_each(|(i, item)| work(i, item));
+    })
+}

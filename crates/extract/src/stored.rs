@@ -6,12 +6,13 @@ use std::time::{Duration, Instant};
 
 use mesh::TriangleMesh;
 
-use crate::collapse::collapse;
 use crate::edges::EdgeTable;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
 use crate::field::ScalarField;
 use crate::lattice::{Coordinates, Lattice, Layout};
+use crate::level::Level;
 use crate::normals::vertex_normals;
+use crate::placement::{self, CrossingPlacer};
 use crate::sampling::sample;
 use crate::settings::{Execution, ExtractSettings};
 use crate::triangles::triangulate;
@@ -38,12 +39,14 @@ pub(crate) fn extract(
     sample(field, &layout, &coordinates, execution, &mut samples)?;
     let sampling = clock.lap();
 
-    let (mut positions, crossings) =
-        place_vertices(lattice, &layout, &samples, settings, &mut sides, &mut edges)?;
+    let level = Level { field, isovalue: settings.isovalue, spacing: lattice.spacing() };
+    let placer = CrossingPlacer::new(lattice, settings, Some(level));
+    let (mut positions, targets, crossings) =
+        place_vertices(lattice, &layout, &samples, settings, placer.as_ref(), &mut sides, &mut edges)?;
     let vertex = clock.lap();
 
     let mut surface = triangulate(lattice, &layout, &sides, &edges);
-    collapse(settings, lattice.spacing(), &mut positions, &mut surface);
+    placement::finish(Some(level), lattice, settings, execution, &targets, &mut positions, &mut surface)?;
     let geometry = clock.lap();
 
     let normals = vertex_normals(&positions, &surface.triangles);

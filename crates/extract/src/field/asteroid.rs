@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use super::asteroid_table::AsteroidTable;
-use super::{Kept, ScalarField};
 use super::sine::sin;
+use super::{Kept, ScalarField};
 
 /// A lumpy ball: `f(p) = radius - |p/k| + amplitude * fbm(frequency * ((p/|p|)/k))`, `/k` by component.
 ///
@@ -58,7 +58,8 @@ impl ScalarField for Asteroid {
 
     /// With the hashes in tables, and bounds.
     fn prepared<'a>(&self, kept: &'a mut Kept) -> Option<&'a dyn ScalarField> {
-        let table = kept.get_or_make(|table: &AsteroidTable| table.is_of(self), || AsteroidTable::new(self))?;
+        let table =
+            kept.get_or_make(|table: &AsteroidTable| table.is_of(self), || AsteroidTable::new(self))?;
         Some(table)
     }
 }

@@ -356,7 +356,8 @@ impl Octave {
         let [_, up, back] = self.steps();
         let at = self.place(std::array::from_fn(|axis| cell[axis] - self.low[axis]));
         let hashes = &self.hashes[at..at + back + up + 2];
-        let lanes = |at: usize| Vec4::new(hashes[at], hashes[at + up], hashes[at + back], hashes[at + back + up]);
+        let lanes =
+            |at: usize| Vec4::new(hashes[at], hashes[at + up], hashes[at + back], hashes[at + back + up]);
         let (left, right) = (lanes(0), lanes(1));
         let blend = |a: Vec4, b: Vec4, weight: Vec4| a + (b - a) * weight;
         // Near and far, each at both ends along x.

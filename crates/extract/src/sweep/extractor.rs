@@ -11,10 +11,11 @@ use super::grid::Grid;
 use super::rule::{ClusterRule, Guarded, Published, Unclustered};
 use super::slab::{Job, Piece, SlabTimes, Workspace, sweep};
 use super::source::Source;
-use crate::collapse::collapse;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
 use crate::field::Kept;
 use crate::lattice::Lattice;
+use crate::level::Level;
+use crate::placement::{self, CrossingPlacer};
 use crate::settings::{Clustering, Execution, ExtractSettings, Positions, Topology};
 use crate::stored;
 
@@ -56,6 +57,18 @@ pub struct Extractor {
     pieces: Vec<Piece>,
     kept: Kept,
     progress: Option<Progress>,
+    pub(super) most_vertices: MostVertices,
+}
+
+/// How many vertices a mesh may have.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MostVertices(pub(super) u32);
+
+impl Default for MostVertices {
+    /// What a 32-bit index can name.
+    fn default() -> Self {
+        Self(u32::MAX)
+    }
 }
 
 /// What depends on the lattice alone.
@@ -105,7 +118,8 @@ impl Extractor {
     ///
     /// # Errors
     /// As [`extract`](crate::extract); [`ExtractError::SampleCount`] when given samples are not as many as the
-    /// lattice has, [`ExtractError::SamplesAccumulated`] when they come with accumulated positions.
+    /// lattice has, [`ExtractError::SamplesAccumulated`] when they come with accumulated positions,
+    /// [`ExtractError::PlacementNeedsField`] when they come with a placement that calls the field.
     pub fn extract_into(
         &mut self,
         source: Source,
@@ -115,6 +129,7 @@ impl Extractor {
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
         check(settings)?;
+        placement::check(settings, matches!(source, Source::Field(_)))?;
         if let Source::Samples(samples) = source {
             let (given, wanted) = (samples.len() as u64, lattice.stored_samples());
             if given != wanted {
@@ -194,12 +209,21 @@ impl Extractor {
                 progress(done.fetch_add(more, Ordering::Relaxed) + more, layers);
             }
         };
+        let level = match source {
+            Source::Field(field) => {
+                Some(Level { field, isovalue: settings.isovalue, spacing: grid.lattice.spacing() })
+            }
+            Source::Samples(_) => None,
+        };
+        let placer = CrossingPlacer::new(&grid.lattice, settings, level);
         let job = Job {
             grid,
             tables: &plan.tables,
             rule,
             source,
             isovalue: settings.isovalue,
+            most_vertices: self.most_vertices.0,
+            placer: placer.as_ref(),
             progress: &progress,
         };
         sweep_all(&job, &mut self.workspaces, &mut self.pieces)?;
@@ -207,14 +231,16 @@ impl Extractor {
         times.allocation = allocation;
 
         let joining = Instant::now();
-        let seams = join(&mut self.pieces)?;
+        let seams = join(&mut self.pieces, self.most_vertices.0)?;
         let (first, rest) = self.pieces.split_first_mut().expect("there is a slab");
         let crossing_ends: u64 =
             first.crossing_ends + rest.iter().map(|piece| piece.crossing_ends).sum::<u64>();
         let mesh = &mut extraction.mesh;
         mesh.positions = std::mem::take(&mut first.positions);
         let surface = &mut first.surface;
-        let collapsed = collapse(settings, grid.lattice.spacing(), &mut mesh.positions, surface);
+        let (lattice, targets) = (&grid.lattice, std::mem::take(&mut first.targets));
+        let collapsed =
+            placement::finish(level, lattice, settings, execution, &targets, &mut mesh.positions, surface)?;
         mesh.triangles = std::mem::take(&mut surface.triangles);
         times.geometry += joining.elapsed();
 
@@ -315,15 +341,15 @@ struct Seam {
 }
 
 /// Appends all pieces to the first one, with vertex numbers of the whole.
-fn join(pieces: &mut [Piece]) -> Result<Vec<Seam>, ExtractError> {
+fn join(pieces: &mut [Piece], most_vertices: u32) -> Result<Vec<Seam>, ExtractError> {
     let (first, rest) = pieces.split_first_mut().expect("there is a slab");
     let mut seams = Vec::new();
     if rest.is_empty() {
         return Ok(seams);
     }
     let total: usize = first.positions.len() + rest.iter().map(|piece| piece.positions.len()).sum::<usize>();
-    if total > u32::MAX as usize {
-        return Err(ExtractError::TooManyVertices { limit: u32::MAX });
+    if total as u64 > u64::from(most_vertices) {
+        return Err(ExtractError::TooManyVertices { limit: most_vertices });
     }
     let triangles: usize = rest.iter().map(|piece| piece.surface.triangles.len()).sum();
     first.positions.try_reserve(total - first.positions.len()).map_err(|_| ExtractError::NoMemoryForMesh)?;
@@ -340,6 +366,7 @@ fn join(pieces: &mut [Piece]) -> Result<Vec<Seam>, ExtractError> {
         let global = |triangle: &[u32; 3]| triangle.map(|vertex| vertex.wrapping_add(shift));
         first.surface.triangles.extend(piece.surface.triangles.iter().map(global));
         first.positions.extend_from_slice(&piece.positions);
+        first.targets.append(&mut piece.targets);
         first.surface.tetrahedra_evaluated += piece.surface.tetrahedra_evaluated;
         first.surface.discarded += piece.surface.discarded;
         first.surface.discarded_as_published += piece.surface.discarded_as_published;

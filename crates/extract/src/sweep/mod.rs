@@ -10,6 +10,8 @@ mod crossings;
 mod extractor;
 mod faces;
 mod grid;
+#[cfg(test)]
+mod limits;
 mod points;
 mod records;
 mod rule;

@@ -10,7 +10,8 @@ use super::grid::{Grid, LINES};
 use super::records::{Numbering, Record, Records};
 use super::rule::ClusterRule;
 use super::signs::Signs;
-use crate::lattice::{DIRECTIONS, DirectionSet};
+use crate::lattice::{DIRECTIONS, DirectionSet, members};
+use crate::placement::{CrossingPlacer, Surroundings};
 
 /// Samples, by row.
 #[derive(Clone, Copy)]
@@ -27,6 +28,8 @@ pub(super) struct PointPass<'a, R> {
     pub(super) samples: Samples<'a>,
     pub(super) signs: &'a Signs,
     pub(super) isovalue: f32,
+    /// Places the vertices of the slab's own layers once more.
+    pub(super) placer: Option<&'a CrossingPlacer<'a>>,
 }
 
 /// What the pass counts and writes.
@@ -36,6 +39,8 @@ pub(super) struct Placed {
     pub(super) numbered: u64,
     /// Crossings seen, each once from either end.
     pub(super) crossing_ends: u64,
+    /// Where the placer wants the vertices.
+    pub(super) targets: Vec<Vec3>,
 }
 
 /// A point with a crossing.
@@ -170,6 +175,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
             placed.numbered += 1;
             if let Some(positions) = positions {
                 positions.push(place(near));
+                self.place_again(point, &[near], row_start, neighbours, &mut placed.targets);
             }
             return Record::new(first, near, crossing, inside, Numbering::One);
         }
@@ -178,6 +184,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
         placed.numbered += count as u64;
         if let Some(positions) = &mut positions {
             positions.extend(clusters.sets().iter().map(|&cluster| place(cluster)));
+            self.place_again(point, clusters.sets(), row_start, neighbours, &mut placed.targets);
         }
         if count == 1 {
             Record::new(first, near, crossing, inside, Numbering::One)
@@ -187,6 +194,30 @@ impl<R: ClusterRule> PointPass<'_, R> {
             let place = records.list(layer, first, &clusters);
             Record::new(place, near, crossing, inside, Numbering::Listed)
         }
+    }
+
+    /// Where the placer wants the clusters' vertices, if there is one.
+    #[inline(always)]
+    fn place_again(
+        &self,
+        point: &Point,
+        clusters: &[DirectionSet],
+        row_start: usize,
+        neighbours: &[usize; 16],
+        targets: &mut Vec<Vec3>,
+    ) {
+        let Some(placer) = self.placer else { return };
+        let values = self.samples.values;
+        let difference = |place: usize| values[place] - self.isovalue;
+        let mut around = Surroundings {
+            position: point.position,
+            difference: difference(row_start + point.column),
+            neighbours: [f32::NAN; DIRECTIONS],
+        };
+        for d in members(point.present) {
+            around.neighbours[d] = difference(neighbours[d].wrapping_add(point.column));
+        }
+        targets.extend(clusters.iter().map(|&cluster| placer.place(&around, cluster)));
     }
 
     /// The unweighted mean of the cluster's crossings, clamped to the box.

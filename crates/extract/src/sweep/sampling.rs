@@ -24,6 +24,8 @@ pub(super) struct FieldPass<'a> {
     pub(super) field: &'a dyn ScalarField,
     pub(super) grid: &'a Grid,
     pub(super) isovalue: f32,
+    /// Whether samples are wanted at points without a crossing as well: then all are taken.
+    pub(super) everywhere: bool,
 }
 
 /// A ring of layers of samples, and a bit for each that was taken.
@@ -68,15 +70,23 @@ impl FieldSamples {
 
     /// Finds the signs of a layer, with as few samples as may be.
     pub(super) fn find_signs(&mut self, pass: FieldPass, layer: usize, signs: &mut Signs) {
-        let FieldPass { field, grid, isovalue } = pass;
+        let FieldPass { field, grid, isovalue, everywhere } = pass;
         let kind = grid.layout.kind(layer);
         let [points, rows] = grid.layout.used(kind);
         let (x, y, z) = (grid.coordinates.x(kind), grid.coordinates.y(kind), grid.coordinates.z()[layer]);
-        self.tiles.turn_to(layer, grid, field, isovalue);
+        if !everywhere {
+            self.tiles.turn_to(layer, grid, field, isovalue);
+        }
         for (row, &y) in y[..rows].iter().enumerate() {
             let place = layer % self.slots * grid.size[1] + row;
             let values = &mut self.values[place * grid.size[0]..][..points];
             let taken = &mut self.taken[place * grid.words..][..grid.words];
+            if everywhere {
+                field.sample_row(&x[..points], y, z, values);
+                taken.fill(!0);
+                signs.fill(row, layer, values, isovalue);
+                continue;
+            }
             let (spans, known) = self.tiles.row(row);
             match spans {
                 [Span { tile: Tile::Unknown, .. }] => {
@@ -90,7 +100,8 @@ impl FieldSamples {
                 }
                 _ => {
                     taken.fill(0);
-                    let mut line = Line { pass, x: &x[..points], y, z, values, taken, bits: signs.open(row, layer) };
+                    let mut line =
+                        Line { pass, x: &x[..points], y, z, values, taken, bits: signs.open(row, layer) };
                     line.sample(spans, known);
                     signs.close(row, layer, points);
                 }
@@ -162,7 +173,12 @@ impl Line<'_> {
                 Tile::Outside => {}
                 Tile::Inside => set_bits(self.bits, first, end),
                 Tile::Unknown => {
-                    self.pass.field.sample_row(&self.x[first..end], self.y, self.z, &mut self.values[first..end]);
+                    self.pass.field.sample_row(
+                        &self.x[first..end],
+                        self.y,
+                        self.z,
+                        &mut self.values[first..end],
+                    );
                     set_bits(self.taken, first, end);
                     for i in first..end {
                         self.set_side(i, self.values[i] > self.pass.isovalue);

@@ -14,8 +14,9 @@ use super::rule::ClusterRule;
 use super::sampling::{FieldPass, FieldSamples, signs_of};
 use super::signs::Signs;
 use super::source::Source;
-use crate::triangles::Triangulation;
 use crate::ExtractError;
+use crate::placement::CrossingPlacer;
+use crate::triangles::Triangulation;
 
 /// What all slabs of an extraction share.
 pub(super) struct Job<'a, R> {
@@ -24,6 +25,8 @@ pub(super) struct Job<'a, R> {
     pub(super) rule: &'a R,
     pub(super) source: Source<'a>,
     pub(super) isovalue: f32,
+    pub(super) most_vertices: u32,
+    pub(super) placer: Option<&'a CrossingPlacer<'a>>,
     /// Called with the number of layers sampled since the last call.
     pub(super) progress: &'a (dyn Fn(usize) + Sync),
 }
@@ -44,6 +47,8 @@ pub(super) struct Workspace {
 pub(super) struct Piece {
     /// Of the slab's own layers.
     pub(super) positions: Vec<Vec3>,
+    /// Where the placer wants them.
+    pub(super) targets: Vec<Vec3>,
     pub(super) surface: Triangulation,
     /// Vertices numbered in the layers below the slab.
     pub(super) below: u64,
@@ -82,6 +87,7 @@ impl Workspace {
 impl Piece {
     fn clear(&mut self) {
         self.positions.clear();
+        self.targets.clear();
         self.surface.triangles.clear();
         let triangles = std::mem::take(&mut self.surface.triangles);
         self.surface = Triangulation { triangles, ..Triangulation::default() };
@@ -113,6 +119,8 @@ pub(super) fn sweep<R: ClusterRule>(
     let lead = lead(grid, job.source);
     let signed = sampled.start.saturating_sub(lead)..layers.min(sampled.end + lead);
     let out_of_memory = |_| ExtractError::NoMemoryForMesh;
+    let everywhere = job.placer.is_some_and(CrossingPlacer::reads_neighbours);
+    let field_pass = |field| FieldPass { field, grid, isovalue, everywhere };
 
     piece.clear();
     let mut placed = Placed::default();
@@ -126,8 +134,7 @@ pub(super) fn sweep<R: ClusterRule>(
             match job.source {
                 Source::Samples(values) => signs_of(grid, values, isovalue, step, &mut workspace.signs),
                 Source::Field(field) => {
-                    let pass = FieldPass { field, grid, isovalue };
-                    workspace.samples.find_signs(pass, step, &mut workspace.signs);
+                    workspace.samples.find_signs(field_pass(field), step, &mut workspace.signs);
                 }
             }
             if own.contains(&step) {
@@ -138,7 +145,7 @@ pub(super) fn sweep<R: ClusterRule>(
         if let Source::Field(field) = job.source
             && sampled.contains(&step)
         {
-            workspace.samples.fill(FieldPass { field, grid, isovalue }, step, &workspace.signs);
+            workspace.samples.fill(field_pass(field), step, &workspace.signs);
         }
         piece.times.sampling += lap();
 
@@ -147,7 +154,8 @@ pub(super) fn sweep<R: ClusterRule>(
                 Source::Samples(values) => Samples { values, slots: layers },
                 Source::Field(_) => workspace.samples.samples(),
             };
-            let pass = PointPass { grid, rule: job.rule, samples, signs: &workspace.signs, isovalue };
+            let (signs, placer) = (&workspace.signs, job.placer);
+            let pass = PointPass { grid, rule: job.rule, samples, signs, isovalue, placer };
             if layer == own.start {
                 piece.below = placed.numbered;
             }
@@ -159,8 +167,8 @@ pub(super) fn sweep<R: ClusterRule>(
             } else {
                 pass.layer(layer, &mut workspace.records, &mut placed, None).map_err(out_of_memory)?;
             }
-            if placed.numbered > u64::from(u32::MAX) {
-                return Err(ExtractError::TooManyVertices { limit: u32::MAX });
+            if placed.numbered > u64::from(job.most_vertices) {
+                return Err(ExtractError::TooManyVertices { limit: job.most_vertices });
             }
         }
         piece.times.vertex += lap();
@@ -177,6 +185,6 @@ pub(super) fn sweep<R: ClusterRule>(
         }
         piece.times.geometry += lap();
     }
+    piece.targets = placed.targets;
     Ok(())
 }
-
