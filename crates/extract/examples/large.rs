@@ -22,7 +22,7 @@ fn bar(done: usize, all: usize) {
     if std::io::stderr().is_terminal() {
         let end = if done == all { "\n" } else { "" };
         eprint!("\r[{:<50}] {percent:3} %, {done} of {all} layers{end}", "#".repeat(percent / 2));
-    } else if done % (all / 8).max(1) == 0 {
+    } else if done.is_multiple_of((all / 8).max(1)) {
         eprintln!("{percent} %, {done} of {all} layers");
     }
 }

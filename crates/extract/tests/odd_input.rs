@@ -1,8 +1,8 @@
 //! What the crate's front page says of odd input: an error, or a mesh with a meaning.
 
 use extract::{
-    Arrangement, Asteroid, Execution, ExtractSettings, Extraction, Gyroid, Lattice, ScalarField, Sphere,
-    extract,
+    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Gyroid, Lattice, Positions,
+    ScalarField, Sphere, Topology, extract,
 };
 use glam::Vec3;
 use mesh::Bounds;
@@ -10,6 +10,13 @@ use mesh::topology::topology;
 
 const BOTH: [Arrangement; 2] = [Arrangement::BodyCentred, Arrangement::SimpleCubic];
 const CUBE: Bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+
+const UNCLUSTERED: ExtractSettings = ExtractSettings {
+    isovalue: 0.0,
+    clustering: Clustering::None,
+    topology: Topology::Guarded,
+    positions: Positions::Indexed,
+};
 
 fn surface(field: &dyn ScalarField, lattice: &Lattice, isovalue: f32) -> Extraction {
     let settings = ExtractSettings { isovalue, ..ExtractSettings::default() };
@@ -50,8 +57,11 @@ fn a_surface_through_the_boundary_is_open_there_and_only_there() {
         let lattice = Lattice::try_new(arrangement, CUBE, 0.2).unwrap();
         let gyroid = surface(&Gyroid { frequency: 6.0 }, &lattice, 0.0).mesh;
         let planes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
-            let plane = surface(&With(move |p: Vec3| p.dot(axis) + 0.03), &lattice, 0.0).mesh;
-            let area: f64 = (0..plane.triangles.len()).map(|t| f64::from(area(plane.corners(t)))).sum();
+            let field = With(move |p: Vec3| p.dot(axis) + 0.03);
+            let plane = surface(&field, &lattice, 0.0).mesh;
+            // Merged vertices may lie inside the box.
+            let all = extract(&field, &lattice, &UNCLUSTERED, &Execution { threads: 1 }).unwrap().mesh;
+            let area: f64 = (0..all.triangles.len()).map(|t| f64::from(area(all.corners(t)))).sum();
             assert!((area - 4.0).abs() < 1e-3, "{area} of a side of 4");
             plane
         });
@@ -83,9 +93,7 @@ fn one_cell_is_a_volume() {
             assert_eq!(lattice.cells(), [1; 3]);
             let mesh = surface(&ball, &lattice, 0.0).mesh;
             if spacing == 2.0 {
-                let unclustered =
-                    ExtractSettings { clustering: extract::Clustering::None, ..ExtractSettings::default() };
-                let all = extract(&ball, &lattice, &unclustered, &Execution { threads: 1 }).unwrap().mesh;
+                let all = extract(&ball, &lattice, &UNCLUSTERED, &Execution { threads: 1 }).unwrap().mesh;
                 assert_eq!(all.triangles.len(), triangles, "{arrangement:?}");
             }
             assert!(mesh.positions.iter().all(|p| p.is_finite()));
@@ -116,5 +124,31 @@ fn samples_that_are_no_numbers_are_outside() {
             assert!(mesh.positions.iter().all(|p| p.is_finite()));
         }
         assert_eq!(surface(&block(f32::INFINITY), &lattice, 0.0).mesh, whole, "infinite is inside");
+    }
+}
+
+/// A ball far out, where sample points are off by a seventh of the spacing and more: a field that offers a bound has the
+/// mesh of one that does not.
+#[test]
+fn bounds_hold_where_positions_are_coarse() {
+    #[derive(Clone, Copy)]
+    struct Far(bool);
+    const MIDDLE: Vec3 = Vec3::new(1e5, -1e5, 2e5);
+    impl ScalarField for Far {
+        fn sample(&self, p: Vec3) -> f32 {
+            0.8 - (p - MIDDLE).length()
+        }
+        fn slope(&self, _: Bounds) -> Option<f32> {
+            self.0.then_some(1.0)
+        }
+    }
+    let bounds = Bounds { min: MIDDLE - 1.0, max: MIDDLE + 1.0 };
+    for arrangement in BOTH {
+        for spacing in [0.1, 0.05, 0.013] {
+            let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
+            let (with, without) = (surface(&Far(true), &lattice, 0.0), surface(&Far(false), &lattice, 0.0));
+            assert!(with.mesh == without.mesh && with.counts == without.counts, "{arrangement:?} {spacing}");
+            assert!(with.counts.triangles > 100);
+        }
     }
 }
