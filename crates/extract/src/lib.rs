@@ -25,6 +25,8 @@
 //! - The same field, lattice and settings give the same mesh to the byte, on any number of threads. The fields here
 //!   use no platform mathematics, so the mesh is also the same on every machine.
 //! - Vertices lie in the lattice's box.
+//! - The triangles do not depend on where vertices are placed ([`Placement`], [`ExtractSettings::refine_crossings`]),
+//!   unless edges are collapsed; and beside the mean of interpolated crossings none is turned over.
 //! - With [`Topology::Guarded`], the default, and any [`Clustering`]: whatever the samples, the mesh is an oriented
 //!   2-manifold that uses all its vertices, closed where the surface stays clear of the box. No two triangles have
 //!   the same vertices. Components, genus and boundary loops are those of the unclustered surface. Why: DESIGN.md.
