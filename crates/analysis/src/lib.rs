@@ -41,7 +41,7 @@ pub use answers::{Answers, Choice, read_answers};
 pub use answers_error::AnswersError;
 pub use ballots::{BallotGroup, ballot_groups, ballots};
 pub use comparison::unexplained_differences;
-pub use figures::{Figure, figures};
+pub use figures::{Figure, figures, figures_of_groups};
 pub use fraction::Fraction;
 pub use inputs::{AnalysisError, Inputs};
 pub use report::{Report, report, report_of_groups};
