@@ -37,7 +37,7 @@ mod fixture;
 
 pub use ballots::{BallotGroup, as_declared, ballot_groups, ballots};
 pub use comparison::unexplained_differences;
-pub use figures::{Figure, figures};
+pub use figures::{Figure, figures, figures_of_groups};
 pub use fraction::Fraction;
 pub use inputs::{AnalysisError, Inputs};
 pub use report::{Report, report, report_of_groups};

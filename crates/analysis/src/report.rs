@@ -90,7 +90,12 @@ impl Evidence<'_> {
             None => {
                 let kept: BTreeSet<usize> = ballots.iter().map(|b| b.participant).collect();
                 let some = |group: &BallotGroup| BallotGroup {
-                    ballots: group.ballots.iter().filter(|b| kept.contains(&b.participant)).copied().collect(),
+                    ballots: group
+                        .ballots
+                        .iter()
+                        .filter(|b| kept.contains(&b.participant))
+                        .copied()
+                        .collect(),
                     ..group.clone()
                 };
                 hypotheses::of_groups(&self.groups.iter().map(some).collect::<Vec<_>>())
@@ -122,17 +127,22 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Resu
     let hypotheses = hypotheses::of_study(study, &ballots);
     let evidence = Evidence { study: Some(study), ballots: &ballots, groups: &groups, hypotheses };
     let mut press = Press::new(tables, figures);
-    let mut paper = press.figures(&["preference_overall", "answers"]);
+    let mut paper = Vec::new();
     for (name, at_once) in PAPER {
         paper.extend(press.table(name).map(|t| if at_once { Block::Table(t) } else { Block::Folded(t) }));
     }
+    paper.extend(press.figures(&["preference_overall", "answers"]));
     press.section("tables", "The tables of the study", paper);
     if let Some(tally) = Tally::of_inputs(inputs)? {
         press.section("factors", "What the sums hide", factors::findings(study, &tally, &evidence));
         press.add_figures(&["factor_share", "preference_objects"]);
         press.preferences(&evidence);
         let predicted = Prediction::of(inputs, &ballots);
-        press.section("prediction", "What predicts preference", prediction::findings(study, predicted.as_ref()));
+        press.section(
+            "prediction",
+            "What predicts preference",
+            prediction::findings(study, predicted.as_ref()),
+        );
         press.add_figures(&["prediction"]);
         press.add_tables(&["prediction", "prediction_objects", "prediction_correlations"]);
     }
@@ -245,7 +255,15 @@ impl Press {
         self.section("unanswerable", "What cannot be answered here", sides::findings(evidence));
         self.section("bearing", "How much the answers can bear", bearing::findings(evidence));
         self.add_figures(&["respondents"]);
-        self.add_tables(&["tests", "omnibus", "worths", "models", "agreement", "respondents", "answer_counts"]);
+        self.add_tables(&[
+            "tests",
+            "omnibus",
+            "worths",
+            "models",
+            "agreement",
+            "respondents",
+            "answer_counts",
+        ]);
     }
 
     fn finish(mut self, title: String, lead: Vec<String>) -> Report {
@@ -256,4 +274,3 @@ impl Press {
         Report { title, lead, sections: self.sections }
     }
 }
-

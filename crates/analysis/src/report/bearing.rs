@@ -75,16 +75,19 @@ fn consistency(evidence: &Evidence<'_>) -> Option<Finding> {
         true => (Standing::Holds, "People contradict themselves less than chance would have them"),
         false => (Standing::Open, "That people contradict themselves less than chance would is not shown"),
     };
+    let weak = match sum.weak_cycles {
+        1 => "1 more is".into(),
+        weak => format!("{weak} more are"),
+    };
     let cycles = if sum.strict_cycles == 1 { "1 goes".into() } else { format!("{} go", sum.strict_cycles) };
     let text = format!(
         "{verdict}: of {} of three items, {} were decided throughout, and {cycles} in a circle; answers by chance would \
-         give {} (a quarter; one-sided binomial test, {}). {} more are two wins closed by no preference, which need not be \
-         a contradiction.",
+         give {} (a quarter; one-sided binomial test, {}). {weak} two wins closed by no preference, which need not be a \
+         contradiction.",
         counted(sum.all as usize, "triad"),
         sum.decided,
         number(sum.decided as f64 / 4.0, 1),
-        p(chance),
-        sum.weak_cycles
+        p(chance)
     );
     Some(Finding::new(standing, text))
 }
@@ -197,7 +200,12 @@ fn without(evidence: &Evidence<'_>, left_out: &[usize]) -> Finding {
         .filter(|(with, without)| differs(with) != differs(without))
         .map(|(with, without)| {
             let becomes = if differs(without) { "holds then" } else { "holds no longer" };
-            format!("{} {becomes} (corrected {}, before {})", named(with), p(without.adjusted), p(with.adjusted))
+            format!(
+                "{} {becomes} (corrected {}, before {})",
+                named(with),
+                p(without.adjusted),
+                p(with.adjusted)
+            )
         })
         .collect();
     let whom = if left_out.len() == 1 { "this participant" } else { "these participants" };

@@ -109,14 +109,14 @@ fn difference(study: &Study, factors: &[GroupFactor], evidence: &Evidence<'_>) -
     let [one, other] = [first, second].map(|a| names::level(Level::Arrangement(a)));
     Some(format!(
         "The mean sums of {one} and {other} are {} and {}. Of the difference of {}, {} comes from ties in the clustering \
-         groups and {} from the questions that compare the two directly: {} for {}.",
+         groups and {} from the questions that compare the two directly, where {} has {}.",
         number(a, 3),
         number(b, 3),
         number(a - b, 3),
         number(by_ties, 3),
         number(direct, 3),
-        against(counts),
-        names::level(levels[0])
+        names::level(levels[0]),
+        against(counts)
     ))
 }
 

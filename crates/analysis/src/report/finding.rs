@@ -2,6 +2,7 @@
 
 use super::words::{against, capital, counted, interval, number, p};
 use crate::hypotheses::{ALPHA, Conclusion, Hypothesis};
+use crate::interval::Interval;
 use crate::statistics::MARGIN;
 use crate::statistics::contrast::ContrastTest;
 
@@ -132,9 +133,11 @@ impl Finding {
 pub(super) fn score(test: &ContrastTest, towards_first: bool) -> String {
     let sign = if towards_first { 1.0 } else { -1.0 };
     let people = counted(test.scores.len(), "participant");
+    // A score lies between -1 and 1; its t interval does not know that.
+    let cut = |low: f64, high: f64| Interval { low: low.max(-1.0), high: high.min(1.0) };
     let turned = test.interval.map(|i| match towards_first {
-        true => i,
-        false => crate::interval::Interval { low: -i.high, high: -i.low },
+        true => cut(i.low, i.high),
+        false => cut(-i.high, -i.low),
     });
     let within = turned.map_or(people.clone(), |i| format!("95 % t interval {}, {people}", interval(i, 2)));
     format!("Mean score {} ({within})", number(sign * test.mean, 2))
@@ -170,6 +173,8 @@ fn not_equal(test: &ContrastTest) -> String {
             room(i.high),
             room(i.low)
         ),
-        _ => " Not significant is not equal: the interval leaves zero out, the corrected test does not.".into(),
+        _ => {
+            " Not significant is not equal: the interval leaves zero out, the corrected test does not.".into()
+        }
     }
 }

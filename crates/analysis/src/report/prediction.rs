@@ -9,7 +9,8 @@ use design::Study;
 
 pub(super) fn findings(study: &Study, prediction: Option<&Prediction>) -> Vec<Block> {
     let Some(prediction) = prediction else { return Vec::new() };
-    let mut found: Vec<Finding> = prediction.metrics.iter().map(|m| metric(m, prediction.metrics.len())).collect();
+    let mut found: Vec<Finding> =
+        prediction.metrics.iter().map(|m| metric(m, prediction.metrics.len())).collect();
     found.extend(held_out(study, prediction));
     found.extend(together(prediction));
     found.push(limits(prediction));
@@ -71,15 +72,24 @@ fn held_out(study: &Study, prediction: &Prediction) -> Vec<Finding> {
     let judged: Vec<_> = prediction.metrics.iter().filter_map(|m| Some((m, m.held_out.as_ref()?))).collect();
     let best = judged.iter().min_by(|a, b| a.1.log_loss.total_cmp(&b.1.log_loss));
     let Some((metric, best)) = best else { return found };
-    let objects: Vec<String> =
-        best.objects.iter().map(|(o, hits, of)| format!("{} of {of} on the {}", number(*hits, 1).trim_end_matches(".0"), names[*o])).collect();
+    let objects: Vec<String> = best
+        .objects
+        .iter()
+        .map(|(o, hits, of)| {
+            format!("{} of {of} on the {}", number(*hits, 1).trim_end_matches(".0"), names[*o])
+        })
+        .collect();
     let gain = best.gain.map_or(String::new(), |i| format!(" (fall {}, 95 % t interval)", interval(i, 3)));
     let better = best.gain.is_some_and(|i| i.low > 0.0);
     let text = format!(
         "Fitted to the other objects, {} foretells an object's answers {}: {} of the decided ones right, {}; mean log loss {} \
          against {} of a constant{gain}.",
         metric.metric.label,
-        if better { "best, and better than guessing" } else { "best, but not demonstrably better than guessing" },
+        if better {
+            "best, and better than guessing"
+        } else {
+            "best, but not demonstrably better than guessing"
+        },
         percent(best.accuracy.share),
         list(&objects),
         number(best.log_loss, 3),
@@ -92,10 +102,7 @@ fn held_out(study: &Study, prediction: &Prediction) -> Vec<Finding> {
         .map(|(m, _)| m.metric.label)
         .collect();
     if !failing.is_empty() {
-        let text = format!(
-            "Not better than guessing on objects left out, by log loss: {}.",
-            list(&failing)
-        );
+        let text = format!("Not better than guessing on objects left out, by log loss: {}.", list(&failing));
         found.push(Finding::new(Standing::Open, text));
     }
     if let Some(joint) = &prediction.joint_held_out {
@@ -137,7 +144,12 @@ fn together(prediction: &Prediction) -> Option<Finding> {
         _ => "Which of the metrics people react to cannot be told, since they rise and fall together",
     };
     let range = match pairs.len() {
-        1 => format!("the rank correlation of {} and {} is {}", label(most.1), label(most.2), number(most.0, 2)),
+        1 => format!(
+            "the rank correlation of {} and {} is {}",
+            label(most.1),
+            label(most.2),
+            number(most.0, 2)
+        ),
         all => format!(
             "rank correlations across the pairs reach from {} ({} and {}) to {} ({} and {}), and {strong} of {all} are 0.7 \
              or more in size",
@@ -157,12 +169,17 @@ fn limits(prediction: &Prediction) -> Finding {
     let sides: Vec<String> = prediction
         .metrics
         .iter()
-        .map(|m| format!("{} of {} for {}", m.better.better_right, m.better.pair_count(), m.metric.label))
+        .enumerate()
+        .map(|(i, m)| {
+            let pairs = if i == 0 { " pairs" } else { "" };
+            let (right, all) = (m.better.better_right, m.better.pair_count());
+            format!("{right} of {all}{pairs} for {}", m.metric.label)
+        })
         .collect();
     let text = format!(
         "{} of {} from {} are no large sample: only {} of their differences do not follow from the others, and every person saw \
          the same ones. The intervals are about other people before these pairs, not about other meshes. The better value stood \
-         on the right in {} pairs, so a leaning to one side would look like a metric.",
+         on the right in {}, so a leaning to one side would look like a metric.",
         capital(&counted(prediction.pairs, "pair")),
         counted(prediction.meshes, "mesh").replace("meshs", "meshes"),
         counted(prediction.objects, "object"),

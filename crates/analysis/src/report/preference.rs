@@ -31,7 +31,8 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
     let Some(study) = evidence.study else {
         for hypothesis in &evidence.hypotheses {
             if let Subject::Items { group, first, second } = &hypothesis.subject {
-                let scope = if evidence.groups.len() > 1 { format!(" in group {group}") } else { String::new() };
+                let scope =
+                    if evidence.groups.len() > 1 { format!(" in group {group}") } else { String::new() };
                 sorted.add(Finding::of_preference(hypothesis, first, second, &scope));
             }
         }
@@ -47,11 +48,14 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
                 sorted.depends.push(Block::Finding(finding));
             }
             Over::All | Over::Within(_) => {
-                let mut finding = Finding::of_preference(hypothesis, first, second, &names::over(study, over));
+                let mut finding =
+                    Finding::of_preference(hypothesis, first, second, &names::over(study, over));
                 let object = (over == Over::All).then(|| standing_out(evidence, levels)).flatten();
                 if let (Standing::Holds, Some((_, object))) = (finding.standing, object) {
                     let name = &study.file.objects[object].name;
-                    finding.text.push_str(&format!(" It depends on the object, the {name} above all: see below."));
+                    finding
+                        .text
+                        .push_str(&format!(" It depends on the object, the {name} above all: see below."));
                 }
                 sorted.add(finding);
             }
@@ -99,10 +103,13 @@ fn dependences(study: &Study, evidence: &Evidence<'_>) -> Vec<Block> {
     let mut open: Vec<&Hypothesis> = Vec::new();
     for (hypothesis, levels, over) in contrasts_of(evidence) {
         match over {
-            Over::Difference(..) | Over::AgainstOthers(_) if hypothesis.adjusted > ALPHA => open.push(hypothesis),
+            Over::Difference(..) | Over::AgainstOthers(_) if hypothesis.adjusted > ALPHA => {
+                open.push(hypothesis)
+            }
             Over::Difference(a, b) => {
                 let parts = [a, b].map(|level| {
-                    let part = contrasts_of(evidence).find(|(_, l, o)| *l == levels && *o == Over::Within(level));
+                    let part =
+                        contrasts_of(evidence).find(|(_, l, o)| *l == levels && *o == Over::Within(level));
                     part.map(|(part, ..)| (names::within(level), &part.test))
                 });
                 if let [Some((at_a, a)), Some((at_b, b))] = parts {
@@ -147,9 +154,12 @@ fn dependence(
 ) -> Finding {
     let [first, second] = levels.map(names::level);
     let part = |place: &str, test: &ContrastTest| {
-        format!("{}: {}, mean score {}", capital(place.trim_start()), against(test.counts.unwrap_or_default()), {
-            super::words::number(test.mean, 2)
-        })
+        format!(
+            "{}: {}, mean score {}",
+            capital(place.trim_start()),
+            against(test.counts.unwrap_or_default()),
+            { super::words::number(test.mean, 2) }
+        )
     };
     let text = format!(
         "How much {first} is preferred to {second} differs. {}. {}. The difference holds: {}.",
@@ -192,10 +202,9 @@ fn without(
     match (rest.sign_flip.p() <= ALPHA, same_way) {
         (true, true) => format!(" Without the {name} the overall preference still holds ({p})."),
         (true, false) => format!(" Without the {name} the preference is the other way round ({p})."),
-        (false, _) => format!(
-            " Without the {name} the overall preference is gone: {}; {p}.",
-            lower(&score(rest, true))
-        ),
+        (false, _) => {
+            format!(" Without the {name} the overall preference is gone: {}; {p}.", lower(&score(rest, true)))
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Block;
 use super::finding::{Finding, Standing};
-use super::words::{capital, counted, list};
+use super::words::{counted, list};
 use crate::claims;
 use crate::comparison;
 use crate::inputs::{AnalysisError, Inputs};
@@ -43,11 +43,12 @@ pub(super) fn findings(inputs: &Inputs<'_>) -> Result<Vec<Block>, AnalysisError>
 
 /// `12 are equal, 3 differ and 1 is not comparable`.
 fn tallied<'a>(verdicts: impl Iterator<Item = &'a Verdict>) -> String {
-    let (mut equal, mut within, mut differ, mut apart) = (0, 0, 0, 0);
+    let (mut equal, mut within, mut differ, mut unexplained, mut apart) = (0, 0, 0, 0, 0);
     for verdict in verdicts {
         *match verdict {
             Verdict::Equal => &mut equal,
             Verdict::WithinTolerance { .. } => &mut within,
+            verdict if verdict.is_unexplained() => &mut unexplained,
             Verdict::Differs { .. } => &mut differ,
             Verdict::NotComparable { .. } => &mut apart,
         } += 1;
@@ -57,8 +58,12 @@ fn tallied<'a>(verdicts: impl Iterator<Item = &'a Verdict>) -> String {
         (equal, format!("{equal} {} equal to every printed digit", be(equal))),
         (within, format!("{within} {} within a stated tolerance", be(within))),
         (differ, format!("{differ} {} for a stated reason", if differ == 1 { "differs" } else { "differ" })),
+        (
+            unexplained,
+            format!("{unexplained} {} without one", if unexplained == 1 { "differs" } else { "differ" }),
+        ),
         (apart, format!("{apart} {} not comparable", be(apart))),
     ];
     let kept: Vec<String> = parts.into_iter().filter(|(n, _)| *n > 0).map(|(_, text)| text).collect();
-    capital(&list(&kept))
+    list(&kept)
 }

@@ -105,7 +105,8 @@ fn estimate(name: &str, ballots: &[Ballot], items: usize) -> Option<String> {
 fn always(evidence: &Evidence<'_>) -> Option<String> {
     let study = evidence.study?;
     let mut seen: Vec<(Level, [bool; 2])> = Vec::new();
-    for contrast in contrasts(study).into_iter().filter(|c| c.over == crate::statistics::contrast::Over::All) {
+    for contrast in contrasts(study).into_iter().filter(|c| c.over == crate::statistics::contrast::Over::All)
+    {
         for &weight in contrast.weights.values() {
             for (level, left) in [(contrast.levels[0], weight > 0), (contrast.levels[1], weight < 0)] {
                 let place = seen.iter().position(|(l, _)| *l == level).unwrap_or_else(|| {

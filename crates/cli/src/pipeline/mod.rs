@@ -4,11 +4,12 @@
 //! objects ─ meshes ─┬─ turntables ─ pairs, key ─┐
 //!                   └─ stills ──────────────────┤
 //! objects ─ timings ─┐                          ├─ page ─ manifest
-//! answers ───────────┴─ tables, figures ────────┘
+//! answers ───────────┴─ tables, figures, report ┘
 //! ```
 
 mod meshes;
 mod page;
+mod report;
 mod stimuli;
 mod tables;
 mod timings;

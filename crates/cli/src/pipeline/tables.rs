@@ -1,4 +1,4 @@
-//! Tables and figures, from records, timings and answers.
+//! Tables, figures and the report, from records, timings and answers.
 
 use super::{Meshes, Pipeline};
 use crate::progress::Step;
@@ -28,7 +28,7 @@ impl Pipeline<'_> {
                 bench: Some(&run),
                 answers: answers.as_ref(),
             };
-            write(writer, &inputs)?;
+            write(writer, &inputs, true)?;
             writer.write_json(UNEXPLAINED, &analysis::unexplained_differences(&inputs)?)
         })?;
         step.count(stamp.redone);
@@ -50,7 +50,7 @@ impl Pipeline<'_> {
 /// If the files cannot be written.
 pub(crate) fn write_answers_only(study: &Study, answers: &Responses, store: &Store) -> Result<Vec<Table>> {
     let inputs = analysis::Inputs { study, meshes: &[], bench: None, answers: Some(answers) };
-    store.stage("answers", study_inputs(study)?, |writer| write(writer, &inputs).map(|_| ()))?;
+    store.stage("answers", study_inputs(study)?, |writer| write(writer, &inputs, false))?;
     Ok(analysis::tables(&inputs)?)
 }
 
@@ -73,7 +73,8 @@ const UNEXPLAINED: &str = "tables/unexplained.json";
 pub(super) const TABLE_CONTENTS: &str = "tables/contents.json";
 pub(super) const FIGURE_CONTENTS: &str = "figures/contents.json";
 
-fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>) -> Result<()> {
+/// `gallery` says whether an `index.html` will stand beside the report.
+fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>, gallery: bool) -> Result<()> {
     let tables = analysis::tables(inputs).context("tables")?;
     let mut entries = Vec::new();
     for table in &tables {
@@ -86,12 +87,15 @@ fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>) -> Result<()> {
     }
     writer.write_json(TABLE_CONTENTS, &entries)?;
     let mut entries = Vec::new();
-    for Figure { name, caption, svg, png } in analysis::figures(inputs).context("figures")? {
+    let figures = analysis::figures(inputs).context("figures")?;
+    for Figure { name, caption, svg, png } in &figures {
         writer.write(&format!("figures/{name}.svg"), svg.as_bytes())?;
-        writer.write(&format!("figures/{name}.png"), &png)?;
-        entries.push(FigureEntry { name, caption });
+        writer.write(&format!("figures/{name}.png"), png)?;
+        entries.push(FigureEntry { name: name.clone(), caption: caption.clone() });
     }
-    writer.write_json(FIGURE_CONTENTS, &entries)
+    writer.write_json(FIGURE_CONTENTS, &entries)?;
+    let report = analysis::report(inputs, &tables, &figures).context("report")?;
+    super::report::write(writer, &report, gallery)
 }
 
 /// The study file, its answers and its published numbers.
