@@ -88,7 +88,7 @@ impl<'a> Collector<'a> {
     pub(crate) fn reply(&mut self, cell: &str, place: Place, question: &str) -> Reply {
         /// Other cells are looked up anew each time.
         const REMEMBERED: usize = 4096;
-        if crate::records::is_blank(cell) {
+        if self.mapping.words.is_blank(cell) {
             return Reply::Blank;
         }
         let found = match self.replies.get(cell) {

@@ -5,6 +5,7 @@ use crate::format::Format;
 use crate::layout::{Detected, Layout};
 use crate::long;
 use crate::plan::Plan;
+use crate::surveys;
 use crate::words::normalise;
 
 /// The first rows that are not blank, with their numbers.
@@ -27,7 +28,7 @@ pub(crate) fn detect(head: &Head, plan: Option<&Plan>) -> Result<Detected, Fault
 /// What in the first rows speaks for a format.
 fn mark(format: Format, head: &Head, plan: Option<&Plan>) -> Option<Detected> {
     let header = &head[0].1;
-    let rule = match format {
+    let rule: Option<&str> = match format {
         Format::Table => {
             let plan = plan?;
             let own =
@@ -36,7 +37,7 @@ fn mark(format: Format, head: &Head, plan: Option<&Plan>) -> Option<Detected> {
             all.then_some("every header is a question's id")
         }
         Format::Long => long::is_long(header).then_some("the header has participant, question and choice"),
-        _ => None,
+        _ => return surveys::mark(format, head).map(|rule| Detected { format, rule }),
     };
     rule.map(|rule| Detected { format, rule: rule.into() })
 }

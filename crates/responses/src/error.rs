@@ -25,8 +25,8 @@ pub enum ReadError {
     },
 }
 
-/// What is wrong with the content of a file. Rows and columns are counted from 1, as a spreadsheet counts them; in JSON a row is a
-/// participant's run and a column a trial.
+/// What is wrong with the content of a file. Rows and columns are counted from 1, as a spreadsheet counts them; JSON is
+/// counted as the table that jsPsych makes of it, a trial a row and a header on top.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Fault {
     /// There is nothing in it.

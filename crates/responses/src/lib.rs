@@ -10,6 +10,7 @@
 //! - Nothing is dropped silently and nothing is guessed: every cell that is not taken as it stands is in the report, and where two
 //!   readings fit, the error shows both.
 
+mod archive;
 mod choice;
 mod collect;
 mod columns;
@@ -25,11 +26,16 @@ mod read;
 mod records;
 mod report;
 mod source;
+mod surveys;
 mod text;
+mod trials;
 mod value;
+mod webmushra;
 mod wide;
 mod words;
+mod workbook;
 
+pub use archive::LARGEST_ARCHIVE;
 pub use choice::Choice;
 pub use error::{Fault, ReadError, UnknownCell};
 pub use escape::{escape, unescape};

@@ -16,21 +16,41 @@ use crate::words::normalise;
 const NAMES: [&str; 10] =
     ["participant", "question", "left", "right", "choice", "object", "group", "form", "order", "rt_ms"];
 
-/// Where the columns are.
-struct Columns {
-    participant: usize,
-    question: usize,
+/// Where the columns of a file with one row an answer are.
+pub(crate) struct Columns {
+    pub(crate) participant: usize,
+    /// The participant's column counts trials instead, and starts again with each participant.
+    pub(crate) restarts: bool,
+    pub(crate) question: usize,
     /// Both sides, or as the study declares them.
-    sides: Option<(usize, usize)>,
-    choice: usize,
-    object: Option<usize>,
-    group: Option<usize>,
-    form: Option<usize>,
-    order: Option<usize>,
-    rt_ms: Option<usize>,
+    pub(crate) sides: Option<(usize, usize)>,
+    pub(crate) choice: usize,
+    pub(crate) object: Option<usize>,
+    pub(crate) group: Option<usize>,
+    pub(crate) form: Option<usize>,
+    pub(crate) order: Option<usize>,
+    pub(crate) rt_ms: Option<usize>,
+}
+
+/// What differs between formats with one row an answer.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rule {
+    /// Whether left and right are sides.
+    pub(crate) sides_recorded: bool,
+    /// Whether cells were protected from spreadsheets.
+    pub(crate) escaped: bool,
+    /// Whether every row is an answer; otherwise those with a question.
+    pub(crate) every_row: bool,
 }
 
 impl Columns {
+    /// What there must be; the rest is absent.
+    pub(crate) fn new(participant: usize, question: usize, choice: usize) -> Self {
+        let (sides, restarts) = (None, false);
+        let (object, group, form, order, rt_ms) = (None, None, None, None, None);
+        Self { participant, restarts, question, sides, choice, object, group, form, order, rt_ms }
+    }
+
     fn of(header: &[String], row: u64, with_plan: bool, report: &mut Report) -> Result<Self, Fault> {
         let mut at = [None; NAMES.len()];
         for (column, title) in header.iter().enumerate() {
@@ -51,17 +71,8 @@ impl Columns {
             (None, None) if with_plan => None,
             _ => Some((needed(2)?, needed(3)?)),
         };
-        Ok(Self {
-            participant: needed(0)?,
-            question: needed(1)?,
-            sides,
-            choice: needed(4)?,
-            object: at[5],
-            group: at[6],
-            form: at[7],
-            order: at[8],
-            rt_ms: at[9],
-        })
+        let (object, group, form, order, rt_ms) = (at[5], at[6], at[7], at[8], at[9]);
+        Ok(Self { sides, object, group, form, order, rt_ms, ..Self::new(needed(0)?, needed(1)?, needed(4)?) })
     }
 }
 
@@ -83,8 +94,25 @@ pub(crate) fn read(
     report: &mut Report,
 ) -> Result<Responses, Fault> {
     let columns = Columns::of(header, header_row, plan.is_some(), report)?;
-    let mut rows =
-        Rows { columns, plan, collector: Collector::new(plan, mapping, report), width: header.len() };
+    let rule = Rule { sides_recorded: true, escaped: true, every_row: true };
+    read_columns(source, (header_row, header.len()), columns, rule, plan, mapping, report)
+}
+
+/// Reads every row under a header whose columns are known.
+///
+/// # Errors
+/// See [`Fault`].
+pub(crate) fn read_columns(
+    source: &Source<'_>,
+    (header_row, width): (u64, usize),
+    columns: Columns,
+    rule: Rule,
+    plan: Option<&Plan>,
+    mapping: &Mapping,
+    report: &mut Report,
+) -> Result<Responses, Fault> {
+    let collector = Collector::new(plan, mapping, report);
+    let mut rows = Rows { columns, rule, plan, collector, width, run: 0, last_trial: None, passed_over: 0 };
     let (mut end, mut blank) = (header_row + 1, Vec::new());
     source.each(|record| {
         if record.row <= header_row {
@@ -100,14 +128,23 @@ pub(crate) fn read(
         }
         rows.row(record, source.is_text())
     })?;
-    rows.collector.finish(true, end)
+    if rows.passed_over > 0 {
+        let action = format!("{} rows without a question are no answers: not read", rows.passed_over);
+        rows.collector.report.row(Kind::Noted, header_row, action);
+    }
+    rows.collector.finish(rule.sides_recorded, end)
 }
 
 struct Rows<'a> {
     columns: Columns,
+    rule: Rule,
     plan: Option<&'a Plan>,
     collector: Collector<'a>,
     width: usize,
+    /// Participants so far, where the trials' numbers tell them apart.
+    run: u32,
+    last_trial: Option<u32>,
+    passed_over: u64,
 }
 
 impl Rows<'_> {
@@ -118,9 +155,17 @@ impl Rows<'_> {
             return Err(Fault::CellCount { row: record.row, expected, found });
         }
         let row = record.row;
-        let id = self.needed(record, self.columns.participant, "participant")?;
+        let run = self.run(record);
+        if !self.rule.every_row && is_blank(record.cell(self.columns.question)) {
+            self.passed_over += 1;
+            return Ok(());
+        }
+        let id = match &run {
+            Some(run) => run.as_str(),
+            None => self.needed(record, self.columns.participant, "participant")?,
+        };
         let asked = self.needed(record, self.columns.question, "question")?;
-        let form = self.columns.form.map(|column| text(record, column)).filter(|form| !form.is_empty());
+        let form = self.columns.form.map(|column| self.text(record, column)).filter(|form| !form.is_empty());
         let participant = self.collector.participant(id, form, row)?;
         let Some((question, left, right)) = self.pair(record, asked)? else { return Ok(()) };
         let place = Place { row, column: self.columns.choice };
@@ -139,8 +184,26 @@ impl Rows<'_> {
         Ok(())
     }
 
+    /// The number of the participant, where trials are counted anew for each.
+    fn run(&mut self, record: &Record<'_>) -> Option<String> {
+        if !self.columns.restarts {
+            return None;
+        }
+        let trial = record.cell(self.columns.participant).trim().parse().ok();
+        if self.run == 0 || trial.is_some_and(|trial| self.last_trial.is_some_and(|last| trial <= last)) {
+            self.run += 1;
+        }
+        self.last_trial = trial.or(self.last_trial);
+        Some(self.run.to_string())
+    }
+
+    fn text<'r>(&self, record: &'r Record<'_>, column: usize) -> &'r str {
+        let cell = record.cell(column).trim_matches(|c: char| c.is_whitespace() || c == '\u{feff}');
+        if self.rule.escaped { unescape(cell) } else { cell }
+    }
+
     fn needed<'r>(&self, record: &'r Record<'_>, column: usize, name: &str) -> Result<&'r str, Fault> {
-        let cell = text(record, column);
+        let cell = self.text(record, column);
         if cell.is_empty() {
             return Err(self.refuse(record, column, name, "must not be empty"));
         }
@@ -154,7 +217,7 @@ impl Rows<'_> {
 
     /// The question and the items on its sides. A control that a study does not list is a question of its own.
     fn pair(&mut self, record: &Record<'_>, asked: &str) -> Result<Option<(u32, u32, u32)>, Fault> {
-        let label = |column: Option<usize>| column.map_or("", |column| text(record, column));
+        let label = |column: Option<usize>| column.map_or("", |column| self.text(record, column));
         let sides = match self.columns.sides {
             None => None,
             Some((left, right)) => {
@@ -204,7 +267,7 @@ impl Rows<'_> {
 
     /// A whole number; anything else is rejected and listed.
     fn number(&mut self, record: &Record<'_>, column: usize) -> Option<u32> {
-        let cell = text(record, column);
+        let cell = self.text(record, column);
         let number = cell.parse().ok();
         if number.is_none() && !cell.is_empty() {
             let action = "not a whole number: the answer has no place in the order";
@@ -215,7 +278,7 @@ impl Rows<'_> {
 
     /// Milliseconds; anything else is rejected and listed.
     fn time(&mut self, record: &Record<'_>, column: usize) -> Option<f32> {
-        let cell = text(record, column);
+        let cell = self.text(record, column);
         if cell.is_empty() {
             return None;
         }
@@ -231,10 +294,6 @@ impl Rows<'_> {
         self.collector.report.cell(kind, record.row, column, cell, action);
         time
     }
-}
-
-fn text<'r>(record: &'r Record<'_>, column: usize) -> &'r str {
-    unescape(record.cell(column).trim_matches(|c: char| c.is_whitespace() || c == '\u{feff}'))
 }
 
 /// Says what a file lacks that was declared to be in this format.

@@ -25,9 +25,9 @@ pub struct Report {
 /// One cell or row that was not taken as it stands. Rows and columns are counted from 1.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Remark {
-    /// The row; in JSON the participant's run.
+    /// The row; in JSON the trial, counted from 2.
     pub row: u64,
-    /// The column, or the trial in JSON; `None` is the whole row.
+    /// The column, or the field in JSON; `None` is the whole row.
     pub column: Option<usize>,
     /// What stands there, shortened; empty for whole rows.
     pub raw: String,

@@ -129,6 +129,8 @@ const BUILT_IN: [(&str, [&[&str]; 3]); 8] = [
 pub struct Words {
     known: HashMap<String, Choice>,
     declared: usize,
+    /// A word that stands for no answer.
+    blank: Option<String>,
 }
 
 impl Default for Words {
@@ -139,7 +141,7 @@ impl Default for Words {
                 known.extend(words.iter().map(|word| (word.to_string(), choice)));
             }
         }
-        Self { known, declared: 0 }
+        Self { known, declared: 0, blank: None }
     }
 }
 
@@ -160,6 +162,17 @@ impl Words {
         self.declared += own.len();
         self.known.extend(own);
         Ok(())
+    }
+
+    /// Makes a word stand for a question left unanswered.
+    pub(crate) fn declare_blank(&mut self, word: &str) {
+        self.blank = Some(normalise(word));
+    }
+
+    /// Whether a cell says that there is no answer.
+    pub(crate) fn is_blank(&self, cell: &str) -> bool {
+        crate::records::is_blank(cell)
+            || self.blank.as_ref().is_some_and(|word| cell.len() < 99 && normalise(cell) == *word)
     }
 
     /// The choice that a cell means. Case, runs of space, non-breaking space, curly quotes and a trailing ` *` do not matter.
