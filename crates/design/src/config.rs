@@ -345,6 +345,10 @@ pub enum ShownNames {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FormsSection {
+    /// What is asked about each pair.
+    pub prompt: String,
+    /// The answers: left, no preference, right.
+    pub choices: [String; 3],
     /// How many participants are planned.
     #[serde(deserialize_with = "whole")]
     pub participants: u32,

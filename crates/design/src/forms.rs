@@ -20,8 +20,11 @@
 //!   Latin square read alternately forwards and backwards; for squares balanced for neighbours see E. J. Williams,
 //!   Australian Journal of Scientific Research A 2 (1949).
 
+mod file;
 mod order;
 mod sides;
+
+pub use file::{FormEntry, FormFile, KeyEntry, Stimulus};
 
 use crate::config::{FormsSection, OrderRule, SideRule};
 use crate::method::ConfigurationId;

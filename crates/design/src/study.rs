@@ -1,7 +1,9 @@
 //! A study, read from its file, checked, and ready to work from.
 
 use crate::check::{Checker, ConfigError};
+use crate::code_names;
 use crate::config::{FieldSection, ObjectSection, StudyFile};
+use crate::forms::Questionnaire;
 use crate::machine::CpuProfile;
 use crate::method::{ConfigurationId, Method};
 use crate::published::{BenchmarkRow, Claim, PreferenceCell};
@@ -153,9 +155,15 @@ impl Study {
         Checker { file: &self.path }.resolve(written)
     }
 
-    /// Code names: one a configuration, then one a comparison, in the study's order.
+    /// Every pair, left and right, that is shown to anybody: the comparisons as listed, then what else the forms need.
+    pub(crate) fn pairs(&self) -> Vec<(ConfigurationId, ConfigurationId)> {
+        let as_listed = || self.comparisons.iter().map(|c| (c.left.clone(), c.right.clone())).collect();
+        Questionnaire::of(self).map_or_else(as_listed, |questionnaire| questionnaire.pairs())
+    }
+
+    /// Code names: one a configuration, then one a pair, in the order of [`Study::stimuli`].
     pub fn code_names(&self) -> (Vec<String>, Vec<String>) {
-        let count = self.configurations.len() + self.comparisons.len();
+        let count = self.configurations.len() + self.pairs().len();
         let mut names = crate::code_names::draw(self.file.study.seed, count);
         let pairs = names.split_off(self.configurations.len());
         (names, pairs)
@@ -404,8 +412,10 @@ fn comparisons(
             right: section.right.clone(),
         });
     }
-    if configurations.len() + comparisons.len() > 4900 {
-        return c.refuse("comparisons", comparisons.len(), "configurations and comparisons: at most 4900");
+    // Each may be shown both ways round and has a code name; so has each configuration, with itself as a control.
+    if 2 * (configurations.len() + comparisons.len()) > code_names::LIMIT {
+        let limit = format!("configurations and comparisons: at most {}", code_names::LIMIT / 2);
+        return c.refuse("comparisons", comparisons.len(), limit);
     }
     Ok(comparisons)
 }
@@ -458,6 +468,14 @@ fn check_forms(
         let limit = format!("with forms.max_questions = {} at most {most} fit", forms.max_questions);
         return c.refuse("forms.repeats", forms.repeats, limit);
     }
+    if forms.prompt.trim().is_empty() {
+        return c.refuse("forms.prompt", "\"\"", "must say what is asked about each pair");
+    }
+    if let Some(i) = forms.choices.iter().position(|choice| choice.trim().is_empty()) {
+        return c.refuse(format!("forms.choices[{i}]"), "\"\"", "must be a text");
+    }
+    c.distinct(|i| format!("forms.choices[{i}]"), &forms.choices)?;
+    c.count("forms.training", forms.training.len() as u32, 0, 100)?;
     for (i, pair) in file.forms.iter().flat_map(|forms| &forms.training).enumerate() {
         for (name, id) in [("left", &pair.left), ("right", &pair.right)] {
             if !configurations.iter().any(|configuration| configuration.id == *id) {

@@ -18,6 +18,8 @@ fn study(kept: impl Fn(usize) -> bool, section: FormsSection) -> Study {
 
 fn balanced(participants: u32, controls: u32, repeats: u32, max_questions: u32) -> FormsSection {
     FormsSection {
+        prompt: "Which?".into(),
+        choices: ["left", "none", "right"].map(String::from),
         participants,
         sides: SideRule::Balanced,
         order: OrderRule::LatinSquare,
