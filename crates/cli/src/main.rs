@@ -5,6 +5,7 @@ mod manifest;
 mod picture;
 mod pipeline;
 mod progress;
+mod questionnaire;
 mod records;
 mod rooms;
 mod store;
@@ -12,7 +13,7 @@ mod subject;
 
 use analysis::Answers;
 use anyhow::{Context, Result};
-use args::{Analyse, Cli, Command, Run, Selection};
+use args::{Analyse, Cli, Command, Design, Run, Selection};
 use bench::Summary;
 use clap::Parser;
 
@@ -26,6 +27,7 @@ use store::Store;
 
 /// The work was done, but something in it is not as it should be.
 const CHECK_FAILED: u8 = 1;
+const NO_FORMS: &str = "the study has no [forms] section, or no comparisons: configs/balanced.toml has both";
 /// Wrong usage or input; clap uses the same.
 const INPUT_ERROR: u8 = 2;
 
@@ -66,6 +68,15 @@ fn run(command: Command) -> Result<Outcome> {
             pipeline.pairs(&turntables)?;
             say(&out.join("stimuli/pairs").display().to_string())
         }),
+        Command::Bundle(run) => with_pipeline(&run, |pipeline, out| {
+            let forms = pipeline.forms()?.context(NO_FORMS)?;
+            let meshes = pipeline.stimulus_meshes(&[])?;
+            let turntables = pipeline.turntables(&meshes, &[])?;
+            let pairs = pipeline.pairs(&turntables)?;
+            pipeline.contact_sheet(&meshes)?;
+            pipeline.bundle(&forms, &pairs)?;
+            say(&out.join("bundle").display().to_string())
+        }),
         Command::Bench(bench) => with_pipeline(&bench.run, |pipeline, _| {
             let length = if bench.short { PlanLength::Short } else { PlanLength::Full };
             let stamp = pipeline.timings(length)?;
@@ -73,6 +84,12 @@ fn run(command: Command) -> Result<Outcome> {
         }),
         Command::Analyse(arguments) => analyse(&arguments),
         Command::Validate(arguments) => validate(&arguments.study),
+        Command::Design(Design::Check(arguments)) => return questionnaire::check(&arguments),
+        Command::Design(Design::Rules) => questionnaire::rules(),
+        Command::Design(Design::Forms(run)) => with_pipeline(&run, |pipeline, out| {
+            pipeline.forms()?.context(NO_FORMS)?;
+            say(&out.join("forms").display().to_string())
+        }),
     }?;
     Ok(Outcome::Sound)
 }

@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! objects ─ meshes ─┬─ turntables ─ pairs, key ─┐
+//! comparisons ─ forms, key ─────────────────────┤
 //!                   └─ stills ──────────────────┤
 //! objects ─ timings ─┐                          ├─ page ─ manifest
 //! answers ───────────┴─ tables, figures ────────┘
 //! ```
 
+mod bundle;
 mod meshes;
 mod page;
 mod stimuli;
@@ -43,10 +45,11 @@ impl<'a> Pipeline<'a> {
         let meshes = self.all_meshes(&[])?;
         let turntables = self.turntables(&meshes, &[])?;
         let pairs = self.pairs(&turntables)?;
+        let forms: Vec<Stamp> = self.forms()?.into_iter().collect();
         let stills = self.stills()?;
         let timings = self.timings(PlanLength::Short)?;
         let tables = self.tables(&meshes, &timings)?;
-        self.page(&meshes, &[turntables, pairs, stills, vec![timings, tables]].concat())?;
+        self.page(&meshes, &[turntables, pairs, forms, stills, vec![timings, tables]].concat())?;
         self.store.retire_untouched(|stage| stage.starts_with("bench/"))?;
         self.unexplained()
     }
