@@ -405,6 +405,49 @@ fn a_bundle_tells_nothing_of_the_key() {
     assert!(!again.stderr.contains(" made, "), "{}", again.stderr);
 }
 
+#[test]
+fn videos_are_ffmpegs_and_said_to_be_missing_where_it_is() {
+    let fixture = Fixture::new();
+    let mut command = fixture.command("pairs");
+    let output = command.arg("--mp4").env("PATH", fixture.folder()).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("no ffmpeg on the PATH"), "{said}");
+    assert!(!fixture.out().exists(), "nothing is made before");
+
+    // A stand-in that keeps how many bytes it was sent, and writes that as the video.
+    if cfg!(unix) {
+        let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\nwc -c > \"$last\"\n";
+        let program = fixture.folder().join("ffmpeg");
+        std::fs::write(&program, script).unwrap();
+        make_executable(&program);
+        let path = format!("{}:{}", fixture.folder().display(), std::env::var("PATH").unwrap());
+        let output = fixture.command("pairs").arg("--mp4").env("PATH", path).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let made = files(fixture.out());
+        let videos: Vec<&Vec<u8>> =
+            made.iter().filter(|(path, _)| path.ends_with(".mp4")).map(|(_, v)| v).collect();
+        assert_eq!(videos.len(), 27);
+        let study = std::fs::read_to_string(fixture.config()).unwrap();
+        let number = |key: &str| -> u64 {
+            let line = study.lines().find_map(|line| line.strip_prefix(&format!("{key} = "))).unwrap();
+            line.parse().unwrap()
+        };
+        let sent = 2 * number("width") * number("height") * 3 * number("frames");
+        let read = |video: &Vec<u8>| String::from_utf8_lossy(video).trim().parse::<u64>().unwrap();
+        assert!(videos.iter().all(|video| read(video) == sent), "{sent}");
+    }
+}
+
+#[cfg(unix)]
+fn make_executable(path: &Path) {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o755)).unwrap();
+}
+
+#[cfg(not(unix))]
+fn make_executable(_: &Path) {}
+
 /// The text extensions of a GIF: comments, plain texts, and the names of application extensions.
 fn extensions(gif: &[u8]) -> Vec<String> {
     const GRAPHIC_CONTROL: u8 = 0xf9;

@@ -21,7 +21,7 @@ pub(crate) enum Command {
     /// Render the turntable animations
     Turntable(Selection),
     /// Compose the side-by-side pairs and write the key
-    Pairs(Run),
+    Pairs(Pairs),
     /// Put together what participants get (forms and pairs, no key), and the researcher's contact sheet
     Bundle(Run),
     /// Time every configuration, with the study's full number of rounds
@@ -83,6 +83,15 @@ pub(crate) struct Selection {
     /// Only these configurations, such as ss_bi [default: all]
     #[arg(long, value_name = "ID", value_delimiter = ',')]
     pub(crate) only: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Pairs {
+    #[command(flatten)]
+    pub(crate) run: Run,
+    /// Write each pair as H.264 video as well, twice the size, by the ffmpeg on the PATH
+    #[arg(long)]
+    pub(crate) mp4: bool,
 }
 
 #[derive(Debug, Args)]

@@ -10,6 +10,7 @@ mod records;
 mod rooms;
 mod store;
 mod subject;
+mod video;
 
 use analysis::Answers;
 use anyhow::{Context, Result};
@@ -62,12 +63,20 @@ fn run(command: Command) -> Result<Outcome> {
             pipeline.turntables(&meshes, only)?;
             say(&out.join("stimuli/turntables").display().to_string())
         }),
-        Command::Pairs(run) => with_pipeline(&run, |pipeline, out| {
-            let meshes = pipeline.stimulus_meshes(&[])?;
-            let turntables = pipeline.turntables(&meshes, &[])?;
-            pipeline.pairs(&turntables)?;
-            say(&out.join("stimuli/pairs").display().to_string())
-        }),
+        Command::Pairs(pairs) => {
+            if pairs.mp4 {
+                video::check()?;
+            }
+            with_pipeline(&pairs.run, |pipeline, out| {
+                let meshes = pipeline.stimulus_meshes(&[])?;
+                let turntables = pipeline.turntables(&meshes, &[])?;
+                let stamps = pipeline.pairs(&turntables)?;
+                if pairs.mp4 {
+                    pipeline.videos(&stamps)?;
+                }
+                say(&out.join("stimuli/pairs").display().to_string())
+            })
+        }
         Command::Bundle(run) => with_pipeline(&run, |pipeline, out| {
             let forms = pipeline.forms()?.context(NO_FORMS)?;
             let meshes = pipeline.stimulus_meshes(&[])?;

@@ -24,6 +24,9 @@ use crate::subject::Fields;
 use anyhow::{Context, Result};
 use design::Study;
 
+/// Stages that only commands of their own make; a whole study leaves them in place.
+const ASKED_FOR: [&str; 4] = ["bench/", "bundle", "contact_sheet", "video/"];
+
 /// One study being worked on.
 pub(crate) struct Pipeline<'a> {
     study: &'a Study,
@@ -39,7 +42,7 @@ impl<'a> Pipeline<'a> {
         Self { study, store, fields: Fields::new(study), threads, frozen: false }
     }
 
-    /// The whole study. What an earlier form of it left behind goes; a full benchmark run stays. Returns the published
+    /// The whole study. What an earlier form of it left behind goes. Returns the published
     /// numbers that ours differ from without a known reason.
     pub(crate) fn study(&self) -> Result<Vec<String>> {
         let meshes = self.all_meshes(&[])?;
@@ -50,7 +53,7 @@ impl<'a> Pipeline<'a> {
         let timings = self.timings(PlanLength::Short)?;
         let tables = self.tables(&meshes, &timings)?;
         self.page(&meshes, &[turntables, pairs, forms, stills, vec![timings, tables]].concat())?;
-        self.store.retire_untouched(|stage| stage.starts_with("bench/"))?;
+        self.store.retire_untouched(|stage| ASKED_FOR.iter().any(|start| stage.starts_with(start)))?;
         self.unexplained()
     }
 

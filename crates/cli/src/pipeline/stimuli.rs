@@ -3,8 +3,8 @@
 use super::{Meshes, Pipeline};
 use crate::picture;
 use crate::progress::Step;
-use crate::rooms;
 use crate::store::{Inputs, Stamp};
+use crate::{rooms, video};
 use anyhow::{Context, Result};
 use design::config::StillSection;
 use design::forms::Stimulus;
@@ -96,6 +96,25 @@ impl Pipeline<'_> {
             left.side_by_side(&right)?.scaled(scale).write_gif(&mut gif)?;
             writer.write(&format!("{PAIRS}/{code}.gif"), &gif)
         })
+    }
+
+    /// Every pair as a video beside it, one after the other: ffmpeg takes all cores by itself.
+    pub(crate) fn videos(&self, pairs: &[Stamp]) -> Result<Vec<Stamp>> {
+        let step = Step::begin("videos", pairs.len(), pairs.len());
+        let mut stamps = Vec::new();
+        for pair in pairs {
+            let name = format!("video/{}", pair.stage.trim_start_matches("pair/"));
+            let path = pair.file(".gif").replace(".gif", ".mp4");
+            let inputs = Inputs::of_rooms(rooms::PICTURES).stamp(pair);
+            let stamp = self.stage(&name, inputs, |writer| {
+                writer.write(&path, &video::mp4(&self.read_animation(pair)?)?)
+            })?;
+            step.tick(1);
+            step.count(stamp.redone);
+            stamps.push(stamp);
+        }
+        step.end();
+        Ok(stamps)
     }
 
     fn read_animation(&self, stamp: &Stamp) -> Result<Animation> {
