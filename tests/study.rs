@@ -314,6 +314,160 @@ fn answers_that_do_not_fit_are_refused_with_their_place() {
     assert!(said.contains("answers.csv") && said.contains("Q3"), "{said}");
 }
 
+/// The quick study asked as in configs/balanced.toml.
+fn balanced() -> Fixture {
+    let fixture = Fixture::new();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let text = std::fs::read_to_string(root.join("configs/balanced.toml")).unwrap();
+    let forms = &text[text.find("[forms]").unwrap()..];
+    fixture.edit_with(|study| format!("{study}\n{forms}"));
+    fixture
+}
+
+#[test]
+fn a_design_is_judged_before_anyone_answers() {
+    let check = |study: &str, arguments: &[&str]| {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"))
+            .args(["design", "check", study])
+            .args(arguments)
+            .output()
+            .unwrap();
+        (
+            output.status.code(),
+            String::from_utf8(output.stdout).unwrap(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    };
+    let fixture = balanced();
+    let (config, out) = (fixture.config(), fixture.out().to_str().unwrap());
+    let (code, said, _) = check(config.to_str().unwrap(), &["--results", out]);
+    assert!(code == Some(0) && said.ends_with(": no faults\n"), "{said}");
+
+    // The original's sides, and animations of which one is not like the others.
+    fixture.edit("sides = \"balanced\"", "sides = \"as-listed\"");
+    fixture.succeed("pairs", &[]);
+    let key = std::fs::read_to_string(fixture.out().join("key/stimuli.csv")).unwrap();
+    let code_of = |id: &str| {
+        let line = key.lines().find(|line| line.ends_with(&format!(",,{id},"))).unwrap();
+        line.split(',').next().unwrap().to_owned()
+    };
+    let [odd, other] = ["ss_bu", "as_si"].map(|id| fixture.out().join(code_of(id)));
+    let mut bytes = std::fs::read(&other).unwrap();
+    bytes.splice(bytes.len() - 1.., *b"\x21\xfe\x05as_si\x00\x3b");
+    std::fs::write(&other, bytes).unwrap();
+    // Three times the delay between frames: every graphic control block holds it, little-endian, at the third byte.
+    let mut bytes = std::fs::read(&odd).unwrap();
+    for at in 0..bytes.len() - 8 {
+        if bytes[at..at + 3] == [0x21, 0xf9, 4] {
+            bytes[at + 4] *= 3;
+        }
+    }
+    std::fs::write(&odd, bytes).unwrap();
+    let (code, said, _) = check(config.to_str().unwrap(), &["--results", out, "--json"]);
+    assert_eq!(code, Some(1));
+    let faults: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let rules: BTreeSet<&str> =
+        faults.as_array().unwrap().iter().map(|f| f["rule"].as_str().unwrap()).collect();
+    assert_eq!(rules.into_iter().collect::<Vec<_>>(), ["names-reveal", "side-confounded", "stimuli-differ"]);
+    let differing = faults.as_array().unwrap().iter().filter(|f| f["rule"] == "stimuli-differ");
+    assert!(
+        differing.clone().count() == 3
+            && differing.clone().all(|f| f["evidence"].as_str().unwrap().starts_with("duration"))
+    );
+
+    let quick = Fixture::new();
+    let (code, _, said) = check(quick.config().to_str().unwrap(), &[]);
+    assert!(code == Some(2) && said.contains("no [forms] section"), "{said}");
+}
+
+/// What can be told of a file without looking at its pictures tells nothing of what it shows.
+#[test]
+fn a_bundle_tells_nothing_of_the_key() {
+    let fixture = balanced();
+    fixture.succeed("bundle", &[]);
+    let bundle = fixture.out().join("bundle");
+    let made = files(&bundle);
+    assert_eq!(made.len(), 1 + 2 * 27 + 2, "{:?}", made.keys());
+    let key = std::fs::read_to_string(fixture.out().join("key/stimuli.csv")).unwrap();
+    let shown: BTreeMap<&str, &str> =
+        key.lines().filter_map(|line| line.strip_prefix("stimuli/pairs/")?.split_once(',')).collect();
+    let mut stimuli: Vec<&String> = made.keys().filter(|path| path.ends_with(".gif")).collect();
+    let file = |path: &str| std::fs::metadata(bundle.join(path)).unwrap();
+    let sizes: BTreeSet<u64> = stimuli.iter().map(|path| file(path).len()).collect();
+    assert_eq!(sizes.len(), 1, "a smoother surface makes a smaller file");
+    assert!(stimuli.is_sorted());
+    stimuli.sort_by_key(|path| file(path).modified().unwrap());
+    assert!(stimuli.is_sorted(), "files are as old as their names say");
+    for path in &stimuli {
+        assert_eq!(extensions(&made[*path]), ["NETSCAPE2.0"], "{path}");
+    }
+    // The order of names against the order of the study: Spearman's rho of 56 is within 0.4 with probability 0.998.
+    let place = |path: &&String| {
+        key.lines().position(|line| line.contains(path.rsplit('/').next().unwrap())).unwrap()
+    };
+    let places: Vec<f64> = stimuli.iter().map(|path| place(path) as f64 - 19.0).collect();
+    let mean = (places.len() - 1) as f64 / 2.0;
+    let products: f64 = places.iter().enumerate().map(|(i, place)| (i as f64 - mean) * (place - mean)).sum();
+    let squares: f64 = (0..places.len()).map(|i| (i as f64 - mean).powi(2)).sum();
+    assert!((products / squares).abs() < 0.4, "{}", products / squares);
+
+    let text = String::from_utf8(made["forms.json"].clone()).unwrap();
+    for id in shown.values().flat_map(|line| line.split(',')).filter(|id| id.contains('_')) {
+        assert!(!text.contains(id), "{id}");
+    }
+    let forms: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(forms["forms"].as_array().unwrap().len(), 36);
+    let of_form = |form: &serde_json::Value| form["questions"].as_array().unwrap().clone();
+    for stimulus in forms["forms"].as_array().unwrap().iter().flat_map(of_form) {
+        assert!(made.contains_key(&format!("stimuli/{}.gif", stimulus.as_str().unwrap())), "{stimulus}");
+    }
+    let again = fixture.succeed("bundle", &[]);
+    assert!(!again.stderr.contains(" made, "), "{}", again.stderr);
+}
+
+#[test]
+fn videos_are_ffmpegs_and_said_to_be_missing_where_it_is() {
+    let fixture = Fixture::new();
+    let mut command = fixture.command("pairs");
+    let output = command.arg("--mp4").env("PATH", fixture.folder()).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("no ffmpeg on the PATH"), "{said}");
+    assert!(!fixture.out().exists(), "nothing is made before");
+
+    // A stand-in that keeps how many bytes it was sent, and writes that as the video.
+    if cfg!(unix) {
+        let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\nwc -c > \"$last\"\n";
+        let program = fixture.folder().join("ffmpeg");
+        std::fs::write(&program, script).unwrap();
+        make_executable(&program);
+        let path = format!("{}:{}", fixture.folder().display(), std::env::var("PATH").unwrap());
+        let output = fixture.command("pairs").arg("--mp4").env("PATH", path).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let made = files(fixture.out());
+        let videos: Vec<&Vec<u8>> =
+            made.iter().filter(|(path, _)| path.ends_with(".mp4")).map(|(_, v)| v).collect();
+        assert_eq!(videos.len(), 27);
+        let study = std::fs::read_to_string(fixture.config()).unwrap();
+        let number = |key: &str| -> u64 {
+            let line = study.lines().find_map(|line| line.strip_prefix(&format!("{key} = "))).unwrap();
+            line.parse().unwrap()
+        };
+        let sent = 2 * number("width") * number("height") * 3 * number("frames");
+        let read = |video: &Vec<u8>| String::from_utf8_lossy(video).trim().parse::<u64>().unwrap();
+        assert!(videos.iter().all(|video| read(video) == sent), "{sent}");
+    }
+}
+
+#[cfg(unix)]
+fn make_executable(path: &Path) {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o755)).unwrap();
+}
+
+#[cfg(not(unix))]
+fn make_executable(_: &Path) {}
+
 /// The text extensions of a GIF: comments, plain texts, and the names of application extensions.
 fn extensions(gif: &[u8]) -> Vec<String> {
     const GRAPHIC_CONTROL: u8 = 0xf9;

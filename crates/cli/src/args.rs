@@ -21,7 +21,9 @@ pub(crate) enum Command {
     /// Render the turntable animations
     Turntable(Selection),
     /// Compose the side-by-side pairs and write the key
-    Pairs(Run),
+    Pairs(Pairs),
+    /// Put together what participants get (forms and pairs, no key), and the researcher's contact sheet
+    Bundle(Run),
     /// Time every configuration, with the study's full number of rounds
     Bench(Bench),
     /// Read the answers; print and write the preference tables and figures
@@ -30,6 +32,31 @@ pub(crate) enum Command {
     Report(Run),
     /// Check a study file and everything it names, without doing any work
     Validate(Validate),
+    /// Judge a questionnaire before anyone answers, and deal its forms
+    #[command(subcommand)]
+    Design(Design),
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Design {
+    /// Say what is wrong with a questionnaire; exit code 1 if anything is
+    Check(Check),
+    /// Write the participants' forms, and the key to them
+    Forms(Run),
+    /// List what `design check` looks for
+    Rules,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Check {
+    /// Study file, such as configs/paper.toml
+    pub(crate) study: PathBuf,
+    /// Folder with the study's results; animations there are judged as well [default: results/<study id>]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) results: Option<PathBuf>,
+    /// Print the faults as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// Where a study is read from and written to.
@@ -56,6 +83,15 @@ pub(crate) struct Selection {
     /// Only these configurations, such as ss_bi [default: all]
     #[arg(long, value_name = "ID", value_delimiter = ',')]
     pub(crate) only: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Pairs {
+    #[command(flatten)]
+    pub(crate) run: Run,
+    /// Write each pair as H.264 video as well, twice the size, by the ffmpeg on the PATH
+    #[arg(long)]
+    pub(crate) mp4: bool,
 }
 
 #[derive(Debug, Args)]

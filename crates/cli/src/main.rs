@@ -6,13 +6,15 @@ mod manifest;
 mod picture;
 mod pipeline;
 mod progress;
+mod questionnaire;
 mod records;
 mod rooms;
 mod store;
 mod subject;
+mod video;
 
 use anyhow::{Context, Result};
-use args::{Analyse, Cli, Command, Run, Selection};
+use args::{Analyse, Cli, Command, Design, Run, Selection};
 use bench::Summary;
 use clap::Parser;
 
@@ -26,6 +28,7 @@ use store::Store;
 
 /// The work was done, but something in it is not as it should be.
 const CHECK_FAILED: u8 = 1;
+const NO_FORMS: &str = "the study has no [forms] section, or no comparisons: configs/balanced.toml has both";
 /// Wrong usage or input; clap uses the same.
 const INPUT_ERROR: u8 = 2;
 
@@ -60,11 +63,28 @@ fn run(command: Command) -> Result<Outcome> {
             pipeline.turntables(&meshes, only)?;
             say(&out.join("stimuli/turntables").display().to_string())
         }),
-        Command::Pairs(run) => with_pipeline(&run, |pipeline, out| {
+        Command::Pairs(pairs) => {
+            if pairs.mp4 {
+                video::check()?;
+            }
+            with_pipeline(&pairs.run, |pipeline, out| {
+                let meshes = pipeline.stimulus_meshes(&[])?;
+                let turntables = pipeline.turntables(&meshes, &[])?;
+                let stamps = pipeline.pairs(&turntables)?;
+                if pairs.mp4 {
+                    pipeline.videos(&stamps)?;
+                }
+                say(&out.join("stimuli/pairs").display().to_string())
+            })
+        }
+        Command::Bundle(run) => with_pipeline(&run, |pipeline, out| {
+            let forms = pipeline.forms()?.context(NO_FORMS)?;
             let meshes = pipeline.stimulus_meshes(&[])?;
             let turntables = pipeline.turntables(&meshes, &[])?;
-            pipeline.pairs(&turntables)?;
-            say(&out.join("stimuli/pairs").display().to_string())
+            let pairs = pipeline.pairs(&turntables)?;
+            pipeline.contact_sheet(&meshes)?;
+            pipeline.bundle(&forms, &pairs)?;
+            say(&out.join("bundle").display().to_string())
         }),
         Command::Bench(bench) => with_pipeline(&bench.run, |pipeline, _| {
             let length = if bench.short { PlanLength::Short } else { PlanLength::Full };
@@ -73,6 +93,12 @@ fn run(command: Command) -> Result<Outcome> {
         }),
         Command::Analyse(arguments) => analyse(&arguments),
         Command::Validate(arguments) => validate(&arguments.study),
+        Command::Design(Design::Check(arguments)) => return questionnaire::check(&arguments),
+        Command::Design(Design::Rules) => questionnaire::rules(),
+        Command::Design(Design::Forms(run)) => with_pipeline(&run, |pipeline, out| {
+            pipeline.forms()?.context(NO_FORMS)?;
+            say(&out.join("forms").display().to_string())
+        }),
     }?;
     Ok(Outcome::Sound)
 }

@@ -42,6 +42,8 @@ pub struct StudyFile {
     /// Comparison groups over which preference factors are computed.
     #[serde(default)]
     pub groups: Vec<GroupSection>,
+    /// How the questions are put to people; leave out for a study that asks nobody.
+    pub forms: Option<FormsSection>,
     /// The answers to analyse; leave out for a study that has none yet.
     pub responses: Option<ResponsesSection>,
     /// Published numbers to compare with; leave out for a new study.
@@ -326,6 +328,79 @@ pub struct GroupSection {
     pub label: String,
     /// Methods whose comparisons among each other make up the group.
     pub members: Vec<Method>,
+}
+
+/// Which configuration of a comparison is on the left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SideRule {
+    /// Balanced within a form and over participants.
+    Balanced,
+    /// As the comparisons are listed, for everybody.
+    AsListed,
+}
+
+/// In which order a participant is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OrderRule {
+    /// Every question at every place equally often.
+    LatinSquare,
+    /// At random for each participant.
+    Shuffled,
+    /// As listed, for everybody.
+    AsListed,
+}
+
+/// What participants can read off a stimulus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ShownNames {
+    /// Code names that say nothing.
+    CodeNames,
+    /// The ids of the configurations.
+    ConfigurationIds,
+}
+
+/// How the questions are put to people.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FormsSection {
+    /// What is asked about each pair.
+    pub prompt: String,
+    /// The answers: left, no preference, right.
+    pub choices: [String; 3],
+    /// How many participants are planned.
+    #[serde(deserialize_with = "whole")]
+    pub participants: u32,
+    /// Which configuration of a comparison is on the left.
+    pub sides: SideRule,
+    /// In which order a participant is asked.
+    pub order: OrderRule,
+    /// What participants can read off a stimulus.
+    pub names: ShownNames,
+    /// Pairs of one configuration with itself in a form.
+    #[serde(deserialize_with = "whole")]
+    pub controls: u32,
+    /// Comparisons asked twice in a form, the second time with the sides swapped.
+    #[serde(deserialize_with = "whole")]
+    pub repeats: u32,
+    /// Most questions that one participant is asked, training left out.
+    #[serde(deserialize_with = "whole")]
+    pub max_questions: u32,
+    /// Pairs shown first, to learn how it works.
+    #[serde(default)]
+    pub training: Vec<TrainingSection>,
+}
+
+/// A pair to learn with.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainingSection {
+    /// Shown on the left.
+    pub left: ConfigurationId,
+    /// Shown on the right.
+    pub right: ConfigurationId,
 }
 
 /// The answers to analyse, and what their file does not say itself.

@@ -1,8 +1,8 @@
 //! What the crate's front page says of odd input: an error, or a mesh with a meaning.
 
 use extract::{
-    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Gyroid, Lattice, Positions,
-    ScalarField, Sphere, Topology, extract,
+    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Gyroid, Lattice, Placement,
+    Positions, ScalarField, Sphere, Topology, extract,
 };
 use glam::Vec3;
 use mesh::Bounds;
@@ -15,6 +15,8 @@ const UNCLUSTERED: ExtractSettings = ExtractSettings {
     isovalue: 0.0,
     clustering: Clustering::None,
     topology: Topology::Guarded,
+    placement: Placement::MeanOfCrossings,
+    refine_crossings: false,
     positions: Positions::Indexed,
 };
 
