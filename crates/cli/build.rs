@@ -6,7 +6,7 @@
 use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 
-const ROOMS: [&str; 7] = ["mesh", "design", "extract", "raster", "bench", "analysis", "cli"];
+const ROOMS: [&str; 8] = ["mesh", "design", "responses", "extract", "raster", "bench", "analysis", "cli"];
 
 fn main() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");

@@ -1,8 +1,8 @@
 //! Answers to preference factors, and a study's tables and figures.
 //!
-//! Takes plain records from [`design::record`] and a file of answers ([`read_answers`]); gives [`Table`]s that print
+//! Takes plain records from [`design::record`] and answers that were read ([`responses::Responses`]); gives [`Table`]s that print
 //! themselves as CSV, Markdown, LaTeX and HTML, and [`Figure`]s as SVG and PNG. Knows nothing of files to write, of
-//! geometry or of command lines. polars does the table verbs (read, unpivot, join, count); from the counts on,
+//! geometry or of command lines. polars does the table verbs (join, group, count); from the counts on,
 //! preference factors are exact fractions ([`Fraction`]) until they are printed.
 //!
 //! # Guarantees
@@ -12,8 +12,6 @@
 //!
 //! Tests and models of preference are in [`statistics`], over plain ballots.
 
-mod answers;
-mod answers_error;
 mod ballots;
 mod claims;
 mod comparison;
@@ -34,9 +32,7 @@ mod verdict;
 #[cfg(test)]
 mod fixture;
 
-pub use answers::{Answers, Choice, read_answers};
-pub use answers_error::AnswersError;
-pub use ballots::{BallotGroup, ballot_groups, ballots};
+pub use ballots::{BallotGroup, as_declared, ballot_groups, ballots};
 pub use comparison::unexplained_differences;
 pub use figures::{Figure, figures};
 pub use fraction::Fraction;

@@ -10,12 +10,12 @@ mod mesh_quality;
 pub(crate) mod models;
 pub(crate) mod preferences;
 
-use crate::answers::Answers;
 use crate::inputs::{AnalysisError, Inputs};
 use crate::table::Table;
 use crate::tally::Tally;
 use crate::{ballots, claims, comparison};
 use ::design::Study;
+use responses::Responses;
 
 /// Every table whose inputs are there, in the order of the paper's and then our own.
 ///
@@ -29,7 +29,7 @@ pub fn tables(inputs: &Inputs<'_>) -> Result<Vec<Table>, AnalysisError> {
     tables.extend(benchmark::asteroid(inputs));
     tables.extend(design::questionnaire(inputs.study));
     if let (Some(answers), Some(tally)) = (inputs.answers, tally) {
-        tables.push(answers::answers(inputs.study, answers));
+        tables.extend(answers::answers(inputs.study, answers));
         tables.push(answers::counts(inputs.study, tally));
         tables.extend(preferences::all(inputs.study, tally));
         tables.extend(statistics(inputs.study, answers));
@@ -44,7 +44,7 @@ pub fn tables(inputs: &Inputs<'_>) -> Result<Vec<Table>, AnalysisError> {
 }
 
 /// What holds up beside the factors: tests, models, agreement, screening.
-fn statistics(study: &Study, answers: &Answers) -> Vec<Table> {
+fn statistics(study: &Study, answers: &Responses) -> Vec<Table> {
     let ballots = ballots::ballots(study, answers);
     let groups = ballots::ballot_groups(study, &ballots);
     let mut tables = vec![contrasts::study_tests(study, &ballots), contrasts::omnibus(study, &ballots)];

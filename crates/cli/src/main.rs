@@ -1,5 +1,6 @@
 //! The `isostudy` command: arguments, files, progress and exit codes. What is computed is computed in the rooms.
 
+mod answers;
 mod args;
 mod manifest;
 mod picture;
@@ -10,7 +11,6 @@ mod rooms;
 mod store;
 mod subject;
 
-use analysis::Answers;
 use anyhow::{Context, Result};
 use args::{Analyse, Cli, Command, Run, Selection};
 use bench::Summary;
@@ -131,7 +131,7 @@ fn analyse(arguments: &Analyse) -> Result<()> {
     let responses = study.responses.as_ref().with_context(no_answers)?;
     let folder = || Path::new("results").join(format!("{}-answers", study.file.study.id));
     let out = arguments.out.clone().unwrap_or_else(folder);
-    let answers = analysis::read_answers(responses, &study)?;
+    let answers = answers::read(responses, &study)?;
     let store = Store::open(&out, false)?;
     let tables = pipeline::write_answers_only(&study, &answers, &store)?;
     store.remove_retired()?;
@@ -156,9 +156,9 @@ fn validate(path: &Path) -> Result<()> {
             configuration.id.method.label()
         ))?;
     }
-    let respondents = match read_answers(&study)? {
+    let respondents = match answers::of_study(&study)? {
         None => "no answers".to_owned(),
-        Some(answers) => format!("{} respondents", answers.respondents()),
+        Some(answers) => format!("{} respondents", answers.participants.len()),
     };
     let (questions, groups) = (study.comparisons.len(), study.groups.len());
     say(&format!("{}: valid; {questions} questions in {groups} groups, {respondents}", path.display()))
@@ -169,13 +169,8 @@ fn load(path: &Path) -> Result<Study> {
     let study = Study::load(path)?;
     subject::check_lattices(&study, bench::read_machine().memory_bytes)?;
     subject::check_mesh_files(&study)?;
-    read_answers(&study)?;
+    answers::of_study(&study)?;
     Ok(study)
-}
-
-fn read_answers(study: &Study) -> Result<Option<Answers>> {
-    let read = |path: &PathBuf| analysis::read_answers(path, study);
-    Ok(study.responses.as_ref().map(read).transpose()?)
 }
 
 fn default_folder(study: &Study) -> PathBuf {

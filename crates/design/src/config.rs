@@ -328,12 +328,64 @@ pub struct GroupSection {
     pub members: Vec<Method>,
 }
 
-/// The answers to analyse.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+/// The answers to analyse, and what their file does not say itself.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ResponsesSection {
-    /// CSV file: one row a respondent, one column a question, cells `L`, `NP` or `R`.
-    pub file: String,
+    /// The file: the study's own table (one row a respondent, one column a question, cells `L`, `NP` or `R`), the long
+    /// format, or an export of a questionnaire.
+    pub file: Option<String>,
+    /// Its format; otherwise it is detected.
+    pub format: Option<String>,
+    /// `,`, `;`, `|` or `tab`; otherwise it is detected.
+    pub separator: Option<String>,
+    /// Ids of the questions in the order of their columns; otherwise the study's order.
+    pub questions: Option<Vec<String>>,
+    /// Columns of the questions, from 1.
+    pub question_columns: Option<Vec<usize>>,
+    /// Column of the first question, from 1; the others follow it.
+    pub first_question_column: Option<usize>,
+    /// Column of the participant's id, from 1.
+    pub participant_column: Option<usize>,
+    /// What the file calls the three answers, beside the built-in words.
+    pub synonyms: Option<SynonymsSection>,
+    /// `refuse` (default) or `leave-out`: what to do with cells that are no answers.
+    pub unknown: Option<String>,
+    /// `refuse` (default), `first` or `last`: which of several answers to the same counts.
+    pub duplicates: Option<String>,
+    /// The questions of answers without a study; a study has its comparisons.
+    #[serde(default)]
+    pub pairs: Vec<PairSection>,
+}
+
+/// Words for the three answers.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SynonymsSection {
+    /// Left.
+    pub left: Vec<String>,
+    /// No preference.
+    pub none: Vec<String>,
+    /// Right.
+    pub right: Vec<String>,
+}
+
+/// A question without a study: what is shown on which side.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PairSection {
+    /// The question's id, unique.
+    pub question: String,
+    /// Shown on the left.
+    pub left: String,
+    /// Shown on the right.
+    pub right: String,
+    /// What both are of.
+    #[serde(default)]
+    pub object: String,
+    /// The group of things that are compared with one another.
+    #[serde(default)]
+    pub group: String,
 }
 
 /// Published numbers to compare with.

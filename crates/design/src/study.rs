@@ -1,7 +1,7 @@
 //! A study, read from its file, checked, and ready to work from.
 
 use crate::check::{Checker, ConfigError};
-use crate::config::{FieldSection, ObjectSection, StudyFile};
+use crate::config::{FieldSection, ObjectSection, ResponsesSection, StudyFile};
 use crate::machine::CpuProfile;
 use crate::method::{ConfigurationId, Method};
 use crate::published::{BenchmarkRow, Claim, PreferenceCell};
@@ -113,8 +113,10 @@ impl Study {
             .map_err(|source| ConfigError::Read { file: target_path.clone(), source })?;
         let target = parse_toml(&target_text, &target_path)?;
         let responses = match &file.responses {
-            None => None,
-            Some(responses) => Some(checker.existing("responses.file", &responses.file, "")?),
+            Some(ResponsesSection { file: Some(written), .. }) => {
+                Some(checker.existing("responses.file", written, "")?)
+            }
+            _ => None,
         };
         let published = match &file.published {
             None => Published::default(),

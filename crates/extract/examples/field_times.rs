@@ -26,7 +26,7 @@ impl ScalarField for Counting<'_> {
 }
 
 fn bunny() -> Option<MeshDistance> {
-    let cache = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../main/cache/bunny.ply");
+    let cache = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cache/bunny.ply");
     let Ok(file) = std::fs::File::open(&cache) else {
         eprintln!("SKIPPED: no bunny at {}", cache.display());
         return None;
@@ -94,8 +94,9 @@ fn main() {
                 }
             }
             let taken = AtomicUsize::new(0);
-            let prepared = field.prepared();
-            let counting = Counting(prepared.as_deref().unwrap_or(field), &taken);
+            let mut kept = extract::Kept::default();
+            let prepared = field.prepared(&mut kept);
+            let counting = Counting(prepared.unwrap_or(field), &taken);
             extractor.extract(Source::Field(&counting), &lattice, &settings, &execution).unwrap();
             let (ms, times) = best.unwrap();
             println!(

@@ -44,13 +44,14 @@ fn main() {
         let fields: [(&str, &dyn ScalarField); 2] =
             [("sphere 0.8", &Sphere { radius: 0.8 }), ("asteroid", &Asteroid::default())];
         for (name, field) in fields {
-            let values = samples(field, &lattice);
+            let mut values = None;
             for clustering in [Clustering::Integrated, Clustering::None] {
                 for threads in [1, 2] {
                     let id = format!("{arrangement:?} {name} {clustering:?} {threads}");
                     if !id.contains(&wanted) {
                         continue;
                     }
+                    let values = values.get_or_insert_with(|| samples(field, &lattice));
                     let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
                     let (mut extractor, mut extraction) = (Extractor::new(), Extraction::default());
                     let mut best: Option<(f64, Extraction)> = None;
@@ -60,7 +61,7 @@ fn main() {
                         let execution = Execution { threads };
                         extractor
                             .extract_into(
-                                Source::Samples(&values),
+                                Source::Samples(values),
                                 &lattice,
                                 &settings,
                                 &execution,

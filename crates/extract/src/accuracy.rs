@@ -6,7 +6,7 @@ use mesh::distribution::{Bins, Distribution};
 use rayon::prelude::*;
 
 use crate::ExtractError;
-use crate::field::ScalarField;
+use crate::field::{Kept, ScalarField};
 use crate::level::Level;
 use crate::sampling::on_threads;
 use crate::settings::Execution;
@@ -58,8 +58,8 @@ pub fn accuracy(
     spacing: f32,
     execution: &Execution,
 ) -> Result<Accuracy, ExtractError> {
-    let prepared = field.prepared();
-    let level = Level { field: prepared.as_deref().unwrap_or(field), isovalue, spacing };
+    let mut kept = Kept::default();
+    let level = Level { field: field.prepared(&mut kept).unwrap_or(field), isovalue, spacing };
     let points = points_by_area(mesh, POINTS);
     let every = mesh.normals.len().div_ceil(VERTICES).max(1);
     let vertices: Vec<usize> = (0..mesh.normals.len()).step_by(every).collect();

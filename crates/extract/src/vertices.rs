@@ -13,8 +13,8 @@ use crate::clusters::Clusters;
 use crate::edges::EdgeTable;
 use crate::guard::{Class, Guard};
 use crate::lattice::{
-    ALL_DIRECTIONS, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout, PADDING_LAYERS,
-    members,
+    ALL_DIRECTIONS, Arrangement, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout,
+    PADDING_LAYERS, members,
 };
 use crate::placement::{CrossingPlacer, Surroundings};
 use crate::settings::{Clustering, ExtractSettings, Topology};
@@ -73,7 +73,7 @@ pub(crate) fn place_vertices(
     let mut stage = VertexStage {
         lattice,
         directions: lattice.arrangement().directions(),
-        guard: Guard::get(lattice.arrangement()),
+        arrangement: lattice.arrangement(),
         samples,
         settings,
         ties: Ties::of(settings.topology),
@@ -106,7 +106,7 @@ pub(crate) fn place_vertices(
 struct VertexStage<'a> {
     lattice: &'a Lattice,
     directions: &'static Directions,
-    guard: &'static Guard,
+    arrangement: Arrangement,
     samples: &'a [f32],
     settings: &'a ExtractSettings,
     ties: Ties,
@@ -175,11 +175,12 @@ impl VertexStage<'_> {
                 Clusters::integrated(near, self.directions)
             }
             (Clustering::Integrated | Clustering::IntegratedCollapse, Topology::Guarded) => {
-                let inner = incident == ALL_DIRECTIONS;
-                if inner && self.guard.class(crossing, near) != Class::Ask {
+                // Here, so that the other rules do without its tables.
+                let guard = Guard::get(self.arrangement);
+                if incident == ALL_DIRECTIONS && guard.class(crossing, near) != Class::Ask {
                     Clusters::whole(near)
                 } else {
-                    Clusters::from_partition(&self.guard.partition(crossing, near, incident))
+                    Clusters::from_partition(&guard.partition(crossing, near, incident))
                 }
             }
         }

@@ -1,5 +1,6 @@
 //! Agreement of participants with each other and with themselves.
 
+use crate::ballots::as_declared;
 use crate::statistics::{
     Ballot, Metric, Triads, agreement as kendall, alpha, outcome_counts, screening, triads,
 };
@@ -26,6 +27,7 @@ pub(super) fn agreement(study: &Study, ballots: &[Ballot]) -> Table {
             ("weak_cycles", "weak cycles"),
         ],
     );
+    let ballots = as_declared(study, ballots);
     for group in std::iter::once(None).chain((0..study.groups.len()).map(Some)) {
         let inside = |b: &&Ballot| group.is_none_or(|g| study.comparisons[b.question].group == g);
         let own: Vec<Ballot> = ballots.iter().filter(inside).copied().collect();

@@ -1,7 +1,7 @@
 //! Tests of preference, by family.
 
 use super::models::BOOTSTRAP_LIMIT;
-use crate::ballots::BallotGroup;
+use crate::ballots::{BallotGroup, as_declared};
 use crate::statistics::bootstrap::Resampling;
 use crate::statistics::contrast::{Contrast, ContrastTest, contrasts};
 use crate::statistics::{Ballot, ChiSquareTest, benjamini_hochberg, friedman, holm, sign_test};
@@ -29,8 +29,9 @@ pub(super) fn study_tests(study: &Study, ballots: &[Ballot]) -> Table {
         scope: contrast.scope,
     };
     let mut rows: Vec<Row> = contrasts(study).into_iter().map(row).collect();
+    let declared = as_declared(study, ballots);
     for (question, comparison) in study.comparisons.iter().enumerate() {
-        let own = ballots.iter().filter(|b| b.question == question);
+        let own = declared.iter().filter(|b| b.question == question);
         rows.push(Row {
             family: QUESTIONS.into(),
             contrast: format!("{}-{}", comparison.left.method, comparison.right.method),

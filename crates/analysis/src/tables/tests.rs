@@ -1,8 +1,6 @@
 use super::*;
-use crate::answers::Answers;
 use crate::fixture::{self, Everything};
 use crate::table::Cell;
-use std::path::Path;
 
 fn named<'a>(tables: &'a [Table], name: &str) -> &'a Table {
     tables.iter().find(|table| table.name == name).unwrap_or_else(|| panic!("no table {name}"))
@@ -195,7 +193,7 @@ fn absent_parts_leave_out_their_tables() {
 #[test]
 fn another_study_works_as_well() {
     let study = fixture::small_study();
-    let answers = Answers::parse(b"Q17,Q8\nL,R\nNP,R\n", Path::new("small.csv"), &study).unwrap();
+    let answers = fixture::parse("Q17,Q8\nL,R\nNP,R\n", &study);
     let paper = fixture::study();
     let (meshes, bench) = (fixture::meshes(&paper), fixture::bench(&paper));
     let inputs = Inputs { study: &study, meshes: &meshes, bench: Some(&bench), answers: Some(&answers) };

@@ -4,9 +4,10 @@ use super::{Meshes, Pipeline};
 use crate::progress::Step;
 use crate::rooms;
 use crate::store::{Inputs, Stamp, Store, Writer, sha256};
-use analysis::{Answers, Figure, Table};
+use analysis::{Figure, Table};
 use anyhow::{Context, Result};
 use design::Study;
+use responses::Responses;
 use serde::{Deserialize, Serialize};
 
 impl Pipeline<'_> {
@@ -20,7 +21,7 @@ impl Pipeline<'_> {
         let stamp = self.store.stage("tables", inputs, |writer| {
             let records = self.mesh_records(meshes)?;
             let run = self.bench_run(timings)?;
-            let answers = crate::read_answers(self.study)?;
+            let answers = crate::answers::of_study(self.study)?;
             let inputs = analysis::Inputs {
                 study: self.study,
                 meshes: &records,
@@ -47,7 +48,7 @@ impl Pipeline<'_> {
 ///
 /// # Errors
 /// If the files cannot be written.
-pub(crate) fn write_answers_only(study: &Study, answers: &Answers, store: &Store) -> Result<Vec<Table>> {
+pub(crate) fn write_answers_only(study: &Study, answers: &Responses, store: &Store) -> Result<Vec<Table>> {
     let inputs = analysis::Inputs { study, meshes: &[], bench: None, answers: Some(answers) };
     store.stage("answers", study_inputs(study)?, |writer| write(writer, &inputs).map(|_| ()))?;
     Ok(analysis::tables(&inputs)?)

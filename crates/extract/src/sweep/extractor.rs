@@ -12,6 +12,7 @@ use super::rule::{ClusterRule, Guarded, Published, Unclustered};
 use super::slab::{Job, Piece, SlabTimes, Workspace, sweep};
 use super::source::Source;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
+use crate::field::Kept;
 use crate::lattice::Lattice;
 use crate::level::Level;
 use crate::placement::{self, CrossingPlacer};
@@ -30,7 +31,8 @@ type Progress = Box<dyn Fn(usize, usize) + Send + Sync>;
 ///
 /// With indexed positions it streams: memory grows with a layer of the lattice and with the mesh. From the second
 /// volume of a size on, with one thread, unless edges are collapsed or vertices placed otherwise than at the mean of
-/// interpolated crossings, [`extract_into`](Self::extract_into) allocates nothing.
+/// interpolated crossings, [`extract_into`](Self::extract_into) allocates nothing, as long as the surface does not
+/// outgrow those before it; an [`Asteroid`](crate::Asteroid) other than the one before has its tables made again.
 ///
 /// ```
 /// use extract::{Arrangement, Execution, ExtractSettings, Extraction, Extractor, Lattice, ScalarField, Sphere};
@@ -53,6 +55,7 @@ pub struct Extractor {
     plan: Option<Plan>,
     workspaces: Vec<Workspace>,
     pieces: Vec<Piece>,
+    kept: Kept,
     progress: Option<Progress>,
 }
 
@@ -127,11 +130,12 @@ impl Extractor {
             return Ok(());
         }
         let start = Instant::now();
+        let mut kept = std::mem::take(&mut self.kept);
         let prepared = match source {
-            Source::Field(field) => field.prepared(),
+            Source::Field(field) => field.prepared(&mut kept),
             Source::Samples(_) => None,
         };
-        let source = prepared.as_deref().map_or(source, Source::Field);
+        let source = prepared.map_or(source, Source::Field);
         let plan = match self.plan.take() {
             Some(plan) if plan.grid.lattice == *lattice => plan,
             _ => Plan::new(lattice),
@@ -157,7 +161,7 @@ impl Extractor {
                 self.run(&plan, &rule, source, settings, execution, extraction, start)
             }
         };
-        self.plan = Some(plan);
+        (self.plan, self.kept) = (Some(plan), kept);
         result
     }
 
