@@ -1,6 +1,7 @@
 //! The whole chain as a user runs it: the `isostudy` command on a small study with real answers.
 
 mod fixture;
+mod page;
 
 use fixture::{Fixture, Run, files, without_measured_times};
 use std::collections::{BTreeMap, BTreeSet};
@@ -34,6 +35,47 @@ fn a_study_makes_everything_once_and_then_nothing() {
     let again = fixture.succeed("study", &[]);
     assert!(!again.stderr.contains(" made, "), "{}", again.stderr);
     assert_eq!(files(fixture.out()), made);
+}
+
+/// One file, no request, headings in order, everything labelled, and text that stands out from what is behind it.
+#[test]
+fn the_report_can_be_read_alone() {
+    let fixture = Fixture::new();
+    fixture.succeed("study", &[]);
+    let made = files(fixture.out());
+    let page = String::from_utf8(made["report.html"].clone()).unwrap();
+    assert_eq!(page::unclosed(&page), Vec::<String>::new());
+    for forbidden in ["src=", "<link", "@import", "url(", "<script", "<img"] {
+        assert!(!page.contains(forbidden), "{forbidden}");
+    }
+    // SVG's name is no request.
+    let addresses = page.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
+    assert!(!addresses.contains("http://") && !addresses.contains("https://"));
+    let headings: Vec<&str> = page.match_indices("<h").map(|(i, _)| &page[i..i + 3]).collect();
+    let headings: Vec<&&str> = headings.iter().filter(|h| h.as_bytes()[2].is_ascii_digit()).collect();
+    assert!(
+        *headings[0] == "<h1" && headings[1..].iter().all(|h| **h == "<h2") && headings.len() > 8,
+        "{headings:?}"
+    );
+    let figures = page.matches("<svg").count();
+    assert!(figures >= 13, "{figures}");
+    assert_eq!(page.matches("role=\"img\" aria-label=\"").count(), figures);
+    for target in page.split("href=\"#").skip(1).map(|rest| rest.split('"').next().unwrap()) {
+        assert!(page.contains(&format!("id=\"{target}\"")), "{target}");
+    }
+    for link in page.split("href=\"").skip(1).map(|rest| rest.split('"').next().unwrap()) {
+        assert!(link.starts_with('#') || made.contains_key(link), "{link}");
+    }
+    for behind in ["ffffff", "f4f6f8"] {
+        for ink in ["1c1f23", "545c66", "005e57", "8f4a00", "8a2f5b"] {
+            assert!(page.contains(ink), "{ink}");
+            assert!(page::contrast(ink, behind) >= 4.5, "{ink} on {behind}");
+        }
+    }
+    let gallery = String::from_utf8(made["index.html"].clone()).unwrap();
+    assert!(gallery.contains("href=\"report.html\"") && page.contains("href=\"index.html\""));
+    let markdown = String::from_utf8(made["report.md"].clone()).unwrap();
+    assert!(markdown.contains("\n## What holds\n") && markdown.contains("](figures/worths.svg)"));
 }
 
 #[test]

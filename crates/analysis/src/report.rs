@@ -274,3 +274,6 @@ impl Press {
         Report { title, lead, sections: self.sections }
     }
 }
+
+#[cfg(test)]
+mod tests;

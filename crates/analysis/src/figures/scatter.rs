@@ -7,7 +7,7 @@ use super::marks::Mark;
 use super::style::GRID;
 
 const LEFT: f64 = 80.0;
-const RIGHT: f64 = 14.0;
+const RIGHT: f64 = 26.0;
 const TOP: f64 = 34.0;
 const BOTTOM: f64 = 44.0;
 const EM: f64 = 11.0;

@@ -12,6 +12,7 @@ fn is_well_formed(svg: &str) -> bool {
             .replace("&lt;", "")
             .replace("&gt;", "")
             .replace("&quot;", "")
+            .replace("&apos;", "")
             .contains('&')
         {
             return false;

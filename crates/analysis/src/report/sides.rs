@@ -5,7 +5,8 @@ use super::words::{capital, counted, interval, list, number};
 use super::{Block, Evidence, names};
 use crate::statistics::contrast::{Level, contrasts};
 use crate::statistics::{
-    Ballot, Model, Pairs, Participants, SideDesign, clustered_covariance, fit, side_design,
+    Ballot, Model, Pairs, Participants, Separation, SideDesign, clustered_covariance, fit, separation,
+    side_design,
 };
 use std::collections::BTreeMap;
 
@@ -90,7 +91,12 @@ fn side(evidence: &Evidence<'_>) -> Vec<Finding> {
 }
 
 fn estimate(name: &str, ballots: &[Ballot], items: usize) -> Option<String> {
-    let fitted = fit(Model::DavidsonSide, &Pairs::of(items, ballots)).ok().filter(|fit| !fit.penalised)?;
+    let pairs = Pairs::of(items, ballots);
+    // Where ties alone keep the worths finite, the side would take the blame.
+    if separation(&pairs) != Separation::None {
+        return None;
+    }
+    let fitted = fit(Model::DavidsonSide, &pairs).ok().filter(|fit| !fit.penalised)?;
     let participants = Participants::of(items, ballots);
     let covariance = clustered_covariance(&fitted, &participants)?;
     let place = fitted.parameters.len() - 1;

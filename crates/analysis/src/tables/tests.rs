@@ -207,5 +207,5 @@ fn another_study_works_as_well() {
     assert!(!tables.iter().any(|table| ["comparison", "claims", "asteroid"].contains(&table.name.as_str())));
     assert_eq!(named(&tables, "benchmark").rows.len(), 4);
     assert!(tables.iter().all(|table| !table.rows.is_empty()));
-    assert_eq!(crate::figures(&inputs).unwrap().len(), 8);
+    assert_eq!(crate::figures(&inputs).unwrap().len(), 13);
 }

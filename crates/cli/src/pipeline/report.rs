@@ -15,8 +15,8 @@ const TEMPLATE: &str = include_str!("../page/report.html");
 #[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 enum Piece<'a> {
-    Text { text: &'a str },
-    Finding { standing: &'static str, class: String, text: &'a str },
+    Text { text: String },
+    Finding { standing: &'static str, class: String, text: String },
     Table { name: &'a str, caption: &'a str, html: String, folded: bool },
     Figure { name: &'a str, caption: &'a str, svg: &'a str },
 }
@@ -52,9 +52,10 @@ pub(super) fn write(writer: &mut Writer<'_>, report: &Report, gallery: bool) -> 
 
 fn piece(block: &Block) -> Piece<'_> {
     match block {
-        Block::Text(text) => Piece::Text { text },
+        Block::Text(text) => Piece::Text { text: unbroken(text) },
         Block::Finding(Finding { standing, text }) => {
-            Piece::Finding { standing: standing.label(), class: standing.label().replace(' ', "-"), text }
+            let (standing, class) = (standing.label(), standing.label().replace(' ', "-"));
+            Piece::Finding { standing, class, text: unbroken(text) }
         }
         Block::Table(table) | Block::Folded(table) => {
             let Table { name, caption, .. } = table;
@@ -62,4 +63,13 @@ fn piece(block: &Block) -> Piece<'_> {
         }
         Block::Figure(Figure { name, caption, svg, .. }) => Piece::Figure { name, caption, svg },
     }
+}
+
+/// With spaces inside numbers at which no line may end.
+fn unbroken(text: &str) -> String {
+    let mut text = text.replace(" %", "\u{a0}%");
+    for sign in [" = ", " < "] {
+        text = text.replace(sign, &sign.replace(' ', "\u{a0}"));
+    }
+    text
 }
