@@ -1,5 +1,6 @@
 //! Every table of a study.
 
+mod accuracy;
 mod agreement;
 mod answers;
 mod benchmark;
@@ -7,14 +8,15 @@ pub(crate) mod contrasts;
 mod design;
 mod mesh_quality;
 pub(crate) mod models;
+mod prediction;
 pub(crate) mod preferences;
 
 use crate::answers::Answers;
 use crate::inputs::{AnalysisError, Inputs};
+use crate::prediction::Prediction;
 use crate::table::Table;
 use crate::tally::Tally;
 use crate::{ballots, claims, comparison};
-use ::design::Study;
 
 /// Every table whose inputs are there, in the order of the paper's and then our own.
 ///
@@ -31,23 +33,27 @@ pub fn tables(inputs: &Inputs<'_>) -> Result<Vec<Table>, AnalysisError> {
         tables.push(answers::answers(inputs.study, answers));
         tables.push(answers::counts(inputs.study, tally));
         tables.extend(preferences::all(inputs.study, tally));
-        tables.extend(statistics(inputs.study, answers));
+        tables.extend(statistics(inputs, answers));
     }
     tables.extend(mesh_quality::quality(inputs));
     tables.extend(mesh_quality::topology(inputs));
+    tables.extend(accuracy::accuracy(inputs));
     tables.extend(mesh_quality::positions(inputs));
     tables.extend(comparison::tables(inputs, tally));
     tables.extend(claims::table(inputs, tally));
     Ok(tables)
 }
 
-/// What holds up beside the factors: tests, models, agreement, screening.
-fn statistics(study: &Study, answers: &Answers) -> Vec<Table> {
+/// What holds up beside the factors: tests, models, agreement, screening, and what predicts preference.
+fn statistics(inputs: &Inputs<'_>, answers: &Answers) -> Vec<Table> {
+    let study = inputs.study;
     let ballots = ballots::ballots(study, answers);
     let groups = ballots::ballot_groups(study, &ballots);
     let mut tables = vec![contrasts::study_tests(study, &ballots), contrasts::omnibus(study, &ballots)];
     tables.extend(models::model_tables(&groups));
     tables.extend([agreement::agreement(study, &ballots), agreement::respondents(&ballots)]);
+    let prediction = Prediction::of(inputs, &ballots);
+    tables.extend(prediction.iter().flat_map(|found| prediction::all(study, found)));
     tables.retain(|table| !table.rows.is_empty());
     tables
 }

@@ -72,6 +72,7 @@ mod fields;
 #[path = "../tests/survey/mod.rs"]
 mod survey;
 
+mod accuracy;
 mod clusters;
 mod collapse;
 mod edges;
@@ -79,6 +80,7 @@ mod extraction;
 mod field;
 mod guard;
 mod lattice;
+mod level;
 mod normals;
 mod sampling;
 mod settings;
@@ -88,6 +90,7 @@ mod tetrahedra;
 mod triangles;
 mod vertices;
 
+pub use accuracy::{Accuracy, accuracy};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
 pub use field::{Asteroid, Gyroid, MeshDistance, MeshFieldError, ScalarField, Sphere};
 pub use lattice::{Arrangement, Lattice, LatticeError};

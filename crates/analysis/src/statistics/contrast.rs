@@ -32,6 +32,30 @@ impl Family {
     }
 }
 
+/// A value of one of the two properties that a study varies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    /// How sample points are laid out.
+    Arrangement(Arrangement),
+    /// How vertices are merged.
+    Clustering(Clustering),
+}
+
+/// Over which answers a contrast goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Over {
+    /// All that compare its two levels.
+    All,
+    /// Those where the other property has this value.
+    Within(Level),
+    /// Those on one object, by index.
+    Object(usize),
+    /// Those where the other property has the first value, less those where it has the second.
+    Difference(Level, Level),
+    /// Those on one object, less those on all others.
+    AgainstOthers(usize),
+}
+
 /// A weighted sum of answers; each question's weight is for its left side.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Contrast {
@@ -41,6 +65,10 @@ pub struct Contrast {
     pub name: String,
     /// Over which answers, such as `within B`.
     pub scope: String,
+    /// What is compared: the level that counts as positive, and the other.
+    pub levels: [Level; 2],
+    /// Over which answers.
+    pub over: Over,
     /// Question index to weight.
     pub weights: BTreeMap<usize, i64>,
 }
@@ -60,6 +88,16 @@ pub struct ContrastTest {
     pub mean: f64,
     /// t interval for it over participants.
     pub interval: Option<Interval>,
+}
+
+impl Level {
+    /// The paper's letter, upper case.
+    pub fn code(self) -> char {
+        match self {
+            Self::Arrangement(arrangement) => arrangement.code().to_ascii_uppercase(),
+            Self::Clustering(clustering) => clustering.code().to_ascii_uppercase(),
+        }
+    }
 }
 
 impl Contrast {
@@ -179,11 +217,12 @@ pub fn contrasts(study: &Study) -> Vec<Contrast> {
         }
     }
     let mut found = Vec::new();
-    let mut add = |family, name: &str, scope: String, weights: BTreeMap<usize, i64>| {
-        found.push(Contrast { family, name: name.into(), scope, weights });
+    let mut add = |family, levels: [Level; 2], scope: String, over, weights: BTreeMap<usize, i64>| {
+        let name = format!("{}-{}", levels[0].code(), levels[1].code());
+        found.push(Contrast { family, name, scope, levels, over, weights });
     };
     for &(a, b) in &clusterings {
-        let name = format!("{}-{}", a.code().to_ascii_uppercase(), b.code().to_ascii_uppercase());
+        let levels = [a, b].map(Level::Clustering);
         let sign = |single| match single {
             Single::Clustering { left, right, .. } => sign_of((a, b), (left, right)),
             Single::Arrangement { .. } => 0,
@@ -192,22 +231,24 @@ pub fn contrasts(study: &Study) -> Vec<Contrast> {
             Single::Clustering { within, .. } => Some(within),
             Single::Arrangement { .. } => None,
         };
-        add(Family::Pooled, &name, "all".into(), weights(&questions, |_, s| sign(s)));
+        add(Family::Pooled, levels, "all".into(), Over::All, weights(&questions, |_, s| sign(s)));
         let arrangements = &study.file.arrangements;
         for &arrangement in arrangements {
-            let scope = format!("within {}", arrangement.code().to_ascii_uppercase());
+            let within = Level::Arrangement(arrangement);
             let here = weights(&questions, |_, s| if inside(s) == Some(arrangement) { sign(s) } else { 0 });
-            add(Family::Groups, &name, scope, here);
+            add(Family::Groups, levels, format!("within {}", within.code()), Over::Within(within), here);
         }
         if let [first, second] = arrangements[..] {
             let parts = [first, second]
                 .map(|of| weights(&questions, |_, s| i64::from(inside(s) == Some(of)) * sign(s)));
-            let scope = format!("{} - {}", first.code(), second.code()).to_ascii_uppercase();
-            add(Family::Interactions, &name, scope, difference(&parts[0], &parts[1]));
+            let [first, second] = [first, second].map(Level::Arrangement);
+            let scope = format!("{} - {}", first.code(), second.code());
+            let over = Over::Difference(first, second);
+            add(Family::Interactions, levels, scope, over, difference(&parts[0], &parts[1]));
         }
     }
     for &(a, b) in &arrangements {
-        let name = format!("{}-{}", a.code(), b.code()).to_ascii_uppercase();
+        let levels = [a, b].map(Level::Arrangement);
         let sign = |single| match single {
             Single::Arrangement { left, right, .. } => sign_of((a, b), (left, right)),
             Single::Clustering { .. } => 0,
@@ -217,24 +258,28 @@ pub fn contrasts(study: &Study) -> Vec<Contrast> {
             Single::Clustering { .. } => None,
         };
         let all = weights(&questions, |_, s| sign(s));
-        add(Family::Pooled, &name, "all".into(), all.clone());
+        add(Family::Pooled, levels, "all".into(), Over::All, all.clone());
         let of = |clustering: Clustering| {
             weights(&questions, |_, s| i64::from(inside(s) == Some(clustering)) * sign(s))
         };
         let clusterings = &study.file.clusterings;
         for (i, &clustering) in clusterings.iter().enumerate() {
-            let code = clustering.code().to_ascii_uppercase();
-            add(Family::Groups, &name, format!("within {code}"), of(clustering));
+            let within = Level::Clustering(clustering);
+            let scope = format!("within {}", within.code());
+            add(Family::Groups, levels, scope, Over::Within(within), of(clustering));
             for &other in &clusterings[i + 1..] {
-                let scope = format!("{code} - {}", other.code().to_ascii_uppercase());
-                add(Family::Interactions, &name, scope, difference(&of(clustering), &of(other)));
+                let second = Level::Clustering(other);
+                let scope = format!("{} - {}", within.code(), second.code());
+                let over = Over::Difference(within, second);
+                add(Family::Interactions, levels, scope, over, difference(&of(clustering), &of(other)));
             }
         }
         for (o, object) in study.file.objects.iter().enumerate() {
             let here = |q: &usize| study.comparisons[*q].object == o;
             let (own, rest): (BTreeMap<_, _>, BTreeMap<_, _>) = all.iter().partition(|(q, _)| here(q));
-            add(Family::Objects, &name, object.name.clone(), own.clone());
-            add(Family::Interactions, &name, format!("{} - others", object.name), difference(&own, &rest));
+            let (against, over) = (format!("{} - others", object.name), Over::AgainstOthers(o));
+            add(Family::Objects, levels, object.name.clone(), Over::Object(o), own.clone());
+            add(Family::Interactions, levels, against, over, difference(&own, &rest));
         }
     }
     found.retain(|contrast| !contrast.weights.is_empty());

@@ -1,73 +1,27 @@
 //! Tests of preference, by family.
 
 use crate::ballots::BallotGroup;
+use crate::hypotheses::{self, Hypothesis, Subject};
 use crate::statistics::bootstrap::Resampling;
-use crate::statistics::contrast::{Contrast, ContrastTest, contrasts};
-use crate::statistics::{
-    Ballot, ChiSquareTest, MARGIN, benjamini_hochberg, equivalence, friedman, holm, sign_test,
-};
+use crate::statistics::{Ballot, ChiSquareTest, friedman, sign_test};
 use crate::table::{Cell, Table};
 use design::{Arrangement, Clustering, Study};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// One row before its p is adjusted.
-struct Row {
-    family: String,
-    contrast: String,
-    scope: String,
-    test: ContrastTest,
-}
-
-/// Family of the single questions: exploratory, adjusted by Benjamini and Hochberg instead of Holm.
-const QUESTIONS: &str = "questions";
-
 /// Every contrast of a study, then every question.
 pub(super) fn study_tests(study: &Study, ballots: &[Ballot]) -> Table {
-    let row = |contrast: Contrast| Row {
-        family: contrast.family.code().into(),
-        test: contrast.test(ballots),
-        contrast: contrast.name,
-        scope: contrast.scope,
-    };
-    let mut rows: Vec<Row> = contrasts(study).into_iter().map(row).collect();
-    for (question, comparison) in study.comparisons.iter().enumerate() {
-        let own = ballots.iter().filter(|b| b.question == question);
-        rows.push(Row {
-            family: QUESTIONS.into(),
-            contrast: format!("{}-{}", comparison.left.method, comparison.right.method),
-            scope: comparison.question.clone(),
-            test: ContrastTest::of(own.map(|b| (b.participant, 1, b.outcome))),
-        });
-    }
-    table(rows)
+    table(&hypotheses::of_study(study, ballots))
 }
 
 /// Every pair of items that was compared, group by group; the group is the family.
 ///
 /// Nothing but ballots is needed, so that answers without a study file have the same table.
 pub fn pair_tests(groups: &[BallotGroup]) -> Table {
-    let mut rows = Vec::new();
-    for group in groups {
-        for (i, first) in group.items.iter().enumerate() {
-            for (j, second) in group.items.iter().enumerate().skip(i + 1) {
-                let weight = |b: &Ballot| match (b.left, b.right) {
-                    (l, r) if (l, r) == (i, j) => Some((b.participant, 1, b.outcome)),
-                    (l, r) if (l, r) == (j, i) => Some((b.participant, -1, b.outcome)),
-                    _ => None,
-                };
-                let test = ContrastTest::of(group.ballots.iter().filter_map(weight));
-                let (family, contrast) = (group.name.clone(), format!("{first}-{second}"));
-                if !test.differences.is_empty() {
-                    rows.push(Row { family, contrast, scope: "all".into(), test });
-                }
-            }
-        }
-    }
-    table(rows)
+    table(&hypotheses::of_groups(groups))
 }
 
-fn table(rows: Vec<Row>) -> Table {
+fn table(rows: &[Hypothesis]) -> Table {
     let mut table = Table::new(
         "tests",
         "Tests of preference",
@@ -98,22 +52,8 @@ fn table(rows: Vec<Row>) -> Table {
             ("p_trinomial", "p trinomial"),
         ],
     );
-    let mut families: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
-    rows.iter().enumerate().for_each(|(i, row)| families.entry(&row.family).or_default().push(i));
-    let mut adjusted = vec![(0.0, None); rows.len()];
-    for (family, members) in families {
-        let adjust = |p: Vec<f64>| if family == QUESTIONS { benjamini_hochberg(&p) } else { holm(&p) };
-        let different = adjust(members.iter().map(|&i| rows[i].test.sign_flip.p()).collect());
-        let equal = |i: &usize| equivalence(&rows[*i].test.scores, MARGIN).map(|test| test.p);
-        let tested: Vec<Option<f64>> = members.iter().map(equal).collect();
-        // One participant alone has no test of equivalence, and then adds none to the family.
-        let mut equal = adjust(tested.iter().flatten().copied().collect()).into_iter();
-        for ((&i, different), tested) in members.iter().zip(different).zip(tested) {
-            adjusted[i] = (different, tested.and_then(|_| equal.next()));
-        }
-    }
-    let cells = rows.par_iter().zip(adjusted).map(|(row, (p, equivalence))| cells(row, p, equivalence));
-    cells.collect::<Vec<_>>().into_iter().for_each(|cells| table.push(cells));
+    let cells: Vec<Vec<Cell>> = rows.par_iter().map(cells).collect();
+    cells.into_iter().for_each(|cells| table.push(cells));
     table.notes.push(
         "p: exact sign-flip test over participants, two-sided; net is answers for the first minus answers for the second. \
          Adjusted within the family: Holm, for single questions Benjamini and Hochberg. Mean score: a participant's net over \
@@ -128,18 +68,8 @@ fn table(rows: Vec<Row>) -> Table {
     table
 }
 
-/// What may be said at 5 %.
-fn conclusion(different: f64, equivalence: Option<f64>) -> &'static str {
-    match (different <= 0.05, equivalence.is_some_and(|p| p <= 0.05)) {
-        (true, false) => "differs",
-        (true, true) => "differs, within the margin",
-        (false, true) => "equal within the margin",
-        (false, false) => "open",
-    }
-}
-
-fn cells(row: &Row, adjusted: f64, equivalence: Option<f64>) -> Vec<Cell> {
-    let (test, question) = (&row.test, row.family == QUESTIONS);
+fn cells(row: &Hypothesis) -> Vec<Cell> {
+    let (test, question) = (&row.test, matches!(row.subject, Subject::Question(_)));
     let resampling = Resampling::default();
     let of_bca = if question { None } else { test.bca(resampling) };
     let of_studentised = if question { None } else { test.studentised(resampling) };
@@ -157,8 +87,8 @@ fn cells(row: &Row, adjusted: f64, equivalence: Option<f64>) -> Vec<Cell> {
         Cell::Count(test.sign_flip.net),
         Cell::count(test.sign_flip.participants as u64),
         Cell::P(test.sign_flip.p(), 5),
-        Cell::P(adjusted, 4),
-        Cell::text(if question { "Benjamini-Hochberg" } else { "Holm" }),
+        Cell::P(row.adjusted, 4),
+        Cell::text(row.adjustment.label()),
         Cell::Number(test.mean, 3),
         Cell::number(test.interval.map(|i| i.low), 3),
         Cell::number(test.interval.map(|i| i.high), 3),
@@ -166,8 +96,8 @@ fn cells(row: &Row, adjusted: f64, equivalence: Option<f64>) -> Vec<Cell> {
         Cell::number(of_bca.map(|r| r.interval.high), 3),
         Cell::number(of_studentised.map(|r| r.interval.low), 3),
         Cell::number(of_studentised.map(|r| r.interval.high), 3),
-        Cell::p(equivalence, 4),
-        Cell::text(conclusion(adjusted, equivalence)),
+        Cell::p(row.equivalence, 4),
+        Cell::text(row.conclusion().label()),
         Cell::p(without.map(|(low, _)| low), 4),
         Cell::p(without.map(|(_, high)| high), 4),
         Cell::p(binomial, 4),

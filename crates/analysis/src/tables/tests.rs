@@ -37,8 +37,13 @@ fn every_table_is_there_and_scripts_find_their_columns() {
             "models",
             "agreement",
             "respondents",
+            "prediction",
+            "prediction_joint",
+            "prediction_objects",
+            "prediction_correlations",
             "quality",
             "topology",
+            "accuracy",
             "positions",
             "comparison_summary",
             "comparison",
@@ -59,6 +64,7 @@ fn every_table_is_there_and_scripts_find_their_columns() {
     assert_eq!(named(&tables, "benchmark").printed().len(), 4);
     assert_eq!(named(&tables, "asteroid").rows.len(), 6);
     assert_eq!(named(&tables, "quality").rows.len(), 36);
+    assert_eq!(named(&tables, "accuracy").rows.len(), 54);
     assert_eq!(named(&tables, "answers").columns.len(), 19);
 }
 
@@ -81,6 +87,9 @@ fn rows_of_the_scripted_tables() {
     assert!(counts.contains("\nQ7,sphere,ss_bu,ss_su,16,1,1,"), "{counts}");
     let positions = named(&tables, "positions").to_csv();
     assert!(positions.contains("\nss_bi,13605,13606,27200,27200,8,8,"), "{positions}");
+    // 2e-4 at a spacing of 0.04.
+    let accuracy = named(&tables, "accuracy").to_csv();
+    assert!(accuracy.contains("\nas_bi,benchmark,0.04,0.005,"), "{accuracy}");
     let times = named(&tables, "benchmark");
     assert!(times.notes[0].contains("means over 5 iterations") && times.notes[0].contains("does not match"));
 }
