@@ -10,10 +10,12 @@
 //! - Nothing is indexed by the paper's ids: any objects, methods and groups will do. Parts that are not there (no
 //!   benchmark, no answers, nothing published) leave out their tables and figures.
 //!
-//! Tests and models of preference are in [`statistics`], over plain ballots.
+//! Tests and models of preference are in [`statistics`], over plain ballots; [`audit`] looks for defects of a study,
+//! [`simulation`] makes studies whose truth is known, and [`self_test`] tries the ones on the others.
 
 mod answers;
 mod answers_error;
+pub mod audit;
 mod ballots;
 mod claims;
 mod comparison;
@@ -26,6 +28,8 @@ mod mesh_set;
 mod prediction;
 pub mod preference;
 mod published_ratio;
+pub mod self_test;
+pub mod simulation;
 mod stage_times;
 pub mod statistics;
 mod table;
@@ -44,8 +48,10 @@ pub use figures::{Figure, figures};
 pub use fraction::Fraction;
 pub use inputs::{AnalysisError, Inputs};
 pub use table::{Cell, Column, Table};
+pub use tables::audit::audit_table;
 pub use tables::contrasts::pair_tests;
 pub use tables::models::model_tables;
+pub use tables::screened::screened_pair_tests;
 pub use tables::tables;
 pub use tally::{QuestionCount, Tally};
 pub use verdict::Verdict;
