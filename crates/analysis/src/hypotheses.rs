@@ -4,6 +4,7 @@ use crate::ballots::{BallotGroup, as_declared};
 use crate::statistics::contrast::{Contrast, ContrastTest, Level, Over, contrasts};
 use crate::statistics::{Ballot, MARGIN, benjamini_hochberg, equivalence, holm};
 use design::Study;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// How p values of a family are adjusted.
@@ -120,9 +121,9 @@ pub(crate) fn of_study(study: &Study, ballots: &[Ballot]) -> Vec<Hypothesis> {
         let contrast = format!("{}-{}", comparison.left.method, comparison.right.method);
         Hypothesis::new("questions", contrast, &comparison.question, Subject::Question(q), test)
     };
-    let mut all: Vec<Hypothesis> = contrasts(study).into_iter().map(of_contrast).collect();
+    let mut all: Vec<Hypothesis> = contrasts(study).into_par_iter().map(of_contrast).collect();
     adjust(&mut all, Adjustment::Holm);
-    let mut questions: Vec<Hypothesis> = study.comparisons.iter().enumerate().map(of_question).collect();
+    let mut questions: Vec<Hypothesis> = study.comparisons.par_iter().enumerate().map(of_question).collect();
     adjust(&mut questions, Adjustment::BenjaminiHochberg);
     all.extend(questions);
     all

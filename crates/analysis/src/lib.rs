@@ -10,8 +10,10 @@
 //! - Nothing is indexed by the paper's ids: any objects, methods and groups will do. Parts that are not there (no
 //!   benchmark, no answers, nothing published) leave out their tables and figures.
 //!
-//! Tests and models of preference are in [`statistics`], over plain ballots.
+//! Tests and models of preference are in [`statistics`], over plain ballots; [`audit`] looks for defects of a study,
+//! [`simulation`] makes studies whose truth is known, and [`self_test`] tries the ones on the others.
 
+pub mod audit;
 mod ballots;
 mod claims;
 mod comparison;
@@ -25,6 +27,8 @@ mod prediction;
 pub mod preference;
 mod published_ratio;
 pub mod report;
+pub mod self_test;
+pub mod simulation;
 mod stage_times;
 pub mod statistics;
 mod table;
@@ -42,8 +46,10 @@ pub use fraction::Fraction;
 pub use inputs::{AnalysisError, Inputs};
 pub use report::{Report, report, report_of_groups};
 pub use table::{Cell, Column, Table};
+pub use tables::audit::audit_table;
 pub use tables::contrasts::pair_tests;
 pub use tables::models::model_tables;
+pub use tables::screened::screened_pair_tests;
 pub use tables::tables;
 pub use tally::{QuestionCount, Tally};
 pub use verdict::Verdict;

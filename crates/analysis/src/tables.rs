@@ -3,6 +3,7 @@
 mod accuracy;
 mod agreement;
 mod answers;
+pub(crate) mod audit;
 mod benchmark;
 pub(crate) mod contrasts;
 mod design;
@@ -10,6 +11,7 @@ mod mesh_quality;
 pub(crate) mod models;
 mod prediction;
 pub(crate) mod preferences;
+pub(crate) mod screened;
 
 use crate::inputs::{AnalysisError, Inputs};
 use crate::prediction::Prediction;
@@ -51,7 +53,11 @@ fn statistics(inputs: &Inputs<'_>, answers: &Responses) -> Vec<Table> {
     let groups = ballots::ballot_groups(study, &ballots);
     let mut tables = vec![contrasts::study_tests(study, &ballots), contrasts::omnibus(study, &ballots)];
     tables.extend(models::model_tables(&groups));
-    tables.extend([agreement::agreement(study, &ballots), agreement::respondents(&ballots)]);
+    let scenes = agreement::scenes(study);
+    let protocol = agreement::protocol(study, &scenes);
+    tables.extend([agreement::agreement(study, &ballots), agreement::respondents(&ballots, &protocol)]);
+    tables.push(screened::of_study(study, &ballots, &protocol));
+    tables.push(audit::audit_table(&crate::audit::of_study(study, &ballots)));
     let prediction = Prediction::of(inputs, &ballots);
     tables.extend(prediction.iter().flat_map(|found| prediction::all(study, found)));
     tables.retain(|table| !table.rows.is_empty());

@@ -26,7 +26,7 @@ pub(crate) enum Command {
     Bundle(Run),
     /// Time every configuration, with the study's full number of rounds
     Bench(Bench),
-    /// Read the answers; print and write the preference tables and figures
+    /// Read the answers; print and write the preference tables and figures; or prove the analysis with --self-test
     Analyse(Analyse),
     /// Write tables, figures and index.html again from the results that are there
     Report(Run),
@@ -106,13 +106,33 @@ pub(crate) struct Bench {
 #[derive(Debug, Args)]
 pub(crate) struct Analyse {
     /// Study file, such as configs/paper.toml
-    pub(crate) study: PathBuf,
+    #[arg(required_unless_present = "self_test")]
+    pub(crate) study: Option<PathBuf>,
     /// Answers to read instead of the study's own: one row a respondent, one column a question, cells L, NP, R
     #[arg(long, value_name = "CSV")]
     pub(crate) responses: Option<PathBuf>,
     /// Folder for tables and figures [default: results/<study id>-answers]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) self_test: SelfTest,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SelfTest {
+    /// Read no answers: simulate studies with a known truth, and show that each probe finds its own defect and no other, that
+    /// tests reject and intervals cover as they should
+    #[arg(long, conflicts_with_all = ["study", "responses"])]
+    pub(crate) self_test: bool,
+    /// Studies to simulate for each line
+    #[arg(long, requires = "self_test", default_value_t = 10_000, value_name = "N", value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
+    pub(crate) studies: u64,
+    /// Seed of the simulated studies; the same seed gives the same tables on any number of threads
+    #[arg(long, requires = "self_test", default_value_t = 1, value_name = "SEED")]
+    pub(crate) seed: u64,
+    /// Threads to simulate with; 0 takes every core
+    #[arg(long, requires = "self_test", default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1024))]
+    pub(crate) threads: u32,
 }
 
 #[derive(Debug, Args)]

@@ -91,6 +91,7 @@ fn run(command: Command) -> Result<Outcome> {
             let stamp = pipeline.timings(length)?;
             say_summary(&pipeline.bench_run(&stamp)?)
         }),
+        Command::Analyse(arguments) if arguments.self_test.self_test => return self_test(&arguments),
         Command::Analyse(arguments) => analyse(&arguments),
         Command::Validate(arguments) => validate(&arguments.study),
         Command::Design(Design::Check(arguments)) => return questionnaire::check(&arguments),
@@ -146,14 +147,39 @@ fn with_selection(
     with_pipeline(&selection.run, |pipeline, out| work(pipeline, &only, out))
 }
 
+/// Simulates studies and prints how probes, tests and intervals did; one that did not as it should fails it.
+fn self_test(arguments: &Analyse) -> Result<Outcome> {
+    let settings = &arguments.self_test;
+    if settings.threads > 0 {
+        rayon::ThreadPoolBuilder::new().num_threads(settings.threads as usize).build_global()?;
+    }
+    let (tables, sound) = analysis::self_test::self_test(settings.studies, settings.seed);
+    for table in &tables {
+        say(&table.to_markdown())?;
+        if let Some(out) = &arguments.out {
+            std::fs::create_dir_all(out).with_context(|| out.display().to_string())?;
+            for (ending, text) in [("csv", table.to_csv()), ("md", table.to_markdown())] {
+                let path = out.join(format!("{}.{ending}", table.name));
+                store::write_whole(&path, text.as_bytes())?;
+                say(&path.display().to_string())?;
+            }
+        }
+    }
+    if !sound {
+        eprintln!("self-test failed: see the rows that say NO");
+    }
+    Ok(if sound { Outcome::Sound } else { Outcome::CheckFailed })
+}
+
 fn analyse(arguments: &Analyse) -> Result<()> {
-    let mut study = Study::load(&arguments.study)?;
+    let path = arguments.study.as_deref().context("no study file")?;
+    let mut study = Study::load(path)?;
     if arguments.responses.is_some() {
         // Published numbers are about the answers that were published.
         study.published = Published::default();
         study.responses.clone_from(&arguments.responses);
     }
-    let no_answers = || format!("{} names no responses; give --responses", arguments.study.display());
+    let no_answers = || format!("{} names no responses; give --responses", path.display());
     let responses = study.responses.as_ref().with_context(no_answers)?;
     let folder = || Path::new("results").join(format!("{}-answers", study.file.study.id));
     let out = arguments.out.clone().unwrap_or_else(folder);

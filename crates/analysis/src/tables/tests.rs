@@ -35,6 +35,8 @@ fn every_table_is_there_and_scripts_find_their_columns() {
             "models",
             "agreement",
             "respondents",
+            "screened",
+            "audit",
             "prediction",
             "prediction_joint",
             "prediction_objects",
