@@ -28,6 +28,7 @@ mod table;
 mod tables;
 mod tally;
 mod verdict;
+mod without_study;
 
 #[cfg(test)]
 mod fixture;
@@ -43,3 +44,4 @@ pub use tables::models::model_tables;
 pub use tables::tables;
 pub use tally::{QuestionCount, Tally};
 pub use verdict::Verdict;
+pub use without_study::{answer_tables, open_groups};

@@ -1,6 +1,6 @@
 //! Every table of a study.
 
-mod agreement;
+pub(crate) mod agreement;
 mod answers;
 mod benchmark;
 pub(crate) mod contrasts;

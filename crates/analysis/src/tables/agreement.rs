@@ -81,7 +81,7 @@ fn triads_by_object_and_group(study: &Study, ballots: &[Ballot]) -> Triads {
 }
 
 /// One row a participant: what careless answering would show in.
-pub(super) fn respondents(ballots: &[Ballot]) -> Table {
+pub(crate) fn respondents(ballots: &[Ballot]) -> Table {
     let mut table = Table::new(
         "respondents",
         "Screening of participants; nobody is left out",

@@ -7,8 +7,10 @@ use crate::store::{Inputs, Stamp, Store, Writer, sha256};
 use analysis::{Figure, Table};
 use anyhow::{Context, Result};
 use design::Study;
-use responses::Responses;
+use design::config::ResponsesSection;
+use responses::Reading;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
 impl Pipeline<'_> {
     /// Every table and figure of the study.
@@ -26,7 +28,7 @@ impl Pipeline<'_> {
                 study: self.study,
                 meshes: &records,
                 bench: Some(&run),
-                answers: answers.as_ref(),
+                answers: answers.as_ref().map(|reading| &reading.responses),
             };
             write(writer, &inputs)?;
             writer.write_json(UNEXPLAINED, &analysis::unexplained_differences(&inputs)?)
@@ -44,14 +46,37 @@ impl Pipeline<'_> {
     }
 }
 
-/// The preference tables and figures alone, into a folder of their own.
+/// The preference tables and figures alone, into a folder of their own, with how the answers were read.
 ///
 /// # Errors
 /// If the files cannot be written.
-pub(crate) fn write_answers_only(study: &Study, answers: &Responses, store: &Store) -> Result<Vec<Table>> {
-    let inputs = analysis::Inputs { study, meshes: &[], bench: None, answers: Some(answers) };
-    store.stage("answers", study_inputs(study)?, |writer| write(writer, &inputs).map(|_| ()))?;
+pub(crate) fn write_answers_only(study: &Study, reading: &Reading, store: &Store) -> Result<Vec<Table>> {
+    let inputs = analysis::Inputs { study, meshes: &[], bench: None, answers: Some(&reading.responses) };
+    store.stage("answers", study_inputs(study)?, |writer| {
+        writer.write(READING, reading.report.to_csv().as_bytes())?;
+        write(writer, &inputs)
+    })?;
     Ok(analysis::tables(&inputs)?)
+}
+
+/// Tables of answers without a study, into a folder of their own, with how the answers were read.
+///
+/// # Errors
+/// If the files cannot be written.
+pub(crate) fn write_without_study(
+    path: &Path,
+    section: &ResponsesSection,
+    reading: &Reading,
+    store: &Store,
+) -> Result<Vec<Table>> {
+    let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+    let inputs = Inputs::of_rooms(rooms::TABLES).value("mapping", section).text("responses", &sha256(&bytes));
+    let tables = analysis::answer_tables(&reading.responses, None)?;
+    store.stage("answers", inputs, |writer| {
+        writer.write(READING, reading.report.to_csv().as_bytes())?;
+        write_tables(writer, &tables)
+    })?;
+    Ok(tables)
 }
 
 /// What the page needs to know of a table: `tables/contents.json` lists these.
@@ -69,22 +94,14 @@ pub(super) struct FigureEntry {
     pub(super) caption: String,
 }
 
+/// Cells and rows of the answers that were not taken as they stand.
+const READING: &str = "tables/reading.csv";
 const UNEXPLAINED: &str = "tables/unexplained.json";
 pub(super) const TABLE_CONTENTS: &str = "tables/contents.json";
 pub(super) const FIGURE_CONTENTS: &str = "figures/contents.json";
 
 fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>) -> Result<()> {
-    let tables = analysis::tables(inputs).context("tables")?;
-    let mut entries = Vec::new();
-    for table in &tables {
-        let path = format!("tables/{}", table.name);
-        writer.write(&format!("{path}.csv"), table.to_csv().as_bytes())?;
-        writer.write(&format!("{path}.md"), table.to_markdown().as_bytes())?;
-        writer.write(&format!("{path}.tex"), table.to_latex().as_bytes())?;
-        let (name, caption) = (table.name.clone(), table.caption.clone());
-        entries.push(TableEntry { name, caption, html: table.to_html() });
-    }
-    writer.write_json(TABLE_CONTENTS, &entries)?;
+    write_tables(writer, &analysis::tables(inputs).context("tables")?)?;
     let mut entries = Vec::new();
     for Figure { name, caption, svg, png } in analysis::figures(inputs).context("figures")? {
         writer.write(&format!("figures/{name}.svg"), svg.as_bytes())?;
@@ -92,6 +109,19 @@ fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>) -> Result<()> {
         entries.push(FigureEntry { name, caption });
     }
     writer.write_json(FIGURE_CONTENTS, &entries)
+}
+
+fn write_tables(writer: &mut Writer<'_>, tables: &[Table]) -> Result<()> {
+    let mut entries = Vec::new();
+    for table in tables {
+        let path = format!("tables/{}", table.name);
+        writer.write(&format!("{path}.csv"), table.to_csv().as_bytes())?;
+        writer.write(&format!("{path}.md"), table.to_markdown().as_bytes())?;
+        writer.write(&format!("{path}.tex"), table.to_latex().as_bytes())?;
+        let (name, caption) = (table.name.clone(), table.caption.clone());
+        entries.push(TableEntry { name, caption, html: table.to_html() });
+    }
+    writer.write_json(TABLE_CONTENTS, &entries)
 }
 
 /// The study file, its answers and its published numbers.
