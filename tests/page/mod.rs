@@ -4,7 +4,7 @@
 const VOID: [&str; 6] = ["meta", "br", "hr", "img", "link", "!doctype"];
 
 /// What is opened and not closed, or closed and not open, or quoted wrongly.
-pub fn unclosed(page: &str) -> Vec<String> {
+pub(crate) fn unclosed(page: &str) -> Vec<String> {
     let (mut open, mut wrong): (Vec<&str>, Vec<String>) = (Vec::new(), Vec::new());
     let mut rest = page;
     while let Some(start) = rest.find('<') {
@@ -28,7 +28,7 @@ pub fn unclosed(page: &str) -> Vec<String> {
 }
 
 /// Contrast of two colours, 1 to 21 (Web Content Accessibility Guidelines 2.2, relative luminance).
-pub fn contrast(a: &str, b: &str) -> f64 {
+pub(crate) fn contrast(a: &str, b: &str) -> f64 {
     let luminance = |colour: &str| -> f64 {
         let channel = |i: usize| {
             let value = f64::from(u8::from_str_radix(&colour[2 * i..2 * i + 2], 16).unwrap()) / 255.0;

@@ -35,6 +35,7 @@ mod table;
 mod tables;
 mod tally;
 mod verdict;
+mod without_study;
 
 #[cfg(test)]
 mod fixture;
@@ -53,3 +54,4 @@ pub use tables::screened::screened_pair_tests;
 pub use tables::tables;
 pub use tally::{QuestionCount, Tally};
 pub use verdict::Verdict;
+pub use without_study::{answer_tables, open_groups};

@@ -1,7 +1,7 @@
 //! Every table of a study.
 
 mod accuracy;
-mod agreement;
+pub(crate) mod agreement;
 mod answers;
 pub(crate) mod audit;
 mod benchmark;

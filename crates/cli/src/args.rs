@@ -1,6 +1,6 @@
 //! The command line.
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Isosurface extraction methods in front of a clock, a ruler and people.
@@ -28,6 +28,8 @@ pub(crate) enum Command {
     Bench(Bench),
     /// Read the answers; print and write the preference tables and figures; or prove the analysis with --self-test
     Analyse(Analyse),
+    /// Write answers in the long format or in another program's
+    Convert(Convert),
     /// Write tables, figures and index.html again from the results that are there
     Report(Run),
     /// Check a study file and everything it names, without doing any work
@@ -105,13 +107,16 @@ pub(crate) struct Bench {
 
 #[derive(Debug, Args)]
 pub(crate) struct Analyse {
-    /// Study file, such as configs/paper.toml
+    /// Study file, such as configs/paper.toml, or a file of answers without a study: columns participant, question, left,
+    /// right, choice and optionally object, group, form, order, rt_ms
     #[arg(required_unless_present = "self_test")]
-    pub(crate) study: Option<PathBuf>,
-    /// Answers to read instead of the study's own: one row a respondent, one column a question, cells L, NP, R
-    #[arg(long, value_name = "CSV")]
+    pub(crate) input: Option<PathBuf>,
+    /// Answers to read instead of the study's own: its table, the long format, or a questionnaire's export
+    #[arg(long, value_name = "FILE")]
     pub(crate) responses: Option<PathBuf>,
-    /// Folder for tables and figures [default: results/<study id>-answers]
+    #[command(flatten)]
+    pub(crate) reading: ReadingRules,
+    /// Folder for tables and figures [default: results/<study id>-answers, or results/<file name>-answers]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
@@ -122,7 +127,7 @@ pub(crate) struct Analyse {
 pub(crate) struct SelfTest {
     /// Read no answers: simulate studies with a known truth, and show that each probe finds its own defect and no other, that
     /// tests reject and intervals cover as they should
-    #[arg(long, conflicts_with_all = ["study", "responses"])]
+    #[arg(long, conflicts_with_all = ["input", "responses"])]
     pub(crate) self_test: bool,
     /// Studies to simulate for each line
     #[arg(long, requires = "self_test", default_value_t = 10_000, value_name = "N", value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
@@ -133,6 +138,55 @@ pub(crate) struct SelfTest {
     /// Threads to simulate with; 0 takes every core
     #[arg(long, requires = "self_test", default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1024))]
     pub(crate) threads: u32,
+}
+
+/// How a file of answers is read, where that differs from what the study declares.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct ReadingRules {
+    /// Format of the answers [default: detected]: table, long, google-forms, microsoft-forms, qualtrics, limesurvey,
+    /// surveymonkey, jspsych, jatos, webmushra, redcap
+    #[arg(long, value_name = "NAME")]
+    pub(crate) format: Option<String>,
+    /// TOML file with the keys of a study's [responses]: question columns, synonyms, pairs
+    #[arg(long, value_name = "FILE")]
+    pub(crate) mapping: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Convert {
+    /// File of answers in any format that is read
+    pub(crate) input: PathBuf,
+    /// Format to write
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) to: Target,
+    /// File to write
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// Study whose questions were asked; needed where columns are questions
+    #[arg(long, value_name = "TOML")]
+    pub(crate) study: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reading: ReadingRules,
+    /// For pwcmp, which has no ties: refuse, write one win each way, or leave them out
+    #[arg(long, value_name = "RULE", default_value = "refuse")]
+    pub(crate) ties: TieRule,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Target {
+    /// participant, form, order, question, object, left, right, choice, rt_ms
+    Long,
+    /// model_a, model_b, winner, item_id, voter_id
+    Arenakit,
+    /// observer, session, scene, condition_A, condition_B, is_A_selected
+    Pwcmp,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TieRule {
+    Refuse,
+    Split,
+    Drop,
 }
 
 #[derive(Debug, Args)]

@@ -93,6 +93,7 @@ fn run(command: Command) -> Result<Outcome> {
         }),
         Command::Analyse(arguments) if arguments.self_test.self_test => return self_test(&arguments),
         Command::Analyse(arguments) => analyse(&arguments),
+        Command::Convert(arguments) => answers::convert(&arguments),
         Command::Validate(arguments) => validate(&arguments.study),
         Command::Design(Design::Check(arguments)) => return questionnaire::check(&arguments),
         Command::Design(Design::Rules) => questionnaire::rules(),
@@ -171,24 +172,54 @@ fn self_test(arguments: &Analyse) -> Result<Outcome> {
     Ok(if sound { Outcome::Sound } else { Outcome::CheckFailed })
 }
 
+/// A study file ends in `.toml`; anything else is a file of answers.
 fn analyse(arguments: &Analyse) -> Result<()> {
-    let path = arguments.study.as_deref().context("no study file")?;
-    let mut study = Study::load(path)?;
+    let input = arguments.input.as_deref().context("no study file")?;
+    let is_study = input.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+    if !is_study {
+        return analyse_without_study(arguments, input);
+    }
+    let mut study = Study::load(input)?;
     if arguments.responses.is_some() {
         // Published numbers are about the answers that were published.
         study.published = Published::default();
         study.responses.clone_from(&arguments.responses);
     }
-    let no_answers = || format!("{} names no responses; give --responses", path.display());
-    let responses = study.responses.as_ref().with_context(no_answers)?;
+    study.file.responses = Some(answers::section(&arguments.reading, Some(&study))?);
+    let no_answers = || format!("{} names no responses; give --responses", input.display());
+    let reading = answers::of_study(&study)?.with_context(no_answers)?;
+    answers::announce(&reading.report);
     let folder = || Path::new("results").join(format!("{}-answers", study.file.study.id));
     let out = arguments.out.clone().unwrap_or_else(folder);
-    let answers = answers::read(responses, &study)?;
     let store = Store::open(&out, false)?;
-    let tables = pipeline::write_answers_only(&study, &answers, &store)?;
+    let tables = pipeline::write_answers_only(&study, &reading, &store)?;
     store.remove_retired()?;
-    manifest::write(&study, &store)?;
+    manifest::write(&manifest::Subject::of(&study)?, &store)?;
     for table in tables.iter().filter(|table| table.name.starts_with("preference_")) {
+        say(&table.to_markdown())?;
+    }
+    say(&out.display().to_string())
+}
+
+fn analyse_without_study(arguments: &Analyse, path: &Path) -> Result<()> {
+    if arguments.responses.is_some() {
+        anyhow::bail!(
+            "--responses belongs to a study, and {} is none: its name does not end in .toml",
+            path.display()
+        );
+    }
+    let section = answers::section(&arguments.reading, None)?;
+    let (reading, _) = answers::without_study(path, &section)?;
+    answers::announce(&reading.report);
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let folder = || Path::new("results").join(format!("{name}-answers"));
+    let out = arguments.out.clone().unwrap_or_else(folder);
+    let store = Store::open(&out, false)?;
+    let tables = pipeline::write_without_study(path, &section, &reading, &store)?;
+    store.remove_retired()?;
+    let digest = store::sha256(&std::fs::read(path).with_context(|| path.display().to_string())?);
+    manifest::write(&manifest::Subject { name: &name, sha256: digest, seed: None }, &store)?;
+    for table in tables.iter().filter(|table| ["tests", "worths"].contains(&table.name.as_str())) {
         say(&table.to_markdown())?;
     }
     say(&out.display().to_string())
@@ -210,7 +241,7 @@ fn validate(path: &Path) -> Result<()> {
     }
     let respondents = match answers::of_study(&study)? {
         None => "no answers".to_owned(),
-        Some(answers) => format!("{} respondents", answers.participants.len()),
+        Some(reading) => format!("{} respondents", reading.responses.participants.len()),
     };
     let (questions, groups) = (study.comparisons.len(), study.groups.len());
     say(&format!("{}: valid; {questions} questions in {groups} groups, {respondents}", path.display()))
@@ -221,7 +252,9 @@ fn load(path: &Path) -> Result<Study> {
     let study = Study::load(path)?;
     subject::check_lattices(&study, bench::read_machine().memory_bytes)?;
     subject::check_mesh_files(&study)?;
-    answers::of_study(&study)?;
+    if let Some(reading) = answers::of_study(&study)?.filter(|reading| !reading.report.remarks.is_empty()) {
+        answers::announce(&reading.report);
+    }
     Ok(study)
 }
 

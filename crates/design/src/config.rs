@@ -3,8 +3,10 @@
 //! These types mirror the file and nothing else: paths are as written (relative to the file's own folder), numbers
 //! are unchecked. [`crate::Study::load`] turns them into something to work from.
 
+use crate::check::{Checker, ConfigError};
 use crate::method::{Arrangement, Clustering, ConfigurationId, Method};
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
 /// The whole study file.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -431,6 +433,25 @@ pub struct ResponsesSection {
     /// The questions of answers without a study; a study has its comparisons.
     #[serde(default)]
     pub pairs: Vec<PairSection>,
+}
+
+impl ResponsesSection {
+    /// Reads a file with the keys of this section alone, for answers whose study does not declare them or that have none.
+    ///
+    /// # Errors
+    /// If it cannot be read, is not TOML, or has a key that is not one of these; `file` is not.
+    pub fn load(path: &Path) -> Result<Self, ConfigError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| ConfigError::Read { file: path.into(), source })?;
+        let section: Self = crate::study::parse_toml(&text, path)?;
+        match &section.file {
+            None => Ok(section),
+            Some(file) => {
+                let limit = "a mapping says how to read, not what: name the answers on the command line";
+                Checker { file: path }.refuse("file", file, limit)
+            }
+        }
+    }
 }
 
 /// Words for the three answers.

@@ -121,6 +121,10 @@ impl Study {
             }
             _ => None,
         };
+        if file.responses.as_ref().is_some_and(|responses| !responses.pairs.is_empty()) {
+            let limit = "the study's comparisons are its questions";
+            return checker.refuse("responses.pairs", "[...]", limit);
+        }
         let published = match &file.published {
             None => Published::default(),
             Some(section) => Published {
@@ -172,7 +176,7 @@ impl Study {
     }
 }
 
-fn parse_toml<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ConfigError> {
+pub(crate) fn parse_toml<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ConfigError> {
     toml::from_str(text).map_err(|error| ConfigError::Syntax {
         file: path.into(),
         message: error.to_string().trim_end().to_owned(),

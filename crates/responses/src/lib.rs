@@ -3,7 +3,8 @@
 //! [`read`] takes a file as people have it (a study's own table, the long format, or the export of a survey tool) and gives
 //! [`Responses`], one value an answer, with a [`Report`] of how the file was understood and of every cell that was
 //! repaired or rejected. What the file does not say is declared by a [`Plan`] (the questions) and a [`Mapping`] (positions,
-//! words, policies).
+//! words, policies). [`write_long`] and its neighbours write
+//! answers again.
 //!
 //! # Guarantees
 //! - No input panics; what is wrong is an error that names file, row and column.
@@ -34,6 +35,7 @@ mod webmushra;
 mod wide;
 mod words;
 mod workbook;
+mod write;
 
 pub use archive::LARGEST_ARCHIVE;
 pub use choice::Choice;
@@ -46,3 +48,4 @@ pub use read::{LARGEST_FILE, Reading, parse, read};
 pub use report::{Kind, Remark, Report};
 pub use value::{Answer, Participant, Question, Responses};
 pub use words::{Words, normalise};
+pub use write::{Ties, WriteError, Written, write_arenakit, write_long, write_pwcmp};

@@ -6,7 +6,7 @@ use crate::escape::unescape;
 use crate::format::Format;
 use crate::mapping::Mapping;
 use crate::plan::Plan;
-use crate::records::{Record, is_blank};
+use crate::records::{Record, is_blank, trim};
 use crate::report::{Kind, Report};
 use crate::source::Source;
 use crate::value::{Answer, Responses};
@@ -113,19 +113,17 @@ pub(crate) fn read_columns(
 ) -> Result<Responses, Fault> {
     let collector = Collector::new(plan, mapping, report);
     let mut rows = Rows { columns, rule, plan, collector, width, run: 0, last_trial: None, passed_over: 0 };
-    let (mut end, mut blank) = (header_row + 1, Vec::new());
+    let (mut end, mut blank) = (header_row + 1, None::<(u64, u64)>);
     source.each(|record| {
         if record.row <= header_row {
             return Ok(());
         }
         end = record.row + 1;
         if record.is_blank() {
-            blank.push(record.row);
+            blank = Some((blank.map_or(record.row, |(first, _)| first), record.row));
             return Ok(());
         }
-        for row in blank.drain(..) {
-            rows.collector.report.row(Kind::Noted, row, "blank row inside the table");
-        }
+        rows.collector.report.blank_rows(&mut blank);
         rows.row(record, source.is_text())
     })?;
     if rows.passed_over > 0 {
@@ -198,7 +196,7 @@ impl Rows<'_> {
     }
 
     fn text<'r>(&self, record: &'r Record<'_>, column: usize) -> &'r str {
-        let cell = record.cell(column).trim_matches(|c: char| c.is_whitespace() || c == '\u{feff}');
+        let cell = trim(record.cell(column));
         if self.rule.escaped { unescape(cell) } else { cell }
     }
 

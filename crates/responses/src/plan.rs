@@ -95,6 +95,11 @@ impl Plan {
         &self.items
     }
 
+    /// Names of the items within their object: a study's methods. One an item.
+    pub fn short_names(&self) -> &[String] {
+        &self.short_names
+    }
+
     /// The questions.
     pub fn questions(&self) -> &[Question] {
         &self.questions

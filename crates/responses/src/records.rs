@@ -28,7 +28,17 @@ impl Record<'_> {
 
 /// Whether a cell holds nothing but space.
 pub(crate) fn is_blank(cell: &str) -> bool {
-    cell.chars().all(|c| c.is_whitespace() || c == '\u{feff}' || c == '\u{200b}')
+    cell.chars().all(is_space)
+}
+
+/// A cell without the space round it.
+pub(crate) fn trim(cell: &str) -> &str {
+    cell.trim_matches(is_space)
+}
+
+/// White space, byte-order marks and spaces of no width.
+fn is_space(c: char) -> bool {
+    c.is_whitespace() || c == '\u{feff}' || c == '\u{200b}'
 }
 
 /// A quote that is opened and never closed.

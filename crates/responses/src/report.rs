@@ -85,6 +85,19 @@ impl Report {
         self.remarks.push(Remark { row, column: Some(column + 1), raw, kind, action: action.into() });
     }
 
+    /// Notes blank rows that turned out to be inside the table, and forgets them.
+    pub(crate) fn blank_rows(&mut self, rows: &mut Option<(u64, u64)>) {
+        match rows.take() {
+            None => {}
+            Some((first, last)) if first == last => {
+                self.row(Kind::Noted, first, "blank row inside the table")
+            }
+            Some((first, last)) => {
+                self.row(Kind::Noted, first, format!("blank rows inside the table, down to row {last}"));
+            }
+        }
+    }
+
     pub(crate) fn row(&mut self, kind: Kind, row: u64, action: impl Into<String>) {
         self.remarks.push(Remark { row, column: None, raw: String::new(), kind, action: action.into() });
     }

@@ -144,7 +144,7 @@ pub(crate) fn mark(format: Format, head: &Head) -> Option<String> {
     let header: Vec<String> = head[0].1.iter().map(|title| normalise(title)).collect();
     let first = header.first().map_or("", String::as_str);
     let has = |title: &str| header.iter().any(|own| own == title);
-    let rule = match format {
+    match format {
         Format::GoogleForms => {
             TIMESTAMP.contains(&first).then(|| format!("the first header is \"{}\"", head[0].1[0]))
         }
@@ -175,8 +175,7 @@ pub(crate) fn mark(format: Format, head: &Head) -> Option<String> {
         Format::WebMushra => (has("session_test_id") && has("choice_answer"))
             .then(|| "the headers have session_test_id and choice_answer".into()),
         Format::Table | Format::Long | Format::Jatos => None,
-    };
-    rule
+    }
 }
 
 /// The layout of a survey tool's export, whether its marks are there or the format is declared.

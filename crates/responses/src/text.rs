@@ -62,7 +62,9 @@ fn utf16<'a>(encoding: &'static encoding_rs::Encoding, bytes: &'a [u8]) -> Resul
 /// [`Fault::Separators`] if two of them fit equally well.
 pub(crate) fn separator(text: &str, declared: Option<u8>) -> Result<(u8, &str, &'static str), Fault> {
     let (line, rest) = text.split_once('\n').unwrap_or((text, ""));
-    if let [b's' | b'S', b'e' | b'E', b'p' | b'P', b'=', own] = line.trim_end().as_bytes() {
+    if let [b's' | b'S', b'e' | b'E', b'p' | b'P', b'=', own @ (b',' | b';' | b'\t' | b'|')] =
+        line.trim_end_matches('\r').as_bytes()
+    {
         return Ok((declared.unwrap_or(*own), rest, "named by the first line"));
     }
     if let Some(declared) = declared {
@@ -89,7 +91,8 @@ pub(crate) fn separator(text: &str, declared: Option<u8>) -> Result<(u8, &str, &
     found.sort_unstable_by(|a, b| b.cmp(a));
     let [(best, separator), (second, other), _] = found;
     if best == second && best.0 {
-        return Err(Fault::Separators { first: separator.into(), second: other.into(), cells: best.2 });
+        let (first, second) = (separator.min(other).into(), separator.max(other).into());
+        return Err(Fault::Separators { first, second, cells: best.2 });
     }
     Ok((separator, text, if best.0 { "the one that splits rows evenly" } else { "none: one column" }))
 }

@@ -3,11 +3,12 @@
 use crate::collect::{Collector, Place, Reply};
 use crate::columns::{Assigned, assign};
 use crate::error::{Fault, shorten};
+use crate::escape::unescape;
 use crate::format::Format;
 use crate::layout::Layout;
 use crate::mapping::{Duplicates, Mapping};
 use crate::plan::Plan;
-use crate::records::{Record, is_blank};
+use crate::records::{Record, is_blank, trim};
 use crate::report::{Kind, Report};
 use crate::source::Source;
 use crate::value::{Answer, Responses};
@@ -57,7 +58,7 @@ pub(crate) fn read(
         collector,
         number: 0,
         ids: HashMap::new(),
-        blank: Vec::new(),
+        blank: None,
     };
     let mut end = layout.last_header_row + 1;
     source.each(|record| {
@@ -81,20 +82,18 @@ struct Rows<'a> {
     number: usize,
     /// The row of each participant whose id is in the file.
     ids: HashMap<String, u64>,
-    /// Blank rows that are not known to be at the end.
-    blank: Vec<u64>,
+    /// First and last of the blank rows that may be at the end.
+    blank: Option<(u64, u64)>,
 }
 
 impl Rows<'_> {
     fn row(&mut self, record: &Record<'_>, counted: bool) -> Result<(), Fault> {
         let row = record.row;
         if record.is_blank() {
-            self.blank.push(row);
+            self.blank = Some((self.blank.map_or(row, |(first, _)| first), row));
             return Ok(());
         }
-        for blank in self.blank.drain(..) {
-            self.collector.report.row(Kind::Noted, blank, "blank row inside the table");
-        }
+        self.collector.report.blank_rows(&mut self.blank);
         self.check_width(record, counted)?;
         if let Some(column) = record.stray {
             let action = "text after the closing quote, taken as part of the cell";
@@ -112,9 +111,9 @@ impl Rows<'_> {
             return Ok(());
         }
         self.number += 1;
-        let id = self.layout.participant.map(|column| record.cell(column).trim()).filter(|id| !id.is_empty());
+        let id = self.layout.participant.map(|column| label(record.cell(column))).filter(|id| !id.is_empty());
         let id = match id {
-            Some(id) => crate::escape::unescape(id).to_owned(),
+            Some(id) => id.to_owned(),
             None => self.number.to_string(),
         };
         if let Some(sign) = self.layout.unfinished.iter().find(|sign| (sign.says)(record.cell(sign.column))) {
@@ -146,7 +145,7 @@ impl Rows<'_> {
 
     fn answers(&mut self, record: &Record<'_>, id: &str) -> Result<(), Fault> {
         let row = record.row;
-        let form = self.layout.form.map(|column| record.cell(column).trim()).filter(|form| !form.is_empty());
+        let form = self.layout.form.map(|column| label(record.cell(column))).filter(|form| !form.is_empty());
         let participant = self.collector.participant(id, form, row)?;
         let orders = self.orders.of_row(record);
         let mut unanswered: Vec<&str> = Vec::new();
@@ -181,6 +180,11 @@ impl Rows<'_> {
         }
         Ok(())
     }
+}
+
+/// An id or name as it was before a spreadsheet was kept from running it.
+fn label(cell: &str) -> &str {
+    unescape(trim(cell))
 }
 
 /// Recovers the order in which questions were shown from columns that list their names.

@@ -13,7 +13,7 @@ use quick_xml::events::{BytesStart, Event};
 const MOST_ROWS: usize = 1 << 20;
 const MOST_COLUMNS: usize = 1 << 14;
 /// Most cells, gaps included: rows are filled up to their last cell.
-const MOST_CELLS: usize = 1 << 26;
+const MOST_CELLS: usize = 1 << 24;
 
 /// Whether a zip file is a workbook.
 pub(crate) fn is_workbook(archive: &Archive<'_>) -> bool {
@@ -28,10 +28,13 @@ pub(crate) fn first_sheet(archive: &mut Archive<'_>) -> Result<(Vec<Vec<String>>
     let workbook = archive.read("xl/workbook.xml")?;
     let mut first = None;
     each(&workbook, "xl/workbook.xml", |event| {
-        if let Event::Start(tag) | Event::Empty(tag) = event {
-            if first.is_none() && tag.local_name().as_ref() == "sheet" {
+        match event {
+            Event::Start(tag) | Event::Empty(tag)
+                if first.is_none() && tag.local_name().as_ref() == "sheet" =>
+            {
                 first = Some((attribute(tag, "name"), attribute(tag, "r:id")));
             }
+            _ => {}
         }
         Ok(())
     })?;
@@ -51,10 +54,11 @@ fn sheet_path(archive: &mut Archive<'_>, id: &str) -> Result<String, Fault> {
     let relations = archive.read(RELATIONS)?;
     let mut target = None;
     each(&relations, RELATIONS, |event| {
-        if let Event::Start(tag) | Event::Empty(tag) = event {
-            if tag.local_name().as_ref() == "Relationship" && attribute(tag, "Id").as_deref() == Some(id) {
-                target = attribute(tag, "Target");
-            }
+        if let Event::Start(tag) | Event::Empty(tag) = event
+            && tag.local_name().as_ref() == "Relationship"
+            && attribute(tag, "Id").as_deref() == Some(id)
+        {
+            target = attribute(tag, "Target");
         }
         Ok(())
     })?;

@@ -107,7 +107,7 @@ pub(super) fn scenes(study: &Study) -> Vec<usize> {
 }
 
 /// One row a participant: what careless answering would show in.
-pub(super) fn respondents(ballots: &[Ballot], protocol: &Protocol<'_>) -> Table {
+pub(crate) fn respondents(ballots: &[Ballot], protocol: &Protocol<'_>) -> Table {
     let mut table = Table::new(
         "respondents",
         "Screening of participants; nobody is left out",

@@ -17,7 +17,7 @@ mod tables;
 mod timings;
 
 pub(crate) use meshes::Meshes;
-pub(crate) use tables::write_answers_only;
+pub(crate) use tables::{write_answers_only, write_without_study};
 pub(crate) use timings::PlanLength;
 
 use crate::store::{Inputs, Stamp, Store, Writer};
@@ -67,7 +67,7 @@ impl<'a> Pipeline<'a> {
     /// Clears away what is no longer part of the study, and writes the manifest of what is.
     pub(crate) fn finish(&self) -> Result<()> {
         self.store.remove_retired()?;
-        crate::manifest::write(self.study, &self.store)
+        crate::manifest::write(&crate::manifest::Subject::of(self.study)?, &self.store)
     }
 
     /// Does a stage that makes meshes, animations or timings; when frozen, only looks it up.
