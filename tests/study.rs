@@ -126,7 +126,7 @@ fn a_killed_study_resumes_to_the_same_bytes() {
         let mut command = killed.command("study");
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         // Ever longer, so that the run gets to its end on a machine of any speed.
-        std::thread::sleep(Duration::from_millis(20 * round));
+        std::thread::sleep(Duration::from_millis(20).mul_f64(1.15_f64.powi(round)));
         match child.try_wait().unwrap() {
             Some(status) => {
                 assert!(status.success());
