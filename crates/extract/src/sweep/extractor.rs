@@ -371,6 +371,8 @@ fn join(pieces: &mut [Piece], most_vertices: u32) -> Result<Vec<Seam>, ExtractEr
     let triangles: usize = rest.iter().map(|piece| piece.surface.triangles.len()).sum();
     first.positions.try_reserve(total - first.positions.len()).map_err(|_| ExtractError::NoMemoryForMesh)?;
     first.surface.triangles.try_reserve(triangles).map_err(|_| ExtractError::NoMemoryForMesh)?;
+    let targets: usize = rest.iter().map(|piece| piece.targets.len()).sum();
+    first.targets.try_reserve(targets).map_err(|_| ExtractError::NoMemoryForMesh)?;
     seams.push(Seam { vertices: 0, head: first.head, tail: first.tail });
     for piece in rest {
         let base = first.surface.triangles.len();
