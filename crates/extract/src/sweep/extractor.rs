@@ -131,7 +131,9 @@ impl Extractor {
         let result = self.try_extract_into(source, lattice, settings, execution, extraction);
         if result.is_err() {
             let TriangleMesh { positions, normals, triangles } = &mut extraction.mesh;
-            (positions.clear(), normals.clear(), triangles.clear());
+            positions.clear();
+            normals.clear();
+            triangles.clear();
             (extraction.counts, extraction.times) = Default::default();
         }
         result
