@@ -9,8 +9,11 @@ use anyhow::{Context, Result, bail};
 use design::config::Positions;
 use design::record::{MeshRecord, Purpose};
 use design::{Configuration, ConfigurationId};
-use extract::{Execution, Extraction};
+use extract::{Execution, Extraction, Extractor};
 use mesh::TriangleMesh;
+
+/// How far a mesh moves the bar, which moves while one is extracted: a large volume takes minutes.
+pub(super) const TICKS_A_MESH: usize = 1000;
 
 /// The finished mesh stages, in the study's order.
 pub(crate) struct Meshes {
@@ -48,14 +51,14 @@ impl Pipeline<'_> {
     fn meshes(&self, purposes: &[Purpose], only: &[ConfigurationId]) -> Result<Meshes> {
         let selected = self.selected(only);
         let count = selected.len() * purposes.len();
-        let step = Step::begin("meshes", count, count);
+        let step = Step::begin("meshes", count, count * TICKS_A_MESH);
         let mut entries = Vec::new();
         for &purpose in purposes {
             for configuration in &selected {
-                let stamp = self.mesh(configuration, purpose)?;
-                step.tick(1);
+                let stamp = self.mesh(configuration, purpose, &step)?;
                 step.count(stamp.redone);
                 entries.push((configuration.id.clone(), purpose, stamp));
+                step.reach(entries.len() * TICKS_A_MESH);
             }
         }
         step.end();
@@ -67,14 +70,14 @@ impl Pipeline<'_> {
         self.study.configurations.iter().filter(wanted).collect()
     }
 
-    fn mesh(&self, configuration: &Configuration, purpose: Purpose) -> Result<Stamp> {
+    fn mesh(&self, configuration: &Configuration, purpose: Purpose, step: &Step) -> Result<Stamp> {
         let object = self.study.object(configuration);
         let (spacing, _) = subject::spacing(object, purpose);
         let name = purpose_name(purpose);
         let inputs = self.extraction_inputs(configuration, purpose)?.value("spacing", &spacing);
         self.stage(&format!("mesh/{name}/{}", configuration.id), inputs, |writer| {
             let lattice = subject::lattice(object, configuration.id.method.arrangement, spacing)?;
-            let extraction = self.extract(configuration, purpose, spacing)?;
+            let extraction = self.extract(configuration, purpose, spacing, step)?;
             let accuracy = self.accuracy(configuration, spacing, &extraction.mesh)?;
             let record = mesh_record(&configuration.id, purpose, spacing, &lattice, &extraction, &accuracy);
             // The indexed variant is only measured: nothing is rendered from it.
@@ -103,26 +106,28 @@ impl Pipeline<'_> {
             .text("field", &subject::field_inputs(self.study, object)?))
     }
 
-    /// Extracts one configuration at a spacing.
+    /// Extracts one configuration at a spacing, and moves the bar meanwhile by up to [`TICKS_A_MESH`].
     pub(super) fn extract(
         &self,
         configuration: &Configuration,
         purpose: Purpose,
         spacing: f64,
+        step: &Step,
     ) -> Result<Extraction> {
         let object = self.study.object(configuration);
         let lattice = subject::lattice(object, configuration.id.method.arrangement, spacing)?;
         let settings = subject::settings(self.study, configuration, purpose);
         let execution = Execution { threads: self.threads };
         let field = self.fields.get(configuration.object)?;
-        let extraction = extract::extract(field, &lattice, &settings, &execution)?;
+        let mut extractor = Extractor::new().with_progress(step.within(TICKS_A_MESH));
+        let extraction = extractor.extract(field.into(), &lattice, &settings, &execution)?;
         if extraction.mesh.triangles.is_empty() {
             let why = match extraction.counts.crossings {
                 0 => "every sample lies on one side",
                 _ => "clustering left no triangle",
             };
             bail!(
-                "{}: objects[{}]: no surface at isovalue {} with spacing {spacing}: {why}",
+                "{}: objects[{}]: no surface at isovalue {:?} with spacing {spacing:?}: {why}",
                 self.study.path.display(),
                 configuration.object,
                 object.isovalue,

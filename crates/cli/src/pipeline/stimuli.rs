@@ -1,5 +1,6 @@
 //! Animations and still pictures of the meshes, and the key to their names.
 
+use super::meshes::TICKS_A_MESH;
 use super::{Meshes, Pipeline};
 use crate::picture;
 use crate::progress::Step;
@@ -144,19 +145,19 @@ impl Pipeline<'_> {
     /// The figures of still pictures.
     pub(crate) fn stills(&self) -> Result<Vec<Stamp>> {
         let stills = &self.study.file.stills;
-        let step = Step::begin("stills", stills.len(), stills.len());
+        let step = Step::begin("stills", stills.len(), stills.len() * TICKS_A_MESH);
         let mut stamps = Vec::new();
         for still in stills {
-            let stamp = self.still(still)?;
-            step.tick(1);
+            let stamp = self.still(still, &step)?;
             step.count(stamp.redone);
             stamps.push(stamp);
+            step.reach(stamps.len() * TICKS_A_MESH);
         }
         step.end();
         Ok(stamps)
     }
 
-    fn still(&self, still: &StillSection) -> Result<Stamp> {
+    fn still(&self, still: &StillSection, step: &Step) -> Result<Stamp> {
         let named = self.study.configurations.iter().find(|c| c.id == still.configuration);
         let configuration = named.expect("checked when the study was read");
         let object = self.study.object(configuration);
@@ -168,7 +169,7 @@ impl Pipeline<'_> {
             .value("turntable", &self.study.file.turntable)
             .value("shading", &self.study.file.shading);
         self.stage(&format!("still/{}", still.id), inputs, |writer| {
-            let mesh = self.extract(configuration, Purpose::Stimulus, still.spacing)?.mesh;
+            let mesh = self.extract(configuration, Purpose::Stimulus, still.spacing, step)?.mesh;
             let settings = picture::turntable(&self.study.file.turntable, &object.camera);
             let shading = picture::shading(&self.study.file.shading);
             let sheet = picture::still_sheet(&mesh, &settings, &shading, &still.looks)?;
