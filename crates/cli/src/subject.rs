@@ -197,13 +197,13 @@ pub(crate) fn check_lattices(study: &Study, machine_bytes: Option<u64>) -> Resul
     let execution = Execution { threads: cores.max(study.file.benchmark.threads as usize) };
     let check = |key: String, object: &ObjectSection, arrangement, spacing: f64, purpose| -> Result<()> {
         let lattice =
-            lattice(object, arrangement, spacing).with_context(|| format!("{file}: {key} = {spacing}"))?;
+            lattice(object, arrangement, spacing).with_context(|| format!("{file}: {key} = {spacing:?}"))?;
         let settings = ExtractSettings { positions: positions(study, purpose), ..Default::default() };
         let needed = lattice.memory_bytes_for(&settings, &execution);
         if needed > limit {
             let (needed, limit) = (gibibytes(needed), gibibytes(limit));
             let lattice = arrangement.label();
-            bail!("{file}: {key} = {spacing}: the {lattice} lattice needs {needed}, {limit_name} {limit}");
+            bail!("{file}: {key} = {spacing:?}: the {lattice} lattice needs {needed}, {limit_name} {limit}");
         }
         Ok(())
     };

@@ -55,6 +55,12 @@ pub enum ConfigError {
     },
 }
 
+/// A number in few letters: `0.04`, `-2`, `1e-300`.
+pub(crate) fn short(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or_else(|| text.clone(), str::to_owned)
+}
+
 /// Checks values of one file and builds errors that name it.
 pub(crate) struct Checker<'a> {
     pub(crate) file: &'a Path,
@@ -78,10 +84,11 @@ impl Checker<'_> {
     /// A finite number in `low..=high`.
     pub(crate) fn number(&self, key: &str, value: f64, low: f64, high: f64) -> Result<(), ConfigError> {
         if !value.is_finite() {
-            return self.refuse(key, value, "must be a finite number");
+            return self.refuse(key, short(value), "must be a finite number");
         }
         if value < low || value > high {
-            return self.refuse(key, value, format!("must lie between {low} and {high}"));
+            let limit = format!("must lie between {} and {}", short(low), short(high));
+            return self.refuse(key, short(value), limit);
         }
         Ok(())
     }
@@ -89,10 +96,24 @@ impl Checker<'_> {
     /// A finite number above zero, up to `high`.
     pub(crate) fn positive(&self, key: &str, value: f64, high: f64) -> Result<(), ConfigError> {
         if !value.is_finite() {
-            return self.refuse(key, value, "must be a finite number");
+            return self.refuse(key, short(value), "must be a finite number");
         }
         if value <= 0.0 || value > high {
-            return self.refuse(key, value, format!("must be above 0 and at most {high}"));
+            let limit = format!("must be above 0 and at most {}", short(high));
+            return self.refuse(key, short(value), limit);
+        }
+        Ok(())
+    }
+
+    /// [`positive`](Self::positive) in single precision too, in which lattices are made.
+    pub(crate) fn length(&self, key: &str, value: f64, high: f64) -> Result<(), ConfigError> {
+        self.positive(key, value, high)?;
+        if value as f32 == 0.0 {
+            return self.refuse(
+                key,
+                short(value),
+                "is 0 in single precision, in which surfaces are extracted",
+            );
         }
         Ok(())
     }

@@ -119,7 +119,7 @@ pub struct ExtractionSection {
     #[serde(default)]
     pub topology: Topology,
     /// With accumulated positions: into how many runs of layers the z axis is cut, each starting its sum anew.
-    #[serde(deserialize_with = "whole")]
+    #[serde(default = "one", deserialize_with = "whole")]
     pub accumulation_chunks: u32,
     /// Where a vertex goes.
     #[serde(default)]
@@ -127,6 +127,10 @@ pub struct ExtractionSection {
     /// Whether crossings are roots of the field rather than interpolated between samples.
     #[serde(default)]
     pub refine_crossings: bool,
+}
+
+fn one() -> u32 {
+    1
 }
 
 /// One object of the study.

@@ -1,6 +1,6 @@
 //! A study, read from its file, checked, and ready to work from.
 
-use crate::check::{Checker, ConfigError};
+use crate::check::{Checker, ConfigError, short};
 use crate::code_names;
 use crate::config::{FieldSection, ObjectSection, ResponsesSection, StudyFile};
 use crate::forms::Questionnaire;
@@ -220,7 +220,7 @@ fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigError> 
     if !(1.0..=65535.0).contains(&delay_cs) {
         return c.refuse(
             "turntable.duration_s",
-            t.duration_s,
+            short(t.duration_s),
             format!("gives {delay_cs} centiseconds a frame; a GIF holds 1 to 65535"),
         );
     }
@@ -228,7 +228,8 @@ fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigError> 
     c.positive("turntable.near", t.near, 1e3)?;
     c.positive("turntable.far", t.far, 1e9)?;
     if t.far <= t.near {
-        return c.refuse("turntable.far", t.far, format!("must be above turntable.near = {}", t.near));
+        let limit = format!("must be above turntable.near = {}", short(t.near));
+        return c.refuse("turntable.far", short(t.far), limit);
     }
     c.count("turntable.supersampling", t.supersampling, 1, 4)?;
 
@@ -267,13 +268,16 @@ fn check_objects(c: &Checker<'_>, objects: &[ObjectSection]) -> Result<(), Confi
         c.numbers(&key("min"), &object.min, -1e6, 1e6)?;
         c.numbers(&key("max"), &object.max, -1e6, 1e6)?;
         for axis in 0..3 {
-            if object.max[axis] <= object.min[axis] {
-                let limit = format!("must be above {} = {}", key("min"), object.min[axis]);
-                return c.refuse(format!("{}[{axis}]", key("max")), object.max[axis], limit);
+            let (min, max) = (object.min[axis], object.max[axis]);
+            // Volumes are single precision.
+            if max as f32 <= min as f32 {
+                let by = if max > min { " by more than single precision loses" } else { "" };
+                let limit = format!("must be above {} = {}{by}", key("min"), short(min));
+                return c.refuse(format!("{}[{axis}]", key("max")), short(max), limit);
             }
         }
-        c.positive(&key("benchmark_spacing"), object.benchmark_spacing, 1e6)?;
-        c.positive(&key("stimulus_spacing"), object.stimulus_spacing, 1e6)?;
+        c.length(&key("benchmark_spacing"), object.benchmark_spacing, 1e6)?;
+        c.length(&key("stimulus_spacing"), object.stimulus_spacing, 1e6)?;
         c.positive(&key("camera.distance"), object.camera.distance, 1e6)?;
         c.number(&key("camera.vertical_fov_rad"), object.camera.vertical_fov_rad, 0.01, 3.1)?;
         check_field(c, &key("field"), &object.field)?;
@@ -283,7 +287,7 @@ fn check_objects(c: &Checker<'_>, objects: &[ObjectSection]) -> Result<(), Confi
 
 fn check_field(c: &Checker<'_>, key: &str, field: &FieldSection) -> Result<(), ConfigError> {
     match field {
-        FieldSection::Sphere { radius } => c.positive(&format!("{key}.radius"), *radius, 1e6),
+        FieldSection::Sphere { radius } => c.length(&format!("{key}.radius"), *radius, 1e6),
         FieldSection::Asteroid => Ok(()),
         FieldSection::Mesh { sources } => {
             for (i, source) in sources.iter().enumerate() {
@@ -446,7 +450,7 @@ fn check_stills(
                 "is not a configuration of this study",
             );
         }
-        c.positive(&key("spacing"), still.spacing, 1e6)?;
+        c.length(&key("spacing"), still.spacing, 1e6)?;
         if still.looks.is_empty() {
             return c.refuse(key("looks"), "[]", "must list at least one look");
         }
@@ -550,6 +554,22 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn extreme_numbers_are_told_in_few_letters() {
+        let key = "benchmark_spacing = 0.04";
+        let error = error_with(key, "benchmark_spacing = 1e300");
+        assert!(error.contains("benchmark_spacing = 1e300: must be above 0 and at most 1000000"), "{error}");
+        let error = error_with(key, "benchmark_spacing = 1e-300");
+        assert!(error.contains("benchmark_spacing = 1e-300: is 0 in single precision"), "{error}");
+        let error = error_with("radius = 1.0", "radius = 1e-60");
+        assert!(error.contains("field.radius = 1e-60: is 0 in single precision"), "{error}");
+        let error = error_with("isovalue = 0.0", "isovalue = -1e300");
+        assert!(error.contains("isovalue = -1e300: must lie between -1000000000 and"), "{error}");
+        let error = error_with("max = [1.0, 1.0, 1.0]", "max = [1.0, 1.0, -0.99999999999]");
+        let told = "max[2] = -0.99999999999: must be above objects[0].min = -1 by more than single precision";
+        assert!(error.contains(told), "{error}");
+    }
+
+    #[test]
     fn unknown_keys_and_missing_files_are_named() {
         let error = error_with("memory_gib = 8.0", "memory_gib = 8.0\nmemory_gb = 1");
         assert!(error.contains("memory_gb") && error.contains("paper.toml"), "{error}");
@@ -566,6 +586,15 @@ pub(crate) mod tests {
         let topology = |to| paper_with("topology = \"published\"", to).unwrap().file.extraction.topology;
         assert_eq!(topology("topology = \"published\""), crate::config::Topology::Published);
         assert_eq!(topology(""), crate::config::Topology::Guarded);
+    }
+
+    #[test]
+    fn chunks_of_layers_may_be_left_out() {
+        let chunks =
+            |to| paper_with("accumulation_chunks = 16", to).unwrap().file.extraction.accumulation_chunks;
+        assert_eq!((chunks("accumulation_chunks = 16"), chunks("")), (16, 1));
+        let error = error_with("accumulation_chunks = 16", "accumulation_chunks = 0");
+        assert!(error.contains("accumulation_chunks = 0: must lie between 1 and 4096"), "{error}");
     }
 
     #[test]

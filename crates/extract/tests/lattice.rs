@@ -80,6 +80,10 @@ fn absurd_sizes_are_refused_or_can_be_seen() {
     let huge = Bounds { min: Vec3::splat(f32::MIN), max: Vec3::splat(f32::MAX) };
     assert!(matches!(refused(huge, 1.0), LatticeError::TooManyCells { .. }));
     assert!(matches!(refused(UNIT, f32::MAX), LatticeError::OutOfRange { .. }));
+    let told = refused(UNIT, f32::MAX).to_string();
+    assert!(told.starts_with("spacing 3.4028235e38 puts lattice points along x"), "{told}");
+    let told = refused(UNIT, 1e-30).to_string();
+    assert!(told.contains("e30 cells along x") && told.len() < 60, "{told}");
     // Possible to name, too large to want: the caller can tell beforehand.
     let large = body_centred(UNIT, 0.0016).unwrap();
     assert!(large.memory_bytes() > 200_000_000_000, "{}", large.memory_bytes());

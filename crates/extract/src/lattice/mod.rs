@@ -39,13 +39,13 @@ pub struct Lattice {
 #[non_exhaustive]
 pub enum LatticeError {
     /// The cube edge is not a positive finite number.
-    #[error("spacing must be positive and finite, not {value}")]
+    #[error("spacing must be positive and finite, not {}", short(*value))]
     Spacing {
         /// What was given.
         value: f32,
     },
     /// The box has no extent along an axis, or a bound is not a finite number.
-    #[error("bounds along {axis} must be finite with min below max, not {min} to {max}")]
+    #[error("bounds along {axis} must be finite with min below max, not {} to {}", short(*min), short(*max))]
     Bounds {
         /// `'x'`, `'y'` or `'z'`.
         axis: char,
@@ -55,7 +55,7 @@ pub enum LatticeError {
         max: f32,
     },
     /// More cells along an axis than `f32` can count one by one.
-    #[error("{cells} cells along {axis} exceed the limit of {limit}")]
+    #[error("{} cells along {axis} exceed the limit of {limit}", short(*cells))]
     TooManyCells {
         /// `'x'`, `'y'` or `'z'`.
         axis: char,
@@ -73,13 +73,19 @@ pub enum LatticeError {
         limit: u64,
     },
     /// The outermost lattice points lie beyond the range of `f32`.
-    #[error("spacing {spacing} puts lattice points along {axis} beyond the range of f32")]
+    #[error("spacing {} puts lattice points along {axis} beyond the range of f32", short(*spacing))]
     OutOfRange {
         /// `'x'`, `'y'` or `'z'`.
         axis: char,
         /// What was given.
         spacing: f32,
     },
+}
+
+/// A number in few letters: `0.04`, `-2`, `1e-40`.
+fn short(value: f32) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or_else(|| text.clone(), str::to_owned)
 }
 
 impl Lattice {
