@@ -6,7 +6,7 @@ use mesh::Bounds;
 use super::asteroid::{Asteroid, blend, hash};
 use super::{SAFE, ScalarField, has_sound_lengths};
 
-/// The most whole-number points of an octave.
+/// The most whole-number points of all octaves together: 8 MiB of hashes and slopes.
 const MOST_POINTS: usize = 1 << 20;
 /// The most noise cells that a bound looks at.
 const MOST_CELLS: i32 = 64;
@@ -38,8 +38,14 @@ impl AsteroidTable {
     pub(super) fn new(asteroid: &Asteroid) -> Option<Self> {
         let mut octaves = Vec::new();
         let (mut weight, mut frequency, mut weights) = (1.0, 1.0, 0.0);
+        let mut room = MOST_POINTS;
         for _ in 0..asteroid.octaves {
-            octaves.push(Octave::new(asteroid, weight, frequency)?);
+            if weight == 0.0 {
+                break;
+            }
+            let octave = Octave::new(asteroid, weight, frequency, room)?;
+            room -= octave.hashes.len();
+            octaves.push(octave);
             weights += weight;
             frequency *= asteroid.lacunarity;
             weight *= asteroid.gain;
@@ -214,7 +220,8 @@ impl ScalarField for AsteroidTable {
 }
 
 impl Octave {
-    fn new(asteroid: &Asteroid, weight: f32, frequency: f32) -> Option<Self> {
+    /// `None` with more points than `most`.
+    fn new(asteroid: &Asteroid, weight: f32, frequency: f32, most: usize) -> Option<Self> {
         let reach = (Vec3::ONE / asteroid.stretch * (asteroid.frequency * frequency)).abs().to_array();
         if reach.iter().any(|r| r.is_nan() || *r >= 1000.0) || !weight.is_finite() {
             return None;
@@ -222,7 +229,7 @@ impl Octave {
         let low = reach.map(|r| -(r.ceil() as i32) - 1);
         let size = low.map(|low| 1 - 2 * low);
         let points = size.iter().map(|&n| n as usize).product::<usize>();
-        if points > MOST_POINTS {
+        if points > most {
             return None;
         }
         let mut hashes = Vec::with_capacity(points);
@@ -475,6 +482,22 @@ mod tests {
             seen += values.1 - values.0;
         }
         assert!(told < 2.0 * seen, "{told} told, {seen} seen");
+    }
+
+    /// Each octave of these has few points, so that only their sum is a limit.
+    #[test]
+    fn many_octaves_have_no_table() {
+        let asteroid = |octaves| Asteroid { octaves, lacunarity: 1.0, gain: 1.0, ..Asteroid::default() };
+        let points = |table: AsteroidTable| table.octaves.iter().map(|o| o.hashes.len()).sum::<usize>();
+        let each = points(AsteroidTable::new(&asteroid(1)).unwrap());
+        let most = (MOST_POINTS / each) as u32;
+        assert_eq!(points(AsteroidTable::new(&asteroid(most)).unwrap()), each * most as usize);
+        assert!(AsteroidTable::new(&asteroid(most + 1)).is_none());
+        assert!(AsteroidTable::new(&asteroid(u32::MAX)).is_none());
+        // Most of these have no weight.
+        let fading = Asteroid { gain: 0.15, ..asteroid(u32::MAX) };
+        let (table, p) = (AsteroidTable::new(&fading).unwrap(), Vec3::new(0.3, -0.4, 0.2));
+        assert_eq!(table.sample(p), fading.sample(p));
     }
 
     #[test]
