@@ -1,14 +1,16 @@
 //! Field to mesh and samples to mesh, one thread; `cargo bench -p extract`, or a part of it by name.
 //!
-//! `whole` calls the field where the surface can be; `all_samples` has the samples in memory; the other benches are
-//! single stages of the whole, as the extractor times them itself. Body-centred, integrated, `CELLS` cells along the
+//! `whole` calls the field where the surface can be; `all_samples` has the samples in memory; `stage_` and
+//! `all_samples_stage_` are single stages of the two, as the extractor times them itself. Body-centred, integrated, `CELLS` cells along the
 //! axes of the box (the bunny: the spacing that this gives a box of side 2).
 
-use std::fs::File;
-use std::path::Path;
+#[path = "../tests/bunny/mod.rs"]
+mod bunny;
+
 use std::sync::LazyLock;
 use std::time::Duration;
 
+use bunny::{BOX, bunny};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use extract::{
@@ -16,25 +18,20 @@ use extract::{
     MeshDistance, Placement, ScalarField, Source, Sphere, StageTimes,
 };
 use glam::Vec3;
-use mesh::{Bounds, read_ply, repair};
+use mesh::Bounds;
 
 const CELLS: [u32; 3] = [64, 128, 256];
 const FIELDS: [&str; 4] = ["sphere", "asteroid", "gyroid", "bunny"];
 
 fn main() {
     if BUNNY.is_none() {
-        eprintln!("SKIPPED: NO BUNNY IN cache/ - run make bunny; the benches named bunny measure nothing");
+        eprintln!("WITHOUT BUNNY: the benches named bunny measure nothing");
     }
     divan::main();
 }
 
-static BUNNY: LazyLock<Option<MeshDistance>> = LazyLock::new(|| {
-    let cache = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cache/bunny.ply");
-    let scan = read_ply(File::open(cache).ok()?).expect("the cached bunny is a mesh");
-    let solid = repair::closed_solid(&scan).expect("the bunny can be closed");
-    let placed = solid.transformed(|p| Vec3::new(p.x, -p.z, p.y) * 6.35 + Vec3::new(0.1, 0.0, -0.615));
-    Some(MeshDistance::try_new(&placed).expect("the bunny is a solid"))
-});
+static BUNNY: LazyLock<Option<MeshDistance>> =
+    LazyLock::new(|| bunny().map(|mesh| MeshDistance::try_new(&mesh).expect("the bunny is a solid")));
 
 /// `None` for a bunny that is not there.
 fn field(name: &str) -> Option<(Box<dyn ScalarField>, Bounds)> {
@@ -43,10 +40,7 @@ fn field(name: &str) -> Option<(Box<dyn ScalarField>, Bounds)> {
         "sphere" => (Box::new(Sphere { radius: 0.8 }), cube),
         "asteroid" => (Box::new(Asteroid::default()), cube),
         "gyroid" => (Box::new(Gyroid::default()), cube),
-        "bunny" => {
-            let bounds = Bounds { min: Vec3::new(-0.7, -0.4, -0.5), max: Vec3::new(0.8, 0.4, 0.6) };
-            (Box::new(BUNNY.clone()?), bounds)
-        }
+        "bunny" => (Box::new(BUNNY.clone()?), BOX),
         other => panic!("no field is called {other}"),
     })
 }
@@ -140,7 +134,7 @@ fn collapsed<const N: u32>(bencher: Bencher, name: &str) {
     bencher.bench_local(|| subject.run(None, Clustering::IntegratedCollapse, 1));
 }
 
-#[divan::bench(args = ["sphere", "asteroid", "gyroid"], consts = CELLS)]
+#[divan::bench(args = FIELDS, consts = CELLS)]
 fn all_samples<const N: u32>(bencher: Bencher, name: &str) {
     let Some(mut subject) = Subject::new(name, N) else { return };
     let samples = subject.samples();
@@ -149,14 +143,14 @@ fn all_samples<const N: u32>(bencher: Bencher, name: &str) {
     });
 }
 
-#[divan::bench(args = ["sphere", "asteroid", "gyroid"], consts = CELLS)]
+#[divan::bench(args = FIELDS, consts = CELLS)]
 fn all_samples_two_threads<const N: u32>(bencher: Bencher, name: &str) {
     let Some(mut subject) = Subject::new(name, N) else { return };
     let samples = subject.samples();
     bencher.bench_local(|| subject.run(Some(&samples), Clustering::Integrated, 2));
 }
 
-#[divan::bench(args = ["sphere", "asteroid", "gyroid"], consts = CELLS)]
+#[divan::bench(args = FIELDS, consts = CELLS)]
 fn all_samples_unclustered<const N: u32>(bencher: Bencher, name: &str) {
     let Some(mut subject) = Subject::new(name, N) else { return };
     let samples = subject.samples();
@@ -165,11 +159,12 @@ fn all_samples_unclustered<const N: u32>(bencher: Bencher, name: &str) {
 
 /// Stages are not functions of their own but run turn and turn about, layer by layer: each is timed inside, and its
 /// share is spun away again for the benchmark to see. So every sample takes the whole and its stage on top.
-fn stage<const N: u32>(bencher: Bencher, name: &str, of: fn(&StageTimes) -> Duration) {
+fn stage<const N: u32>(bencher: Bencher, name: &str, given: bool, of: fn(&StageTimes) -> Duration) {
     let Some(mut subject) = Subject::new(name, N) else { return };
+    let samples = given.then(|| subject.samples());
     bencher
         .with_inputs(|| {
-            subject.run(None, Clustering::Integrated, 1);
+            subject.run(samples.as_deref(), Clustering::Integrated, 1);
             of(&subject.extraction.times)
         })
         .bench_local_values(|time| {
@@ -182,20 +177,40 @@ fn stage<const N: u32>(bencher: Bencher, name: &str, of: fn(&StageTimes) -> Dura
 
 #[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
 fn stage_sampling<const N: u32>(bencher: Bencher, name: &str) {
-    stage::<N>(bencher, name, |times| times.sampling);
+    stage::<N>(bencher, name, false, |times| times.sampling);
 }
 
 #[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
 fn stage_vertex<const N: u32>(bencher: Bencher, name: &str) {
-    stage::<N>(bencher, name, |times| times.vertex);
+    stage::<N>(bencher, name, false, |times| times.vertex);
 }
 
 #[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
 fn stage_geometry<const N: u32>(bencher: Bencher, name: &str) {
-    stage::<N>(bencher, name, |times| times.geometry);
+    stage::<N>(bencher, name, false, |times| times.geometry);
 }
 
 #[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
 fn stage_normals<const N: u32>(bencher: Bencher, name: &str) {
-    stage::<N>(bencher, name, |times| times.normals);
+    stage::<N>(bencher, name, false, |times| times.normals);
+}
+
+#[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
+fn all_samples_stage_signs<const N: u32>(bencher: Bencher, name: &str) {
+    stage::<N>(bencher, name, true, |times| times.sampling);
+}
+
+#[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
+fn all_samples_stage_vertex<const N: u32>(bencher: Bencher, name: &str) {
+    stage::<N>(bencher, name, true, |times| times.vertex);
+}
+
+#[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
+fn all_samples_stage_geometry<const N: u32>(bencher: Bencher, name: &str) {
+    stage::<N>(bencher, name, true, |times| times.geometry);
+}
+
+#[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
+fn all_samples_stage_normals<const N: u32>(bencher: Bencher, name: &str) {
+    stage::<N>(bencher, name, true, |times| times.normals);
 }

@@ -1,13 +1,16 @@
 //! Best-of-many CPU times from field to mesh, one thread, with sampling only where the surface can be.
 //! Arguments: cells along an axis, repetitions, part of a case's name. The bunny is at the paper's lattice.
 
+#[path = "../tests/bunny/mod.rs"]
+mod bunny;
+
+use bunny::{BOX, bunny};
 use extract::{
     Arrangement, Asteroid, Execution, ExtractSettings, Extraction, Extractor, Gyroid, Lattice, MeshDistance,
     ScalarField, Source, Sphere,
 };
 use glam::Vec3;
-use mesh::{Bounds, read_ply, repair};
-use std::path::Path;
+use mesh::Bounds;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 struct Counting<'a>(&'a dyn ScalarField, &'a AtomicUsize);
@@ -25,17 +28,6 @@ impl ScalarField for Counting<'_> {
     }
 }
 
-fn bunny() -> Option<MeshDistance> {
-    let cache = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cache/bunny.ply");
-    let Ok(file) = std::fs::File::open(&cache) else {
-        eprintln!("SKIPPED: no bunny at {}", cache.display());
-        return None;
-    };
-    let solid = repair::closed_solid(&read_ply(file).unwrap()).unwrap();
-    let placed = solid.transformed(|p| Vec3::new(p.x, -p.z, p.y) * 6.35 + Vec3::new(0.1, 0.0, -0.615));
-    Some(MeshDistance::try_new(&placed).unwrap())
-}
-
 /// Time this thread has run, which other work on the machine does not add to.
 fn cpu_ms() -> f64 {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").expect("Linux");
@@ -48,9 +40,8 @@ fn main() {
     let repetitions: usize = arguments.next().map_or(10, |a| a.parse().unwrap());
     let wanted = arguments.next().unwrap_or_default();
     let cube = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
-    let box_of_the_bunny = Bounds { min: Vec3::new(-0.7, -0.4, -0.5), max: Vec3::new(0.8, 0.4, 0.6) };
     let spacing = 2.0 / cells as f32;
-    let bunny = bunny();
+    let bunny = bunny().map(|mesh| MeshDistance::try_new(&mesh).unwrap());
     let mut cases: Vec<(&str, &dyn ScalarField, Bounds, f32)> = vec![
         ("sphere 0.8", &Sphere { radius: 0.8 }, cube, spacing),
         (
@@ -72,7 +63,7 @@ fn main() {
         ("gyroid", &Gyroid { frequency: 9.424778 }, cube, spacing),
     ];
     if let Some(bunny) = &bunny {
-        cases.push(("bunny", bunny, box_of_the_bunny, 0.02));
+        cases.push(("bunny", bunny, BOX, 0.02));
     }
     for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
         for &(name, field, bounds, spacing) in &cases {

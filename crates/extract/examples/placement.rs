@@ -3,16 +3,17 @@
 //!
 //! Times are of the processor, best of a few. `cargo run --release -p extract --example placement`
 
-use std::fs::File;
-use std::path::Path;
+#[path = "../tests/bunny/mod.rs"]
+mod bunny;
 
+use bunny::{BOX, bunny};
 use extract::{
     Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Gyroid, Lattice,
     MeshDistance, Placement, ScalarField, Source, Sphere, accuracy,
 };
 use glam::Vec3;
+use mesh::Bounds;
 use mesh::quality::quality;
-use mesh::{Bounds, read_ply, repair};
 
 const ONE: Execution = Execution { threads: 1 };
 const REPETITIONS: usize = 5;
@@ -27,12 +28,9 @@ fn main() {
         ("asteroid", Box::new(Asteroid::default()), cube),
         ("gyroid", Box::new(Gyroid::default()), cube),
     ];
-    match bunny() {
-        Some(bunny) => {
-            let bounds = Bounds { min: Vec3::new(-0.7, -0.4, -0.5), max: Vec3::new(0.8, 0.4, 0.6) };
-            fields.push(("bunny", Box::new(bunny), bounds));
-        }
-        None => eprintln!("no bunny in cache/: make bunny"),
+    if let Some(bunny) = bunny() {
+        let field = MeshDistance::try_new(&bunny).expect("the bunny is a solid");
+        fields.push(("bunny", Box::new(field), BOX));
     }
     println!(
         "| surface, lattice, {cells} cells | placement | radius ratio, mean | smallest angle, 5 % | distance / h, mean | \
@@ -92,12 +90,4 @@ fn row(id: &str, field: &dyn ScalarField, lattice: &Lattice, settings: &ExtractS
 fn cpu_ms() -> f64 {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").expect("Linux");
     text.split(' ').next().and_then(|ns| ns.parse::<f64>().ok()).expect("a number") / 1e6
-}
-
-fn bunny() -> Option<MeshDistance> {
-    let cache = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cache/bunny.ply");
-    let scan = read_ply(File::open(cache).ok()?).expect("the cached bunny is a mesh");
-    let solid = repair::closed_solid(&scan).expect("the bunny can be closed");
-    let placed = solid.transformed(|p| Vec3::new(p.x, -p.z, p.y) * 6.35 + Vec3::new(0.1, 0.0, -0.615));
-    Some(MeshDistance::try_new(&placed).expect("the bunny is a solid"))
 }

@@ -1,17 +1,18 @@
 //! The mesh distance against formulas, against a search through everything, and on the Stanford bunny.
 
+mod bunny;
+
 use std::f64::consts::PI;
-use std::fs::File;
-use std::path::Path;
 use std::thread;
 
+use bunny::{BOX, bunny};
 use extract::{
     Arrangement, Clustering, Execution, ExtractSettings, Lattice, MeshDistance, MeshFieldError, Positions,
     ScalarField, Topology, extract,
 };
 use glam::{DVec3, Vec3};
 use mesh::topology::topology;
-use mesh::{Bounds, TriangleMesh, read_obj, read_ply, repair};
+use mesh::{TriangleMesh, repair};
 
 /// A cube from `low` to `low + 2`, each face cut into `n` x `n` squares, each along its diagonal.
 fn cube(low: Vec3, n: u32) -> TriangleMesh {
@@ -214,30 +215,6 @@ fn meshes_without_an_inside_are_refused_by_name_and_number() {
     assert_eq!(refusal(&lost), want);
 }
 
-/// The bunny as a closed solid in the evaluation's scene, or `None` where going without it was asked for.
-///
-/// Axes (x, y, z) -> (x, -z, y). Scale and offset were fitted: they put the bounds where the published output has
-/// them and the published counts within 1.6 %, as in `configs/paper.toml`. Debian's file is Stanford's, centred on its bounds and scaled to a
-/// width of 2.
-fn bunny() -> Option<TriangleMesh> {
-    let cache = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cache");
-    let (scan, scale, offset) = if let Ok(file) = File::open(cache.join("bunny.ply")) {
-        (read_ply(file).unwrap(), 6.35, Vec3::new(0.104, 0.002, -0.617))
-    } else if let Ok(file) = File::open(cache.join("bunny.obj")) {
-        (read_obj(file).unwrap(), 0.494_344, Vec3::new(-0.002_937, 0.011_76, 0.082_479))
-    } else {
-        // A test that quietly checks nothing is worse than none: going without has to be asked for.
-        let without = std::env::var_os("ISOSTUDY_WITHOUT_BUNNY").is_some();
-        assert!(
-            without,
-            "no bunny in cache/: run `make bunny`, or set ISOSTUDY_WITHOUT_BUNNY=1 to go without"
-        );
-        return None;
-    };
-    let solid = repair::closed_solid(&scan).unwrap();
-    Some(solid.transformed(|p| Vec3::new(p.x, -p.z, p.y) * scale + offset))
-}
-
 fn check_bunny_signs(points: usize) {
     let Some(bunny) = bunny() else { return };
     let field = MeshDistance::try_new(&bunny).unwrap();
@@ -274,7 +251,6 @@ fn bunny_distances_agree_with_a_search_through_all() {
 fn the_extracted_bunny_is_one_closed_surface_of_the_published_size() {
     let Some(bunny) = bunny() else { return };
     let field = MeshDistance::try_new(&bunny).unwrap();
-    let bounds = Bounds { min: Vec3::new(-0.7, -0.4, -0.5), max: Vec3::new(0.8, 0.4, 0.6) };
     // Costen (2026), rows bs_bu to bs_sp: vertices, triangles, tetrahedra evaluated. His mesh was a remeshed one.
     for (arrangement, clustering, published) in [
         (Arrangement::BodyCentred, Clustering::None, [37_332, 74_660, 122_808]),
@@ -284,7 +260,7 @@ fn the_extracted_bunny_is_one_closed_surface_of_the_published_size() {
         (Arrangement::SimpleCubic, Clustering::Integrated, [6_579, 13_154, 50_910]),
         (Arrangement::SimpleCubic, Clustering::EdgeCollapse, [7_616, 15_228, 50_910]),
     ] {
-        let lattice = Lattice::try_new(arrangement, bounds, 0.02).unwrap();
+        let lattice = Lattice::try_new(arrangement, BOX, 0.02).unwrap();
         let rules = Topology::Published;
         let settings = ExtractSettings { clustering, topology: rules, ..ExtractSettings::default() };
         let extraction = extract(&field, &lattice, &settings, &Execution::default()).unwrap();
@@ -310,12 +286,11 @@ fn the_extracted_bunny_is_one_closed_surface_of_the_published_size() {
 fn the_studys_bunny_has_no_handle_and_no_bubble() {
     let Some(bunny) = bunny() else { return };
     let field = MeshDistance::try_new(&bunny).unwrap();
-    let bounds = Bounds { min: Vec3::new(-0.7, -0.4, -0.5), max: Vec3::new(0.8, 0.4, 0.6) };
     for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
         for clustering in [Clustering::None, Clustering::Integrated] {
             for spacing in [0.02, 0.03] {
                 for positions in [Positions::Indexed, Positions::Accumulated { chunks: 16 }] {
-                    let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
+                    let lattice = Lattice::try_new(arrangement, BOX, spacing).unwrap();
                     let rules = Topology::Published;
                     let settings = ExtractSettings {
                         clustering,
