@@ -1,5 +1,7 @@
 //! How far a mesh is from the isosurface it stands for, and how far its normals are from the field's.
 
+use std::collections::TryReserveError;
+
 use glam::Vec3;
 use mesh::TriangleMesh;
 use mesh::distribution::{Bins, Distribution};
@@ -8,6 +10,7 @@ use rayon::prelude::*;
 use crate::ExtractError;
 use crate::field::{Kept, ScalarField};
 use crate::level::Level;
+use crate::memory::collected;
 use crate::sampling::{SHARE, on_threads};
 use crate::settings::Execution;
 
@@ -47,7 +50,7 @@ pub struct Accuracy {
 /// The result does not depend on `execution`.
 ///
 /// # Errors
-/// [`ExtractError::Threads`] if threads cannot be started.
+/// [`ExtractError::Threads`] if threads cannot be started, [`ExtractError::NoMemoryForMesh`].
 ///
 /// # Panics
 /// If a triangle's index is out of range.
@@ -60,7 +63,7 @@ pub fn accuracy(
 ) -> Result<Accuracy, ExtractError> {
     let mut kept = Kept::default();
     let level = Level { field: field.prepared(&mut kept).unwrap_or(field), isovalue, spacing };
-    let points = points_by_area(mesh, POINTS);
+    let points = points_by_area(mesh, POINTS)?;
     let every = mesh.normals.len().div_ceil(VERTICES).max(1);
     let vertices: Vec<usize> = (0..mesh.normals.len()).step_by(every).collect();
     let (distances, angles): (Vec<Option<f64>>, Vec<Option<f64>>) =
@@ -90,25 +93,24 @@ fn normal_error_deg(level: &Level, p: Vec3, normal: Vec3) -> Option<f64> {
 }
 
 /// `count` points on the triangles, evenly over the area; none on a mesh without area.
-fn points_by_area(mesh: &TriangleMesh, count: usize) -> Vec<Vec3> {
+fn points_by_area(mesh: &TriangleMesh, count: usize) -> Result<Vec<Vec3>, TryReserveError> {
     let corners = |t: usize| mesh.corners(t).map(|p| p.as_dvec3());
     let area = |t: usize| {
         let [a, b, c] = corners(t);
         0.5 * (b - a).cross(c - a).length()
     };
     // The end of each triangle's share.
-    let ends: Vec<f64> = (0..mesh.triangles.len())
-        .scan(0.0, |sum, t| {
-            *sum += area(t);
-            Some(*sum)
-        })
-        .collect();
+    let mut sum = 0.0;
+    let ends = collected((0..mesh.triangles.len()).map(|t| {
+        sum += area(t);
+        sum
+    }))?;
     let Some(&total) = ends.last().filter(|total| total.is_finite() && **total > 0.0) else {
-        return Vec::new();
+        return Ok(Vec::new());
     };
     // The fractional parts of multiples of 1/g and 1/g^2, where g^3 = g + 1.
     const SEQUENCE: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
-    (0..count)
+    let points = (0..count)
         .map(|i| {
             let place = (i as f64 + 0.5) / count as f64 * total;
             let t = ends.partition_point(|&end| end <= place).min(ends.len() - 1);
@@ -120,5 +122,6 @@ fn points_by_area(mesh: &TriangleMesh, count: usize) -> Vec<Vec3> {
             }
             (a + (b - a) * u + (c - a) * v).as_vec3()
         })
-        .collect()
+        .collect();
+    Ok(points)
 }

@@ -31,7 +31,7 @@ impl EdgeTable {
 
     /// Gives the edge at `point` in `direction` its vertex.
     pub(crate) fn set_vertex(&mut self, point: usize, direction: usize, vertex: u32) {
-        self.vertices[point][direction] = vertex + 1;
+        self.vertices[point][direction] = vertex.wrapping_add(1);
     }
 
     /// The vertex of the edge at `point` in `direction`, if it belongs to this end.

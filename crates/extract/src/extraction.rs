@@ -1,5 +1,6 @@
 //! What an extraction gives: the surface, counts, times, errors.
 
+use std::collections::TryReserveError;
 use std::time::Duration;
 
 use mesh::TriangleMesh;
@@ -137,6 +138,13 @@ pub enum ExtractError {
         /// The most there may be.
         limit: u32,
     },
+}
+
+/// What memory is asked for beyond that of the lattice is the mesh's.
+impl From<TryReserveError> for ExtractError {
+    fn from(_: TryReserveError) -> Self {
+        Self::NoMemoryForMesh
+    }
 }
 
 /// Extracts the surface where `field` has the isovalue.

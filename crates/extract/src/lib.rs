@@ -67,6 +67,11 @@
 //! | memory that is not there | [`ExtractError::OutOfMemory`], [`ExtractError::NoMemoryForMesh`] |
 //! | more than 2^32 - 1 vertices | [`ExtractError::TooManyVertices`] |
 //!
+//! What grows with the lattice or with the mesh is asked for. Not asked for, so that without it the process ends, are
+//! tables of one size (under 1 MiB, and up to 8 MiB for an [`Asteroid`]), what the threads need to start and to share
+//! work, what a [`MeshDistance`] holds of its mesh, and, with accumulated positions, the pages of the lattice, which was
+//! asked for as a whole before. Systems that promise more memory than they have can still end the process.
+//!
 //! A sample that is `NaN` is outside and leaves the crossings round it to the inside end, in the middle of their
 //! edges; so are two infinities. One infinity puts the crossing on the other end.
 //!
@@ -79,9 +84,12 @@
 //! - Costen: dissertation and program (2026). The evaluation this repeats: rules, fields, sizes and
 //!   the numbers that the tests compare with.
 
-// The fields and the survey of the integration tests, for the tests that need to see inside.
+// The fields, the survey and the bunny of the integration tests, for the tests that need to see inside.
 #[cfg(test)]
 extern crate self as extract;
+#[cfg(test)]
+#[path = "../tests/bunny/mod.rs"]
+mod bunny;
 #[cfg(test)]
 #[path = "../tests/fields/mod.rs"]
 mod fields;
@@ -99,6 +107,7 @@ mod field;
 mod guard;
 mod lattice;
 mod level;
+mod memory;
 mod normals;
 mod placement;
 mod sampling;

@@ -1,13 +1,20 @@
 //! Normals stage: one normal a vertex from the triangles round it.
 
+use std::collections::TryReserveError;
+
 use glam::Vec3;
+
+use crate::memory::filled;
 
 /// Area-weighted mean normals: the sum of the cross products of the triangles at a vertex, made unit length.
 /// Outward, as the triangles are. Zero for a vertex that no triangle with an area uses.
-pub(crate) fn vertex_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
-    let mut normals = vec![Vec3::ZERO; positions.len()];
+pub(crate) fn vertex_normals(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+) -> Result<Vec<Vec3>, TryReserveError> {
+    let mut normals = filled(positions.len(), Vec3::ZERO)?;
     accumulate(positions, triangles, &mut normals);
-    normals
+    Ok(normals)
 }
 
 /// The same into `normals`, which are zero.
@@ -54,7 +61,7 @@ mod tests {
     fn larger_triangles_weigh_more() {
         let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(0.0, 0.0, 3.0)];
         // One in the xy plane of area 1/2, one in the yz plane of area 3/2, sharing the y side.
-        let normals = vertex_normals(&positions, &[[0, 1, 2], [0, 2, 3]]);
+        let normals = vertex_normals(&positions, &[[0, 1, 2], [0, 2, 3]]).unwrap();
         assert!((normals[0] - Vec3::new(3.0, 0.0, 1.0).normalize()).length() < 1e-6);
         assert_eq!(normals[1], Vec3::Z);
         assert_eq!(normals[3], Vec3::X);
@@ -62,6 +69,6 @@ mod tests {
 
     #[test]
     fn unused_vertex_has_no_normal() {
-        assert_eq!(vertex_normals(&[Vec3::ONE], &[]), [Vec3::ZERO]);
+        assert_eq!(vertex_normals(&[Vec3::ONE], &[]).unwrap(), [Vec3::ZERO]);
     }
 }

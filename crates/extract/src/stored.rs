@@ -16,14 +16,15 @@ use crate::placement::{self, CrossingPlacer};
 use crate::sampling::sample;
 use crate::settings::{Execution, ExtractSettings};
 use crate::triangles::triangulate;
-use crate::vertices::{Sides, place_vertices};
+use crate::vertices::{Sides, VertexStage};
 
-/// The stages in order, timed and counted.
+/// The stages in order, timed and counted. At most `most_vertices` may come of it.
 pub(crate) fn extract(
     field: &dyn ScalarField,
     lattice: &Lattice,
     settings: &ExtractSettings,
     execution: &Execution,
+    most_vertices: u32,
 ) -> Result<Extraction, ExtractError> {
     check(settings)?;
     let mut clock = Clock::start();
@@ -35,21 +36,21 @@ pub(crate) fn extract(
     let mut edges = EdgeTable::new(layout.len());
     let allocation = clock.lap();
 
-    let coordinates = Coordinates::sampled(lattice, &layout, settings.positions);
+    let coordinates = Coordinates::sampled(lattice, &layout, settings.positions)?;
     sample(field, &layout, &coordinates, execution, &mut samples)?;
     let sampling = clock.lap();
 
     let level = Level { field, isovalue: settings.isovalue, spacing: lattice.spacing() };
     let placer = CrossingPlacer::new(lattice, settings, Some(level));
-    let (mut positions, targets, crossings) =
-        place_vertices(lattice, &layout, &samples, settings, placer.as_ref(), &mut sides, &mut edges)?;
+    let stage = VertexStage::new(lattice, &samples, settings, placer.as_ref(), &mut sides, &mut edges);
+    let (mut positions, targets, crossings) = stage.run(&layout, most_vertices)?;
     let vertex = clock.lap();
 
-    let mut surface = triangulate(lattice, &layout, &sides, &edges);
+    let mut surface = triangulate(lattice, &layout, &sides, &edges)?;
     placement::finish(Some(level), lattice, settings, execution, &targets, &mut positions, &mut surface)?;
     let geometry = clock.lap();
 
-    let normals = vertex_normals(&positions, &surface.triangles);
+    let normals = vertex_normals(&positions, &surface.triangles)?;
     let times = StageTimes { allocation, sampling, vertex, geometry, normals: clock.lap() };
 
     let mesh = TriangleMesh { positions, normals, triangles: std::mem::take(&mut surface.triangles) };

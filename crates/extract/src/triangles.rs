@@ -1,9 +1,14 @@
 //! Geometry stage: the triangles of every tetrahedron that the surface crosses.
 
+use std::collections::TryReserveError;
+
 use crate::edges::EdgeTable;
 use crate::lattice::{Arrangement, DirectionSet, Lattice, Layout};
 use crate::tetrahedra::{CASES, Case, Tetrahedron, belongs_to_an_earlier_cell, spokes};
 use crate::vertices::Sides;
+
+/// The most triangles of a cell: two in each tetrahedron, of which a cell in a lowest corner of the box has 24.
+pub(crate) const MOST_TRIANGLES_A_CELL: usize = 48;
 
 /// Triangles, and how many there would have been.
 #[derive(Debug, Default)]
@@ -24,7 +29,7 @@ pub(crate) fn triangulate(
     layout: &Layout,
     sides: &Sides,
     edges: &EdgeTable,
-) -> Triangulation {
+) -> Result<Triangulation, TryReserveError> {
     let spokes = spokes(lattice.arrangement());
     let deciding = deciding_edges(lattice.arrangement());
     let steps = layout.steps(layout.base_kind());
@@ -39,6 +44,7 @@ pub(crate) fn triangulate(
                 if crossing & deciding == 0 {
                     continue;
                 }
+                result.triangles.try_reserve(MOST_TRIANGLES_A_CELL)?;
                 let inside = sides.is_inside(base);
                 for spoke in &spokes {
                     if belongs_to_an_earlier_cell(lattice.arrangement(), spoke, [x, y, z]) {
@@ -62,7 +68,7 @@ pub(crate) fn triangulate(
             }
         }
     }
-    result
+    Ok(result)
 }
 
 impl Triangulation {

@@ -5,6 +5,7 @@
 //! numbered in storage order of their points, then by direction.
 
 use std::cmp::Ordering;
+use std::collections::TryReserveError;
 
 use glam::Vec3;
 
@@ -16,6 +17,7 @@ use crate::lattice::{
     ALL_DIRECTIONS, Arrangement, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout,
     PADDING_LAYERS, members,
 };
+use crate::memory::filled;
 use crate::placement::{CrossingPlacer, Surroundings};
 use crate::settings::{Clustering, ExtractSettings, Topology};
 
@@ -54,63 +56,15 @@ impl Sides {
     }
 }
 
-/// Places all vertices. Returns their positions, those that `placer` gives them, if there is one, and the number of
-/// lattice edges that cross the surface.
-///
-/// # Errors
-/// [`ExtractError::TooManyVertices`] when a 32-bit index cannot name them.
-pub(crate) fn place_vertices(
-    lattice: &Lattice,
-    layout: &Layout,
-    samples: &[f32],
-    settings: &ExtractSettings,
-    placer: Option<&CrossingPlacer>,
-    sides: &mut Sides,
-    edges: &mut EdgeTable,
-) -> Result<(Vec<Vec3>, Vec<Vec3>, u64), ExtractError> {
-    sides.fill(samples, settings.isovalue);
-    let coordinates = Coordinates::measured(lattice, layout, settings.positions);
-    let mut stage = VertexStage {
-        lattice,
-        directions: lattice.arrangement().directions(),
-        arrangement: lattice.arrangement(),
-        samples,
-        settings,
-        ties: Ties::of(settings.topology),
-        sides,
-        edges,
-        positions: Vec::new(),
-        placer,
-        targets: Vec::new(),
-        crossing_ends: 0,
-    };
-    let mut active = vec![0; layout.grid()[0]];
-    for (layer, &z) in coordinates.z().iter().enumerate() {
-        let kind = layout.kind(layer);
-        let [nx, ny] = layout.used(kind);
-        let steps = layout.steps(kind);
-        for row in 0..ny {
-            let first = layout.index([0, row, layer]);
-            stage.sides.mark_active(first, steps, &mut active[..nx]);
-            for column in (0..nx).filter(|&i| active[i] != 0) {
-                let incident = layout.incident(kind, [column, row, layer]);
-                let position = Vec3::new(coordinates.x(kind)[column], coordinates.y(kind)[row], z);
-                stage.visit(first + column, position, steps, incident)?;
-            }
-        }
-    }
-    // Each crossing was seen from both ends.
-    Ok((stage.positions, stage.targets, stage.crossing_ends / 2))
-}
-
-struct VertexStage<'a> {
+/// Places the vertices of a lattice, point by point.
+pub(crate) struct VertexStage<'a> {
     lattice: &'a Lattice,
     directions: &'static Directions,
     arrangement: Arrangement,
     samples: &'a [f32],
     settings: &'a ExtractSettings,
     ties: Ties,
-    sides: &'a Sides,
+    sides: &'a mut Sides,
     edges: &'a mut EdgeTable,
     positions: Vec<Vec3>,
     placer: Option<&'a CrossingPlacer<'a>>,
@@ -118,7 +72,65 @@ struct VertexStage<'a> {
     crossing_ends: u64,
 }
 
-impl VertexStage<'_> {
+impl<'a> VertexStage<'a> {
+    pub(crate) fn new(
+        lattice: &'a Lattice,
+        samples: &'a [f32],
+        settings: &'a ExtractSettings,
+        placer: Option<&'a CrossingPlacer<'a>>,
+        sides: &'a mut Sides,
+        edges: &'a mut EdgeTable,
+    ) -> Self {
+        Self {
+            lattice,
+            directions: lattice.arrangement().directions(),
+            arrangement: lattice.arrangement(),
+            samples,
+            settings,
+            ties: Ties::of(settings.topology),
+            sides,
+            edges,
+            positions: Vec::new(),
+            placer,
+            targets: Vec::new(),
+            crossing_ends: 0,
+        }
+    }
+
+    /// Places all vertices. Returns their positions, those that the placer gives them, if there is one, and the number
+    /// of lattice edges that cross the surface.
+    ///
+    /// # Errors
+    /// [`ExtractError::TooManyVertices`], [`ExtractError::NoMemoryForMesh`].
+    pub(crate) fn run(
+        mut self,
+        layout: &Layout,
+        most_vertices: u32,
+    ) -> Result<(Vec<Vec3>, Vec<Vec3>, u64), ExtractError> {
+        self.sides.fill(self.samples, self.settings.isovalue);
+        let coordinates = Coordinates::measured(self.lattice, layout, self.settings.positions)?;
+        let mut active = filled(layout.grid()[0], 0)?;
+        for (layer, &z) in coordinates.z().iter().enumerate() {
+            let kind = layout.kind(layer);
+            let [nx, ny] = layout.used(kind);
+            let steps = layout.steps(kind);
+            for row in 0..ny {
+                let first = layout.index([0, row, layer]);
+                self.sides.mark_active(first, steps, &mut active[..nx]);
+                for column in (0..nx).filter(|&i| active[i] != 0) {
+                    let incident = layout.incident(kind, [column, row, layer]);
+                    let position = Vec3::new(coordinates.x(kind)[column], coordinates.y(kind)[row], z);
+                    self.visit(first + column, position, steps, incident)?;
+                    if self.positions.len() > most_vertices as usize {
+                        return Err(ExtractError::TooManyVertices { limit: most_vertices });
+                    }
+                }
+            }
+        }
+        // Each crossing was seen from both ends.
+        Ok((self.positions, self.targets, self.crossing_ends / 2))
+    }
+
     /// Finds the crossings round one point and places the vertices of the near ones.
     fn visit(
         &mut self,
@@ -126,7 +138,7 @@ impl VertexStage<'_> {
         position: Vec3,
         steps: &[isize; DIRECTIONS],
         incident: DirectionSet,
-    ) -> Result<(), ExtractError> {
+    ) -> Result<(), TryReserveError> {
         let inside = self.sides.is_inside(point);
         let value = self.samples[point];
         let difference = self.settings.isovalue - value;
@@ -153,8 +165,9 @@ impl VertexStage<'_> {
         self.edges.set_crossing(point, crossing);
         self.crossing_ends += u64::from(crossing.count_ones());
         let clusters = self.clusters(crossing, near, incident);
+        self.positions.try_reserve(clusters.sets().len())?;
         for &cluster in clusters.sets() {
-            self.place(point, position, cluster, &offsets)?;
+            self.place(point, position, cluster, &offsets);
         }
         if let Some(placer) = self.placer {
             let mut neighbours = [f32::NAN; DIRECTIONS];
@@ -163,6 +176,7 @@ impl VertexStage<'_> {
                 neighbours[direction] = self.samples[neighbour] - self.settings.isovalue;
             }
             let around = Surroundings { position, difference: -difference, neighbours };
+            self.targets.try_reserve(clusters.sets().len())?;
             self.targets.extend(clusters.sets().iter().map(|&cluster| placer.place(&around, cluster)));
         }
         Ok(())
@@ -187,18 +201,9 @@ impl VertexStage<'_> {
     }
 
     /// One vertex at the unweighted mean of the cluster's crossings, clamped to the box.
-    fn place(
-        &mut self,
-        point: usize,
-        position: Vec3,
-        cluster: DirectionSet,
-        offsets: &[Vec3; DIRECTIONS],
-    ) -> Result<(), ExtractError> {
-        // The largest number is kept free: the edge table stores one more.
-        let vertex = u32::try_from(self.positions.len())
-            .ok()
-            .filter(|&vertex| vertex < u32::MAX)
-            .ok_or(ExtractError::TooManyVertices { limit: u32::MAX })?;
+    fn place(&mut self, point: usize, position: Vec3, cluster: DirectionSet, offsets: &[Vec3; DIRECTIONS]) {
+        // What goes beyond a number is an error when the point is done.
+        let vertex = self.positions.len() as u32;
         let mut sum = Vec3::ZERO;
         for direction in members(cluster) {
             sum += offsets[direction] + position;
@@ -206,7 +211,6 @@ impl VertexStage<'_> {
         }
         let bounds = self.lattice.bounds();
         self.positions.push((sum / cluster.count_ones() as f32).min(bounds.max).max(bounds.min));
-        Ok(())
     }
 
     /// From a point to its neighbour.

@@ -2,8 +2,8 @@
 
 use cap::Cap;
 use extract::{
-    Arrangement, Execution, ExtractError, ExtractSettings, Extractor, Gyroid, Lattice, Positions,
-    ScalarField, Source, Sphere,
+    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extractor, Gyroid, Lattice, Placement,
+    Positions, ScalarField, Source, Sphere, Topology,
 };
 use glam::Vec3;
 use mesh::Bounds;
@@ -29,6 +29,78 @@ fn lattice(spacing: f32) -> Lattice {
 
 /// One test only: the limit is the whole process's.
 #[test]
+fn limits() {
+    memory_running_out_is_an_error();
+    wherever_memory_runs_out_there_is_an_error();
+    a_long_row_takes_what_crosses();
+}
+
+/// With many amounts from too little to enough on top of what the lattice takes, so that one request after another is
+/// the one that fails. What does not grow with lattice or mesh is a few tables, for which there is room.
+fn wherever_memory_runs_out_there_is_an_error() {
+    const AMOUNTS: usize = 40;
+    const TABLES: usize = MB / 8;
+    let field: &dyn ScalarField = &Gyroid::default();
+    let lattice = lattice(0.1);
+    let one = Execution { threads: 1 };
+    let usual = ExtractSettings::default();
+    let collapsed = |topology, positions| ExtractSettings {
+        clustering: Clustering::EdgeCollapse,
+        topology,
+        positions,
+        ..usual
+    };
+    let (guarded, published) = (Topology::Guarded, Topology::Published);
+    let placed =
+        |placement| ExtractSettings { placement, clustering: Clustering::IntegratedCollapse, ..usual };
+    for settings in [
+        collapsed(guarded, Positions::Indexed),
+        collapsed(published, Positions::Accumulated { chunks: 16 }),
+        placed(Placement::CurvatureWeighted),
+        placed(Placement::Projected),
+        placed(Placement::Relaxed),
+    ] {
+        let run = || extract::extract(field, &lattice, &settings, &one);
+        let whole = run().unwrap().mesh;
+        let floor = TABLES + lattice.memory_bytes_for(&settings, &one) as usize;
+        let enough = (0..).map(|i| MB / 8 << i).find(|room| within(floor + room, run).is_ok()).unwrap();
+        let fails = |amount: &usize| match within(floor + enough * amount / AMOUNTS, run) {
+            Ok(found) => {
+                assert!(found.mesh == whole);
+                false
+            }
+            Err(ExtractError::NoMemoryForMesh) => true,
+            Err(error) => panic!("{settings:?}: {error}"),
+        };
+        let failed = (0..AMOUNTS).filter(fails).count();
+        assert!(failed > AMOUNTS / 3, "{settings:?}: {failed}");
+    }
+}
+
+/// A row of the longest kind of which one cell is crossed: no more than the lattice says, and that cell.
+fn a_long_row_takes_what_crosses() {
+    let cells = 1 << 20;
+    let bounds = Bounds { min: Vec3::ZERO, max: Vec3::new(cells as f32, 1.0, 1.0) };
+    let step: &dyn ScalarField = &Step(77.3);
+    for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
+        let lattice = Lattice::try_new(arrangement, bounds, 1.0).unwrap();
+        let (settings, execution) = (ExtractSettings::default(), Execution { threads: 1 });
+        let room = lattice.memory_bytes_for(&settings, &execution) as usize;
+        let mesh =
+            within(room + MB, || extract::extract(step, &lattice, &settings, &execution)).unwrap().mesh;
+        assert!(mesh.positions.iter().all(|p| (p.x - 77.3).abs() < 0.6) && !mesh.triangles.is_empty());
+    }
+}
+
+/// Inside below a place on the x axis.
+struct Step(f32);
+
+impl ScalarField for Step {
+    fn sample(&self, p: Vec3) -> f32 {
+        self.0 - p.x
+    }
+}
+
 fn memory_running_out_is_an_error() {
     let settings = ExtractSettings::default();
     let accumulated = ExtractSettings { positions: Positions::Accumulated { chunks: 16 }, ..settings };

@@ -1,11 +1,12 @@
 //! The guarded edge collapse: shortest edges first, and only where the surface stays what it is.
 
 use std::cmp::{Ordering, Reverse};
-use std::collections::BinaryHeap;
+use std::collections::{BinaryHeap, TryReserveError};
 
 use glam::{DVec3, Vec3};
 
-use super::{Merged, rebuild, unique_edges};
+use super::{Merged, is_proper, rebuild, unique_edges};
+use crate::memory::{collected, copied, filled};
 
 /// Least cosine between a triangle and the mean normal of the triangles round its edge: 78 degrees.
 const LEAST_COSINE: f64 = 0.2;
@@ -35,11 +36,11 @@ pub(crate) fn guarded(
     positions: Vec<Vec3>,
     triangles: &[[u32; 3]],
     spacing: f32,
-) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let mut surface = Surface::new(positions, triangles);
+) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), TryReserveError> {
+    let mut surface = Surface::new(positions, triangles)?;
     let limit = spacing * spacing / 4.0;
     for _ in 0..PASSES {
-        if !surface.collapse_up_to(limit) {
+        if !surface.collapse_up_to(limit)? {
             break;
         }
     }
@@ -101,17 +102,17 @@ struct Corner {
 }
 
 impl Surface {
-    fn new(positions: Vec<Vec3>, triangles: &[[u32; 3]]) -> Self {
+    fn new(positions: Vec<Vec3>, triangles: &[[u32; 3]]) -> Result<Self, TryReserveError> {
         let n = positions.len();
-        let mut star_start = vec![0; n + 1];
+        let mut star_start = filled(n + 1, 0)?;
         for &v in triangles.iter().flatten() {
             star_start[v as usize + 1] += 1;
         }
         for v in 0..n {
             star_start[v + 1] += star_start[v];
         }
-        let mut free = star_start.clone();
-        let mut star = vec![0; 3 * triangles.len()];
+        let mut free = copied(&star_start)?;
+        let mut star = filled(3 * triangles.len(), 0)?;
         for (t, triangle) in triangles.iter().enumerate() {
             for &v in triangle {
                 star[free[v as usize] as usize] = t as u32;
@@ -120,13 +121,13 @@ impl Surface {
         }
         let mut surface = Self {
             positions,
-            triangles: triangles.to_vec(),
+            triangles: copied(triangles)?,
             star,
             star_start,
-            together: (0..n as u32).collect(),
-            merged: Merged { into: (0..n as u32).collect() },
-            age: vec![0; n],
-            on_boundary: vec![false; n],
+            together: collected(0..n as u32)?,
+            merged: Merged::none(n)?,
+            age: filled(n, 0)?,
+            on_boundary: filled(n, false)?,
             around: [Vec::new(), Vec::new()],
             patch: Vec::new(),
         };
@@ -136,15 +137,14 @@ impl Surface {
             surface.neighbours(v, &mut neighbours);
             surface.on_boundary[v as usize] = neighbours.len() != surface.star(v).count();
         }
-        surface
+        Ok(surface)
     }
 
     /// One pass. Whether anything was collapsed.
-    fn collapse_up_to(&mut self, limit: f32) -> bool {
+    fn collapse_up_to(&mut self, limit: f32) -> Result<bool, TryReserveError> {
         let mut queue = BinaryHeap::new();
-        let proper: Vec<_> = self.triangles.iter().copied().filter(|&t| is_proper(t)).collect();
-        for (a, b) in unique_edges(&proper) {
-            self.queue(&mut queue, limit, a, b);
+        for (a, b) in unique_edges(&self.triangles)? {
+            self.queue(&mut queue, limit, a, b)?;
         }
         let mut neighbours = Vec::new();
         let mut any = false;
@@ -155,11 +155,11 @@ impl Surface {
                 // Those at the merged vertex have new lengths.
                 self.neighbours(edge.a, &mut neighbours);
                 for &neighbour in &neighbours {
-                    self.queue(&mut queue, limit, edge.a.min(neighbour), edge.a.max(neighbour));
+                    self.queue(&mut queue, limit, edge.a.min(neighbour), edge.a.max(neighbour))?;
                 }
             }
         }
-        any
+        Ok(any)
     }
 
     /// Triangles at a vertex that still have three corners.
@@ -186,13 +186,21 @@ impl Surface {
         neighbours.dedup();
     }
 
-    fn queue(&self, queue: &mut BinaryHeap<Reverse<Edge>>, limit: f32, a: u32, b: u32) {
+    fn queue(
+        &self,
+        queue: &mut BinaryHeap<Reverse<Edge>>,
+        limit: f32,
+        a: u32,
+        b: u32,
+    ) -> Result<(), TryReserveError> {
         let squared_length = self.positions[a as usize].distance_squared(self.positions[b as usize]);
         let both_on_boundary = self.on_boundary[a as usize] && self.on_boundary[b as usize];
         if squared_length <= limit && !both_on_boundary {
             let ages = [self.age[a as usize], self.age[b as usize]];
+            queue.try_reserve(1)?;
             queue.push(Reverse(Edge { squared_length, a, b, ages }));
         }
+        Ok(())
     }
 
     /// Collapses an edge into its end `a`, if it may be.
@@ -296,10 +304,6 @@ impl Corner {
     }
 }
 
-fn is_proper([a, b, c]: [u32; 3]) -> bool {
-    a != b && b != c && c != a
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -318,10 +322,10 @@ mod tests {
     #[test]
     fn a_short_edge_goes_and_the_boundary_stays() {
         let (positions, triangles) = patch();
-        let (after, rest) = guarded(positions.clone(), &triangles, 0.4);
+        let (after, rest) = guarded(positions.clone(), &triangles, 0.4).unwrap();
         assert_eq!((after.len(), rest.len()), (7, 6));
         assert!(positions[2..].iter().all(|p| after.contains(p)));
-        let (after, rest) = guarded(positions, &triangles, 0.39);
+        let (after, rest) = guarded(positions, &triangles, 0.39).unwrap();
         assert_eq!((after.len(), rest.len()), (8, 8), "longer than half the spacing");
     }
 
@@ -330,7 +334,7 @@ mod tests {
         let (mut positions, triangles) = patch();
         positions[0] = Vec3::new(-0.5, 0.1, 0.0);
         positions[1] = positions[2] - Vec3::new(0.05, 0.0, 0.0);
-        let (after, rest) = guarded(positions.clone(), &triangles, 0.2);
+        let (after, rest) = guarded(positions.clone(), &triangles, 0.2).unwrap();
         assert_eq!((after.len(), rest.len()), (7, 6));
         assert!(after.contains(&positions[2]) && !after.contains(&positions[1]));
     }
@@ -339,7 +343,7 @@ mod tests {
     fn a_tetrahedron_stays_however_small() {
         let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
         let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
-        assert_eq!(guarded(corners, &faces, 1000.0).1.len(), 4);
+        assert_eq!(guarded(corners, &faces, 1000.0).unwrap().1.len(), 4);
     }
 
     #[test]
@@ -355,6 +359,6 @@ mod tests {
             (b - a).cross(c - a).z > 0.0
         };
         assert!(triangles.iter().all(up));
-        assert_eq!(guarded(positions.clone(), &triangles, 0.5).1.len(), 8);
+        assert_eq!(guarded(positions.clone(), &triangles, 0.5).unwrap().1.len(), 8);
     }
 }

@@ -3,8 +3,11 @@
 mod guarded;
 mod published;
 
+use std::collections::TryReserveError;
+
 use glam::Vec3;
 
+use crate::memory::{collected, filled, push, with_room};
 use crate::settings::{Clustering, ExtractSettings, Topology};
 use crate::triangles::Triangulation;
 
@@ -14,9 +17,9 @@ pub(crate) fn collapse(
     spacing: f32,
     positions: &mut Vec<Vec3>,
     surface: &mut Triangulation,
-) -> bool {
+) -> Result<bool, TryReserveError> {
     match settings.clustering {
-        Clustering::None | Clustering::Integrated => return false,
+        Clustering::None | Clustering::Integrated => return Ok(false),
         Clustering::EdgeCollapse | Clustering::IntegratedCollapse => {}
     }
     let rule = match settings.topology {
@@ -24,11 +27,11 @@ pub(crate) fn collapse(
         Topology::Published => published::published,
     };
     let before = surface.triangles.len();
-    (*positions, surface.triangles) = rule(std::mem::take(positions), &surface.triangles, spacing);
+    (*positions, surface.triangles) = rule(std::mem::take(positions), &surface.triangles, spacing)?;
     let dropped = (before - surface.triangles.len()) as u64;
     surface.discarded += dropped;
     surface.discarded_as_published += dropped;
-    true
+    Ok(true)
 }
 
 /// Which vertex each vertex was merged into, directly or through others.
@@ -37,6 +40,11 @@ struct Merged {
 }
 
 impl Merged {
+    /// Each of so many into itself.
+    fn none(vertices: usize) -> Result<Self, TryReserveError> {
+        Ok(Self { into: collected(0..vertices as u32)? })
+    }
+
     /// Follows the chain to its end and shortens it on the way.
     fn survivor(&mut self, vertex: u32) -> u32 {
         let mut vertex = vertex as usize;
@@ -48,35 +56,46 @@ impl Merged {
     }
 }
 
-/// Every edge once, the smaller vertex first, in order.
-fn unique_edges(triangles: &[[u32; 3]]) -> Vec<(u32, u32)> {
+/// Every edge of the triangles that have three corners, once, the smaller vertex first, in order.
+fn unique_edges(triangles: &[[u32; 3]]) -> Result<Vec<(u32, u32)>, TryReserveError> {
     let ordered = |a: u32, b: u32| (a.min(b), a.max(b));
-    let mut edges: Vec<_> =
-        triangles.iter().flat_map(|&[a, b, c]| [ordered(a, b), ordered(b, c), ordered(c, a)]).collect();
+    let mut edges = with_room(3 * triangles.len())?;
+    for &triangle in triangles.iter().filter(|&&triangle| is_proper(triangle)) {
+        let [a, b, c] = triangle;
+        edges.extend([ordered(a, b), ordered(b, c), ordered(c, a)]);
+    }
     edges.sort_unstable();
     edges.dedup();
-    edges
+    Ok(edges)
+}
+
+fn is_proper([a, b, c]: [u32; 3]) -> bool {
+    a != b && b != c && c != a
 }
 
 /// Drops triangles that lost a corner, then vertices that no triangle uses, and numbers the rest by first use.
-fn rebuild(positions: &[Vec3], triangles: &[[u32; 3]], merged: &mut Merged) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+fn rebuild(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    merged: &mut Merged,
+) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), TryReserveError> {
     const UNSEEN: u32 = u32::MAX;
-    let mut numbers = vec![UNSEEN; positions.len()];
+    let mut numbers = filled(positions.len(), UNSEEN)?;
     let mut kept_positions = Vec::new();
     let mut kept_triangles = Vec::new();
     for triangle in triangles {
-        let triangle @ [a, b, c] = triangle.map(|vertex| merged.survivor(vertex));
-        if a == b || b == c || c == a {
+        let triangle = triangle.map(|vertex| merged.survivor(vertex));
+        if !is_proper(triangle) {
             continue;
         }
-        kept_triangles.push(triangle.map(|vertex| {
+        for vertex in triangle {
             let number = &mut numbers[vertex as usize];
             if *number == UNSEEN {
                 *number = kept_positions.len() as u32;
-                kept_positions.push(positions[vertex as usize]);
+                push(&mut kept_positions, positions[vertex as usize])?;
             }
-            *number
-        }));
+        }
+        push(&mut kept_triangles, triangle.map(|vertex| numbers[vertex as usize]))?;
     }
-    (kept_positions, kept_triangles)
+    Ok((kept_positions, kept_triangles))
 }

@@ -1,5 +1,7 @@
 //! The published edge collapse: the post-process that the evaluation compares with integrated clustering.
 
+use std::collections::TryReserveError;
+
 use glam::Vec3;
 
 use super::{Merged, rebuild, unique_edges};
@@ -18,10 +20,10 @@ pub(crate) fn published(
     mut positions: Vec<Vec3>,
     triangles: &[[u32; 3]],
     spacing: f32,
-) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), TryReserveError> {
     let limit = spacing * spacing / 4.0;
-    let mut merged = Merged { into: (0..positions.len() as u32).collect() };
-    for (a, b) in unique_edges(triangles) {
+    let mut merged = Merged::none(positions.len())?;
+    for (a, b) in unique_edges(triangles)? {
         let (a, b) = (merged.survivor(a), merged.survivor(b));
         let [p, q] = [positions[a as usize], positions[b as usize]];
         if a != b && (p - q).length_squared() <= limit {
@@ -46,7 +48,7 @@ mod tests {
     #[test]
     fn short_edge_goes_to_its_midpoint() {
         let (positions, triangles) = strip();
-        let (positions, triangles) = published(positions, &triangles, 1.0);
+        let (positions, triangles) = published(positions, &triangles, 1.0).unwrap();
         assert_eq!(triangles, [[0, 1, 2]]);
         assert_eq!(positions, [Vec3::new(0.2, 0.0, 0.0), Vec3::new(2.0, 2.0, 0.0), Vec3::new(0.0, 2.0, 0.0)]);
     }
@@ -54,11 +56,11 @@ mod tests {
     #[test]
     fn half_the_spacing_is_the_limit_and_counts() {
         let (positions, triangles) = strip();
-        let longer = published(positions.clone(), &triangles, 0.79);
+        let longer = published(positions.clone(), &triangles, 0.79).unwrap();
         assert_eq!(longer.1, triangles);
         let mut exact = positions;
         exact[1].x = 0.5;
-        assert_eq!(published(exact, &triangles, 1.0).1.len(), 1);
+        assert_eq!(published(exact, &triangles, 1.0).unwrap().1.len(), 1);
     }
 
     #[test]
@@ -66,7 +68,7 @@ mod tests {
         // Three points 0.4 apart: the first collapse moves the pair to 0.2, and 0.8 is then too far away.
         let positions =
             vec![Vec3::ZERO, Vec3::new(0.4, 0.0, 0.0), Vec3::new(0.8, 0.0, 0.0), Vec3::new(0.0, 9.0, 0.0)];
-        let (positions, triangles) = published(positions, &[[0, 1, 3], [1, 2, 3]], 1.0);
+        let (positions, triangles) = published(positions, &[[0, 1, 3], [1, 2, 3]], 1.0).unwrap();
         assert_eq!(triangles.len(), 1);
         assert!(
             positions.contains(&Vec3::new(0.2, 0.0, 0.0)) && positions.contains(&Vec3::new(0.8, 0.0, 0.0))

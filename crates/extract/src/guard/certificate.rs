@@ -13,7 +13,7 @@ use crate::lattice::{Coordinates, DIRECTIONS, Layout, members};
 use crate::settings::{Clustering, Execution, ExtractSettings, Positions, Topology};
 use crate::survey::survey;
 use crate::triangles::triangulate;
-use crate::vertices::{Sides, place_vertices};
+use crate::vertices::{Sides, VertexStage};
 use crate::{Arrangement, Asteroid, Lattice, ScalarField, sampling};
 use glam::Vec3;
 use mesh::Bounds;
@@ -56,11 +56,13 @@ fn stages_of(
     let settings = ExtractSettings { clustering, topology: Topology::Guarded, ..Default::default() };
     let layout = Layout::new(lattice);
     let mut samples = vec![0.0; layout.len()];
-    let coordinates = Coordinates::sampled(lattice, &layout, Positions::Indexed);
+    let coordinates = Coordinates::sampled(lattice, &layout, Positions::Indexed).unwrap();
     sampling::sample(field, &layout, &coordinates, &Execution { threads: 1 }, &mut samples).unwrap();
     let (mut sides, mut edges) = (Sides::new(&layout), EdgeTable::new(layout.len()));
-    place_vertices(lattice, &layout, &samples, &settings, None, &mut sides, &mut edges).unwrap();
-    let triangles = triangulate(lattice, &layout, &sides, &edges).triangles;
+    VertexStage::new(lattice, &samples, &settings, None, &mut sides, &mut edges)
+        .run(&layout, u32::MAX)
+        .unwrap();
+    let triangles = triangulate(lattice, &layout, &sides, &edges).unwrap().triangles;
     ((edges, 0..layout.len()), triangles)
 }
 

@@ -1,6 +1,9 @@
 //! Positions of sample points, one axis at a time.
 
+use std::collections::TryReserveError;
+
 use super::{Lattice, Layout, PointKind};
+use crate::memory::{collected, with_room};
 use crate::settings::Positions;
 
 /// Coordinates of every sample point. An axis does not depend on the others but for the kind of the layer.
@@ -14,11 +17,13 @@ pub(crate) struct Coordinates {
     z: Vec<f32>,
 }
 
-const KINDS: [PointKind; 2] = [PointKind::Centre, PointKind::Corner];
-
 impl Coordinates {
     /// Where the field is sampled.
-    pub(crate) fn sampled(lattice: &Lattice, layout: &Layout, positions: Positions) -> Self {
+    pub(crate) fn sampled(
+        lattice: &Lattice,
+        layout: &Layout,
+        positions: Positions,
+    ) -> Result<Self, TryReserveError> {
         match positions {
             Positions::Indexed => Self::indexed(lattice, layout),
             Positions::Accumulated { chunks } => Self::accumulated(lattice, layout, chunks as usize),
@@ -27,18 +32,20 @@ impl Coordinates {
 
     /// Where crossings are measured from. The original recomputes positions here, by a formula whose rounding in z
     /// is its own; the two sets differ by a few last bits.
-    pub(crate) fn measured(lattice: &Lattice, layout: &Layout, positions: Positions) -> Self {
+    pub(crate) fn measured(
+        lattice: &Lattice,
+        layout: &Layout,
+        positions: Positions,
+    ) -> Result<Self, TryReserveError> {
         match positions {
             Positions::Indexed => Self::indexed(lattice, layout),
             Positions::Accumulated { .. } => {
                 let z = axes(lattice, layout)[2];
-                let layers = (0..layout.grid()[2]).map(|i| i as f32 * z.layer_step + z.first_layer).collect();
-                Self {
-                    z: layers,
-                    ..Self::per_axis(lattice, layout, |axis, kind, i| {
-                        i as f32 * axis.spacing + axis.start(kind)
-                    })
-                }
+                let layers = (0..layout.grid()[2]).map(|i| i as f32 * z.layer_step + z.first_layer);
+                let others = Self::per_axis(lattice, layout, |axis, kind, i| {
+                    i as f32 * axis.spacing + axis.start(kind)
+                });
+                Ok(Self { z: collected(layers)?, ..others? })
             }
         }
     }
@@ -57,7 +64,7 @@ impl Coordinates {
 
     /// `min + n * spacing`, `n` whole for corners and half for centres: one rounding of the product, one of the sum,
     /// and nothing carried along.
-    fn indexed(lattice: &Lattice, layout: &Layout) -> Self {
+    fn indexed(lattice: &Lattice, layout: &Layout) -> Result<Self, TryReserveError> {
         Self::per_axis(lattice, layout, |axis, kind, i| {
             let cells = match kind {
                 PointKind::Centre => i as f32 - 0.5,
@@ -69,18 +76,23 @@ impl Coordinates {
 
     /// Running addition along each axis; z starts anew in every chunk of layers, one a sampling thread of the
     /// original. Chunks are `layers / chunks` long and the last takes the remainder.
-    fn accumulated(lattice: &Lattice, layout: &Layout, chunks: usize) -> Self {
+    fn accumulated(lattice: &Lattice, layout: &Layout, chunks: usize) -> Result<Self, TryReserveError> {
         let axes = axes(lattice, layout);
         let running = |axis: Axis, n: usize| {
-            KINDS.map(|kind| {
-                std::iter::successors(Some(axis.start(kind)), |&p| Some(p + axis.spacing)).take(n).collect()
+            both_kinds(|kind| {
+                let mut position = axis.start(kind);
+                collected((0..n).map(|_| {
+                    let here = position;
+                    position += axis.spacing;
+                    here
+                }))
             })
         };
         let [nx, ny, layers] = layout.grid();
         // With more chunks than layers, the last chunk has them all.
         let chunks = if chunks > layers { 1 } else { chunks };
         let each = layers / chunks;
-        let mut z = Vec::with_capacity(layers);
+        let mut z = with_room(layers)?;
         for chunk in 0..chunks {
             let first = each * chunk;
             let last = if chunk + 1 == chunks { layers } else { first + each };
@@ -90,16 +102,25 @@ impl Coordinates {
                 position += axes[2].layer_step;
             }
         }
-        Self { x: running(axes[0], nx), y: running(axes[1], ny), z }
+        Ok(Self { x: running(axes[0], nx)?, y: running(axes[1], ny)?, z })
     }
 
-    fn per_axis(lattice: &Lattice, layout: &Layout, at: impl Fn(Axis, PointKind, usize) -> f32) -> Self {
+    fn per_axis(
+        lattice: &Lattice,
+        layout: &Layout,
+        at: impl Fn(Axis, PointKind, usize) -> f32,
+    ) -> Result<Self, TryReserveError> {
         let [x, y, z] = axes(lattice, layout);
         let [nx, ny, nz] = layout.grid();
-        let line = |axis: Axis, n: usize| KINDS.map(|kind| (0..n).map(|i| at(axis, kind, i)).collect());
+        let line = |axis: Axis, n: usize| both_kinds(|kind| collected((0..n).map(|i| at(axis, kind, i))));
         let layer = |i: usize| at(z, layout.kind(i), i / z.layers_a_cell);
-        Self { x: line(x, nx), y: line(y, ny), z: (0..nz).map(layer).collect() }
+        Ok(Self { x: line(x, nx)?, y: line(y, ny)?, z: collected((0..nz).map(layer))? })
     }
+}
+
+/// By kind of point.
+fn both_kinds<T, E>(of: impl Fn(PointKind) -> Result<T, E>) -> Result<[T; 2], E> {
+    Ok([of(PointKind::Centre)?, of(PointKind::Corner)?])
 }
 
 /// What fixes the coordinates along an axis.
@@ -152,7 +173,7 @@ mod tests {
     #[test]
     fn indexed_corners_end_on_the_box_and_hold_the_origin() {
         let (lattice, layout) = evaluation();
-        let coordinates = Coordinates::sampled(&lattice, &layout, Positions::Indexed);
+        let coordinates = Coordinates::sampled(&lattice, &layout, Positions::Indexed).unwrap();
         let corners = coordinates.x(PointKind::Corner);
         assert_eq!((corners[0], corners[25], corners[50]), (-1.0, 0.0, 1.0));
         assert_eq!((coordinates.z()[1], coordinates.z()[51], coordinates.z()[101]), (-1.0, 0.0, 1.0));
@@ -162,9 +183,9 @@ mod tests {
     #[test]
     fn accumulation_drifts_and_restarts_with_each_chunk() {
         let (lattice, layout) = evaluation();
-        let one = Coordinates::sampled(&lattice, &layout, Positions::Accumulated { chunks: 1 });
-        let many = Coordinates::sampled(&lattice, &layout, Positions::Accumulated { chunks: 16 });
-        let exact = Coordinates::sampled(&lattice, &layout, Positions::Indexed);
+        let one = Coordinates::sampled(&lattice, &layout, Positions::Accumulated { chunks: 1 }).unwrap();
+        let many = Coordinates::sampled(&lattice, &layout, Positions::Accumulated { chunks: 16 }).unwrap();
+        let exact = Coordinates::sampled(&lattice, &layout, Positions::Indexed).unwrap();
         assert_eq!(many.z().len(), 103);
         assert_ne!(one.z(), many.z());
         let drift =
@@ -177,8 +198,8 @@ mod tests {
     #[test]
     fn more_chunks_than_layers_leave_all_to_the_last() {
         let (lattice, layout) = evaluation();
-        let many = Coordinates::sampled(&lattice, &layout, Positions::Accumulated { chunks: 1000 });
-        let one = Coordinates::sampled(&lattice, &layout, Positions::Accumulated { chunks: 1 });
+        let many = Coordinates::sampled(&lattice, &layout, Positions::Accumulated { chunks: 1000 }).unwrap();
+        let one = Coordinates::sampled(&lattice, &layout, Positions::Accumulated { chunks: 1 }).unwrap();
         assert_eq!(many.z(), one.z());
     }
 }

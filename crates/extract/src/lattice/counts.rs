@@ -9,6 +9,10 @@ const BYTES_PER_EDGE_RECORD: u64 = (DIRECTIONS * size_of::<u32>() + size_of::<u1
 const BYTES_PER_SAMPLE: u64 = size_of::<f32>() as u64;
 /// A side; a value, where it is and its slope; a span.
 const BYTES_PER_TILE: u64 = 1 + 20 + 12;
+/// Which of a row's points are to be sampled: a number, a place, a value.
+const BYTES_PER_COLUMN: u64 = 8 + 4 + 4;
+/// Along x and y of either kind of point.
+const BYTES_PER_COORDINATE: u64 = 4;
 /// Scratch of the vertex stage: inside or outside.
 const BYTES_PER_SIDE: u64 = 1;
 
@@ -78,10 +82,10 @@ impl Lattice {
     }
 
     /// What streaming extraction (indexed positions) of a field holds of the lattice at a time on `threads` threads: a
-    /// few layers of samples, sign bits and point records each, and what is known of tiles of two by two columns. The
-    /// mesh comes on top.
+    /// few layers of samples, sign bits and point records each, and what is known of tiles of two by two columns; and
+    /// the coordinates along each axis, once. The mesh comes on top.
     pub fn sweep_bytes(&self, threads: u64) -> u64 {
-        let [x, y, _] = self.stored_grid().map(u64::from);
+        let [x, y, z] = self.stored_grid().map(u64::from);
         // Layers that a lattice edge can reach.
         let reach = match self.arrangement {
             Arrangement::BodyCentred => 2,
@@ -91,7 +95,8 @@ impl Lattice {
         let samples_and_signs = x * BYTES_PER_SAMPLE + 8 * words + 8 * (words + 2) + 1;
         let records = 8 * x + 8 * words;
         let tiles = x.div_ceil(2) * y.div_ceil(2) * BYTES_PER_TILE;
-        threads * (y * ((3 * reach + 1) * samples_and_signs + (2 * reach + 1) * records) + tiles)
+        let rows = y * ((3 * reach + 1) * samples_and_signs + (2 * reach + 1) * records);
+        threads * (rows + tiles + x * BYTES_PER_COLUMN) + (2 * (x + y) + z) * BYTES_PER_COORDINATE
     }
 
     /// Bytes of the stored samples.

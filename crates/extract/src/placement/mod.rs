@@ -18,6 +18,7 @@ use crate::ExtractError;
 use crate::collapse::collapse;
 use crate::lattice::Lattice;
 use crate::level::Level;
+use crate::memory::copied;
 use crate::sampling::for_each_on_threads;
 use crate::settings::{Execution, ExtractSettings, Placement};
 use crate::triangles::Triangulation;
@@ -40,7 +41,7 @@ pub(crate) fn check(settings: &ExtractSettings, has_field: bool) -> Result<(), E
 /// none if there was none. Returns whether edges were collapsed.
 ///
 /// # Errors
-/// [`ExtractError::Threads`].
+/// [`ExtractError::Threads`], [`ExtractError::NoMemoryForMesh`].
 pub(crate) fn finish(
     level: Option<Level>,
     lattice: &Lattice,
@@ -53,23 +54,23 @@ pub(crate) fn finish(
     let (spacing, bounds) = (lattice.spacing(), lattice.bounds());
     let level = level.filter(|_| settings.placement.calls_the_field());
     if targets.is_empty() && level.is_none() {
-        return Ok(collapse(settings, spacing, positions, surface));
+        return Ok(collapse(settings, spacing, positions, surface)?);
     }
-    let mut moves = Moves::start(positions);
+    let mut moves = Moves::start(positions)?;
     if !targets.is_empty() {
-        moves.advance(positions, targets, &surface.triangles, &bounds);
+        moves.advance(positions, targets, &surface.triangles, &bounds)?;
     }
-    let collapsed = collapse(settings, spacing, positions, surface);
+    let collapsed = collapse(settings, spacing, positions, surface)?;
     if collapsed {
-        moves = Moves::start(positions);
+        moves = Moves::start(positions)?;
     }
     if let Some(level) = level {
         let mut targets = match settings.placement {
-            Placement::Relaxed => relaxed(positions, &surface.triangles),
-            _ => positions.clone(),
+            Placement::Relaxed => relaxed(positions, &surface.triangles)?,
+            _ => copied(positions)?,
         };
         project(&level, &bounds, execution, positions, &mut targets)?;
-        moves.advance(positions, &targets, &surface.triangles, &bounds);
+        moves.advance(positions, &targets, &surface.triangles, &bounds)?;
     }
     Ok(collapsed)
 }

@@ -1,7 +1,11 @@
 //! Taking vertices to their targets without turning a triangle over.
 
+use std::collections::TryReserveError;
+
 use glam::{DVec3, Vec3};
 use mesh::Bounds;
+
+use crate::memory::copied;
 
 /// The least that may be left of a triangle's area, seen along its normal before any move.
 const LEAST_AREA: f64 = 0.1;
@@ -16,8 +20,8 @@ pub(crate) struct Moves {
 }
 
 impl Moves {
-    pub(crate) fn start(positions: &[Vec3]) -> Self {
-        Self { reference: positions.to_vec(), stays: Vec::new() }
+    pub(crate) fn start(positions: &[Vec3]) -> Result<Self, TryReserveError> {
+        Ok(Self { reference: copied(positions)?, stays: Vec::new() })
     }
 
     /// Moves every vertex to its target, or leaves it where it is:
@@ -33,9 +37,10 @@ impl Moves {
         targets: &[Vec3],
         triangles: &[[u32; 3]],
         bounds: &Bounds,
-    ) {
+    ) -> Result<(), TryReserveError> {
         let stays = &mut self.stays;
         stays.clear();
+        stays.try_reserve_exact(positions.len())?;
         let on_box = |p: &Vec3| (p.cmpeq(bounds.min) | p.cmpeq(bounds.max)).any();
         stays.extend(positions.iter().zip(targets).map(|(p, target)| on_box(p) || !target.is_finite()));
         for pass in 0.. {
@@ -56,7 +61,7 @@ impl Moves {
                 break;
             }
             if pass == MOST_PASSES {
-                return;
+                return Ok(());
             }
         }
         for ((p, target), stays) in positions.iter_mut().zip(targets).zip(stays) {
@@ -64,6 +69,7 @@ impl Moves {
                 *p = *target;
             }
         }
+        Ok(())
     }
 }
 
@@ -87,7 +93,7 @@ mod tests {
     fn after(moved: &[(usize, Vec3)]) -> Vec<Vec3> {
         let (mut positions, mut targets) = (square(), square());
         moved.iter().for_each(|&(v, target)| targets[v] = target);
-        Moves::start(&positions).advance(&mut positions, &targets, &SQUARE, &BOX);
+        Moves::start(&positions).unwrap().advance(&mut positions, &targets, &SQUARE, &BOX).unwrap();
         positions
     }
 
@@ -110,12 +116,12 @@ mod tests {
     #[test]
     fn many_small_moves_are_held_against_the_start() {
         let mut positions = square();
-        let mut moves = Moves::start(&positions);
+        let mut moves = Moves::start(&positions).unwrap();
         for step in 1..40 {
             let mut targets = positions.clone();
             let angle = step as f32 * 0.1;
             targets[0] = Vec3::new(0.5 - 0.5 * angle.cos(), 0.5 - 0.5 * angle.cos(), angle.sin());
-            moves.advance(&mut positions, &targets, &SQUARE, &BOX);
+            moves.advance(&mut positions, &targets, &SQUARE, &BOX).unwrap();
         }
         let area = doubled_area([positions[0], positions[1], positions[2]]);
         assert!(area.z >= LEAST_AREA && area.z < 0.2, "turned until a tenth was left: {area}");
@@ -127,7 +133,7 @@ mod tests {
         let (mut positions, mut targets) = (square(), square());
         positions[3].z = 0.1;
         targets.iter_mut().for_each(|p| *p += Vec3::splat(0.05));
-        Moves::start(&positions).advance(&mut positions, &targets, &SQUARE, &bounds);
+        Moves::start(&positions).unwrap().advance(&mut positions, &targets, &SQUARE, &bounds).unwrap();
         assert_eq!(positions[..3], square()[..3]);
         assert_eq!(positions[3], targets[3]);
     }

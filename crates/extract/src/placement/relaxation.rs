@@ -1,6 +1,10 @@
 //! Vertices among their neighbours.
 
+use std::collections::TryReserveError;
+
 use glam::Vec3;
+
+use crate::memory::{collected, filled};
 
 /// How much of the way is gone.
 const SHARE: f32 = 0.5;
@@ -8,8 +12,8 @@ const SHARE: f32 = 0.5;
 /// Each vertex half the way to the mean of its neighbours, in the plane through it across its area-weighted normal.
 /// Neighbours are the vertices of its triangles, each counted once a triangle. A vertex on the boundary, or without a
 /// normal, stays.
-pub(super) fn relaxed(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
-    let mut around = vec![Around::default(); positions.len()];
+pub(super) fn relaxed(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<Vec3>, TryReserveError> {
+    let mut around = filled(positions.len(), Around::default())?;
     for triangle in triangles {
         let [a, b, c] = triangle.map(|v| positions[v as usize]);
         let doubled_area = (b - a).cross(c - a);
@@ -30,7 +34,7 @@ pub(super) fn relaxed(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
         }
         _ => p,
     };
-    positions.iter().zip(&around).map(relax).collect()
+    collected(positions.iter().zip(&around).map(relax))
 }
 
 /// What surrounds a vertex.
@@ -58,7 +62,7 @@ mod tests {
     #[test]
     fn the_middle_of_a_fan_goes_half_the_way_within_its_plane() {
         let (positions, triangles) = fan(6);
-        let moved = relaxed(&positions, &triangles);
+        let moved = relaxed(&positions, &triangles).unwrap();
         let normal = mesh::normals::area_weighted_normals(&positions, &triangles)[0];
         let mean = positions[1..].iter().sum::<Vec3>() / 6.0;
         let way = (mean - positions[0]) * 0.5;
@@ -73,6 +77,6 @@ mod tests {
     #[test]
     fn an_open_fan_has_no_middle() {
         let (positions, triangles) = fan(4);
-        assert_eq!(relaxed(&positions, &triangles), positions);
+        assert_eq!(relaxed(&positions, &triangles).unwrap(), positions);
     }
 }

@@ -42,9 +42,13 @@ impl<'a> Lines<'a> {
         Some(Self { around, words: places.map(|place| signs.row_at(place)), used })
     }
 
-    /// Visits the words that have a crossing, in order.
+    /// Visits the words that have a crossing, in order, up to the first error.
     #[inline(always)]
-    pub(super) fn visit(&self, grid: &Grid, mut each: impl FnMut(Crossings)) {
+    pub(super) fn visit<E>(
+        &self,
+        grid: &Grid,
+        mut each: impl FnMut(Crossings) -> Result<(), E>,
+    ) -> Result<(), E> {
         let (mut before, mut here) = (Common::of(&self.words, 0), Common::of(&self.words, 1));
         for word in 0..grid.words {
             let after = Common::of(&self.words, word + 2);
@@ -62,8 +66,9 @@ impl<'a> Lines<'a> {
                 *differ = sides ^ (line[word + low] >> right | line[word + low + 1] << 1 << (63 - right));
                 active |= *differ;
             }
-            each(Crossings { word, sides, active: active & used_bits(word, self.used), differ });
+            each(Crossings { word, sides, active: active & used_bits(word, self.used), differ })?;
         }
+        Ok(())
     }
 }
 

@@ -1,5 +1,6 @@
 //! The driver: slabs to threads, pieces to one mesh.
 
+use std::collections::TryReserveError;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
@@ -78,10 +79,10 @@ struct Plan {
 }
 
 impl Plan {
-    fn new(lattice: &Lattice) -> Self {
-        let grid = Grid::new(lattice);
+    fn new(lattice: &Lattice) -> Result<Self, TryReserveError> {
+        let grid = Grid::new(lattice)?;
         let tables = FaceTables::new(&grid);
-        Self { grid, tables }
+        Ok(Self { grid, tables })
     }
 }
 
@@ -157,7 +158,7 @@ impl Extractor {
         }
         if settings.positions != Positions::Indexed {
             let Source::Field(field) = source else { return Err(ExtractError::SamplesAccumulated) };
-            *extraction = stored::extract(field, lattice, settings, execution)?;
+            *extraction = stored::extract(field, lattice, settings, execution, self.most_vertices.0)?;
             return Ok(());
         }
         let start = Instant::now();
@@ -169,7 +170,9 @@ impl Extractor {
         let source = prepared.map_or(source, Source::Field);
         let plan = match self.plan.take() {
             Some(plan) if plan.grid.lattice == *lattice => plan,
-            _ => Plan::new(lattice),
+            _ => Plan::new(lattice).map_err(|_| ExtractError::OutOfMemory {
+                bytes: lattice.memory_bytes_for(settings, execution),
+            })?,
         };
         let arrangement = lattice.arrangement();
         let merges = match settings.clustering {

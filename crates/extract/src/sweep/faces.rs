@@ -9,7 +9,7 @@ use super::grid::Grid;
 use super::records::{Record, Records};
 use crate::lattice::DIRECTIONS;
 use crate::tetrahedra::{CASES, Case, EDGES, Tetrahedron, belongs_to_an_earlier_cell};
-use crate::triangles::Triangulation;
+use crate::triangles::{MOST_TRIANGLES_A_CELL, Triangulation};
 use crate::vertices::Ties;
 
 /// The triangles of a tetrahedron whose corners have one vertex each, in 32 bits so that the table is small: six bits
@@ -138,11 +138,11 @@ pub(super) fn triangulate_layer(
         if active.iter().all(|&word| word == 0) {
             continue;
         }
-        let tetrahedra = if y == 0 || z == 0 { 24 } else { 12 };
-        result.triangles.try_reserve(2 * tetrahedra * cells_x)?;
         let pass = CellRow::new(grid, tables, ties, records, row, layer);
         for (word, &bits) in active.iter().enumerate() {
             let mut left = bits;
+            // By word, as the vertices are.
+            result.triangles.try_reserve(MOST_TRIANGLES_A_CELL * bits.count_ones() as usize)?;
             while left != 0 {
                 let column = 64 * word + left.trailing_zeros() as usize;
                 left &= left - 1;

@@ -1,5 +1,7 @@
 //! What a sweep needs to know about its lattice, worked out once.
 
+use std::collections::TryReserveError;
+
 use glam::Vec3A;
 
 use crate::lattice::{
@@ -54,7 +56,7 @@ pub(super) struct Neighbourhood {
 }
 
 impl Grid {
-    pub(super) fn new(lattice: &Lattice) -> Self {
+    pub(super) fn new(lattice: &Lattice) -> Result<Self, TryReserveError> {
         let layout = Layout::new(lattice);
         let directions = lattice.arrangement().directions();
         let half = lattice.spacing() / 2.0;
@@ -63,8 +65,8 @@ impl Grid {
             Arrangement::BodyCentred => (2, 1),
             Arrangement::SimpleCubic => (1, 0),
         };
-        Self {
-            coordinates: Coordinates::sampled(lattice, &layout, Positions::Indexed),
+        Ok(Self {
+            coordinates: Coordinates::sampled(lattice, &layout, Positions::Indexed)?,
             directions,
             size: layout.grid(),
             words: layout.grid()[0].div_ceil(64),
@@ -80,7 +82,7 @@ impl Grid {
             base_offset,
             layout,
             lattice: lattice.clone(),
-        }
+        })
     }
 
     /// Slots that a ring of layers needs for a point and all its neighbours.

@@ -5,7 +5,8 @@ use mesh::Bounds;
 
 use super::extractor::MostVertices;
 use crate::{
-    Arrangement, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Lattice, Source, Sphere,
+    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Lattice,
+    Positions, Source, Sphere,
 };
 
 #[test]
@@ -27,6 +28,29 @@ fn more_vertices_than_may_be_are_an_error() {
             assert_eq!(run(limit).unwrap_err(), ExtractError::TooManyVertices { limit });
         }
         assert_eq!(run(u32::MAX).unwrap().mesh, mesh, "the extractor is as good as new");
+    }
+}
+
+/// Stored, a point may have several vertices, so that the limit can fall into the middle of one.
+#[test]
+fn more_stored_vertices_than_may_be_are_an_error() {
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.1).unwrap();
+    let sphere = Sphere { radius: 0.8 };
+    for clustering in [Clustering::Integrated, Clustering::None] {
+        let positions = Positions::Accumulated { chunks: 16 };
+        let settings = ExtractSettings { positions, clustering, ..ExtractSettings::default() };
+        let mut extractor = Extractor::new();
+        let mut run = |most| {
+            extractor.most_vertices = MostVertices(most);
+            extractor.extract(Source::Field(&sphere), &lattice, &settings, &Execution { threads: 1 })
+        };
+        let mesh = run(u32::MAX).unwrap().mesh;
+        let all = mesh.positions.len() as u32;
+        assert_eq!(run(all).unwrap().mesh, mesh);
+        for limit in (all - 20..all).chain(0..20) {
+            assert_eq!(run(limit).unwrap_err(), ExtractError::TooManyVertices { limit });
+        }
     }
 }
 

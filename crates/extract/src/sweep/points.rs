@@ -3,6 +3,8 @@
 //! Signs are compared 64 points at a time. A point whose side differs from that of a neighbour builds the set of its
 //! crossing edges and of those that are nearer to it, all by itself; every crossing is looked at from both its ends.
 
+use std::collections::TryReserveError;
+
 use glam::{Vec3, Vec3A};
 
 use super::crossings::{Crossings, Lines};
@@ -60,7 +62,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
         records: &mut Records,
         placed: &mut Placed,
         mut positions: Option<&mut Vec<Vec3>>,
-    ) -> Result<(), std::collections::TryReserveError> {
+    ) -> Result<(), TryReserveError> {
         records.open_layer(layer);
         let kind = self.grid.layout.kind(layer);
         let rows = self.grid.layout.used(kind)[1];
@@ -73,14 +75,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
             let rows = self.grid.rows(kind, row, layer, &layers);
             let Some(lines) = Lines::new(self.signs, around, &rows, &signs, used) else { continue };
             let samples = std::array::from_fn(|i| (samples[rows[i].0] + rows[i].1) * self.grid.size[0]);
-            if let Some(positions) = positions.as_deref_mut() {
-                // So that memory running out is an error, and pushing never grows by itself.
-                positions.try_reserve(self.grid.size[0] * DIRECTIONS)?;
-                if self.placer.is_some() {
-                    placed.targets.try_reserve(self.grid.size[0] * DIRECTIONS)?;
-                }
-            }
-            self.row([row, layer], &lines, &samples, records, placed, positions.as_deref_mut());
+            self.row([row, layer], &lines, &samples, records, placed, positions.as_deref_mut())?;
         }
         Ok(())
     }
@@ -93,7 +88,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
         records: &mut Records,
         placed: &mut Placed,
         mut positions: Option<&mut Vec<Vec3>>,
-    ) {
+    ) -> Result<(), TryReserveError> {
         let grid = self.grid;
         let kind = grid.layout.kind(layer);
         let around = grid.neighbourhood(kind);
@@ -107,6 +102,15 @@ impl<R: ClusterRule> PointPass<'_, R> {
         let x = grid.coordinates.x(kind);
         let (y, z) = (grid.coordinates.y(kind)[row], grid.coordinates.z()[layer]);
         lines.visit(grid, |Crossings { word, sides, mut active, differ }| {
+            // So that memory running out is an error, and pushing never grows by itself. By word: a row can be long.
+            let points = active.count_ones() as usize;
+            if let Some(positions) = positions.as_deref_mut() {
+                positions.try_reserve(points * DIRECTIONS)?;
+                if self.placer.is_some() {
+                    placed.targets.try_reserve(points * DIRECTIONS)?;
+                }
+            }
+            records.reserve_lists(layer, points)?;
             let mut left = active;
             while left != 0 {
                 let bit = left.trailing_zeros();
@@ -137,7 +141,8 @@ impl<R: ClusterRule> PointPass<'_, R> {
                 records.set(record_start + column, record);
             }
             records.set_active(row, layer, word, active);
-        });
+            Ok(())
+        })
     }
 
     #[inline(always)]

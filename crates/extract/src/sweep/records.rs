@@ -1,5 +1,7 @@
 //! What the vertex pass leaves at every point with a crossing for the triangle pass: eight bytes.
 
+use std::collections::TryReserveError;
+
 use super::grid::Grid;
 use crate::clusters::Clusters;
 use crate::lattice::{DIRECTIONS, DirectionSet, members};
@@ -104,7 +106,7 @@ pub(super) struct Records {
 }
 
 impl Records {
-    pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), std::collections::TryReserveError> {
+    pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), TryReserveError> {
         (self.size, self.words, self.slots) = ([grid.size[0], grid.size[1]], grid.words, grid.slots());
         super::refill(&mut self.records, grid.layer_len() * self.slots, Record::default())?;
         super::refill(&mut self.active, self.words * self.size[1] * self.slots, 0)?;
@@ -153,7 +155,13 @@ impl Records {
         &self.active[start..start + self.words]
     }
 
-    /// Stores a partition; returns its place.
+    /// Makes room for the partitions of so many points.
+    #[inline]
+    pub(super) fn reserve_lists(&mut self, layer: usize, points: usize) -> Result<(), TryReserveError> {
+        self.lists[layer % self.slots].try_reserve(points)
+    }
+
+    /// Stores a partition, for which there is room; returns its place.
     pub(super) fn list(&mut self, layer: usize, first: u32, clusters: &Clusters) -> u32 {
         let mut numbers = 0;
         for (i, &set) in clusters.sets().iter().enumerate() {

@@ -5,6 +5,7 @@
 //! their sample. All other points have none.
 
 use std::collections::TryReserveError;
+use std::convert::Infallible;
 
 use glam::Vec3;
 
@@ -126,7 +127,7 @@ impl FieldSamples {
             let values = &mut self.values[place * grid.size[0]..][..points];
             self.columns.clear();
             let mut hint = None;
-            lines.visit(grid, |Crossings { word, active, .. }| {
+            let Ok::<(), Infallible>(()) = lines.visit(grid, |Crossings { word, active, .. }| {
                 let mut left = active & !taken[word];
                 if left != 0 && hint.is_none() {
                     hint = taken_near(taken[word], left.trailing_zeros()).map(|bit| 64 * word + bit as usize);
@@ -136,6 +137,7 @@ impl FieldSamples {
                     self.columns.push(64 * word + left.trailing_zeros() as usize);
                     left &= left - 1;
                 }
+                Ok(())
             });
             let count = self.columns.len();
             if count == 0 {

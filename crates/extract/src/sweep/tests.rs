@@ -6,6 +6,7 @@ use glam::Vec3;
 use mesh::Bounds;
 use proptest::prelude::*;
 
+use crate::bunny::{BOX, bunny};
 use crate::{
     Arrangement, Asteroid, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor,
     Gyroid, Lattice, MeshDistance, Placement, Positions, ScalarField, Source, Sphere, Topology, stored,
@@ -53,11 +54,15 @@ fn assert_same(left: &Extraction, right: &Extraction) {
 
 /// All ways of the streaming extractor against the stored one.
 fn check(field: &dyn ScalarField, lattice: &Lattice, isovalue: f32) {
+    check_with(field, lattice, all_settings(isovalue));
+}
+
+fn check_with(field: &dyn ScalarField, lattice: &Lattice, all: impl Iterator<Item = ExtractSettings>) {
     let mut extractor = Extractor::new();
     let samples = all_samples(field, lattice);
-    for settings in all_settings(isovalue) {
+    for settings in all {
         let one = Execution { threads: 1 };
-        let expected = stored::extract(field, lattice, &settings, &one).unwrap();
+        let expected = stored::extract(field, lattice, &settings, &one, u32::MAX).unwrap();
         for threads in [1, 3] {
             let execution = Execution { threads };
             let called = extractor.extract(Source::Field(field), lattice, &settings, &execution).unwrap();
@@ -96,7 +101,7 @@ fn placed_settings() -> impl Iterator<Item = ExtractSettings> {
 /// What the stored extractor has in memory.
 fn all_samples(field: &dyn ScalarField, lattice: &Lattice) -> Vec<f32> {
     let layout = crate::lattice::Layout::new(lattice);
-    let coordinates = crate::lattice::Coordinates::sampled(lattice, &layout, Positions::Indexed);
+    let coordinates = crate::lattice::Coordinates::sampled(lattice, &layout, Positions::Indexed).unwrap();
     let mut samples = vec![0.0; layout.len()];
     crate::sampling::sample(field, &layout, &coordinates, &Execution { threads: 1 }, &mut samples).unwrap();
     samples
@@ -155,7 +160,7 @@ fn every_placement_is_that_of_the_stored_mesh() {
             let lattice = Lattice::try_new(arrangement, Bounds { min: -max, max }, spacing).unwrap();
             for settings in placed_settings() {
                 let expected =
-                    stored::extract(field, &lattice, &settings, &Execution { threads: 1 }).unwrap();
+                    stored::extract(field, &lattice, &settings, &Execution { threads: 1 }, u32::MAX).unwrap();
                 for threads in [1, 3] {
                     let source = Source::Field(field);
                     let found = Extractor::new().extract(source, &lattice, &settings, &Execution { threads });
@@ -187,18 +192,31 @@ fn one_cell_of_every_pattern() {
     }
 }
 
+/// Several slabs and tiles of all sizes. What edges collapse from is then the same, which coarse lattices show as well
+/// in a fraction of the time.
 #[test]
 fn smooth_fields_give_the_stored_mesh() {
     let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    let rough = Asteroid { amplitude: 0.6, gain: 0.5, ..Asteroid::default() };
+    let fields: [(&dyn ScalarField, f32); 6] = [
+        (&Sphere { radius: 1.0 }, 0.0),
+        (&Sphere { radius: 0.8 }, 0.1),
+        (&Asteroid::default(), 0.0),
+        (&rough, 0.05),
+        (&Gyroid::default(), 0.0),
+        (&Gyroid { frequency: 20.0 }, 0.9),
+    ];
+    let collapses = |settings: &ExtractSettings| {
+        matches!(settings.clustering, Clustering::EdgeCollapse | Clustering::IntegratedCollapse)
+    };
     for arrangement in BOTH {
-        for spacing in [0.05, 0.041] {
-            let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
-            check(&Sphere { radius: 1.0 }, &lattice, 0.0);
-            check(&Sphere { radius: 0.8 }, &lattice, 0.1);
-            check(&Asteroid::default(), &lattice, 0.0);
-            check(&Asteroid { amplitude: 0.6, gain: 0.5, ..Asteroid::default() }, &lattice, 0.05);
-            check(&Gyroid::default(), &lattice, 0.0);
-            check(&Gyroid { frequency: 20.0 }, &lattice, 0.9);
+        let lattice = |spacing| Lattice::try_new(arrangement, bounds, spacing).unwrap();
+        for (i, (field, isovalue)) in fields.into_iter().enumerate() {
+            // Each sort of field with tiles that fit and, the other way round on the other lattice, with some that do not.
+            let spacing = [0.05, 0.041][(i + arrangement as usize) % 2];
+            let settings = all_settings(isovalue).filter(|settings| !collapses(settings));
+            check_with(field, &lattice(spacing), settings);
+            check_with(field, &lattice(0.1), all_settings(isovalue).filter(collapses));
         }
     }
 }
@@ -225,22 +243,11 @@ fn the_distance_to_a_mesh_gives_the_stored_mesh() {
 /// The same on the evaluation's bunny, where it is.
 #[test]
 fn the_bunny_gives_the_stored_mesh() {
-    let cache = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cache/bunny.ply");
-    let Ok(file) = std::fs::File::open(cache) else {
-        let without = std::env::var_os("ISOSTUDY_WITHOUT_BUNNY").is_some();
-        assert!(
-            without,
-            "no bunny in cache/: run `make bunny`, or set ISOSTUDY_WITHOUT_BUNNY=1 to go without"
-        );
-        return;
-    };
-    let solid = mesh::repair::closed_solid(&mesh::read_ply(file).unwrap()).unwrap();
-    let placed = solid.transformed(|p| Vec3::new(p.x, -p.z, p.y) * 6.35 + Vec3::new(0.1, 0.0, -0.615));
-    let field = MeshDistance::try_new(&placed).unwrap();
-    let bounds = Bounds { min: Vec3::new(-0.7, -0.4, -0.5), max: Vec3::new(0.8, 0.4, 0.6) };
-    let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.02).unwrap();
+    let Some(bunny) = bunny() else { return };
+    let field = MeshDistance::try_new(&bunny).unwrap();
+    let lattice = Lattice::try_new(Arrangement::BodyCentred, BOX, 0.02).unwrap();
     let (settings, execution) = (ExtractSettings::default(), Execution { threads: 1 });
-    let expected = stored::extract(&field, &lattice, &settings, &execution).unwrap();
+    let expected = stored::extract(&field, &lattice, &settings, &execution, u32::MAX).unwrap();
     let streamed = Extractor::new().extract(Source::Field(&field), &lattice, &settings, &execution).unwrap();
     assert_same(&streamed, &expected);
 }
