@@ -1,4 +1,4 @@
-//! An extractor that has seen a volume of a size allocates nothing for the next one, whatever the field.
+//! An extractor that has seen a volume of a size allocates nothing for the next one, whatever the field or the samples.
 
 use extract::{
     Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Gyroid, Lattice,
@@ -19,6 +19,7 @@ const BOTH: [Arrangement; 2] = [Arrangement::BodyCentred, Arrangement::SimpleCub
 #[test]
 fn allocations() {
     the_second_volume_of_a_size_allocates_nothing();
+    given_samples_allocate_nothing_either();
     an_extractor_holds_what_the_lattice_says();
 }
 
@@ -64,6 +65,35 @@ fn the_second_volume_of_a_size_allocates_nothing() {
                 }
                 let change = region.change();
                 assert_eq!((change.allocations, change.reallocations, change.deallocations), (0, 0, 0));
+            }
+        }
+    }
+}
+
+fn given_samples_allocate_nothing_either() {
+    for arrangement in BOTH {
+        let lattice = Lattice::try_new(arrangement, cube(), 0.05).unwrap();
+        let waves = |length: f32| -> Vec<f32> {
+            (0..lattice.stored_samples()).map(|i| (i as f32 / length).sin()).collect()
+        };
+        let (rough, smooth) = (waves(3.0), waves(300.0));
+        for clustering in [Clustering::Integrated, Clustering::None] {
+            for topology in [Topology::Guarded, Topology::Published] {
+                let settings = ExtractSettings { clustering, topology, ..ExtractSettings::default() };
+                let (mut extractor, mut extraction) = (Extractor::new(), Extraction::default());
+                let mut run = |samples: &[f32]| {
+                    let source = Source::Samples(samples);
+                    extractor.extract_into(source, &lattice, &settings, &ONE, &mut extraction).unwrap();
+                    assert!(extraction.counts.triangles > 1000);
+                };
+                run(&rough);
+                let region = Region::new(ALLOCATOR);
+                run(&rough);
+                run(&smooth);
+                run(&rough);
+                let change = region.change();
+                let seen = (change.allocations, change.reallocations, change.deallocations);
+                assert_eq!(seen, (0, 0, 0), "{arrangement:?} {clustering:?} {topology:?}");
             }
         }
     }
