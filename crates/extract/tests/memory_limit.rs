@@ -63,7 +63,7 @@ fn wherever_memory_runs_out_there_is_an_error() {
         let run = || extract::extract(field, &lattice, &settings, &one);
         let whole = run().unwrap().mesh;
         let floor = TABLES + lattice.memory_bytes_for(&settings, &one) as usize;
-        let enough = (0..).map(|i| MB / 8 << i).find(|room| within(floor + room, run).is_ok()).unwrap();
+        let enough = (0..).map(|i| (MB / 8) << i).find(|room| within(floor + room, run).is_ok()).unwrap();
         let fails = |amount: &usize| match within(floor + enough * amount / AMOUNTS, run) {
             Ok(found) => {
                 assert!(found.mesh == whole);
