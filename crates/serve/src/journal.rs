@@ -447,11 +447,11 @@ fn error(folder: &Path, source: rusqlite::Error) -> JournalError {
     }
 }
 
-/// So many random bytes as text.
+/// So many random bytes, 16 at most, as text: names and tokens that nobody can guess.
 ///
 /// # Panics
 /// If the system has no random numbers, in which case nothing here is safe.
-fn random_hex(bytes: usize) -> String {
+pub fn random_hex(bytes: usize) -> String {
     let mut buffer = [0; 16];
     getrandom::fill(&mut buffer[..bytes]).expect("the system gives random numbers");
     buffer[..bytes].iter().map(|byte| format!("{byte:02x}")).collect()

@@ -11,10 +11,13 @@
 //! - Whoever begins gets one of the forms with the fewest participants, not counting those who gave up.
 //! - No address, agent or other trace of a participant is kept but the identifiers of a panel, which are in a file of their own.
 
+pub mod download;
 pub mod export;
 pub mod journal;
 pub mod page;
 pub mod record;
 mod server;
+pub mod share;
 
+pub use journal::random_hex;
 pub use server::{ServeError, Settings, serve};
