@@ -6,7 +6,8 @@
 use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 
-const ROOMS: [&str; 8] = ["mesh", "design", "responses", "extract", "raster", "bench", "analysis", "cli"];
+const ROOMS: [&str; 9] =
+    ["mesh", "design", "responses", "extract", "raster", "bench", "analysis", "serve", "cli"];
 
 fn main() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -18,7 +19,9 @@ fn main() {
         let folder = root.join("crates").join(room);
         println!("cargo::rerun-if-changed={}", folder.join("src").display());
         let mut files = Vec::new();
-        for path in shared.iter().cloned().chain([folder.join("src"), folder.join("Cargo.toml")]) {
+        for path in
+            shared.iter().cloned().chain([folder.join("src"), folder.join("page"), folder.join("Cargo.toml")])
+        {
             collect(&path, &mut files);
         }
         // Arguments, progress and pages change no other result; the pages' digest is a room of its own.

@@ -24,6 +24,12 @@ pub(crate) enum Command {
     Pairs(Pairs),
     /// Put together what participants get (forms and pairs, no key), and the researcher's contact sheet
     Bundle(Run),
+    /// Put the questionnaire on the web, and keep the answers
+    Serve(Serve),
+    /// Join what participants downloaded from the page into one file of answers
+    Collect(Collect),
+    /// Write a server's answers without anything that leads to a person, with a codebook
+    Deidentify(Deidentify),
     /// Time every configuration, with the study's full number of rounds
     Bench(Bench),
     /// Read the answers; print and write the preference tables and figures; or prove the analysis with --self-test
@@ -61,6 +67,48 @@ pub(crate) struct Check {
     /// Print the faults as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Serve {
+    #[command(flatten)]
+    pub(crate) run: Run,
+    /// Folder of the answers, which are never among the results [default: answers/<study id>]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) answers: Option<PathBuf>,
+    /// Address to listen on; 0.0.0.0 lets others in
+    #[arg(long, value_name = "IP", default_value = "127.0.0.1")]
+    pub(crate) address: std::net::IpAddr,
+    /// Port to listen on; 0 takes a free one
+    #[arg(long, value_name = "PORT", default_value_t = 8080)]
+    pub(crate) port: u16,
+    /// What the researcher's page asks for, at least 12 characters [default: a new one, printed]
+    #[arg(long, value_name = "TOKEN", env = "ISOSTUDY_ADMIN_TOKEN", hide_env_values = true)]
+    pub(crate) admin_token: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Collect {
+    /// Study file whose bundle was answered
+    pub(crate) study: PathBuf,
+    /// Files that the page gave, CSV or JSON
+    #[arg(required = true)]
+    pub(crate) downloads: Vec<PathBuf>,
+    /// File to write, in the long format
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Deidentify {
+    /// Study file that was served
+    pub(crate) study: PathBuf,
+    /// Folder of the answers [default: answers/<study id>]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) answers: Option<PathBuf>,
+    /// Folder to write answers.csv and codebook.md to
+    #[arg(long, short, value_name = "DIR")]
+    pub(crate) out: PathBuf,
 }
 
 #[derive(Debug, Args)]

@@ -2,6 +2,7 @@
 
 mod answers;
 mod args;
+mod asking;
 mod manifest;
 mod picture;
 mod pipeline;
@@ -86,6 +87,9 @@ fn run(command: Command) -> Result<Outcome> {
             pipeline.bundle(&forms, &pairs)?;
             say(&out.join("bundle").display().to_string())
         }),
+        Command::Serve(arguments) => asking::serve(&arguments),
+        Command::Collect(arguments) => asking::collect(&arguments),
+        Command::Deidentify(arguments) => asking::deidentify(&arguments),
         Command::Bench(bench) => with_pipeline(&bench.run, |pipeline, _| {
             let length = if bench.short { PlanLength::Short } else { PlanLength::Full };
             let stamp = pipeline.timings(length)?;

@@ -7,6 +7,7 @@ const EXTRACT: &str = env!("ISOSTUDY_ROOM_EXTRACT");
 const RASTER: &str = env!("ISOSTUDY_ROOM_RASTER");
 const BENCH: &str = env!("ISOSTUDY_ROOM_BENCH");
 const ANALYSIS: &str = env!("ISOSTUDY_ROOM_ANALYSIS");
+const SERVE: &str = env!("ISOSTUDY_ROOM_SERVE");
 const PAGE: &str = env!("ISOSTUDY_ROOM_PAGE");
 const CLI: &str = env!("ISOSTUDY_ROOM_CLI");
 
@@ -20,5 +21,7 @@ pub(crate) const TIMINGS: &[&str] = &[MESH, EXTRACT, BENCH, CLI];
 pub(crate) const TABLES: &[&str] = &[DESIGN, RESPONSES, ANALYSIS, CLI, PAGE];
 /// What makes the key.
 pub(crate) const KEYS: &[&str] = &[DESIGN, CLI];
+/// What makes the bundle for participants.
+pub(crate) const BUNDLES: &[&str] = &[DESIGN, SERVE, CLI];
 /// What makes the page.
 pub(crate) const PAGES: &[&str] = &[DESIGN, CLI, PAGE];

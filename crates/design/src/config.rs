@@ -227,6 +227,18 @@ pub struct TurntableSection {
     pub supersampling: u32,
 }
 
+impl TurntableSection {
+    /// Centiseconds that a frame lasts: a whole number, since GIFs hold no other.
+    pub fn delay_cs(&self) -> f64 {
+        (100.0 * self.duration_s / f64::from(self.frames)).floor()
+    }
+
+    /// Milliseconds that a turn really takes.
+    pub fn loop_ms(&self) -> u32 {
+        (10.0 * self.delay_cs() * f64::from(self.frames)) as u32
+    }
+}
+
 /// How surfaces are coloured; colours are red, green, blue from 0 to 1.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -399,6 +411,32 @@ pub struct FormsSection {
     /// Pairs shown first, to learn how it works.
     #[serde(default)]
     pub training: Vec<TrainingSection>,
+    /// What participants agree to before they begin.
+    #[serde(default = "consent")]
+    pub consent: String,
+    /// What they are told to do.
+    #[serde(default = "instructions")]
+    pub instructions: String,
+    /// Whole-number enlargement of the pairs by the page, nearest neighbour.
+    #[serde(default = "once", deserialize_with = "whole")]
+    pub page_scale: u32,
+    /// A code or an `https://` address that participants get from the server when their last answer is saved.
+    pub completion: Option<String>,
+}
+
+fn consent() -> String {
+    "You will see pairs of moving pictures of computer-generated surfaces and say which of the two you like better. Your answers and the time they took are kept. Your name \
+     is not asked. Taking part is voluntary, and you can stop at any time by closing this page."
+        .into()
+}
+
+fn instructions() -> String {
+    "Look at both surfaces while they turn, then say which of the two you like better. There are no right or wrong answers."
+        .into()
+}
+
+fn once() -> u32 {
+    1
 }
 
 /// A pair to learn with.

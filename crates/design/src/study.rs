@@ -216,7 +216,7 @@ fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigError> 
     c.count("turntable.height", t.height, 16, 4096)?;
     c.count("turntable.frames", t.frames, 1, 3600)?;
     c.number("turntable.duration_s", t.duration_s, 0.01, 600.0)?;
-    let delay_cs = (100.0 * t.duration_s / f64::from(t.frames)).floor();
+    let delay_cs = t.delay_cs();
     if !(1.0..=65535.0).contains(&delay_cs) {
         return c.refuse(
             "turntable.duration_s",
@@ -485,6 +485,22 @@ fn check_forms(
         return c.refuse(format!("forms.choices[{i}]"), "\"\"", "must be a text");
     }
     c.distinct(|i| format!("forms.choices[{i}]"), &forms.choices)?;
+    for (key, text) in [("forms.consent", &forms.consent), ("forms.instructions", &forms.instructions)] {
+        if text.trim().is_empty() {
+            return c.refuse(key, "\"\"", "must be a text");
+        }
+    }
+    c.count("forms.page_scale", forms.page_scale, 1, 4)?;
+    if let Some(completion) = &forms.completion {
+        let code = completion.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '-');
+        if completion.is_empty() || completion.len() > 500 || !(code || completion.starts_with("https://")) {
+            return c.refuse(
+                "forms.completion",
+                completion,
+                "letters, digits and hyphens, or an https:// address; up to 500",
+            );
+        }
+    }
     c.count("forms.training", forms.training.len() as u32, 0, 100)?;
     for (i, pair) in file.forms.iter().flat_map(|forms| &forms.training).enumerate() {
         for (name, id) in [("left", &pair.left), ("right", &pair.right)] {

@@ -4,15 +4,25 @@ use super::{Meshes, Pipeline};
 use crate::picture;
 use crate::progress::Step;
 use crate::rooms;
-use crate::store::{Inputs, Stamp};
+use crate::store::{Inputs, Stamp, sha256};
 use anyhow::Result;
 use design::ConfigurationId;
-use design::forms::{Questionnaire, Stimulus};
+use design::forms::{FormFile, Questionnaire, Stimulus};
 use design::record::Purpose;
 use raster::tiny_skia::Pixmap;
 use std::collections::HashMap;
 
 const BUNDLE: &str = "bundle";
+
+/// Tells one version of a study's forms from another: 16 hexadecimal digits.
+///
+/// # Errors
+/// None to be expected.
+pub(crate) fn forms_digest(file: &FormFile) -> Result<String> {
+    let mut digest = sha256(&serde_json::to_vec(file)?);
+    digest.truncate(16);
+    Ok(digest)
+}
 
 impl Pipeline<'_> {
     /// The participants' forms, and the key to them, kept apart like the key to the stimuli. `None` for a study that asks
@@ -31,11 +41,11 @@ impl Pipeline<'_> {
         Ok(Some(stamp))
     }
 
-    /// The folder for participants: the forms and every pair, and nothing that tells what a pair shows. All animations are
+    /// The folder for participants: the page, the forms and every pair, and nothing that tells what a pair shows. All animations are
     /// made the same size, with zeros after the end of the file, since a smoother surface compresses better.
     pub(crate) fn bundle(&self, forms: &Stamp, pairs: &[Stamp]) -> Result<Stamp> {
         let step = Step::begin("bundle", 1, pairs.len());
-        let mut inputs = Inputs::of_rooms(rooms::KEYS).stamp(forms);
+        let mut inputs = Inputs::of_rooms(rooms::BUNDLES).stamp(forms);
         for stamp in pairs {
             inputs = inputs.stamp(stamp);
         }
@@ -52,8 +62,15 @@ impl Pipeline<'_> {
                 writer.write(&format!("{BUNDLE}/stimuli/{name}"), &bytes)?;
                 step.tick(1);
             }
-            writer
-                .write(&format!("{BUNDLE}/forms.json"), &std::fs::read(root.join(forms.file("forms.json")))?)
+            let text = std::fs::read(root.join(forms.file("forms.json")))?;
+            writer.write(&format!("{BUNDLE}/forms.json"), &text)?;
+            let file: FormFile = serde_json::from_slice(&text)?;
+            let script = serve::page::forms_js(&file, &forms_digest(&file)?, false);
+            writer.write(&format!("{BUNDLE}/forms.js"), script.as_bytes())?;
+            for (name, _, content) in serve::page::FILES {
+                writer.write(&format!("{BUNDLE}/{name}"), content.as_bytes())?;
+            }
+            Ok(())
         })?;
         step.count(stamp.redone);
         step.end();

@@ -16,6 +16,7 @@ mod stimuli;
 mod tables;
 mod timings;
 
+pub(crate) use bundle::forms_digest;
 pub(crate) use meshes::Meshes;
 pub(crate) use tables::{write_answers_only, write_without_study};
 pub(crate) use timings::PlanLength;

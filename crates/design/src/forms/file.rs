@@ -21,6 +21,14 @@ pub struct FormFile {
     pub prompt: String,
     /// The answers: left, no preference, right.
     pub choices: [String; 3],
+    /// What participants agree to before they begin.
+    pub consent: String,
+    /// What they are told to do.
+    pub instructions: String,
+    /// How long a pair takes to turn once, in milliseconds.
+    pub loop_ms: u32,
+    /// Whole-number enlargement of the pairs by the page, nearest neighbour.
+    pub page_scale: u32,
     /// One form a planned participant, in the order in which they are dealt.
     pub forms: Vec<FormEntry>,
 }
@@ -77,6 +85,10 @@ impl Questionnaire<'_> {
             title: self.study.file.study.title.clone(),
             prompt: self.section.prompt.clone(),
             choices: self.section.choices.clone(),
+            consent: self.section.consent.clone(),
+            instructions: self.section.instructions.clone(),
+            loop_ms: self.study.file.turntable.loop_ms(),
+            page_scale: self.section.page_scale,
             forms: self.planned().iter().map(entry).collect(),
         }
     }

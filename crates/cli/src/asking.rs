@@ -1,0 +1,129 @@
+//! `isostudy serve`, `collect` and `deidentify`: what a study's people are asked, and what they answered.
+
+use crate::args::{Collect, Deidentify, Serve};
+use crate::pipeline::forms_digest;
+use crate::{NO_FORMS, default_folder, load, say, store, with_pipeline};
+use anyhow::{Context, Result, bail};
+use design::Study;
+use design::forms::{FormFile, KeyEntry, Questionnaire};
+use serve::export::{self, Given, HEADER};
+use serve::journal::Journal;
+use serve::{Settings, download, share};
+use std::collections::BTreeMap;
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+
+/// A study's forms, their key, and their digest.
+fn forms(study: &Study) -> Result<(FormFile, Vec<KeyEntry>, String)> {
+    let questionnaire =
+        Questionnaire::of(study).with_context(|| format!("{}: {NO_FORMS}", study.path.display()))?;
+    let file = questionnaire.file();
+    let digest = forms_digest(&file)?;
+    Ok((file, questionnaire.key(), digest))
+}
+
+/// Answers are never among the results, which can be made again.
+fn answers_folder(study: &Study, given: Option<&PathBuf>) -> PathBuf {
+    given.cloned().unwrap_or_else(|| Path::new("answers").join(&study.file.study.id))
+}
+
+/// Makes the bundle and serves it until told to stop.
+///
+/// # Errors
+/// If the bundle cannot be made, or the server cannot run.
+pub(crate) fn serve(arguments: &Serve) -> Result<()> {
+    let study = load(&arguments.run.study)?;
+    let (file, key, digest) = forms(&study)?;
+    with_pipeline(&arguments.run, |pipeline, _| {
+        let forms = pipeline.forms()?.context(NO_FORMS)?;
+        let meshes = pipeline.stimulus_meshes(&[])?;
+        let turntables = pipeline.turntables(&meshes, &[])?;
+        let pairs = pipeline.pairs(&turntables)?;
+        pipeline.contact_sheet(&meshes)?;
+        pipeline.bundle(&forms, &pairs).map(drop)
+    })?;
+    let out = arguments.run.out.clone().unwrap_or_else(|| default_folder(&study));
+    let admin_token = match &arguments.admin_token {
+        Some(token) if token.len() < 12 => bail!("--admin-token: at least 12 characters"),
+        Some(token) => token.clone(),
+        None => serve::random_hex(16),
+    };
+    let settings = Settings {
+        completion: study.file.forms.as_ref().and_then(|forms| forms.completion.clone()),
+        stimuli: out.join("bundle/stimuli"),
+        answers: answers_folder(&study, arguments.answers.as_ref()),
+        address: SocketAddr::new(arguments.address, arguments.port),
+        admin_token: admin_token.clone(),
+        file,
+        key,
+        digest,
+    };
+    let answers = settings.answers.clone();
+    serve::serve(settings, |address| {
+        eprintln!("questionnaire   http://{address}/");
+        eprintln!("researcher      http://{address}/researcher");
+        if arguments.admin_token.is_none() {
+            eprintln!("token           {admin_token}");
+        }
+        eprintln!("answers         {}", answers.display());
+        eprintln!("Ctrl-C stops it; nothing that was acknowledged is lost.");
+    })?;
+    Ok(())
+}
+
+/// Joins the page's downloads with the key into one file that `analyse` reads.
+///
+/// # Errors
+/// If a file cannot be read or contradicts another, or the study is not the one that was answered.
+pub(crate) fn collect(arguments: &Collect) -> Result<()> {
+    let study = load(&arguments.study)?;
+    let (file, key, _) = forms(&study)?;
+    let mut all: BTreeMap<(String, u32), Given> = BTreeMap::new();
+    let mut again = 0;
+    for path in &arguments.downloads {
+        let place = || path.display().to_string();
+        let text = std::fs::read_to_string(path).with_context(place)?;
+        let given = download::read(&text, &file.study).with_context(place)?;
+        export::lines(&given, &key).with_context(place)?;
+        again += download::add(&mut all, given).with_context(place)?;
+    }
+    let given: Vec<Given> = all.into_values().collect();
+    store::write_whole(&arguments.out, lines(&given, &key)?.as_bytes())?;
+    let repeated = if again > 0 { format!("; {again} came twice") } else { String::new() };
+    eprintln!("{} answers of {} participants{repeated}", given.len(), participants(&given));
+    say(&arguments.out.display().to_string())
+}
+
+/// Writes the answers of a server without anything that leads to a person, and a codebook.
+///
+/// # Errors
+/// If the answers cannot be read, or the files not be written.
+pub(crate) fn deidentify(arguments: &Deidentify) -> Result<()> {
+    let study = load(&arguments.study)?;
+    let (file, key, digest) = forms(&study)?;
+    let folder = answers_folder(&study, arguments.answers.as_ref());
+    if !folder.join("answers.sqlite").is_file() {
+        bail!("{}: no answers.sqlite there", folder.display());
+    }
+    let journal = Journal::open(&folder, &file, &digest)?;
+    let given = share::deidentified(&journal.given().with_context(|| folder.display().to_string())?);
+    std::fs::create_dir_all(&arguments.out).with_context(|| arguments.out.display().to_string())?;
+    let codebook = share::codebook(&file, &digest, participants(&given), given.len());
+    for (name, text) in [("answers.csv", lines(&given, &key)?), ("codebook.md", codebook)] {
+        let path = arguments.out.join(name);
+        store::write_whole(&path, text.as_bytes())?;
+        say(&path.display().to_string())?;
+    }
+    Ok(())
+}
+
+fn lines(given: &[Given], key: &[KeyEntry]) -> Result<String> {
+    Ok(export::csv(&export::lines(given, key)?, &HEADER))
+}
+
+fn participants(given: &[Given]) -> usize {
+    let mut names: Vec<&str> = given.iter().map(|given| given.participant.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    names.len()
+}

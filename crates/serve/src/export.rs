@@ -1,0 +1,108 @@
+//! Answers joined with the key: the long format that `isostudy analyse` reads.
+
+use crate::record::Answer;
+use design::forms::KeyEntry;
+use serde::Serialize;
+use std::collections::HashMap;
+
+/// An answer and whose it is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Given {
+    /// The participant's name in the answers: random, and never an identifier of a panel.
+    pub participant: String,
+    /// The form's number, from 1.
+    pub form: usize,
+    /// What was answered.
+    pub answer: Answer,
+}
+
+/// A line of the long format.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Line<'a> {
+    participant: &'a str,
+    form: usize,
+    order: u32,
+    question: &'a str,
+    object: &'a str,
+    group: &'a str,
+    left: &'a str,
+    right: &'a str,
+    choice: &'static str,
+    rt_ms: u32,
+    role: &'a design::forms::Role,
+    stimulus: &'a str,
+}
+
+/// An answer that the key does not fit.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "participant {participant}, form {form}, place {order}: the study shows {shown} there, the answer is to {stimulus}; was the study file changed?"
+)]
+pub struct OtherStudy {
+    participant: String,
+    form: usize,
+    order: u32,
+    shown: String,
+    stimulus: String,
+}
+
+/// Each answer with what its key says was shown, in the order given.
+///
+/// # Errors
+/// The first answer to something that the key does not know.
+pub fn lines<'a>(given: &'a [Given], key: &'a [KeyEntry]) -> Result<Vec<Line<'a>>, OtherStudy> {
+    let shown: HashMap<(usize, usize), &KeyEntry> = key.iter().map(|k| ((k.form, k.order), k)).collect();
+    let line = |given: &'a Given| {
+        let Given { participant, form, answer } = given;
+        let entry = shown.get(&(*form, answer.order as usize));
+        match entry.filter(|entry| entry.stimulus == answer.stimulus) {
+            None => Err(OtherStudy {
+                participant: participant.clone(),
+                form: *form,
+                order: answer.order,
+                shown: entry.map_or_else(|| "nothing".into(), |entry| entry.stimulus.clone()),
+                stimulus: answer.stimulus.clone(),
+            }),
+            Some(entry) => Ok(Line {
+                participant,
+                form: *form,
+                order: answer.order,
+                question: &entry.question,
+                object: &entry.object,
+                group: &entry.group,
+                left: &entry.left,
+                right: &entry.right,
+                choice: answer.choice.code(),
+                rt_ms: answer.rt_ms,
+                role: &entry.role,
+                stimulus: &answer.stimulus,
+            }),
+        }
+    };
+    given.iter().map(line).collect()
+}
+
+/// Lines as CSV with a header, `\n` at the ends.
+pub fn csv<T: Serialize>(lines: &[T], header: &[&str]) -> String {
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    let written =
+        writer.write_record(header).and_then(|()| lines.iter().try_for_each(|line| writer.serialize(line)));
+    written.expect("memory takes everything");
+    String::from_utf8(writer.into_inner().expect("memory takes everything")).expect("texts are UTF-8")
+}
+
+/// The columns of [`Line`].
+pub const HEADER: [&str; 12] = [
+    "participant",
+    "form",
+    "order",
+    "question",
+    "object",
+    "group",
+    "left",
+    "right",
+    "choice",
+    "rt_ms",
+    "role",
+    "stimulus",
+];

@@ -1,0 +1,23 @@
+//! Puts a study's forms to people: the questionnaire's page, and a server that keeps their answers.
+//!
+//! The page is the same from a folder, from any static host and from the server ([`page`]). The server is a study's
+//! [`FormFile`](design::forms::FormFile) and a folder of stimuli put on a socket ([`serve`]); what it is told it writes into two
+//! SQLite files, answers and identifiers apart ([`journal`]). The key that tells what a code name shows is used in one place,
+//! [`export`], and nothing of it is ever sent to participants.
+//!
+//! # Guaranteed
+//!
+//! - An answer is acknowledged after it was committed and synced to disk, never before. Sent again, it changes nothing.
+//! - Whoever begins gets one of the forms with the fewest participants, not counting those who gave up.
+//! - No address, agent or other trace of a participant is kept but the identifiers of a panel, which are in a file of their own.
+
+pub mod download;
+pub mod export;
+pub mod journal;
+pub mod page;
+pub mod record;
+mod server;
+pub mod share;
+
+pub use journal::random_hex;
+pub use server::{ServeError, Settings, serve};

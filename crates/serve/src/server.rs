@@ -1,0 +1,176 @@
+//! The server: HTTP on a socket, the page, the stimuli, and what the page may ask.
+
+mod admin;
+mod api;
+mod limits;
+
+use crate::journal::{self, Handle, Journal, JournalError};
+use crate::page::{self, forms_js};
+use axum::Router;
+use axum::body::Body;
+use axum::extract::{Path as Matched, State};
+use axum::http::{HeaderName, HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use design::forms::{FormFile, KeyEntry};
+use std::collections::BTreeSet;
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::sync::Arc;
+use tokio::net::TcpListener;
+use tower_http::set_header::SetResponseHeaderLayer;
+
+/// What is served, and where.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// The forms.
+    pub file: FormFile,
+    /// What they show.
+    pub key: Vec<KeyEntry>,
+    /// Digest of the forms, which tells one version of a study from another.
+    pub digest: String,
+    /// Folder of the stimuli.
+    pub stimuli: PathBuf,
+    /// Folder of the answers.
+    pub answers: PathBuf,
+    /// Where to listen.
+    pub address: SocketAddr,
+    /// What the researcher's page asks for.
+    pub admin_token: String,
+    /// A code or an `https://` address for those who have finished.
+    pub completion: Option<String>,
+}
+
+/// Why the server did not run, or stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum ServeError {
+    /// The answers.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    /// The socket.
+    #[error("{address}: {source}")]
+    Socket {
+        /// Which.
+        address: SocketAddr,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A stimulus is not there.
+    #[error("{0}: not there; make the bundle first")]
+    Stimulus(PathBuf),
+    /// The system.
+    #[error(transparent)]
+    System(#[from] std::io::Error),
+}
+
+struct Shared {
+    settings: Settings,
+    journal: Handle,
+    forms_js: String,
+    stimuli: BTreeSet<String>,
+}
+
+type Site = State<Arc<Shared>>;
+
+/// Serves until the process is told to stop (interrupt or terminate), then answers what has arrived and returns. `ready` is
+/// called with the address once it listens.
+///
+/// # Errors
+/// [`ServeError`].
+pub fn serve(settings: Settings, ready: impl FnOnce(SocketAddr)) -> Result<(), ServeError> {
+    let stimuli: BTreeSet<String> = settings
+        .file
+        .forms
+        .iter()
+        .flat_map(|form| form.training.iter().chain(&form.questions))
+        .cloned()
+        .collect();
+    for code in &stimuli {
+        let path = settings.stimuli.join(format!("{code}.gif"));
+        if !path.is_file() {
+            return Err(ServeError::Stimulus(path));
+        }
+    }
+    let journal = Journal::open(&settings.answers, &settings.file, &settings.digest)?;
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
+    let (handle, keeper) = journal::start(journal);
+    let address = settings.address;
+    let forms_js = forms_js(&settings.file, &settings.digest, true);
+    let shared = Arc::new(Shared { settings, journal: handle, forms_js, stimuli });
+    let served = runtime.block_on(async {
+        let listener = TcpListener::bind(address).await?;
+        ready(listener.local_addr()?);
+        limits::run(listener, site(shared)).await
+    });
+    // Tasks hold ways to the journal; without them its thread ends, with everything on disk.
+    drop(runtime);
+    drop(keeper.join());
+    served.map_err(|source| ServeError::Socket { address, source })
+}
+
+fn site(shared: Arc<Shared>) -> Router {
+    let fixed = |name: &'static str, value: &'static str| {
+        SetResponseHeaderLayer::overriding(HeaderName::from_static(name), HeaderValue::from_static(value))
+    };
+    let asked = Router::new()
+        .route("/api/sessions", post(api::begin))
+        .route("/api/answers", post(api::answer))
+        .route("/api/finish", post(api::finish))
+        .route("/api/admin/summary", get(admin::summary))
+        .route("/api/admin/answers.csv", get(admin::answers))
+        .route("/api/admin/identities.csv", get(admin::identities))
+        .layer(fixed("cache-control", "no-store"));
+    let pages = Router::new()
+        .route("/", get(|| async { page_file("index.html") }))
+        .route("/{name}", get(|Matched(name): Matched<String>, site: Site| async move { file(&name, &site) }))
+        .route("/stimuli/{name}", get(stimulus));
+    limits::limited(asked.merge(pages))
+        .layer(fixed("x-content-type-options", "nosniff"))
+        .layer(fixed("referrer-policy", "no-referrer"))
+        .layer(fixed(
+            "content-security-policy",
+            "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; form-action 'none'; base-uri 'none'",
+        ))
+        .with_state(shared)
+}
+
+fn file(name: &str, site: &Shared) -> Response {
+    match name {
+        "forms.js" => typed("text/javascript; charset=utf-8", site.forms_js.clone()),
+        "researcher" => typed("text/html; charset=utf-8", admin::PAGE),
+        "researcher.js" => typed("text/javascript; charset=utf-8", admin::SCRIPT),
+        name => page_file(name),
+    }
+}
+
+fn page_file(name: &str) -> Response {
+    match page::FILES.iter().find(|file| file.0 == name) {
+        Some(&(_, mime, text)) => typed(mime, text),
+        None => StatusCode::NOT_FOUND.into_response(),
+    }
+}
+
+fn typed(mime: &'static str, text: impl Into<Body>) -> Response {
+    ([(header::CONTENT_TYPE, mime), (header::CACHE_CONTROL, "no-cache")], text.into()).into_response()
+}
+
+/// A stimulus by its code name: names are looked up, never joined to a path.
+async fn stimulus(Matched(name): Matched<String>, site: Site) -> Response {
+    let Some(code) = name.strip_suffix(".gif").and_then(|code| site.stimuli.get(code)) else {
+        return StatusCode::NOT_FOUND.into_response();
+    };
+    let path = site.settings.stimuli.join(format!("{code}.gif"));
+    match tokio::fs::File::open(&path).await {
+        Err(_) => StatusCode::NOT_FOUND.into_response(),
+        Ok(file) => {
+            let length = file.metadata().await.map(|data| data.len()).unwrap_or_default();
+            let body = Body::from_stream(tokio_util::io::ReaderStream::with_capacity(file, 1 << 16));
+            let headers = [
+                (header::CONTENT_TYPE, HeaderValue::from_static("image/gif")),
+                (header::CONTENT_LENGTH, HeaderValue::from(length)),
+                (header::CACHE_CONTROL, HeaderValue::from_static("private, max-age=86400")),
+            ];
+            (headers, body).into_response()
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! What the page asks.
+
+use super::Site;
+use crate::journal::{Dealt, Unsaved};
+use crate::record::{Answer, Identifiers, Refusal};
+use axum::Json;
+use axum::extract::rejection::JsonRejection;
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// Why a request was not done; nothing has changed.
+pub(super) enum Failure {
+    Refused(Refusal),
+    Unsaved(Unsaved),
+    Malformed(JsonRejection),
+    /// The researcher's token is missing or wrong.
+    Unauthorised,
+    /// The key does not fit the answers.
+    Key(crate::export::OtherStudy),
+}
+
+impl IntoResponse for Failure {
+    fn into_response(self) -> Response {
+        let (status, text) = match self {
+            Self::Refused(refusal) => {
+                let status = match refusal {
+                    Refusal::UnknownToken => StatusCode::NOT_FOUND,
+                    Refusal::OutOfOrder { .. } | Refusal::Answered(_) | Refusal::Unfinished(_) => {
+                        StatusCode::CONFLICT
+                    }
+                    Refusal::Full => StatusCode::FORBIDDEN,
+                    _ => StatusCode::UNPROCESSABLE_ENTITY,
+                };
+                (status, refusal.to_string())
+            }
+            Self::Unsaved(unsaved) => (StatusCode::SERVICE_UNAVAILABLE, unsaved.to_string()),
+            Self::Malformed(rejection) => (rejection.status(), rejection.body_text()),
+            Self::Unauthorised => (StatusCode::UNAUTHORIZED, "the token is missing or wrong".into()),
+            Self::Key(other) => (StatusCode::INTERNAL_SERVER_ERROR, other.to_string()),
+        };
+        (status, text).into_response()
+    }
+}
+
+impl From<Refusal> for Failure {
+    fn from(refusal: Refusal) -> Self {
+        Self::Refused(refusal)
+    }
+}
+
+impl From<Unsaved> for Failure {
+    fn from(unsaved: Unsaved) -> Self {
+        Self::Unsaved(unsaved)
+    }
+}
+
+impl From<JsonRejection> for Failure {
+    fn from(rejection: JsonRejection) -> Self {
+        Self::Malformed(rejection)
+    }
+}
+
+type Asked<T> = Result<Json<T>, JsonRejection>;
+
+pub(super) fn now_ms() -> i64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis() as i64)
+}
+
+/// `POST /api/sessions`: a form for somebody.
+pub(super) async fn begin(site: Site, asked: Asked<Identifiers>) -> Result<Json<Dealt>, Failure> {
+    let Json(identifiers) = asked?;
+    Ok(Json(site.journal.change(move |journal| journal.begin(identifiers, now_ms())).await??))
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Answered {
+    token: String,
+    order: u32,
+    stimulus: String,
+    choice: crate::record::Choice,
+    rt_ms: u32,
+}
+
+#[derive(Serialize)]
+pub(super) struct Saved {
+    saved: bool,
+}
+
+/// `POST /api/answers`: one answer, acknowledged when it is on disk.
+pub(super) async fn answer(site: Site, asked: Asked<Answered>) -> Result<Json<Saved>, Failure> {
+    let Json(Answered { token, order, stimulus, choice, rt_ms }) = asked?;
+    let answer = Answer { order, stimulus, choice, rt_ms };
+    site.journal.change(move |journal| journal.answer(&token, &answer, now_ms())).await??;
+    Ok(Json(Saved { saved: true }))
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Finished {
+    token: String,
+}
+
+#[derive(Serialize)]
+pub(super) struct Completion {
+    completion: Option<String>,
+}
+
+/// `POST /api/finish`: the end, which is told only to those all of whose answers are on disk.
+pub(super) async fn finish(site: Site, asked: Asked<Finished>) -> Result<Json<Completion>, Failure> {
+    let Json(Finished { token }) = asked?;
+    site.journal.change(move |journal| journal.finish(&token, now_ms())).await??;
+    Ok(Json(Completion { completion: site.settings.completion.clone() }))
+}

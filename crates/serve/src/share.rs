@@ -1,0 +1,68 @@
+//! Answers that can be given to others.
+
+use crate::export::Given;
+use design::forms::FormFile;
+use std::collections::BTreeMap;
+
+/// The same answers, their participants renamed `p1`, `p2`, and so on by their names, which are random, so that neither
+/// names nor order tell who came when.
+pub fn deidentified(given: &[Given]) -> Vec<Given> {
+    let mut names: BTreeMap<&str, usize> =
+        given.iter().map(|given| (given.participant.as_str(), 0)).collect();
+    names.values_mut().enumerate().for_each(|(place, number)| *number = place + 1);
+    let width = names.len().to_string().len();
+    let renamed = |given: &Given| {
+        let number = names[given.participant.as_str()];
+        Given { participant: format!("p{number:0width$}"), ..given.clone() }
+    };
+    let mut shared: Vec<Given> = given.iter().map(renamed).collect();
+    shared.sort_by(|a, b| (&a.participant, a.answer.order).cmp(&(&b.participant, b.answer.order)));
+    shared
+}
+
+/// What the columns of the shared answers mean, in Markdown.
+pub fn codebook(file: &FormFile, digest: &str, participants: usize, answers: usize) -> String {
+    let [left, none, right] = &file.choices;
+    format!(
+        "# Codebook\n\n\
+         Answers to \"{title}\" (study `{study}`, forms {digest}): {answers} answers of {participants} participants, in `answers.csv`.\n\n\
+         Participants are numbered at random. No name, address, panel identifier or date is in this set.\n\n\
+         | column | meaning | values |\n|---|---|---|\n\
+         | `participant` | who answered | `p1`, `p2`, ... |\n\
+         | `form` | number of the form | 1 to {forms} |\n\
+         | `order` | place in the form, practice included | from 1 |\n\
+         | `question` | what was compared; the same for a repeat | id of the study file; `control-1`, ... |\n\
+         | `object` | what both sides show | name of the study file |\n\
+         | `group` | comparison group; empty for controls | id of the study file |\n\
+         | `left`, `right` | configuration shown on that side | object, underscore, method |\n\
+         | `choice` | answer to \"{prompt}\" | `L` {left}, `NP` {none}, `R` {right}, as shown |\n\
+         | `rt_ms` | time from the pair on the screen to the answer | milliseconds; a turn takes {loop_ms} |\n\
+         | `role` | why it was asked | `comparison`; `control`: the same on both sides; `repeat`: asked again, sides swapped |\n\
+         | `stimulus` | code name of the animation | |\n",
+        title = file.title,
+        study = file.study,
+        forms = file.forms.len(),
+        prompt = file.prompt,
+        loop_ms = file.loop_ms,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::{Answer, Choice};
+
+    #[test]
+    fn neither_names_nor_order_tell_who_came_when() {
+        let given = |participant: &str, order| Given {
+            participant: participant.into(),
+            form: 1,
+            answer: Answer { order, stimulus: "tani".into(), choice: Choice::L, rt_ms: 900 },
+        };
+        let shared = deidentified(&[given("c0", 1), given("c0", 2), given("0a", 1), given("77", 1)]);
+        let found: Vec<(&str, u32)> =
+            shared.iter().map(|g| (g.participant.as_str(), g.answer.order)).collect();
+        assert_eq!(found, [("p1", 1), ("p2", 1), ("p3", 1), ("p3", 2)]);
+        assert!(shared.iter().all(|g| g.form == 1 && g.answer.rt_ms == 900));
+    }
+}

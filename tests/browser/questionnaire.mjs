@@ -1,0 +1,301 @@
+// The questionnaire in a real browser: a page from a folder, the server, the researcher's page.
+// Run by scripts/test-browser.sh, which sets ISOSTUDY (the program), CHROMIUM and MODULES.
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
+import fs from 'node:fs';
+import { createRequire } from 'node:module';
+import os from 'node:os';
+import path from 'node:path';
+import test, { after, before } from 'node:test';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+
+const { ISOSTUDY, CHROMIUM, MODULES } = process.env;
+const require = createRequire(path.join(MODULES, 'package.json'));
+const { chromium } = require('playwright-core');
+const axe = fs.readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
+
+const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..');
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'isostudy-'));
+const config = path.join(folder, 'study.toml');
+const out = path.join(folder, 'out');
+const TOKEN = 'a-token-for-this-test';
+const MOST = 6;
+
+let browser;
+const children = new Set();
+before(async () => {
+  const text = fs.readFileSync(path.join(root, 'configs/two-methods.toml'), 'utf8')
+    .replace('width = 320', 'width = 64').replace('height = 320', 'height = 64').replace('frames = 72', 'frames = 4')
+    .replace('duration_s = 5.76', 'duration_s = 0.4').replaceAll('stimulus_spacing = 0.08', 'stimulus_spacing = 0.2')
+    .replace('"cpu/', `"${root}/configs/cpu/`).replace('max_questions = 6', 'max_questions = 6\ncompletion = "C0DE-42"');
+  fs.writeFileSync(config, text);
+  run('bundle', config, '--out', out);
+  browser = await chromium.launch({
+    executablePath: CHROMIUM,
+    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'],
+  });
+});
+after(async () => {
+  await browser?.close();
+  for (const child of children) child.kill('SIGKILL');
+  fs.rmSync(folder, { recursive: true });
+});
+
+function run(...words) {
+  const done = spawnSync(ISOSTUDY, words, { encoding: 'utf8' });
+  assert.equal(done.status, 0, done.stderr);
+  return done.stdout;
+}
+
+/** A server on a free port, its answers in a folder of that name. */
+async function serve(name) {
+  const answers = path.join(folder, name);
+  const child = spawn(ISOSTUDY, ['serve', config, '--out', out, '--answers', answers, '--port', '0', '--admin-token', TOKEN], { stdio: ['ignore', 'ignore', 'pipe'] });
+  children.add(child);
+  let said = '';
+  const address = await new Promise((resolve, reject) => {
+    child.stderr.on('data', (data) => {
+      said += data;
+      const found = said.match(/questionnaire\s+(http:\S+)\n/);
+      if (found) resolve(found[1]);
+    });
+    child.on('exit', (code) => reject(new Error(`the server ended with ${code}: ${said}`)));
+  });
+  const ended = new Promise((resolve) => { child.on('exit', resolve); });
+  return {
+    address,
+    answers,
+    export: async (file = 'answers.csv') => {
+      const response = await fetch(`${address}api/admin/${file}`, { headers: { authorization: `Bearer ${TOKEN}` } });
+      assert.equal(response.status, 200);
+      return response.text();
+    },
+    stop: (signal = 'SIGTERM') => { child.kill(signal); return ended; },
+  };
+}
+
+const rows = (csv) => {
+  const [header, ...lines] = csv.trim().split(/\r?\n/).map((line) => line.split(','));
+  return lines.map((cells) => Object.fromEntries(header.map((name, i) => [name, cells[i]])));
+};
+
+/** A page on which nothing goes wrong and nobody else is asked for anything. */
+async function open(address, options = {}) {
+  const context = await browser.newContext({ acceptDownloads: true, ...options });
+  const page = await context.newPage();
+  page.on('pageerror', (error) => { throw error; });
+  page.on('request', (request) => {
+    const asked = new URL(request.url());
+    assert.ok(['file:', 'blob:', 'data:'].includes(asked.protocol) || asked.origin === new URL(address).origin, request.url());
+  });
+  await page.goto(address);
+  return page;
+}
+
+const begin = async (page) => {
+  await page.getByRole('button', { name: 'I agree, begin' }).click();
+  await page.getByRole('button', { name: 'Go on' }).click();
+};
+
+const shown = (page) => page.locator('.pair img').evaluate((image) => image.src.match(/([a-z]+)\.gif/)[1]);
+const ready = (page) => page.locator('[data-choice="L"]:not([aria-disabled])').waitFor();
+
+/** Answers what is on the screen, and returns what it was. */
+async function answer(page, choice, how = 'mouse') {
+  const title = await page.locator('h2').textContent();
+  await ready(page);
+  const code = await shown(page);
+  if (how === 'mouse') await page.locator(`[data-choice="${choice}"]`).click();
+  else await page.keyboard.press(how[choice]);
+  await page.waitForFunction((old) => document.querySelector('h2').textContent !== old, title);
+  return { code, choice };
+}
+
+const CHOICES = ['L', 'R', 'NP', 'R', 'L', 'NP'];
+
+async function all(page, how) {
+  await answer(page, 'L', how);
+  const given = [];
+  for (const choice of CHOICES) given.push(await answer(page, choice, how));
+  return given;
+}
+
+const asGiven = (line) => ({ code: line.stimulus, choice: line.choice });
+
+test('a form by mouse and one by keyboard arrive as they were given', async () => {
+  const server = await serve('two');
+  const mouse = await open(`${server.address}?PROLIFIC_PID=5f9&STUDY_ID=61a&SESSION_ID=s1`);
+  await begin(mouse);
+  const first = await all(mouse, 'mouse');
+  await mouse.getByText('C0DE-42').waitFor();
+
+  const keyboard = await open(server.address);
+  await keyboard.keyboard.press('Tab');
+  await keyboard.keyboard.press('Enter');
+  await keyboard.getByRole('button', { name: 'Go on' }).waitFor();
+  await keyboard.keyboard.press('Tab');
+  await keyboard.keyboard.press('Enter');
+  await answer(keyboard, 'L', { L: '1' });
+  const second = [];
+  for (const [i, choice] of CHOICES.entries()) {
+    second.push(await answer(keyboard, choice, i % 2 ? { L: '1', NP: '2', R: '3' } : { L: 'ArrowLeft', NP: 'ArrowDown', R: 'ArrowRight' }));
+  }
+  await keyboard.getByText('C0DE-42').waitFor();
+
+  const lines = rows(await server.export());
+  assert.equal(lines.length, 2 * MOST);
+  const people = [...new Set(lines.map((line) => line.participant))];
+  const of = (person) => lines.filter((line) => line.participant === person);
+  assert.deepEqual(of(people[0]).map(asGiven), first);
+  assert.deepEqual(of(people[1]).map(asGiven), second);
+  assert.deepEqual(people.map((person) => of(person)[0].form), ['1', '2']);
+  assert.ok(lines.every((line) => Number(line.rt_ms) >= 400 && Number(line.rt_ms) < 60000));
+  assert.ok(lines.every((line) => line.left && line.right && line.question && line.role));
+  const identities = rows(await server.export('identities.csv'));
+  assert.deepEqual(identities, [{ participant: people[0], PROLIFIC_PID: '5f9', STUDY_ID: '61a', SESSION_ID: 's1' }]);
+
+  const researcher = await open(`${server.address}researcher`);
+  await researcher.getByLabel('Token').fill('wrong');
+  await researcher.getByRole('button', { name: 'Show' }).click();
+  await researcher.getByText('missing or wrong').waitFor();
+  await researcher.getByLabel('Token').fill(TOKEN);
+  await researcher.getByRole('button', { name: 'Show' }).click();
+  await researcher.locator('#stand').waitFor();
+  assert.match(await researcher.locator('#numbers').textContent(), /began2who finished2answering now0Answers12/);
+  assert.ok(!/bu|bi/.test(await researcher.locator('#forms').textContent()));
+  const download = researcher.waitForEvent('download');
+  await researcher.getByRole('button', { name: 'Download answers' }).click();
+  assert.deepEqual(rows(fs.readFileSync(await (await download).path(), 'utf8')), lines);
+  await server.stop();
+
+  const shared = path.join(folder, 'shared');
+  run('deidentify', config, '--answers', server.answers, '--out', shared);
+  const open_set = fs.readFileSync(path.join(shared, 'answers.csv'), 'utf8');
+  assert.equal(rows(open_set).length, 12);
+  assert.ok(people.every((person) => !open_set.includes(person)) && !open_set.includes('5f9'));
+  assert.match(fs.readFileSync(path.join(shared, 'codebook.md'), 'utf8'), /12 answers of 2 participants/);
+});
+
+test('nobody can answer before one turn, and a reload loses nothing', async () => {
+  const server = await serve('reload');
+  const page = await open(server.address);
+  await begin(page);
+  await page.locator('.pair img').evaluate((image) => image.decode());
+  await page.keyboard.press('1');
+  assert.match(await page.locator('#status').textContent(), /watch one whole turn first|You can answer now/);
+  await answer(page, 'L');
+  const given = [await answer(page, 'R'), await answer(page, 'NP')];
+  await page.reload();
+  assert.match(await page.locator('h2').textContent(), /Question 3/);
+  // Somebody pulls the plug; the answers wait in the browser and arrive when the server is back.
+  await server.stop('SIGKILL');
+  given.push(await answer(page, 'L'));
+  await page.getByText('No connection').waitFor();
+  const port = new URL(server.address).port;
+  const again = spawn(ISOSTUDY, ['serve', config, '--out', out, '--answers', server.answers, '--port', port, '--admin-token', TOKEN], { stdio: 'ignore' });
+  children.add(again);
+  try {
+    for (const choice of CHOICES.slice(3)) given.push(await answer(page, choice));
+    await page.getByText('All your answers are saved').waitFor({ timeout: 40000 });
+    assert.deepEqual(rows(await server.export()).map(asGiven), given);
+  } finally {
+    again.kill();
+  }
+});
+
+test('a folder opened as a file gives the same answers as CSV and JSON', async () => {
+  const address = pathToFileURL(path.join(out, 'bundle/index.html')).href;
+  const page = await open(address);
+  await page.getByLabel(/Your number/).fill('3');
+  await begin(page);
+  const given = await all(page, 'mouse');
+  const files = [];
+  for (const kind of ['CSV', 'JSON']) {
+    const download = page.waitForEvent('download');
+    await page.getByRole('link', { name: `Download ${kind}` }).click();
+    const file = path.join(folder, `given.${kind.toLowerCase()}`);
+    await (await download).saveAs(file);
+    files.push(file);
+  }
+  assert.deepEqual(rows(fs.readFileSync(files[0], 'utf8')).map(asGiven), given);
+  const joined = path.join(folder, 'joined.csv');
+  run('collect', config, ...files, '--out', joined);
+  const lines = rows(fs.readFileSync(joined, 'utf8'));
+  assert.deepEqual(lines.map(asGiven), given);
+  const key = rows(fs.readFileSync(path.join(out, 'key/forms.csv'), 'utf8')).filter((line) => line.form === '3');
+  assert.deepEqual(lines.map((line) => [line.order, line.left, line.right]), key.slice(1).map((line) => [line.order, line.left, line.right]));
+});
+
+test('reduced motion stands still until it is played', async () => {
+  const page = await open(pathToFileURL(path.join(out, 'bundle/index.html')).href, { reducedMotion: 'reduce' });
+  await page.getByLabel(/Your number/).fill('1');
+  await begin(page);
+  await page.getByRole('button', { name: 'Play' }).waitFor();
+  await page.waitForTimeout(700);
+  assert.equal(await page.locator('.pair img').isVisible(), false);
+  await page.keyboard.press('1');
+  await page.getByText('Please play one whole turn first.').waitFor();
+  await page.getByRole('button', { name: 'Play' }).click();
+  await answer(page, 'L');
+});
+
+test('accessible, and fit for a phone', async () => {
+  const server = await serve('phone');
+  for (const viewport of [{ width: 360, height: 640 }, { width: 1280, height: 800 }]) {
+    const page = await open(server.address, { viewport });
+    const judge = async (where) => {
+      await page.evaluate(axe);
+      const { violations } = await page.evaluate(() => window.axe.run());
+      const serious = violations.filter((found) => ['serious', 'critical'].includes(found.impact));
+      assert.deepEqual(serious.map((found) => `${where}: ${found.id}: ${found.help}`), []);
+      const wide = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
+      assert.ok(wide <= 0, `${where} is ${wide} px too wide`);
+    };
+    await judge('consent');
+    await page.getByRole('button', { name: 'I agree, begin' }).click();
+    await judge('instructions');
+    await page.getByRole('button', { name: 'Go on' }).click();
+    await judge('a locked question');
+    await ready(page);
+    await judge('an open question');
+    const low = await page.locator('[data-choice="R"]').evaluate((button) => button.getBoundingClientRect().bottom);
+    assert.ok(low <= viewport.height, 'the answers are on the screen');
+    if (process.env.PICTURES) await page.screenshot({ path: path.join(process.env.PICTURES, `question-${viewport.width}.png`) });
+    await all(page, 'mouse');
+    await page.getByText('All your answers are saved').waitFor();
+    await judge('the end');
+  }
+  const page = await open(`${server.address}researcher`);
+  await page.getByLabel('Token').fill(TOKEN);
+  await page.getByRole('button', { name: 'Show' }).click();
+  await page.locator('#stand').waitFor();
+  await page.evaluate(axe);
+  const { violations } = await page.evaluate(() => window.axe.run());
+  assert.deepEqual(violations.filter((found) => ['serious', 'critical'].includes(found.impact)).map((found) => found.id), []);
+  if (process.env.PICTURES) await page.screenshot({ path: path.join(process.env.PICTURES, 'researcher.png'), fullPage: true });
+  await server.stop();
+});
+
+test('three robots with known preferences, and the analysis finds them', async () => {
+  const server = await serve('robots');
+  const key = new Map(rows(fs.readFileSync(path.join(out, 'key/stimuli.csv'), 'utf8')).map((line) => [path.basename(line.file, '.gif'), line]));
+  await Promise.all([0, 1, 2].map(async () => {
+    const page = await open(server.address);
+    await begin(page);
+    for (let i = 0; i <= MOST; i += 1) {
+      await ready(page);
+      const { left, right } = key.get(await shown(page));
+      await answer(page, left === right ? 'NP' : left.endsWith('bi') ? 'L' : 'R');
+    }
+    await page.getByText('All your answers are saved').waitFor();
+  }));
+  const answers = path.join(folder, 'robots.csv');
+  fs.writeFileSync(answers, await server.export());
+  await server.stop();
+  const result = path.join(folder, 'robots');
+  run('analyse', config, '--responses', answers, '--out', result);
+  const groups = rows(fs.readFileSync(path.join(result, 'tables/preference_groups.csv'), 'utf8'));
+  const wins = Object.fromEntries(groups.map((line) => [line.configuration, [line.wins, line.answers]]));
+  // Three people, two comparisons, each asked again with its sides swapped.
+  assert.deepEqual(wins, { bu: ['0', '12'], bi: ['12', '12'] });
+});
