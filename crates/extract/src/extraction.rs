@@ -29,10 +29,12 @@ pub struct StageTimes {
     pub allocation: Duration,
     /// Evaluating the field at every stored point, with starting threads.
     pub sampling: Duration,
-    /// Finding, clustering and placing vertices.
+    /// Finding and placing vertices; integrated clustering is part of finding them.
     pub vertex: Duration,
-    /// Making triangles, and the edge collapse if asked for.
+    /// Making triangles.
     pub geometry: Duration,
+    /// The edge collapse; zero where none is asked for. The published geometry stage is this and `geometry`.
+    pub clustering: Duration,
     /// Making vertex normals.
     pub normals: Duration,
 }
@@ -40,7 +42,7 @@ pub struct StageTimes {
 impl StageTimes {
     /// The sum of all stages. The published total leaves the normals out.
     pub fn total(&self) -> Duration {
-        self.allocation + self.sampling + self.vertex + self.geometry + self.normals
+        self.allocation + self.sampling + self.vertex + self.geometry + self.clustering + self.normals
     }
 }
 

@@ -43,11 +43,13 @@ pub(crate) fn extract(
     let vertex = clock.lap();
 
     let mut surface = triangulate(lattice, &layout, &sides, &edges);
-    collapse(settings, lattice.spacing(), &mut positions, &mut surface);
     let geometry = clock.lap();
 
+    let collapsed = collapse(settings, lattice.spacing(), &mut positions, &mut surface);
+    let clustering = if collapsed { clock.lap() } else { Duration::ZERO };
+
     let normals = vertex_normals(&positions, &surface.triangles);
-    let times = StageTimes { allocation, sampling, vertex, geometry, normals: clock.lap() };
+    let times = StageTimes { allocation, sampling, vertex, geometry, clustering, normals: clock.lap() };
 
     let mesh = TriangleMesh { positions, normals, triangles: std::mem::take(&mut surface.triangles) };
     let counts = Counts::of(lattice, &mesh, &surface, crossings);

@@ -210,9 +210,12 @@ impl Extractor {
         let mesh = &mut extraction.mesh;
         mesh.positions = std::mem::take(&mut first.positions);
         let surface = &mut first.surface;
-        let collapsed = collapse(settings, grid.lattice.spacing(), &mut mesh.positions, surface);
-        mesh.triangles = std::mem::take(&mut surface.triangles);
         times.geometry += joining.elapsed();
+
+        let collapsing = Instant::now();
+        let collapsed = collapse(settings, grid.lattice.spacing(), &mut mesh.positions, surface);
+        times.clustering = if collapsed { collapsing.elapsed() } else { Duration::ZERO };
+        mesh.triangles = std::mem::take(&mut surface.triangles);
 
         let making_normals = Instant::now();
         let seams = if collapsed { None } else { Some(&seams) };
