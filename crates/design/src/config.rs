@@ -267,7 +267,7 @@ pub struct StillSection {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BenchmarkSection {
-    /// Rounds run and thrown away before measuring.
+    /// Rounds run and thrown away at the start of every measuring process.
     #[serde(deserialize_with = "whole")]
     pub warmup: u32,
     /// Rounds of `isostudy bench`.
@@ -276,6 +276,12 @@ pub struct BenchmarkSection {
     /// Rounds of the short plan that `isostudy study` takes.
     #[serde(deserialize_with = "whole")]
     pub short_iterations: u32,
+    /// Rounds of `isostudy bench` measured once more, for the noise floor.
+    #[serde(default, deserialize_with = "whole")]
+    pub aa_iterations: u32,
+    /// Whether the run is kept on as many CPUs as it has threads.
+    #[serde(default)]
+    pub pin: bool,
     /// Threads in the sampling stage; 0 takes every core.
     #[serde(deserialize_with = "whole")]
     pub threads: u32,

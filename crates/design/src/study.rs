@@ -109,9 +109,7 @@ impl Study {
         check_stills(&checker, &file, &configurations)?;
 
         let target_path = checker.existing("benchmark.target", &file.benchmark.target, "")?;
-        let target_text = std::fs::read_to_string(&target_path)
-            .map_err(|source| ConfigError::Read { file: target_path.clone(), source })?;
-        let target = parse_toml(&target_text, &target_path)?;
+        let target = CpuProfile::load(&target_path)?;
         let responses = match &file.responses {
             None => None,
             Some(responses) => Some(checker.existing("responses.file", &responses.file, "")?),
@@ -161,7 +159,7 @@ impl Study {
     }
 }
 
-fn parse_toml<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ConfigError> {
+pub(crate) fn parse_toml<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ConfigError> {
     toml::from_str(text).map_err(|error| ConfigError::Syntax {
         file: path.into(),
         message: error.to_string().trim_end().to_owned(),
@@ -176,7 +174,7 @@ fn published_table<T: DeserializeOwned>(
     written.as_ref().map_or(Ok(Vec::new()), |written| read_table(&c.existing(key, written, "")?))
 }
 
-fn read_table<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ConfigError> {
+pub(crate) fn read_table<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ConfigError> {
     let table_error =
         |error: csv::Error| ConfigError::Table { file: path.into(), message: error.to_string() };
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(path).map_err(table_error)?;
@@ -233,6 +231,7 @@ fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigError> 
     c.count("benchmark.warmup", b.warmup, 0, 10_000)?;
     c.count("benchmark.iterations", b.iterations, 1, 100_000)?;
     c.count("benchmark.short_iterations", b.short_iterations, 1, 100_000)?;
+    c.count("benchmark.aa_iterations", b.aa_iterations, 0, 100_000)?;
     c.count("benchmark.threads", b.threads, 0, 1024)?;
     Ok(())
 }
