@@ -29,6 +29,7 @@ pub mod statistics;
 mod table;
 mod tables;
 mod tally;
+pub mod timing;
 mod verdict;
 
 #[cfg(test)]

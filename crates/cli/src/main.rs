@@ -1,6 +1,7 @@
 //! The `isostudy` command: arguments, files, progress and exit codes. What is computed is computed in the rooms.
 
 mod args;
+mod comparing;
 mod manifest;
 mod picture;
 mod pipeline;
@@ -12,11 +13,8 @@ mod subject;
 
 use analysis::Answers;
 use anyhow::{Context, Result};
-use args::{Analyse, Cli, Command, Run, Selection};
-use bench::Summary;
+use args::{Analyse, Bench, BenchVerb, Cli, Command, Run, Selection};
 use clap::Parser;
-
-use design::record::BenchRun;
 use design::{ConfigurationId, Published, Study};
 use pipeline::{Pipeline, PlanLength};
 use std::io::{ErrorKind, Write};
@@ -66,13 +64,29 @@ fn run(command: Command) -> Result<Outcome> {
             pipeline.pairs(&turntables)?;
             say(&out.join("stimuli/pairs").display().to_string())
         }),
-        Command::Bench(bench) => with_pipeline(&bench.run, |pipeline, _| {
-            let length = if bench.short { PlanLength::Short } else { PlanLength::Full };
-            let stamp = pipeline.timings(length)?;
-            say_summary(&pipeline.bench_run(&stamp)?)
-        }),
+        Command::Bench(bench) => return time(&bench),
         Command::Analyse(arguments) => analyse(&arguments),
         Command::Validate(arguments) => validate(&arguments.study),
+    }?;
+    Ok(Outcome::Sound)
+}
+
+fn time(arguments: &Bench) -> Result<Outcome> {
+    match &arguments.verb {
+        Some(BenchVerb::Compare(arguments)) => return comparing::compare(arguments),
+        Some(BenchVerb::Import(arguments)) => comparing::import(arguments),
+        Some(BenchVerb::Worker(arguments)) => pipeline::measure(arguments),
+        None => {
+            let run = arguments.run.as_ref().context("a study file is needed")?;
+            let length = if arguments.short { PlanLength::Short } else { PlanLength::Full };
+            with_pipeline(run, |pipeline, _| {
+                let timings = pipeline.timings(length)?;
+                for table in pipeline.timing_statements(&timings)? {
+                    say(&table)?;
+                }
+                Ok(())
+            })
+        }
     }?;
     Ok(Outcome::Sound)
 }
@@ -180,17 +194,6 @@ fn read_answers(study: &Study) -> Result<Option<Answers>> {
 
 fn default_folder(study: &Study) -> PathBuf {
     Path::new("results").join(&study.file.study.id)
-}
-
-/// The medians of a run, one line a configuration.
-fn say_summary(run: &BenchRun) -> Result<()> {
-    say(&format!("{}\nmedians in ms:", bench::caption(run)))?;
-    for of_configuration in bench::summarise(run).chunk_by(|a, b| a.id == b.id) {
-        let stage = |summary: &Summary| format!("{} {:.3}", summary.stage.label(), 1e3 * summary.median_s);
-        let stages: Vec<String> = of_configuration.iter().map(stage).collect();
-        say(&format!("{}  {}", of_configuration[0].id, stages.join("  ")))?;
-    }
-    Ok(())
 }
 
 /// Prints a line on standard output. A reader that has gone away is no error.

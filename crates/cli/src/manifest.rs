@@ -44,7 +44,7 @@ pub(crate) fn write(study: &Study, store: &Store) -> Result<()> {
         study_sha256: sha256(&std::fs::read(&study.path)?),
         seed: study.file.study.seed,
         // How busy the machine is now says nothing about results made earlier.
-        machine: Machine { load: None, ..bench::read_machine() },
+        machine: bench::read_machine().lasting(),
         files: files.collect(),
     };
     let mut json = serde_json::to_vec_pretty(&manifest)?;

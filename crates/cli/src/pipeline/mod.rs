@@ -15,7 +15,7 @@ mod timings;
 
 pub(crate) use meshes::Meshes;
 pub(crate) use tables::write_answers_only;
-pub(crate) use timings::PlanLength;
+pub(crate) use timings::{PlanLength, measure};
 
 use crate::store::{Inputs, Stamp, Store, Writer};
 use crate::subject::Fields;
