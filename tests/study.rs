@@ -1,6 +1,7 @@
 //! The whole chain as a user runs it: the `isostudy` command on a small study with real answers.
 
 mod fixture;
+mod page;
 
 use fixture::{Fixture, Run, files, without_measured_times};
 use std::collections::{BTreeMap, BTreeSet};
@@ -34,6 +35,47 @@ fn a_study_makes_everything_once_and_then_nothing() {
     let again = fixture.succeed("study", &[]);
     assert!(!again.stderr.contains(" made, "), "{}", again.stderr);
     assert_eq!(files(fixture.out()), made);
+}
+
+/// One file, no request, headings in order, everything labelled, and text that stands out from what is behind it.
+#[test]
+fn the_report_can_be_read_alone() {
+    let fixture = Fixture::new();
+    fixture.succeed("study", &[]);
+    let made = files(fixture.out());
+    let page = String::from_utf8(made["report.html"].clone()).unwrap();
+    assert_eq!(page::unclosed(&page), Vec::<String>::new());
+    for forbidden in ["src=", "<link", "@import", "url(", "<script", "<img"] {
+        assert!(!page.contains(forbidden), "{forbidden}");
+    }
+    // SVG's name is no request.
+    let addresses = page.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
+    assert!(!addresses.contains("http://") && !addresses.contains("https://"));
+    let headings: Vec<&str> = page.match_indices("<h").map(|(i, _)| &page[i..i + 3]).collect();
+    let headings: Vec<&&str> = headings.iter().filter(|h| h.as_bytes()[2].is_ascii_digit()).collect();
+    assert!(
+        *headings[0] == "<h1" && headings[1..].iter().all(|h| **h == "<h2") && headings.len() > 8,
+        "{headings:?}"
+    );
+    let figures = page.matches("<svg").count();
+    assert!(figures >= 13, "{figures}");
+    assert_eq!(page.matches("role=\"img\" aria-label=\"").count(), figures);
+    for target in page.split("href=\"#").skip(1).map(|rest| rest.split('"').next().unwrap()) {
+        assert!(page.contains(&format!("id=\"{target}\"")), "{target}");
+    }
+    for link in page.split("href=\"").skip(1).map(|rest| rest.split('"').next().unwrap()) {
+        assert!(link.starts_with('#') || made.contains_key(link), "{link}");
+    }
+    for behind in ["ffffff", "f4f6f8"] {
+        for ink in ["1c1f23", "545c66", "005e57", "8f4a00", "8a2f5b"] {
+            assert!(page.contains(ink), "{ink}");
+            assert!(page::contrast(ink, behind) >= 4.5, "{ink} on {behind}");
+        }
+    }
+    let gallery = String::from_utf8(made["index.html"].clone()).unwrap();
+    assert!(gallery.contains("href=\"report.html\"") && page.contains("href=\"index.html\""));
+    let markdown = String::from_utf8(made["report.md"].clone()).unwrap();
+    assert!(markdown.contains("\n## What holds\n") && markdown.contains("](figures/worths.svg)"));
 }
 
 #[test]
@@ -174,6 +216,26 @@ fn wrong_input_is_refused_before_anything_is_made() {
     refused("frames = 12", "frames = -12", &["frames", "-12", "whole number"]);
 }
 
+/// The same lattice streamed takes a few layers only, and those are held against the limit.
+#[test]
+fn memory_is_checked_for_the_extractor_that_runs() {
+    let validated = |limit: &str| {
+        let fixture = Fixture::new();
+        fixture.edit("benchmark_spacing = 0.125", "benchmark_spacing = 0.002");
+        fixture.edit("positions = \"accumulated\"", "positions = \"indexed\"");
+        fixture.edit("memory_gib = 8.0", limit);
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
+        let output = command.arg("validate").arg(fixture.config()).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert_eq!(validated("memory_gib = 1.0"), (Some(0), String::new()));
+    let (code, said) = validated("memory_gib = 0.001");
+    assert_eq!(code, Some(2), "{said}");
+    for part in ["benchmark_spacing = 0.002", "MiB", "limits.memory_gib allows 1.0 MiB"] {
+        assert!(said.contains(part), "{part:?} is not in: {said}");
+    }
+}
+
 #[test]
 fn a_mesh_with_another_digest_is_refused() {
     let fixture = Fixture::new();
@@ -293,6 +355,160 @@ fn answers_that_do_not_fit_are_refused_with_their_place() {
     assert_eq!(code, Some(2), "{said}");
     assert!(said.contains("answers.csv") && said.contains("Q3"), "{said}");
 }
+
+/// The quick study asked as in configs/balanced.toml.
+fn balanced() -> Fixture {
+    let fixture = Fixture::new();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let text = std::fs::read_to_string(root.join("configs/balanced.toml")).unwrap();
+    let forms = &text[text.find("[forms]").unwrap()..];
+    fixture.edit_with(|study| format!("{study}\n{forms}"));
+    fixture
+}
+
+#[test]
+fn a_design_is_judged_before_anyone_answers() {
+    let check = |study: &str, arguments: &[&str]| {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"))
+            .args(["design", "check", study])
+            .args(arguments)
+            .output()
+            .unwrap();
+        (
+            output.status.code(),
+            String::from_utf8(output.stdout).unwrap(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    };
+    let fixture = balanced();
+    let (config, out) = (fixture.config(), fixture.out().to_str().unwrap());
+    let (code, said, _) = check(config.to_str().unwrap(), &["--results", out]);
+    assert!(code == Some(0) && said.ends_with(": no faults\n"), "{said}");
+
+    // The original's sides, and animations of which one is not like the others.
+    fixture.edit("sides = \"balanced\"", "sides = \"as-listed\"");
+    fixture.succeed("pairs", &[]);
+    let key = std::fs::read_to_string(fixture.out().join("key/stimuli.csv")).unwrap();
+    let code_of = |id: &str| {
+        let line = key.lines().find(|line| line.ends_with(&format!(",,{id},"))).unwrap();
+        line.split(',').next().unwrap().to_owned()
+    };
+    let [odd, other] = ["ss_bu", "as_si"].map(|id| fixture.out().join(code_of(id)));
+    let mut bytes = std::fs::read(&other).unwrap();
+    bytes.splice(bytes.len() - 1.., *b"\x21\xfe\x05as_si\x00\x3b");
+    std::fs::write(&other, bytes).unwrap();
+    // Three times the delay between frames: every graphic control block holds it, little-endian, at the third byte.
+    let mut bytes = std::fs::read(&odd).unwrap();
+    for at in 0..bytes.len() - 8 {
+        if bytes[at..at + 3] == [0x21, 0xf9, 4] {
+            bytes[at + 4] *= 3;
+        }
+    }
+    std::fs::write(&odd, bytes).unwrap();
+    let (code, said, _) = check(config.to_str().unwrap(), &["--results", out, "--json"]);
+    assert_eq!(code, Some(1));
+    let faults: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let rules: BTreeSet<&str> =
+        faults.as_array().unwrap().iter().map(|f| f["rule"].as_str().unwrap()).collect();
+    assert_eq!(rules.into_iter().collect::<Vec<_>>(), ["names-reveal", "side-confounded", "stimuli-differ"]);
+    let differing = faults.as_array().unwrap().iter().filter(|f| f["rule"] == "stimuli-differ");
+    assert!(
+        differing.clone().count() == 3
+            && differing.clone().all(|f| f["evidence"].as_str().unwrap().starts_with("duration"))
+    );
+
+    let quick = Fixture::new();
+    let (code, _, said) = check(quick.config().to_str().unwrap(), &[]);
+    assert!(code == Some(2) && said.contains("no [forms] section"), "{said}");
+}
+
+/// What can be told of a file without looking at its pictures tells nothing of what it shows.
+#[test]
+fn a_bundle_tells_nothing_of_the_key() {
+    let fixture = balanced();
+    fixture.succeed("bundle", &[]);
+    let bundle = fixture.out().join("bundle");
+    let made = files(&bundle);
+    assert_eq!(made.len(), 1 + 2 * 27 + 2, "{:?}", made.keys());
+    let key = std::fs::read_to_string(fixture.out().join("key/stimuli.csv")).unwrap();
+    let shown: BTreeMap<&str, &str> =
+        key.lines().filter_map(|line| line.strip_prefix("stimuli/pairs/")?.split_once(',')).collect();
+    let mut stimuli: Vec<&String> = made.keys().filter(|path| path.ends_with(".gif")).collect();
+    let file = |path: &str| std::fs::metadata(bundle.join(path)).unwrap();
+    let sizes: BTreeSet<u64> = stimuli.iter().map(|path| file(path).len()).collect();
+    assert_eq!(sizes.len(), 1, "a smoother surface makes a smaller file");
+    assert!(stimuli.is_sorted());
+    stimuli.sort_by_key(|path| file(path).modified().unwrap());
+    assert!(stimuli.is_sorted(), "files are as old as their names say");
+    for path in &stimuli {
+        assert_eq!(extensions(&made[*path]), ["NETSCAPE2.0"], "{path}");
+    }
+    // The order of names against the order of the study: Spearman's rho of 56 is within 0.4 with probability 0.998.
+    let place = |path: &&String| {
+        key.lines().position(|line| line.contains(path.rsplit('/').next().unwrap())).unwrap()
+    };
+    let places: Vec<f64> = stimuli.iter().map(|path| place(path) as f64 - 19.0).collect();
+    let mean = (places.len() - 1) as f64 / 2.0;
+    let products: f64 = places.iter().enumerate().map(|(i, place)| (i as f64 - mean) * (place - mean)).sum();
+    let squares: f64 = (0..places.len()).map(|i| (i as f64 - mean).powi(2)).sum();
+    assert!((products / squares).abs() < 0.4, "{}", products / squares);
+
+    let text = String::from_utf8(made["forms.json"].clone()).unwrap();
+    for id in shown.values().flat_map(|line| line.split(',')).filter(|id| id.contains('_')) {
+        assert!(!text.contains(id), "{id}");
+    }
+    let forms: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(forms["forms"].as_array().unwrap().len(), 36);
+    let of_form = |form: &serde_json::Value| form["questions"].as_array().unwrap().clone();
+    for stimulus in forms["forms"].as_array().unwrap().iter().flat_map(of_form) {
+        assert!(made.contains_key(&format!("stimuli/{}.gif", stimulus.as_str().unwrap())), "{stimulus}");
+    }
+    let again = fixture.succeed("bundle", &[]);
+    assert!(!again.stderr.contains(" made, "), "{}", again.stderr);
+}
+
+#[test]
+fn videos_are_ffmpegs_and_said_to_be_missing_where_it_is() {
+    let fixture = Fixture::new();
+    let mut command = fixture.command("pairs");
+    let output = command.arg("--mp4").env("PATH", fixture.folder()).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("no ffmpeg on the PATH"), "{said}");
+    assert!(!fixture.out().exists(), "nothing is made before");
+
+    // A stand-in that keeps how many bytes it was sent, and writes that as the video.
+    if cfg!(unix) {
+        let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\nwc -c > \"$last\"\n";
+        let program = fixture.folder().join("ffmpeg");
+        std::fs::write(&program, script).unwrap();
+        make_executable(&program);
+        let path = format!("{}:{}", fixture.folder().display(), std::env::var("PATH").unwrap());
+        let output = fixture.command("pairs").arg("--mp4").env("PATH", path).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let made = files(fixture.out());
+        let videos: Vec<&Vec<u8>> =
+            made.iter().filter(|(path, _)| path.ends_with(".mp4")).map(|(_, v)| v).collect();
+        assert_eq!(videos.len(), 27);
+        let study = std::fs::read_to_string(fixture.config()).unwrap();
+        let number = |key: &str| -> u64 {
+            let line = study.lines().find_map(|line| line.strip_prefix(&format!("{key} = "))).unwrap();
+            line.parse().unwrap()
+        };
+        let sent = 2 * number("width") * number("height") * 3 * number("frames");
+        let read = |video: &Vec<u8>| String::from_utf8_lossy(video).trim().parse::<u64>().unwrap();
+        assert!(videos.iter().all(|video| read(video) == sent), "{sent}");
+    }
+}
+
+#[cfg(unix)]
+fn make_executable(path: &Path) {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o755)).unwrap();
+}
+
+#[cfg(not(unix))]
+fn make_executable(_: &Path) {}
 
 /// The text extensions of a GIF: comments, plain texts, and the names of application extensions.
 fn extensions(gif: &[u8]) -> Vec<String> {

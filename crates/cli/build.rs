@@ -7,7 +7,7 @@ use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const ROOMS: [&str; 7] = ["mesh", "design", "extract", "raster", "bench", "analysis", "cli"];
+const ROOMS: [&str; 8] = ["mesh", "design", "responses", "extract", "raster", "bench", "analysis", "cli"];
 
 fn main() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -22,8 +22,9 @@ fn main() {
         for path in shared.iter().cloned().chain([folder.join("src"), folder.join("Cargo.toml")]) {
             collect(&path, &mut files);
         }
-        // Arguments, progress and the page change no other result; the page's digest is a room of its own.
-        let aside = ["args.rs", "main.rs", "progress.rs", "page.rs", "index.html"];
+        // Arguments, progress and pages change no other result; the pages' digest is a room of its own.
+        let aside =
+            ["args.rs", "main.rs", "progress.rs", "page.rs", "index.html", "report.rs", "report.html"];
         files.retain(|file| room != "cli" || !aside.iter().any(|name| file.ends_with(name)));
         files.sort();
         let mut parts = Vec::new();
@@ -34,9 +35,9 @@ fn main() {
         let parts: Vec<&[u8]> = parts.iter().map(Vec::as_slice).collect();
         println!("cargo::rustc-env=ISOSTUDY_ROOM_{}={:016x}", room.to_uppercase(), digest(&parts));
     }
-    let page = root.join("crates/cli/src/page/index.html");
-    let driver = root.join("crates/cli/src/pipeline/page.rs");
-    let text = [page, driver].map(|path| std::fs::read(path).unwrap_or_default()).concat();
+    let pages = ["page/index.html", "pipeline/page.rs", "page/report.html", "pipeline/report.rs"];
+    let pages = pages.map(|path| root.join("crates/cli/src").join(path));
+    let text = pages.map(|path| std::fs::read(path).unwrap_or_default()).concat();
     println!("cargo::rustc-env=ISOSTUDY_ROOM_PAGE={:016x}", digest(&[&text]));
     name_commit(&root);
 }

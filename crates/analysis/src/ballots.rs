@@ -1,8 +1,8 @@
 //! A study's answers as ballots, and the groups of items that the models compare.
 
-use crate::answers::{Answers, Choice};
 use crate::statistics::{Ballot, Outcome};
 use design::{Method, Study};
+use responses::{Choice, Responses};
 
 /// Items compared with one another, and the answers about them.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -15,22 +15,58 @@ pub struct BallotGroup {
     pub ballots: Vec<Ballot>,
 }
 
-/// Every answer, question by question; items are methods in the study's order.
-pub fn ballots(study: &Study, answers: &Answers) -> Vec<Ballot> {
-    let methods = study.methods();
-    let item = |method: Method| methods.iter().position(|&m| m == method).expect("checked on load");
-    let mut ballots = Vec::with_capacity(study.comparisons.len() * answers.respondents());
-    for (question, comparison) in study.comparisons.iter().enumerate() {
-        let (left, right) = (item(comparison.left.method), item(comparison.right.method));
-        let outcomes = answers.to_question(question).into_iter().map(|choice| match choice {
-            Choice::Left => Outcome::Left,
-            Choice::NoPreference => Outcome::Tie,
-            Choice::Right => Outcome::Right,
-        });
-        let ballot = |(participant, outcome)| Ballot { participant, question, left, right, outcome };
-        ballots.extend(outcomes.enumerate().map(ballot));
-    }
+/// Every answer to a study's questions, question by question, with the sides as they were shown; items are methods in the
+/// study's order. Controls, which show one item twice, are left out.
+///
+/// # Panics
+/// If the answers were read for another study.
+pub fn ballots(study: &Study, answers: &Responses) -> Vec<Ballot> {
+    let items = method_of_item(study, answers);
+    let asked = |answer: &&responses::Answer| answer.left != answer.right;
+    let mut ballots: Vec<Ballot> = answers
+        .answers
+        .iter()
+        .filter(asked)
+        .map(|answer| Ballot {
+            participant: answer.participant as usize,
+            question: answer.question as usize,
+            left: items[answer.left as usize],
+            right: items[answer.right as usize],
+            outcome: outcome(answer.choice),
+        })
+        .collect();
+    ballots.sort_by_key(|ballot| ballot.question);
     ballots
+}
+
+/// The same answers with the sides that the study declares, so that answers to one question can be compared whichever way
+/// round it was shown.
+pub fn as_declared(study: &Study, ballots: &[Ballot]) -> Vec<Ballot> {
+    let methods = study.methods();
+    let declared = |b: &Ballot| {
+        if methods[b.left] == study.comparisons[b.question].left.method {
+            *b
+        } else {
+            Ballot { left: b.right, right: b.left, outcome: b.outcome.swapped(), ..*b }
+        }
+    };
+    ballots.iter().map(declared).collect()
+}
+
+/// The index of each item's method: a study's items are its configurations.
+pub(crate) fn method_of_item(study: &Study, answers: &Responses) -> Vec<usize> {
+    let methods = study.methods();
+    assert_eq!(answers.items.len(), study.configurations.len(), "answers were read for another study");
+    let method = |c: &design::Configuration| methods.iter().position(|&m| m == c.id.method);
+    study.configurations.iter().map(|c| method(c).expect("crossed from these methods")).collect()
+}
+
+pub(crate) fn outcome(choice: Choice) -> Outcome {
+    match choice {
+        Choice::Left => Outcome::Left,
+        Choice::NoPreference => Outcome::Tie,
+        Choice::Right => Outcome::Right,
+    }
 }
 
 /// The study's comparison groups, then clusterings pooled over arrangements (`clustering`) and arrangements pooled over

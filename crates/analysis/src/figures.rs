@@ -4,14 +4,24 @@ mod answers;
 mod axis;
 mod bars;
 mod canvas;
+mod contests;
 mod distributions;
+mod factor_share;
+mod forest;
 mod legend;
+mod marks;
 mod meshes;
+mod prediction;
 mod preferences;
+mod respondents;
+mod scatter;
 mod stages;
 mod style;
+mod worths;
 
+use crate::ballots::{BallotGroup, ballot_groups, ballots};
 use crate::inputs::{AnalysisError, Inputs};
+use crate::statistics::Ballot;
 use crate::tally::Tally;
 use canvas::Canvas;
 use legend::Swatch;
@@ -37,6 +47,16 @@ pub fn figures(inputs: &Inputs<'_>) -> Result<Vec<Figure>, AnalysisError> {
     drafts(inputs)?.into_iter().map(Draft::finish).collect()
 }
 
+/// The figures that need nothing but answers: worths and respondents.
+///
+/// # Errors
+/// If drawing fails, which is not to be expected.
+pub fn figures_of_groups(groups: &[BallotGroup]) -> Result<Vec<Figure>, AnalysisError> {
+    let ballots: Vec<Ballot> = groups.iter().flat_map(|group| group.ballots.iter().copied()).collect();
+    let drafts = [worths::draft(groups), respondents::draft(&ballots)];
+    drafts.into_iter().flatten().map(Draft::finish).collect()
+}
+
 fn drafts(inputs: &Inputs<'_>) -> Result<Vec<Draft>, AnalysisError> {
     let mut drafts = Vec::new();
     drafts.extend(meshes::triangles(inputs));
@@ -49,6 +69,12 @@ fn drafts(inputs: &Inputs<'_>) -> Result<Vec<Draft>, AnalysisError> {
         drafts.push(answers::per_question(inputs.study, &tally));
         drafts.push(preferences::per_object(inputs.study, &tally));
         drafts.push(preferences::overall(inputs.study, &tally));
+        let ballots = ballots(inputs.study, answers);
+        drafts.extend(factor_share::draft(inputs.study, &tally));
+        drafts.extend(worths::draft(&ballot_groups(inputs.study, &ballots)));
+        drafts.extend(contests::by_object(inputs.study, &ballots));
+        drafts.extend(respondents::draft(&ballots));
+        drafts.extend(prediction::draft(inputs, &ballots));
     }
     Ok(drafts)
 }

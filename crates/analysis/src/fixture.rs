@@ -1,13 +1,12 @@
 //! A study with everything: the paper's file, and records made up from its published benchmark.
 
-use crate::answers::Answers;
 use crate::inputs::Inputs;
-use crate::read_answers;
 use design::Study;
 use design::config::FieldSection;
 use design::machine::{Machine, ProfileDifference};
 use design::published::BenchmarkRow;
 use design::record::*;
+use responses::{Mapping, Plan, Responses};
 use std::path::{Path, PathBuf};
 
 pub(crate) fn paper_path() -> PathBuf {
@@ -30,8 +29,15 @@ pub(crate) fn study_with(replacements: &[(&str, &str)]) -> Study {
     Study::parse(&text, &path).unwrap()
 }
 
-pub(crate) fn answers(study: &Study) -> Answers {
-    read_answers(study.responses.as_deref().unwrap(), study).unwrap()
+pub(crate) fn answers(study: &Study) -> Responses {
+    let text = std::fs::read_to_string(study.responses.as_deref().unwrap()).unwrap();
+    parse(&text, study)
+}
+
+/// Answers in the text, read for the study.
+pub(crate) fn parse(text: &str, study: &Study) -> Responses {
+    let (path, plan) = (Path::new("answers.csv"), Plan::of_study(study));
+    responses::parse(text.as_bytes(), path, Some(&plan), &Mapping::default()).unwrap().responses
 }
 
 /// Everything a study can have.
@@ -39,7 +45,7 @@ pub(crate) struct Everything {
     pub(crate) study: Study,
     pub(crate) meshes: Vec<MeshRecord>,
     pub(crate) bench: BenchRun,
-    pub(crate) answers: Answers,
+    pub(crate) answers: Responses,
 }
 
 impl Everything {
@@ -151,6 +157,12 @@ fn mesh(study: &Study, row: &BenchmarkRow, purpose: Purpose) -> MeshRecord {
             folded_faces: 0,
             components: 1,
             euler_characteristic: 2,
+        },
+        accuracy: Accuracy {
+            distance: spread(2e-4, 1e-4, 0.0, 8_192, (0.0, 0.1 * object.benchmark_spacing, 50)),
+            normal_error_deg: spread(2.0, 1.0, 0.0, vertices, (0.0, 30.0, 60)),
+            lost_points: 0,
+            lost_vertices: degenerate,
         },
     }
 }

@@ -33,6 +33,12 @@ pub fn t_over_respondents(scores: &[f64]) -> Option<Interval> {
     Some(Interval { low: mean - half, high: mean + half })
 }
 
+/// The t quantile that half a t interval has of standard errors; `None` below one degree of freedom.
+pub(crate) fn t_half_width(degrees: f64) -> Option<f64> {
+    (degrees >= 1.0)
+        .then(|| StudentsT::new(0.0, 1.0, degrees).expect("degrees >= 1").inverse_cdf(0.5 + LEVEL / 2.0))
+}
+
 /// Wilson's score interval for `wins` of `n` independent answers (Wilson 1927), within 0..=1. `None` if `n` is 0.
 pub fn wilson(wins: u64, n: u64) -> Option<Interval> {
     if n == 0 {

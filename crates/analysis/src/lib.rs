@@ -1,8 +1,8 @@
 //! Answers to preference factors, and a study's tables and figures.
 //!
-//! Takes plain records from [`design::record`] and a file of answers ([`read_answers`]); gives [`Table`]s that print
+//! Takes plain records from [`design::record`] and answers that were read ([`responses::Responses`]); gives [`Table`]s that print
 //! themselves as CSV, Markdown, LaTeX and HTML, and [`Figure`]s as SVG and PNG. Knows nothing of files to write, of
-//! geometry or of command lines. polars does the table verbs (read, unpivot, join, count); from the counts on,
+//! geometry or of command lines. polars does the table verbs (join, group, count); from the counts on,
 //! preference factors are exact fractions ([`Fraction`]) until they are printed.
 //!
 //! # Guarantees
@@ -10,20 +10,25 @@
 //! - Nothing is indexed by the paper's ids: any objects, methods and groups will do. Parts that are not there (no
 //!   benchmark, no answers, nothing published) leave out their tables and figures.
 //!
-//! Tests and models of preference are in [`statistics`], over plain ballots.
+//! Tests and models of preference are in [`statistics`], over plain ballots; [`audit`] looks for defects of a study,
+//! [`simulation`] makes studies whose truth is known, and [`self_test`] tries the ones on the others.
 
-mod answers;
-mod answers_error;
+pub mod audit;
 mod ballots;
 mod claims;
 mod comparison;
 mod figures;
 mod fraction;
+mod hypotheses;
 mod inputs;
 pub mod interval;
 mod mesh_set;
+mod prediction;
 pub mod preference;
 mod published_ratio;
+pub mod report;
+pub mod self_test;
+pub mod simulation;
 mod stage_times;
 pub mod statistics;
 mod table;
@@ -31,20 +36,23 @@ mod tables;
 mod tally;
 pub mod timing;
 mod verdict;
+mod without_study;
 
 #[cfg(test)]
 mod fixture;
 
-pub use answers::{Answers, Choice, read_answers};
-pub use answers_error::AnswersError;
-pub use ballots::{BallotGroup, ballot_groups, ballots};
+pub use ballots::{BallotGroup, as_declared, ballot_groups, ballots};
 pub use comparison::unexplained_differences;
-pub use figures::{Figure, figures};
+pub use figures::{Figure, figures, figures_of_groups};
 pub use fraction::Fraction;
 pub use inputs::{AnalysisError, Inputs};
+pub use report::{Report, report, report_of_groups};
 pub use table::{Cell, Column, Table};
+pub use tables::audit::audit_table;
 pub use tables::contrasts::pair_tests;
 pub use tables::models::model_tables;
+pub use tables::screened::screened_pair_tests;
 pub use tables::tables;
 pub use tally::{QuestionCount, Tally};
 pub use verdict::Verdict;
+pub use without_study::{answer_tables, open_groups};

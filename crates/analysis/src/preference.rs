@@ -73,7 +73,8 @@ pub fn group_factors(study: &Study, tally: &Tally, counts: impl Fn(usize) -> boo
                 counts(comparison.object)
                     && (comparison.left.method == method || comparison.right.method == method)
             };
-            let appearances = (group.comparisons.iter().filter(shows).count() * tally.respondents) as u64;
+            let shown = group.comparisons.iter().filter(shows);
+            let appearances = shown.map(|&c| tally.questions[c].answers()).sum();
             factors.push(GroupFactor { group: g, method, share: Share { wins, ties, answers }, appearances });
         }
     }

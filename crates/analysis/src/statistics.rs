@@ -10,24 +10,32 @@
 //! - The order of participants and the number of threads change nothing.
 //!
 //! # Not guaranteed
-//! - "Not significant" is not "equal": read the interval.
+//! - "Not significant" is not "equal": read the interval, or the test of [`equivalence`] within a declared margin.
 //! - A model's independence standard errors ([`WorthFit::covariance`]) are too small for clustered answers; they are there
 //!   to be compared with other programs.
 
 mod ballot;
 pub mod bootstrap;
 pub mod contrast;
+mod equivalence;
 mod fit;
 mod friedman;
 mod kendall;
 mod krippendorff;
 mod model;
+mod multinomial;
 mod multiplicity;
 mod newton;
+mod odd;
 mod order_statistics;
 mod pairs;
+mod participants;
+mod rank_correlation;
+pub(crate) mod reading;
+mod regression;
 mod screening;
 mod separation;
+mod share;
 mod side;
 mod sign_flip;
 pub mod sign_test;
@@ -36,16 +44,22 @@ pub mod sign_test;
 mod golden;
 
 pub use ballot::{Ballot, Outcome};
+pub use equivalence::{Equivalence, MARGIN, equivalence};
 pub use fit::{FitError, WorthFit, clustered_covariance, fit};
 pub use friedman::{ChiSquareTest, friedman};
-pub use kendall::{Agreement, Triads, agreement, outcome_counts, triads, zeta};
+pub use kendall::{Agreement, Triads, agreement, outcome_counts, triads, zeta, zetas};
 pub use krippendorff::{Metric, alpha};
 pub use model::Model;
 pub use multiplicity::{benjamini_hochberg, holm};
 pub use newton::Matrix;
+pub use odd::{Oddness, oddness};
 pub use order_statistics::{Median, median};
 pub use pairs::{Pair, Pairs};
-pub use screening::{Screening, screening};
+pub use participants::Participants;
+pub use rank_correlation::spearman;
+pub use regression::{Coefficient, Regression, regression};
+pub use screening::{Circumstances, Flag, Protocol, Screening, screening, screening_with};
 pub use separation::{Separation, separation};
+pub use share::{ClusteredShare, clustered_share};
 pub use side::{SideDesign, side_design};
-pub use sign_flip::{RATIO_LIMIT, SignFlip, sign_flip};
+pub use sign_flip::{RATIO_LIMIT, SignFlip, sign_flip, sign_flip_of_counts};

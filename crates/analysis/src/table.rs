@@ -15,6 +15,8 @@ pub enum Cell {
     Count(i64),
     /// A number: in full in CSV, to so many decimals elsewhere.
     Number(f64, usize),
+    /// A p value: in full in CSV, elsewhere to so many decimals, or as smaller than the last of them: never as zero.
+    P(f64, usize),
 }
 
 /// A column's name in CSV and its heading elsewhere.
@@ -59,6 +61,10 @@ impl Cell {
         value.map_or(Self::Missing, |value| Self::Number(value, decimals))
     }
 
+    pub(crate) fn p(value: Option<f64>, decimals: usize) -> Self {
+        value.map_or(Self::Missing, |value| Self::P(value, decimals))
+    }
+
     /// In full, as in CSV: the shortest text that reads back as the same number.
     pub fn in_full(&self) -> String {
         match self {
@@ -66,6 +72,9 @@ impl Cell {
             Self::Text(text) => text.clone(),
             Self::Count(count) => count.to_string(),
             Self::Number(value, _) => value.to_string(),
+            // A p of 1e-300 has no need of three hundred zeros.
+            Self::P(value, _) if *value < 1e-5 => format!("{value:e}"),
+            Self::P(value, _) => value.to_string(),
         }
     }
 
@@ -73,6 +82,11 @@ impl Cell {
     pub fn shown(&self) -> String {
         match self {
             Self::Number(value, decimals) => format!("{value:.decimals$}"),
+            Self::P(value, decimals) => {
+                let least = 10.0_f64.powi(-i32::try_from(*decimals).expect("a few decimals"));
+                let shown = format!("{value:.decimals$}");
+                if shown.parse() == Ok(0.0) { format!("< {least:.decimals$}") } else { shown }
+            }
             other => other.in_full(),
         }
     }
@@ -227,6 +241,23 @@ mod tests {
         assert!(html.contains("<caption>50 % of a_b &amp; c</caption>"), "{html}");
         assert!(html.contains("<td>ss_bi, &quot;q&quot;</td><td class=\"number\">-3</td>"), "{html}");
         assert!(html.contains("&lt;e&gt;"), "{html}");
+    }
+
+    #[test]
+    fn small_p_values_are_not_zero() {
+        let shown = |p: f64, decimals| Cell::P(p, decimals).shown();
+        assert_eq!((shown(0.00004, 4), shown(0.00006, 4)), ("< 0.0001".into(), "0.0001".into()));
+        assert_eq!(
+            (shown(0.0, 5), shown(7.17e-6, 5), shown(1.0, 4)),
+            ("< 0.00001".into(), "0.00001".into(), "1.0000".into())
+        );
+        let full = [0.04, 2e-5, 7.17e-6, 1e-300, 0.0].map(|p| Cell::P(p, 4).in_full());
+        assert_eq!(full, ["0.04", "0.00002", "7.17e-6", "1e-300", "0e0"]);
+        let mut table = Table::new("p", "", &[("p", "p")]);
+        table.push(vec![Cell::P(1e-9, 4)]);
+        assert!(table.to_markdown().contains("| &lt; 0.0001 |"), "{}", table.to_markdown());
+        assert!(table.to_latex().contains("\\textless{} 0.0001"), "{}", table.to_latex());
+        assert!(table.to_html().contains("<td class=\"number\">&lt; 0.0001</td>"), "{}", table.to_html());
     }
 
     #[test]

@@ -1,20 +1,24 @@
 //! Every table of a study.
 
-mod agreement;
+mod accuracy;
+pub(crate) mod agreement;
 mod answers;
+pub(crate) mod audit;
 mod benchmark;
 pub(crate) mod contrasts;
 mod design;
 mod mesh_quality;
 pub(crate) mod models;
+mod prediction;
 pub(crate) mod preferences;
+pub(crate) mod screened;
 
-use crate::answers::Answers;
 use crate::inputs::{AnalysisError, Inputs};
+use crate::prediction::Prediction;
 use crate::table::Table;
 use crate::tally::Tally;
 use crate::{ballots, claims, comparison};
-use ::design::Study;
+use responses::Responses;
 
 /// Every table whose inputs are there, in the order of the paper's and then our own.
 ///
@@ -28,26 +32,34 @@ pub fn tables(inputs: &Inputs<'_>) -> Result<Vec<Table>, AnalysisError> {
     tables.extend(benchmark::asteroid(inputs));
     tables.extend(design::questionnaire(inputs.study));
     if let (Some(answers), Some(tally)) = (inputs.answers, tally) {
-        tables.push(answers::answers(inputs.study, answers));
+        tables.extend(answers::answers(inputs.study, answers));
         tables.push(answers::counts(inputs.study, tally));
         tables.extend(preferences::all(inputs.study, tally));
-        tables.extend(statistics(inputs.study, answers));
+        tables.extend(statistics(inputs, answers));
     }
     tables.extend(mesh_quality::quality(inputs));
     tables.extend(mesh_quality::topology(inputs));
+    tables.extend(accuracy::accuracy(inputs));
     tables.extend(mesh_quality::positions(inputs));
     tables.extend(comparison::tables(inputs, tally));
     tables.extend(claims::table(inputs, tally));
     Ok(tables)
 }
 
-/// What holds up beside the factors: tests, models, agreement, screening.
-fn statistics(study: &Study, answers: &Answers) -> Vec<Table> {
+/// What holds up beside the factors: tests, models, agreement, screening, and what predicts preference.
+fn statistics(inputs: &Inputs<'_>, answers: &Responses) -> Vec<Table> {
+    let study = inputs.study;
     let ballots = ballots::ballots(study, answers);
     let groups = ballots::ballot_groups(study, &ballots);
     let mut tables = vec![contrasts::study_tests(study, &ballots), contrasts::omnibus(study, &ballots)];
     tables.extend(models::model_tables(&groups));
-    tables.extend([agreement::agreement(study, &ballots), agreement::respondents(&ballots)]);
+    let scenes = agreement::scenes(study);
+    let protocol = agreement::protocol(study, &scenes);
+    tables.extend([agreement::agreement(study, &ballots), agreement::respondents(&ballots, &protocol)]);
+    tables.push(screened::of_study(study, &ballots, &protocol));
+    tables.push(audit::audit_table(&crate::audit::of_study(study, &ballots)));
+    let prediction = Prediction::of(inputs, &ballots);
+    tables.extend(prediction.iter().flat_map(|found| prediction::all(study, found)));
     tables.retain(|table| !table.rows.is_empty());
     tables
 }

@@ -1,11 +1,12 @@
 //! From answers to counts: the long table and what is counted over it.
 
-use crate::answers::{Answers, Choice};
+use crate::ballots::method_of_item;
 use crate::inputs::Inputs;
 use design::{Method, Study};
 use polars::prelude::*;
+use responses::{Choice, Responses};
 
-/// How often each choice was made in one question.
+/// How often each choice was made in one question, with the sides as the study declares them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct QuestionCount {
     /// Answers for the left side.
@@ -14,6 +15,13 @@ pub struct QuestionCount {
     pub none: u64,
     /// Answers for the right side.
     pub right: u64,
+}
+
+impl QuestionCount {
+    /// All answers.
+    pub fn answers(&self) -> u64 {
+        self.left + self.none + self.right
+    }
 }
 
 /// All answers, counted by respondent, object, group and chosen method.
@@ -47,12 +55,15 @@ impl Tally {
     ///
     /// # Errors
     /// What polars says; not to be expected for answers that were read for this study.
-    pub fn of(answers: &Answers, study: &Study) -> PolarsResult<Self> {
+    ///
+    /// # Panics
+    /// If the answers were read for another study.
+    pub fn of(answers: &Responses, study: &Study) -> PolarsResult<Self> {
         let long = long_table(answers, study)?;
         Ok(Self {
-            respondents: answers.respondents(),
-            rows: count_choices(long.clone(), study)?,
-            questions: count_questions(long, study)?,
+            respondents: answers.participants.len(),
+            rows: count_choices(long.clone().lazy(), study)?,
+            questions: count_questions(long.lazy(), study)?,
         })
     }
 
@@ -75,43 +86,27 @@ impl Tally {
     }
 }
 
-/// One row an answer: respondent, question, choice, and what the question compares.
-fn long_table(answers: &Answers, study: &Study) -> PolarsResult<LazyFrame> {
-    let wide = answers.frame.clone().with_row_index("(respondent)".into(), None)?;
-    let long = wide.lazy().unpivot(UnpivotArgsDSL {
-        on: Some(by_name(study.comparisons.iter().map(|c| c.question.as_str()), true, false)),
-        index: by_name(["(respondent)"], true, false),
-        variable_name: Some("question".into()),
-        value_name: Some("choice".into()),
-    });
-    let join = JoinArgs::new(JoinType::Inner);
-    Ok(long.join(comparisons(study)?.lazy(), [col("question")], [col("question")], join))
-}
-
-/// The study's comparisons as a table; objects, groups and methods by index.
-fn comparisons(study: &Study) -> PolarsResult<DataFrame> {
-    let methods = study.methods();
-    let index = |method: Method| methods.iter().position(|&m| m == method).expect("checked on load") as u32;
-    let all = &study.comparisons;
+/// One row an answer: respondent, comparison and what it compares, the choice by declared side, the chosen method.
+/// Controls are left out.
+fn long_table(answers: &Responses, study: &Study) -> PolarsResult<DataFrame> {
+    let items = method_of_item(study, answers);
+    let asked = || answers.answers.iter().filter(|answer| answer.left != answer.right);
+    let column = |of: &dyn Fn(&responses::Answer) -> u32| asked().map(of).collect::<Vec<u32>>();
+    let comparison = |answer: &responses::Answer| &study.comparisons[answer.question as usize];
+    let chosen = |answer: &responses::Answer| answer.chosen().map(|item| items[item as usize] as u32);
     df!(
-        "question" => all.iter().map(|c| c.question.as_str()).collect::<Vec<_>>(),
-        "comparison" => (0..all.len() as u32).collect::<Vec<_>>(),
-        "object" => all.iter().map(|c| c.object as u32).collect::<Vec<_>>(),
-        "group" => all.iter().map(|c| c.group as u32).collect::<Vec<_>>(),
-        "left" => all.iter().map(|c| index(c.left.method)).collect::<Vec<_>>(),
-        "right" => all.iter().map(|c| index(c.right.method)).collect::<Vec<_>>(),
+        "respondent" => column(&|answer| answer.participant),
+        "comparison" => column(&|answer| answer.question),
+        "object" => column(&|answer| comparison(answer).object as u32),
+        "group" => column(&|answer| comparison(answer).group as u32),
+        "choice" => column(&|answer| answers.declared_choice(answer) as u32),
+        "chosen" => asked().map(chosen).collect::<Vec<Option<u32>>>(),
     )
 }
 
 fn count_choices(long: LazyFrame, study: &Study) -> PolarsResult<Vec<TallyRow>> {
-    let chosen = when(col("choice").eq(lit(Choice::Left.code())))
-        .then(col("left"))
-        .when(col("choice").eq(lit(Choice::Right.code())))
-        .then(col("right"))
-        .otherwise(lit(NULL));
-    let keys = ["(respondent)", "object", "group", "chosen"];
+    let keys = ["respondent", "object", "group", "chosen"];
     let counted = long
-        .with_column(chosen.alias("chosen"))
         .group_by(keys.map(col))
         .agg([len().alias("answers")])
         .sort(keys, SortMultipleOptions::default())
@@ -138,11 +133,11 @@ fn count_questions(long: LazyFrame, study: &Study) -> PolarsResult<Vec<QuestionC
     let counted =
         long.group_by([col("comparison"), col("choice")]).agg([len().alias("answers")]).collect()?;
     let mut counts = vec![QuestionCount::default(); study.comparisons.len()];
-    let (comparison, choice) = (counted.column("comparison")?.u32()?, counted.column("choice")?.str()?);
+    let (comparison, choice) = (counted.column("comparison")?.u32()?, counted.column("choice")?.u32()?);
     let answers = counted.column("answers")?.cast(&DataType::UInt64)?;
     for (i, answers) in answers.u64()?.iter().enumerate() {
         let count = &mut counts[comparison.get(i).expect("never null") as usize];
-        let choice = choice.get(i).and_then(Choice::from_code).expect("checked when read");
+        let choice = Choice::ALL[choice.get(i).expect("never null") as usize];
         *match choice {
             Choice::Left => &mut count.left,
             Choice::NoPreference => &mut count.none,

@@ -1,6 +1,6 @@
 //! The command line.
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Isosurface extraction methods in front of a clock, a ruler and people.
@@ -21,15 +21,44 @@ pub(crate) enum Command {
     /// Render the turntable animations
     Turntable(Selection),
     /// Compose the side-by-side pairs and write the key
-    Pairs(Run),
+    Pairs(Pairs),
+    /// Put together what participants get (forms and pairs, no key), and the researcher's contact sheet
+    Bundle(Run),
     /// Time every configuration, with the study's full number of rounds
     Bench(Bench),
-    /// Read the answers; print and write the preference tables and figures
+    /// Read the answers; print and write the preference tables and figures; or prove the analysis with --self-test
     Analyse(Analyse),
+    /// Write answers in the long format or in another program's
+    Convert(Convert),
     /// Write tables, figures and index.html again from the results that are there
     Report(Run),
     /// Check a study file and everything it names, without doing any work
     Validate(Validate),
+    /// Judge a questionnaire before anyone answers, and deal its forms
+    #[command(subcommand)]
+    Design(Design),
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Design {
+    /// Say what is wrong with a questionnaire; exit code 1 if anything is
+    Check(Check),
+    /// Write the participants' forms, and the key to them
+    Forms(Run),
+    /// List what `design check` looks for
+    Rules,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Check {
+    /// Study file, such as configs/paper.toml
+    pub(crate) study: PathBuf,
+    /// Folder with the study's results; animations there are judged as well [default: results/<study id>]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) results: Option<PathBuf>,
+    /// Print the faults as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// Where a study is read from and written to.
@@ -56,6 +85,15 @@ pub(crate) struct Selection {
     /// Only these configurations, such as ss_bi [default: all]
     #[arg(long, value_name = "ID", value_delimiter = ',')]
     pub(crate) only: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Pairs {
+    #[command(flatten)]
+    pub(crate) run: Run,
+    /// Write each pair as H.264 video as well, twice the size, by the ffmpeg on the PATH
+    #[arg(long)]
+    pub(crate) mp4: bool,
 }
 
 #[derive(Debug, Args)]
@@ -155,14 +193,86 @@ fn share(text: &str) -> Result<f64, String> {
 
 #[derive(Debug, Args)]
 pub(crate) struct Analyse {
-    /// Study file, such as configs/paper.toml
-    pub(crate) study: PathBuf,
-    /// Answers to read instead of the study's own: one row a respondent, one column a question, cells L, NP, R
-    #[arg(long, value_name = "CSV")]
+    /// Study file, such as configs/paper.toml, or a file of answers without a study: columns participant, question, left,
+    /// right, choice and optionally object, group, form, order, rt_ms
+    #[arg(required_unless_present = "self_test")]
+    pub(crate) input: Option<PathBuf>,
+    /// Answers to read instead of the study's own: its table, the long format, or a questionnaire's export
+    #[arg(long, value_name = "FILE")]
     pub(crate) responses: Option<PathBuf>,
-    /// Folder for tables and figures [default: results/<study id>-answers]
+    #[command(flatten)]
+    pub(crate) reading: ReadingRules,
+    /// Folder for tables and figures [default: results/<study id>-answers, or results/<file name>-answers]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) self_test: SelfTest,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SelfTest {
+    /// Read no answers: simulate studies with a known truth, and show that each probe finds its own defect and no other, that
+    /// tests reject and intervals cover as they should
+    #[arg(long, conflicts_with_all = ["input", "responses"])]
+    pub(crate) self_test: bool,
+    /// Studies to simulate for each line
+    #[arg(long, requires = "self_test", default_value_t = 10_000, value_name = "N", value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
+    pub(crate) studies: u64,
+    /// Seed of the simulated studies; the same seed gives the same tables on any number of threads
+    #[arg(long, requires = "self_test", default_value_t = 1, value_name = "SEED")]
+    pub(crate) seed: u64,
+    /// Threads to simulate with; 0 takes every core
+    #[arg(long, requires = "self_test", default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1024))]
+    pub(crate) threads: u32,
+}
+
+/// How a file of answers is read, where that differs from what the study declares.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct ReadingRules {
+    /// Format of the answers [default: detected]: table, long, google-forms, microsoft-forms, qualtrics, limesurvey,
+    /// surveymonkey, jspsych, jatos, webmushra, redcap
+    #[arg(long, value_name = "NAME")]
+    pub(crate) format: Option<String>,
+    /// TOML file with the keys of a study's [responses]: question columns, synonyms, pairs
+    #[arg(long, value_name = "FILE")]
+    pub(crate) mapping: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Convert {
+    /// File of answers in any format that is read
+    pub(crate) input: PathBuf,
+    /// Format to write
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) to: Target,
+    /// File to write
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// Study whose questions were asked; needed where columns are questions
+    #[arg(long, value_name = "TOML")]
+    pub(crate) study: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reading: ReadingRules,
+    /// For pwcmp, which has no ties: refuse, write one win each way, or leave them out
+    #[arg(long, value_name = "RULE", default_value = "refuse")]
+    pub(crate) ties: TieRule,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Target {
+    /// participant, form, order, question, object, left, right, choice, rt_ms
+    Long,
+    /// model_a, model_b, winner, item_id, voter_id
+    Arenakit,
+    /// observer, session, scene, condition_A, condition_B, is_A_selected
+    Pwcmp,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TieRule {
+    Refuse,
+    Split,
+    Drop,
 }
 
 #[derive(Debug, Args)]

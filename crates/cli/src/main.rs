@@ -1,19 +1,21 @@
 //! The `isostudy` command: arguments, files, progress and exit codes. What is computed is computed in the rooms.
 
+mod answers;
 mod args;
 mod comparing;
 mod manifest;
 mod picture;
 mod pipeline;
 mod progress;
+mod questionnaire;
 mod records;
 mod rooms;
 mod store;
 mod subject;
+mod video;
 
-use analysis::Answers;
 use anyhow::{Context, Result};
-use args::{Analyse, Bench, BenchVerb, Cli, Command, Run, Selection};
+use args::{Analyse, Bench, BenchVerb, Cli, Command, Design, Run, Selection};
 use clap::Parser;
 use design::{ConfigurationId, Published, Study};
 use pipeline::{Pipeline, PlanLength};
@@ -24,6 +26,7 @@ use store::Store;
 
 /// The work was done, but something in it is not as it should be.
 const CHECK_FAILED: u8 = 1;
+const NO_FORMS: &str = "the study has no [forms] section, or no comparisons: configs/balanced.toml has both";
 /// Wrong usage or input; clap uses the same.
 const INPUT_ERROR: u8 = 2;
 
@@ -58,15 +61,40 @@ fn run(command: Command) -> Result<Outcome> {
             pipeline.turntables(&meshes, only)?;
             say(&out.join("stimuli/turntables").display().to_string())
         }),
-        Command::Pairs(run) => with_pipeline(&run, |pipeline, out| {
+        Command::Pairs(pairs) => {
+            if pairs.mp4 {
+                video::check()?;
+            }
+            with_pipeline(&pairs.run, |pipeline, out| {
+                let meshes = pipeline.stimulus_meshes(&[])?;
+                let turntables = pipeline.turntables(&meshes, &[])?;
+                let stamps = pipeline.pairs(&turntables)?;
+                if pairs.mp4 {
+                    pipeline.videos(&stamps)?;
+                }
+                say(&out.join("stimuli/pairs").display().to_string())
+            })
+        }
+        Command::Bundle(run) => with_pipeline(&run, |pipeline, out| {
+            let forms = pipeline.forms()?.context(NO_FORMS)?;
             let meshes = pipeline.stimulus_meshes(&[])?;
             let turntables = pipeline.turntables(&meshes, &[])?;
-            pipeline.pairs(&turntables)?;
-            say(&out.join("stimuli/pairs").display().to_string())
+            let pairs = pipeline.pairs(&turntables)?;
+            pipeline.contact_sheet(&meshes)?;
+            pipeline.bundle(&forms, &pairs)?;
+            say(&out.join("bundle").display().to_string())
         }),
         Command::Bench(bench) => return time(&bench),
+        Command::Analyse(arguments) if arguments.self_test.self_test => return self_test(&arguments),
         Command::Analyse(arguments) => analyse(&arguments),
+        Command::Convert(arguments) => answers::convert(&arguments),
         Command::Validate(arguments) => validate(&arguments.study),
+        Command::Design(Design::Check(arguments)) => return questionnaire::check(&arguments),
+        Command::Design(Design::Rules) => questionnaire::rules(),
+        Command::Design(Design::Forms(run)) => with_pipeline(&run, |pipeline, out| {
+            pipeline.forms()?.context(NO_FORMS)?;
+            say(&out.join("forms").display().to_string())
+        }),
     }?;
     Ok(Outcome::Sound)
 }
@@ -134,23 +162,78 @@ fn with_selection(
     with_pipeline(&selection.run, |pipeline, out| work(pipeline, &only, out))
 }
 
+/// Simulates studies and prints how probes, tests and intervals did; one that did not as it should fails it.
+fn self_test(arguments: &Analyse) -> Result<Outcome> {
+    let settings = &arguments.self_test;
+    if settings.threads > 0 {
+        rayon::ThreadPoolBuilder::new().num_threads(settings.threads as usize).build_global()?;
+    }
+    let (tables, sound) = analysis::self_test::self_test(settings.studies, settings.seed);
+    for table in &tables {
+        say(&table.to_markdown())?;
+        if let Some(out) = &arguments.out {
+            std::fs::create_dir_all(out).with_context(|| out.display().to_string())?;
+            for (ending, text) in [("csv", table.to_csv()), ("md", table.to_markdown())] {
+                let path = out.join(format!("{}.{ending}", table.name));
+                store::write_whole(&path, text.as_bytes())?;
+                say(&path.display().to_string())?;
+            }
+        }
+    }
+    if !sound {
+        eprintln!("self-test failed: see the rows that say NO");
+    }
+    Ok(if sound { Outcome::Sound } else { Outcome::CheckFailed })
+}
+
+/// A study file ends in `.toml`; anything else is a file of answers.
 fn analyse(arguments: &Analyse) -> Result<()> {
-    let mut study = Study::load(&arguments.study)?;
+    let input = arguments.input.as_deref().context("no study file")?;
+    let is_study = input.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+    if !is_study {
+        return analyse_without_study(arguments, input);
+    }
+    let mut study = Study::load(input)?;
     if arguments.responses.is_some() {
         // Published numbers are about the answers that were published.
         study.published = Published::default();
         study.responses.clone_from(&arguments.responses);
     }
-    let no_answers = || format!("{} names no responses; give --responses", arguments.study.display());
-    let responses = study.responses.as_ref().with_context(no_answers)?;
+    study.file.responses = Some(answers::section(&arguments.reading, Some(&study))?);
+    let no_answers = || format!("{} names no responses; give --responses", input.display());
+    let reading = answers::of_study(&study)?.with_context(no_answers)?;
+    answers::announce(&reading.report);
     let folder = || Path::new("results").join(format!("{}-answers", study.file.study.id));
     let out = arguments.out.clone().unwrap_or_else(folder);
-    let answers = analysis::read_answers(responses, &study)?;
     let store = Store::open(&out, false)?;
-    let tables = pipeline::write_answers_only(&study, &answers, &store)?;
+    let tables = pipeline::write_answers_only(&study, &reading, &store)?;
     store.remove_retired()?;
-    manifest::write(&study, &store)?;
+    manifest::write(&manifest::Subject::of(&study)?, &store)?;
     for table in tables.iter().filter(|table| table.name.starts_with("preference_")) {
+        say(&table.to_markdown())?;
+    }
+    say(&out.display().to_string())
+}
+
+fn analyse_without_study(arguments: &Analyse, path: &Path) -> Result<()> {
+    if arguments.responses.is_some() {
+        anyhow::bail!(
+            "--responses belongs to a study, and {} is none: its name does not end in .toml",
+            path.display()
+        );
+    }
+    let section = answers::section(&arguments.reading, None)?;
+    let (reading, _) = answers::without_study(path, &section)?;
+    answers::announce(&reading.report);
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let folder = || Path::new("results").join(format!("{name}-answers"));
+    let out = arguments.out.clone().unwrap_or_else(folder);
+    let store = Store::open(&out, false)?;
+    let tables = pipeline::write_without_study(path, &section, &reading, &store)?;
+    store.remove_retired()?;
+    let digest = store::sha256(&std::fs::read(path).with_context(|| path.display().to_string())?);
+    manifest::write(&manifest::Subject { name: &name, sha256: digest, seed: None }, &store)?;
+    for table in tables.iter().filter(|table| ["tests", "worths"].contains(&table.name.as_str())) {
         say(&table.to_markdown())?;
     }
     say(&out.display().to_string())
@@ -170,9 +253,9 @@ fn validate(path: &Path) -> Result<()> {
             configuration.id.method.label()
         ))?;
     }
-    let respondents = match read_answers(&study)? {
+    let respondents = match answers::of_study(&study)? {
         None => "no answers".to_owned(),
-        Some(answers) => format!("{} respondents", answers.respondents()),
+        Some(reading) => format!("{} respondents", reading.responses.participants.len()),
     };
     let (questions, groups) = (study.comparisons.len(), study.groups.len());
     say(&format!("{}: valid; {questions} questions in {groups} groups, {respondents}", path.display()))
@@ -183,13 +266,10 @@ fn load(path: &Path) -> Result<Study> {
     let study = Study::load(path)?;
     subject::check_lattices(&study, bench::read_machine().memory_bytes)?;
     subject::check_mesh_files(&study)?;
-    read_answers(&study)?;
+    if let Some(reading) = answers::of_study(&study)?.filter(|reading| !reading.report.remarks.is_empty()) {
+        answers::announce(&reading.report);
+    }
     Ok(study)
-}
-
-fn read_answers(study: &Study) -> Result<Option<Answers>> {
-    let read = |path: &PathBuf| analysis::read_answers(path, study);
-    Ok(study.responses.as_ref().map(read).transpose()?)
 }
 
 fn default_folder(study: &Study) -> PathBuf {

@@ -17,7 +17,8 @@ struct Manifest<'a> {
     version: &'static str,
     study: &'a str,
     study_sha256: String,
-    seed: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seed: Option<u64>,
     machine: Machine,
     files: BTreeMap<&'a str, ManifestFile<'a>>,
 }
@@ -28,11 +29,29 @@ struct ManifestFile<'a> {
     sha256: &'a str,
 }
 
+/// What the results are about: a study file, or a file of answers.
+pub(crate) struct Subject<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) sha256: String,
+    pub(crate) seed: Option<u64>,
+}
+
+impl<'a> Subject<'a> {
+    /// A study.
+    ///
+    /// # Errors
+    /// If its file cannot be read.
+    pub(crate) fn of(study: &'a Study) -> Result<Self> {
+        let section = &study.file.study;
+        Ok(Self { name: &section.id, sha256: sha256(&std::fs::read(&study.path)?), seed: Some(section.seed) })
+    }
+}
+
 /// Writes the manifest, unless it is there and says the same.
 ///
 /// # Errors
-/// If the study or a stamp cannot be read, or the file cannot be written.
-pub(crate) fn write(study: &Study, store: &Store) -> Result<()> {
+/// If a stamp cannot be read, or the file cannot be written.
+pub(crate) fn write(subject: &Subject<'_>, store: &Store) -> Result<()> {
     let stamps = store.stamps()?;
     let files = stamps.iter().flat_map(|stamp| &stamp.files);
     let files = files.map(|f| (f.path.as_str(), ManifestFile { bytes: f.bytes, sha256: &f.sha256 }));
@@ -40,9 +59,9 @@ pub(crate) fn write(study: &Study, store: &Store) -> Result<()> {
         schema: 1,
         tool: "isostudy",
         version: env!("CARGO_PKG_VERSION"),
-        study: &study.file.study.id,
-        study_sha256: sha256(&std::fs::read(&study.path)?),
-        seed: study.file.study.seed,
+        study: subject.name,
+        study_sha256: subject.sha256.clone(),
+        seed: subject.seed,
         // How busy the machine is now says nothing about results made earlier.
         machine: bench::read_machine().lasting(),
         files: files.collect(),

@@ -4,7 +4,8 @@ use anyhow::Result;
 use base64::Engine;
 use design::config::{CameraSection, Look, ShadingSection, TurntableSection};
 use mesh::TriangleMesh;
-use raster::{Panel, Shading, Sheet, Turntable};
+use raster::tiny_skia::{Pixmap, PixmapPaint, Transform};
+use raster::{Panel, Shading, Sheet, Turntable, Viewport};
 
 /// A figure as a picture and as a scalable page with the pictures in it and captions as text.
 pub(crate) struct StillSheet {
@@ -60,6 +61,40 @@ pub(crate) fn still_sheet(
     let sheet = Sheet { columns: looks.len(), ..Sheet::default() };
     let png = raster::pixmap_to_png(&raster::panels(&panels, &sheet)?);
     Ok(StillSheet { png, svg: svg(&panels) })
+}
+
+/// The first frame of a turntable, small and square.
+///
+/// # Errors
+/// If the rasteriser refuses mesh or camera.
+pub(crate) fn thumbnail(
+    mesh: &TriangleMesh,
+    turntable: &Turntable,
+    shading: &Shading,
+    side_px: u32,
+) -> Result<Pixmap> {
+    let viewport = Viewport { width: side_px, height: side_px, ..turntable.viewport() };
+    Ok(raster::render(mesh, &turntable.camera(0), viewport, shading, raster::Look::Smooth)?)
+}
+
+/// Two pictures of one size, edge to edge.
+pub(crate) fn side_by_side(left: &Pixmap, right: &Pixmap) -> Pixmap {
+    let mut both =
+        Pixmap::new(left.width() + right.width(), left.height()).expect("two pictures have pixels");
+    let (paint, still) = (PixmapPaint::default(), Transform::identity());
+    both.draw_pixmap(0, 0, left.as_ref(), &paint, still, None);
+    both.draw_pixmap(left.width() as i32, 0, right.as_ref(), &paint, still, None);
+    both
+}
+
+/// Labelled pictures in rows, as a PNG.
+///
+/// # Errors
+/// If the sheet would be larger than a picture can be.
+pub(crate) fn contact_sheet(pictures: &[(String, Pixmap)], title: &str) -> Result<Vec<u8>> {
+    let panels: Vec<Panel<'_>> = pictures.iter().map(|(label, picture)| Panel { picture, label }).collect();
+    let sheet = Sheet { columns: 6, title: Some(title.into()), text_px: 15.0, ..Sheet::default() };
+    Ok(raster::pixmap_to_png(&raster::panels(&panels, &sheet)?))
 }
 
 fn raster_look(look: Look) -> raster::Look {

@@ -2,7 +2,7 @@
 //! geometry crates know nothing of studies, and the statistics know nothing of geometry.
 
 use design::ConfigurationId;
-use design::record::{Counts, Distribution, Histogram, MeshRecord, Purpose, Quality, Topology};
+use design::record::{Accuracy, Counts, Distribution, Histogram, MeshRecord, Purpose, Quality, Topology};
 use extract::Extraction;
 use extract::Lattice;
 
@@ -12,6 +12,7 @@ pub(crate) fn mesh_record(
     spacing: f64,
     lattice: &Lattice,
     extraction: &Extraction,
+    accuracy: &extract::Accuracy,
 ) -> MeshRecord {
     MeshRecord {
         id: id.clone(),
@@ -21,6 +22,12 @@ pub(crate) fn mesh_record(
         counts: counts(&extraction.counts),
         quality: quality(&mesh::quality::quality(&extraction.mesh)),
         topology: topology(&mesh::topology::topology(&extraction.mesh)),
+        accuracy: Accuracy {
+            distance: distribution(&accuracy.distance),
+            normal_error_deg: distribution(&accuracy.normal_error_deg),
+            lost_points: accuracy.lost_points,
+            lost_vertices: accuracy.lost_vertices,
+        },
     }
 }
 

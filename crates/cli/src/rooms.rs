@@ -2,6 +2,7 @@
 
 const MESH: &str = env!("ISOSTUDY_ROOM_MESH");
 const DESIGN: &str = env!("ISOSTUDY_ROOM_DESIGN");
+const RESPONSES: &str = env!("ISOSTUDY_ROOM_RESPONSES");
 const EXTRACT: &str = env!("ISOSTUDY_ROOM_EXTRACT");
 const RASTER: &str = env!("ISOSTUDY_ROOM_RASTER");
 const BENCH: &str = env!("ISOSTUDY_ROOM_BENCH");
@@ -15,8 +16,8 @@ pub(crate) const MESHES: &[&str] = &[MESH, EXTRACT, CLI];
 pub(crate) const PICTURES: &[&str] = &[MESH, RASTER, CLI];
 /// What makes timings.
 pub(crate) const TIMINGS: &[&str] = &[MESH, EXTRACT, BENCH, CLI];
-/// What makes tables and figures.
-pub(crate) const TABLES: &[&str] = &[DESIGN, ANALYSIS, CLI];
+/// What makes tables, figures and the report.
+pub(crate) const TABLES: &[&str] = &[DESIGN, RESPONSES, ANALYSIS, CLI, PAGE];
 /// What makes the key.
 pub(crate) const KEYS: &[&str] = &[DESIGN, CLI];
 /// What makes the page.

@@ -2,10 +2,10 @@
 
 use crate::store::sha256;
 use anyhow::{Context, Result, bail};
-use design::config::{FieldSection, MeshSourceSection, ObjectSection, Positions, Topology};
+use design::config::{FieldSection, MeshSourceSection, ObjectSection, Placement, Positions, Topology};
 use design::record::Purpose;
 use design::{Arrangement, Clustering, Configuration, Study};
-use extract::{ExtractSettings, Lattice, ScalarField};
+use extract::{Execution, ExtractSettings, Lattice, ScalarField};
 use glam::{DVec3, Vec3};
 use mesh::{Bounds, TriangleMesh};
 use std::path::PathBuf;
@@ -146,16 +146,21 @@ pub(crate) fn lattice(object: &ObjectSection, arrangement: Arrangement, spacing:
     Ok(Lattice::try_new(arrangement, bounds, spacing as f32)?)
 }
 
-/// The extractor's settings for a configuration. Meshes made for [`Purpose::Indexed`] have indexed positions whatever the
-/// study says.
-pub(crate) fn settings(study: &Study, configuration: &Configuration, purpose: Purpose) -> ExtractSettings {
+fn positions(study: &Study, purpose: Purpose) -> extract::Positions {
     let section = &study.file.extraction;
-    let positions = match (purpose, section.positions) {
+    match (purpose, section.positions) {
         (Purpose::Indexed, _) | (_, Positions::Indexed) => extract::Positions::Indexed,
         (_, Positions::Accumulated) => {
             extract::Positions::Accumulated { chunks: section.accumulation_chunks }
         }
-    };
+    }
+}
+
+/// The extractor's settings for a configuration. Meshes made for [`Purpose::Indexed`] have indexed positions whatever the
+/// study says.
+pub(crate) fn settings(study: &Study, configuration: &Configuration, purpose: Purpose) -> ExtractSettings {
+    let section = &study.file.extraction;
+    let positions = positions(study, purpose);
     let clustering = match configuration.id.method.clustering {
         Clustering::None => extract::Clustering::None,
         Clustering::Integrated => extract::Clustering::Integrated,
@@ -166,11 +171,18 @@ pub(crate) fn settings(study: &Study, configuration: &Configuration, purpose: Pu
         Topology::Guarded => extract::Topology::Guarded,
         Topology::Published => extract::Topology::Published,
     };
+    let placement = match section.placement {
+        Placement::MeanOfCrossings => extract::Placement::MeanOfCrossings,
+        Placement::CurvatureWeighted => extract::Placement::CurvatureWeighted,
+        Placement::Projected => extract::Placement::Projected,
+        Placement::Relaxed => extract::Placement::Relaxed,
+    };
     let isovalue = study.object(configuration).isovalue as f32;
-    ExtractSettings { isovalue, clustering, positions, topology }
+    let refine_crossings = section.refine_crossings;
+    ExtractSettings { isovalue, clustering, topology, positions, placement, refine_crossings }
 }
 
-/// Checks that every lattice of the study can be made and fits into memory.
+/// Checks that every lattice of the study can be made, and that what the extractor holds of it fits into memory.
 ///
 /// # Errors
 /// The first that cannot, naming file, key and limit.
@@ -181,10 +193,13 @@ pub(crate) fn check_lattices(study: &Study, machine_bytes: Option<u64>) -> Resul
         Some(machine) if machine < allowed => (machine, "this machine has"),
         _ => (allowed, "limits.memory_gib allows"),
     };
-    let check = |key: String, object: &ObjectSection, arrangement, spacing: f64| -> Result<()> {
+    let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let execution = Execution { threads: cores.max(study.file.benchmark.threads as usize) };
+    let check = |key: String, object: &ObjectSection, arrangement, spacing: f64, purpose| -> Result<()> {
         let lattice =
             lattice(object, arrangement, spacing).with_context(|| format!("{file}: {key} = {spacing}"))?;
-        let needed = lattice.memory_bytes();
+        let settings = ExtractSettings { positions: positions(study, purpose), ..Default::default() };
+        let needed = lattice.memory_bytes_for(&settings, &execution);
         if needed > limit {
             let (needed, limit) = (gibibytes(needed), gibibytes(limit));
             let lattice = arrangement.label();
@@ -196,14 +211,15 @@ pub(crate) fn check_lattices(study: &Study, machine_bytes: Option<u64>) -> Resul
         for purpose in [Purpose::Benchmark, Purpose::Stimulus] {
             let (spacing, name) = spacing(object, purpose);
             for &arrangement in &study.file.arrangements {
-                check(format!("objects[{i}].{name}"), object, arrangement, spacing)?;
+                check(format!("objects[{i}].{name}"), object, arrangement, spacing, purpose)?;
             }
         }
     }
     for (i, still) in study.file.stills.iter().enumerate() {
         let named = study.configurations.iter().find(|c| c.id == still.configuration);
         let object = study.object(named.expect("checked when the study was read"));
-        check(format!("stills[{i}].spacing"), object, still.configuration.method.arrangement, still.spacing)?;
+        let arrangement = still.configuration.method.arrangement;
+        check(format!("stills[{i}].spacing"), object, arrangement, still.spacing, Purpose::Stimulus)?;
     }
     Ok(())
 }

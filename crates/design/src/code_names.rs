@@ -7,15 +7,18 @@ use rand_pcg::Pcg64;
 const CONSONANTS: &[u8] = b"bdfgklmnprstvz";
 const VOWELS: &[u8] = b"aeiou";
 
+/// How many names there are.
+pub const LIMIT: usize = (CONSONANTS.len() * VOWELS.len()).pow(2);
+
 /// Draws `count` different pronounceable names (consonant, vowel, consonant, vowel) from a seed.
 ///
 /// The same seed and count give the same names in the same order, and a longer draw starts with a shorter one.
 /// Names depend on nothing else, so a name carries no information about the configuration it is given to.
 ///
 /// # Panics
-/// If more than 4,900 names are asked for; there are no more.
+/// If more than [`LIMIT`] names are asked for; there are no more.
 pub fn draw(seed: u64, count: usize) -> Vec<String> {
-    let mut names: Vec<String> = Vec::with_capacity(4900);
+    let mut names: Vec<String> = Vec::with_capacity(LIMIT);
     for &a in CONSONANTS {
         for &b in VOWELS {
             for &c in CONSONANTS {

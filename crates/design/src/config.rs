@@ -3,8 +3,10 @@
 //! These types mirror the file and nothing else: paths are as written (relative to the file's own folder), numbers
 //! are unchecked. [`crate::Study::load`] turns them into something to work from.
 
+use crate::check::{Checker, ConfigError};
 use crate::method::{Arrangement, Clustering, ConfigurationId, Method};
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
 /// The whole study file.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -42,6 +44,8 @@ pub struct StudyFile {
     /// Comparison groups over which preference factors are computed.
     #[serde(default)]
     pub groups: Vec<GroupSection>,
+    /// How the questions are put to people; leave out for a study that asks nobody.
+    pub forms: Option<FormsSection>,
     /// The answers to analyse; leave out for a study that has none yet.
     pub responses: Option<ResponsesSection>,
     /// Published numbers to compare with; leave out for a new study.
@@ -89,6 +93,21 @@ pub enum Topology {
     Published,
 }
 
+/// Where a vertex goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Placement {
+    /// To the mean of its cluster's crossings, as published.
+    #[default]
+    MeanOfCrossings,
+    /// To the mean weighted by how sharply the surface bends at each crossing.
+    CurvatureWeighted,
+    /// From the mean to the isosurface, along the field's gradient.
+    Projected,
+    /// Half the way to the mean of the neighbouring vertices, then to the isosurface.
+    Relaxed,
+}
+
 /// What holds for every extraction.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -100,6 +119,12 @@ pub struct ExtractionSection {
     /// With accumulated positions: into how many runs of layers the z axis is cut, each starting its sum anew.
     #[serde(deserialize_with = "whole")]
     pub accumulation_chunks: u32,
+    /// Where a vertex goes.
+    #[serde(default)]
+    pub placement: Placement,
+    /// Whether crossings are roots of the field rather than interpolated between samples.
+    #[serde(default)]
+    pub refine_crossings: bool,
 }
 
 /// One object of the study.
@@ -313,12 +338,156 @@ pub struct GroupSection {
     pub members: Vec<Method>,
 }
 
-/// The answers to analyse.
+/// Which configuration of a comparison is on the left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SideRule {
+    /// Balanced within a form and over participants.
+    Balanced,
+    /// As the comparisons are listed, for everybody.
+    AsListed,
+}
+
+/// In which order a participant is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OrderRule {
+    /// Every question at every place equally often.
+    LatinSquare,
+    /// At random for each participant.
+    Shuffled,
+    /// As listed, for everybody.
+    AsListed,
+}
+
+/// What participants can read off a stimulus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ShownNames {
+    /// Code names that say nothing.
+    CodeNames,
+    /// The ids of the configurations.
+    ConfigurationIds,
+}
+
+/// How the questions are put to people.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+pub struct FormsSection {
+    /// What is asked about each pair.
+    pub prompt: String,
+    /// The answers: left, no preference, right.
+    pub choices: [String; 3],
+    /// How many participants are planned.
+    #[serde(deserialize_with = "whole")]
+    pub participants: u32,
+    /// Which configuration of a comparison is on the left.
+    pub sides: SideRule,
+    /// In which order a participant is asked.
+    pub order: OrderRule,
+    /// What participants can read off a stimulus.
+    pub names: ShownNames,
+    /// Pairs of one configuration with itself in a form.
+    #[serde(deserialize_with = "whole")]
+    pub controls: u32,
+    /// Comparisons asked twice in a form, the second time with the sides swapped.
+    #[serde(deserialize_with = "whole")]
+    pub repeats: u32,
+    /// Most questions that one participant is asked, training left out.
+    #[serde(deserialize_with = "whole")]
+    pub max_questions: u32,
+    /// Pairs shown first, to learn how it works.
+    #[serde(default)]
+    pub training: Vec<TrainingSection>,
+}
+
+/// A pair to learn with.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainingSection {
+    /// Shown on the left.
+    pub left: ConfigurationId,
+    /// Shown on the right.
+    pub right: ConfigurationId,
+}
+
+/// The answers to analyse, and what their file does not say itself.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ResponsesSection {
-    /// CSV file: one row a respondent, one column a question, cells `L`, `NP` or `R`.
-    pub file: String,
+    /// The file: the study's own table (one row a respondent, one column a question, cells `L`, `NP` or `R`), the long
+    /// format, or an export of a questionnaire.
+    pub file: Option<String>,
+    /// Its format; otherwise it is detected.
+    pub format: Option<String>,
+    /// `,`, `;`, `|` or `tab`; otherwise it is detected.
+    pub separator: Option<String>,
+    /// Ids of the questions in the order of their columns; otherwise the study's order.
+    pub questions: Option<Vec<String>>,
+    /// Columns of the questions, from 1.
+    pub question_columns: Option<Vec<usize>>,
+    /// Column of the first question, from 1; the others follow it.
+    pub first_question_column: Option<usize>,
+    /// Column of the participant's id, from 1.
+    pub participant_column: Option<usize>,
+    /// What the file calls the three answers, beside the built-in words.
+    pub synonyms: Option<SynonymsSection>,
+    /// `refuse` (default) or `leave-out`: what to do with cells that are no answers.
+    pub unknown: Option<String>,
+    /// `refuse` (default), `first` or `last`: which of several answers to the same counts.
+    pub duplicates: Option<String>,
+    /// The questions of answers without a study; a study has its comparisons.
+    #[serde(default)]
+    pub pairs: Vec<PairSection>,
+}
+
+impl ResponsesSection {
+    /// Reads a file with the keys of this section alone, for answers whose study does not declare them or that have none.
+    ///
+    /// # Errors
+    /// If it cannot be read, is not TOML, or has a key that is not one of these; `file` is not.
+    pub fn load(path: &Path) -> Result<Self, ConfigError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| ConfigError::Read { file: path.into(), source })?;
+        let section: Self = crate::study::parse_toml(&text, path)?;
+        match &section.file {
+            None => Ok(section),
+            Some(file) => {
+                let limit = "a mapping says how to read, not what: name the answers on the command line";
+                Checker { file: path }.refuse("file", file, limit)
+            }
+        }
+    }
+}
+
+/// Words for the three answers.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SynonymsSection {
+    /// Left.
+    pub left: Vec<String>,
+    /// No preference.
+    pub none: Vec<String>,
+    /// Right.
+    pub right: Vec<String>,
+}
+
+/// A question without a study: what is shown on which side.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PairSection {
+    /// The question's id, unique.
+    pub question: String,
+    /// Shown on the left.
+    pub left: String,
+    /// Shown on the right.
+    pub right: String,
+    /// What both are of.
+    #[serde(default)]
+    pub object: String,
+    /// The group of things that are compared with one another.
+    #[serde(default)]
+    pub group: String,
 }
 
 /// Published numbers to compare with.

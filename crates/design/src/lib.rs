@@ -11,6 +11,8 @@
 mod check;
 pub mod code_names;
 pub mod config;
+pub mod forms;
+pub mod lint;
 pub mod machine;
 mod method;
 pub mod published;

@@ -33,6 +33,8 @@ pub struct MeshRecord {
     pub quality: Quality,
     /// Topology of the mesh.
     pub topology: Topology,
+    /// How well the mesh stands for its isosurface.
+    pub accuracy: Accuracy,
 }
 
 /// What an extraction counted. Names as in `extract::Counts`, whose docs define them.
@@ -78,7 +80,20 @@ pub struct Quality {
     pub area: Distribution,
 }
 
-/// A distribution over triangles. All zero when `count` is.
+/// A mesh against its isosurface. Names as in `extract::Accuracy`, whose docs define them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Accuracy {
+    /// Distance from points of the mesh to the isosurface, in scene units; over the area.
+    pub distance: Distribution,
+    /// Angle between a vertex's normal and the field's, degrees; over vertices.
+    pub normal_error_deg: Distribution,
+    /// Points without a distance.
+    pub lost_points: u64,
+    /// Vertices without an angle.
+    pub lost_vertices: u64,
+}
+
+/// A distribution, over triangles where nothing else is said. All zero when `count` is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "standard terms; `sd` is the population standard deviation, qNN a quantile")]
 pub struct Distribution {

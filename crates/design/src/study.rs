@@ -1,7 +1,9 @@
 //! A study, read from its file, checked, and ready to work from.
 
 use crate::check::{Checker, ConfigError};
-use crate::config::{FieldSection, ObjectSection, StudyFile};
+use crate::code_names;
+use crate::config::{FieldSection, ObjectSection, ResponsesSection, StudyFile};
+use crate::forms::Questionnaire;
 use crate::machine::CpuProfile;
 use crate::method::{ConfigurationId, Method};
 use crate::published::{BenchmarkRow, Claim, PreferenceCell};
@@ -107,13 +109,20 @@ impl Study {
         let mut groups = groups(&checker, &file, &configurations)?;
         let comparisons = comparisons(&checker, &file, &configurations, &mut groups)?;
         check_stills(&checker, &file, &configurations)?;
+        check_forms(&checker, &file, &configurations)?;
 
         let target_path = checker.existing("benchmark.target", &file.benchmark.target, "")?;
         let target = CpuProfile::load(&target_path)?;
         let responses = match &file.responses {
-            None => None,
-            Some(responses) => Some(checker.existing("responses.file", &responses.file, "")?),
+            Some(ResponsesSection { file: Some(written), .. }) => {
+                Some(checker.existing("responses.file", written, "")?)
+            }
+            _ => None,
         };
+        if file.responses.as_ref().is_some_and(|responses| !responses.pairs.is_empty()) {
+            let limit = "the study's comparisons are its questions";
+            return checker.refuse("responses.pairs", "[...]", limit);
+        }
         let published = match &file.published {
             None => Published::default(),
             Some(section) => Published {
@@ -150,9 +159,15 @@ impl Study {
         Checker { file: &self.path }.resolve(written)
     }
 
-    /// Code names: one a configuration, then one a comparison, in the study's order.
+    /// Every pair, left and right, that is shown to anybody: the comparisons as listed, then what else the forms need.
+    pub(crate) fn pairs(&self) -> Vec<(ConfigurationId, ConfigurationId)> {
+        let as_listed = || self.comparisons.iter().map(|c| (c.left.clone(), c.right.clone())).collect();
+        Questionnaire::of(self).map_or_else(as_listed, |questionnaire| questionnaire.pairs())
+    }
+
+    /// Code names: one a configuration, then one a pair, in the order of [`Study::stimuli`].
     pub fn code_names(&self) -> (Vec<String>, Vec<String>) {
-        let count = self.configurations.len() + self.comparisons.len();
+        let count = self.configurations.len() + self.pairs().len();
         let mut names = crate::code_names::draw(self.file.study.seed, count);
         let pairs = names.split_off(self.configurations.len());
         (names, pairs)
@@ -402,8 +417,10 @@ fn comparisons(
             right: section.right.clone(),
         });
     }
-    if configurations.len() + comparisons.len() > 4900 {
-        return c.refuse("comparisons", comparisons.len(), "configurations and comparisons: at most 4900");
+    // Each may be shown both ways round and has a code name; so has each configuration, with itself as a control.
+    if 2 * (configurations.len() + comparisons.len()) > code_names::LIMIT {
+        let limit = format!("configurations and comparisons: at most {}", code_names::LIMIT / 2);
+        return c.refuse("comparisons", comparisons.len(), limit);
     }
     Ok(comparisons)
 }
@@ -436,12 +453,62 @@ fn check_stills(
     Ok(())
 }
 
+fn check_forms(
+    c: &Checker<'_>,
+    file: &StudyFile,
+    configurations: &[Configuration],
+) -> Result<(), ConfigError> {
+    let Some(forms) = &file.forms else { return Ok(()) };
+    let comparisons = u32::try_from(file.comparisons.len()).unwrap_or(u32::MAX);
+    c.count("forms.participants", forms.participants, 1, 100_000)?;
+    c.count("forms.controls", forms.controls, 0, configurations.len() as u32)?;
+    c.count("forms.max_questions", forms.max_questions, forms.controls + 1, 10_000)?;
+    // The smallest block must hold what is repeated in it.
+    let holds = |repeats: u32| match (forms.max_questions - forms.controls).checked_sub(repeats) {
+        None | Some(0) => false,
+        Some(room) => comparisons / comparisons.div_ceil(room).max(1) >= repeats,
+    };
+    if !holds(forms.repeats) {
+        let most = (0..forms.repeats).rev().find(|&repeats| holds(repeats)).unwrap_or(0);
+        let limit = format!("with forms.max_questions = {} at most {most} fit", forms.max_questions);
+        return c.refuse("forms.repeats", forms.repeats, limit);
+    }
+    if forms.prompt.trim().is_empty() {
+        return c.refuse("forms.prompt", "\"\"", "must say what is asked about each pair");
+    }
+    if let Some(i) = forms.choices.iter().position(|choice| choice.trim().is_empty()) {
+        return c.refuse(format!("forms.choices[{i}]"), "\"\"", "must be a text");
+    }
+    c.distinct(|i| format!("forms.choices[{i}]"), &forms.choices)?;
+    c.count("forms.training", forms.training.len() as u32, 0, 100)?;
+    for (i, pair) in file.forms.iter().flat_map(|forms| &forms.training).enumerate() {
+        for (name, id) in [("left", &pair.left), ("right", &pair.right)] {
+            if !configurations.iter().any(|configuration| configuration.id == *id) {
+                let key = format!("forms.training[{i}].{name}");
+                return c.refuse(key, id, "is not a configuration of this study");
+            }
+        }
+        if pair.left.object != pair.right.object {
+            let limit = format!("must show the same object as the left side, {}", pair.left);
+            return c.refuse(format!("forms.training[{i}].right"), &pair.right, limit);
+        }
+    }
+    Ok(())
+}
+
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
+    /// A study file of this project, its mesh source pointing at a file that is always there.
+    pub(crate) fn load(name: &str) -> Study {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs").join(name);
+        let text = std::fs::read_to_string(&path).unwrap();
+        Study::parse(&text.replace("../cache/bunny.ply", name), &path).unwrap()
+    }
+
     /// The paper's file with one passage replaced, its mesh source pointing at a file that is always there.
-    fn paper_with(from: &str, to: &str) -> Result<Study, ConfigError> {
+    pub(crate) fn paper_with(from: &str, to: &str) -> Result<Study, ConfigError> {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/paper.toml");
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(text.contains(from), "{from} is not in {}", path.display());
@@ -491,6 +558,22 @@ mod tests {
         assert!(error.contains("responses.file") && error.contains("nobody.csv"), "{error}");
         let path = Path::new("/nowhere/study.toml");
         assert!(Study::load(path).unwrap_err().to_string().contains("/nowhere/study.toml"));
+    }
+
+    #[test]
+    fn unknown_placements_are_told_what_there_is() {
+        let key = "placement = \"mean-of-crossings\"";
+        let error = error_with(key, "placement = \"nearest\"");
+        for part in
+            ["paper.toml", "placement = ", "nearest", "mean-of-crossings", "curvature-weighted", "relaxed"]
+        {
+            assert!(error.contains(part), "{error}");
+        }
+        let error = error_with("refine_crossings = false", "refine_crossings = 4");
+        assert!(error.contains("refine_crossings = 4") && error.contains("boolean"), "{error}");
+        let placement = |to| paper_with(key, to).unwrap().file.extraction.placement;
+        assert_eq!(placement(""), crate::config::Placement::MeanOfCrossings);
+        assert_eq!(placement("placement = \"relaxed\""), crate::config::Placement::Relaxed);
     }
 
     #[test]

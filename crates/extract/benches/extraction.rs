@@ -13,7 +13,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use extract::{
     Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Gyroid, Lattice,
-    MeshDistance, ScalarField, Source, Sphere, StageTimes,
+    MeshDistance, Placement, ScalarField, Source, Sphere, StageTimes,
 };
 use glam::Vec3;
 use mesh::{Bounds, read_ply, repair};
@@ -99,6 +99,38 @@ fn whole<const N: u32>(bencher: Bencher, name: &str) {
     bencher.counter(ItemsCount::new(subject.lattice.stored_samples())).bench_local(|| {
         subject.run(None, Clustering::Integrated, 1);
     });
+}
+
+/// [`whole`] with another placement of vertices.
+fn placed<const N: u32>(bencher: Bencher, name: &str, placement: Placement, refine_crossings: bool) {
+    let Some(mut subject) = Subject::new(name, N) else { return };
+    let settings = ExtractSettings { placement, refine_crossings, ..ExtractSettings::default() };
+    bencher.bench_local(|| {
+        let Subject { field, lattice, extractor, extraction } = &mut subject;
+        extractor
+            .extract_into(Source::Field(&**field), lattice, &settings, &Execution { threads: 1 }, extraction)
+            .expect("the subjects can be extracted");
+    });
+}
+
+#[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
+fn placed_by_curvature<const N: u32>(bencher: Bencher, name: &str) {
+    placed::<N>(bencher, name, Placement::CurvatureWeighted, false);
+}
+
+#[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
+fn placed_projected<const N: u32>(bencher: Bencher, name: &str) {
+    placed::<N>(bencher, name, Placement::Projected, false);
+}
+
+#[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
+fn placed_relaxed<const N: u32>(bencher: Bencher, name: &str) {
+    placed::<N>(bencher, name, Placement::Relaxed, false);
+}
+
+#[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
+fn placed_at_refined_crossings<const N: u32>(bencher: Bencher, name: &str) {
+    placed::<N>(bencher, name, Placement::MeanOfCrossings, true);
 }
 
 #[divan::bench(args = ["sphere", "asteroid", "gyroid"], consts = CELLS)]

@@ -4,6 +4,7 @@
 use extract::{Arrangement, Execution, ExtractSettings, Extractor, Lattice, ScalarField, Source, Sphere};
 use glam::Vec3;
 use mesh::Bounds;
+use std::io::IsTerminal;
 use std::time::Instant;
 
 /// Every point is sampled: no bound is offered.
@@ -12,6 +13,17 @@ struct Unbounded(Sphere);
 impl ScalarField for Unbounded {
     fn sample(&self, p: Vec3) -> f32 {
         self.0.sample(p)
+    }
+}
+
+/// A bar on a terminal, a line every eighth in a file. With several threads calls come in any order.
+fn bar(done: usize, all: usize) {
+    let percent = 100 * done / all;
+    if std::io::stderr().is_terminal() {
+        let end = if done == all { "\n" } else { "" };
+        eprint!("\r[{:<50}] {percent:3} %, {done} of {all} layers{end}", "#".repeat(percent / 2));
+    } else if done.is_multiple_of((all / 8).max(1)) {
+        eprintln!("{percent} %, {done} of {all} layers");
     }
 }
 
@@ -24,11 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 2.0 / cells as f32)?;
     let field = Unbounded(Sphere { radius });
     let start = Instant::now();
-    let mut extractor = Extractor::new().with_progress(|done, all| {
-        if done % (all / 8) == 0 {
-            eprintln!("{done} of {all} layers");
-        }
-    });
+    let mut extractor = Extractor::new().with_progress(bar);
     let extraction = extractor.extract(
         Source::Field(&field),
         &lattice,

@@ -6,7 +6,7 @@ use mesh::TriangleMesh;
 
 use crate::field::ScalarField;
 use crate::lattice::Lattice;
-use crate::settings::{Execution, ExtractSettings, Positions};
+use crate::settings::{Execution, ExtractSettings, Placement, Positions};
 use crate::sweep::{Extractor, Source};
 use crate::triangles::Triangulation;
 
@@ -31,7 +31,7 @@ pub struct StageTimes {
     pub sampling: Duration,
     /// Finding and placing vertices; integrated clustering is part of finding them.
     pub vertex: Duration,
-    /// Making triangles.
+    /// Making triangles, and moving vertices to where the settings want them.
     pub geometry: Duration,
     /// The edge collapse; zero where none is asked for. The published geometry stage is this and `geometry`.
     pub clustering: Duration,
@@ -116,6 +116,14 @@ pub enum ExtractError {
     /// Given samples and [`Positions::Accumulated`], which says where a field is sampled.
     #[error("given samples have no accumulated positions")]
     SamplesAccumulated,
+    /// Given samples, and settings that call the field.
+    #[error("given samples say nothing between them: {placement:?}{} needs the field", if *refine_crossings { " with refined crossings" } else { "" })]
+    PlacementNeedsField {
+        /// What was asked for.
+        placement: Placement,
+        /// What was asked for.
+        refine_crossings: bool,
+    },
     /// The sampling threads could not be started.
     #[error("cannot start {threads} sampling threads: {reason}")]
     Threads {

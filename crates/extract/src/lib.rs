@@ -25,6 +25,8 @@
 //! - The same field, lattice and settings give the same mesh to the byte, on any number of threads. The fields here
 //!   use no platform mathematics, so the mesh is also the same on every machine.
 //! - Vertices lie in the lattice's box.
+//! - The triangles do not depend on where vertices are placed ([`Placement`], [`ExtractSettings::refine_crossings`]),
+//!   unless edges are collapsed; and beside the mean of interpolated crossings none is turned over.
 //! - With [`Topology::Guarded`], the default, and any [`Clustering`]: whatever the samples, the mesh is an oriented
 //!   2-manifold that uses all its vertices, closed where the surface stays clear of the box. No two triangles have
 //!   the same vertices. Components, genus and boundary loops are those of the unclustered surface. Why: DESIGN.md.
@@ -50,6 +52,21 @@
 //! given ([`Source::Samples`]). An [`Extractor`] keeps its buffers from one volume to the next. With
 //! [`Positions::Accumulated`], for comparison with the published evaluation, all samples and edges are stored.
 //!
+//! # Odd input
+//!
+//! | input | what comes of it |
+//! |---|---|
+//! | isovalue infinite or `NaN` | [`ExtractError::Isovalue`] |
+//! | isovalue that no sample passes, surface between the samples | a mesh without vertices |
+//! | surface through the box | a mesh that is open there, and only there |
+//! | spacing zero, negative, infinite, `NaN` | [`LatticeError::Spacing`] |
+//! | spacing too small, too large for `f32` | [`LatticeError::TooManyCells`], [`LatticeError::TooManySamples`], [`LatticeError::OutOfRange`] |
+//! | spacing beyond the box | one cell, which reaches past it |
+//! | box empty, inverted, infinite, `NaN` | [`LatticeError::Bounds`] |
+//! | samples of another number than the lattice has | [`ExtractError::SampleCount`] |
+//! | memory that is not there | [`ExtractError::OutOfMemory`], [`ExtractError::NoMemoryForMesh`] |
+//! | more than 2^32 - 1 vertices | [`ExtractError::TooManyVertices`] |
+//!
 //! A sample that is `NaN` is outside and leaves the crossings round it to the inside end, in the middle of their
 //! edges; so are two infinities. One infinity puts the crossing on the other end.
 //!
@@ -72,6 +89,8 @@ mod fields;
 #[path = "../tests/survey/mod.rs"]
 mod survey;
 
+mod accuracy;
+mod bracket;
 mod clusters;
 mod collapse;
 mod edges;
@@ -79,7 +98,9 @@ mod extraction;
 mod field;
 mod guard;
 mod lattice;
+mod level;
 mod normals;
+mod placement;
 mod sampling;
 mod settings;
 mod stored;
@@ -88,8 +109,9 @@ mod tetrahedra;
 mod triangles;
 mod vertices;
 
+pub use accuracy::{Accuracy, accuracy};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
-pub use field::{Asteroid, Gyroid, MeshDistance, MeshFieldError, ScalarField, Sphere};
+pub use field::{Asteroid, Gyroid, Kept, MeshDistance, MeshFieldError, ScalarField, Sphere};
 pub use lattice::{Arrangement, Lattice, LatticeError};
-pub use settings::{Clustering, Execution, ExtractSettings, Positions, Topology};
+pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use sweep::{Extractor, Source};

@@ -25,17 +25,41 @@ pub(crate) fn sample(
         }
     };
     match execution.threads {
-        0 => samples.par_chunks_exact_mut(layer_len).enumerate().for_each(sample_layer),
         1 => samples.chunks_exact_mut(layer_len).enumerate().for_each(sample_layer),
-        threads => {
-            // More threads than layers would have nothing to do.
-            let threads = threads.min(layout.grid()[2]);
-            rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .map_err(|error| ExtractError::Threads { threads, reason: error.to_string() })?
-                .install(|| samples.par_chunks_exact_mut(layer_len).enumerate().for_each(sample_layer));
-        }
+        // More threads than layers would have nothing to do.
+        _ => on_threads(execution, layout.grid()[2], || {
+            samples.par_chunks_exact_mut(layer_len).enumerate().for_each(sample_layer);
+        })?,
     }
     Ok(())
+}
+
+/// Runs `work` where rayon has as many threads as `execution` asks for, and no more than `most`.
+pub(crate) fn on_threads<R: Send>(
+    execution: &Execution,
+    most: usize,
+    work: impl FnOnce() -> R + Send,
+) -> Result<R, ExtractError> {
+    if execution.threads == 0 {
+        return Ok(work());
+    }
+    let threads = execution.threads.min(most);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| ExtractError::Threads { threads, reason: error.to_string() })?;
+    Ok(pool.install(work))
+}
+
+/// Calls `work` with each item and its number, on as many threads as `execution` asks for.
+pub(crate) fn for_each_on_threads<T: Send>(
+    execution: &Execution,
+    items: &mut [T],
+    work: impl Fn(usize, &mut T) + Sync + Send,
+) -> Result<(), ExtractError> {
+    if execution.threads == 1 {
+        items.iter_mut().enumerate().for_each(|(i, item)| work(i, item));
+        return Ok(());
+    }
+    on_threads(execution, items.len().max(1), || {
+        items.par_iter_mut().enumerate().with_min_len(256).for_each(|(i, item)| work(i, item));
+    })
 }

@@ -11,16 +11,24 @@ pub struct ExtractSettings {
     pub topology: Topology,
     /// How the positions of sample points are computed.
     pub positions: Positions,
+    /// Where a vertex goes.
+    pub placement: Placement,
+    /// Whether the field is called for the place of each crossing on its lattice edge, up to four times, instead of
+    /// interpolating linearly between the samples at its ends. Which edges cross, and which end a crossing belongs to,
+    /// is still the samples' affair: the triangles are the same. Needs [`Source::Field`](crate::Source).
+    pub refine_crossings: bool,
 }
 
 impl Default for ExtractSettings {
-    /// Isovalue 0, integrated clustering, guarded topology, indexed positions.
+    /// Isovalue 0, integrated clustering, guarded topology, indexed positions, means of interpolated crossings.
     fn default() -> Self {
         Self {
             isovalue: 0.0,
             clustering: Clustering::Integrated,
             topology: Topology::Guarded,
             positions: Positions::Indexed,
+            placement: Placement::MeanOfCrossings,
+            refine_crossings: false,
         }
     }
 }
@@ -58,6 +66,38 @@ pub enum Topology {
     ///
     /// A crossing in the middle of its edge belongs to both ends and has two vertices, of which one is used.
     Published,
+}
+
+/// Where a vertex goes. Triangles and vertex numbers are the same for all.
+///
+/// All but the first move a vertex away from the mean of its crossings. None turns a triangle over: where one of those
+/// round a vertex would keep less than a tenth of its area, seen along its normal, the vertex stays. So do vertices on
+/// the box. After an edge collapse, vertices start from where that has left them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Placement {
+    /// The unweighted mean of the cluster's crossings, as published (Costen 2026).
+    #[default]
+    MeanOfCrossings,
+    /// Their mean weighted by how sharply the surface bends at each, which draws vertices to creases (after Treece,
+    /// Prager & Gee 1999, section 3.4): the weight is `tan(d / 2) cos f`, where `d` is the angle between the gradients
+    /// interpolated in the two triangles beside the lattice edge in a plane through it, and `f` the angle between that
+    /// plane and the mean gradient; of the two or three planes through the edge the one with the largest counts.
+    CurvatureWeighted,
+    /// One Newton step from the mean along the field's gradient, to the isosurface. A step longer than half the
+    /// spacing, or that ends no nearer to the isovalue, is not taken. Needs [`Source::Field`](crate::Source).
+    Projected,
+    /// Half the way from the mean of crossings to the mean of the neighbouring vertices, across the vertex's normal,
+    /// then as projected. A vertex on the mesh's boundary is projected only. Needs [`Source::Field`](crate::Source).
+    Relaxed,
+}
+
+impl Placement {
+    pub(crate) fn calls_the_field(self) -> bool {
+        match self {
+            Self::MeanOfCrossings | Self::CurvatureWeighted => false,
+            Self::Projected | Self::Relaxed => true,
+        }
+    }
 }
 
 /// How the positions of sample points are computed.

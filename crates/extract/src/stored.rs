@@ -6,12 +6,13 @@ use std::time::{Duration, Instant};
 
 use mesh::TriangleMesh;
 
-use crate::collapse::collapse;
 use crate::edges::EdgeTable;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
 use crate::field::ScalarField;
 use crate::lattice::{Coordinates, Lattice, Layout};
+use crate::level::Level;
 use crate::normals::vertex_normals;
+use crate::placement::{self, CrossingPlacer};
 use crate::sampling::sample;
 use crate::settings::{Execution, ExtractSettings};
 use crate::triangles::triangulate;
@@ -38,15 +39,17 @@ pub(crate) fn extract(
     sample(field, &layout, &coordinates, execution, &mut samples)?;
     let sampling = clock.lap();
 
-    let (mut positions, crossings) =
-        place_vertices(lattice, &layout, &samples, settings, &mut sides, &mut edges)?;
+    let level = Level { field, isovalue: settings.isovalue, spacing: lattice.spacing() };
+    let placer = CrossingPlacer::new(lattice, settings, Some(level));
+    let (mut positions, targets, crossings) =
+        place_vertices(lattice, &layout, &samples, settings, placer.as_ref(), &mut sides, &mut edges)?;
     let vertex = clock.lap();
 
     let mut surface = triangulate(lattice, &layout, &sides, &edges);
-    let geometry = clock.lap();
-
-    let collapsed = collapse(settings, lattice.spacing(), &mut positions, &mut surface);
-    let clustering = if collapsed { clock.lap() } else { Duration::ZERO };
+    let collapsing =
+        placement::finish(Some(level), lattice, settings, execution, &targets, &mut positions, &mut surface)?;
+    let clustering = collapsing.unwrap_or_default();
+    let geometry = clock.lap() - clustering;
 
     let normals = vertex_normals(&positions, &surface.triangles);
     let times = StageTimes { allocation, sampling, vertex, geometry, clustering, normals: clock.lap() };

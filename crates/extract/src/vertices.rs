@@ -13,9 +13,10 @@ use crate::clusters::Clusters;
 use crate::edges::EdgeTable;
 use crate::guard::{Class, Guard};
 use crate::lattice::{
-    ALL_DIRECTIONS, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout, PADDING_LAYERS,
-    members,
+    ALL_DIRECTIONS, Arrangement, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout,
+    PADDING_LAYERS, members,
 };
+use crate::placement::{CrossingPlacer, Surroundings};
 use crate::settings::{Clustering, ExtractSettings, Topology};
 
 /// One byte a sample point, 1 inside, with room at both ends so that every step to a neighbour stays in it.
@@ -53,7 +54,8 @@ impl Sides {
     }
 }
 
-/// Places all vertices. Returns their positions and the number of lattice edges that cross the surface.
+/// Places all vertices. Returns their positions, those that `placer` gives them, if there is one, and the number of
+/// lattice edges that cross the surface.
 ///
 /// # Errors
 /// [`ExtractError::TooManyVertices`] when a 32-bit index cannot name them.
@@ -62,21 +64,24 @@ pub(crate) fn place_vertices(
     layout: &Layout,
     samples: &[f32],
     settings: &ExtractSettings,
+    placer: Option<&CrossingPlacer>,
     sides: &mut Sides,
     edges: &mut EdgeTable,
-) -> Result<(Vec<Vec3>, u64), ExtractError> {
+) -> Result<(Vec<Vec3>, Vec<Vec3>, u64), ExtractError> {
     sides.fill(samples, settings.isovalue);
     let coordinates = Coordinates::measured(lattice, layout, settings.positions);
     let mut stage = VertexStage {
         lattice,
         directions: lattice.arrangement().directions(),
-        guard: Guard::get(lattice.arrangement()),
+        arrangement: lattice.arrangement(),
         samples,
         settings,
         ties: Ties::of(settings.topology),
         sides,
         edges,
         positions: Vec::new(),
+        placer,
+        targets: Vec::new(),
         crossing_ends: 0,
     };
     let mut active = vec![0; layout.grid()[0]];
@@ -95,19 +100,21 @@ pub(crate) fn place_vertices(
         }
     }
     // Each crossing was seen from both ends.
-    Ok((stage.positions, stage.crossing_ends / 2))
+    Ok((stage.positions, stage.targets, stage.crossing_ends / 2))
 }
 
 struct VertexStage<'a> {
     lattice: &'a Lattice,
     directions: &'static Directions,
-    guard: &'static Guard,
+    arrangement: Arrangement,
     samples: &'a [f32],
     settings: &'a ExtractSettings,
     ties: Ties,
     sides: &'a Sides,
     edges: &'a mut EdgeTable,
     positions: Vec<Vec3>,
+    placer: Option<&'a CrossingPlacer<'a>>,
+    targets: Vec<Vec3>,
     crossing_ends: u64,
 }
 
@@ -149,6 +156,15 @@ impl VertexStage<'_> {
         for &cluster in clusters.sets() {
             self.place(point, position, cluster, &offsets)?;
         }
+        if let Some(placer) = self.placer {
+            let mut neighbours = [f32::NAN; DIRECTIONS];
+            for direction in members(incident) {
+                let neighbour = point.strict_add_signed(steps[direction]);
+                neighbours[direction] = self.samples[neighbour] - self.settings.isovalue;
+            }
+            let around = Surroundings { position, difference: -difference, neighbours };
+            self.targets.extend(clusters.sets().iter().map(|&cluster| placer.place(&around, cluster)));
+        }
         Ok(())
     }
 
@@ -159,11 +175,12 @@ impl VertexStage<'_> {
                 Clusters::integrated(near, self.directions)
             }
             (Clustering::Integrated | Clustering::IntegratedCollapse, Topology::Guarded) => {
-                let inner = incident == ALL_DIRECTIONS;
-                if inner && self.guard.class(crossing, near) != Class::Ask {
+                // Here, so that the other rules do without its tables.
+                let guard = Guard::get(self.arrangement);
+                if incident == ALL_DIRECTIONS && guard.class(crossing, near) != Class::Ask {
                     Clusters::whole(near)
                 } else {
-                    Clusters::from_partition(&self.guard.partition(crossing, near, incident))
+                    Clusters::from_partition(&guard.partition(crossing, near, incident))
                 }
             }
         }

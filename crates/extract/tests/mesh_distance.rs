@@ -317,7 +317,12 @@ fn the_studys_bunny_has_no_handle_and_no_bubble() {
                 for positions in [Positions::Indexed, Positions::Accumulated { chunks: 16 }] {
                     let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
                     let rules = Topology::Published;
-                    let settings = ExtractSettings { isovalue: 0.0, clustering, positions, topology: rules };
+                    let settings = ExtractSettings {
+                        clustering,
+                        positions,
+                        topology: rules,
+                        ..ExtractSettings::default()
+                    };
                     let extraction = extract(&field, &lattice, &settings, &Execution::default()).unwrap();
                     let report = topology(&extraction.mesh);
                     let case = format!("{arrangement:?} {clustering:?} {spacing} {positions:?}: {report:?}");

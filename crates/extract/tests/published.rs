@@ -65,7 +65,8 @@ fn extract_row(row: &Row) -> Extraction {
         other => panic!("{other}"),
     };
     let topology = Topology::Published;
-    let settings = ExtractSettings { isovalue: 0.0, clustering, topology, positions: PUBLISHED };
+    let settings =
+        ExtractSettings { clustering, topology, positions: PUBLISHED, ..ExtractSettings::default() };
     extract(field, &lattice_of(row), &settings, &Execution::default()).unwrap()
 }
 

@@ -1,8 +1,8 @@
-//! An extractor that has seen a volume of a size allocates nothing for the next one.
+//! An extractor that has seen a volume of a size allocates nothing for the next one, whatever the field.
 
 use extract::{
-    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Extractor, Gyroid, Lattice, ScalarField,
-    Source, Sphere, Topology,
+    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Gyroid, Lattice,
+    MeshDistance, ScalarField, Source, Sphere, Topology,
 };
 use glam::Vec3;
 use mesh::Bounds;
@@ -12,38 +12,77 @@ use std::alloc::System;
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
+const ONE: Execution = Execution { threads: 1 };
+const BOTH: [Arrangement; 2] = [Arrangement::BodyCentred, Arrangement::SimpleCubic];
+
 /// One test only: the allocator counts for the whole process.
 #[test]
+fn allocations() {
+    the_second_volume_of_a_size_allocates_nothing();
+    an_extractor_holds_what_the_lattice_says();
+}
+
+fn cube() -> Bounds {
+    Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) }
+}
+
 fn the_second_volume_of_a_size_allocates_nothing() {
-    let bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) };
-    let execution = Execution { threads: 1 };
-    for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
-        let lattice = Lattice::try_new(arrangement, bounds, 0.05).unwrap();
+    let coarse = Lattice::try_new(Arrangement::BodyCentred, cube(), 0.2).unwrap();
+    let solid = extract::extract(&Sphere::default(), &coarse, &ExtractSettings::default(), &ONE).unwrap();
+    let fields: [(&str, &dyn ScalarField); 4] = [
+        ("sphere", &Sphere { radius: 0.9 }),
+        ("asteroid", &Asteroid::default()),
+        // About three points a period: the guard has to look closely.
+        ("gyroid", &Gyroid { frequency: 40.0 }),
+        ("mesh", &MeshDistance::try_new(&solid.mesh).unwrap()),
+    ];
+    for arrangement in BOTH {
+        let lattice = Lattice::try_new(arrangement, cube(), 0.05).unwrap();
         for clustering in [Clustering::Integrated, Clustering::None] {
             for topology in [Topology::Guarded, Topology::Published] {
                 let settings = ExtractSettings { clustering, topology, ..ExtractSettings::default() };
                 let (mut extractor, mut extraction) = (Extractor::new(), Extraction::default());
-                let mut run = |radius: f32| {
-                    let sphere: &dyn ScalarField = &Sphere { radius };
+                let mut run = |field: &dyn ScalarField| {
                     extractor
-                        .extract_into(Source::Field(sphere), &lattice, &settings, &execution, &mut extraction)
+                        .extract_into(Source::Field(field), &lattice, &settings, &ONE, &mut extraction)
                         .unwrap();
                     assert!(extraction.counts.triangles > 1000);
-                    // About three points a period: the guard has to look closely.
-                    let gyroid: &dyn ScalarField = &Gyroid { frequency: 40.0 };
-                    extractor
-                        .extract_into(Source::Field(gyroid), &lattice, &settings, &execution, &mut extraction)
-                        .unwrap();
                 };
-                run(1.0);
+                for (name, field) in fields {
+                    run(field);
+                    let region = Region::new(ALLOCATOR);
+                    run(field);
+                    run(field);
+                    let change = region.change();
+                    let seen = (change.allocations, change.reallocations, change.deallocations);
+                    assert_eq!(seen, (0, 0, 0), "{name} {arrangement:?} {clustering:?} {topology:?}");
+                }
+                // One surface after another, and no larger.
                 let region = Region::new(ALLOCATOR);
-                for radius in [1.0, 0.9, 0.95] {
-                    run(radius);
+                for radius in [0.7, 1.0, 0.95] {
+                    run(&Sphere { radius });
                 }
                 let change = region.change();
-                let seen = (change.allocations, change.reallocations, change.deallocations);
-                assert_eq!(seen, (0, 0, 0), "{arrangement:?} {clustering:?} {topology:?}");
+                assert_eq!((change.allocations, change.reallocations, change.deallocations), (0, 0, 0));
             }
         }
+    }
+}
+
+/// Of an empty surface, so that there is no mesh on top.
+fn an_extractor_holds_what_the_lattice_says() {
+    for arrangement in BOTH {
+        let lattice = Lattice::try_new(arrangement, cube(), 0.01).unwrap();
+        let mut extractor = Extractor::new();
+        let mut run = || {
+            let nothing: &dyn ScalarField = &Sphere { radius: -1.0 };
+            extractor.extract(nothing.into(), &lattice, &ExtractSettings::default(), &ONE).unwrap();
+        };
+        let region = Region::new(ALLOCATOR);
+        run();
+        let change = region.change();
+        let held = (change.bytes_allocated - change.bytes_deallocated) as f64;
+        let told = lattice.sweep_bytes(1) as f64;
+        assert!(held > 0.98 * told && held < 1.1 * told, "{arrangement:?}: {held} bytes, {told} told");
     }
 }

@@ -86,3 +86,67 @@ fn compress(indices: &[u8], delay: u16, width: u16, height: u16) -> Frame<'_> {
     frame.make_lzw_pre_encoded();
     frame
 }
+
+/// What a GIF says besides pictures: comments, plain text, names of applications other than the loop's, one a block, in
+/// the order of the file. A damaged file is read as far as it goes.
+pub fn gif_texts(bytes: &[u8]) -> Vec<String> {
+    let mut texts = Vec::new();
+    let colours = |packed: u8| if packed & 0x80 == 0 { 0 } else { 3 << ((packed & 7) + 1) };
+    let mut walk = || -> Option<()> {
+        let mut at = 13 + colours(*bytes.get(10)?);
+        // A block is a row of sub-blocks, each with its length before it, up to an empty one.
+        let block = |mut at: usize| -> Option<(Vec<u8>, usize)> {
+            let mut content = Vec::new();
+            loop {
+                let length = usize::from(*bytes.get(at)?);
+                content.extend(bytes.get(at + 1..at + 1 + length)?);
+                at += 1 + length;
+                if length == 0 {
+                    return Some((content, at));
+                }
+            }
+        };
+        loop {
+            match *bytes.get(at)? {
+                0x21 => {
+                    let label = *bytes.get(at + 1)?;
+                    let (content, next) = block(at + 2)?;
+                    at = next;
+                    let timing = label == 0xf9;
+                    let the_loop = label == 0xff && content.starts_with(b"NETSCAPE2.0");
+                    if !timing && !the_loop {
+                        texts.push(String::from_utf8_lossy(&content).into_owned());
+                    }
+                }
+                0x2c => (_, at) = block(at + 11 + colours(*bytes.get(at + 9)?))?,
+                _ => return None,
+            }
+        }
+    };
+    walk();
+    texts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn our_files_say_nothing_and_comments_are_found() {
+        let palette = Palette::new(vec![[0, 0, 0], [255, 255, 255]]);
+        let frames = (0..3).map(|f| (0..1200).map(|i| u8::from(i % 7 == f)).collect()).collect();
+        let animation = Animation { width: 40, height: 30, delay_cs: 6, palette, frames };
+        let mut file = Vec::new();
+        animation.write_gif(&mut file).unwrap();
+        assert_eq!(gif_texts(&file), Vec::<String>::new());
+        // A comment before the trailer.
+        let end = file.len() - 1;
+        assert_eq!(file[end], 0x3b);
+        file.splice(end..end, *b"\x21\xfe\x05ss_bi\x00");
+        assert_eq!(gif_texts(&file), ["ss_bi"]);
+        assert_eq!(Animation::read_gif(file.as_slice()).unwrap(), animation, "a comment changes no picture");
+        for cut in 0..file.len() {
+            assert!(gif_texts(&file[..cut]).len() <= 1, "no panic on a damaged file");
+        }
+    }
+}

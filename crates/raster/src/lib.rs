@@ -41,6 +41,7 @@ mod turntable;
 pub use animation::{Animation, turntable};
 pub use camera::{Camera, Viewport};
 pub use error::{AnimationError, PanelError, RasterError};
+pub use gif_file::gif_texts;
 pub use palette::Palette;
 pub use panels::{Caption, Panel, Sheet, panels};
 pub use png_file::{pixmap_from_png, pixmap_to_png};

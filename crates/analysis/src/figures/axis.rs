@@ -24,6 +24,15 @@ impl Axis {
         Self { low: 0.0, high: f64::from(count) * step, ticks, logarithmic: false }
     }
 
+    /// Round steps that cover `low` to `high`.
+    pub(super) fn spanning(low: f64, high: f64) -> Self {
+        let axis = Self::from_zero(high - low);
+        let step = axis.ticks.get(1).copied().unwrap_or(1.0);
+        let (first, last) = ((low / step + 1e-9).floor() as i64, (high / step - 1e-9).ceil() as i64);
+        let ticks: Vec<f64> = (first..=last.max(first + 1)).map(|i| i as f64 * step).collect();
+        Self { low: ticks[0], high: ticks[ticks.len() - 1], ticks, logarithmic: false }
+    }
+
     /// From 0 to exactly `high`.
     pub(super) fn up_to(high: f64) -> Self {
         let mut axis = Self::from_zero(high);
@@ -32,12 +41,14 @@ impl Axis {
         axis
     }
 
-    /// Logarithmic, from 1 to `largest` or a little more, marked at 1, 1.5, 2, 3, 5, 7 and their tenfolds.
+    /// Logarithmic, from 1 to `largest` or a little more, marked at 1, 1.5, 2, 3, 5, 7 and their tenfolds; over more than
+    /// two decades at the tenfolds alone.
     pub(super) fn logarithmic(largest: f64) -> Self {
+        let marks: &[f64] = if largest > 100.0 { &[1.0] } else { &[1.0, 1.5, 2.0, 3.0, 5.0, 7.0] };
         let mut ticks = vec![];
         let mut decade = 1.0;
         while decade <= 1e6 && ticks.last().is_none_or(|&last| last < largest) {
-            for tick in [1.0, 1.5, 2.0, 3.0, 5.0, 7.0].map(|t| t * decade) {
+            for tick in marks.iter().map(|t| t * decade) {
                 if ticks.last().is_none_or(|&last| last < largest) {
                     ticks.push(tick);
                 }
@@ -116,6 +127,9 @@ mod tests {
         assert_eq!(Axis::from_zero(0.0).high, 1.0);
         assert_eq!(Axis::up_to(10.0).ticks, [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
         assert_eq!(Axis::logarithmic(4.0).labels(), ["1", "1.5", "2", "3", "5"]);
+        assert_eq!(Axis::logarithmic(2000.0).labels(), ["1", "10", "100", "1,000", "10,000"]);
+        assert_eq!(Axis::spanning(-0.42, 1.02).labels(), ["-0.5", "0.0", "0.5", "1.0", "1.5"]);
+        assert_eq!(Axis::spanning(0.0, 0.0).ticks.len(), 2);
     }
 
     #[test]

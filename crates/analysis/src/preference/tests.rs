@@ -1,8 +1,6 @@
 use super::*;
-use crate::answers::Answers;
 use crate::fixture;
 use proptest::prelude::*;
-use std::path::Path;
 
 fn counted(study: &Study) -> Tally {
     Tally::of(&fixture::answers(study), study).unwrap()
@@ -135,8 +133,7 @@ proptest! {
         let mut people: Vec<usize> = (0..answers.len()).collect();
         let straight: Vec<usize> = (0..27).collect();
         let read = |text: String| {
-            let answers = Answers::parse(text.as_bytes(), Path::new("random.csv"), &study).unwrap();
-            Tally::of(&answers, &study).unwrap()
+            Tally::of(&fixture::parse(&text, &study), &study).unwrap()
         };
         let tally = read(csv(&study, &answers, &straight, &people));
         people.rotate_left(turn % answers.len());

@@ -24,6 +24,15 @@ impl Outcome {
         }
     }
 
+    /// Place in [`Outcome::ALL`].
+    pub fn index(self) -> usize {
+        match self {
+            Self::Left => 0,
+            Self::Tie => 1,
+            Self::Right => 2,
+        }
+    }
+
     /// The same answer with the sides swapped.
     pub fn swapped(self) -> Self {
         match self {

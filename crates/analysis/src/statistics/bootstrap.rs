@@ -1,9 +1,12 @@
 //! Bootstrap intervals that resample participants, never answers (Efron 1987, J. Amer. Statist. Assoc. 82:171).
 //!
-//! Resample b draws from its own stream of the seeded generator, so the result does not depend on the number of threads.
+//! Participants of the same kind (the same score, the same answers) are interchangeable, so a resample is how many it has
+//! of each kind: one multinomial draw, whose cost goes with the number of kinds and not of people. Resample b draws from
+//! its own stream of the seeded generator, so the result does not depend on the number of threads.
 
+use super::multinomial::multinomial;
 use crate::interval::{Interval, LEVEL};
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -33,49 +36,77 @@ pub struct BootstrapInterval {
     pub without_estimate: usize,
 }
 
-/// The participants of one resample: `participants` draws with replacement.
-fn draw(resampling: Resampling, resample: usize, participants: usize) -> Vec<usize> {
-    let mut stream =
-        Pcg64::seed_from_u64(resampling.seed ^ (resample as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-    (0..participants).map(|_| stream.random_range(0..participants)).collect()
+/// The distinct values among participants, ascending, and how many have each.
+pub fn kinds(values: &[f64]) -> (Vec<f64>, Vec<u64>) {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let runs = sorted.chunk_by(|a, b| a == b);
+    runs.map(|run| (run[0], run.len() as u64)).unzip()
 }
 
 fn replicates<T: Send>(
+    counts: &[u64],
     resampling: Resampling,
-    participants: usize,
-    statistic: impl Fn(&[usize]) -> Option<T> + Sync,
+    statistic: impl Fn(&[u64]) -> Option<T> + Sync,
 ) -> Vec<T> {
-    let one = |resample| statistic(&draw(resampling, resample, participants));
+    let one = |resample: usize| {
+        let stream = resampling.seed ^ (resample as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        statistic(&multinomial(&mut Pcg64::seed_from_u64(stream), counts))
+    };
     let all: Vec<Option<T>> = (0..resampling.resamples).into_par_iter().map(one).collect();
     all.into_iter().flatten().collect()
 }
 
-/// The bias-corrected and accelerated interval of a statistic of participants, given by their indices.
+/// The bias-corrected and accelerated interval of a statistic of participants, of whom there are `counts[k]` of kind k; the
+/// statistic is given how many it is to take of each.
 ///
 /// The acceleration is the jackknife's over participants. `None` if the statistic, a jackknife value or more than half of
 /// the resamples have no estimate, if the estimate lies outside all resamples, or if nothing varies.
 pub fn bca(
-    participants: usize,
+    counts: &[u64],
     resampling: Resampling,
-    statistic: impl Fn(&[usize]) -> Option<f64> + Sync,
+    statistic: impl Fn(&[u64]) -> Option<f64> + Sync,
 ) -> Option<BootstrapInterval> {
-    let everyone: Vec<usize> = (0..participants).collect();
-    let estimate = statistic(&everyone)?;
-    let without = |left_out: usize| {
-        let others: Vec<usize> = everyone.iter().copied().filter(|&p| p != left_out).collect();
-        statistic(&others)
-    };
-    let jackknife = (0..participants).map(without).collect::<Option<Vec<f64>>>()?;
-    let replicates = replicates(resampling, participants, &statistic);
-    let without_estimate = resampling.resamples - replicates.len();
-    let interval = bca_interval(replicates, estimate, &jackknife)
-        .filter(|_| 2 * without_estimate <= resampling.resamples);
-    interval.map(|interval| BootstrapInterval { interval, without_estimate })
+    bca_each(counts, resampling, |weights| statistic(weights).map(|value| vec![value]))?.pop()?
 }
 
-/// BCa ends from replicates, estimate and jackknife values: quantiles at Phi(z0 + (z0 + z) / (1 - a (z0 + z))), with
-/// z0 = Phi^-1 of the share of replicates below the estimate (those equal to it count half).
-pub(super) fn bca_interval(mut replicates: Vec<f64>, estimate: f64, jackknife: &[f64]) -> Option<Interval> {
+/// As [`bca`], for several statistics of the same resamples; `None` altogether if a value that all need is missing.
+pub fn bca_each(
+    counts: &[u64],
+    resampling: Resampling,
+    statistic: impl Fn(&[u64]) -> Option<Vec<f64>> + Sync,
+) -> Option<Vec<Option<BootstrapInterval>>> {
+    let estimates = statistic(counts)?;
+    let without = |k: usize| {
+        let mut others = counts.to_vec();
+        others[k] -= 1;
+        statistic(&others).map(|values| (values, counts[k]))
+    };
+    let kinds: Vec<usize> = (0..counts.len()).filter(|&k| counts[k] > 0).collect();
+    let jackknife: Option<Vec<(Vec<f64>, u64)>> = kinds.into_par_iter().map(without).collect();
+    let jackknife = jackknife?;
+    let replicates = replicates(counts, resampling, &statistic);
+    let without_estimate = resampling.resamples - replicates.len();
+    if 2 * without_estimate > resampling.resamples {
+        return None;
+    }
+    let interval = |i: usize| {
+        let own = replicates.iter().map(|values| values[i]).collect();
+        let left_out: Vec<(f64, u64)> = jackknife.iter().map(|(values, count)| (values[i], *count)).collect();
+        let interval = bca_interval(own, estimates[i], &left_out)?;
+        Some(BootstrapInterval { interval, without_estimate })
+    };
+    Some((0..estimates.len()).map(interval).collect())
+}
+
+/// BCa ends from replicates, estimate and jackknife values with how often each occurs: quantiles at
+/// Phi(z0 + (z0 + z) / (1 - a (z0 + z))), with z0 = Phi^-1 of the share of replicates below the estimate (those equal to
+/// it count half).
+pub(super) fn bca_interval(
+    mut replicates: Vec<f64>,
+    estimate: f64,
+    jackknife: &[(f64, u64)],
+) -> Option<Interval> {
     replicates.sort_by(f64::total_cmp);
     let below = replicates.iter().filter(|&&r| r < estimate).count() as f64;
     let same = replicates.iter().filter(|&&r| r == estimate).count() as f64;
@@ -83,8 +114,10 @@ pub(super) fn bca_interval(mut replicates: Vec<f64>, estimate: f64, jackknife: &
     if !(share > 0.0 && share < 1.0) {
         return None;
     }
-    let mean = jackknife.iter().sum::<f64>() / jackknife.len() as f64;
-    let moment = |power: i32| jackknife.iter().map(|value| (mean - value).powi(power)).sum::<f64>();
+    let n: f64 = jackknife.iter().map(|&(_, count)| count as f64).sum();
+    let mean = jackknife.iter().map(|&(value, count)| value * count as f64).sum::<f64>() / n;
+    let moment =
+        |power: i32| jackknife.iter().map(|&(v, count)| count as f64 * (mean - v).powi(power)).sum::<f64>();
     if moment(2) == 0.0 {
         return None;
     }
@@ -98,15 +131,15 @@ pub(super) fn bca_interval(mut replicates: Vec<f64>, estimate: f64, jackknife: &
     Some(Interval { low: end(0.5 - LEVEL / 2.0), high: end(0.5 + LEVEL / 2.0) })
 }
 
-/// The percentile interval of a statistic of participants, given by their indices: quantiles of the replicates. For
+/// The percentile interval of a statistic of participants: quantiles of the replicates. For
 /// statistics whose jackknife says nothing of their spread, such as a median. `None` if the statistic or more than half of
 /// the resamples have no estimate.
 pub fn percentile(
-    participants: usize,
+    counts: &[u64],
     resampling: Resampling,
-    statistic: impl Fn(&[usize]) -> Option<f64> + Sync,
+    statistic: impl Fn(&[u64]) -> Option<f64> + Sync,
 ) -> Option<BootstrapInterval> {
-    let mut replicates = replicates(resampling, participants, statistic);
+    let mut replicates = replicates(counts, resampling, statistic);
     let without_estimate = resampling.resamples - replicates.len();
     if replicates.is_empty() || 2 * without_estimate > resampling.resamples {
         return None;
@@ -121,14 +154,13 @@ pub fn percentile(
 /// standard error and s is the estimate's (Davison and Hinkley 1997, section 2.4). `statistic` gives estimate and standard
 /// error. `None` as for [`bca`], or if a standard error is not above zero in more than half of the resamples.
 pub fn studentised(
-    participants: usize,
+    counts: &[u64],
     resampling: Resampling,
-    statistic: impl Fn(&[usize]) -> Option<(f64, f64)> + Sync,
+    statistic: impl Fn(&[u64]) -> Option<(f64, f64)> + Sync,
 ) -> Option<BootstrapInterval> {
-    let everyone: Vec<usize> = (0..participants).collect();
-    let (estimate, error) = statistic(&everyone).filter(|(_, error)| *error > 0.0)?;
-    let mut pivots = replicates(resampling, participants, |draws| {
-        let (replicate, own) = statistic(draws)?;
+    let (estimate, error) = statistic(counts).filter(|(_, error)| *error > 0.0)?;
+    let mut pivots = replicates(counts, resampling, |weights| {
+        let (replicate, own) = statistic(weights)?;
         (own > 0.0).then(|| (replicate - estimate) / own)
     });
     pivots.sort_by(f64::total_cmp);
@@ -141,12 +173,20 @@ pub fn studentised(
     Some(BootstrapInterval { interval, without_estimate })
 }
 
-/// Mean and standard error of the drawn participants' scores, for [`studentised`]; `None` of fewer than two.
-pub fn mean_and_error(scores: &[f64], draws: &[usize]) -> Option<(f64, f64)> {
-    let n = draws.len() as f64;
-    let mean = draws.iter().map(|&p| scores[p]).sum::<f64>() / n;
-    let squares: f64 = draws.iter().map(|&p| (scores[p] - mean) * (scores[p] - mean)).sum();
-    (draws.len() > 1).then(|| (mean, (squares / (n - 1.0) / n).sqrt()))
+/// Mean of the values, each taken so often; `None` of nothing.
+pub fn mean(values: &[f64], weights: &[u64]) -> Option<f64> {
+    let n: u64 = weights.iter().sum();
+    let sum: f64 = values.iter().zip(weights).map(|(value, &weight)| value * weight as f64).sum();
+    (n > 0).then(|| sum / n as f64)
+}
+
+/// Mean and standard error of the values, each taken so often, for [`studentised`]; `None` of fewer than two.
+pub fn mean_and_error(values: &[f64], weights: &[u64]) -> Option<(f64, f64)> {
+    let n = weights.iter().sum::<u64>() as f64;
+    let mean = mean(values, weights).filter(|_| n > 1.0)?;
+    let square = |(value, &weight): (&f64, &u64)| weight as f64 * (value - mean) * (value - mean);
+    let squares: f64 = values.iter().zip(weights).map(square).sum();
+    Some((mean, (squares / (n - 1.0) / n).sqrt()))
 }
 
 /// Quantile of sorted values, linear between neighbours (Hyndman and Fan's type 7, as R and NumPy have it).

@@ -1,11 +1,11 @@
 //! Contrasts of a study: which answers speak for one property over another, with everything else equal.
 
 use super::ballot::{Ballot, Outcome};
-use super::bootstrap::{BootstrapInterval, Resampling, bca};
-use super::sign_flip::{SignFlip, sign_flip};
+use super::bootstrap::{BootstrapInterval, Resampling, bca, kinds, mean, mean_and_error, studentised};
+use super::sign_flip::{SignFlip, sign_flip, sign_flip_of_counts};
 use crate::interval::{Interval, t_over_respondents};
 use design::{Arrangement, Clustering, Study};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// The families within which p values are adjusted, declared before looking.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -32,6 +32,30 @@ impl Family {
     }
 }
 
+/// A value of one of the two properties that a study varies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    /// How sample points are laid out.
+    Arrangement(Arrangement),
+    /// How vertices are merged.
+    Clustering(Clustering),
+}
+
+/// Over which answers a contrast goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Over {
+    /// All that compare its two levels.
+    All,
+    /// Those where the other property has this value.
+    Within(Level),
+    /// Those on one object, by index.
+    Object(usize),
+    /// Those where the other property has the first value, less those where it has the second.
+    Difference(Level, Level),
+    /// Those on one object, less those on all others.
+    AgainstOthers(usize),
+}
+
 /// A weighted sum of answers; each question's weight is for its left side.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Contrast {
@@ -41,6 +65,10 @@ pub struct Contrast {
     pub name: String,
     /// Over which answers, such as `within B`.
     pub scope: String,
+    /// What is compared: the level that counts as positive, and the other.
+    pub levels: [Level; 2],
+    /// Over which answers.
+    pub over: Over,
     /// Question index to weight.
     pub weights: BTreeMap<usize, i64>,
 }
@@ -62,12 +90,25 @@ pub struct ContrastTest {
     pub interval: Option<Interval>,
 }
 
+impl Level {
+    /// The paper's letter, upper case.
+    pub fn code(self) -> char {
+        match self {
+            Self::Arrangement(arrangement) => arrangement.code().to_ascii_uppercase(),
+            Self::Clustering(clustering) => clustering.code().to_ascii_uppercase(),
+        }
+    }
+}
+
 impl Contrast {
     /// Tests it on ballots, whose questions are the study's.
     pub fn test(&self, ballots: &[Ballot]) -> ContrastTest {
+        let questions = self.weights.keys().last().map_or(0, |last| last + 1);
+        let weights: Vec<i64> =
+            (0..questions).map(|q| self.weights.get(&q).copied().unwrap_or_default()).collect();
         let weighted = |ballot: &Ballot| {
-            let weight = self.weights.get(&ballot.question)?;
-            Some((ballot.participant, *weight, ballot.outcome))
+            let weight = *weights.get(ballot.question).filter(|&&weight| weight != 0)?;
+            Some((ballot.participant, weight, ballot.outcome))
         };
         let test = ContrastTest::of(ballots.iter().filter_map(weighted));
         // Counts of answers mean something only if all weigh the same.
@@ -79,17 +120,21 @@ impl Contrast {
 impl ContrastTest {
     /// Tests answers given as `(participant, weight, outcome)`; a positive weight speaks for the left side.
     pub fn of(answers: impl IntoIterator<Item = (usize, i64, Outcome)>) -> Self {
-        let mut of: BTreeMap<usize, (i64, i64)> = BTreeMap::new();
+        // By participant: sum of weight times sign, and the weights' size, which is above zero for whoever answered.
+        let mut of: Vec<(i64, i64)> = Vec::new();
         let mut counts = [0; 3];
         for (participant, weight, outcome) in answers {
-            let (sum, size) = of.entry(participant).or_default();
+            if participant >= of.len() {
+                of.resize(participant + 1, (0, 0));
+            }
             let signed = weight * outcome.sign();
-            *sum += signed;
-            *size += weight.abs();
+            of[participant].0 += signed;
+            of[participant].1 += weight.abs();
             counts[(1 - signed.signum()) as usize] += 1;
         }
-        let differences: Vec<i64> = of.values().map(|&(sum, _)| sum).collect();
-        let scores: Vec<f64> = of.values().map(|&(sum, size)| sum as f64 / size as f64).collect();
+        of.retain(|&(_, size)| size > 0);
+        let differences: Vec<i64> = of.iter().map(|&(sum, _)| sum).collect();
+        let scores: Vec<f64> = of.iter().map(|&(sum, size)| sum as f64 / size as f64).collect();
         Self {
             counts: Some(counts),
             sign_flip: sign_flip(&differences),
@@ -102,24 +147,28 @@ impl ContrastTest {
 
     /// Smallest and largest p when each participant in turn is left out; `None` for fewer than two.
     pub fn leave_one_out(&self) -> Option<(f64, f64)> {
-        let without = |left_out: &i64| {
-            let mut others = self.differences.clone();
-            others.remove(others.iter().position(|d| d == left_out).expect("one of them"));
-            sign_flip(&others).p()
-        };
         // Participants with the same difference leave the same p behind.
-        let distinct: BTreeSet<i64> = self.differences.iter().copied().collect();
-        let all = (self.differences.len() > 1).then(|| distinct.iter().map(without));
+        let mut counts: BTreeMap<i64, u64> = BTreeMap::new();
+        self.differences.iter().for_each(|&d| *counts.entry(d).or_default() += 1);
+        let without = |left_out: &i64| {
+            let mut others = counts.clone();
+            *others.get_mut(left_out).expect("one of them") -= 1;
+            sign_flip_of_counts(&others).p()
+        };
+        let all = (self.differences.len() > 1).then(|| counts.keys().map(without));
         all.map(|p| p.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p))))
     }
 
     /// BCa interval for the mean score, resampling participants.
     pub fn bca(&self, resampling: Resampling) -> Option<BootstrapInterval> {
-        let mean = |draws: &[usize]| {
-            let sum: f64 = draws.iter().map(|&p| self.scores[p]).sum();
-            (!draws.is_empty()).then(|| sum / draws.len() as f64)
-        };
-        bca(self.scores.len(), resampling, mean)
+        let (scores, counts) = kinds(&self.scores);
+        bca(&counts, resampling, |weights| mean(&scores, weights))
+    }
+
+    /// Studentised bootstrap interval for the mean score, resampling participants.
+    pub fn studentised(&self, resampling: Resampling) -> Option<BootstrapInterval> {
+        let (scores, counts) = kinds(&self.scores);
+        studentised(&counts, resampling, |weights| mean_and_error(&scores, weights))
     }
 }
 
@@ -168,11 +217,12 @@ pub fn contrasts(study: &Study) -> Vec<Contrast> {
         }
     }
     let mut found = Vec::new();
-    let mut add = |family, name: &str, scope: String, weights: BTreeMap<usize, i64>| {
-        found.push(Contrast { family, name: name.into(), scope, weights });
+    let mut add = |family, levels: [Level; 2], scope: String, over, weights: BTreeMap<usize, i64>| {
+        let name = format!("{}-{}", levels[0].code(), levels[1].code());
+        found.push(Contrast { family, name, scope, levels, over, weights });
     };
     for &(a, b) in &clusterings {
-        let name = format!("{}-{}", a.code().to_ascii_uppercase(), b.code().to_ascii_uppercase());
+        let levels = [a, b].map(Level::Clustering);
         let sign = |single| match single {
             Single::Clustering { left, right, .. } => sign_of((a, b), (left, right)),
             Single::Arrangement { .. } => 0,
@@ -181,22 +231,24 @@ pub fn contrasts(study: &Study) -> Vec<Contrast> {
             Single::Clustering { within, .. } => Some(within),
             Single::Arrangement { .. } => None,
         };
-        add(Family::Pooled, &name, "all".into(), weights(&questions, |_, s| sign(s)));
+        add(Family::Pooled, levels, "all".into(), Over::All, weights(&questions, |_, s| sign(s)));
         let arrangements = &study.file.arrangements;
         for &arrangement in arrangements {
-            let scope = format!("within {}", arrangement.code().to_ascii_uppercase());
+            let within = Level::Arrangement(arrangement);
             let here = weights(&questions, |_, s| if inside(s) == Some(arrangement) { sign(s) } else { 0 });
-            add(Family::Groups, &name, scope, here);
+            add(Family::Groups, levels, format!("within {}", within.code()), Over::Within(within), here);
         }
         if let [first, second] = arrangements[..] {
             let parts = [first, second]
                 .map(|of| weights(&questions, |_, s| i64::from(inside(s) == Some(of)) * sign(s)));
-            let scope = format!("{} - {}", first.code(), second.code()).to_ascii_uppercase();
-            add(Family::Interactions, &name, scope, difference(&parts[0], &parts[1]));
+            let [first, second] = [first, second].map(Level::Arrangement);
+            let scope = format!("{} - {}", first.code(), second.code());
+            let over = Over::Difference(first, second);
+            add(Family::Interactions, levels, scope, over, difference(&parts[0], &parts[1]));
         }
     }
     for &(a, b) in &arrangements {
-        let name = format!("{}-{}", a.code(), b.code()).to_ascii_uppercase();
+        let levels = [a, b].map(Level::Arrangement);
         let sign = |single| match single {
             Single::Arrangement { left, right, .. } => sign_of((a, b), (left, right)),
             Single::Clustering { .. } => 0,
@@ -206,24 +258,28 @@ pub fn contrasts(study: &Study) -> Vec<Contrast> {
             Single::Clustering { .. } => None,
         };
         let all = weights(&questions, |_, s| sign(s));
-        add(Family::Pooled, &name, "all".into(), all.clone());
+        add(Family::Pooled, levels, "all".into(), Over::All, all.clone());
         let of = |clustering: Clustering| {
             weights(&questions, |_, s| i64::from(inside(s) == Some(clustering)) * sign(s))
         };
         let clusterings = &study.file.clusterings;
         for (i, &clustering) in clusterings.iter().enumerate() {
-            let code = clustering.code().to_ascii_uppercase();
-            add(Family::Groups, &name, format!("within {code}"), of(clustering));
+            let within = Level::Clustering(clustering);
+            let scope = format!("within {}", within.code());
+            add(Family::Groups, levels, scope, Over::Within(within), of(clustering));
             for &other in &clusterings[i + 1..] {
-                let scope = format!("{code} - {}", other.code().to_ascii_uppercase());
-                add(Family::Interactions, &name, scope, difference(&of(clustering), &of(other)));
+                let second = Level::Clustering(other);
+                let scope = format!("{} - {}", within.code(), second.code());
+                let over = Over::Difference(within, second);
+                add(Family::Interactions, levels, scope, over, difference(&of(clustering), &of(other)));
             }
         }
         for (o, object) in study.file.objects.iter().enumerate() {
             let here = |q: &usize| study.comparisons[*q].object == o;
             let (own, rest): (BTreeMap<_, _>, BTreeMap<_, _>) = all.iter().partition(|(q, _)| here(q));
-            add(Family::Objects, &name, object.name.clone(), own.clone());
-            add(Family::Interactions, &name, format!("{} - others", object.name), difference(&own, &rest));
+            let (against, over) = (format!("{} - others", object.name), Over::AgainstOthers(o));
+            add(Family::Objects, levels, object.name.clone(), Over::Object(o), own.clone());
+            add(Family::Interactions, levels, against, over, difference(&own, &rest));
         }
     }
     found.retain(|contrast| !contrast.weights.is_empty());

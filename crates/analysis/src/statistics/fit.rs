@@ -3,6 +3,7 @@
 use super::model::{Layout, Model};
 use super::newton::{Matrix, inverse, maximise, quadratic};
 use super::pairs::Pairs;
+use super::participants::Participants;
 use super::separation::{Separation, separation};
 use super::side::side_design;
 use crate::interval::{Interval, LEVEL};
@@ -130,7 +131,7 @@ impl WorthFit {
     pub fn clustered_interval(
         &self,
         sandwich: &Matrix,
-        participants: usize,
+        participants: u64,
         item: usize,
         other: usize,
     ) -> Interval {
@@ -146,23 +147,22 @@ impl WorthFit {
 ///
 /// `None` with fewer than two participants, for a penalised fit (whose gradients do not add up to zero), or if H is
 /// singular.
-pub fn clustered_covariance(fit: &WorthFit, participants: &[Pairs]) -> Option<Matrix> {
-    let m = participants.len() as f64;
-    if participants.len() < 2 || fit.penalised {
+pub fn clustered_covariance(fit: &WorthFit, participants: &Participants) -> Option<Matrix> {
+    let m = participants.number() as f64;
+    if m < 2.0 || fit.penalised {
         return None;
     }
-    let items = fit.log_worths.len();
-    let all = Pairs::sum(items, participants);
+    let all = participants.sum(&participants.counts);
     let layout = Layout::of(fit.model, &all);
     let bread = inverse(&layout.likelihood(&all, &fit.parameters).information)?;
     let size = fit.parameters.len();
     let mut covariance = vec![vec![0.0; size]; size];
-    for participant in participants {
-        let score = layout.likelihood(participant, &fit.parameters).gradient;
+    for (kind, &count) in participants.counts.iter().enumerate() {
+        let score = layout.likelihood(&participants.of_kind(kind), &fit.parameters).gradient;
         let influence = super::newton::times(&bread, &score);
         for i in 0..size {
             for j in 0..size {
-                covariance[i][j] += m / (m - 1.0) * influence[i] * influence[j];
+                covariance[i][j] += m / (m - 1.0) * count as f64 * influence[i] * influence[j];
             }
         }
     }

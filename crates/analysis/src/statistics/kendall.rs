@@ -1,8 +1,8 @@
 //! Kendall's coefficients for paired comparisons: consistency of one participant, agreement of several.
 
-use super::ballot::{Ballot, Outcome};
+use super::ballot::Ballot;
 use super::friedman::ChiSquareTest;
-use std::collections::BTreeMap;
+use super::reading::Reading;
 
 /// Consistency of a complete tournament without ties (Kendall and Babington Smith 1940, Biometrika 31:324), from the
 /// number of wins of each of n items: circular triads T = n(n-1)(2n-1)/12 - sum a^2 / 2, and zeta = 1 - T / T_max with
@@ -71,26 +71,14 @@ pub struct Triads {
 
 /// Every participant's triads among ballots of one scope (one object, one group), added up.
 ///
-/// A pair that one participant answered more than once is taken at its last ballot.
+/// A pair that one participant answered more than once is taken at one of its ballots.
 pub fn triads(ballots: &[Ballot]) -> Triads {
-    let mut answers: BTreeMap<usize, BTreeMap<(usize, usize), i64>> = BTreeMap::new();
-    let mut items: Vec<usize> = Vec::new();
-    for ballot in ballots {
-        let sign = ballot.outcome.sign();
-        let of = answers.entry(ballot.participant).or_default();
-        of.insert((ballot.left, ballot.right), sign);
-        of.insert((ballot.right, ballot.left), -sign);
-        items.extend([ballot.left, ballot.right]);
-    }
-    items.sort_unstable();
-    items.dedup();
     let mut triads = Triads::default();
-    for of in answers.values() {
-        for (i, &a) in items.iter().enumerate() {
-            for (j, &b) in items.iter().enumerate().skip(i + 1) {
-                for &c in &items[j + 1..] {
-                    let round = [(a, b), (b, c), (c, a)].map(|pair| of.get(&pair).copied());
-                    if let [Some(x), Some(y), Some(z)] = round {
+    for of in tournaments(ballots) {
+        for a in 0..of.items {
+            for b in a + 1..of.items {
+                for c in b + 1..of.items {
+                    if let [Some(x), Some(y), Some(z)] = [of.sign(a, b), of.sign(b, c), of.sign(c, a)] {
                         triads.add([x, y, z]);
                     }
                 }
@@ -98,6 +86,56 @@ pub fn triads(ballots: &[Ballot]) -> Triads {
         }
     }
     triads
+}
+
+/// [`zeta`] of every participant who decided every pair of the scope's items: how many, and the sum.
+pub fn zetas(ballots: &[Ballot]) -> (u64, f64) {
+    let wins = |of: &Tournament| -> Option<Vec<u64>> {
+        let of_item = |a: usize| {
+            let won = |b: usize| of.sign(a, b).filter(|&sign| sign != 0).map(|sign| u64::from(sign > 0));
+            (0..of.items).filter(|&b| b != a).map(won).sum::<Option<u64>>()
+        };
+        (0..of.items).map(of_item).collect()
+    };
+    let all = tournaments(ballots).filter_map(|of| zeta(&wins(&of)?));
+    all.fold((0, 0.0), |(n, sum), (_, zeta)| (n + 1, sum + zeta))
+}
+
+/// One participant's answers about the items of a scope, which are numbered anew.
+struct Tournament {
+    items: usize,
+    /// By item and item: 1 for the first, 0 for a tie, -1 for the second.
+    signs: Vec<Option<i64>>,
+}
+
+impl Tournament {
+    fn sign(&self, a: usize, b: usize) -> Option<i64> {
+        self.signs[a * self.items + b]
+    }
+}
+
+fn tournaments(ballots: &[Ballot]) -> impl Iterator<Item = Tournament> {
+    let mut items: Vec<usize> = Vec::new();
+    for item in ballots.iter().flat_map(|b| [b.left, b.right]) {
+        if let Err(place) = items.binary_search(&item) {
+            items.insert(place, item);
+        }
+    }
+    let mut sorted = ballots.to_vec();
+    sorted.sort_unstable();
+    let of_participant = move |of: &[Ballot]| {
+        let place = |item: usize| items.binary_search(&item).expect("collected above");
+        let mut signs = vec![None; items.len() * items.len()];
+        for ballot in of {
+            let (left, right, sign) = (place(ballot.left), place(ballot.right), ballot.outcome.sign());
+            signs[left * items.len() + right] = Some(sign);
+            signs[right * items.len() + left] = Some(-sign);
+        }
+        Tournament { items: items.len(), signs }
+    };
+    let all: Vec<Tournament> =
+        sorted.chunk_by(|a, b| a.participant == b.participant).map(of_participant).collect();
+    all.into_iter()
 }
 
 impl Triads {
@@ -122,13 +160,13 @@ impl Triads {
     }
 }
 
-/// How many of each outcome each question got; questions from 0 to the largest in the ballots.
+/// How many of each outcome each question got, read in the order of sides in which it was shown most often; questions from
+/// 0 to the largest in the ballots.
 pub fn outcome_counts(ballots: &[Ballot]) -> Vec<[u64; 3]> {
-    let questions = ballots.iter().map(|b| b.question + 1).max().unwrap_or(0);
-    let mut counts = vec![[0; 3]; questions];
+    let reading = Reading::of(ballots);
+    let mut counts = vec![[0; 3]; reading.questions()];
     for ballot in ballots {
-        let place = Outcome::ALL.iter().position(|&o| o == ballot.outcome).expect("one of three");
-        counts[ballot.question][place] += 1;
+        counts[ballot.question][reading.outcome(ballot).index()] += 1;
     }
     counts
 }

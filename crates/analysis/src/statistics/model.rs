@@ -105,41 +105,9 @@ impl Layout {
         x
     }
 
-    /// Davidson and Bradley-Terry: a log-linear exponential family, so the information is n times a covariance.
+    /// Davidson and Bradley-Terry.
     fn add_weights(&self, sum: &mut Curvature, pair: &Pair, parameters: &[f64]) {
-        let x = self.difference(pair);
-        let half: Vec<f64> = x.iter().map(|x| 0.5 * x).collect();
-        let negative: Vec<f64> = half.iter().map(|x| -x).collect();
-        let mut tie = vec![0.0; x.len()];
-        let [left, ties, right] = pair.answers;
-        let (mut features, mut counts) = (vec![half, negative], vec![left, right]);
-        match self.tie() {
-            Some(index) => {
-                tie[index] = 1.0;
-                features.push(tie);
-                counts.push(ties);
-            }
-            None => counts.iter_mut().for_each(|count| *count += 0.5 * ties),
-        }
-        let dot = |feature: &Vec<f64>| -> f64 { feature.iter().zip(parameters).map(|(f, p)| f * p).sum() };
-        let logs: Vec<f64> = features.iter().map(dot).collect();
-        let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let total = largest + logs.iter().map(|log| (log - largest).exp()).sum::<f64>().ln();
-        let n: f64 = counts.iter().sum();
-        let chances: Vec<f64> = logs.iter().map(|log| (log - total).exp()).collect();
-        let mean: Vec<f64> = (0..x.len())
-            .map(|i| features.iter().zip(&chances).map(|(feature, chance)| feature[i] * chance).sum())
-            .collect();
-        for (k, feature) in features.iter().enumerate() {
-            sum.value += counts[k] * (logs[k] - total);
-            for i in 0..x.len() {
-                sum.gradient[i] += counts[k] * (feature[i] - mean[i]);
-                for j in 0..x.len() {
-                    let spread = (feature[i] - mean[i]) * (feature[j] - mean[j]);
-                    sum.information[i][j] += n * chances[k] * spread;
-                }
-            }
-        }
+        add_log_linear(sum, &self.difference(pair), self.tie(), pair.answers, parameters);
     }
 
     /// Rao and Kupper: a logistic cut in three at -eta and eta.
@@ -185,6 +153,50 @@ impl Layout {
                 // d2/d eta2 of ln(e^{2 eta} - 1) = -4 e^{2 eta} / (e^{2 eta} - 1)^2.
                 let free = if i == tie && j == tie { 4.0 * (growth + 1.0) / (growth * growth) } else { 0.0 };
                 sum.information[i][j] += ties * (curved + free);
+            }
+        }
+    }
+}
+
+/// Adds answers `[left, tie, right]` with weights e^{u/2} : nu : e^{-u/2}, u = x'parameters and ln nu the parameter at
+/// `tie`: an exponential family, so the information is n times a covariance. Without `tie` there is no third outcome, and a
+/// tie counts as half an answer for each side.
+pub(super) fn add_log_linear(
+    sum: &mut Curvature,
+    x: &[f64],
+    tie: Option<usize>,
+    answers: [f64; 3],
+    parameters: &[f64],
+) {
+    let half: Vec<f64> = x.iter().map(|x| 0.5 * x).collect();
+    let negative: Vec<f64> = half.iter().map(|x| -x).collect();
+    let [left, ties, right] = answers;
+    let (mut features, mut counts) = (vec![half, negative], vec![left, right]);
+    match tie {
+        Some(index) => {
+            let mut tie = vec![0.0; x.len()];
+            tie[index] = 1.0;
+            features.push(tie);
+            counts.push(ties);
+        }
+        None => counts.iter_mut().for_each(|count| *count += 0.5 * ties),
+    }
+    let dot = |feature: &Vec<f64>| -> f64 { feature.iter().zip(parameters).map(|(f, p)| f * p).sum() };
+    let logs: Vec<f64> = features.iter().map(dot).collect();
+    let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let total = largest + logs.iter().map(|log| (log - largest).exp()).sum::<f64>().ln();
+    let n: f64 = counts.iter().sum();
+    let chances: Vec<f64> = logs.iter().map(|log| (log - total).exp()).collect();
+    let mean: Vec<f64> = (0..x.len())
+        .map(|i| features.iter().zip(&chances).map(|(feature, chance)| feature[i] * chance).sum())
+        .collect();
+    for (k, feature) in features.iter().enumerate() {
+        sum.value += counts[k] * (logs[k] - total);
+        for i in 0..x.len() {
+            sum.gradient[i] += counts[k] * (feature[i] - mean[i]);
+            for j in 0..x.len() {
+                let spread = (feature[i] - mean[i]) * (feature[j] - mean[j]);
+                sum.information[i][j] += n * chances[k] * spread;
             }
         }
     }

@@ -19,7 +19,7 @@ pub struct Pair {
 pub struct Pairs {
     /// How many items.
     pub items: usize,
-    /// Pairs with an answer at least, or kept by [`Pairs::by_participant`].
+    /// Pairs with an answer at least.
     pub pairs: Vec<Pair>,
 }
 
@@ -39,26 +39,13 @@ impl Pairs {
         Self { items, pairs: sums.into_iter().map(pair).collect() }
     }
 
-    /// Adds up ballots.
+    /// Adds up ballots. Controls, which show an item beside itself, say nothing about worths and are left out.
     ///
     /// # Panics
-    /// As [`Pairs::new`].
+    /// If an item is not below `items`.
     pub fn of<'a>(items: usize, ballots: impl IntoIterator<Item = &'a Ballot>) -> Self {
         let one = |b: &Ballot| (b.left, b.right, Outcome::ALL.map(|o| f64::from(u8::from(o == b.outcome))));
-        Self::new(items, ballots.into_iter().map(one))
-    }
-
-    /// One a participant who answered at all, in the order of participants.
-    pub fn by_participant(items: usize, ballots: &[Ballot]) -> Vec<Self> {
-        let mut of: BTreeMap<usize, Vec<&Ballot>> = BTreeMap::new();
-        ballots.iter().for_each(|ballot| of.entry(ballot.participant).or_default().push(ballot));
-        of.into_values().map(|ballots| Self::of(items, ballots)).collect()
-    }
-
-    /// The sum of several, as of resampled participants.
-    pub fn sum<'a>(items: usize, parts: impl IntoIterator<Item = &'a Self>) -> Self {
-        let all = parts.into_iter().flat_map(|part| part.pairs.iter());
-        Self::new(items, all.map(|pair| (pair.left, pair.right, pair.answers)))
+        Self::new(items, ballots.into_iter().filter(|b| b.left != b.right).map(one))
     }
 
     /// Half a win each way on every compared pair, shared by its two orders if both were shown: the stated penalty that

@@ -2,21 +2,90 @@
 
 use super::ballot::{Ballot, Outcome};
 use super::kendall::outcome_counts;
-use std::collections::BTreeMap;
+use super::odd::oddness;
+use super::reading::Reading;
+
+/// How an answer was given, as far as it is known.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Circumstances {
+    /// Its place in the order in which the participant saw the questions.
+    pub order: Option<u32>,
+    /// Time from the question to the answer, in milliseconds.
+    pub rt_ms: Option<f64>,
+}
+
+/// What screening can use beside the ballots; whatever is empty or missing is not judged.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Protocol<'a> {
+    /// One a ballot, in the same order, or none at all.
+    pub circumstances: &'a [Circumstances],
+    /// By question, what it shows its two items on (the object): questions with the same scene and items are repeats. Left
+    /// empty, only a question answered twice is one.
+    pub scenes: &'a [usize],
+    /// How long what a question shows lasts, in milliseconds: nobody has seen it in less.
+    pub loop_ms: Option<f64>,
+}
 
 /// One participant's answers, seen from outside.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Screening {
     /// The participant.
     pub participant: usize,
-    /// Answers `[left, tie, right]`.
+    /// Answers `[left, tie, right]`, controls left out.
     pub answers: [u64; 3],
     /// Questions that the participant decided and on which the others' decided answers have a majority.
     pub comparable: u64,
     /// Of these, how many agree with that majority.
     pub agreeing: u64,
-    /// Longest run of the same side in the order of questions; ties end a run.
+    /// Longest run of the same side, in the order of presentation if it is known of all answers, else of questions; ties
+    /// end a run.
     pub longest_run: u64,
+    /// Answers to controls, which show an item beside itself.
+    pub controls: u64,
+    /// Of these, how many decided for a side nonetheless.
+    pub controls_decided: u64,
+    /// Answers that repeat an earlier one about the same two items in the same scene, in either order of sides, both decided.
+    pub repeats: u64,
+    /// Of these, how many chose the other item.
+    pub repeats_opposite: u64,
+    /// Answers whose time is known.
+    pub timed: u64,
+    /// Sum of these times in milliseconds.
+    pub time_ms: f64,
+    /// One-sided p of agreeing so much less than the others, see [`oddness`]; `None` if not judged.
+    pub odd_p: Option<f64>,
+}
+
+/// A rule that a participant broke. The rules are declared here, for every study alike, and only the last looks at what was
+/// preferred.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Flag {
+    /// Ten decided answers or more, all for the same side.
+    OneSided,
+    /// Two controls decided or more, and more than half of them.
+    Controls,
+    /// Two repeats or more chose the other item, and more than half of them.
+    Repeats,
+    /// All timed answers together took less than what they were shown lasts.
+    Time,
+    /// Agrees with the others' majority on less than half, and so much less than the others that it is not chance at 1 %.
+    Odd,
+}
+
+impl Flag {
+    /// Every rule.
+    pub const ALL: [Self; 5] = [Self::OneSided, Self::Controls, Self::Repeats, Self::Time, Self::Odd];
+
+    /// The name in files.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::OneSided => "one-sided",
+            Self::Controls => "controls",
+            Self::Repeats => "repeats",
+            Self::Time => "time",
+            Self::Odd => "odd",
+        }
+    }
 }
 
 impl Screening {
@@ -31,33 +100,108 @@ impl Screening {
         let [left, _, right] = self.answers;
         (left + right > 0).then(|| (left as f64 - right as f64) / (left + right) as f64)
     }
+
+    /// Share of repeats with the same choice; `None` without repeats.
+    pub fn consistency(&self) -> Option<f64> {
+        (self.repeats > 0).then(|| 1.0 - self.repeats_opposite as f64 / self.repeats as f64)
+    }
+
+    /// The rules broken, given how long a question's showing lasts.
+    pub fn flags(&self, loop_ms: Option<f64>) -> Vec<Flag> {
+        let [left, _, right] = self.answers;
+        let breaks = |flag: &Flag| match flag {
+            Flag::OneSided => left + right >= 10 && left.min(right) == 0,
+            Flag::Controls => self.controls_decided >= 2 && 2 * self.controls_decided > self.controls,
+            Flag::Repeats => self.repeats_opposite >= 2 && 2 * self.repeats_opposite > self.repeats,
+            Flag::Time => {
+                loop_ms.is_some_and(|each| self.timed > 0 && self.time_ms < each * self.timed as f64)
+            }
+            Flag::Odd => self.odd_p.is_some_and(|p| p < 0.01),
+        };
+        Flag::ALL.into_iter().filter(breaks).collect()
+    }
+}
+
+/// Screens every participant with a ballot, in their order, by the ballots alone.
+pub fn screening(ballots: &[Ballot]) -> Vec<Screening> {
+    screening_with(ballots, &Protocol::default())
 }
 
 /// Screens every participant with a ballot, in their order.
-pub fn screening(ballots: &[Ballot]) -> Vec<Screening> {
+///
+/// Agreement compares items: if a question was shown in both orders of sides, answers are read in one of them.
+///
+/// # Panics
+/// If there are circumstances, but not one a ballot.
+pub fn screening_with(ballots: &[Ballot], protocol: &Protocol<'_>) -> Vec<Screening> {
+    let known = protocol.circumstances;
+    assert!(known.is_empty() || known.len() == ballots.len(), "circumstances of another set of ballots");
+    let reading = Reading::of(ballots);
     let counts = outcome_counts(ballots);
-    let mut of: BTreeMap<usize, Vec<&Ballot>> = BTreeMap::new();
-    ballots.iter().for_each(|ballot| of.entry(ballot.participant).or_default().push(ballot));
-    let screen = |(participant, mut own): (usize, Vec<&Ballot>)| {
-        own.sort_by_key(|ballot| ballot.question);
-        let mut seen = Screening { participant, answers: [0; 3], comparable: 0, agreeing: 0, longest_run: 0 };
+    let ordered = !known.is_empty() && known.iter().all(|of| of.order.is_some());
+    let mut places: Vec<usize> = (0..ballots.len()).collect();
+    places.sort_by_key(|&i| {
+        let order = if ordered { known[i].order } else { None };
+        (ballots[i].participant, order, ballots[i].question)
+    });
+    let of_participant = |places: &[usize]| {
+        let mut seen = Screening { participant: ballots[places[0]].participant, ..Screening::default() };
         let (mut run, mut last) = (0, 0);
-        for ballot in own {
-            let sign = ballot.outcome.sign();
-            seen.answers[(1 - sign) as usize] += 1;
+        for &i in places {
+            let (ballot, sign) = (&ballots[i], ballots[i].outcome.sign());
+            if let Some(time) = known.get(i).and_then(|of| of.rt_ms) {
+                seen.timed += 1;
+                seen.time_ms += time;
+            }
             run = if sign != 0 && sign == last { run + 1 } else { sign.unsigned_abs() };
             last = sign;
             seen.longest_run = seen.longest_run.max(run);
-            let [left, _, right] = counts[ballot.question];
-            let others = left as i64 - right as i64 - sign;
+            if ballot.left == ballot.right {
+                seen.controls += 1;
+                seen.controls_decided += sign.unsigned_abs();
+                continue;
+            }
+            seen.answers[ballot.outcome.index()] += 1;
+            let own = reading.outcome(ballot).sign();
+            let [first, _, second] = counts[ballot.question];
+            let others = first as i64 - second as i64 - own;
             if ballot.outcome != Outcome::Tie && others != 0 {
                 seen.comparable += 1;
-                seen.agreeing += u64::from(others.signum() == sign);
+                seen.agreeing += u64::from(others.signum() == own);
             }
         }
+        seen.count_repeats(places.iter().map(|&i| &ballots[i]), protocol.scenes);
         seen
     };
-    of.into_iter().map(screen).collect()
+    let same = |a: &usize, b: &usize| ballots[*a].participant == ballots[*b].participant;
+    let mut screened: Vec<Screening> = places.chunk_by(same).map(of_participant).collect();
+    for odd in oddness(&screened) {
+        let place = screened.binary_search_by_key(&odd.participant, |s| s.participant).expect("one of them");
+        screened[place].odd_p = Some(odd.p);
+    }
+    screened
+}
+
+impl Screening {
+    /// Decided answers about the same items in the same scene, each against the one before.
+    fn count_repeats<'a>(&mut self, own: impl Iterator<Item = &'a Ballot>, scenes: &[usize]) {
+        // Without scenes every question is its own.
+        let scene =
+            |b: &Ballot| (scenes.get(b.question).copied(), if scenes.is_empty() { b.question } else { 0 });
+        let chosen = |b: &Ballot| if b.outcome == Outcome::Left { b.left } else { b.right };
+        let decided = own.filter(|b| b.left != b.right && b.outcome != Outcome::Tie);
+        let mut shown: Vec<_> =
+            decided.map(|b| (scene(b), b.left.min(b.right), b.left.max(b.right), chosen(b))).collect();
+        // Stable: the order of presentation stays within each.
+        shown.sort_by_key(|&(scene, low, high, _)| (scene, low, high));
+        for pair in shown.windows(2) {
+            let [(scene, low, high, item), (next_scene, next_low, next_high, next)] = [pair[0], pair[1]];
+            if (scene, low, high) == (next_scene, next_low, next_high) {
+                self.repeats += 1;
+                self.repeats_opposite += u64::from(item != next);
+            }
+        }
+    }
 }
 
 #[cfg(test)]

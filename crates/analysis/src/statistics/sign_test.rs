@@ -48,8 +48,26 @@ pub fn trinomial(wins: u64, ties: u64, losses: u64) -> f64 {
     let middle = wins + losses;
     let (low, high) = (difference.max(middle.saturating_sub(spread as u64)), n.min(middle + spread as u64));
     // A walk of k steps reaches the difference or the next sum of k's parity.
-    let p = |k: u64| ln_density(k).exp() * walk(k, difference + (k - difference) % 2);
-    (low..=high).filter(|&k| difference + (k - difference) % 2 <= k).map(p).sum::<f64>().min(1.0)
+    let of_parity = |first: u64| {
+        let reach = difference + (first - difference) % 2;
+        let start = if first < reach { first + 2 } else { first };
+        let mut p = if start <= high { walk(start, reach) } else { 0.0 };
+        let mut sum = 0.0;
+        for k in (start..=high).step_by(2) {
+            sum += ln_density(k).exp() * p;
+            p += gain(k, reach);
+        }
+        sum
+    };
+    (of_parity(low) + of_parity(low + 1)).min(1.0)
+}
+
+/// P(|S| >= reach) after k + 2 fair steps less that after k, for a reach of k's parity above zero:
+/// (P(S = reach - 2) - P(S = reach)) / 2.
+fn gain(k: u64, reach: u64) -> f64 {
+    let up = (k + reach - 2) / 2;
+    let before = (ln_binomial(k, up) - k as f64 * std::f64::consts::LN_2).exp();
+    0.5 * before * (reach - 1) as f64 / (up + 1) as f64
 }
 
 #[cfg(test)]

@@ -1,7 +1,9 @@
 //! Agreement of participants with each other and with themselves.
 
+use crate::ballots::as_declared;
 use crate::statistics::{
-    Ballot, Metric, Triads, agreement as kendall, alpha, outcome_counts, screening, triads,
+    Ballot, Metric, Protocol, Triads, agreement as kendall, alpha, outcome_counts, screening_with, triads,
+    zetas,
 };
 use crate::table::{Cell, Table};
 use design::Study;
@@ -24,8 +26,12 @@ pub(super) fn agreement(study: &Study, ballots: &[Ballot]) -> Table {
             ("decided_triads", "all three decided"),
             ("strict_cycles", "strict cycles"),
             ("weak_cycles", "weak cycles"),
+            ("cycles_by_chance", "strict by chance"),
+            ("tournaments", "All decided"),
+            ("mean_zeta", "mean zeta"),
         ],
     );
+    let ballots = as_declared(study, ballots);
     for group in std::iter::once(None).chain((0..study.groups.len()).map(Some)) {
         let inside = |b: &&Ballot| group.is_none_or(|g| study.comparisons[b.question].group == g);
         let own: Vec<Ballot> = ballots.iter().filter(inside).copied().collect();
@@ -36,7 +42,10 @@ pub(super) fn agreement(study: &Study, ballots: &[Ballot]) -> Table {
         }
         let found = kendall(&counts);
         let test = found.and_then(|found| found.test);
-        let circles = triads_by_object_and_group(study, &own);
+        let (circles, (tournaments, zetas)) = consistency(study, &own);
+        let all: u64 = counts.iter().flatten().sum();
+        let ties: u64 = counts.iter().map(|counts| counts[1]).sum();
+        let decided = 1.0 - ties as f64 / all as f64;
         let circle = |count: u64| if circles.all > 0 { Cell::count(count) } else { Cell::Missing };
         table.push(vec![
             Cell::text(group.map_or("all", |g| &study.groups[g].id)),
@@ -46,40 +55,59 @@ pub(super) fn agreement(study: &Study, ballots: &[Ballot]) -> Table {
             Cell::number(found.map(|found| found.u), 4),
             Cell::number(test.map(|test| test.statistic), 2),
             Cell::number(test.map(|test| test.degrees), 2),
-            Cell::number(test.map(|test| test.p), 5),
+            Cell::p(test.map(|test| test.p), 5),
             circle(circles.all),
             circle(circles.decided),
             circle(circles.strict_cycles),
             circle(circles.weak_cycles),
+            Cell::number((circles.all > 0).then(|| circles.all as f64 * decided.powi(3) / 4.0), 1),
+            circle(tournaments),
+            Cell::number((tournaments > 0).then(|| zetas / tournaments as f64), 3),
         ]);
     }
     table.notes.push(
         "Alpha: Krippendorff's, over the sides left, none, right; 1 is full agreement, 0 chance. Kendall's u: a tie is half \
          an answer for each side; its test is without continuity correction. Triads: three items that one person compared \
-         pairwise on one object; a quarter of decided triads is circular by chance. A weak cycle is two wins closed by a tie, \
-         which need not be an error."
+         pairwise on one object; by chance, with this share of ties, so many would be circular. A weak cycle is two wins closed by a tie, \
+         which need not be an error. Zeta: Kendall's, of whoever decided every pair of an object and group; 1 is no circle."
             .into(),
     );
     table
 }
 
-fn triads_by_object_and_group(study: &Study, ballots: &[Ballot]) -> Triads {
-    let mut sum = Triads::default();
-    for object in 0..study.file.objects.len() {
-        for group in 0..study.groups.len() {
-            let inside = |b: &&Ballot| {
-                let comparison = &study.comparisons[b.question];
-                comparison.object == object && comparison.group == group
-            };
-            let own: Vec<Ballot> = ballots.iter().filter(inside).copied().collect();
-            sum = sum.and(triads(&own));
-        }
-    }
-    sum
+/// Triads within one object and group, and Kendall's zeta of whoever decided all pairs there: how many, and their sum.
+fn consistency(study: &Study, ballots: &[Ballot]) -> (Triads, (u64, f64)) {
+    let scope = |b: &Ballot| {
+        let comparison = &study.comparisons[b.question];
+        comparison.object * study.groups.len() + comparison.group
+    };
+    let mut scopes: Vec<Vec<Ballot>> = vec![Vec::new(); study.file.objects.len() * study.groups.len()];
+    ballots.iter().for_each(|b| scopes[scope(b)].push(*b));
+    scopes.iter().fold((Triads::default(), (0, 0.0)), |(sum, (n, total)), own| {
+        let (tournaments, zetas) = zetas(own);
+        (sum.and(triads(own)), (n + tournaments, total + zetas))
+    })
+}
+
+/// Answers beyond which a table of participants is printed for those alone who break a rule.
+const MANY: usize = 200;
+
+/// What a study tells about how its answers were given.
+pub(super) fn protocol<'a>(study: &Study, scenes: &'a [usize]) -> Protocol<'a> {
+    let turntable = &study.file.turntable;
+    // A frame lasts a whole number of centiseconds.
+    let frames = f64::from(turntable.frames);
+    let loop_ms = 10.0 * (100.0 * turntable.duration_s / frames).floor() * frames;
+    Protocol { circumstances: &[], scenes, loop_ms: Some(loop_ms) }
+}
+
+/// The object of each question.
+pub(super) fn scenes(study: &Study) -> Vec<usize> {
+    study.comparisons.iter().map(|comparison| comparison.object).collect()
 }
 
 /// One row a participant: what careless answering would show in.
-pub(super) fn respondents(ballots: &[Ballot]) -> Table {
+pub(crate) fn respondents(ballots: &[Ballot], protocol: &Protocol<'_>) -> Table {
     let mut table = Table::new(
         "respondents",
         "Screening of participants; nobody is left out",
@@ -93,11 +121,21 @@ pub(super) fn respondents(ballots: &[Ballot]) -> Table {
             ("comparable", "Comparable"),
             ("agreeing", "Agreeing"),
             ("agreement", "Agreement"),
+            ("odd_p", "p of odd"),
+            ("controls", "Controls"),
+            ("controls_decided", "decided"),
+            ("repeats", "Repeats"),
+            ("repeats_opposite", "opposite"),
+            ("timed", "Timed"),
+            ("time_s", "Time in s"),
+            ("flags", "Rules broken"),
         ],
     );
-    for seen in screening(ballots) {
+    let mut flagged = table.clone();
+    for seen in screening_with(ballots, protocol) {
         let [left, none, right] = seen.answers;
-        table.push(vec![
+        let flags = seen.flags(protocol.loop_ms);
+        let row = vec![
             Cell::count(seen.participant as u64 + 1),
             Cell::count(left),
             Cell::count(none),
@@ -107,12 +145,36 @@ pub(super) fn respondents(ballots: &[Ballot]) -> Table {
             Cell::count(seen.comparable),
             Cell::count(seen.agreeing),
             Cell::number(seen.agreement(), 3),
-        ]);
+            Cell::p(seen.odd_p, 4),
+            Cell::count(seen.controls),
+            Cell::count(seen.controls_decided),
+            Cell::count(seen.repeats),
+            Cell::count(seen.repeats_opposite),
+            Cell::count(seen.timed),
+            Cell::number((seen.timed > 0).then(|| seen.time_ms / 1000.0), 1),
+            Cell::text(flags.iter().map(|flag| flag.code()).collect::<Vec<_>>().join(" ")),
+        ];
+        if !flags.is_empty() {
+            flagged.push(row.clone());
+        }
+        table.push(row);
+    }
+    if table.rows.len() > MANY {
+        table.notes.push(format!(
+            "Of {} participants, the {} who break a rule are printed; the CSV has all.",
+            table.rows.len(),
+            flagged.rows.len()
+        ));
+        flagged.caption = String::new();
+        table.parts = vec![flagged];
     }
     table.notes.push(
         "Agreement: share of the decided answers that side with the majority of the others' decided answers, where they have \
-         one. Longest run: of one side, in the order of questions of the study. Seen after the outcome: a reason to look, not \
-         to exclude. What results would be without any one participant is in the tests' leave-one-out range."
+         one. Longest run: of one side. Repeats: the same pair again, both times decided. Rules, declared beforehand: \
+         one-sided (ten decided answers or more, all on one side), controls (two or more decided, and more than half), \
+         repeats (two or more for the other item, and more than half), time (less than the animations last), odd (agrees on \
+         less than half, and so much less than the others that p, with Bonferroni's correction and an allowance of 5, is \
+         below 0.01). Only the last has seen what was preferred: a reason to look, not to exclude."
             .into(),
     );
     table

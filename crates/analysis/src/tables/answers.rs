@@ -1,28 +1,46 @@
 //! The answers themselves, and how they fall on each question.
 
-use crate::answers::Answers;
 use crate::interval;
 use crate::table::{Cell, Column, Table};
 use crate::tally::Tally;
 use design::Study;
+use responses::Responses;
 
-/// One row a question, one column a respondent (appendix D).
-pub(super) fn answers(study: &Study, answers: &Answers) -> Table {
+/// More respondents than this make no table that anybody reads; the answers are in their file.
+const MOST_COLUMNS: usize = 200;
+
+/// One row a question, one column a respondent (appendix D); what was not answered is missing. None for a crowd.
+pub(super) fn answers(study: &Study, answers: &Responses) -> Option<Table> {
+    if answers.participants.len() > MOST_COLUMNS {
+        return None;
+    }
     let mut table = Table::new(
         "answers",
         "Answers: L left, NP no preference, R right; one column a respondent",
         &[("question", "Question")],
     );
-    let respondents = 1..=answers.respondents();
+    let respondents = 1..=answers.participants.len();
     table
         .columns
         .extend(respondents.map(|i| Column { name: format!("respondent_{i}"), heading: i.to_string() }));
-    for (i, comparison) in study.comparisons.iter().enumerate() {
+    let mut said = vec![vec![String::new(); answers.participants.len()]; study.comparisons.len()];
+    for answer in answers.answers.iter().filter(|answer| answer.left != answer.right) {
+        let cell = &mut said[answer.question as usize][answer.participant as usize];
+        let space = if cell.is_empty() { "" } else { " " };
+        *cell = format!("{cell}{space}{}", answers.declared_choice(answer).code());
+    }
+    for (comparison, said) in study.comparisons.iter().zip(said) {
         let mut row = vec![Cell::text(&comparison.question)];
-        row.extend(answers.to_question(i).into_iter().map(|choice| Cell::text(choice.code())));
+        row.extend(
+            said.into_iter().map(|cell| if cell.is_empty() { Cell::Missing } else { Cell::text(cell) }),
+        );
         table.push(row);
     }
-    table
+    if answers.answers.iter().any(|a| a.left != answers.questions[a.question as usize].left) {
+        let note = "Sides are the questionnaire's; answers to a pair shown the other way round are turned.";
+        table.notes.push(note.into());
+    }
+    Some(table)
 }
 
 /// Left, none and right of every question, with the right side's share among decided answers.
@@ -45,7 +63,7 @@ pub(super) fn counts(study: &Study, tally: &Tally) -> Table {
     );
     let mut sums = [0; 3];
     for (comparison, count) in study.comparisons.iter().zip(&tally.questions) {
-        let all = count.left + count.none + count.right;
+        let all = count.answers();
         let interval = interval::wilson(count.right, all);
         for (sum, n) in sums.iter_mut().zip([count.left, count.none, count.right]) {
             *sum += n;

@@ -5,7 +5,7 @@ use crate::mesh_set::{MeshSet, known};
 use crate::table::{Cell, Column, Table};
 use design::record::{Distribution, MeshRecord, Purpose};
 
-fn purpose_label(purpose: Purpose) -> &'static str {
+pub(super) fn purpose_label(purpose: Purpose) -> &'static str {
     match purpose {
         Purpose::Benchmark => "benchmark",
         Purpose::Stimulus => "stimulus",

@@ -1,16 +1,13 @@
 //! Models of preference: worths with their errors, and what each model says about ties and sides.
 
 use crate::ballots::BallotGroup;
-use crate::statistics::bootstrap::{BootstrapInterval, Resampling, bca};
+use crate::statistics::bootstrap::{BootstrapInterval, Resampling, bca_each};
 use crate::statistics::{
-    FitError, Model, Pairs, Separation, SideDesign, WorthFit, clustered_covariance, fit, separation,
-    side_design,
+    FitError, Model, Pairs, Participants, Separation, SideDesign, WorthFit, clustered_covariance, fit,
+    separation, side_design,
 };
 use crate::table::{Cell, Table};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
-
-/// Up to so many participants the bootstrap refits; beyond, the sandwich's normal theory is as good.
-pub(super) const BOOTSTRAP_LIMIT: usize = 500;
 
 /// `worths` and `models` of every group, with every model.
 ///
@@ -21,7 +18,7 @@ pub fn model_tables(groups: &[BallotGroup]) -> [Table; 2] {
     for group in groups {
         let items = group.items.len();
         let pairs = Pairs::of(items, &group.ballots);
-        let participants = Pairs::by_participant(items, &group.ballots);
+        let participants = Participants::of(items, &group.ballots);
         let plain = fit(Model::Davidson, &pairs).ok();
         for model in Model::ALL {
             let fitted = fit(model, &pairs);
@@ -63,14 +60,15 @@ fn empty_worths() -> Table {
     table
 }
 
-fn add_worths(table: &mut Table, group: &BallotGroup, fitted: &WorthFit, participants: &[Pairs]) {
+fn add_worths(table: &mut Table, group: &BallotGroup, fitted: &WorthFit, participants: &Participants) {
     let clustered = clustered_covariance(fitted, participants);
+    let resampled = resampled(fitted, participants);
     for (item, name) in group.items.iter().enumerate() {
         let estimated = item > 0;
         let error = |covariance| fitted.standard_error(covariance, item, 0);
         let sandwich = clustered.as_ref().filter(|_| estimated);
-        let interval = sandwich.map(|s| fitted.clustered_interval(s, participants.len(), item, 0));
-        let resampled = resampled(fitted, participants, item);
+        let interval = sandwich.map(|s| fitted.clustered_interval(s, participants.number(), item, 0));
+        let resampled = if estimated { resampled.get(item - 1).copied().flatten() } else { None };
         table.push(vec![
             Cell::text(&group.name),
             Cell::text(name),
@@ -87,16 +85,16 @@ fn add_worths(table: &mut Table, group: &BallotGroup, fitted: &WorthFit, partici
     }
 }
 
-fn resampled(fitted: &WorthFit, participants: &[Pairs], item: usize) -> Option<BootstrapInterval> {
-    let wanted = fitted.model == Model::Davidson && !fitted.penalised && item > 0;
-    if !wanted || participants.len() > BOOTSTRAP_LIMIT {
-        return None;
+/// BCa intervals of the log worths of items 1.., of Davidson's model alone.
+fn resampled(fitted: &WorthFit, participants: &Participants) -> Vec<Option<BootstrapInterval>> {
+    if fitted.model != Model::Davidson || fitted.penalised {
+        return Vec::new();
     }
-    let items = fitted.log_worths.len();
-    bca(participants.len(), Resampling::default(), |draws| {
-        let drawn = Pairs::sum(items, draws.iter().map(|&p| &participants[p]));
-        fit(fitted.model, &drawn).ok().filter(|fit| !fit.penalised).map(|fit| fit.log_worths[item])
-    })
+    let worths = |weights: &[u64]| {
+        let fit = fit(fitted.model, &participants.sum(weights)).ok().filter(|fit| !fit.penalised)?;
+        Some(fit.log_worths[1..].to_vec())
+    };
+    bca_each(&participants.counts, Resampling::default(), worths).unwrap_or_default()
 }
 
 fn empty_models() -> Table {
@@ -155,7 +153,7 @@ fn model_row(
         Cell::number(of.and_then(|fit| fit.ln_nu).filter(|nu| nu.is_finite()), 4),
         Cell::number(of.and_then(|fit| fit.side), 4),
         Cell::number(side_error, 4),
-        Cell::number(ratio.map(|ratio| one.sf(ratio)), 4),
+        Cell::p(ratio.map(|ratio| one.sf(ratio)), 4),
         Cell::number(of.and_then(|fit| fit.ln_theta), 4),
         Cell::count(pairs.answers() as u64),
         Cell::text(of.map_or("", |fit| if fit.penalised { "yes" } else { "no" })),

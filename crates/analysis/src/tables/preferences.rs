@@ -165,16 +165,17 @@ pub(crate) fn interval(tally: &Tally, factor: &GroupFactor, object: usize) -> Op
         .map(|i| Interval { low: cut(i.low), high: cut(i.high) })
 }
 
-/// Each respondent's own factor of a method in a group on one object.
+/// Each respondent's own factor of a method in a group on one object, of those who answered any of its questions.
 fn scores(tally: &Tally, factor: &GroupFactor, object: usize) -> Vec<f64> {
-    let each = factor.share.answers as f64 / tally.respondents as f64;
-    let mut wins = vec![0.0; tally.respondents];
-    for row in &tally.rows {
-        if row.group == factor.group && row.object == object && row.chosen == Some(factor.method) {
-            wins[row.respondent] += row.answers as f64;
+    let (mut wins, mut answers) = (vec![0; tally.respondents], vec![0; tally.respondents]);
+    for row in tally.rows.iter().filter(|row| row.group == factor.group && row.object == object) {
+        answers[row.respondent] += row.answers;
+        if row.chosen == Some(factor.method) {
+            wins[row.respondent] += row.answers;
         }
     }
-    wins.into_iter().map(|wins| wins / each).collect()
+    let answered = wins.into_iter().zip(answers).filter(|(_, answers)| *answers > 0);
+    answered.map(|(wins, answers)| wins as f64 / answers as f64).collect()
 }
 
 fn contests(study: &Study, tally: &Tally) -> Option<Table> {

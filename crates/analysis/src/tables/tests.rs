@@ -1,8 +1,6 @@
 use super::*;
-use crate::answers::Answers;
 use crate::fixture::{self, Everything};
 use crate::table::Cell;
-use std::path::Path;
 
 fn named<'a>(tables: &'a [Table], name: &str) -> &'a Table {
     tables.iter().find(|table| table.name == name).unwrap_or_else(|| panic!("no table {name}"))
@@ -37,8 +35,15 @@ fn every_table_is_there_and_scripts_find_their_columns() {
             "models",
             "agreement",
             "respondents",
+            "screened",
+            "audit",
+            "prediction",
+            "prediction_joint",
+            "prediction_objects",
+            "prediction_correlations",
             "quality",
             "topology",
+            "accuracy",
             "positions",
             "comparison_summary",
             "comparison",
@@ -59,6 +64,7 @@ fn every_table_is_there_and_scripts_find_their_columns() {
     assert_eq!(named(&tables, "benchmark").printed().len(), 4);
     assert_eq!(named(&tables, "asteroid").rows.len(), 6);
     assert_eq!(named(&tables, "quality").rows.len(), 36);
+    assert_eq!(named(&tables, "accuracy").rows.len(), 54);
     assert_eq!(named(&tables, "answers").columns.len(), 19);
 }
 
@@ -81,6 +87,9 @@ fn rows_of_the_scripted_tables() {
     assert!(counts.contains("\nQ7,sphere,ss_bu,ss_su,16,1,1,"), "{counts}");
     let positions = named(&tables, "positions").to_csv();
     assert!(positions.contains("\nss_bi,13605,13606,27200,27200,8,8,"), "{positions}");
+    // 2e-4 at a spacing of 0.04.
+    let accuracy = named(&tables, "accuracy").to_csv();
+    assert!(accuracy.contains("\nas_bi,benchmark,0.04,0.005,"), "{accuracy}");
     let times = named(&tables, "benchmark");
     assert!(times.notes[0].contains("means over 5 iterations") && times.notes[0].contains("does not match"));
 }
@@ -190,7 +199,7 @@ fn absent_parts_leave_out_their_tables() {
 #[test]
 fn another_study_works_as_well() {
     let study = fixture::small_study();
-    let answers = Answers::parse(b"Q17,Q8\nL,R\nNP,R\n", Path::new("small.csv"), &study).unwrap();
+    let answers = fixture::parse("Q17,Q8\nL,R\nNP,R\n", &study);
     let paper = fixture::study();
     let (meshes, bench) = (fixture::meshes(&paper), fixture::bench(&paper));
     let inputs = Inputs { study: &study, meshes: &meshes, bench: Some(&bench), answers: Some(&answers) };
@@ -200,5 +209,5 @@ fn another_study_works_as_well() {
     assert!(!tables.iter().any(|table| ["comparison", "claims", "asteroid"].contains(&table.name.as_str())));
     assert_eq!(named(&tables, "benchmark").rows.len(), 4);
     assert!(tables.iter().all(|table| !table.rows.is_empty()));
-    assert_eq!(crate::figures(&inputs).unwrap().len(), 8);
+    assert_eq!(crate::figures(&inputs).unwrap().len(), 13);
 }

@@ -66,9 +66,13 @@ fn ratio(
     if logs.is_empty() || !logs.iter().all(|log| log.is_finite()) {
         return None;
     }
-    let statistic =
-        |draws: &[usize]| Some(middle(&draws.iter().map(|&round| logs[round]).collect::<Vec<_>>()));
-    let interval = (logs.len() > 1).then(|| percentile(logs.len(), resampling, statistic)).flatten();
+    let statistic = |draws: &[u64]| {
+        let drawn =
+            logs.iter().zip(draws).flat_map(|(&log, &times)| std::iter::repeat_n(log, times as usize));
+        Some(middle(&drawn.collect::<Vec<_>>()))
+    };
+    let interval =
+        (logs.len() > 1).then(|| percentile(&vec![1; logs.len()], resampling, statistic)).flatten();
     let interval = interval.map(|found| found.interval);
     let parts = thirds(&logs).map(|parts| parts.map(middle));
     let judgement = match interval {

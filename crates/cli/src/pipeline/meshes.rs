@@ -75,7 +75,8 @@ impl Pipeline<'_> {
         self.stage(&format!("mesh/{name}/{}", configuration.id), inputs, |writer| {
             let lattice = subject::lattice(object, configuration.id.method.arrangement, spacing)?;
             let extraction = self.extract(configuration, purpose, spacing)?;
-            let record = mesh_record(&configuration.id, purpose, spacing, &lattice, &extraction);
+            let accuracy = self.accuracy(configuration, spacing, &extraction.mesh)?;
+            let record = mesh_record(&configuration.id, purpose, spacing, &lattice, &extraction, &accuracy);
             // The indexed variant is only measured: nothing is rendered from it.
             if purpose != Purpose::Indexed {
                 let mut ply = Vec::new();
@@ -124,6 +125,19 @@ impl Pipeline<'_> {
             );
         }
         Ok(extraction)
+    }
+
+    /// How well a configuration's mesh stands for its isosurface.
+    fn accuracy(
+        &self,
+        configuration: &Configuration,
+        spacing: f64,
+        mesh: &TriangleMesh,
+    ) -> Result<extract::Accuracy> {
+        let isovalue = self.study.object(configuration).isovalue as f32;
+        let field = self.fields.get(configuration.object)?;
+        let execution = Execution { threads: self.threads };
+        Ok(extract::accuracy(mesh, field, isovalue, spacing as f32, &execution)?)
     }
 
     /// The records of finished meshes.

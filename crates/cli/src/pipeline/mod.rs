@@ -2,25 +2,31 @@
 //!
 //! ```text
 //! objects ─ meshes ─┬─ turntables ─ pairs, key ─┐
+//! comparisons ─ forms, key ─────────────────────┤
 //!                   └─ stills ──────────────────┤
 //! objects ─ timings ─┐                          ├─ page ─ manifest
-//! answers ───────────┴─ tables, figures ────────┘
+//! answers ───────────┴─ tables, figures, report ┘
 //! ```
 
+mod bundle;
 mod meshes;
 mod page;
+mod report;
 mod stimuli;
 mod tables;
 mod timings;
 
 pub(crate) use meshes::Meshes;
-pub(crate) use tables::write_answers_only;
+pub(crate) use tables::{write_answers_only, write_without_study};
 pub(crate) use timings::{PlanLength, measure};
 
 use crate::store::{Inputs, Stamp, Store, Writer};
 use crate::subject::Fields;
 use anyhow::{Context, Result};
 use design::Study;
+
+/// Stages that only commands of their own make; a whole study leaves them in place.
+const ASKED_FOR: [&str; 4] = ["bench/", "bundle", "contact_sheet", "video/"];
 
 /// One study being worked on.
 pub(crate) struct Pipeline<'a> {
@@ -37,17 +43,18 @@ impl<'a> Pipeline<'a> {
         Self { study, store, fields: Fields::new(study), threads, frozen: false }
     }
 
-    /// The whole study. What an earlier form of it left behind goes; a full benchmark run stays. Returns the published
+    /// The whole study. What an earlier form of it left behind goes. Returns the published
     /// numbers that ours differ from without a known reason.
     pub(crate) fn study(&self) -> Result<Vec<String>> {
         let meshes = self.all_meshes(&[])?;
         let turntables = self.turntables(&meshes, &[])?;
         let pairs = self.pairs(&turntables)?;
+        let forms: Vec<Stamp> = self.forms()?.into_iter().collect();
         let stills = self.stills()?;
         let timings = self.timings(PlanLength::Short)?;
         let tables = self.tables(&meshes, &timings)?;
-        self.page(&meshes, &[turntables, pairs, stills, vec![timings, tables]].concat())?;
-        self.store.retire_untouched(|stage| stage.starts_with("bench/"))?;
+        self.page(&meshes, &[turntables, pairs, forms, stills, vec![timings, tables]].concat())?;
+        self.store.retire_untouched(|stage| ASKED_FOR.iter().any(|start| stage.starts_with(start)))?;
         self.unexplained()
     }
 
@@ -60,7 +67,7 @@ impl<'a> Pipeline<'a> {
     /// Clears away what is no longer part of the study, and writes the manifest of what is.
     pub(crate) fn finish(&self) -> Result<()> {
         self.store.remove_retired()?;
-        crate::manifest::write(self.study, &self.store)
+        crate::manifest::write(&crate::manifest::Subject::of(self.study)?, &self.store)
     }
 
     /// Does a stage that makes meshes, animations or timings; when frozen, only looks it up.

@@ -3,10 +3,11 @@
 use super::{Meshes, Pipeline};
 use crate::picture;
 use crate::progress::Step;
-use crate::rooms;
 use crate::store::{Inputs, Stamp};
+use crate::{rooms, video};
 use anyhow::{Context, Result};
 use design::config::StillSection;
+use design::forms::Stimulus;
 use design::record::Purpose;
 use design::{Comparison, Configuration, ConfigurationId};
 use raster::{Animation, Look};
@@ -64,38 +65,56 @@ impl Pipeline<'_> {
         Ok(stamp)
     }
 
-    /// Composes every comparison from two finished turntables.
+    /// Composes every pair that anybody is shown from two finished turntables.
     pub(crate) fn pairs(&self, turntables: &[Stamp]) -> Result<Vec<Stamp>> {
-        let (_, codes) = self.study.code_names();
+        let stimuli = self.study.stimuli();
         let by_id: HashMap<&ConfigurationId, &Stamp> =
             self.study.configurations.iter().map(|c| &c.id).zip(turntables).collect();
-        let count = self.study.comparisons.len();
-        let step = Step::begin("pairs", count, count);
-        let one = |(comparison, code): (&Comparison, &String)| {
-            let stamp = self.pair(comparison, code, by_id[&comparison.left], by_id[&comparison.right])?;
+        let step = Step::begin("pairs", stimuli.len(), stimuli.len());
+        let one = |stimulus: &Stimulus| {
+            let stamp = self.pair(stimulus, by_id[&stimulus.left], by_id[&stimulus.right])?;
             step.tick(1);
             step.count(stamp.redone);
             Ok(stamp)
         };
-        let stamps: Vec<Stamp> =
-            self.study.comparisons.par_iter().zip(&codes).map(one).collect::<Result<_>>()?;
+        let stamps: Vec<Stamp> = stimuli.par_iter().map(one).collect::<Result<_>>()?;
         step.end();
         Ok(stamps)
     }
 
-    fn pair(&self, comparison: &Comparison, code: &str, left: &Stamp, right: &Stamp) -> Result<Stamp> {
+    fn pair(&self, stimulus: &Stimulus, left: &Stamp, right: &Stamp) -> Result<Stamp> {
+        let Stimulus { code, left: left_id, right: right_id } = stimulus;
         let scale = self.study.file.stimuli.pair_scale;
         let inputs = Inputs::of_rooms(rooms::PICTURES)
             .stamp(left)
             .stamp(right)
             .text("code", code)
             .value("scale", &scale);
-        self.stage(&format!("pair/{}", comparison.question), inputs, |writer| {
+        self.stage(&format!("pair/{left_id}~{right_id}"), inputs, |writer| {
             let (left, right) = (self.read_animation(left)?, self.read_animation(right)?);
             let mut gif = Vec::new();
             left.side_by_side(&right)?.scaled(scale).write_gif(&mut gif)?;
             writer.write(&format!("{PAIRS}/{code}.gif"), &gif)
         })
+    }
+
+    /// Every pair as a video beside it, one after the other: ffmpeg takes all cores by itself.
+    pub(crate) fn videos(&self, pairs: &[Stamp]) -> Result<Vec<Stamp>> {
+        let step = Step::begin("videos", pairs.len(), pairs.len());
+        let mut stamps = Vec::new();
+        for pair in pairs {
+            let name = format!("video/{}", pair.stage.trim_start_matches("pair/"));
+            let path = pair.file(".gif").replace(".gif", ".mp4");
+            let inputs = Inputs::of_rooms(rooms::PICTURES).stamp(pair);
+            let stamp = self.stage(&name, inputs, |writer| {
+                writer.write(&path, &video::mp4(&self.read_animation(pair)?)?)
+            })?;
+            step.tick(1);
+            step.count(stamp.redone);
+            stamps.push(stamp);
+        }
+        step.end();
+        Ok(stamps)
     }
 
     fn read_animation(&self, stamp: &Stamp) -> Result<Animation> {
@@ -106,13 +125,16 @@ impl Pipeline<'_> {
 
     /// The key is kept apart from the stimuli, so that a folder of stimuli can be given away.
     fn key(&self) -> Result<Stamp> {
-        let (turntables, pairs) = self.study.code_names();
+        let (turntables, _) = self.study.code_names();
         let mut key = String::from("file,question,left,right\n");
         for (configuration, code) in self.study.configurations.iter().zip(&turntables) {
             key += &format!("{TURNTABLES}/{code}.gif,,{},\n", configuration.id);
         }
-        for (comparison, code) in self.study.comparisons.iter().zip(&pairs) {
-            let Comparison { question, left, right, .. } = comparison;
+        for Stimulus { code, left, right } in self.study.stimuli() {
+            let shows = |c: &&Comparison| {
+                (&c.left, &c.right) == (&left, &right) || (&c.left, &c.right) == (&right, &left)
+            };
+            let question = self.study.comparisons.iter().find(shows).map_or("", |c| c.question.as_str());
             key += &format!("{PAIRS}/{code}.gif,{question},{left},{right}\n");
         }
         let inputs = Inputs::of_rooms(rooms::KEYS).text("key", &key);

@@ -1,13 +1,16 @@
-//! Tables and figures, from records, timings and answers.
+//! Tables, figures and the report, from records, timings and answers.
 
 use super::{Meshes, Pipeline};
 use crate::progress::Step;
 use crate::rooms;
 use crate::store::{Inputs, Stamp, Store, Writer, sha256};
-use analysis::{Answers, Figure, Table};
+use analysis::{Figure, Table};
 use anyhow::{Context, Result};
 use design::Study;
+use design::config::ResponsesSection;
+use responses::Reading;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
 impl Pipeline<'_> {
     /// Every table and figure of the study.
@@ -20,14 +23,14 @@ impl Pipeline<'_> {
         let stamp = self.store.stage("tables", inputs, |writer| {
             let records = self.mesh_records(meshes)?;
             let run = self.bench_run(timings)?;
-            let answers = crate::read_answers(self.study)?;
+            let answers = crate::answers::of_study(self.study)?;
             let inputs = analysis::Inputs {
                 study: self.study,
                 meshes: &records,
                 bench: Some(&run),
-                answers: answers.as_ref(),
+                answers: answers.as_ref().map(|reading| &reading.responses),
             };
-            write(writer, &inputs)?;
+            write(writer, &inputs, true)?;
             writer.write_json(UNEXPLAINED, &analysis::unexplained_differences(&inputs)?)
         })?;
         step.count(stamp.redone);
@@ -43,14 +46,42 @@ impl Pipeline<'_> {
     }
 }
 
-/// The preference tables and figures alone, into a folder of their own.
+/// The preference tables and figures alone, into a folder of their own, with how the answers were read.
 ///
 /// # Errors
 /// If the files cannot be written.
-pub(crate) fn write_answers_only(study: &Study, answers: &Answers, store: &Store) -> Result<Vec<Table>> {
-    let inputs = analysis::Inputs { study, meshes: &[], bench: None, answers: Some(answers) };
-    store.stage("answers", study_inputs(study)?, |writer| write(writer, &inputs).map(|_| ()))?;
+pub(crate) fn write_answers_only(study: &Study, reading: &Reading, store: &Store) -> Result<Vec<Table>> {
+    let inputs = analysis::Inputs { study, meshes: &[], bench: None, answers: Some(&reading.responses) };
+    store.stage("answers", study_inputs(study)?, |writer| {
+        writer.write(READING, reading.report.to_csv().as_bytes())?;
+        write(writer, &inputs, false)
+    })?;
     Ok(analysis::tables(&inputs)?)
+}
+
+/// Tables, figures and report of answers without a study, into a folder of their own, with how the answers were read.
+///
+/// # Errors
+/// If the files cannot be written.
+pub(crate) fn write_without_study(
+    path: &Path,
+    section: &ResponsesSection,
+    reading: &Reading,
+    store: &Store,
+) -> Result<Vec<Table>> {
+    let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+    let inputs = Inputs::of_rooms(rooms::TABLES).value("mapping", section).text("responses", &sha256(&bytes));
+    let tables = analysis::answer_tables(&reading.responses, None)?;
+    let groups = analysis::open_groups(&reading.responses);
+    let title = path.file_name().unwrap_or_default().to_string_lossy();
+    store.stage("answers", inputs, |writer| {
+        writer.write(READING, reading.report.to_csv().as_bytes())?;
+        write_tables(writer, &tables)?;
+        let figures = analysis::figures_of_groups(&groups).context("figures")?;
+        write_figures(writer, &figures)?;
+        super::report::write(writer, &analysis::report_of_groups(&title, &groups, &tables, &figures), false)
+    })?;
+    Ok(tables)
 }
 
 /// What the page needs to know of a table: `tables/contents.json` lists these.
@@ -68,14 +99,35 @@ pub(super) struct FigureEntry {
     pub(super) caption: String,
 }
 
+/// Cells and rows of the answers that were not taken as they stand.
+const READING: &str = "tables/reading.csv";
 const UNEXPLAINED: &str = "tables/unexplained.json";
 pub(super) const TABLE_CONTENTS: &str = "tables/contents.json";
 pub(super) const FIGURE_CONTENTS: &str = "figures/contents.json";
 
-fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>) -> Result<()> {
+/// `gallery` says whether an `index.html` will stand beside the report.
+fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>, gallery: bool) -> Result<()> {
     let tables = analysis::tables(inputs).context("tables")?;
+    write_tables(writer, &tables)?;
+    let figures = analysis::figures(inputs).context("figures")?;
+    write_figures(writer, &figures)?;
+    let report = analysis::report(inputs, &tables, &figures).context("report")?;
+    super::report::write(writer, &report, gallery)
+}
+
+fn write_figures(writer: &mut Writer<'_>, figures: &[Figure]) -> Result<()> {
     let mut entries = Vec::new();
-    for table in &tables {
+    for Figure { name, caption, svg, png } in figures {
+        writer.write(&format!("figures/{name}.svg"), svg.as_bytes())?;
+        writer.write(&format!("figures/{name}.png"), png)?;
+        entries.push(FigureEntry { name: name.clone(), caption: caption.clone() });
+    }
+    writer.write_json(FIGURE_CONTENTS, &entries)
+}
+
+fn write_tables(writer: &mut Writer<'_>, tables: &[Table]) -> Result<()> {
+    let mut entries = Vec::new();
+    for table in tables {
         let path = format!("tables/{}", table.name);
         writer.write(&format!("{path}.csv"), table.to_csv().as_bytes())?;
         writer.write(&format!("{path}.md"), table.to_markdown().as_bytes())?;
@@ -83,14 +135,7 @@ fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>) -> Result<()> {
         let (name, caption) = (table.name.clone(), table.caption.clone());
         entries.push(TableEntry { name, caption, html: table.to_html() });
     }
-    writer.write_json(TABLE_CONTENTS, &entries)?;
-    let mut entries = Vec::new();
-    for Figure { name, caption, svg, png } in analysis::figures(inputs).context("figures")? {
-        writer.write(&format!("figures/{name}.svg"), svg.as_bytes())?;
-        writer.write(&format!("figures/{name}.png"), &png)?;
-        entries.push(FigureEntry { name, caption });
-    }
-    writer.write_json(FIGURE_CONTENTS, &entries)
+    writer.write_json(TABLE_CONTENTS, &entries)
 }
 
 /// The study file, its answers and its published numbers.

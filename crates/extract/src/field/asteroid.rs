@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-use super::ScalarField;
 use super::asteroid_table::AsteroidTable;
 use super::sine::sin;
+use super::{Kept, ScalarField};
 
 /// A lumpy ball: `f(p) = radius - |p/k| + amplitude * fbm(frequency * ((p/|p|)/k))`, `/k` by component.
 ///
@@ -57,8 +57,10 @@ impl ScalarField for Asteroid {
     }
 
     /// With the hashes in tables, and bounds.
-    fn prepared(&self) -> Option<Box<dyn ScalarField + '_>> {
-        AsteroidTable::new(self).map(|table| Box::new(table) as Box<dyn ScalarField>)
+    fn prepared<'a>(&self, kept: &'a mut Kept) -> Option<&'a dyn ScalarField> {
+        let table =
+            kept.get_or_make(|table: &AsteroidTable| table.is_of(self), || AsteroidTable::new(self))?;
+        Some(table)
     }
 }
 

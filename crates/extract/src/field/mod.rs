@@ -12,6 +12,8 @@ pub use gyroid::Gyroid;
 pub use mesh_distance::{MeshDistance, MeshFieldError};
 pub use sphere::Sphere;
 
+use std::any::Any;
+
 use glam::Vec3;
 use mesh::Bounds;
 
@@ -55,10 +57,12 @@ pub trait ScalarField: Sync {
         None
     }
 
-    /// The least and the greatest value that a point of the box can have, or more. `value` is the one in the middle,
-    /// `(min + max) / 2`. `None` where nothing is known.
+    /// The least and the greatest value that a point of the box can have, or more; none of them is `NaN`. `None` where
+    /// nothing is known.
     ///
-    /// By default what [`slope`](Self::slope) says; override it where more is known.
+    /// `value` is the one in the middle, `(min + max) / 2`, or `NaN` as long as nobody has asked for it: the range is
+    /// then `NaN` if it takes a value to tell. By default what [`slope`](Self::slope) says; override it where more is
+    /// known.
     fn range(&self, bounds: Bounds, value: f32) -> Option<(f32, f32)> {
         let slope = self.slope(bounds)?;
         let centre = (bounds.min + bounds.max) * 0.5;
@@ -68,9 +72,29 @@ pub trait ScalarField: Sync {
         Some((value - change, value + change))
     }
 
-    /// The same field, value by value to the bit, made ready for very many samples, where that is worth while.
-    fn prepared(&self) -> Option<Box<dyn ScalarField + '_>> {
+    /// The same field, value by value to the bit, made ready for very many samples, where that is worth while. What it
+    /// takes lies in `kept`, which may hold what another field, or this one before, left there.
+    fn prepared<'a>(&self, _kept: &'a mut Kept) -> Option<&'a dyn ScalarField> {
         None
+    }
+}
+
+/// What a field keeps from one extraction to the next, so that it need not be made again.
+#[derive(Debug, Default)]
+pub struct Kept(Option<Box<dyn Any + Send + Sync>>);
+
+impl Kept {
+    /// What is kept, if it is a `T` and `fits`; otherwise what `make` gives, which is kept from now on.
+    pub fn get_or_make<T: Any + Send + Sync>(
+        &mut self,
+        fits: impl FnOnce(&T) -> bool,
+        make: impl FnOnce() -> Option<T>,
+    ) -> Option<&T> {
+        let has = self.0.as_ref().and_then(|kept| kept.downcast_ref()).is_some_and(fits);
+        if !has {
+            self.0 = make().map(|made| Box::new(made) as _);
+        }
+        self.0.as_ref()?.downcast_ref()
     }
 }
 

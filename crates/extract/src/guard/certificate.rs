@@ -59,7 +59,7 @@ fn stages_of(
     let coordinates = Coordinates::sampled(lattice, &layout, Positions::Indexed);
     sampling::sample(field, &layout, &coordinates, &Execution { threads: 1 }, &mut samples).unwrap();
     let (mut sides, mut edges) = (Sides::new(&layout), EdgeTable::new(layout.len()));
-    place_vertices(lattice, &layout, &samples, &settings, &mut sides, &mut edges).unwrap();
+    place_vertices(lattice, &layout, &samples, &settings, None, &mut sides, &mut edges).unwrap();
     let triangles = triangulate(lattice, &layout, &sides, &edges).triangles;
     ((edges, 0..layout.len()), triangles)
 }

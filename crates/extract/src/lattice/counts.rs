@@ -7,6 +7,8 @@ use super::{Arrangement, DIRECTIONS, Lattice};
 const BYTES_PER_EDGE_RECORD: u64 = (DIRECTIONS * size_of::<u32>() + size_of::<u16>()) as u64;
 /// The value of the field.
 const BYTES_PER_SAMPLE: u64 = size_of::<f32>() as u64;
+/// A side; a value, where it is and its slope; a span.
+const BYTES_PER_TILE: u64 = 1 + 20 + 12;
 /// Scratch of the vertex stage: inside or outside.
 const BYTES_PER_SIDE: u64 = 1;
 
@@ -75,17 +77,21 @@ impl Lattice {
         self.stored_samples() * (BYTES_PER_SAMPLE + BYTES_PER_EDGE_RECORD + BYTES_PER_SIDE) + padding
     }
 
-    /// What streaming extraction (indexed positions) holds of the lattice at a time on `threads` threads: a few
-    /// layers of samples, sign bits and point records each. The mesh comes on top.
+    /// What streaming extraction (indexed positions) of a field holds of the lattice at a time on `threads` threads: a
+    /// few layers of samples, sign bits and point records each, and what is known of tiles of two by two columns. The
+    /// mesh comes on top.
     pub fn sweep_bytes(&self, threads: u64) -> u64 {
         let [x, y, _] = self.stored_grid().map(u64::from);
-        let slots = match self.arrangement {
-            Arrangement::BodyCentred => 5,
-            Arrangement::SimpleCubic => 3,
+        // Layers that a lattice edge can reach.
+        let reach = match self.arrangement {
+            Arrangement::BodyCentred => 2,
+            Arrangement::SimpleCubic => 1,
         };
         let words = x.div_ceil(64);
-        let row = x * (BYTES_PER_SAMPLE + 8) + 8 * (words + 2) + 8 * words + 1;
-        threads * slots * y * row
+        let samples_and_signs = x * BYTES_PER_SAMPLE + 8 * words + 8 * (words + 2) + 1;
+        let records = 8 * x + 8 * words;
+        let tiles = x.div_ceil(2) * y.div_ceil(2) * BYTES_PER_TILE;
+        threads * (y * ((3 * reach + 1) * samples_and_signs + (2 * reach + 1) * records) + tiles)
     }
 
     /// Bytes of the stored samples.

@@ -11,9 +11,11 @@ use super::grid::Grid;
 use super::rule::{ClusterRule, Guarded, Published, Unclustered};
 use super::slab::{Job, Piece, SlabTimes, Workspace, sweep};
 use super::source::Source;
-use crate::collapse::collapse;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
+use crate::field::Kept;
 use crate::lattice::Lattice;
+use crate::level::Level;
+use crate::placement::{self, CrossingPlacer};
 use crate::settings::{Clustering, Execution, ExtractSettings, Positions, Topology};
 use crate::stored;
 
@@ -28,8 +30,9 @@ type Progress = Box<dyn Fn(usize, usize) + Send + Sync>;
 /// An extractor that keeps its buffers, for one surface after another.
 ///
 /// With indexed positions it streams: memory grows with a layer of the lattice and with the mesh. From the second
-/// volume of a size on, with one thread and unless edges are collapsed, [`extract_into`](Self::extract_into)
-/// allocates nothing.
+/// volume of a size on, with one thread, unless edges are collapsed or vertices placed otherwise than at the mean of
+/// interpolated crossings, [`extract_into`](Self::extract_into) allocates nothing, as long as the surface does not
+/// outgrow those before it; an [`Asteroid`](crate::Asteroid) other than the one before has its tables made again.
 ///
 /// ```
 /// use extract::{Arrangement, Execution, ExtractSettings, Extraction, Extractor, Lattice, ScalarField, Sphere};
@@ -52,7 +55,20 @@ pub struct Extractor {
     plan: Option<Plan>,
     workspaces: Vec<Workspace>,
     pieces: Vec<Piece>,
+    kept: Kept,
     progress: Option<Progress>,
+    pub(super) most_vertices: MostVertices,
+}
+
+/// How many vertices a mesh may have.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MostVertices(pub(super) u32);
+
+impl Default for MostVertices {
+    /// What a 32-bit index can name.
+    fn default() -> Self {
+        Self(u32::MAX)
+    }
 }
 
 /// What depends on the lattice alone.
@@ -102,7 +118,8 @@ impl Extractor {
     ///
     /// # Errors
     /// As [`extract`](crate::extract); [`ExtractError::SampleCount`] when given samples are not as many as the
-    /// lattice has, [`ExtractError::SamplesAccumulated`] when they come with accumulated positions.
+    /// lattice has, [`ExtractError::SamplesAccumulated`] when they come with accumulated positions,
+    /// [`ExtractError::PlacementNeedsField`] when they come with a placement that calls the field.
     pub fn extract_into(
         &mut self,
         source: Source,
@@ -112,6 +129,7 @@ impl Extractor {
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
         check(settings)?;
+        placement::check(settings, matches!(source, Source::Field(_)))?;
         if let Source::Samples(samples) = source {
             let (given, wanted) = (samples.len() as u64, lattice.stored_samples());
             if given != wanted {
@@ -124,11 +142,12 @@ impl Extractor {
             return Ok(());
         }
         let start = Instant::now();
+        let mut kept = std::mem::take(&mut self.kept);
         let prepared = match source {
-            Source::Field(field) => field.prepared(),
+            Source::Field(field) => field.prepared(&mut kept),
             Source::Samples(_) => None,
         };
-        let source = prepared.as_deref().map_or(source, Source::Field);
+        let source = prepared.map_or(source, Source::Field);
         let plan = match self.plan.take() {
             Some(plan) if plan.grid.lattice == *lattice => plan,
             _ => Plan::new(lattice),
@@ -154,7 +173,7 @@ impl Extractor {
                 self.run(&plan, &rule, source, settings, execution, extraction, start)
             }
         };
-        self.plan = Some(plan);
+        (self.plan, self.kept) = (Some(plan), kept);
         result
     }
 
@@ -190,12 +209,21 @@ impl Extractor {
                 progress(done.fetch_add(more, Ordering::Relaxed) + more, layers);
             }
         };
+        let level = match source {
+            Source::Field(field) => {
+                Some(Level { field, isovalue: settings.isovalue, spacing: grid.lattice.spacing() })
+            }
+            Source::Samples(_) => None,
+        };
+        let placer = CrossingPlacer::new(&grid.lattice, settings, level);
         let job = Job {
             grid,
             tables: &plan.tables,
             rule,
             source,
             isovalue: settings.isovalue,
+            most_vertices: self.most_vertices.0,
+            placer: placer.as_ref(),
             progress: &progress,
         };
         sweep_all(&job, &mut self.workspaces, &mut self.pieces)?;
@@ -203,22 +231,22 @@ impl Extractor {
         times.allocation = allocation;
 
         let joining = Instant::now();
-        let seams = join(&mut self.pieces)?;
+        let seams = join(&mut self.pieces, self.most_vertices.0)?;
         let (first, rest) = self.pieces.split_first_mut().expect("there is a slab");
         let crossing_ends: u64 =
             first.crossing_ends + rest.iter().map(|piece| piece.crossing_ends).sum::<u64>();
         let mesh = &mut extraction.mesh;
         mesh.positions = std::mem::take(&mut first.positions);
         let surface = &mut first.surface;
-        times.geometry += joining.elapsed();
-
-        let collapsing = Instant::now();
-        let collapsed = collapse(settings, grid.lattice.spacing(), &mut mesh.positions, surface);
-        times.clustering = if collapsed { collapsing.elapsed() } else { Duration::ZERO };
+        let (lattice, targets) = (&grid.lattice, std::mem::take(&mut first.targets));
+        let collapsing =
+            placement::finish(level, lattice, settings, execution, &targets, &mut mesh.positions, surface)?;
         mesh.triangles = std::mem::take(&mut surface.triangles);
+        times.clustering = collapsing.unwrap_or_default();
+        times.geometry += joining.elapsed() - times.clustering;
 
         let making_normals = Instant::now();
-        let seams = if collapsed { None } else { Some(&seams) };
+        let seams = if collapsing.is_some() { None } else { Some(&seams) };
         make_normals(mesh, seams, threads)?;
         times.normals = making_normals.elapsed();
 
@@ -314,15 +342,15 @@ struct Seam {
 }
 
 /// Appends all pieces to the first one, with vertex numbers of the whole.
-fn join(pieces: &mut [Piece]) -> Result<Vec<Seam>, ExtractError> {
+fn join(pieces: &mut [Piece], most_vertices: u32) -> Result<Vec<Seam>, ExtractError> {
     let (first, rest) = pieces.split_first_mut().expect("there is a slab");
     let mut seams = Vec::new();
     if rest.is_empty() {
         return Ok(seams);
     }
     let total: usize = first.positions.len() + rest.iter().map(|piece| piece.positions.len()).sum::<usize>();
-    if total > u32::MAX as usize {
-        return Err(ExtractError::TooManyVertices { limit: u32::MAX });
+    if total as u64 > u64::from(most_vertices) {
+        return Err(ExtractError::TooManyVertices { limit: most_vertices });
     }
     let triangles: usize = rest.iter().map(|piece| piece.surface.triangles.len()).sum();
     first.positions.try_reserve(total - first.positions.len()).map_err(|_| ExtractError::NoMemoryForMesh)?;
@@ -339,6 +367,7 @@ fn join(pieces: &mut [Piece]) -> Result<Vec<Seam>, ExtractError> {
         let global = |triangle: &[u32; 3]| triangle.map(|vertex| vertex.wrapping_add(shift));
         first.surface.triangles.extend(piece.surface.triangles.iter().map(global));
         first.positions.extend_from_slice(&piece.positions);
+        first.targets.append(&mut piece.targets);
         first.surface.tetrahedra_evaluated += piece.surface.tetrahedra_evaluated;
         first.surface.discarded += piece.surface.discarded;
         first.surface.discarded_as_published += piece.surface.discarded_as_published;

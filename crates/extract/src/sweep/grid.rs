@@ -11,8 +11,6 @@ use crate::triangles::deciding_edges;
 
 /// The most rows that a point and its neighbours lie in.
 pub(super) const LINES: usize = 9;
-/// The most layers that a point and its neighbours lie in.
-const MOST_LAYERS: usize = 5;
 
 /// The lattice as the passes see it.
 #[derive(Debug, Clone)]
@@ -27,8 +25,6 @@ pub(super) struct Grid {
     pub(super) words: usize,
     /// No neighbour is more layers away.
     pub(super) reach: usize,
-    /// The length of the longest lattice edge, in cells.
-    pub(super) longest_edge: f32,
     /// From a point to its neighbours in space.
     pub(super) edges: [Vec3A; 16],
     /// The box.
@@ -63,9 +59,9 @@ impl Grid {
         let directions = lattice.arrangement().directions();
         let half = lattice.spacing() / 2.0;
         let neighbourhood = |kind| Neighbourhood::new(&layout, kind, directions);
-        let (reach, base_offset, longest_edge) = match lattice.arrangement() {
-            Arrangement::BodyCentred => (2, 1, 1.0),
-            Arrangement::SimpleCubic => (1, 0, 3f32.sqrt()),
+        let (reach, base_offset) = match lattice.arrangement() {
+            Arrangement::BodyCentred => (2, 1),
+            Arrangement::SimpleCubic => (1, 0),
         };
         Self {
             coordinates: Coordinates::sampled(lattice, &layout, Positions::Indexed),
@@ -82,7 +78,6 @@ impl Grid {
             spokes: spokes(lattice.arrangement()),
             deciding: deciding_edges(lattice.arrangement()),
             base_offset,
-            longest_edge,
             layout,
             lattice: lattice.clone(),
         }
@@ -90,9 +85,7 @@ impl Grid {
 
     /// Slots that a ring of layers needs for a point and all its neighbours.
     pub(super) fn slots(&self) -> usize {
-        let slots = 2 * self.reach + 1;
-        debug_assert!(slots <= MOST_LAYERS);
-        slots
+        2 * self.reach + 1
     }
 
     pub(super) fn layer_len(&self) -> usize {

@@ -6,12 +6,16 @@
 //! The mesh is that of the stored extractor ([`crate::stored`]) with the same rule, vertex by vertex and triangle by
 //! triangle, in the same order: vertices in storage order of their points, triangles cell by cell.
 
+mod crossings;
 mod extractor;
 mod faces;
 mod grid;
+#[cfg(test)]
+mod limits;
 mod points;
 mod records;
 mod rule;
+mod sampling;
 mod signs;
 mod slab;
 mod source;

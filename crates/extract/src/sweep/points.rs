@@ -5,11 +5,13 @@
 
 use glam::{Vec3, Vec3A};
 
+use super::crossings::{Crossings, Lines};
 use super::grid::{Grid, LINES};
 use super::records::{Numbering, Record, Records};
 use super::rule::ClusterRule;
-use super::signs::{MIXED, Signs, used_bits};
-use crate::lattice::{DIRECTIONS, DirectionSet};
+use super::signs::Signs;
+use crate::lattice::{DIRECTIONS, DirectionSet, members};
+use crate::placement::{CrossingPlacer, Surroundings};
 
 /// Samples, by row.
 #[derive(Clone, Copy)]
@@ -26,6 +28,8 @@ pub(super) struct PointPass<'a, R> {
     pub(super) samples: Samples<'a>,
     pub(super) signs: &'a Signs,
     pub(super) isovalue: f32,
+    /// Places the vertices of the slab's own layers once more.
+    pub(super) placer: Option<&'a CrossingPlacer<'a>>,
 }
 
 /// What the pass counts and writes.
@@ -35,6 +39,8 @@ pub(super) struct Placed {
     pub(super) numbered: u64,
     /// Crossings seen, each once from either end.
     pub(super) crossing_ends: u64,
+    /// Where the placer wants the vertices.
+    pub(super) targets: Vec<Vec3>,
 }
 
 /// A point with a crossing.
@@ -59,21 +65,19 @@ impl<R: ClusterRule> PointPass<'_, R> {
         let kind = self.grid.layout.kind(layer);
         let rows = self.grid.layout.used(kind)[1];
         let layers = self.grid.layers(kind, layer);
-        let [signs, samples] = [self.grid.slots(), self.samples.slots]
+        let around = self.grid.neighbourhood(kind);
+        let used = self.grid.layout.used(kind)[0];
+        let [signs, samples] = [self.signs.slots, self.samples.slots]
             .map(|slots| layers.map(|layer| layer % slots * self.grid.size[1]));
         for row in 0..rows {
             let rows = self.grid.rows(kind, row, layer, &layers);
-            let signs: [usize; LINES] = std::array::from_fn(|i| signs[rows[i].0] + rows[i].1);
-            let state = self.signs.states[signs[0]];
-            if state != MIXED && signs.iter().all(|&place| self.signs.states[place] == state) {
-                continue;
-            }
+            let Some(lines) = Lines::new(self.signs, around, &rows, &signs, used) else { continue };
             let samples = std::array::from_fn(|i| (samples[rows[i].0] + rows[i].1) * self.grid.size[0]);
             if let Some(positions) = positions.as_deref_mut() {
                 // So that memory running out is an error, and pushing never grows by itself.
                 positions.try_reserve(self.grid.size[0] * DIRECTIONS)?;
             }
-            self.row([row, layer], &signs, &samples, records, placed, positions.as_deref_mut());
+            self.row([row, layer], &lines, &samples, records, placed, positions.as_deref_mut());
         }
         Ok(())
     }
@@ -81,7 +85,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
     fn row(
         &self,
         [row, layer]: [usize; 2],
-        signs: &[usize; LINES],
+        lines: &Lines,
         samples: &[usize; LINES],
         records: &mut Records,
         placed: &mut Placed,
@@ -92,7 +96,6 @@ impl<R: ClusterRule> PointPass<'_, R> {
         let around = grid.neighbourhood(kind);
         let used = grid.layout.used(kind)[0];
         let incident = grid.incident(kind, row, layer);
-        let signs: [&[u64]; LINES] = std::array::from_fn(|i| self.signs.row_at(signs[i]));
         let neighbours: [usize; 16] = std::array::from_fn(|d| {
             let d = d % DIRECTIONS;
             samples[around.line[d]].wrapping_add_signed(around.shift[d])
@@ -100,25 +103,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
         let record_start = records.row_start(row, layer);
         let x = grid.coordinates.x(kind);
         let (y, z) = (grid.coordinates.y(kind)[row], grid.coordinates.z()[layer]);
-
-        let (mut before, mut here) = (Common::of(&signs, 0), Common::of(&signs, 1));
-        for word in 0..grid.words {
-            let after = Common::of(&signs, word + 2);
-            let is_uniform = here.is_uniform(before, after);
-            (before, here) = (here, after);
-            if is_uniform {
-                continue;
-            }
-            let own = signs[0][word + 1];
-            let mut differ = [0; DIRECTIONS];
-            let mut any = 0;
-            for (d, differ) in differ.iter_mut().enumerate() {
-                let line = signs[around.line[d] % LINES];
-                let (low, right) = around.funnel[d];
-                *differ = own ^ (line[word + low] >> right | line[word + low + 1] << 1 << (63 - right));
-                any |= *differ;
-            }
-            let mut active = any & used_bits(word, used);
+        lines.visit(grid, |Crossings { word, sides, mut active, differ }| {
             let mut left = active;
             while left != 0 {
                 let bit = left.trailing_zeros();
@@ -135,7 +120,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
                     continue;
                 }
                 let position = Vec3::new(x[column], y, z);
-                let inside = own >> bit & 1 != 0;
+                let inside = sides >> bit & 1 != 0;
                 let point = Point { column, position, inside, crossing, present };
                 let record = self.point(
                     &point,
@@ -149,7 +134,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
                 records.set(record_start + column, record);
             }
             records.set_active(row, layer, word, active);
-        }
+        });
     }
 
     #[inline(always)]
@@ -190,6 +175,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
             placed.numbered += 1;
             if let Some(positions) = positions {
                 positions.push(place(near));
+                self.place_again(point, &[near], row_start, neighbours, &mut placed.targets);
             }
             return Record::new(first, near, crossing, inside, Numbering::One);
         }
@@ -198,6 +184,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
         placed.numbered += count as u64;
         if let Some(positions) = &mut positions {
             positions.extend(clusters.sets().iter().map(|&cluster| place(cluster)));
+            self.place_again(point, clusters.sets(), row_start, neighbours, &mut placed.targets);
         }
         if count == 1 {
             Record::new(first, near, crossing, inside, Numbering::One)
@@ -207,6 +194,30 @@ impl<R: ClusterRule> PointPass<'_, R> {
             let place = records.list(layer, first, &clusters);
             Record::new(place, near, crossing, inside, Numbering::Listed)
         }
+    }
+
+    /// Where the placer wants the clusters' vertices, if there is one.
+    #[inline(always)]
+    fn place_again(
+        &self,
+        point: &Point,
+        clusters: &[DirectionSet],
+        row_start: usize,
+        neighbours: &[usize; 16],
+        targets: &mut Vec<Vec3>,
+    ) {
+        let Some(placer) = self.placer else { return };
+        let values = self.samples.values;
+        let difference = |place: usize| values[place] - self.isovalue;
+        let mut around = Surroundings {
+            position: point.position,
+            difference: difference(row_start + point.column),
+            neighbours: [f32::NAN; DIRECTIONS],
+        };
+        for d in members(point.present) {
+            around.neighbours[d] = difference(neighbours[d].wrapping_add(point.column));
+        }
+        targets.extend(clusters.iter().map(|&cluster| placer.place(&around, cluster)));
     }
 
     /// The unweighted mean of the cluster's crossings, clamped to the box.
@@ -234,31 +245,6 @@ impl<R: ClusterRule> PointPass<'_, R> {
         let is_inside = mean.cmpgt(grid.low) & mean.cmplt(grid.high);
         let bounds = grid.lattice.bounds();
         if is_inside.all() { Vec3::from(mean) } else { Vec3::from(mean).min(bounds.max).max(bounds.min) }
-    }
-}
-
-/// Bits that any of the rows round a word of points has, and bits that all have.
-#[derive(Debug, Clone, Copy)]
-struct Common {
-    any: u64,
-    all: u64,
-}
-
-impl Common {
-    #[inline(always)]
-    fn of(signs: &[&[u64]; LINES], word: usize) -> Self {
-        signs.iter().fold(Self { any: 0, all: !0 }, |common, line| Self {
-            any: common.any | line[word],
-            all: common.all & line[word],
-        })
-    }
-
-    /// Whether the points of the word and all their neighbours are on one side; `before` and `after` are the words
-    /// on either side.
-    #[inline(always)]
-    fn is_uniform(self, before: Self, after: Self) -> bool {
-        let outside = self.any | before.any >> 63 | after.any & 1;
-        outside == 0 || (self.all == !0 && before.all >> 63 & after.all & 1 != 0)
     }
 }
 

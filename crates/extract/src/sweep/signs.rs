@@ -17,12 +17,12 @@ pub(super) struct Signs {
     pub(super) states: Vec<u8>,
     stride: usize,
     rows: usize,
-    slots: usize,
+    pub(super) slots: usize,
 }
 
 impl Signs {
-    pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), std::collections::TryReserveError> {
-        (self.stride, self.rows, self.slots) = (grid.words + 2, grid.size[1], grid.slots());
+    pub(super) fn fit(&mut self, grid: &Grid, slots: usize) -> Result<(), std::collections::TryReserveError> {
+        (self.stride, self.rows, self.slots) = (grid.words + 2, grid.size[1], slots);
         super::refill(&mut self.words, self.stride * self.rows * self.slots, 0)?;
         super::refill(&mut self.states, self.rows * self.slots, ALL_OUTSIDE)
     }
@@ -59,16 +59,22 @@ impl Signs {
         self.states[place] = state(any, all);
     }
 
-    /// Gives a row all its words.
-    pub(super) fn set(&mut self, row: usize, layer: usize, bits: &[u64], used: usize) {
+    /// The words of a row, all outside, to be set; [`close`](Self::close) must follow.
+    pub(super) fn open(&mut self, row: usize, layer: usize) -> &mut [u64] {
         let place = self.place(row, layer);
-        let words = &mut self.words[place * self.stride + 1..(place + 1) * self.stride];
+        let words = &mut self.words[place * self.stride + 1..(place + 1) * self.stride - 1];
+        words.fill(0);
+        words
+    }
+
+    /// Takes note of what an opened row of `used` points has become.
+    pub(super) fn close(&mut self, row: usize, layer: usize, used: usize) {
+        let place = self.place(row, layer);
+        let words = &self.words[place * self.stride + 1..(place + 1) * self.stride - 1];
         let (mut any, mut all) = (0, !0);
-        for (i, (word, &bits)) in words.iter_mut().zip(bits).enumerate() {
-            let mask = used_bits(i, used);
-            *word = bits & mask;
-            any |= *word;
-            all &= *word | !mask;
+        for (i, &word) in words.iter().enumerate() {
+            any |= word;
+            all &= word | !used_bits(i, used);
         }
         self.states[place] = state(any, all);
     }

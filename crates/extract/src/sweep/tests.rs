@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use crate::{
     Arrangement, Asteroid, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor,
-    Gyroid, Lattice, MeshDistance, Positions, ScalarField, Source, Sphere, Topology, stored,
+    Gyroid, Lattice, MeshDistance, Placement, Positions, ScalarField, Source, Sphere, Topology, stored,
 };
 
 /// Noise by position. Values are multiples of `1 / levels`; of `odd` points in 64, some are not numbers, some infinite.
@@ -77,8 +77,19 @@ fn all_settings(isovalue: f32) -> impl Iterator<Item = ExtractSettings> {
             isovalue,
             clustering,
             topology,
-            positions: Positions::Indexed,
+            ..ExtractSettings::default()
         })
+    })
+}
+
+/// The placements that need more than the mean of interpolated crossings, by clusterings.
+fn placed_settings() -> impl Iterator<Item = ExtractSettings> {
+    let placements = [Placement::CurvatureWeighted, Placement::Projected, Placement::Relaxed];
+    let refined = ExtractSettings { refine_crossings: true, ..ExtractSettings::default() };
+    let placed = placements.map(|placement| ExtractSettings { placement, ..ExtractSettings::default() });
+    placed.into_iter().chain([refined]).flat_map(|settings| {
+        [Clustering::Integrated, Clustering::None, Clustering::IntegratedCollapse]
+            .map(|clustering| ExtractSettings { clustering, ..settings })
     })
 }
 
@@ -130,6 +141,28 @@ proptest! {
         z in 1u32..3,
     ) {
         check(&field, &lattice(arrangement, [x, 2, z]), 0.0);
+    }
+}
+
+#[test]
+fn every_placement_is_that_of_the_stored_mesh() {
+    let noise = Noise { seed: 7, levels: 10_000_000, odd: 4, grain: 1.7 };
+    let fields: [(&dyn ScalarField, f32); 3] =
+        [(&Asteroid::default(), 0.09), (&Gyroid::default(), 0.11), (&noise, 1.0)];
+    for arrangement in BOTH {
+        for (field, spacing) in fields {
+            let max = Vec3::new(1.0, 0.9, 1.6) * if spacing == 1.0 { 9.0 } else { 1.0 };
+            let lattice = Lattice::try_new(arrangement, Bounds { min: -max, max }, spacing).unwrap();
+            for settings in placed_settings() {
+                let expected =
+                    stored::extract(field, &lattice, &settings, &Execution { threads: 1 }).unwrap();
+                for threads in [1, 3] {
+                    let source = Source::Field(field);
+                    let found = Extractor::new().extract(source, &lattice, &settings, &Execution { threads });
+                    assert_same(&found.unwrap(), &expected);
+                }
+            }
+        }
     }
 }
 

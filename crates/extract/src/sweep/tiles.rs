@@ -1,10 +1,10 @@
-//! Which samples are needed: tiles of the lattice that cannot meet the surface are never sampled.
+//! Which samples are needed to tell sides: tiles of the lattice that lie on one side of the isovalue take none.
 //!
-//! A brick is a few layers, from side to side of the lattice; it is quartered down to tiles of four by four columns.
-//! A part whose points and all their lattice neighbours are on one side of the isovalue has no crossing, so nobody
-//! asks for its values, only for its side. The field says so itself ([`ScalarField::range`]). In the tiles that are
-//! left, a row goes on from each sample by as many points as the field's slope there allows.
+//! A brick is a few layers, from side to side of the lattice; it is quartered down to tiles of two by two columns.
+//! The field says whether a part can be on both sides ([`ScalarField::range`]). In the tiles that are left, each
+//! sample tells the side of the points around it as far as the field's slope there allows.
 
+use std::collections::TryReserveError;
 use std::ops::Range;
 
 use glam::Vec3;
@@ -12,66 +12,120 @@ use mesh::Bounds;
 
 use super::grid::Grid;
 use crate::ScalarField;
-use crate::lattice::Arrangement;
+use crate::field::SAFE;
+use crate::lattice::{Arrangement, PointKind};
 
-/// Columns and rows of a tile.
-pub(super) const TILE: usize = 4;
+/// Columns and rows of a tile, and cells in the height of a brick.
+pub(super) const TILE: usize = 2;
 
 /// What is known of a tile.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) enum Tile {
+    #[default]
     Outside,
     Inside,
-    /// To be sampled; the field changes by at most this much a unit of length in and around it.
-    Sampled {
-        slope: f32,
-        /// A value in the middle of it.
-        known: (Vec3, f32),
-    },
+    /// Perhaps both; the field's slope is known.
+    Mixed,
+    /// Nothing.
+    Unknown,
+}
+
+/// Neighbouring tiles of one kind.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Span {
+    pub(super) tile: Tile,
+    pub(super) first: u32,
+    pub(super) end: u32,
+}
+
+/// A value, and what it says about points nearby.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Known {
+    pub(super) at: Vec3,
+    pub(super) value: f32,
+    /// At most how fast the field changes from here on.
+    pub(super) slope: f32,
+}
+
+impl Known {
+    /// Up to this distance, squared, no point is on the other side; negative or `NaN` if there is none such.
+    #[inline]
+    pub(super) fn squared_reach(&self, isovalue: f32) -> f32 {
+        // What a field may be off by rounding: 1e-5 of either value, of which the other is at most
+        // |value| + |value - isovalue|.
+        let slack = (self.value.abs() + isovalue.abs()) * 4e-5;
+        let reach = ((self.value - isovalue).abs() - slack) / (self.slope * SAFE);
+        reach * reach.abs()
+    }
+
+    /// The known value for the field, if there is one.
+    pub(super) fn hint(&self) -> Option<(Vec3, f32)> {
+        (!self.value.is_nan()).then_some((self.at, self.value))
+    }
 }
 
 /// The tiles of one brick.
 #[derive(Debug, Default)]
 pub(super) struct Tiles {
     tiles: Vec<Tile>,
+    /// By tile, where it is mixed.
+    known: Vec<Known>,
     columns: usize,
+    /// Row after row of tiles.
+    spans: Vec<Span>,
+    /// Where each row's spans start; one more than there are rows.
+    starts: Vec<usize>,
     brick: Option<usize>,
 }
 
 impl Tiles {
-    pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), std::collections::TryReserveError> {
-        self.columns = grid.size[0].div_ceil(TILE);
+    pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), TryReserveError> {
+        let [columns, rows] = [grid.size[0], grid.size[1]].map(|points| points.div_ceil(TILE));
+        self.columns = columns;
         self.brick = None;
-        super::refill(&mut self.tiles, self.columns * grid.size[1].div_ceil(TILE), Tile::Outside)
+        super::refill(&mut self.tiles, columns * rows, Tile::Outside)?;
+        super::refill(&mut self.known, columns * rows, Known::default())?;
+        self.spans.clear();
+        self.spans.try_reserve_exact(columns * rows)?;
+        super::refill(&mut self.starts, rows + 1, 0)
     }
 
-    /// The tiles that a row goes through.
-    pub(super) fn row(&self, row: usize) -> &[Tile] {
-        let start = row / TILE * self.columns;
-        &self.tiles[start..start + self.columns]
+    /// The spans that a row of points goes through, and what is known of its mixed tiles.
+    pub(super) fn row(&self, row: usize) -> (&[Span], &[Known]) {
+        let row = row / TILE;
+        let known = &self.known[row * self.columns..(row + 1) * self.columns];
+        (&self.spans[self.starts[row]..self.starts[row + 1]], known)
     }
 
     /// Makes the tiles those of the brick that `layer` is in.
     pub(super) fn turn_to(&mut self, layer: usize, grid: &Grid, field: &dyn ScalarField, isovalue: f32) {
-        let depth = depth(grid);
+        let depth = match grid.lattice.arrangement() {
+            Arrangement::BodyCentred => 2 * TILE,
+            Arrangement::SimpleCubic => TILE,
+        };
         let brick = layer / depth;
         if self.brick == Some(brick) {
             return;
         }
         self.brick = Some(brick);
-        let layers = brick * depth..(brick + 1) * depth;
-        let whole = [0..grid.size[0].next_multiple_of(TILE), 0..grid.size[1].next_multiple_of(TILE)];
-        let mut search =
-            Search { grid, field, isovalue, layers, tiles: &mut self.tiles, columns: self.columns };
-        search.part(whole, None);
+        let layers = brick * depth..grid.size[2].min((brick + 1) * depth);
+        let whole = [grid.size[0], grid.size[1]].map(|points| 0..points.next_multiple_of(TILE));
+        let Self { tiles, known, columns, .. } = self;
+        Search { grid, field, isovalue, layers, tiles, known, columns: *columns }.part(whole, None);
+        self.find_spans();
     }
-}
 
-/// Layers of a brick: as high as a tile is wide.
-fn depth(grid: &Grid) -> usize {
-    match grid.lattice.arrangement() {
-        Arrangement::BodyCentred => 2 * TILE,
-        Arrangement::SimpleCubic => TILE,
+    fn find_spans(&mut self) {
+        self.spans.clear();
+        for (row, tiles) in self.tiles.chunks_exact(self.columns).enumerate() {
+            let mut first = 0;
+            for span in tiles.chunk_by(|a, b| a == b) {
+                let end = first + span.len() as u32;
+                self.spans.push(Span { tile: span[0], first, end });
+                first = end;
+            }
+            self.starts[row + 1] = self.spans.len();
+        }
     }
 }
 
@@ -81,35 +135,43 @@ struct Search<'a> {
     isovalue: f32,
     layers: Range<usize>,
     tiles: &'a mut [Tile],
+    known: &'a mut [Known],
     columns: usize,
 }
 
 impl Search<'_> {
     /// Decides the tiles of a part of the brick, in columns and rows; `before` is a value from nearby.
     fn part(&mut self, [columns, rows]: [Range<usize>; 2], before: Option<(Vec3, f32)>) {
-        let around = self.around([&columns, &rows, &self.layers]);
-        let centre = (around.min + around.max) * 0.5;
-        let value = self.field.sample_after(centre, before);
-        let tile = match self.field.range(around, value) {
+        let bounds = self.bounds(&columns, &rows);
+        let centre = (bounds.min + bounds.max) * 0.5;
+        // Some fields can tell without a value, and a field without bounds need not be asked for one.
+        let mut value = f32::NAN;
+        let mut range = self.field.range(bounds, value);
+        if range.is_some_and(|(low, high)| low.is_nan() || high.is_nan()) {
+            value = self.field.sample_after(centre, before);
+            range = self.field.range(bounds, value);
+        }
+        let known = if value.is_nan() { before } else { Some((centre, value)) };
+        let tile = match range {
             Some((low, _)) if low > self.isovalue => Tile::Inside,
             Some((_, high)) if high <= self.isovalue => Tile::Outside,
             _ if columns.len() > TILE || rows.len() > TILE => {
-                let halves = |range: &Range<usize>| {
-                    let middle = range.start + (range.len() / 2).next_multiple_of(TILE);
-                    [range.start..middle, middle..range.end]
-                };
                 for rows in halves(&rows) {
                     for columns in halves(&columns) {
                         if !rows.is_empty() && !columns.is_empty() {
-                            self.part([columns, rows.clone()], Some((centre, value)));
+                            self.part([columns, rows.clone()], known);
                         }
                     }
                 }
                 return;
             }
-            _ => Tile::Sampled {
-                slope: self.field.slope(around).unwrap_or(f32::INFINITY),
-                known: (centre, value),
+            _ => match self.field.slope(self.with_gaps(bounds)) {
+                Some(slope) => {
+                    let at = rows.start / TILE * self.columns + columns.start / TILE;
+                    self.known[at] = Known { at: centre, value, slope };
+                    Tile::Mixed
+                }
+                None => Tile::Unknown,
             },
         };
         for row in rows.start / TILE..rows.end / TILE {
@@ -118,20 +180,34 @@ impl Search<'_> {
         }
     }
 
-    /// The box of the points of a part and all their neighbours.
-    fn around(&self, part: [&Range<usize>; 3]) -> Bounds {
-        let lattice = &self.grid.lattice;
-        // From the first to the last point, in cells; centres are half a cell lower than corners.
-        let (low, high, layers_a_cell) = match lattice.arrangement() {
-            Arrangement::BodyCentred => (-0.5, -1.0, 2.0),
-            Arrangement::SimpleCubic => (0.0, -1.0, 1.0),
+    /// The box of the points of a part.
+    fn bounds(&self, columns: &Range<usize>, rows: &Range<usize>) -> Bounds {
+        let (size, coordinates) = (self.grid.size, &self.grid.coordinates);
+        // Centres are half a cell lower than corners.
+        let lowest = match self.grid.lattice.arrangement() {
+            Arrangement::BodyCentred => PointKind::Centre,
+            Arrangement::SimpleCubic => PointKind::Corner,
         };
-        let first =
-            Vec3::new(part[0].start as f32, part[1].start as f32, part[2].start as f32 / layers_a_cell);
-        let last = Vec3::new(part[0].end as f32, part[1].end as f32, part[2].end as f32 / layers_a_cell);
-        let at = |cells: Vec3| lattice.bounds().min + cells * lattice.spacing();
-        // A neighbour is at most one cell away along each axis; a little more for rounding.
-        let reach = 1.0 + 1e-3;
-        Bounds { min: at(first + (low - reach)), max: at(last + (high + reach)) }
+        let highest = PointKind::Corner;
+        let last = |range: &Range<usize>, size: usize| range.end.min(size) - 1;
+        let (x, y, z) = (last(columns, size[0]), last(rows, size[1]), last(&self.layers, size[2]));
+        let low = [
+            coordinates.x(lowest)[columns.start],
+            coordinates.y(lowest)[rows.start],
+            coordinates.z()[self.layers.start],
+        ];
+        let high = [coordinates.x(highest)[x], coordinates.y(highest)[y], coordinates.z()[z]];
+        Bounds { min: low.into(), max: high.into() }
     }
+
+    /// So wide that the boxes of tiles side by side meet.
+    fn with_gaps(&self, Bounds { min, max }: Bounds) -> Bounds {
+        let gap = Vec3::X * self.grid.lattice.spacing();
+        Bounds { min: min - gap, max: max + gap }
+    }
+}
+
+fn halves(range: &Range<usize>) -> [Range<usize>; 2] {
+    let middle = range.start + (range.len() / 2).next_multiple_of(TILE);
+    [range.start..middle, middle..range.end]
 }

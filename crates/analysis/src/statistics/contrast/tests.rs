@@ -55,6 +55,8 @@ fn partly_answered_rows_count_as_far_as_they_go() {
         family: Family::Pooled,
         name: "A-B".into(),
         scope: "all".into(),
+        levels: [Arrangement::BodyCentred, Arrangement::SimpleCubic].map(Level::Arrangement),
+        over: Over::All,
         weights: [(0, 1), (1, -1), (2, 1)].into(),
     };
     let ballot =

@@ -1,5 +1,5 @@
 use super::*;
-use crate::statistics::golden;
+use crate::statistics::{Ballot, Outcome, golden};
 use proptest::prelude::*;
 
 #[track_caller]
@@ -131,8 +131,8 @@ fn clustered_errors_as_sandwich_has_them() {
     // vcovCL(m, cluster = participant, type = "HC0", cadjust = TRUE).
     let study = golden::study();
     let ballots = golden::clusterings(&study, None);
-    let participants = Pairs::by_participant(3, &ballots);
-    assert_eq!(participants.len(), 18);
+    let participants = Participants::of(3, &ballots);
+    assert_eq!(participants.number(), 18);
     let fitted = fit(Model::Davidson, &Pairs::of(3, &ballots)).unwrap();
     let covariance = clustered_covariance(&fitted, &participants).unwrap();
     close(fitted.standard_error(&covariance, 1, 0), 0.409_735_500_836_181_8, 1e-9);
@@ -144,7 +144,7 @@ fn clustered_errors_as_sandwich_has_them() {
     // t(17) at 0.975 is 2.1098155778331806 (scipy.stats.t.ppf).
     let interval = fitted.clustered_interval(&covariance, 18, 2, 0);
     close(interval.high - fitted.log_worths[2], 2.109_815_577_833_180_6 * 0.542_410_510_133_580_2, 1e-8);
-    assert_eq!(clustered_covariance(&fitted, &participants[..1]), None);
+    assert_eq!(clustered_covariance(&fitted, &Participants::of(3, &ballots[..1])), None);
 }
 
 #[test]
@@ -161,13 +161,20 @@ fn what_cannot_be_answered_says_why() {
 
 #[test]
 fn separated_answers_get_half_a_win_each_way() {
+    let two = [0, 1].map(|participant| Ballot {
+        participant,
+        question: 0,
+        left: 0,
+        right: 1,
+        outcome: Outcome::Left,
+    });
     for model in [Model::Davidson, Model::RaoKupper, Model::BradleyTerry] {
         let fit = fit(model, &Pairs::new(2, [(0, 1, [7., 0., 0.])])).unwrap();
         assert!(fit.penalised, "{model:?}");
         // No tie: all three are ln(7.5 / 0.5), and the answers themselves have probability (15/16)^7.
         close(-fit.log_worths[1], 15.0_f64.ln(), 1e-12);
         close(fit.log_likelihood, 7.0 * (15.0_f64 / 16.0).ln(), 1e-12);
-        assert_eq!(clustered_covariance(&fit, &[Pairs::new(2, []), Pairs::new(2, [])]), None);
+        assert_eq!(clustered_covariance(&fit, &Participants::of(2, &two)), None);
     }
     let tied = fit(Model::Davidson, &Pairs::new(2, [(0, 1, [7., 2., 0.])])).unwrap();
     close(-tied.log_worths[1], 15.0_f64.ln(), 1e-12);

@@ -1,4 +1,5 @@
 use super::*;
+use crate::statistics::Outcome;
 use proptest::prelude::*;
 
 #[test]
@@ -67,6 +68,32 @@ fn strict_and_weak_cycles() {
     assert_eq!(counted([Left, Tie, Right]), (1, 0, 0, 1));
     assert_eq!(counted([Tie, Tie, Left]), (1, 0, 0, 0));
     assert_eq!(triads(&three([Left; 3])[..2]).all, 0);
+}
+
+#[test]
+fn zetas_of_those_who_decided_everything() {
+    use Outcome::{Left, Right, Tie};
+    // An order, a circle, an order; a tie leaves the last out.
+    let rows = [[Left, Left, Left], [Left, Left, Right], [Right, Left, Left], [Left, Tie, Left]];
+    let of = |(participant, signs)| three(signs).into_iter().map(move |b| Ballot { participant, ..b });
+    let all: Vec<Ballot> = rows.into_iter().enumerate().flat_map(of).collect();
+    assert_eq!(zetas(&all), (3, 2.0));
+    assert_eq!(zetas(&all[..2]), (0, 0.0));
+}
+
+#[test]
+fn outcomes_are_counted_for_items_whatever_their_sides() {
+    let ballot =
+        |participant, left, outcome| Ballot { participant, question: 1, left, right: 5 - left, outcome };
+    use Outcome::{Left, Right, Tie};
+    let all = [
+        ballot(0, 2, Left),
+        ballot(1, 3, Right),
+        ballot(2, 2, Tie),
+        ballot(3, 2, Right),
+        ballot(4, 3, Right),
+    ];
+    assert_eq!(outcome_counts(&all), [[0, 0, 0], [3, 1, 1]]);
 }
 
 proptest! {

@@ -35,3 +35,79 @@ fn nothing_to_compare() {
     assert_eq!((undecided[0].one_sidedness(), undecided[0].agreement()), (None, None));
     assert!(screening(&[]).is_empty());
 }
+
+/// Participant 0: controls `left == right`, repeats of pair 0-1 in both orders, each with order and time.
+fn watched(answers: &[(usize, usize, usize, Outcome, u32, f64)]) -> (Vec<Ballot>, Vec<Circumstances>) {
+    let ballot = |&(question, left, right, outcome, ..): &(usize, usize, usize, Outcome, u32, f64)| Ballot {
+        participant: 0,
+        question,
+        left,
+        right,
+        outcome,
+    };
+    let known = |&(.., order, rt): &(usize, usize, usize, Outcome, u32, f64)| Circumstances {
+        order: Some(order),
+        rt_ms: Some(rt),
+    };
+    (answers.iter().map(ballot).collect(), answers.iter().map(known).collect())
+}
+
+#[test]
+fn controls_repeats_and_time() {
+    use Outcome::{Left, Right, Tie};
+    let (ballots, circumstances) = watched(&[
+        (0, 0, 1, Left, 4, 900.0),
+        (1, 1, 0, Left, 1, 700.0),
+        (2, 0, 1, Left, 2, 800.0),
+        (3, 2, 2, Left, 3, 500.0),
+        (4, 2, 2, Tie, 5, 600.0),
+        (5, 0, 0, Right, 6, 400.0),
+    ]);
+    // Questions 0 and 1 show the same pair on the same object in both orders; question 2 the same pair on another.
+    let scenes = [7, 7, 8, 7, 7, 7];
+    let protocol = Protocol { circumstances: &circumstances, scenes: &scenes, loop_ms: Some(650.0) };
+    let seen = screening_with(&ballots, &protocol)[0];
+    assert_eq!((seen.answers, seen.controls, seen.controls_decided), ([3, 0, 0], 3, 2));
+    // Left both times, with the sides swapped: the other item.
+    assert_eq!((seen.repeats, seen.repeats_opposite, seen.consistency()), (1, 1, Some(0.0)));
+    // In order of presentation: L L L L - R.
+    assert_eq!((seen.longest_run, seen.timed, seen.time_ms), (4, 6, 3900.0));
+    assert_eq!(seen.flags(Some(650.0)), [Flag::Controls]);
+    assert_eq!(seen.flags(Some(650.1)), [Flag::Controls, Flag::Time]);
+    assert_eq!(seen.flags(None), [Flag::Controls]);
+    // Nothing known but the ballots: no order, no time, and no question was answered twice.
+    let bare = screening(&ballots)[0];
+    assert_eq!((bare.repeats, bare.timed, bare.consistency()), (0, 0, None));
+    let twice = [ballots[0], ballots[0], ballots[1]];
+    assert_eq!(screening(&twice)[0].repeats, 1);
+}
+
+#[test]
+fn rules_by_hand() {
+    let of = |answers, repeats, repeats_opposite| Screening {
+        answers,
+        repeats,
+        repeats_opposite,
+        ..Screening::default()
+    };
+    assert_eq!(of([10, 3, 0], 0, 0).flags(None), [Flag::OneSided]);
+    assert_eq!(of([0, 0, 9], 0, 0).flags(None), []);
+    assert_eq!(of([20, 0, 1], 4, 2).flags(None), []);
+    assert_eq!(of([20, 0, 1], 3, 2).flags(None), [Flag::Repeats]);
+    assert_eq!(of([20, 0, 1], 1, 1).flags(None), []);
+    let odd = Screening { odd_p: Some(0.009), ..Screening::default() };
+    assert_eq!(odd.flags(None), [Flag::Odd]);
+}
+
+#[test]
+fn agreement_is_about_items_where_sides_were_swapped() {
+    // Everybody chooses item 0, on whichever side it stands.
+    let ballot = |participant: usize| {
+        let swapped = participant % 2 == 1;
+        let (left, right) = if swapped { (1, 0) } else { (0, 1) };
+        let outcome = if swapped { Outcome::Right } else { Outcome::Left };
+        Ballot { participant, question: 0, left, right, outcome }
+    };
+    let all: Vec<Ballot> = (0..5).map(ballot).collect();
+    assert!(screening(&all).iter().all(|s| s.agreement() == Some(1.0)));
+}

@@ -53,6 +53,25 @@ fn a_hundred_thousand_participants() {
     close(test.p(), 2.0 * Normal::standard().cdf(-z), 2e-3);
 }
 
+#[test]
+fn lattices_with_gaps() {
+    // Python 3.11, subsets counted in whole numbers: sizes that leave nearly every other sum empty.
+    let many = |parts: &[(i64, usize)]| -> Vec<i64> {
+        parts.iter().flat_map(|&(d, n)| std::iter::repeat_n(d, n)).collect()
+    };
+    let cases: [(&[(i64, usize)], f64); 4] = [
+        (&[(2, 130), (-2, 70), (1, 1)], -10.810_169_418_591_443),
+        (&[(6, 150), (-6, 60), (3, 1), (1, 1), (-2, 1)], -22.012_053_856_325_99),
+        (&[(4, 90), (-4, 80), (-1, 1)], -0.713_067_137_847_048_1),
+        (&[(9, 300), (-9, 20), (-5, 1), (1, 1)], -148.886_706_893_766_3),
+    ];
+    for (parts, ln_p) in cases {
+        let test = sign_flip(&many(parts));
+        assert_eq!(test.ratio, None);
+        assert!((test.ln_p - ln_p).abs() < 1e-10, "{} is not {ln_p}", test.ln_p);
+    }
+}
+
 proptest! {
     #[test]
     fn symmetric_and_blind_to_order(

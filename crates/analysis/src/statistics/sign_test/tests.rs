@@ -55,3 +55,10 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn trinomial_of_many_answers() {
+    // SciPy 1.17.1: (binom.pmf(k, 100000, .6) * 2 * binom.sf((600 + k % 2 + k) // 2 - 1, k, .5)).sum()
+    let p = trinomial(30_300, 40_000, 29_700);
+    assert!((p / 0.014_386_938_226_239_642 - 1.0).abs() < 1e-9, "{p}");
+}

@@ -1,6 +1,7 @@
 use super::*;
 use crate::ballots::ballots;
 use crate::fixture;
+use crate::statistics::Outcome;
 
 #[test]
 fn the_papers_participants() {
@@ -13,6 +14,10 @@ fn the_papers_participants() {
     // STATISTICS 3.12: alpha 0.2465 and 0.3063; triads 108, 82 decided, 5 circular.
     assert_eq!(shown[0][1..4], ["27", "0.2465", "0.3063"]);
     assert_eq!(shown[0][8..11], ["108", "82", "5"]);
+    // 49 of 486 answers are ties.
+    assert_eq!(shown[0][12], format!("{:.1}", 108.0 * (437.0_f64 / 486.0).powi(3) / 4.0));
+    // For three items zeta is 0 for a circle, else 1.
+    assert_eq!(shown[0][13..], ["82".to_owned(), format!("{:.3}", 77.0 / 82.0)]);
     let circles = |row: usize| shown[row][10].parse::<u64>().unwrap();
     assert_eq!(circles(1) + circles(2), 5);
     // Groups of two items have no triads.
@@ -23,7 +28,7 @@ fn the_papers_participants() {
 fn respondent_sixteen_stands_out() {
     // STATISTICS 1.5.
     let study = fixture::study();
-    let table = respondents(&ballots(&study, &fixture::answers(&study)));
+    let table = respondents(&ballots(&study, &fixture::answers(&study)), &Protocol::default());
     assert_eq!(table.rows.len(), 18);
     let row = &table.shown_rows()[15];
     assert_eq!(row[..4], ["16", "19", "0", "8"]);
@@ -34,4 +39,26 @@ fn respondent_sixteen_stands_out() {
     assert_eq!(format!("{:.2}", agreement(&table.rows[15])), "0.37");
     let others = table.rows.iter().enumerate().filter(|(i, _)| *i != 15);
     assert!(others.map(|(_, row)| agreement(row)).all(|share| (0.635..0.955).contains(&share)));
+}
+
+#[test]
+fn of_many_participants_those_who_break_a_rule_are_printed() {
+    let of = |participant: usize| {
+        let outcome = move |q: usize| {
+            if participant == 7 || (participant + q) % 2 == 0 { Outcome::Left } else { Outcome::Right }
+        };
+        (0..10).map(move |question| Ballot {
+            participant,
+            question,
+            left: 0,
+            right: 1,
+            outcome: outcome(question),
+        })
+    };
+    let ballots: Vec<Ballot> = (0..201).flat_map(of).collect();
+    let table = respondents(&ballots, &Protocol::default());
+    assert_eq!((table.rows.len(), table.printed()[0].rows.len()), (201, 1));
+    assert_eq!(table.printed()[0].shown_rows()[0][0], "8");
+    assert!(table.rows[7].last().unwrap().in_full().contains("one-sided"));
+    assert!(table.to_markdown().contains("Of 201 participants, the 1 who break a rule"));
 }

@@ -1,0 +1,224 @@
+//! Probes for defects that make a study's answers say something else than people meant.
+//!
+//! Each probe looks for one defect and leaves alone what another one explains better: a pair whose two orders contradict
+//! each other is a matter for the key, and then none for sides or objects. That every probe finds its own defect and no
+//! other is proved by [`self_test`](crate::self_test) on simulated studies.
+//!
+//! What a design cannot show is said to be not answerable, with the reason; it is never taken for the absence of a defect.
+
+mod copies;
+mod interaction;
+mod side;
+mod stimuli;
+mod swapped;
+
+use crate::ballots::{BallotGroup, ballot_groups};
+use crate::statistics::{Ballot, Pairs, Separation, oddness, screening, separation};
+use design::Study;
+use stimuli::Stimuli;
+
+/// A probe speaks up at this p, adjusted for all that it looks at.
+pub const ALARM: f64 = 0.01;
+
+/// What is looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Probe {
+    /// Is one side chosen whatever it shows?
+    Side,
+    /// Does somebody answer against the others?
+    OddRespondent,
+    /// Did somebody's answers get in twice?
+    CopiedRows,
+    /// Were a stimulus's sides mixed up in the key?
+    SwappedKey,
+    /// Do preferences depend on the object?
+    ObjectInteraction,
+    /// Do some items never win against the others, so that no finite worth exists?
+    Separation,
+}
+
+impl Probe {
+    /// Every probe.
+    pub const ALL: [Self; 6] = [
+        Self::Side,
+        Self::OddRespondent,
+        Self::CopiedRows,
+        Self::SwappedKey,
+        Self::ObjectInteraction,
+        Self::Separation,
+    ];
+
+    /// The name in files.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Side => "side",
+            Self::OddRespondent => "odd-respondent",
+            Self::CopiedRows => "copied-rows",
+            Self::SwappedKey => "swapped-key",
+            Self::ObjectInteraction => "object-interaction",
+            Self::Separation => "separation",
+        }
+    }
+
+    /// What it asks.
+    pub fn question(self) -> &'static str {
+        match self {
+            Self::Side => "Is a side chosen whatever it shows?",
+            Self::OddRespondent => "Does anybody answer against the others?",
+            Self::CopiedRows => "Are anybody's answers in twice?",
+            Self::SwappedKey => "Were the sides of a stimulus mixed up in the key?",
+            Self::ObjectInteraction => "Do preferences depend on the object?",
+            Self::Separation => "Do some items never win against the others?",
+        }
+    }
+}
+
+/// How a probe came out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Finding {
+    /// The defect is there.
+    Found,
+    /// Looked for and not found.
+    NotFound,
+    /// The design or the answers cannot tell.
+    NotAnswerable,
+}
+
+impl Finding {
+    /// For people.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Found => "found",
+            Self::NotFound => "not found",
+            Self::NotAnswerable => "not answerable here",
+        }
+    }
+}
+
+/// One probe's report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// Which probe.
+    pub probe: Probe,
+    /// How it came out.
+    pub finding: Finding,
+    /// Its p, adjusted for all that it looked at; `None` if it needs none.
+    pub p: Option<f64>,
+    /// What was seen, with numbers, or why nothing can be seen.
+    pub evidence: String,
+}
+
+/// What is audited.
+#[derive(Debug, Clone, Copy)]
+pub struct Audited<'a> {
+    /// Every answer. Participants are named by their number from 1.
+    pub ballots: &'a [Ballot],
+    /// The groups whose items are compared, with the same participants and questions.
+    pub groups: &'a [BallotGroup],
+    /// By question, the object on which it shows its items.
+    pub scenes: &'a [usize],
+    /// Names of the questions.
+    pub questions: &'a [String],
+    /// Names of the objects.
+    pub objects: &'a [String],
+}
+
+/// Runs every probe on a study's answers, whose groups are those of [`ballot_groups`].
+pub fn of_study(study: &Study, ballots: &[Ballot]) -> Vec<Report> {
+    let questions: Vec<String> = study.comparisons.iter().map(|c| c.question.clone()).collect();
+    audit(&Audited {
+        ballots,
+        groups: &ballot_groups(study, ballots),
+        scenes: &study.comparisons.iter().map(|c| c.object).collect::<Vec<_>>(),
+        questions: &questions,
+        objects: &study.file.objects.iter().map(|o| o.name.clone()).collect::<Vec<_>>(),
+    })
+}
+
+/// Runs every probe.
+///
+/// # Panics
+/// If a ballot's question has no scene or name, or a scene no name.
+pub fn audit(audited: &Audited<'_>) -> Vec<Report> {
+    let stimuli = Stimuli::of(audited.ballots, audited.scenes);
+    let (swapped, suspects) = swapped::probe(audited, &stimuli);
+    vec![
+        side::probe(audited, &stimuli, &suspects),
+        odd_respondent(audited.ballots),
+        copies::probe(audited.ballots),
+        swapped,
+        interaction::probe(audited, &suspects),
+        separated(audited.groups),
+    ]
+}
+
+impl Report {
+    fn tested(probe: Probe, p: f64, evidence: String) -> Self {
+        let finding = if p < ALARM { Finding::Found } else { Finding::NotFound };
+        Self { probe, finding, p: Some(p), evidence }
+    }
+
+    fn not_answerable(probe: Probe, reason: &str) -> Self {
+        let evidence = format!("not answerable here, because {reason}");
+        Self { probe, finding: Finding::NotAnswerable, p: None, evidence }
+    }
+}
+
+/// Of many names, the first few.
+fn list(names: &[String]) -> String {
+    const MOST: usize = 5;
+    match names.len() {
+        0..=MOST => names.join(", "),
+        n => format!("{} and {} more", names[..MOST].join(", "), n - MOST),
+    }
+}
+
+/// See [`oddness`].
+fn odd_respondent(ballots: &[Ballot]) -> Report {
+    let judged = oddness(&screening(ballots));
+    let Some(least) = judged.first() else {
+        let reason = "fewer than five people decided ten questions on which the others have a majority";
+        return Report::not_answerable(Probe::OddRespondent, reason);
+    };
+    let name = |odd: &crate::statistics::Oddness| {
+        format!(
+            "respondent {} agrees with the others' majority on {:.0} %",
+            odd.participant + 1,
+            100.0 * odd.agreement
+        )
+    };
+    let odd: Vec<_> = judged.iter().filter(|odd| odd.p < ALARM).collect();
+    let others: Vec<f64> = judged.iter().filter(|odd| odd.p >= ALARM).map(|odd| odd.agreement).collect();
+    let (low, high) = others.iter().fold((1.0_f64, 0.0_f64), |(low, high), &a| (low.min(a), high.max(a)));
+    let range = format!("everybody else on {:.0} to {:.0} %", 100.0 * low, 100.0 * high);
+    let evidence = match odd.is_empty() {
+        true => format!("agreement with the others' majority is {:.0} to {:.0} %", 100.0 * low, 100.0 * high),
+        false => format!("{}; {range}", list(&odd.into_iter().map(name).collect::<Vec<_>>())),
+    };
+    Report::tested(Probe::OddRespondent, least.p, evidence)
+}
+
+/// See [`separation`].
+fn separated(groups: &[BallotGroup]) -> Report {
+    let judged = |group: &BallotGroup| separation(&Pairs::of(group.items.len(), &group.ballots));
+    let names = |of: Separation| -> Vec<String> {
+        groups.iter().filter(|group| judged(group) == of).map(|group| group.name.clone()).collect()
+    };
+    let (separated, held) = (names(Separation::Separated), names(Separation::HeldByTies));
+    let finding = match (groups.is_empty(), separated.is_empty()) {
+        (true, _) => return Report::not_answerable(Probe::Separation, "nothing was compared"),
+        (false, true) => Finding::NotFound,
+        (false, false) => Finding::Found,
+    };
+    let evidence = match (separated.is_empty(), held.is_empty()) {
+        (false, _) => {
+            format!("in {} some items never won against the others: worths are penalised", list(&separated))
+        }
+        (true, false) => format!("in {} ties alone keep the worths finite", list(&held)),
+        (true, true) => format!("every item won against the others in all {} groups", groups.len()),
+    };
+    Report { probe: Probe::Separation, finding, p: None, evidence }
+}
+
+#[cfg(test)]
+mod tests;

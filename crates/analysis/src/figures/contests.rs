@@ -1,0 +1,67 @@
+//! Every contrast object by object: does a preference depend on what is shown?
+
+use super::axis::Axis;
+use super::forest::{self, Block, Row};
+use super::legend::Swatch;
+use super::marks::Mark;
+use super::{Draft, canvas_with_legend};
+use crate::interval::Interval;
+use crate::statistics::Ballot;
+use crate::statistics::contrast::{Contrast, ContrastTest, Level, Over, contrasts};
+use design::Study;
+
+pub(super) fn by_object(study: &Study, ballots: &[Ballot]) -> Option<Draft> {
+    let pooled = contrasts(study).into_iter().filter(|c| c.over == Over::All);
+    let blocks: Vec<Block> = pooled.filter_map(|contrast| block(study, ballots, &contrast)).collect();
+    if blocks.is_empty() {
+        return None;
+    }
+    let mut legend: Vec<(Swatch, String)> = study
+        .file
+        .objects
+        .iter()
+        .enumerate()
+        .map(|(o, object)| (Swatch::Mark(Mark::nth(o, true)), object.name.clone()))
+        .collect();
+    legend.push((Swatch::Mark(Mark::nth(0, false)), "all objects".into()));
+    legend.push(forest::interval_entry());
+    let (mut canvas, top) = canvas_with_legend(&legend, forest::height(&blocks));
+    let label = "mean score: \u{2212}1 always the second, 1 always the first";
+    forest::draw(&mut canvas, &blocks, &Axis::spanning(-1.0, 1.0), label, 0.0, top);
+    let caption = "Preference by object: mean over respondents of answers for the first less answers for the second, over all \
+                   their answers to these questions. On the right the answers for the first, without preference, and for the \
+                   second. Intervals are cut at \u{2212}1 and 1."
+        .into();
+    Some(Draft { name: "object_interaction", caption, canvas })
+}
+
+fn block(study: &Study, ballots: &[Ballot], contrast: &Contrast) -> Option<Block> {
+    let row = |object: Option<usize>| {
+        let inside = |b: &&Ballot| object.is_none_or(|o| study.comparisons[b.question].object == o);
+        let own = ballots.iter().filter(inside);
+        let weighted =
+            own.filter_map(|b| Some((b.participant, *contrast.weights.get(&b.question)?, b.outcome)));
+        let test = ContrastTest::of(weighted);
+        let [first, ties, second] = test.counts?;
+        let cut = |i: Interval| Interval { low: i.low.max(-1.0), high: i.high.min(1.0) };
+        (!test.scores.is_empty()).then(|| Row {
+            label: object.map_or("all objects".into(), |o| study.file.objects[o].name.clone()),
+            value: Some(test.mean),
+            interval: test.interval.map(cut),
+            mark: object.map_or(Mark::nth(0, false), |o| Mark::nth(o, true)),
+            remark: format!("{first} : {ties} : {second}"),
+        })
+    };
+    let objects = (0..study.file.objects.len()).map(Some);
+    let rows: Vec<Row> = objects.chain([None]).filter_map(row).collect();
+    let heading = format!("{} against {}", label(contrast.levels[0]), label(contrast.levels[1]));
+    (!rows.is_empty()).then_some(Block { heading, rows })
+}
+
+fn label(level: Level) -> &'static str {
+    match level {
+        Level::Arrangement(arrangement) => arrangement.label(),
+        Level::Clustering(design::Clustering::None) => "no clustering",
+        Level::Clustering(clustering) => clustering.label(),
+    }
+}

@@ -1,0 +1,67 @@
+//! Marks told apart by shape, so that neither colour nor lightness is needed.
+
+use super::canvas::{BLACK, Canvas, WHITE};
+
+/// Shapes, in the order they are given out.
+const SHAPES: [Shape; 6] =
+    [Shape::Circle, Shape::Triangle, Shape::Square, Shape::Diamond, Shape::Down, Shape::Cross];
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Shape {
+    Circle,
+    Triangle,
+    Square,
+    Diamond,
+    Down,
+    Cross,
+}
+
+/// A shape, filled or hollow.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Mark {
+    shape: Shape,
+    filled: bool,
+}
+
+impl Mark {
+    /// The mark of the n-th of several things; after six they begin again.
+    pub(super) fn nth(n: usize, filled: bool) -> Self {
+        Self { shape: SHAPES[n % SHAPES.len()], filled }
+    }
+
+    pub(super) fn draw(self, canvas: &mut Canvas, (x, y): (f64, f64)) {
+        let outline = |r: f64| -> Vec<(f64, f64)> {
+            let at = |points: &[(f64, f64)]| points.iter().map(|(a, b)| (x + r * a, y + r * b)).collect();
+            match self.shape {
+                Shape::Circle => (0..20)
+                    .map(|i| f64::from(i) * std::f64::consts::TAU / 20.0)
+                    .map(|t| (x + r * t.cos(), y + r * t.sin()))
+                    .collect(),
+                Shape::Triangle => at(&[(0.0, -1.2), (1.1, 0.8), (-1.1, 0.8)]),
+                Shape::Square => at(&[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)]),
+                Shape::Diamond => at(&[(0.0, -1.25), (1.25, 0.0), (0.0, 1.25), (-1.25, 0.0)]),
+                Shape::Down => at(&[(0.0, 1.2), (1.1, -0.8), (-1.1, -0.8)]),
+                Shape::Cross => at(&[
+                    (-0.35, -1.1),
+                    (0.35, -1.1),
+                    (0.35, -0.35),
+                    (1.1, -0.35),
+                    (1.1, 0.35),
+                    (0.35, 0.35),
+                    (0.35, 1.1),
+                    (-0.35, 1.1),
+                    (-0.35, 0.35),
+                    (-1.1, 0.35),
+                    (-1.1, -0.35),
+                    (-0.35, -0.35),
+                ]),
+            }
+        };
+        // White-edged, so that marks on top of each other stay apart.
+        canvas.polygon(outline(6.2), WHITE);
+        canvas.polygon(outline(5.0), BLACK);
+        if !self.filled {
+            canvas.polygon(outline(3.2), WHITE);
+        }
+    }
+}

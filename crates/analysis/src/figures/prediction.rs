@@ -1,0 +1,86 @@
+//! Metric against preference: a panel a metric, a mark a pair.
+
+use super::axis::Axis;
+use super::legend::Swatch;
+use super::marks::Mark;
+use super::scatter::Scatter;
+use super::{Draft, WIDTH, canvas_with_legend};
+use crate::inputs::Inputs;
+use crate::prediction::{MetricPrediction, Prediction, Scale};
+use crate::statistics::{Ballot, outcome_counts};
+use design::Study;
+
+const ROW: f64 = 320.0;
+const PER_ROW: usize = 3;
+
+pub(super) fn draft(inputs: &Inputs<'_>, ballots: &[Ballot]) -> Option<Draft> {
+    let (study, prediction) = (inputs.study, Prediction::of(inputs, ballots)?);
+    let counts = outcome_counts(ballots);
+    let mut legend: Vec<(Swatch, String)> = Vec::new();
+    for (o, object) in study.file.objects.iter().enumerate() {
+        legend.push((Swatch::Mark(Mark::nth(o, true)), object.name.clone()));
+    }
+    let hollow = study.comparisons.iter().any(|c| c.left.method.arrangement != c.right.method.arrangement);
+    if hollow {
+        legend.push((Swatch::Mark(Mark::nth(0, false)), "hollow: different lattices".into()));
+    }
+    legend.push((Swatch::Line, "Davidson's model".into()));
+    legend.push((Swatch::Dashes, "as many for either".into()));
+    let rows: Vec<&[MetricPrediction]> = prediction.metrics.chunks(PER_ROW).collect();
+    let (mut canvas, top) = canvas_with_legend(&legend, ROW * rows.len() as f64);
+    for (r, row) in rows.iter().enumerate() {
+        let (width, y) = (WIDTH / PER_ROW as f64, top + ROW * r as f64);
+        for (i, found) in row.iter().enumerate() {
+            let x = width * i as f64;
+            panel(study, found, &counts).draw(&mut canvas, (x, y), (x + width, y + ROW));
+        }
+    }
+    let caption = "Each pair shown: by how much the better value is better, against the share of decided answers for it. Marks \
+                   above the dashed line: the better value won. The line is the share that Davidson's model on this metric \
+                   alone expects. Pairs without a decided answer or a difference are left out."
+        .into();
+    Some(Draft { name: "prediction", caption, canvas })
+}
+
+fn panel(study: &Study, found: &MetricPrediction, counts: &[[u64; 3]]) -> Scatter {
+    let of_scale = |advantage: f64| match found.metric.scale {
+        Scale::Difference => advantage,
+        Scale::LogRatio => advantage.exp(),
+    };
+    let mut marks = Vec::new();
+    let mut most: f64 = 0.0;
+    for (question, advantage) in found.advantages.iter().enumerate() {
+        let (Some(advantage), comparison) = (advantage, &study.comparisons[question]) else { continue };
+        let [left, _, right] = counts.get(question).copied().unwrap_or_default();
+        let better = if *advantage > 0.0 { left } else { right };
+        if left + right == 0 || *advantage == 0.0 {
+            continue;
+        }
+        most = most.max(advantage.abs());
+        let same = comparison.left.method.arrangement == comparison.right.method.arrangement;
+        let at = (of_scale(advantage.abs()), better as f64 / (left + right) as f64);
+        marks.push((at, Mark::nth(comparison.object, same)));
+    }
+    let x = match found.metric.scale {
+        Scale::Difference => Axis::from_zero(most),
+        Scale::LogRatio => Axis::logarithmic(most.exp()),
+    };
+    let label = match found.metric.scale {
+        Scale::Difference => "difference",
+        Scale::LogRatio => "ratio",
+    };
+    let lines = found.coefficient.iter().map(|c| {
+        let share = |advantage: f64| 1.0 / (1.0 + (-c.estimate * advantage / found.unit).exp());
+        (0..=40).map(|i| most * f64::from(i) / 40.0).map(|a| (of_scale(a), share(a))).collect()
+    });
+    Scatter {
+        heading: found.metric.label.into(),
+        labels: (format!("{label}; {} is better", found.metric.better), "share for the better".into()),
+        y: Axis::up_to(1.0),
+        lines: lines.collect(),
+        dashed: Some(0.5),
+        marks,
+        names: Vec::new(),
+        x,
+    }
+}

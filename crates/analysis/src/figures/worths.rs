@@ -1,0 +1,55 @@
+//! Davidson's worths with their intervals, group by group.
+
+use super::axis::Axis;
+use super::forest::{self, Block, Row};
+use super::legend::Swatch;
+use super::marks::Mark;
+use super::{Draft, canvas_with_legend};
+use crate::ballots::BallotGroup;
+use crate::statistics::{Model, Pairs, Participants, clustered_covariance, fit};
+
+pub(super) fn draft(groups: &[BallotGroup]) -> Option<Draft> {
+    let blocks: Vec<Block> = groups.iter().filter_map(block).collect();
+    if blocks.is_empty() {
+        return None;
+    }
+    let legend = [
+        (Swatch::Mark(Mark::nth(0, true)), "estimate".to_owned()),
+        (Swatch::Mark(Mark::nth(0, false)), "reference, 0 by definition".to_owned()),
+        forest::interval_entry(),
+    ];
+    let (mut canvas, top) = canvas_with_legend(&legend, forest::height(&blocks));
+    let (low, high) = forest::range(&blocks, 0.0);
+    let axis = Axis::spanning(low, high);
+    forest::draw(&mut canvas, &blocks, &axis, "log worth", 0.0, top);
+    let caption = "Worths by Davidson's model: log-odds of being preferred to the group's first item. Intervals take participants \
+                   as clusters; where answers separate the items, half a win each way was added and no interval is given."
+        .into();
+    Some(Draft { name: "worths", caption, canvas })
+}
+
+fn block(group: &BallotGroup) -> Option<Block> {
+    let items = group.items.len();
+    let fitted = fit(Model::Davidson, &Pairs::of(items, &group.ballots)).ok()?;
+    let participants = Participants::of(items, &group.ballots);
+    let covariance = clustered_covariance(&fitted, &participants);
+    let row = |(item, name): (usize, &String)| {
+        let interval = covariance.as_ref().filter(|_| item > 0);
+        let interval = interval.map(|c| fitted.clustered_interval(c, participants.number(), item, 0));
+        let remark = match (item, fitted.penalised, interval) {
+            (0, ..) => "reference".into(),
+            (_, true, _) => format!("{:.2}, penalised", fitted.log_worths[item]),
+            (_, _, Some(i)) => format!("{:.2} [{:.2}, {:.2}]", fitted.log_worths[item], i.low, i.high),
+            _ => format!("{:.2}", fitted.log_worths[item]),
+        };
+        Row {
+            label: name.clone(),
+            value: Some(fitted.log_worths[item]),
+            interval,
+            mark: Mark::nth(0, item > 0),
+            remark,
+        }
+    };
+    let rows = group.items.iter().enumerate().map(row).collect();
+    Some(Block { heading: group.name.clone(), rows })
+}

@@ -1,0 +1,279 @@
+//! The report: what a study's answers show, what they do not, and why, in sentences made from the numbers.
+//!
+//! A [`Report`] is sections of paragraphs, [`Finding`]s, tables and figures, and knows nothing of files or pages. No
+//! sentence is kept for a study: each is chosen by a test's conclusion and filled with its counts, so another study, or
+//! answers without a study, get other sentences.
+
+mod bearing;
+mod factors;
+mod finding;
+mod markdown;
+mod names;
+mod prediction;
+mod preference;
+mod published;
+mod sides;
+mod words;
+
+pub use finding::{Finding, Standing};
+
+use crate::ballots::{BallotGroup, ballot_groups, ballots};
+use crate::figures::Figure;
+use crate::hypotheses::{self, Hypothesis};
+use crate::inputs::{AnalysisError, Inputs};
+use crate::prediction::Prediction;
+use crate::statistics::Ballot;
+use crate::table::Table;
+use crate::tally::Tally;
+use design::Study;
+use std::collections::BTreeSet;
+use words::{counted, list};
+
+/// A report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// Its title.
+    pub title: String,
+    /// What was asked of whom.
+    pub lead: Vec<String>,
+    /// Its sections; none is empty.
+    pub sections: Vec<Section>,
+}
+
+/// A section.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Section {
+    /// Name for links, unique in the report.
+    pub id: &'static str,
+    /// Its heading.
+    pub heading: &'static str,
+    /// What it holds, in order.
+    pub blocks: Vec<Block>,
+}
+
+/// A piece of a section.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Block {
+    /// A paragraph.
+    Text(String),
+    /// A statement with its verdict.
+    Finding(Finding),
+    /// A table.
+    Table(Table),
+    /// A table that need not be read at once.
+    Folded(Table),
+    /// A figure.
+    Figure(Figure),
+}
+
+/// What sentences are made from.
+struct Evidence<'a> {
+    study: Option<&'a Study>,
+    ballots: &'a [Ballot],
+    groups: &'a [BallotGroup],
+    hypotheses: Vec<Hypothesis>,
+}
+
+impl Evidence<'_> {
+    fn participants(&self) -> usize {
+        self.ballots.iter().map(|b| b.participant).collect::<BTreeSet<_>>().len()
+    }
+
+    fn questions(&self) -> usize {
+        self.ballots.iter().map(|b| b.question).collect::<BTreeSet<_>>().len()
+    }
+
+    /// Every hypothesis on some of the ballots.
+    fn tested(&self, ballots: &[Ballot]) -> Vec<Hypothesis> {
+        match self.study {
+            Some(study) => hypotheses::of_study(study, ballots),
+            None => {
+                let kept: BTreeSet<usize> = ballots.iter().map(|b| b.participant).collect();
+                let some = |group: &BallotGroup| BallotGroup {
+                    ballots: group
+                        .ballots
+                        .iter()
+                        .filter(|b| kept.contains(&b.participant))
+                        .copied()
+                        .collect(),
+                    ..group.clone()
+                };
+                hypotheses::of_groups(&self.groups.iter().map(some).collect::<Vec<_>>())
+            }
+        }
+    }
+}
+
+/// The tables that the published text prints, in its order; the first ones are read at once.
+const PAPER: [(&str, bool); 8] = [
+    ("preference_groups", true),
+    ("preference_overall", true),
+    ("asteroid", true),
+    ("configurations", false),
+    ("benchmark", false),
+    ("questionnaire", false),
+    ("answers", false),
+    ("comparison_summary", false),
+];
+
+/// The report of a study. `tables` and `figures` are those made from the same inputs; each is printed once.
+///
+/// # Errors
+/// If counting the answers fails, which is not to be expected of answers read for this study.
+pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Result<Report, AnalysisError> {
+    let study = inputs.study;
+    let ballots = inputs.answers.map(|answers| ballots(study, answers)).unwrap_or_default();
+    let groups = ballot_groups(study, &ballots);
+    let hypotheses = hypotheses::of_study(study, &ballots);
+    let evidence = Evidence { study: Some(study), ballots: &ballots, groups: &groups, hypotheses };
+    let mut press = Press::new(tables, figures);
+    let mut paper = Vec::new();
+    for (name, at_once) in PAPER {
+        paper.extend(press.table(name).map(|t| if at_once { Block::Table(t) } else { Block::Folded(t) }));
+    }
+    paper.extend(press.figures(&["preference_overall", "answers"]));
+    press.section("tables", "The tables of the study", paper);
+    if let Some(tally) = Tally::of_inputs(inputs)? {
+        press.section("factors", "What the sums hide", factors::findings(study, &tally, &evidence));
+        press.add_figures(&["factor_share", "preference_objects"]);
+        press.preferences(&evidence);
+        let predicted = Prediction::of(inputs, &ballots);
+        press.section(
+            "prediction",
+            "What predicts preference",
+            prediction::findings(study, predicted.as_ref()),
+        );
+        press.add_figures(&["prediction"]);
+        press.add_tables(&["prediction", "prediction_objects", "prediction_correlations"]);
+    }
+    press.section("published", "Published and recomputed", published::findings(inputs)?);
+    press.add_tables(&["claims"]);
+    let (title, lead) = (study.file.study.title.clone(), lead(&evidence));
+    Ok(press.finish(title, lead))
+}
+
+/// The report of answers without a study: groups of items, as [`report`].
+pub fn report_of_groups(title: &str, groups: &[BallotGroup], tables: &[Table], figures: &[Figure]) -> Report {
+    let ballots: Vec<Ballot> = groups.iter().flat_map(|group| group.ballots.iter().copied()).collect();
+    let hypotheses = hypotheses::of_groups(groups);
+    let evidence = Evidence { study: None, ballots: &ballots, groups, hypotheses };
+    let mut press = Press::new(tables, figures);
+    press.preferences(&evidence);
+    press.finish(title.into(), lead(&evidence))
+}
+
+fn lead(evidence: &Evidence<'_>) -> Vec<String> {
+    let (people, questions) = (evidence.participants(), evidence.questions());
+    let answers = evidence.ballots.len();
+    if answers == 0 {
+        return vec!["No answers were given, so nothing is said about preference.".into()];
+    }
+    let about = evidence.study.map_or(String::new(), |study| {
+        let names: Vec<&str> = study.file.objects.iter().map(|o| o.name.as_str()).collect();
+        format!(" about {} ({})", counted(names.len(), "object"), list(&names))
+    });
+    let mut lead = vec![format!(
+        "{} gave {} to {}{about}.",
+        words::capital(&counted(people, "participant")),
+        counted(answers, "answer"),
+        counted(questions, "question"),
+    )];
+    let missing = (people * questions).saturating_sub(answers);
+    if missing > 0 {
+        lead[0].push_str(&format!(
+            " {} of the {} possible answers were not given; people count as far as they answered.",
+            missing,
+            people * questions
+        ));
+    }
+    lead.push(
+        "One person's answers hang together, so the person is the unit of every test and interval here. A person's score \
+         is the answers for the one less the answers for the other, over all answers: 1 is always the one, \u{2212}1 always the \
+         other. A result holds if its p, corrected for the tests of its family, is at most 0.05."
+            .into(),
+    );
+    lead
+}
+
+/// Puts sections together, and knows which tables and figures have not been printed.
+struct Press {
+    tables: Vec<Table>,
+    figures: Vec<Figure>,
+    sections: Vec<Section>,
+}
+
+impl Press {
+    fn new(tables: &[Table], figures: &[Figure]) -> Self {
+        Self { tables: tables.to_vec(), figures: figures.to_vec(), sections: Vec::new() }
+    }
+
+    fn table(&mut self, name: &str) -> Option<Table> {
+        let place = self.tables.iter().position(|table| table.name == name)?;
+        Some(self.tables.remove(place))
+    }
+
+    fn figures(&mut self, names: &[&str]) -> Vec<Block> {
+        let mut taken = Vec::new();
+        for name in names {
+            if let Some(place) = self.figures.iter().position(|figure| figure.name == *name) {
+                taken.push(Block::Figure(self.figures.remove(place)));
+            }
+        }
+        taken
+    }
+
+    fn section(&mut self, id: &'static str, heading: &'static str, blocks: Vec<Block>) {
+        self.sections.push(Section { id, heading, blocks });
+    }
+
+    /// Figures at the end of the last section.
+    fn add_figures(&mut self, names: &[&str]) {
+        let figures = self.figures(names);
+        self.sections.last_mut().expect("a section to add to").blocks.extend(figures);
+    }
+
+    /// Folded tables at the end of the last section.
+    fn add_tables(&mut self, names: &[&str]) {
+        for name in names {
+            if let Some(table) = self.table(name) {
+                self.sections.last_mut().expect("a section to add to").blocks.push(Block::Folded(table));
+            }
+        }
+    }
+
+    /// What answers alone can tell.
+    fn preferences(&mut self, evidence: &Evidence<'_>) {
+        if evidence.ballots.is_empty() {
+            return;
+        }
+        let sorted = preference::findings(evidence);
+        self.section("holds", "What holds", sorted.holds);
+        self.add_figures(&["worths"]);
+        self.section("depends", "What depends on what", sorted.depends);
+        self.add_figures(&["object_interaction"]);
+        self.section("open", "What does not hold", sorted.open);
+        self.section("unanswerable", "What cannot be answered here", sides::findings(evidence));
+        self.section("bearing", "How much the answers can bear", bearing::findings(evidence));
+        self.add_figures(&["respondents"]);
+        self.add_tables(&[
+            "tests",
+            "omnibus",
+            "worths",
+            "models",
+            "agreement",
+            "respondents",
+            "answer_counts",
+        ]);
+    }
+
+    fn finish(mut self, title: String, lead: Vec<String>) -> Report {
+        let rest = self.figures.drain(..).map(Block::Figure);
+        let rest: Vec<Block> = rest.chain(self.tables.drain(..).map(Block::Folded)).collect();
+        self.section("appendix", "All other figures and tables", rest);
+        self.sections.retain(|section| !section.blocks.is_empty());
+        Report { title, lead, sections: self.sections }
+    }
+}
+
+#[cfg(test)]
+mod tests;

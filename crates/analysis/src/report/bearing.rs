@@ -1,0 +1,249 @@
+//! How much the answers can bear: agreement, consistency, odd respondents, single questions.
+
+use super::finding::{Finding, Standing};
+use super::words::{capital, counted, list, number, p, percent};
+use super::{Block, Evidence};
+use crate::hypotheses::{ALPHA, Conclusion, Hypothesis, Subject};
+use crate::statistics::{
+    Ballot, Metric, Screening, Triads, agreement, alpha, outcome_counts, screening, sign_test, triads,
+};
+use statrs::distribution::{Binomial, DiscreteCDF};
+
+/// Fewer comparable answers than this say nothing about a person.
+const COMPARABLE: u64 = 6;
+/// Names of so many people are printed at most.
+const NAMED: usize = 8;
+
+pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
+    let mut found = vec![unanimity(evidence)];
+    found.extend(consistency(evidence));
+    found.extend(one_by_one(evidence));
+    found.extend(odd_ones(evidence));
+    found.extend(single_questions(evidence));
+    found.into_iter().map(Block::Finding).collect()
+}
+
+fn unanimity(evidence: &Evidence<'_>) -> Finding {
+    let counts: Vec<[u64; 3]> =
+        outcome_counts(evidence.ballots).into_iter().filter(|c| c.iter().sum::<u64>() > 0).collect();
+    let of = |metric| alpha(&counts, metric).map_or("no value".into(), |a| number(a, 2));
+    let mut text = format!(
+        "Krippendorff's alpha over {} is {} (nominal) and {} (left, none, right in order); 1 is full agreement, 0 what \
+         chance gives.",
+        counted(counts.len(), "question"),
+        of(Metric::Nominal),
+        of(Metric::Ordinal)
+    );
+    let kendall = agreement(&counts).and_then(|found| found.test.map(|test| (found.u, test)));
+    let Some((u, test)) = kendall else { return Finding::new(Standing::Noted, text) };
+    let verdict = match test.p <= ALPHA {
+        true => "People agree more than chance would have it",
+        false => "That people agree more than chance would have it is not shown",
+    };
+    text.push_str(&format!(
+        " {verdict}: Kendall's u = {}, chi-square {:.1} on {:.1} degrees of freedom, {}.",
+        number(u, 2),
+        test.statistic,
+        test.degrees,
+        p(test.p)
+    ));
+    Finding::new(if test.p <= ALPHA { Standing::Holds } else { Standing::Open }, text)
+}
+
+fn consistency(evidence: &Evidence<'_>) -> Option<Finding> {
+    let mut sum = Triads::default();
+    match evidence.study {
+        Some(study) => {
+            for object in 0..study.file.objects.len() {
+                for group in 0..study.groups.len() {
+                    let inside = |b: &&Ballot| {
+                        let c = &study.comparisons[b.question];
+                        c.object == object && c.group == group
+                    };
+                    let own: Vec<Ballot> = evidence.ballots.iter().filter(inside).copied().collect();
+                    sum = sum.and(triads(&own));
+                }
+            }
+        }
+        None => evidence.groups.iter().for_each(|group| sum = sum.and(triads(&group.ballots))),
+    }
+    if sum.decided == 0 {
+        return None;
+    }
+    let chance = Binomial::new(0.25, sum.decided).expect("a chance and a number").cdf(sum.strict_cycles);
+    let (standing, verdict) = match chance <= ALPHA {
+        true => (Standing::Holds, "People contradict themselves less than chance would have them"),
+        false => (Standing::Open, "That people contradict themselves less than chance would is not shown"),
+    };
+    let weak = match sum.weak_cycles {
+        1 => "1 more is".into(),
+        weak => format!("{weak} more are"),
+    };
+    let cycles = if sum.strict_cycles == 1 { "1 goes".into() } else { format!("{} go", sum.strict_cycles) };
+    let text = format!(
+        "{verdict}: of {} of three items, {} were decided throughout, and {cycles} in a circle; answers by chance would \
+         give {} (a quarter; one-sided binomial test, {}). {weak} two wins closed by no preference, which need not be a \
+         contradiction.",
+        counted(sum.all as usize, "triad"),
+        sum.decided,
+        number(sum.decided as f64 / 4.0, 1),
+        p(chance)
+    );
+    Some(Finding::new(standing, text))
+}
+
+/// What is tested of a study or its groups; single questions are exploratory.
+fn declared<'a>(hypotheses: &'a [Hypothesis]) -> impl Iterator<Item = &'a Hypothesis> {
+    hypotheses.iter().filter(|h| !matches!(h.subject, Subject::Question(_)))
+}
+
+fn named(h: &Hypothesis) -> String {
+    match &h.subject {
+        Subject::Items { group, .. } => format!("{} in {group}", h.contrast),
+        _ => format!("{} {}", h.contrast, h.scope),
+    }
+}
+
+fn differs(h: &Hypothesis) -> bool {
+    matches!(h.conclusion(), Conclusion::Differs | Conclusion::DiffersWithinMargin)
+}
+
+/// Does a result hang on one person?
+fn one_by_one(evidence: &Evidence<'_>) -> Option<Finding> {
+    let holding: Vec<&Hypothesis> = declared(&evidence.hypotheses).filter(|h| differs(h)).collect();
+    let worst: Vec<(&Hypothesis, f64)> =
+        holding.iter().filter_map(|h| h.test.leave_one_out().map(|(_, worst)| (*h, worst))).collect();
+    let largest = worst.iter().map(|(_, p)| *p).max_by(f64::total_cmp)?;
+    let fragile: Vec<String> = worst.iter().filter(|(_, p)| *p > ALPHA).map(|(h, _)| named(h)).collect();
+    let tests = counted(worst.len(), "result");
+    Some(match fragile.is_empty() {
+        true => Finding::new(
+            Standing::Holds,
+            format!(
+                "No result hangs on one person: with any one participant left out, each of the {tests} that hold keeps \
+                 p at or below 0.05 in its own sign-flip test (largest {}).",
+                p(largest)
+            ),
+        ),
+        false => Finding::new(
+            Standing::Open,
+            format!(
+                "{} of the {tests} that hold would not without some one participant (sign-flip test, largest {}): {}.",
+                fragile.len(),
+                p(largest),
+                list(&fragile)
+            ),
+        ),
+    })
+}
+
+/// Who answers against the others, and what the results are without them.
+fn odd_ones(evidence: &Evidence<'_>) -> Vec<Finding> {
+    let screened = screening(evidence.ballots);
+    let judged: Vec<(&Screening, f64)> = screened
+        .iter()
+        .filter(|s| s.comparable >= COMPARABLE)
+        .filter_map(|s| s.agreement().map(|share| (s, share)))
+        .collect();
+    let (odd, others): (Vec<_>, Vec<_>) = judged.iter().copied().partition(|(_, share)| *share < 0.5);
+    let range = |of: &[(&Screening, f64)]| {
+        let shares = of.iter().map(|(_, share)| *share);
+        let (low, high) = (shares.clone().fold(1.0, f64::min), shares.fold(0.0, f64::max));
+        format!("{} to {}", percent(low).trim_end_matches(" %"), percent(high))
+    };
+    if judged.is_empty() {
+        return Vec::new();
+    }
+    if odd.is_empty() {
+        let text = format!(
+            "Nobody stands out: every participant's decided answers side with the majority of the others' in {} of the \
+             questions that have one.",
+            range(&judged)
+        );
+        return vec![Finding::new(Standing::Noted, text)];
+    }
+    let one = |(s, share): &(&Screening, f64)| {
+        format!("{} ({} of {}, {})", s.participant + 1, s.agreeing, s.comparable, percent(*share))
+    };
+    let mut names: Vec<String> = odd.iter().take(NAMED).map(one).collect();
+    if odd.len() > NAMED {
+        names.push(format!("{} more", odd.len() - NAMED));
+    }
+    let who = if odd.len() == 1 { "Participant" } else { "Participants" };
+    let verb = if odd.len() == 1 { "answers" } else { "answer" };
+    let rest = match others.is_empty() {
+        true => String::new(),
+        false => format!("; everybody else sides with it in {}", range(&others)),
+    };
+    let text = format!(
+        "{who} {} {verb} against the majority of the others more often than with it{rest}. This was seen after the outcome: a \
+         reason to look, not to exclude.",
+        list(&names)
+    );
+    let mut found = vec![Finding::new(Standing::Noted, text)];
+    found.push(without(evidence, &odd.iter().map(|(s, _)| s.participant).collect::<Vec<_>>()));
+    found
+}
+
+fn without(evidence: &Evidence<'_>, left_out: &[usize]) -> Finding {
+    let kept: Vec<Ballot> =
+        evidence.ballots.iter().filter(|b| !left_out.contains(&b.participant)).copied().collect();
+    let again = evidence.tested(&kept);
+    let same = |a: &&Hypothesis, b: &&Hypothesis| {
+        (&a.family, &a.contrast, &a.scope) == (&b.family, &b.contrast, &b.scope)
+    };
+    let tests: Vec<&Hypothesis> = declared(&evidence.hypotheses).collect();
+    let pairs: Vec<(&Hypothesis, &Hypothesis)> =
+        tests.iter().filter_map(|h| declared(&again).find(|b| same(h, b)).map(|b| (*h, b))).collect();
+    let changed: Vec<String> = pairs
+        .iter()
+        .filter(|(with, without)| differs(with) != differs(without))
+        .map(|(with, without)| {
+            let becomes = if differs(without) { "holds then" } else { "holds no longer" };
+            format!(
+                "{} {becomes} (corrected {}, before {})",
+                named(with),
+                p(without.adjusted),
+                p(with.adjusted)
+            )
+        })
+        .collect();
+    let whom = if left_out.len() == 1 { "this participant" } else { "these participants" };
+    let tests = counted(pairs.len(), "declared test");
+    let text = match changed.is_empty() {
+        true => format!("Without {whom}, none of the {tests} comes out otherwise."),
+        false => format!(
+            "Without {whom}, {} of the {tests} {} out otherwise: {}. Everything else in this report is with {}.",
+            changed.len(),
+            if changed.len() == 1 { "comes" } else { "come" },
+            list(&changed),
+            if left_out.len() == 1 { "that person" } else { "them" }
+        ),
+    };
+    Finding::new(Standing::Noted, text)
+}
+
+fn single_questions(evidence: &Evidence<'_>) -> Option<Finding> {
+    let all: Vec<&Hypothesis> =
+        evidence.hypotheses.iter().filter(|h| matches!(h.subject, Subject::Question(_))).collect();
+    let holding: Vec<&str> = all.iter().filter(|h| differs(h)).map(|h| h.scope.as_str()).collect();
+    let asked = all.iter().filter(|h| !h.test.differences.is_empty()).count();
+    let bare = |h: &&&Hypothesis| match h.test.counts {
+        Some([a, _, b]) => sign_test::binomial(a, b) <= ALPHA,
+        None => false,
+    };
+    let names = match holding.is_empty() {
+        true => String::new(),
+        false => format!(": {}", list(&holding)),
+    };
+    (asked > 0).then(|| {
+        let text = format!(
+            "Of {}, {} show a preference by Benjamini and Hochberg's correction of the sign tests{names}. {} would without \
+             correction. These are exploratory.",
+            counted(asked, "single question"),
+            holding.len(),
+            capital(&all.iter().filter(bare).count().to_string())
+        );
+        Finding::new(Standing::Noted, text)
+    })
+}

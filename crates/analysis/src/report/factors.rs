@@ -1,0 +1,176 @@
+//! What the published sums of preference factors hide.
+
+use super::finding::{Finding, Standing};
+use super::words::{against, capital, list, number};
+use super::{Block, Evidence, names};
+use crate::fraction::Fraction;
+use crate::hypotheses::Subject;
+use crate::preference::{GroupFactor, Margin, group_factors, margins, overall};
+use crate::statistics::contrast::{Level, Over};
+use crate::tally::Tally;
+use design::{Arrangement, Method, Study};
+
+pub(super) fn findings(study: &Study, tally: &Tally, evidence: &Evidence<'_>) -> Vec<Block> {
+    let factors = group_factors(study, tally, |_| true);
+    let found = [
+        two_scales(study, &factors),
+        ties_alone(study, &factors),
+        difference(study, &factors, evidence),
+        favourite(study, tally, &factors),
+    ];
+    found.into_iter().flatten().map(|text| Block::Finding(Finding::new(Standing::Noted, text))).collect()
+}
+
+/// The arrangement that all members of a group share; `None` for a group that compares arrangements.
+fn shared(study: &Study, group: usize) -> Option<Arrangement> {
+    let members = &study.groups[group].members;
+    let first = members.first()?.arrangement;
+    members.iter().all(|m| m.arrangement == first).then_some(first)
+}
+
+fn text_of(fraction: Fraction) -> String {
+    let text = fraction.to_string();
+    text.strip_suffix("/1").map_or(text.clone(), str::to_owned)
+}
+
+/// Groups of different size have factors on different scales.
+fn two_scales(study: &Study, factors: &[GroupFactor]) -> Option<String> {
+    let mut caps: Vec<(Fraction, Vec<&str>)> = Vec::new();
+    for factor in factors {
+        let id = study.groups[factor.group].id.as_str();
+        match caps.iter_mut().find(|(cap, _)| *cap == factor.cap()) {
+            Some((_, groups)) if groups.contains(&id) => {}
+            Some((_, groups)) => groups.push(id),
+            None => caps.push((factor.cap(), vec![id])),
+        }
+    }
+    (caps.len() > 1).then(|| {
+        let parts: Vec<String> = caps
+            .iter()
+            .map(|(cap, groups)| {
+                let noun = if groups.len() == 1 { "group" } else { "groups" };
+                format!("{} in {noun} {}", text_of(*cap), list(groups))
+            })
+            .collect();
+        format!(
+            "A sum of factors adds numbers on different scales: a factor can reach {}, since a configuration is shown in \
+             only some of the questions of a larger group. Wins over appearances have one scale.",
+            list(&parts)
+        )
+    })
+}
+
+/// Within one arrangement the factors of a clustering group add up to one less the share of ties.
+fn ties_alone(study: &Study, factors: &[GroupFactor]) -> Option<String> {
+    let mut parts = Vec::new();
+    for g in 0..study.groups.len() {
+        let own: Vec<&GroupFactor> = factors.iter().filter(|f| f.group == g).collect();
+        let (Some(arrangement), Some(first)) = (shared(study, g), own.first()) else { continue };
+        let wins: u64 = own.iter().map(|f| f.share.wins).sum();
+        parts.push(format!(
+            "{wins}/{} on {} ({} ties)",
+            first.share.answers,
+            names::level(Level::Arrangement(arrangement)),
+            first.share.ties
+        ));
+    }
+    (parts.len() > 1).then(|| {
+        format!(
+            "The clustering half of an arrangement's sums says nothing about arrangements: within one arrangement the factors \
+             always add up to one less the share of ties, {}.",
+            list(&parts)
+        )
+    })
+}
+
+/// The difference between the means of two arrangements, taken apart.
+fn difference(study: &Study, factors: &[GroupFactor], evidence: &Evidence<'_>) -> Option<String> {
+    let sums = overall(study, factors);
+    let mean = |arrangement| {
+        let of = margins(study, &sums);
+        of.into_iter().find(|(m, _)| *m == Margin::Arrangement(arrangement)).map(|(_, mean)| mean.value())
+    };
+    let [first, second] = study.file.arrangements[..] else { return None };
+    let (a, b) = (mean(first)?, mean(second)?);
+    let half = |arrangement: Arrangement, direct: bool| {
+        let of = sums.iter().filter(|(m, _)| m.arrangement == arrangement).count() as f64;
+        let own = factors.iter().filter(|f| f.method.arrangement == arrangement);
+        let part = own.filter(|f| shared(study, f.group).is_none() == direct);
+        part.map(|f| f.share.factor().value()).sum::<f64>() / of
+    };
+    let by_ties = half(first, false) - half(second, false);
+    let direct = half(first, true) - half(second, true);
+    let of_contrast = evidence.hypotheses.iter().find(|h| match h.subject {
+        Subject::Contrast { levels, over } => over == Over::All && levels.map(is_arrangement) == [true, true],
+        _ => false,
+    })?;
+    let Subject::Contrast { levels, .. } = of_contrast.subject else { return None };
+    let counts = of_contrast.test.counts?;
+    let [one, other] = [first, second].map(|a| names::level(Level::Arrangement(a)));
+    Some(format!(
+        "The mean sums of {one} and {other} are {} and {}. Of the difference of {}, {} comes from ties in the clustering \
+         groups and {} from the questions that compare the two directly, where {} has {}.",
+        number(a, 3),
+        number(b, 3),
+        number(a - b, 3),
+        number(by_ties, 3),
+        number(direct, 3),
+        names::level(levels[0]),
+        against(counts)
+    ))
+}
+
+fn is_arrangement(level: Level) -> bool {
+    matches!(level, Level::Arrangement(_))
+}
+
+/// Who has the largest sum: over all, by wins over appearances, and on each object.
+fn favourite(study: &Study, tally: &Tally, factors: &[GroupFactor]) -> Option<String> {
+    let (method, sum) = largest(overall(study, factors).into_iter().map(|(m, f)| (m, f.value())))?;
+    let shares = study.methods().into_iter().filter_map(|m| {
+        let own: Vec<&GroupFactor> = factors.iter().filter(|f| f.method == m).collect();
+        let (wins, shown) = own.iter().fold((0, 0), |(w, n), f| (w + f.share.wins, n + f.appearances));
+        (shown > 0).then(|| (m, wins as f64 / shown as f64))
+    });
+    let (by_share, share) = largest(shares)?;
+    let mut objects: Vec<(Method, Vec<&str>)> = Vec::new();
+    for (o, object) in study.file.objects.iter().enumerate() {
+        let own = group_factors(study, tally, |other| other == o);
+        let Some((best, _)) = largest(overall(study, &own).into_iter().map(|(m, f)| (m, f.value()))) else {
+            continue;
+        };
+        match objects.iter_mut().find(|(m, _)| *m == best) {
+            Some((_, names)) => names.push(&object.name),
+            None => objects.push((best, vec![&object.name])),
+        }
+    }
+    let share_text = match by_share == method {
+        true => format!("and the largest share of wins over appearances, {}", number(share, 3)),
+        false => {
+            format!("but {by_share} has the largest share of wins over appearances, {}", number(share, 3))
+        }
+    };
+    let by_object = match &objects[..] {
+        [_] => format!("{method} has it on each object as well"),
+        _ => {
+            let parts: Vec<String> =
+                objects.iter().map(|(m, names)| format!("{m} on the {}", list(names))).collect();
+            format!("object by object it is not one favourite: the largest sum has {}", list(&parts))
+        }
+    };
+    Some(format!(
+        "{} ({}) has the largest sum, {}, {share_text}. {}.",
+        capital(&method.label()),
+        method,
+        number(sum, 3),
+        capital(&by_object)
+    ))
+}
+
+/// The first of the largest.
+fn largest(values: impl Iterator<Item = (Method, f64)>) -> Option<(Method, f64)> {
+    values.fold(None, |best: Option<(Method, f64)>, (m, v)| match best {
+        Some((_, most)) if most >= v => best,
+        _ => Some((m, v)),
+    })
+}

@@ -1,0 +1,180 @@
+//! A statement with its verdict, and the sentences of tests of preference.
+
+use super::words::{against, capital, counted, interval, number, p};
+use crate::hypotheses::{ALPHA, Conclusion, Hypothesis};
+use crate::interval::Interval;
+use crate::statistics::MARGIN;
+use crate::statistics::contrast::ContrastTest;
+
+/// What a statement is worth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Standing {
+    /// It holds at the stated level.
+    Holds,
+    /// What is there is smaller than the declared margin.
+    Equal,
+    /// Neither a difference nor equality was shown.
+    Open,
+    /// No outcome of so few people could have shown anything.
+    TooFew,
+    /// The design does not allow an answer.
+    NotAnswerable,
+    /// A description, which no test judges.
+    Noted,
+}
+
+impl Standing {
+    /// In a word or two.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Equal => "equal",
+            Self::Open => "open",
+            Self::TooFew => "too few",
+            Self::NotAnswerable => "not answerable",
+            Self::Noted => "noted",
+        }
+    }
+}
+
+/// A statement with its verdict.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// What it is worth.
+    pub standing: Standing,
+    /// The statement, with counts, estimate, interval and test.
+    pub text: String,
+}
+
+impl Finding {
+    pub(super) fn new(standing: Standing, text: impl Into<String>) -> Self {
+        Self { standing, text: text.into() }
+    }
+
+    /// Whether the first was preferred to the second; `scope` says over which answers, with a space before it.
+    pub(super) fn of_preference(hypothesis: &Hypothesis, first: &str, second: &str, scope: &str) -> Self {
+        let test = &hypothesis.test;
+        let counts = test.counts.unwrap_or_default();
+        let leaning = test.differences.iter().filter(|d| **d != 0).count();
+        if leaning == 0 {
+            let text = format!(
+                "{} against {second}{scope}: nobody leans either way ({}), so no test has anything to work on.",
+                capital(first),
+                against(counts)
+            );
+            return Self::new(Standing::TooFew, text);
+        }
+        let least = 2.0_f64.powi(1 - leaning as i32);
+        if least > ALPHA {
+            let lean = if leaning == 1 { "leans" } else { "lean" };
+            let text = format!(
+                "{} against {second}{scope} is not decided: {}. {} {lean} one way or the other, and no outcome of so \
+                 few is significant (exact sign-flip test, smallest possible {}).",
+                capital(first),
+                against(counts),
+                capital(&counted(leaning, "participant")),
+                p(least)
+            );
+            return Self::new(Standing::TooFew, text);
+        }
+        let towards_first = test.sign_flip.net >= 0;
+        let [winner, loser] = if towards_first { [first, second] } else { [second, first] };
+        let [a, ties, b] = counts;
+        let turned = if towards_first { counts } else { [b, ties, a] };
+        let (score, tested) = (score(test, towards_first), tested(hypothesis));
+        match hypothesis.conclusion() {
+            Conclusion::Differs => {
+                let text = format!(
+                    "{} was preferred to {loser}{scope}: {}. {score}; {tested}.",
+                    capital(winner),
+                    against(turned)
+                );
+                Self::new(Standing::Holds, text)
+            }
+            Conclusion::DiffersWithinMargin => {
+                let text = format!(
+                    "{} was preferred to {loser}{scope}, but by little: {}. {score}; {tested}. The mean lies within \
+                     {MARGIN} of none ({}).",
+                    capital(winner),
+                    against(turned),
+                    equivalence(hypothesis)
+                );
+                Self::new(Standing::Holds, text)
+            }
+            Conclusion::Equal => {
+                let text = format!(
+                    "{} and {second}{scope} are liked alike, within the declared margin of {MARGIN}: {}. {score}; {}; \
+                     {tested}.",
+                    capital(first),
+                    against(turned),
+                    equivalence(hypothesis)
+                );
+                Self::new(Standing::Equal, text)
+            }
+            Conclusion::Open => {
+                let alone = match test.sign_flip.p() <= ALPHA {
+                    true => " As the only test it would have passed; among so many it does not.",
+                    false => "",
+                };
+                let text = format!(
+                    "{} and {second}{scope} cannot be told apart here: {}. {}; {tested}.{alone}{}",
+                    capital(first),
+                    against(counts),
+                    self::score(test, true),
+                    not_equal(test)
+                );
+                Self::new(Standing::Open, text)
+            }
+        }
+    }
+}
+
+/// `Mean score 0.17 (95 % t interval 0.06 to 0.29, 18 participants)`, turned round for the second.
+pub(super) fn score(test: &ContrastTest, towards_first: bool) -> String {
+    let sign = if towards_first { 1.0 } else { -1.0 };
+    let people = counted(test.scores.len(), "participant");
+    // A score lies between -1 and 1; its t interval does not know that.
+    let cut = |low: f64, high: f64| Interval { low: low.max(-1.0), high: high.min(1.0) };
+    let turned = test.interval.map(|i| match towards_first {
+        true => cut(i.low, i.high),
+        false => cut(-i.high, -i.low),
+    });
+    let within = turned.map_or(people.clone(), |i| format!("95 % t interval {}, {people}", interval(i, 2)));
+    format!("Mean score {} ({within})", number(sign * test.mean, 2))
+}
+
+/// `exact sign-flip test, p = 0.0094, p = 0.028 after Holm's correction for 4 tests`.
+pub(super) fn tested(hypothesis: &Hypothesis) -> String {
+    let alone = format!("exact sign-flip test, {}", p(hypothesis.test.sign_flip.p()));
+    match hypothesis.family_size {
+        0 | 1 => alone,
+        size => {
+            let (adjusted, rule) = (p(hypothesis.adjusted), hypothesis.adjustment.possessive());
+            format!("{alone}, {adjusted} after {rule} correction for {size} tests")
+        }
+    }
+}
+
+fn equivalence(hypothesis: &Hypothesis) -> String {
+    let p = p(hypothesis.equivalence.unwrap_or(1.0));
+    match hypothesis.family_size {
+        0 | 1 => format!("two one-sided t tests, {p}"),
+        _ => format!("two one-sided t tests, {p} after correction"),
+    }
+}
+
+/// How large a preference is not ruled out.
+fn not_equal(test: &ContrastTest) -> String {
+    let Some(i) = test.interval else { return " Not significant is not equal.".into() };
+    let room = |end: f64| number(end.abs().min(1.0), 2);
+    match (i.low < 0.0, i.high > 0.0) {
+        (true, true) => format!(
+            " Not significant is not equal: a mean score of up to {} for the one or {} for the other remains possible.",
+            room(i.high),
+            room(i.low)
+        ),
+        _ => {
+            " Not significant is not equal: the interval leaves zero out, the corrected test does not.".into()
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! A report as Markdown.
+
+use super::{Block, Report};
+
+impl Report {
+    /// GitHub-flavoured Markdown; figures are links to `figures/<name>.svg` beside it.
+    pub fn to_markdown(&self) -> String {
+        let mut text = format!("# {}\n", self.title);
+        for paragraph in &self.lead {
+            text.push_str(&format!("\n{}\n", escape(paragraph)));
+        }
+        for section in &self.sections {
+            text.push_str(&format!("\n## {}\n", section.heading));
+            let mut listing = false;
+            for block in &section.blocks {
+                let item = matches!(block, Block::Finding(_));
+                if !(item && listing) {
+                    text.push('\n');
+                }
+                listing = item;
+                match block {
+                    Block::Text(paragraph) => text.push_str(&format!("{}\n", escape(paragraph))),
+                    Block::Finding(finding) => {
+                        let label = super::words::capital(finding.standing.label());
+                        text.push_str(&format!("- **{label}.** {}\n", escape(&finding.text)));
+                    }
+                    Block::Table(table) | Block::Folded(table) => text.push_str(&table.to_markdown()),
+                    Block::Figure(figure) => {
+                        let caption = escape(&figure.caption);
+                        text.push_str(&format!("![{caption}](figures/{}.svg)\n\n{caption}\n", figure.name));
+                    }
+                }
+            }
+        }
+        text
+    }
+}
+
+/// What Markdown would read as mark-up.
+fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '\\' | '|' | '_' | '*' | '`' | '[' | ']' => out.extend(['\\', letter]),
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            _ => out.push(letter),
+        }
+    }
+    out
+}

@@ -1,0 +1,102 @@
+//! Numbers in words: p values, intervals, counts, lists.
+
+use crate::interval::Interval;
+
+/// Below this a p value is not printed in digits.
+const LEAST_P: f64 = 1e-6;
+
+/// `p = 0.0094`: two digits that count, no more; `p < 0.000001` below that.
+pub(super) fn p(p: f64) -> String {
+    match p {
+        p if p < LEAST_P => "p < 0.000001".into(),
+        p if p > 0.995 => "p = 1".into(),
+        p => {
+            let decimals = (1.0 - p.log10().floor()).clamp(2.0, 7.0) as usize;
+            format!("p = {p:.decimals$}")
+        }
+    }
+}
+
+/// A number with a true minus sign; never minus zero.
+pub(super) fn number(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.chars().all(|c| c == '0' || c == '.') => rest.into(),
+        Some(rest) => format!("\u{2212}{rest}"),
+        None => text,
+    }
+}
+
+/// `0.06 to 0.29`.
+pub(super) fn interval(interval: Interval, decimals: usize) -> String {
+    format!("{} to {}", number(interval.low, decimals), number(interval.high, decimals))
+}
+
+/// `73 %`.
+pub(super) fn percent(share: f64) -> String {
+    format!("{} %", number(100.0 * share, 0))
+}
+
+/// `66 to 81 %`, cut to what is possible.
+pub(super) fn percents(interval: Interval) -> String {
+    let end = |x: f64| number(100.0 * x.clamp(0.0, 1.0), 0);
+    format!("{} to {} %", end(interval.low), end(interval.high))
+}
+
+/// `1 answer`, `2 answers`.
+pub(super) fn counted(count: usize, noun: &str) -> String {
+    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
+}
+
+/// `a, b and c`.
+pub(super) fn list<T: AsRef<str>>(items: &[T]) -> String {
+    match items {
+        [] => String::new(),
+        [only] => only.as_ref().into(),
+        [rest @ .., last] => {
+            let rest: Vec<&str> = rest.iter().map(AsRef::as_ref).collect();
+            format!("{} and {}", rest.join(", "), last.as_ref())
+        }
+    }
+}
+
+/// With its first letter upper case.
+pub(super) fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// `36 answers against 10, 8 without preference`.
+pub(super) fn against([first, ties, second]: [u64; 3]) -> String {
+    let ties = if ties == 0 { "none".into() } else { ties.to_string() };
+    let answers = if first == 1 { "answer" } else { "answers" };
+    format!("{first} {answers} against {second}, {ties} without preference")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_well() {
+        let ps = [0.8243, 0.0094, 0.000_33, 4.58e-5, 1e-9, 1.0, 0.0501, 0.049].map(p);
+        let want = [
+            "p = 0.82",
+            "p = 0.0094",
+            "p = 0.00033",
+            "p = 0.000046",
+            "p < 0.000001",
+            "p = 1",
+            "p = 0.050",
+            "p = 0.049",
+        ];
+        assert_eq!(ps, want);
+        assert_eq!((number(-0.25, 2), number(-0.001, 2)), ("\u{2212}0.25".into(), "0.00".into()));
+        assert_eq!(list(&["a", "b", "c"]), "a, b and c");
+        assert_eq!((list::<&str>(&[]), list(&["a"])), (String::new(), "a".into()));
+        assert_eq!((counted(1, "answer"), counted(0, "answer")), ("1 answer".into(), "0 answers".into()));
+        assert_eq!(against([1, 0, 5]), "1 answer against 5, none without preference");
+        assert_eq!(percents(Interval { low: 0.661, high: 1.2 }), "66 to 100 %");
+        assert_eq!(capital("über"), "Über");
+    }
+}

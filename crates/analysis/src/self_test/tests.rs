@@ -1,0 +1,50 @@
+use super::*;
+
+#[test]
+fn every_probe_finds_its_defect_and_no_other() {
+    for of in probes(60, 11) {
+        for probe in Probe::ALL {
+            let share = of.share(probe);
+            // 0.02 of sixty studies is one; chance makes up to four of it.
+            let sound = if of.defect.probe() == Some(probe) { share >= 0.9 } else { share <= 0.07 };
+            assert!(sound, "{:?} on {:?}: {share}", probe, of.defect);
+        }
+    }
+}
+
+#[test]
+fn the_same_on_any_number_of_threads() {
+    let run = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let ([probes, rates], _) = pool.install(|| self_test(12, 4));
+        (probes.to_csv(), rates.to_csv())
+    };
+    let one = run(1);
+    assert_eq!(one, run(3));
+    assert_eq!(one.0.lines().count(), 1 + Defect::ALL.len());
+    let header = "defect,side,odd_respondent,copied_rows,swapped_key,object_interaction,separation,passed";
+    assert!(one.0.starts_with(header));
+}
+
+fn with_hits(rate: &Rate, hits: u64) -> Rate {
+    let mut other = rate.clone();
+    other.hits = hits;
+    other
+}
+
+#[test]
+fn a_rate_out_of_its_limits_fails() {
+    let all = rates(200, 8);
+    let named = |method: &str| all.iter().find(|rate| rate.method == method).unwrap();
+    let t = named("mean score, t interval");
+    assert!(t.sound() && t.limits().is_some());
+    assert!(!with_hits(t, t.studies / 2).sound());
+    // What is there for comparison is far off and fails nothing.
+    let naive = named("binomial over all answers");
+    assert!(naive.share() > 0.1 && naive.sound() && naive.limits().is_none());
+    let flip = named("sign-flip, 9 questions");
+    assert!(flip.sound() && !with_hits(flip, flip.studies / 4).sound());
+    let hits = Hits { defect: Defect::SideBias, found: [90, 0, 0, 0, 0, 0], studies: 100 };
+    assert!(!hits.sound(Probe::Side) && hits.sound(Probe::Separation));
+    assert!(!Hits { found: [96, 3, 0, 0, 0, 0], ..hits }.sound(Probe::OddRespondent));
+}

@@ -1,0 +1,60 @@
+//! Is a difference small enough to call it none? "Not significant" does not say so.
+
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// The declared margin for mean scores, which run from -1 to 1: a mean within 0.2 of zero means that, of a hundred
+/// answers, fewer than 60 go one way and more than 40 the other. Declared before looking, for every study alike.
+pub const MARGIN: f64 = 0.2;
+
+/// Two one-sided tests (Schuirmann 1987, J. Pharmacokinet. Biopharm. 15:657).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Equivalence {
+    /// The mean is asked to lie within plus and minus this.
+    pub margin: f64,
+    /// The larger p of the two: below 0.05 exactly if the 90 % t interval lies inside the margin.
+    pub p: f64,
+}
+
+/// Tests whether the mean of one score a participant lies within `margin` of zero: t over participants, m - 1 degrees of
+/// freedom. `None` for fewer than two participants.
+pub fn equivalence(scores: &[f64], margin: f64) -> Option<Equivalence> {
+    if scores.len() < 2 {
+        return None;
+    }
+    let m = scores.len() as f64;
+    let mean = scores.iter().sum::<f64>() / m;
+    let variance = scores.iter().map(|s| (s - mean) * (s - mean)).sum::<f64>() / (m - 1.0);
+    let room = margin - mean.abs();
+    let error = (variance / m).sqrt();
+    let p = match error > 0.0 {
+        true => StudentsT::new(0.0, 1.0, m - 1.0).expect("m - 1 > 0").sf(room / error),
+        false => f64::from(u8::from(room <= 0.0)),
+    };
+    Some(Equivalence { margin, p })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_scipy_has_it() {
+        // SciPy 1.17.1, ttest_1samp: x = [.1, -.2, .3, 0, .1, -.1, .05]; the larger p of popmean -.2, alternative
+        // "greater", and popmean .2, alternative "less".
+        let scores = [0.1, -0.2, 0.3, 0.0, 0.1, -0.1, 0.05];
+        let test = equivalence(&scores, MARGIN).unwrap();
+        assert!((test.p - 0.017_393_486_936_827_105).abs() < 1e-10, "{test:?}");
+        let negative = scores.map(|s| -s);
+        assert!((equivalence(&negative, MARGIN).unwrap().p - test.p).abs() < 1e-12);
+        // The 90 % interval touches the margin exactly where p is 0.05.
+        assert!(equivalence(&scores, 0.1).unwrap().p > 0.05);
+        assert!(equivalence(&scores.map(|s| s + 1.0), MARGIN).unwrap().p > 0.99);
+    }
+
+    #[test]
+    fn without_spread() {
+        assert_eq!(equivalence(&[0.0; 4], MARGIN).unwrap().p, 0.0);
+        assert_eq!(equivalence(&[0.5; 4], MARGIN).unwrap().p, 1.0);
+        assert_eq!(equivalence(&[0.5], MARGIN), None);
+    }
+}

@@ -1,0 +1,117 @@
+//! Participants of a group of items, those who answered alike counted together.
+//!
+//! Models see of a participant only how often each pair came out how. Among a hundred thousand people few such patterns
+//! are distinct, so what has to be done for everyone (gradients, resamples, leaving one out) is done for each pattern.
+
+use super::ballot::{Ballot, Outcome};
+use super::pairs::{Pair, Pairs};
+use std::collections::BTreeMap;
+
+/// The distinct patterns of answers, and how many participants have each.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Participants {
+    items: usize,
+    /// The ordered pairs that anyone was shown, ascending.
+    shown: Vec<(usize, usize)>,
+    /// By pattern, `[left, tie, right]` of each pair shown.
+    patterns: Vec<Vec<[u32; 3]>>,
+    /// How many participants have each pattern; never 0.
+    pub counts: Vec<u64>,
+}
+
+impl Participants {
+    /// Everyone with a ballot about two different items. The order of ballots does not matter.
+    pub fn of(items: usize, ballots: &[Ballot]) -> Self {
+        let useful = |b: &&Ballot| b.left != b.right;
+        let mut sorted: Vec<(usize, usize, usize, Outcome)> =
+            ballots.iter().filter(useful).map(|b| (b.participant, b.left, b.right, b.outcome)).collect();
+        sorted.sort_unstable();
+        let mut shown: Vec<(usize, usize)> = Vec::new();
+        for &(_, left, right, _) in &sorted {
+            if let Err(place) = shown.binary_search(&(left, right)) {
+                shown.insert(place, (left, right));
+            }
+        }
+        let mut counts: BTreeMap<Vec<[u32; 3]>, u64> = BTreeMap::new();
+        for of in sorted.chunk_by(|a, b| a.0 == b.0) {
+            let mut pattern = vec![[0; 3]; shown.len()];
+            for &(_, left, right, outcome) in of {
+                let place = shown.binary_search(&(left, right)).expect("collected above");
+                pattern[place][outcome.index()] += 1;
+            }
+            *counts.entry(pattern).or_default() += 1;
+        }
+        let (patterns, counts) = counts.into_iter().unzip();
+        Self { items, shown, patterns, counts }
+    }
+
+    /// How many participants.
+    pub fn number(&self) -> u64 {
+        self.counts.iter().sum()
+    }
+
+    /// How many participants have a pattern of answers that nobody else has, or share: distinct patterns.
+    pub fn kinds(&self) -> usize {
+        self.patterns.len()
+    }
+
+    /// The answers of one participant of a kind.
+    ///
+    /// # Panics
+    /// If there is no such kind.
+    pub fn of_kind(&self, kind: usize) -> Pairs {
+        let counts = self.patterns[kind].iter().map(|counts| counts.map(f64::from));
+        self.pairs(counts)
+    }
+
+    /// The answers of so many participants of each kind.
+    pub fn sum(&self, weights: &[u64]) -> Pairs {
+        let mut sums = vec![[0_u64; 3]; self.shown.len()];
+        for (pattern, &weight) in self.patterns.iter().zip(weights).filter(|(_, weight)| **weight > 0) {
+            for (sum, counts) in sums.iter_mut().zip(pattern) {
+                (0..3).for_each(|o| sum[o] += weight * u64::from(counts[o]));
+            }
+        }
+        self.pairs(sums.into_iter().map(|counts| counts.map(|count| count as f64)))
+    }
+
+    /// Pairs without an answer are left out.
+    fn pairs(&self, counts: impl Iterator<Item = [f64; 3]>) -> Pairs {
+        let answered = self.shown.iter().zip(counts).filter(|(_, answers)| *answers != [0.0; 3]);
+        let pair = |(&(left, right), answers)| Pair { left, right, answers };
+        Pairs { items: self.items, pairs: answered.map(pair).collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::statistics::golden;
+
+    #[test]
+    fn patterns_add_up_to_the_ballots() {
+        let study = golden::study();
+        let ballots = golden::clusterings(&study, None);
+        let participants = Participants::of(3, &ballots);
+        assert_eq!(participants.number(), 18);
+        assert_eq!(participants.sum(&participants.counts), Pairs::of(3, &ballots));
+        // Everyone three times: the same kinds, three times as many.
+        let again = |times: usize| {
+            let copy = move |b: &Ballot| Ballot { participant: b.participant + 18 * times, ..*b };
+            ballots.iter().rev().map(copy).collect::<Vec<_>>()
+        };
+        let tripled = Participants::of(3, &[again(2), again(0), again(1)].concat());
+        assert_eq!(tripled.kinds(), participants.kinds());
+        assert_eq!(tripled.counts, participants.counts.iter().map(|n| 3 * n).collect::<Vec<_>>());
+        let one = Participants::of(3, &ballots[..1]);
+        assert_eq!(one.of_kind(0), Pairs::of(3, &ballots[..1]));
+    }
+
+    #[test]
+    fn controls_say_nothing_about_worths() {
+        let ballot =
+            |left, right| Ballot { participant: 3, question: 0, left, right, outcome: Outcome::Left };
+        assert_eq!(Participants::of(2, &[ballot(1, 1)]).number(), 0);
+        assert_eq!(Participants::of(2, &[ballot(1, 1), ballot(1, 0)]).counts, [1]);
+    }
+}

@@ -1,0 +1,153 @@
+//! Davidson's model with covariates in place of items: what about two things makes people choose one of them?
+//!
+//! With x the difference of the covariates, left minus right, and u = beta'x, the outcomes have the weights
+//! e^{u/2} : nu : e^{-u/2}: among decided answers a logistic model without intercept, ties between (Davidson 1970 with
+//! l_left - l_right = beta'x; the adjacent-category logits of left, tie, right are u/2 -+ ln nu). Exchanging the sides
+//! of a question changes nothing. Without a tie among the answers it is the logistic model alone.
+
+use super::ballot::Ballot;
+use super::fit::FitError;
+use super::model::add_log_linear;
+use super::newton::{Curvature, Matrix, inverse, maximise, times};
+use crate::interval::{Interval, LEVEL};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::collections::BTreeMap;
+
+/// Estimates of the model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Regression {
+    /// beta: log-odds of left over right for one unit of each covariate.
+    pub coefficients: Vec<f64>,
+    /// ln nu, or `None` without a tie.
+    pub ln_nu: Option<f64>,
+    /// Log-likelihood of the answers.
+    pub log_likelihood: f64,
+    /// Inverse of the information: right if all answers were independent.
+    pub covariance: Matrix,
+    /// Sandwich covariance with participants as clusters, m/(m-1) H^-1 (sum of s s') H^-1 (Liang and Zeger 1986); of
+    /// fewer than two participants, `None`.
+    pub clustered: Option<Matrix>,
+    /// How many participants answered.
+    pub participants: usize,
+}
+
+/// Fits the model by maximum likelihood. `covariates[question]` is x, or `None` for a question to leave out.
+///
+/// # Errors
+/// [`FitError::Nothing`] without an answer or a covariate, [`FitError::OnlyTies`], and [`FitError::NoMaximum`] if
+/// covariates are collinear or separate the answers.
+pub fn regression(covariates: &[Option<Vec<f64>>], ballots: &[Ballot]) -> Result<Regression, FitError> {
+    let of = |ballot: &&Ballot| covariates.get(ballot.question).is_some_and(Option::is_some);
+    let used: Vec<&Ballot> = ballots.iter().filter(of).collect();
+    let width = covariates.iter().flatten().map(Vec::len).next().unwrap_or(0);
+    if used.is_empty() || width == 0 {
+        return Err(FitError::Nothing);
+    }
+    let mut answers = vec![[0.0; 3]; covariates.len()];
+    used.iter().for_each(|ballot| answers[ballot.question][ballot.outcome.index()] += 1.0);
+    let ties: f64 = answers.iter().map(|answers| answers[1]).sum();
+    if ties == used.len() as f64 {
+        return Err(FitError::OnlyTies);
+    }
+    let tie = (ties > 0.0).then_some(width);
+    let size = width + usize::from(tie.is_some());
+    let padded = |x: &Vec<f64>| x.iter().copied().chain(std::iter::repeat_n(0.0, size - width)).collect();
+    let rows: Vec<Option<Vec<f64>>> = covariates.iter().map(|x| x.as_ref().map(padded)).collect();
+    let likelihood = |at: &[f64]| {
+        let mut sum = Curvature::zero(size);
+        for (x, answers) in rows.iter().zip(&answers) {
+            if let Some(x) = x {
+                add_log_linear(&mut sum, x, tie, *answers, at);
+            }
+        }
+        sum
+    };
+    let maximum = maximise(vec![0.0; size], likelihood).ok_or(FitError::NoMaximum)?;
+    let at = maximum.at;
+    // The gradient of one answer depends on question and outcome alone.
+    let score = |question: usize, outcome: usize| {
+        let mut one = Curvature::zero(size);
+        let mut answer = [0.0; 3];
+        answer[outcome] = 1.0;
+        if let Some(x) = &rows[question] {
+            add_log_linear(&mut one, x, tie, answer, &at);
+        }
+        one.gradient
+    };
+    let scores: Vec<[Vec<f64>; 3]> = (0..rows.len()).map(|q| [0, 1, 2].map(|o| score(q, o))).collect();
+    let mut sums: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    for ballot in &used {
+        let sum = sums.entry(ballot.participant).or_insert_with(|| vec![0.0; size]);
+        let own = &scores[ballot.question][ballot.outcome.index()];
+        sum.iter_mut().zip(own).for_each(|(sum, score)| *sum += score);
+    }
+    let bread = inverse(&likelihood(&at).information).ok_or(FitError::NoMaximum)?;
+    Ok(Regression {
+        coefficients: at[..width].to_vec(),
+        ln_nu: tie.map(|tie| at[tie]),
+        log_likelihood: likelihood(&at).value,
+        covariance: maximum.covariance,
+        clustered: sandwich(&bread, sums.values()),
+        participants: sums.len(),
+    })
+}
+
+/// m/(m-1) B (sum of s s') B over m gradients.
+fn sandwich<'a>(bread: &Matrix, scores: impl ExactSizeIterator<Item = &'a Vec<f64>>) -> Option<Matrix> {
+    let (m, size) = (scores.len() as f64, bread.len());
+    let mut meat = vec![vec![0.0; size]; size];
+    for score in scores {
+        let influence = times(bread, score);
+        for i in 0..size {
+            for j in 0..size {
+                meat[i][j] += m / (m - 1.0) * influence[i] * influence[j];
+            }
+        }
+    }
+    (m > 1.0).then_some(meat)
+}
+
+/// A coefficient with what is known of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coefficient {
+    /// The estimate.
+    pub estimate: f64,
+    /// Standard error, participants as clusters.
+    pub se: f64,
+    /// t interval at [`LEVEL`] on m - 1 degrees of freedom.
+    pub interval: Interval,
+    /// Two-sided p of t = estimate / se on m - 1 degrees of freedom.
+    pub p: f64,
+}
+
+impl Regression {
+    /// A coefficient with interval and p clustered on participants; `None` with fewer than two of them, or if their
+    /// scores do not vary.
+    ///
+    /// # Panics
+    /// If there is no such covariate.
+    pub fn coefficient(&self, covariate: usize) -> Option<Coefficient> {
+        let estimate = self.coefficients[covariate];
+        let se = self.clustered.as_ref()?[covariate][covariate].sqrt();
+        let t = StudentsT::new(0.0, 1.0, self.participants as f64 - 1.0).ok()?;
+        let half = t.inverse_cdf(0.5 + LEVEL / 2.0) * se;
+        let interval = Interval { low: estimate - half, high: estimate + half };
+        (se > 0.0).then(|| Coefficient { estimate, se, interval, p: 2.0 * t.cdf(-(estimate / se).abs()) })
+    }
+
+    /// The log-odds of left over right.
+    pub fn log_odds(&self, x: &[f64]) -> f64 {
+        self.coefficients.iter().zip(x).map(|(b, x)| b * x).sum()
+    }
+
+    /// The chances of left, tie and right.
+    pub fn chances(&self, x: &[f64]) -> [f64; 3] {
+        let half = 0.5 * self.log_odds(x);
+        let weights = [half.exp(), self.ln_nu.map_or(0.0, f64::exp), (-half).exp()];
+        let sum: f64 = weights.iter().sum();
+        weights.map(|weight| weight / sum)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,164 @@
+//! Tables of answers that no study file explains: items, groups and questions are what the answers name.
+
+use crate::ballots::{BallotGroup, outcome};
+use crate::inputs::{AnalysisError, Inputs};
+use crate::statistics::{Ballot, Model, Protocol};
+use crate::table::{Cell, Table};
+use crate::{interval, tables};
+use design::Study;
+use responses::Responses;
+use std::collections::BTreeMap;
+
+/// Every table about answers: a study's if there is one, else `answer_counts`, `tests`, `worths`, `models` and `respondents`.
+///
+/// # Errors
+/// As [`tables`](crate::tables()).
+pub fn answer_tables(answers: &Responses, study: Option<&Study>) -> Result<Vec<Table>, AnalysisError> {
+    match study {
+        Some(study) => tables::tables(&Inputs { study, meshes: &[], bench: None, answers: Some(answers) }),
+        None => Ok(without_study(answers)),
+    }
+}
+
+fn without_study(answers: &Responses) -> Vec<Table> {
+    let groups = open_groups(answers);
+    let mut tables = vec![counts(answers), tables::contrasts::pair_tests(&groups)];
+    for mut table in tables::models::model_tables(&groups) {
+        if !answers.sides_recorded {
+            let model = table.columns.iter().position(|column| column.name == "model");
+            let side = Cell::text(Model::DavidsonSide.code());
+            table.rows.retain(|row| model.is_none_or(|model| row[model] != side));
+            let note =
+                "Side: not answerable here, because the file does not say which item was on which side.";
+            table.notes.push(note.into());
+        }
+        tables.push(table);
+    }
+    let ballots: Vec<Ballot> = groups.iter().flat_map(|group| &group.ballots).copied().collect();
+    tables.push(tables::agreement::respondents(&ballots, &Protocol::default()));
+    tables.retain(|table| !table.rows.is_empty());
+    tables
+}
+
+/// The answers by the group that their question names. Answers that name none are in groups of items that were compared with
+/// one another, directly or through others: `all`, or the object, or a number.
+pub fn open_groups(answers: &Responses) -> Vec<BallotGroup> {
+    let names = group_of_question(answers);
+    let mut groups: Vec<BallotGroup> = Vec::new();
+    let mut number: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut places: Vec<BTreeMap<u32, usize>> = Vec::new();
+    for answer in answers.answers.iter().filter(|answer| answer.left != answer.right) {
+        let name = names[answer.question as usize].as_str();
+        let group = *number.entry(name).or_insert_with(|| {
+            groups.push(BallotGroup { name: name.into(), items: Vec::new(), ballots: Vec::new() });
+            places.push(BTreeMap::new());
+            groups.len() - 1
+        });
+        let (group, places) = (&mut groups[group], &mut places[group]);
+        let [left, right] = [answer.left, answer.right].map(|item| {
+            *places.entry(item).or_insert_with(|| {
+                group.items.push(answers.items[item as usize].clone());
+                group.items.len() - 1
+            })
+        });
+        let (participant, question) = (answer.participant as usize, answer.question as usize);
+        group.ballots.push(Ballot { participant, question, left, right, outcome: outcome(answer.choice) });
+    }
+    groups
+}
+
+fn group_of_question(answers: &Responses) -> Vec<String> {
+    let own = |group: &str| !group.is_empty();
+    // Items joined by questions without a group; each leads to the first of its kind.
+    let mut first: Vec<u32> = (0..answers.items.len() as u32).collect();
+    fn root(first: &mut [u32], item: u32) -> u32 {
+        let mut item = item;
+        while first[item as usize] != item {
+            first[item as usize] = first[first[item as usize] as usize];
+            item = first[item as usize];
+        }
+        item
+    }
+    let compared = answers.questions.iter().filter(|q| !own(&q.group) && !q.is_control());
+    for question in compared.clone() {
+        let (a, b) = (root(&mut first, question.left), root(&mut first, question.right));
+        first[a.max(b) as usize] = a.min(b);
+    }
+    let mut objects: BTreeMap<u32, Vec<&str>> = BTreeMap::new();
+    for question in compared {
+        let of = objects.entry(root(&mut first, question.left)).or_default();
+        if !of.contains(&question.object.as_str()) {
+            of.push(&question.object);
+        }
+    }
+    let single = |of: &Vec<&str>| of.len() == 1 && own(of[0]);
+    let distinct = objects.values().all(single)
+        && objects.values().map(|of| of[0]).collect::<std::collections::BTreeSet<_>>().len() == objects.len();
+    let name = |place: usize, of: &[&str]| match (objects.len(), distinct) {
+        (1, _) => "all".to_owned(),
+        (_, true) => of[0].to_owned(),
+        _ => (place + 1).to_string(),
+    };
+    let names: BTreeMap<u32, String> =
+        objects.iter().enumerate().map(|(place, (&root, of))| (root, name(place, of))).collect();
+    answers
+        .questions
+        .iter()
+        .map(|question| match own(&question.group) {
+            true => question.group.clone(),
+            false => names.get(&root(&mut first, question.left)).cloned().unwrap_or_default(),
+        })
+        .collect()
+}
+
+/// Left, none and right of every question, with the sides as first shown.
+fn counts(answers: &Responses) -> Table {
+    let mut table = Table::new(
+        "answer_counts",
+        "Answers per question",
+        &[
+            ("group", "Group"),
+            ("object", "Object"),
+            ("question", "Question"),
+            ("left", "Left"),
+            ("right", "Right"),
+            ("left_answers", "Answers left"),
+            ("no_preference", "No preference"),
+            ("right_answers", "Answers right"),
+            ("right_share", "Right of all"),
+            ("right_share_low", "from"),
+            ("right_share_high", "to"),
+        ],
+    );
+    let mut counts = vec![[0_u64; 3]; answers.questions.len()];
+    for answer in &answers.answers {
+        counts[answer.question as usize][answers.declared_choice(answer) as usize] += 1;
+    }
+    let groups = group_of_question(answers);
+    for ((question, group), [left, none, right]) in answers.questions.iter().zip(groups).zip(counts) {
+        let all = left + none + right;
+        let interval = interval::wilson(right, all);
+        table.push(vec![
+            Cell::text(group),
+            Cell::text(&question.object),
+            Cell::text(&question.id),
+            Cell::text(&answers.items[question.left as usize]),
+            Cell::text(&answers.items[question.right as usize]),
+            Cell::count(left),
+            Cell::count(none),
+            Cell::count(right),
+            Cell::number((all > 0).then(|| right as f64 / all as f64), 3),
+            Cell::number(interval.map(|i| i.low), 3),
+            Cell::number(interval.map(|i| i.high), 3),
+        ]);
+    }
+    table.notes.push(
+        "Sides are those of the first time the pair was shown; answers to the mirrored pair are turned. From and to: Wilson's \
+         interval at 95 %, for one question at a time."
+            .into(),
+    );
+    table
+}
+
+#[cfg(test)]
+mod tests;

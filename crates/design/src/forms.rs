@@ -1,0 +1,257 @@
+//! Forms: what each participant is shown, in which order and on which side.
+//!
+//! A form is a function of the study and the participant's number, [`Questionnaire::form`], so any number of participants
+//! can be dealt forms, one after the other, and the same study gives the same forms.
+//!
+//! # Guaranteed
+//!
+//! Whatever the number of participants dealt forms from the first on, with balanced sides and Latin-square order:
+//! - Over participants, the times that a comparison is shown one way and the other differ by at most one, and so do the
+//!   times that it appears at one place and at another among the forms of its block.
+//! - Comparisons appear equally often to within one. Where [`FormsSection::max_questions`] is less than there are to
+//!   ask, comparisons are dealt into blocks whose sizes differ by at most one; a participant is asked one block.
+//! - Within a form, a method is on the left as often as on the right, to within one, and so is each side of two methods
+//!   that meet on several objects.
+//! - A repeat shows its comparison the other way round, half a form away. A control shows one configuration twice.
+//!
+//! # Not guaranteed
+//!
+//! - Which question follows which: neighbours in a form are neighbours in most forms, in either order. Sources: a cyclic
+//!   Latin square read alternately forwards and backwards; for squares balanced for neighbours see E. J. Williams,
+//!   Australian Journal of Scientific Research A 2 (1949).
+
+mod file;
+mod order;
+mod sides;
+
+pub use file::{FormEntry, FormFile, KeyEntry, Stimulus};
+
+use crate::config::{FormsSection, OrderRule, SideRule};
+use crate::method::ConfigurationId;
+use crate::study::{Comparison, Study};
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_pcg::Pcg64;
+use serde::{Deserialize, Serialize};
+
+/// Why a participant is shown a pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Role {
+    /// To learn how it works; not analysed.
+    Training,
+    /// One of the study's comparisons.
+    Comparison,
+    /// The same configuration on both sides: a preference here is a sign of guessing.
+    Control,
+    /// A comparison of this form again, sides swapped: another answer is a sign of guessing, or of a side preference.
+    Repeat,
+}
+
+/// One pair shown to one participant.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Trial {
+    /// Why.
+    pub role: Role,
+    /// The comparison's question; that and `-r` for its repeat; `control-1` and `training-1` and so on.
+    pub question: String,
+    /// Index into the study's comparisons, for comparisons and repeats.
+    pub comparison: Option<usize>,
+    /// Shown on the left.
+    pub left: ConfigurationId,
+    /// Shown on the right.
+    pub right: ConfigurationId,
+}
+
+/// What one participant is shown.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Form {
+    /// The participant's number, from 0.
+    pub participant: usize,
+    /// The block of comparisons, from 0.
+    pub block: usize,
+    /// Whether every side is the opposite of the block's first form's.
+    pub mirrored: bool,
+    /// The trials in order, training first.
+    pub trials: Vec<Trial>,
+}
+
+/// A study's questionnaire, from which forms are dealt.
+#[derive(Debug, Clone)]
+pub struct Questionnaire<'a> {
+    study: &'a Study,
+    section: &'a FormsSection,
+    blocks: Vec<Block>,
+}
+
+/// What the participants of a block are asked, sides as in its first form.
+#[derive(Debug, Clone)]
+struct Block {
+    comparisons: Vec<Trial>,
+    repeats: Vec<Trial>,
+    controls: Vec<Trial>,
+}
+
+impl<'a> Questionnaire<'a> {
+    /// The questionnaire of a study; `None` if it plans no forms or compares nothing.
+    pub fn of(study: &'a Study) -> Option<Self> {
+        let section = study.file.forms.as_ref().filter(|_| !study.comparisons.is_empty())?;
+        let blocks = split(study, section).into_iter().enumerate();
+        let blocks = blocks.map(|(number, members)| block(study, section, number, &members));
+        Some(Self { study, section, blocks: blocks.collect() })
+    }
+
+    /// How many blocks the comparisons are dealt into; 1 where a participant is asked all of them.
+    pub fn blocks(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// Trials of a participant's form, training left out.
+    pub fn questions(&self, participant: usize) -> usize {
+        let block = &self.blocks[participant % self.blocks.len()];
+        block.comparisons.len() + block.repeats.len() + block.controls.len()
+    }
+
+    /// The form of a participant, counted from 0; any number has one.
+    pub fn form(&self, participant: usize) -> Form {
+        let block = participant % self.blocks.len();
+        let turn = participant / self.blocks.len();
+        let count = self.questions(participant);
+        let (row, cycle) = (turn % count, turn / count);
+        // Rows alternate between the two ways round; where their number is even, so do whole cycles.
+        let mirrored = self.section.sides == SideRule::Balanced
+            && (if count.is_multiple_of(2) { turn + cycle } else { turn }) % 2 == 1;
+        let seed = self.study.file.study.seed;
+        let Block { comparisons, repeats, controls } = &self.blocks[block];
+        let mut trials: Vec<Trial> =
+            [comparisons, repeats, controls].into_iter().flatten().cloned().collect();
+        match self.section.order {
+            OrderRule::AsListed => {}
+            OrderRule::Shuffled => trials.shuffle(&mut random(seed, &[block, SHUFFLED, turn])),
+            OrderRule::LatinSquare => {
+                // A cycle and its mirror image have one circle, so that each form has a twin with all sides swapped.
+                let mut random = random(seed, &[block, CIRCLE, cycle / 2]);
+                let circle = order::circle(comparisons, repeats, controls, &mut random);
+                trials =
+                    order::row(count, row, cycle).into_iter().map(|place| circle[place].clone()).collect();
+            }
+        }
+        if mirrored {
+            trials.iter_mut().for_each(|trial| std::mem::swap(&mut trial.left, &mut trial.right));
+        }
+        trials.splice(0..0, self.training());
+        Form { participant, block, mirrored, trials }
+    }
+
+    /// The forms of the planned participants.
+    pub fn planned(&self) -> Vec<Form> {
+        (0..self.section.participants as usize).map(|participant| self.form(participant)).collect()
+    }
+
+    /// Every pair that some participant is shown, left and right, each once: comparisons as listed, then what else
+    /// forms need, in the order of blocks.
+    pub fn pairs(&self) -> Vec<(ConfigurationId, ConfigurationId)> {
+        let as_listed = self.study.comparisons.iter().map(|c| (c.left.clone(), c.right.clone()));
+        let mut pairs: Vec<_> = as_listed.collect();
+        let mut add = |left: &ConfigurationId, right: &ConfigurationId| {
+            let pair = (left.clone(), right.clone());
+            if !pairs.contains(&pair) {
+                pairs.push(pair);
+            }
+        };
+        for Block { comparisons, repeats, controls } in &self.blocks {
+            for trial in [comparisons, repeats, controls].into_iter().flatten() {
+                add(&trial.left, &trial.right);
+                if self.section.sides == SideRule::Balanced {
+                    add(&trial.right, &trial.left);
+                }
+            }
+        }
+        self.training().iter().for_each(|trial| add(&trial.left, &trial.right));
+        pairs
+    }
+
+    fn training(&self) -> Vec<Trial> {
+        let trial = |(i, pair): (usize, &crate::config::TrainingSection)| Trial {
+            role: Role::Training,
+            question: format!("training-{}", i + 1),
+            comparison: None,
+            left: pair.left.clone(),
+            right: pair.right.clone(),
+        };
+        self.section.training.iter().enumerate().map(trial).collect()
+    }
+}
+
+/// The comparisons of each block. Sorted by group and object before they are dealt, so that blocks share both alike.
+fn split(study: &Study, section: &FormsSection) -> Vec<Vec<usize>> {
+    let room = (section.max_questions - section.controls - section.repeats) as usize;
+    let count = study.comparisons.len().div_ceil(room);
+    let mut sorted: Vec<usize> = (0..study.comparisons.len()).collect();
+    sorted.sort_by_key(|&i| (study.comparisons[i].group, study.comparisons[i].object));
+    let mut blocks = vec![Vec::new(); count];
+    sorted.into_iter().enumerate().for_each(|(i, comparison)| blocks[i % count].push(comparison));
+    blocks.iter_mut().for_each(|block: &mut Vec<usize>| block.sort_unstable());
+    blocks
+}
+
+fn block(study: &Study, section: &FormsSection, number: usize, members: &[usize]) -> Block {
+    let mut random = random(study.file.study.seed, &[number, SIDES]);
+    let swapped = match section.sides {
+        SideRule::AsListed => vec![false; members.len()],
+        SideRule::Balanced => {
+            let ends = |&i: &usize| (study.comparisons[i].left.method, study.comparisons[i].right.method);
+            sides::balanced(&members.iter().map(ends).collect::<Vec<_>>(), &mut random)
+        }
+    };
+    let trial = |(&i, &swapped): (&usize, &bool)| {
+        let Comparison { question, left, right, .. } = &study.comparisons[i];
+        let (left, right) = if swapped { (right, left) } else { (left, right) };
+        let (left, right) = (left.clone(), right.clone());
+        Trial { role: Role::Comparison, question: question.clone(), comparison: Some(i), left, right }
+    };
+    let comparisons: Vec<Trial> = members.iter().zip(&swapped).map(trial).collect();
+    let repeat = |i: usize| {
+        let Trial { question, comparison, left, right, .. } = comparisons[i].clone();
+        Trial { role: Role::Repeat, question: format!("{question}-r"), comparison, left: right, right: left }
+    };
+    let repeats = spread(section.repeats as usize, comparisons.len(), &mut random).map(repeat).collect();
+    // The same controls in every block: fewer animations, more answers to each.
+    let mut of_study = self::random(study.file.study.seed, &[CONTROLS]);
+    let control = |(n, i): (usize, usize)| {
+        let shown = study.configurations[i].id.clone();
+        let question = format!("control-{}", n + 1);
+        Trial { role: Role::Control, question, comparison: None, left: shown.clone(), right: shown }
+    };
+    let chosen = spread(section.controls as usize, study.configurations.len(), &mut of_study);
+    let controls = chosen.enumerate().map(control).collect();
+    Block { comparisons, repeats, controls }
+}
+
+/// `count` of `total` places, evenly spread from a random first; distinct as long as `count <= total`.
+fn spread(count: usize, total: usize, random: &mut Pcg64) -> impl Iterator<Item = usize> + use<> {
+    let mut first: Vec<usize> = (0..total).collect();
+    first.shuffle(random);
+    let first = first.first().copied().unwrap_or(0);
+    (0..count).map(move |i| (first + i * total / count) % total)
+}
+
+/// What random numbers are drawn for; each has a stream of its own.
+const SIDES: usize = 1;
+const CONTROLS: usize = 2;
+const CIRCLE: usize = 3;
+const SHUFFLED: usize = 4;
+
+fn random(seed: u64, parts: &[usize]) -> Pcg64 {
+    // FNV-1a: any fixed mixing will do, as long as it is ours and never changes.
+    let mix = |state: u64, part: &usize| {
+        (*part as u64)
+            .to_le_bytes()
+            .iter()
+            .fold(state, |s, &b| (s ^ u64::from(b)).wrapping_mul(0x100_0000_01b3))
+    };
+    Pcg64::seed_from_u64(parts.iter().fold(seed ^ 0xcbf2_9ce4_8422_2325, mix))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,194 @@
+//! Forms as a file for whoever puts them to people, and the key for whoever reads the answers.
+
+use super::{Form, Questionnaire, Role};
+use crate::study::Study;
+use serde::{Deserialize, Serialize};
+
+/// What a page, a printed sheet or an online form needs: `forms.json`.
+///
+/// It names stimuli by their code names alone and says nothing of roles, sides, methods or the seed, so that it can be given
+/// to participants.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FormFile {
+    /// Version of this layout; 1.
+    pub schema: u32,
+    /// The study's id.
+    pub study: String,
+    /// The study's title.
+    pub title: String,
+    /// What is asked about each pair.
+    pub prompt: String,
+    /// The answers: left, no preference, right.
+    pub choices: [String; 3],
+    /// One form a planned participant, in the order in which they are dealt.
+    pub forms: Vec<FormEntry>,
+}
+
+/// One participant's form.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FormEntry {
+    /// The form's number, from 1.
+    pub form: usize,
+    /// Code names of the pairs shown first, to learn how it works.
+    pub training: Vec<String>,
+    /// Code names of the pairs asked about, in order.
+    pub questions: Vec<String>,
+}
+
+/// A line of the key to forms: what a participant was shown at a place. Never to be given to participants.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct KeyEntry {
+    /// The form's number, from 1.
+    pub form: usize,
+    /// Place in the form, from 1, training included.
+    pub order: usize,
+    /// Code name of the pair.
+    pub stimulus: String,
+    /// Why it is shown.
+    pub role: Role,
+    /// The comparison's question, for its repeat as well; `control-1` and `training-1` and so on.
+    pub question: String,
+    /// Name of the object.
+    pub object: String,
+    /// Id of the comparison group; empty for controls and training.
+    pub group: String,
+    /// Configuration on the left.
+    pub left: String,
+    /// Configuration on the right.
+    pub right: String,
+}
+
+impl Questionnaire<'_> {
+    /// The planned forms, for participants.
+    pub fn file(&self) -> FormFile {
+        let code = self.codes();
+        let entry = |form: &Form| {
+            let of = |training: bool| {
+                let own = form.trials.iter().filter(|trial| (trial.role == Role::Training) == training);
+                own.map(|trial| code(&trial.left.to_string(), &trial.right.to_string())).collect()
+            };
+            FormEntry { form: form.participant + 1, training: of(true), questions: of(false) }
+        };
+        FormFile {
+            schema: 1,
+            study: self.study.file.study.id.clone(),
+            title: self.study.file.study.title.clone(),
+            prompt: self.section.prompt.clone(),
+            choices: self.section.choices.clone(),
+            forms: self.planned().iter().map(entry).collect(),
+        }
+    }
+
+    /// What each place of each planned form shows.
+    pub fn key(&self) -> Vec<KeyEntry> {
+        let code = self.codes();
+        let mut key = Vec::new();
+        for form in self.planned() {
+            for (place, trial) in form.trials.iter().enumerate() {
+                let comparison = trial.comparison.map(|i| &self.study.comparisons[i]);
+                let objects = &self.study.file.objects;
+                let object = objects.iter().find(|object| object.id == trial.left.object);
+                let (left, right) = (trial.left.to_string(), trial.right.to_string());
+                key.push(KeyEntry {
+                    form: form.participant + 1,
+                    order: place + 1,
+                    stimulus: code(&left, &right),
+                    role: trial.role,
+                    question: comparison.map_or_else(|| trial.question.clone(), |c| c.question.clone()),
+                    object: object.map_or_else(String::new, |object| object.name.clone()),
+                    group: comparison.map_or_else(String::new, |c| self.study.groups[c.group].id.clone()),
+                    left,
+                    right,
+                });
+            }
+        }
+        key
+    }
+
+    /// The code name of a pair that is shown.
+    fn codes(&self) -> impl Fn(&str, &str) -> String + use<> {
+        let stimuli = self.study.stimuli();
+        move |left, right| {
+            let shown = stimuli.iter().find(|s| s.left.to_string() == left && s.right.to_string() == right);
+            shown.expect("a study's stimuli are all that its forms show").code.clone()
+        }
+    }
+}
+
+impl Study {
+    /// Every pair of animations that has to be made: the comparisons as listed, then what else the forms show.
+    pub fn stimuli(&self) -> Vec<Stimulus> {
+        let (_, codes) = self.code_names();
+        let pairs = self.pairs().into_iter();
+        pairs.zip(codes).map(|((left, right), code)| Stimulus { code, left, right }).collect()
+    }
+}
+
+/// Two configurations side by side, as one animation.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Stimulus {
+    /// Its code name.
+    pub code: String,
+    /// On the left.
+    pub left: crate::ConfigurationId,
+    /// On the right.
+    pub right: crate::ConfigurationId,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::tests::load;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn the_file_tells_nothing_and_the_key_everything() {
+        let study = load("balanced.toml");
+        let questionnaire = Questionnaire::of(&study).unwrap();
+        let (file, key) = (questionnaire.file(), questionnaire.key());
+        let text = serde_json::to_string(&file).unwrap();
+        for id in study.configurations.iter().map(|c| c.id.to_string()) {
+            assert!(!text.contains(&id), "{id}");
+        }
+        for word in ["control", "repeat", "left\"", "2026", "mirrored", "block"] {
+            assert!(!text.contains(word), "{word}");
+        }
+        assert_eq!(serde_json::from_str::<FormFile>(&text).unwrap(), file);
+
+        assert_eq!(file.forms.len(), 36);
+        assert_eq!(key.len(), 36 * 33);
+        let codes: BTreeMap<String, (String, String)> = study
+            .stimuli()
+            .into_iter()
+            .map(|s| (s.code, (s.left.to_string(), s.right.to_string())))
+            .collect();
+        let mut lines = key.iter();
+        for form in &file.forms {
+            assert_eq!((form.training.len(), form.questions.len()), (1, 32));
+            for (order, stimulus) in (1..).zip(form.training.iter().chain(&form.questions)) {
+                let line = lines.next().unwrap();
+                assert_eq!((line.form, line.order, &line.stimulus), (form.form, order, stimulus));
+                assert_eq!(codes[stimulus], (line.left.clone(), line.right.clone()));
+                assert_eq!(line.role == Role::Training, order == 1);
+            }
+        }
+        let of = |role: Role| key.iter().filter(move |line| line.role == role);
+        assert!(of(Role::Control).all(|line| line.left == line.right && line.group.is_empty()));
+        assert!(of(Role::Repeat).all(|line| line.question.starts_with('Q') && !line.group.is_empty()));
+    }
+
+    #[test]
+    fn code_names_say_nothing_of_order() {
+        let study = load("balanced.toml");
+        let stimuli = study.stimuli();
+        // 27 comparisons both ways round, and two controls; training is one of the comparisons.
+        assert_eq!(stimuli.len(), 2 * 27 + 2);
+        let mut sorted: Vec<&str> = stimuli.iter().map(|s| s.code.as_str()).collect();
+        assert!(!sorted.is_sorted());
+        sorted.sort_unstable();
+        sorted.dedup();
+        assert_eq!(sorted.len(), stimuli.len());
+    }
+}

@@ -1,0 +1,186 @@
+//! Balance, proved on designs and numbers of participants drawn at random.
+
+use super::*;
+use crate::config::FormsSection;
+use crate::method::Method;
+use crate::study::tests::paper_with;
+use proptest::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The paper's study with another questionnaire, and only some of its comparisons.
+fn study(kept: impl Fn(usize) -> bool, section: FormsSection) -> Study {
+    let mut study = paper_with("schema = 1", "schema = 1").unwrap();
+    let mut index = 0..;
+    study.comparisons.retain(|_| kept(index.next().expect("endless")));
+    study.file.forms = Some(section);
+    study
+}
+
+fn balanced(participants: u32, controls: u32, repeats: u32, max_questions: u32) -> FormsSection {
+    FormsSection {
+        prompt: "Which?".into(),
+        choices: ["left", "none", "right"].map(String::from),
+        participants,
+        sides: SideRule::Balanced,
+        order: OrderRule::LatinSquare,
+        names: crate::config::ShownNames::CodeNames,
+        controls,
+        repeats,
+        max_questions,
+        training: Vec::new(),
+    }
+}
+
+/// Counts whose largest and smallest differ by at most one.
+fn even(counts: impl IntoIterator<Item = i64>) -> bool {
+    let counts: Vec<i64> = counts.into_iter().collect();
+    counts.iter().max().zip(counts.iter().min()).is_none_or(|(most, least)| most - least <= 1)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn forms_are_balanced_for_any_design_and_any_number_of_participants(
+        mask in 1u32..(1 << 27),
+        participants in 1u32..150,
+        controls in 0u32..6,
+        repeats in 0u32..4,
+        room in 4u32..40,
+    ) {
+        let count = mask.count_ones();
+        let repeats = repeats.min(count / count.div_ceil(room));
+        let section = balanced(participants, controls, repeats, controls + repeats + room);
+        let study = study(|i| mask >> i & 1 == 1, section);
+        let questionnaire = Questionnaire::of(&study).unwrap();
+        let forms = questionnaire.planned();
+
+        // Sides of each comparison, places of each, appearances of each; all over participants.
+        let mut lead: BTreeMap<&str, i64> = BTreeMap::new();
+        let mut places: BTreeMap<(usize, &str), Vec<i64>> = BTreeMap::new();
+        let mut shown: BTreeMap<&str, i64> = study.comparisons.iter().map(|c| (c.question.as_str(), 0)).collect();
+        let mut sizes = BTreeSet::new();
+        for form in &forms {
+            let asked = form.trials.len();
+            prop_assert_eq!(asked, questionnaire.questions(form.participant));
+            sizes.insert(asked);
+            for (place, trial) in form.trials.iter().enumerate() {
+                let key = (form.block, trial.question.as_str());
+                places.entry(key).or_insert_with(|| vec![0; asked])[place] += 1;
+                if trial.role == Role::Comparison {
+                    let listed = &study.comparisons[trial.comparison.unwrap()];
+                    let as_listed = listed.left == trial.left && listed.right == trial.right;
+                    let swapped = listed.left == trial.right && listed.right == trial.left;
+                    prop_assert!(as_listed || swapped);
+                    *lead.entry(&trial.question).or_default() += if as_listed { 1 } else { -1 };
+                    *shown.get_mut(trial.question.as_str()).unwrap() += 1;
+                }
+            }
+        }
+        prop_assert!(lead.values().all(|lead| lead.abs() <= 1), "{lead:?}");
+        prop_assert!(places.values().all(|counts| even(counts.iter().copied())), "{places:?}");
+        prop_assert!(even(shown.values().copied()), "{shown:?}");
+        prop_assert!(even(sizes.iter().map(|&size| size as i64)), "{sizes:?}");
+
+        for form in &forms {
+            let of = |role: Role| form.trials.iter().filter(move |trial| trial.role == role);
+            prop_assert_eq!(of(Role::Control).count(), controls as usize);
+            prop_assert_eq!(of(Role::Repeat).count(), repeats as usize);
+            prop_assert!(of(Role::Control).all(|trial| trial.left == trial.right));
+            let different: BTreeSet<_> = form.trials.iter().map(|trial| (trial.role, &trial.left, &trial.right)).collect();
+            prop_assert_eq!(different.len(), form.trials.len(), "nothing twice");
+
+            let mut method_lead: BTreeMap<Method, i64> = BTreeMap::new();
+            let mut pair_lead: BTreeMap<(Method, Method), i64> = BTreeMap::new();
+            for trial in of(Role::Comparison) {
+                let (left, right) = (trial.left.method, trial.right.method);
+                *method_lead.entry(left).or_default() += 1;
+                *method_lead.entry(right).or_default() -= 1;
+                *pair_lead.entry((left.min(right), left.max(right))).or_default() += if left < right { 1 } else { -1 };
+            }
+            prop_assert!(method_lead.values().all(|lead| lead.abs() <= 1), "{method_lead:?}");
+            prop_assert!(pair_lead.values().all(|lead| lead.abs() <= 1), "{pair_lead:?}");
+
+            let place = |wanted: &Trial, role: Role| form.trials.iter().position(|trial| {
+                trial.role == role && trial.comparison == wanted.comparison
+            });
+            for repeat in of(Role::Repeat) {
+                let (again, first) = (place(repeat, Role::Repeat).unwrap(), place(repeat, Role::Comparison).unwrap());
+                prop_assert!(again.abs_diff(first) >= form.trials.len() / 2);
+                let original = &form.trials[first];
+                prop_assert_eq!((&original.left, &original.right), (&repeat.right, &repeat.left));
+            }
+        }
+    }
+}
+
+#[test]
+fn each_form_has_a_twin_with_all_sides_swapped() {
+    for questions in [31, 32] {
+        let study = study(|_| true, balanced(1, questions - 30, 3, questions));
+        let questionnaire = Questionnaire::of(&study).unwrap();
+        assert_eq!((questionnaire.blocks(), questionnaire.questions(0)), (1, questions as usize));
+        for participant in 0..questions as usize {
+            let (form, twin) =
+                (questionnaire.form(participant), questionnaire.form(participant + questions as usize));
+            let sides = |form: &Form| {
+                form.trials.iter().map(|t| (t.left.clone(), t.right.clone())).collect::<Vec<_>>()
+            };
+            assert_ne!(form.mirrored, twin.mirrored);
+            if questions % 2 == 0 {
+                let swapped: Vec<_> = sides(&twin).into_iter().map(|(left, right)| (right, left)).collect();
+                assert_eq!(sides(&form), swapped);
+            } else {
+                // With an odd number of places the twin runs the other way round.
+                let mut sorted: Vec<_> =
+                    sides(&twin).into_iter().map(|(left, right)| (right, left)).collect();
+                let mut own = sides(&form);
+                sorted.sort();
+                own.sort();
+                assert_eq!(own, sorted);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_same_study_gives_the_same_forms_and_another_seed_others() {
+    let mut study = study(|_| true, balanced(40, 2, 3, 32));
+    let forms = Questionnaire::of(&study).unwrap().planned();
+    assert_eq!(forms, Questionnaire::of(&study).unwrap().planned());
+    assert_eq!(forms[7], Questionnaire::of(&study).unwrap().form(7), "a form does not need the others");
+    study.file.study.seed += 1;
+    assert_ne!(forms, Questionnaire::of(&study).unwrap().planned());
+}
+
+#[test]
+fn every_pair_that_is_shown_is_listed_once() {
+    let study = study(|_| true, balanced(70, 2, 3, 20));
+    let questionnaire = Questionnaire::of(&study).unwrap();
+    let pairs = questionnaire.pairs();
+    let different: BTreeSet<_> = pairs.iter().collect();
+    assert_eq!(different.len(), pairs.len());
+    assert_eq!(pairs.len(), 2 * 27 + 2);
+    let shown: BTreeSet<_> =
+        questionnaire.planned().into_iter().flat_map(|form| form.trials).map(|t| (t.left, t.right)).collect();
+    assert!(shown.iter().all(|pair| different.contains(pair)));
+    assert_eq!(shown.len(), pairs.len(), "enough participants see all of them");
+}
+
+#[test]
+fn the_original_shows_everybody_the_same_sides_in_an_order_of_their_own() {
+    let study = paper_with("schema = 1", "schema = 1").unwrap();
+    let questionnaire = Questionnaire::of(&study).unwrap();
+    let forms = questionnaire.planned();
+    assert_eq!((forms.len(), forms[0].trials.len()), (18, 27));
+    assert_eq!(questionnaire.pairs().len(), 27);
+    for form in &forms {
+        for trial in &form.trials {
+            let listed = &study.comparisons[trial.comparison.unwrap()];
+            assert_eq!((&trial.left, &trial.right), (&listed.left, &listed.right));
+        }
+    }
+    let orders: BTreeSet<Vec<usize>> =
+        forms.iter().map(|form| form.trials.iter().map(|t| t.comparison.unwrap()).collect()).collect();
+    assert_eq!(orders.len(), 18);
+}

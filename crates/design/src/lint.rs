@@ -1,0 +1,316 @@
+//! Faults of a design that can be seen before anyone answers.
+//!
+//! [`lint`] judges a study's forms, [`lint_stimuli`] the animations made for it. Each [`Rule`] looks for one thing; a
+//! [`Fault`] says where it was found, with the numbers. A design without faults can still be a bad one: nothing is said of
+//! the question's wording, of who answers, or of whether the stimuli show what they should.
+
+mod stimuli;
+
+use crate::config::{OrderRule, ShownNames};
+use crate::forms::{Form, Questionnaire, Role, Trial};
+use crate::method::{ConfigurationId, Method};
+use crate::study::Study;
+use std::collections::{BTreeMap, BTreeSet};
+
+pub use stimuli::{EXPOSURE_TOLERANCE, StimulusFacts, lint_stimuli};
+
+/// What the linter looks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[expect(missing_docs, reason = "`Rule::meaning` says it, for programs and people alike")]
+pub enum Rule {
+    SideConfounded,
+    SidesUnbalanced,
+    AppearancesUnequal,
+    ComparisonsDisconnected,
+    NoControls,
+    NoRepeats,
+    OrderFixed,
+    NotEnoughParticipants,
+    NamesReveal,
+    StimuliDiffer,
+}
+
+impl Rule {
+    /// Every rule, in the order of reports.
+    pub const ALL: [Self; 10] = [
+        Self::SideConfounded,
+        Self::SidesUnbalanced,
+        Self::AppearancesUnequal,
+        Self::ComparisonsDisconnected,
+        Self::NoControls,
+        Self::NoRepeats,
+        Self::OrderFixed,
+        Self::NotEnoughParticipants,
+        Self::NamesReveal,
+        Self::StimuliDiffer,
+    ];
+
+    /// Its id: stable, for scripts.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::SideConfounded => "side-confounded",
+            Self::SidesUnbalanced => "sides-unbalanced",
+            Self::AppearancesUnequal => "appearances-unequal",
+            Self::ComparisonsDisconnected => "comparisons-disconnected",
+            Self::NoControls => "no-controls",
+            Self::NoRepeats => "no-repeats",
+            Self::OrderFixed => "order-fixed",
+            Self::NotEnoughParticipants => "not-enough-participants",
+            Self::NamesReveal => "names-reveal",
+            Self::StimuliDiffer => "stimuli-differ",
+        }
+    }
+
+    /// What it looks for, and why that is a fault.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::SideConfounded => {
+                "Two methods are shown on the same sides every time: nothing can tell a liking for the method from a \
+                 liking for the side."
+            }
+            Self::SidesUnbalanced => {
+                "Of two methods one is on the left more often, by more than one showing: a liking for a side shifts \
+                 the result."
+            }
+            Self::AppearancesUnequal => {
+                "Methods of one group, or comparisons, are shown more often than others: sums of wins then compare \
+                 chances to win."
+            }
+            Self::ComparisonsDisconnected => {
+                "Methods of one group fall into parts that are never compared with each other: no scale can hold them \
+                 all."
+            }
+            Self::NoControls => {
+                "No pair shows the same configuration twice: guessing and a liking for a side stay unseen."
+            }
+            Self::NoRepeats => {
+                "No comparison is asked again with the sides swapped: nobody's consistency can be known."
+            }
+            Self::OrderFixed => {
+                "Everybody is asked in the same order: what comes late is judged by tired or practised eyes."
+            }
+            Self::NotEnoughParticipants => {
+                "Even if all planned participants agree, the exact sign-flip test with Holm's correction cannot reach \
+                 5 %."
+            }
+            Self::NamesReveal => {
+                "Ids, file names, sizes or metadata tell participants which configuration they see."
+            }
+            Self::StimuliDiffer => {
+                "The stimuli of one comparison differ in something besides the method: frames, duration, camera, \
+                 background, size or exposure."
+            }
+        }
+    }
+
+    /// What to change.
+    pub fn remedy(self) -> &'static str {
+        match self {
+            Self::SideConfounded | Self::SidesUnbalanced => "forms.sides = \"balanced\"",
+            Self::AppearancesUnequal => "list every pair of a group's members on every object",
+            Self::ComparisonsDisconnected => {
+                "add comparisons between the parts, or make them groups of their own"
+            }
+            Self::NoControls => "forms.controls = 2 or more",
+            Self::NoRepeats => "forms.repeats = 2 or more",
+            Self::OrderFixed => "forms.order = \"latin-square\"",
+            Self::NotEnoughParticipants => "plan more participants, or fewer contrasts",
+            Self::NamesReveal => "forms.names = \"code-names\"",
+            Self::StimuliDiffer => "render both with the same turntable, shading and camera",
+        }
+    }
+}
+
+/// Something wrong, and where.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault {
+    /// Which rule found it.
+    pub rule: Rule,
+    /// Where: a group, a contrast, a question, a file, a key.
+    pub place: String,
+    /// The numbers.
+    pub evidence: String,
+}
+
+/// Level that [`Rule::NotEnoughParticipants`] asks for.
+pub const LEVEL: f64 = 0.05;
+
+/// The faults of a study's forms, in the order of [`Rule::ALL`]. None for a study that asks nobody.
+pub fn lint(study: &Study) -> Vec<Fault> {
+    let (Some(section), Some(questionnaire)) = (&study.file.forms, Questionnaire::of(study)) else {
+        return Vec::new();
+    };
+    let forms = questionnaire.planned();
+    let showings = Showings::of(study, &forms);
+    let mut faults = showings.sides();
+    faults.extend(showings.appearances(study));
+    faults.extend(showings.connections(study));
+    let mut none = |rule: Rule, key: &str, count: u32, role: Role| {
+        if forms.iter().any(|form| form.trials.iter().all(|trial| trial.role != role)) {
+            let evidence = format!("{key} = {count}, in forms of {} questions", questionnaire.questions(0));
+            faults.push(Fault { rule, place: key.into(), evidence });
+        }
+    };
+    none(Rule::NoControls, "forms.controls", section.controls, Role::Control);
+    none(Rule::NoRepeats, "forms.repeats", section.repeats, Role::Repeat);
+    if section.order == OrderRule::AsListed && forms.len() > 1 {
+        let evidence = format!("{} forms, one order", forms.len());
+        faults.push(Fault { rule: Rule::OrderFixed, place: "forms.order".into(), evidence });
+    }
+    faults.extend(showings.participants());
+    faults.extend(names(study, section.names));
+    faults
+}
+
+/// Two methods of one group, the lower first.
+type Contrast = (usize, Method, Method);
+
+/// How often what was shown, over all planned forms. Comparisons only: controls and repeats are there to check answers.
+struct Showings {
+    group_ids: Vec<String>,
+    /// For each contrast: how often its lower method was on the left and on the right.
+    sides: BTreeMap<Contrast, [u64; 2]>,
+    /// For each contrast: the participants who are asked about it.
+    asked: BTreeMap<Contrast, BTreeSet<usize>>,
+    /// For each comparison.
+    comparisons: Vec<u64>,
+}
+
+impl Showings {
+    fn of(study: &Study, forms: &[Form]) -> Self {
+        let group_ids = study.groups.iter().map(|group| group.id.clone()).collect();
+        let comparisons = vec![0; study.comparisons.len()];
+        let mut showings = Self { group_ids, sides: BTreeMap::new(), asked: BTreeMap::new(), comparisons };
+        for form in forms {
+            for Trial { role, comparison, left, right, .. } in &form.trials {
+                let (Role::Comparison, Some(comparison)) = (role, *comparison) else { continue };
+                let (a, b) = (left.method.min(right.method), left.method.max(right.method));
+                let contrast = (study.comparisons[comparison].group, a, b);
+                showings.sides.entry(contrast).or_default()[usize::from(left.method != a)] += 1;
+                showings.asked.entry(contrast).or_default().insert(form.participant);
+                showings.comparisons[comparison] += 1;
+            }
+        }
+        showings
+    }
+
+    fn name(&self, (group, a, b): &Contrast) -> String {
+        format!("{a} against {b} in group {}", self.group_ids[*group])
+    }
+
+    fn sides(&self) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        for (contrast, &[left, right]) in &self.sides {
+            let rule = match (left.min(right), left.abs_diff(right)) {
+                (0, 1) | (_, 0 | 1) => continue,
+                (0, _) => Rule::SideConfounded,
+                _ => Rule::SidesUnbalanced,
+            };
+            let evidence = format!("{} on the left {left} times, on the right {right} times", contrast.1);
+            faults.push(Fault { rule, place: self.name(contrast), evidence });
+        }
+        faults.sort_by_key(|fault| fault.rule);
+        faults
+    }
+
+    fn appearances(&self, study: &Study) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        let mut judge = |place: String, what: &str, counts: &BTreeMap<String, u64>, allowed: u64| {
+            let least = counts.iter().min_by_key(|(_, count)| **count);
+            let most = counts.iter().rev().max_by_key(|(_, count)| **count);
+            if let (Some((rare, low)), Some((common, high))) = (least, most)
+                && high - low > allowed
+            {
+                let evidence = format!("{what} {common} {high} times, {rare} {low} times");
+                faults.push(Fault { rule: Rule::AppearancesUnequal, place, evidence });
+            }
+        };
+        let by_question = study.comparisons.iter().map(|c| c.question.clone());
+        let counts = by_question.zip(self.comparisons.iter().copied()).collect();
+        judge("comparisons".into(), "question", &counts, 1);
+        for group in &study.groups {
+            // By design, not by showing: showings of single comparisons are judged above.
+            let mut counts: BTreeMap<String, u64> = BTreeMap::new();
+            for object in &study.file.objects {
+                for method in &group.members {
+                    counts.insert(format!("{}_{method}", object.id), 0);
+                }
+            }
+            for &comparison in &group.comparisons {
+                let of = &study.comparisons[comparison];
+                [&of.left, &of.right].iter().for_each(|id| *counts.entry(id.to_string()).or_default() += 1);
+            }
+            judge(format!("group {}", group.id), "asked about", &counts, 0);
+        }
+        faults
+    }
+
+    fn connections(&self, study: &Study) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        for (g, group) in study.groups.iter().enumerate() {
+            let mut parts: Vec<BTreeSet<Method>> = group.members.iter().map(|&m| [m].into()).collect();
+            for (_, a, b) in self.sides.keys().filter(|(of, _, _)| *of == g) {
+                let (joined, mut apart): (Vec<_>, Vec<_>) =
+                    parts.into_iter().partition(|part| part.contains(a) || part.contains(b));
+                apart.push(joined.into_iter().flatten().collect());
+                parts = apart;
+            }
+            if parts.len() > 1 {
+                let list = |part: &BTreeSet<Method>| {
+                    part.iter().map(Method::to_string).collect::<Vec<_>>().join(" ")
+                };
+                let evidence = format!(
+                    "{} parts: {}",
+                    parts.len(),
+                    parts.iter().map(list).collect::<Vec<_>>().join(" | ")
+                );
+                faults.push(Fault {
+                    rule: Rule::ComparisonsDisconnected,
+                    place: format!("group {}", group.id),
+                    evidence,
+                });
+            }
+        }
+        faults
+    }
+
+    /// All agreeing, one of the 2^m sign patterns and its opposite are as extreme: p = 2^(1-m). Holm multiplies the smallest
+    /// of the family's p by the number of contrasts.
+    fn participants(&self) -> Vec<Fault> {
+        let contrasts = self.asked.len();
+        let mut faults = Vec::new();
+        for (contrast, asked) in &self.asked {
+            let count = i32::try_from(asked.len()).unwrap_or(i32::MAX);
+            let best = (2f64.powi(1 - count) * contrasts as f64).min(1.0);
+            if best > LEVEL {
+                let evidence =
+                    format!("{count} participants, {contrasts} contrasts: p is at least {best:.4}");
+                let place = self.name(contrast);
+                faults.push(Fault { rule: Rule::NotEnoughParticipants, place, evidence });
+            }
+        }
+        faults
+    }
+}
+
+fn names(study: &Study, shown: ShownNames) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    let mut fault = |place: String, evidence: String| {
+        faults.push(Fault { rule: Rule::NamesReveal, place, evidence });
+    };
+    if shown == ShownNames::ConfigurationIds {
+        let ids: Vec<String> = study.configurations.iter().map(|c| c.id.to_string()).collect();
+        let evidence = format!("{} ids can be read, such as {}", ids.len(), ids[ids.len() - 1]);
+        fault("forms.names".into(), evidence);
+    }
+    for comparison in &study.comparisons {
+        let tells = |id: &&ConfigurationId| comparison.question.contains(&id.to_string());
+        if let Some(id) = [&comparison.left, &comparison.right].into_iter().find(tells) {
+            fault(format!("question {}", comparison.question), format!("its id names {id}"));
+        }
+    }
+    faults
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,201 @@
+//! Each rule fires on a defect planted for it, and no other rule does.
+
+use super::*;
+use crate::config::{FormsSection, SideRule};
+use crate::study::tests::{load, paper_with};
+
+fn balanced() -> Study {
+    load("balanced.toml")
+}
+
+fn forms(study: &mut Study) -> &mut FormsSection {
+    study.file.forms.as_mut().unwrap()
+}
+
+fn rules(faults: &[Fault]) -> Vec<Rule> {
+    let mut rules: Vec<Rule> = faults.iter().map(|fault| fault.rule).collect();
+    rules.dedup();
+    rules
+}
+
+/// Keeps some comparisons, in the study and in its groups.
+fn keep(study: &mut Study, kept: impl Fn(&crate::Comparison) -> bool) {
+    study.comparisons.retain(&kept);
+    for (g, group) in study.groups.iter_mut().enumerate() {
+        let own = study.comparisons.iter().enumerate().filter(|(_, c)| c.group == g);
+        group.comparisons = own.map(|(i, _)| i).collect();
+    }
+}
+
+#[test]
+fn a_balanced_study_has_no_faults() {
+    assert_eq!(lint(&balanced()), []);
+}
+
+#[test]
+fn a_study_that_asks_nobody_has_no_faults() {
+    let mut study = balanced();
+    study.file.forms = None;
+    assert_eq!(lint(&study), []);
+}
+
+#[test]
+fn the_original_has_the_faults_it_has() {
+    let faults = lint(&paper_with("schema = 1", "schema = 1").unwrap());
+    assert_eq!(rules(&faults), [Rule::SideConfounded, Rule::NoControls, Rule::NoRepeats, Rule::NamesReveal]);
+    let confounded: Vec<&Fault> = faults.iter().filter(|f| f.rule == Rule::SideConfounded).collect();
+    assert_eq!(confounded.len(), 9, "all nine contrasts");
+    assert_eq!(confounded[0].place, "bu against bi in group B");
+    assert_eq!(confounded[0].evidence, "bu on the left 54 times, on the right 0 times");
+}
+
+#[test]
+fn sides_that_never_change() {
+    let mut study = balanced();
+    forms(&mut study).sides = SideRule::AsListed;
+    let faults = lint(&study);
+    assert_eq!(rules(&faults), [Rule::SideConfounded]);
+    assert_eq!(faults.len(), 9);
+}
+
+#[test]
+fn sides_that_change_from_object_to_object_only() {
+    let mut study = balanced();
+    forms(&mut study).sides = SideRule::AsListed;
+    for comparison in study.comparisons.iter_mut().filter(|c| c.object == 1) {
+        std::mem::swap(&mut comparison.left, &mut comparison.right);
+    }
+    let faults = lint(&study);
+    assert_eq!(rules(&faults), [Rule::SidesUnbalanced]);
+    assert_eq!(faults.len(), 9);
+}
+
+#[test]
+fn a_method_that_is_asked_about_less_often() {
+    let mut study = balanced();
+    keep(&mut study, |c| c.question != "Q3");
+    let faults = lint(&study);
+    assert_eq!(rules(&faults), [Rule::AppearancesUnequal]);
+    assert_eq!(faults[0].place, "group B");
+    assert_eq!(faults[0].evidence, "asked about as_bi 2 times, ss_bi 1 times");
+}
+
+#[test]
+fn methods_that_are_never_compared() {
+    let mut study = balanced();
+    // A fourth and a fifth method of group B, compared with each other on every object and with no other.
+    let extra: Vec<Method> = vec!["bc".parse().unwrap(), "sc".parse().unwrap()];
+    let b = study.groups.iter().position(|group| group.id == "B").unwrap();
+    keep(&mut study, |c| c.group != b || c.question != "Q2" && c.question != "Q3");
+    keep(&mut study, |c| c.group != b);
+    study.groups[b].members = ["bu", "bi"].iter().map(|m| m.parse().unwrap()).chain(extra.clone()).collect();
+    for (o, object) in ["ss", "as", "bs"].iter().enumerate() {
+        for (left, right) in [("bu", "bi"), ("bc", "sc")] {
+            let id = |method: &str| format!("{object}_{method}").parse::<ConfigurationId>().unwrap();
+            study.groups[b].comparisons.push(study.comparisons.len());
+            study.comparisons.push(crate::Comparison {
+                question: format!("X{}", study.comparisons.len()),
+                object: o,
+                group: b,
+                left: id(left),
+                right: id(right),
+            });
+        }
+    }
+    let faults = lint(&study);
+    assert_eq!(rules(&faults), [Rule::ComparisonsDisconnected]);
+    assert_eq!(faults[0].evidence, "2 parts: bu bi | bc sc");
+}
+
+#[test]
+fn no_controls_and_no_repeats() {
+    let mut study = balanced();
+    forms(&mut study).controls = 0;
+    assert_eq!(rules(&lint(&study)), [Rule::NoControls]);
+    let mut study = balanced();
+    forms(&mut study).repeats = 0;
+    assert_eq!(rules(&lint(&study)), [Rule::NoRepeats]);
+}
+
+#[test]
+fn one_order_for_everybody() {
+    let mut study = balanced();
+    forms(&mut study).order = OrderRule::AsListed;
+    assert_eq!(rules(&lint(&study)), [Rule::OrderFixed]);
+}
+
+/// Nine contrasts need 2^(1-m) * 9 <= 0.05: 9 participants have 0.0352, 8 have 0.0703.
+#[test]
+fn too_few_participants() {
+    let mut study = balanced();
+    forms(&mut study).participants = 9;
+    assert_eq!(rules(&lint(&study)), []);
+    forms(&mut study).participants = 8;
+    let faults = lint(&study);
+    assert_eq!(rules(&faults), [Rule::NotEnoughParticipants]);
+    assert_eq!(faults.len(), 9);
+    assert_eq!(faults[0].evidence, "8 participants, 9 contrasts: p is at least 0.0703");
+}
+
+#[test]
+fn names_that_tell() {
+    let mut study = balanced();
+    forms(&mut study).names = ShownNames::ConfigurationIds;
+    assert_eq!(rules(&lint(&study)), [Rule::NamesReveal]);
+    let mut study = balanced();
+    study.comparisons[4].question = "ss_su or not".into();
+    let faults = lint(&study);
+    assert_eq!(rules(&faults), [Rule::NamesReveal]);
+    assert_eq!(faults[0].evidence, "its id names ss_su");
+}
+
+fn facts(file: &str) -> StimulusFacts {
+    StimulusFacts {
+        file: file.into(),
+        frames: 120,
+        duration_cs: 720,
+        size: [512, 512],
+        background: [1, 130, 129],
+        camera: Some([1.2, 1.57, 0.52]),
+        exposure: 0.4,
+        bytes: 400_000,
+        text: Vec::new(),
+    }
+}
+
+#[test]
+fn stimuli_that_differ() {
+    let study = balanced();
+    let right = facts("lobi.gif");
+    let judge = |left: StimulusFacts| lint_stimuli(&study, &[("Q1".into(), left, right.clone())]);
+    assert_eq!(judge(facts("vusa.gif")), []);
+    assert_eq!(judge(StimulusFacts { exposure: 0.44, bytes: 500_000, ..facts("vusa.gif") }), []);
+    let planted = [
+        (StimulusFacts { frames: 60, ..facts("vusa.gif") }, "frames: 60 on the left, 120 on the right"),
+        (StimulusFacts { duration_cs: 800, ..facts("vusa.gif") }, "duration: 800 cs"),
+        (StimulusFacts { size: [256, 512], ..facts("vusa.gif") }, "size: [256, 512]"),
+        (StimulusFacts { background: [0, 0, 0], ..facts("vusa.gif") }, "background: [0, 0, 0]"),
+        (StimulusFacts { camera: Some([1.3, 1.57, 0.52]), ..facts("vusa.gif") }, "camera: Some([1.3"),
+        (StimulusFacts { exposure: 0.46, ..facts("vusa.gif") }, "exposure: 0.460 on the left"),
+    ];
+    for (left, evidence) in planted {
+        let faults = judge(left);
+        assert_eq!(rules(&faults), [Rule::StimuliDiffer]);
+        assert!(faults.len() == 1 && faults[0].evidence.starts_with(evidence), "{faults:?}");
+    }
+    for told in
+        [facts("ss_bi.gif"), StimulusFacts { text: vec!["made from ss_bi".into()], ..facts("vusa.gif") }]
+    {
+        let faults = judge(told);
+        assert_eq!(rules(&faults), [Rule::NamesReveal]);
+        assert!(faults[0].evidence.ends_with("names ss_bi"), "{faults:?}");
+    }
+}
+
+#[test]
+fn every_rule_has_an_id_of_its_own_and_says_what_it_means() {
+    let ids: BTreeSet<&str> = Rule::ALL.iter().map(|rule| rule.id()).collect();
+    assert_eq!(ids.len(), Rule::ALL.len());
+    let plain = |id: &str| id.bytes().all(|b| b.is_ascii_lowercase() || b == b'-');
+    assert!(Rule::ALL.iter().all(|rule| plain(rule.id()) && rule.meaning().ends_with('.')));
+}

@@ -1,0 +1,103 @@
+//! What each placement of vertices does to triangles and accuracy: the numbers of DESIGN.md, as a Markdown table.
+//! Arguments: cells along an axis (64; the bunny: the spacing that gives in a box of side 2), part of a row's name.
+//!
+//! Times are of the processor, best of a few. `cargo run --release -p extract --example placement`
+
+use std::fs::File;
+use std::path::Path;
+
+use extract::{
+    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Gyroid, Lattice,
+    MeshDistance, Placement, ScalarField, Source, Sphere, accuracy,
+};
+use glam::Vec3;
+use mesh::quality::quality;
+use mesh::{Bounds, read_ply, repair};
+
+const ONE: Execution = Execution { threads: 1 };
+const REPETITIONS: usize = 5;
+
+fn main() {
+    let mut arguments = std::env::args().skip(1);
+    let cells: u32 = arguments.next().map_or(64, |a| a.parse().expect("a number of cells"));
+    let wanted = arguments.next().unwrap_or_default();
+    let cube = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    let mut fields: Vec<(&str, Box<dyn ScalarField>, Bounds)> = vec![
+        ("sphere", Box::new(Sphere { radius: 0.8 }), cube),
+        ("asteroid", Box::new(Asteroid::default()), cube),
+        ("gyroid", Box::new(Gyroid::default()), cube),
+    ];
+    match bunny() {
+        Some(bunny) => {
+            let bounds = Bounds { min: Vec3::new(-0.7, -0.4, -0.5), max: Vec3::new(0.8, 0.4, 0.6) };
+            fields.push(("bunny", Box::new(bunny), bounds));
+        }
+        None => eprintln!("no bunny in cache/: make bunny"),
+    }
+    println!(
+        "| surface, lattice, {cells} cells | placement | radius ratio, mean | smallest angle, 5 % | distance / h, mean | \
+         max | normal error, mean | 95 % | time, ms |\n|---|---|---:|---:|---:|---:|---:|---:|---:|"
+    );
+    for (name, field, bounds) in &fields {
+        for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
+            let lattice = Lattice::try_new(arrangement, *bounds, 2.0 / cells as f32).expect("a lattice");
+            for placement in [
+                Placement::MeanOfCrossings,
+                Placement::CurvatureWeighted,
+                Placement::Projected,
+                Placement::Relaxed,
+            ] {
+                for refine_crossings in [false, true] {
+                    let id = format!("{name}, {arrangement:?}");
+                    if id.contains(&wanted) {
+                        let settings =
+                            ExtractSettings { placement, refine_crossings, ..ExtractSettings::default() };
+                        row(&id, &**field, &lattice, &settings);
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn row(id: &str, field: &dyn ScalarField, lattice: &Lattice, settings: &ExtractSettings) {
+    assert_eq!(settings.clustering, Clustering::Integrated);
+    let (mut extractor, mut extraction) = (Extractor::new(), Extraction::default());
+    let mut best = f64::INFINITY;
+    for _ in 0..REPETITIONS {
+        let start = cpu_ms();
+        extractor
+            .extract_into(Source::Field(field), lattice, settings, &ONE, &mut extraction)
+            .expect("the surfaces can be extracted");
+        best = best.min(cpu_ms() - start);
+    }
+    let h = f64::from(lattice.spacing());
+    let shape = quality(&extraction.mesh);
+    let found = accuracy(&extraction.mesh, field, 0.0, lattice.spacing(), &ONE).expect("one thread");
+    println!(
+        "| {id} | {:?}{} | {:.4} | {:.1} | {:.5} | {:.3} | {:.2} | {:.2} | {:.1} |",
+        settings.placement,
+        if settings.refine_crossings { ", refined" } else { "" },
+        shape.radius_ratio.mean,
+        shape.min_angle_deg.q05,
+        found.distance.mean / h,
+        found.distance.max / h,
+        found.normal_error_deg.mean,
+        found.normal_error_deg.q95,
+        best,
+    );
+}
+
+/// Time this thread has run, which other work on the machine does not add to.
+fn cpu_ms() -> f64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").expect("Linux");
+    text.split(' ').next().and_then(|ns| ns.parse::<f64>().ok()).expect("a number") / 1e6
+}
+
+fn bunny() -> Option<MeshDistance> {
+    let cache = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cache/bunny.ply");
+    let scan = read_ply(File::open(cache).ok()?).expect("the cached bunny is a mesh");
+    let solid = repair::closed_solid(&scan).expect("the bunny can be closed");
+    let placed = solid.transformed(|p| Vec3::new(p.x, -p.z, p.y) * 6.35 + Vec3::new(0.1, 0.0, -0.615));
+    Some(MeshDistance::try_new(&placed).expect("the bunny is a solid"))
+}

@@ -1,0 +1,104 @@
+//! Vertices of clusters from their crossings, when the plain mean of interpolated ones will not do.
+
+use glam::{DVec3, Vec3};
+use mesh::Bounds;
+
+use super::curvature::Planes;
+use crate::bracket::Bracket;
+use crate::lattice::{DIRECTIONS, DirectionSet, Lattice, members};
+use crate::level::Level;
+use crate::settings::{ExtractSettings, Placement};
+
+/// Calls of the field for one crossing, at most.
+const MOST_CALLS: usize = 4;
+/// A crossing is known to this share of its lattice edge.
+const TOLERANCE: f64 = 1e-4;
+
+/// What is known at a sample point of the lattice.
+pub(crate) struct Surroundings {
+    pub(crate) position: Vec3,
+    /// Field minus isovalue.
+    pub(crate) difference: f32,
+    /// The same at the neighbours; not a number where there is none.
+    pub(crate) neighbours: [f32; DIRECTIONS],
+}
+
+/// Places the vertices of clusters.
+#[derive(Clone, Copy)]
+pub(crate) struct CrossingPlacer<'a> {
+    /// To find roots with.
+    level: Option<Level<'a>>,
+    /// To weigh crossings with.
+    planes: Option<&'static Planes>,
+    edges: [DVec3; DIRECTIONS],
+    bounds: Bounds,
+}
+
+impl<'a> CrossingPlacer<'a> {
+    /// `None` where the settings ask for the plain mean.
+    pub(crate) fn new(
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        level: Option<Level<'a>>,
+    ) -> Option<Self> {
+        let level = level.filter(|_| settings.refine_crossings);
+        let planes =
+            (settings.placement == Placement::CurvatureWeighted).then(|| Planes::get(lattice.arrangement()));
+        if level.is_none() && planes.is_none() {
+            return None;
+        }
+        let half = f64::from(lattice.spacing()) / 2.0;
+        let offsets = &lattice.arrangement().directions().offsets;
+        let edges = offsets.map(|offset| DVec3::from_array(offset.map(f64::from)) * half);
+        Some(Self { level, planes, edges, bounds: lattice.bounds() })
+    }
+
+    /// Whether neighbours on the same side are looked at, or crossings alone.
+    pub(crate) fn reads_neighbours(&self) -> bool {
+        self.planes.is_some()
+    }
+
+    /// The mean of a cluster's crossings, weighted if the settings say so, clamped to the box.
+    pub(crate) fn place(&self, around: &Surroundings, cluster: DirectionSet) -> Vec3 {
+        let crossings = || members(cluster).map(|d| self.edges[d] * self.ratio(around, d));
+        let mean = || crossings().sum::<DVec3>() / f64::from(cluster.count_ones());
+        let offset = match self.planes.filter(|_| cluster.count_ones() > 1) {
+            None => mean(),
+            Some(planes) => {
+                let weights = || members(cluster).map(|d| planes.weight(around, d));
+                let total: f64 = weights().sum();
+                let sum: DVec3 = crossings().zip(weights()).map(|(offset, weight)| offset * weight).sum();
+                // Flat all round, or not known everywhere.
+                if total.is_finite() && total > 0.0 { sum / total } else { mean() }
+            }
+        };
+        let place = (around.position.as_dvec3() + offset).as_vec3();
+        place.clamp(self.bounds.min, self.bounds.max)
+    }
+
+    /// How far along its edge a crossing is: by linear interpolation, and then by regula falsi.
+    /// Strictly between the ends if it was there to begin with.
+    fn ratio(&self, around: &Surroundings, direction: usize) -> f64 {
+        let ends = [around.difference, around.neighbours[direction]].map(f64::from);
+        let linear = ends[0] / (ends[0] - ends[1]);
+        if !linear.is_finite() {
+            return 0.5;
+        }
+        let Some(level) = self.level.filter(|_| linear > 0.0 && linear < 1.0) else { return linear };
+        let from = around.position.as_dvec3();
+        let mut bracket = Bracket::new((0.0, ends[0]), (1.0, ends[1]));
+        let mut ratio = linear;
+        for _ in 0..MOST_CALLS {
+            let there = f64::from(level.difference((from + self.edges[direction] * ratio).as_vec3()));
+            if !there.is_finite() {
+                return linear;
+            }
+            bracket.narrow(ratio, there);
+            let before = std::mem::replace(&mut ratio, bracket.guess());
+            if (ratio - before).abs() <= TOLERANCE {
+                break;
+            }
+        }
+        ratio
+    }
+}

@@ -1,0 +1,29 @@
+//! More vertices than may be, without making four thousand million of them.
+
+use glam::Vec3;
+use mesh::Bounds;
+
+use super::extractor::MostVertices;
+use crate::{Arrangement, Execution, ExtractError, ExtractSettings, Extractor, Lattice, Source, Sphere};
+
+#[test]
+fn more_vertices_than_may_be_are_an_error() {
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.02).unwrap();
+    let (sphere, settings) = (Sphere { radius: 0.8 }, ExtractSettings::default());
+    for threads in [1, 2] {
+        let mut extractor = Extractor::new();
+        let mut run = |most| {
+            extractor.most_vertices = MostVertices(most);
+            extractor.extract(Source::Field(&sphere), &lattice, &settings, &Execution { threads })
+        };
+        let mesh = run(u32::MAX).unwrap().mesh;
+        let all = mesh.positions.len() as u32;
+        assert_eq!(run(all).unwrap().mesh, mesh);
+        // Just one too many is seen when slabs are joined; half of them, in a slab.
+        for limit in [all - 1, all / 8, 0] {
+            assert_eq!(run(limit).unwrap_err(), ExtractError::TooManyVertices { limit });
+        }
+        assert_eq!(run(u32::MAX).unwrap().mesh, mesh, "the extractor is as good as new");
+    }
+}

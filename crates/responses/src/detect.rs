@@ -1,0 +1,70 @@
+//! Which format a table of cells is in.
+
+use crate::error::{Fault, shorten};
+use crate::format::Format;
+use crate::layout::{Detected, Layout};
+use crate::long;
+use crate::plan::Plan;
+use crate::surveys;
+use crate::words::normalise;
+
+/// The first rows that are not blank, with their numbers.
+pub(crate) type Head = [(u64, Vec<String>)];
+
+/// The format with whose marks the rows begin.
+///
+/// # Errors
+/// No format's marks, or those of several.
+pub(crate) fn detect(head: &Head, plan: Option<&Plan>) -> Result<Detected, Fault> {
+    let mut found: Vec<Detected> =
+        Format::ALL.into_iter().filter_map(|format| mark(format, head, plan)).collect();
+    match found.len() {
+        1 => Ok(found.remove(0)),
+        0 => fallback(head, plan),
+        _ => Err(Fault::Formats { readings: found.into_iter().map(|d| (d.format, d.rule)).collect() }),
+    }
+}
+
+/// What in the first rows speaks for a format.
+fn mark(format: Format, head: &Head, plan: Option<&Plan>) -> Option<Detected> {
+    let header = &head[0].1;
+    let rule: Option<&str> = match format {
+        Format::Table => {
+            let plan = plan?;
+            let own =
+                |title: &String| is_participant(title) || is_form(title) || plan.question(title).is_some();
+            let all = header.iter().all(own) && header.iter().any(|title| plan.question(title).is_some());
+            all.then_some("every header is a question's id")
+        }
+        Format::Long => long::is_long(header).then_some("the header has participant, question and choice"),
+        _ => return surveys::mark(format, head).map(|rule| Detected { format, rule }),
+    };
+    rule.map(|rule| Detected { format, rule: rule.into() })
+}
+
+/// A table with some of the study's questions is taken for its own, so that what is wrong with it is said.
+fn fallback(head: &Head, plan: Option<&Plan>) -> Result<Detected, Fault> {
+    let header = &head[0].1;
+    if plan.is_some_and(|plan| header.iter().any(|title| plan.question(title).is_some())) {
+        return Ok(Detected { format: Format::Table, rule: "some headers are questions' ids".into() });
+    }
+    let first: Vec<String> = header.iter().take(4).map(|title| format!("\"{}\"", shorten(title))).collect();
+    Err(Fault::UnknownFormat { header: first.join(", "), formats: Format::names() })
+}
+
+fn is_participant(title: &str) -> bool {
+    ["participant", "respondent", "id"].contains(&normalise(title).as_str())
+}
+
+fn is_form(title: &str) -> bool {
+    normalise(title) == "form"
+}
+
+/// The layout of a study's own table.
+pub(crate) fn own_table(head: &Head) -> Layout {
+    let (row, header) = &head[0];
+    let mut layout = Layout::of_header(*row, header);
+    layout.participant = header.iter().position(|title| is_participant(title));
+    layout.form = header.iter().position(|title| is_form(title));
+    layout
+}

@@ -1,0 +1,52 @@
+//! What the header of an export with one row a participant says.
+
+use crate::format::Format;
+
+/// Where things are in a file with one row a participant and one column a question. Columns are counted from 0.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Layout {
+    /// Row of the last header line.
+    pub(crate) last_header_row: u64,
+    /// Headers of each column: field name, title, and what else stands above it.
+    pub(crate) titles: Vec<Vec<String>>,
+    /// Columns that the tool adds itself; none of them is a question.
+    pub(crate) aside: Vec<usize>,
+    /// The participant's id.
+    pub(crate) participant: Option<usize>,
+    /// The form of the questionnaire.
+    pub(crate) form: Option<usize>,
+    /// Columns whose cell tells previews and tests, which are no answers.
+    pub(crate) preview: Vec<Sign>,
+    /// Columns whose cell tells that somebody did not finish; their answers count as far as they go.
+    pub(crate) unfinished: Vec<Sign>,
+    /// Columns with the order in which questions were shown, as names joined by `|`.
+    pub(crate) orders: Vec<usize>,
+}
+
+/// A column, and which of its cells say so.
+#[derive(Debug, Clone)]
+pub(crate) struct Sign {
+    pub(crate) column: usize,
+    pub(crate) says: fn(&str) -> bool,
+    pub(crate) what: &'static str,
+}
+
+impl Layout {
+    /// One header row.
+    pub(crate) fn of_header(row: u64, header: &[String]) -> Self {
+        let titles = header.iter().map(|title| vec![title.clone()]).collect();
+        Self { last_header_row: row, titles, ..Self::default() }
+    }
+
+    /// The first header of a column.
+    pub(crate) fn title(&self, column: usize) -> &str {
+        self.titles[column].first().map_or("", String::as_str)
+    }
+}
+
+/// A format that a header has the marks of, with the rule that says so.
+#[derive(Debug)]
+pub(crate) struct Detected {
+    pub(crate) format: Format,
+    pub(crate) rule: String,
+}

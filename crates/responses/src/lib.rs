@@ -1,0 +1,51 @@
+//! Exports of questionnaires in, validated answers out.
+//!
+//! [`read`] takes a file as people have it (a study's own table, the long format, or the export of a survey tool) and gives
+//! [`Responses`], one value an answer, with a [`Report`] of how the file was understood and of every cell that was
+//! repaired or rejected. What the file does not say is declared by a [`Plan`] (the questions) and a [`Mapping`] (positions,
+//! words, policies). [`write_long`] and its neighbours write
+//! answers again.
+//!
+//! # Guarantees
+//! - No input panics; what is wrong is an error that names file, row and column.
+//! - Nothing is dropped silently and nothing is guessed: every cell that is not taken as it stands is in the report, and where two
+//!   readings fit, the error shows both.
+
+mod archive;
+mod choice;
+mod collect;
+mod columns;
+mod detect;
+mod error;
+mod escape;
+mod format;
+mod layout;
+mod long;
+mod mapping;
+mod plan;
+mod read;
+mod records;
+mod report;
+mod source;
+mod surveys;
+mod text;
+mod trials;
+mod value;
+mod webmushra;
+mod wide;
+mod words;
+mod workbook;
+mod write;
+
+pub use archive::LARGEST_ARCHIVE;
+pub use choice::Choice;
+pub use error::{Fault, ReadError, UnknownCell};
+pub use escape::{escape, unescape};
+pub use format::Format;
+pub use mapping::{Duplicates, Mapping, MappingError, Unknown};
+pub use plan::{Plan, PlannedPair};
+pub use read::{LARGEST_FILE, Reading, parse, read};
+pub use report::{Kind, Remark, Report};
+pub use value::{Answer, Participant, Question, Responses};
+pub use words::{Words, normalise};
+pub use write::{Ties, WriteError, Written, write_arenakit, write_long, write_pwcmp};

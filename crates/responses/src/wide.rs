@@ -1,0 +1,217 @@
+//! Files with one row a participant and one column a question.
+
+use crate::collect::{Collector, Place, Reply};
+use crate::columns::{Assigned, assign};
+use crate::error::{Fault, shorten};
+use crate::escape::unescape;
+use crate::format::Format;
+use crate::layout::Layout;
+use crate::mapping::{Duplicates, Mapping};
+use crate::plan::Plan;
+use crate::records::{Record, is_blank, trim};
+use crate::report::{Kind, Report};
+use crate::source::Source;
+use crate::value::{Answer, Responses};
+use crate::words::normalise;
+use std::collections::HashMap;
+
+/// Reads every row under the header.
+///
+/// # Errors
+/// See [`Fault`].
+pub(crate) fn read(
+    source: &Source<'_>,
+    format: Format,
+    layout: &Layout,
+    plan: Option<&Plan>,
+    mapping: &Mapping,
+    report: &mut Report,
+) -> Result<Responses, Fault> {
+    let plan = plan.ok_or(Fault::NoPlan { format })?;
+    let mut layout = layout.clone();
+    let width = layout.titles.len();
+    if let Some(column) = mapping.participant_column {
+        if column > width {
+            let (value, limit) = (column.to_string(), format!("there are {width} columns"));
+            return Err(Fault::Declaration { key: "participant_column", value, limit });
+        }
+        layout.participant = Some(column - 1);
+        layout.aside.push(column - 1);
+    }
+    let (assigned, rule) = assign(source, format, &layout, plan, mapping)?;
+    report.column_rule = rule;
+    let passed_over: Vec<usize> = (0..width)
+        .filter(|column| !layout.aside.contains(column) && assigned.iter().all(|(c, _)| c != column))
+        .filter(|&column| layout.participant != Some(column) && layout.form != Some(column))
+        .collect();
+    for column in passed_over {
+        let title = layout.title(column).to_owned();
+        report.cell(Kind::Noted, layout.last_header_row, column, &title, "not a question: column not read");
+    }
+    let orders = Orders::of(&layout, &assigned);
+    let collector = Collector::new(Some(plan), mapping, report);
+    let mut rows = Rows {
+        layout: &layout,
+        plan,
+        assigned,
+        orders,
+        collector,
+        number: 0,
+        ids: HashMap::new(),
+        blank: None,
+    };
+    let mut end = layout.last_header_row + 1;
+    source.each(|record| {
+        if record.row <= layout.last_header_row {
+            return Ok(());
+        }
+        end = record.row + 1;
+        rows.row(record, source.is_text())
+    })?;
+    // A form shows what the study declares; shuffled sides would have to be in the file.
+    rows.collector.finish(true, end)
+}
+
+struct Rows<'a> {
+    layout: &'a Layout,
+    plan: &'a Plan,
+    assigned: Assigned,
+    orders: Orders,
+    collector: Collector<'a>,
+    /// Rows with answers so far.
+    number: usize,
+    /// The row of each participant whose id is in the file.
+    ids: HashMap<String, u64>,
+    /// First and last of the blank rows that may be at the end.
+    blank: Option<(u64, u64)>,
+}
+
+impl Rows<'_> {
+    fn row(&mut self, record: &Record<'_>, counted: bool) -> Result<(), Fault> {
+        let row = record.row;
+        if record.is_blank() {
+            self.blank = Some((self.blank.map_or(row, |(first, _)| first), row));
+            return Ok(());
+        }
+        self.collector.report.blank_rows(&mut self.blank);
+        self.check_width(record, counted)?;
+        if let Some(column) = record.stray {
+            let action = "text after the closing quote, taken as part of the cell";
+            self.collector.report.cell(Kind::Repaired, row, column, record.cell(column), action);
+        }
+        if let Some(sign) = self.layout.preview.iter().find(|sign| (sign.says)(record.cell(sign.column))) {
+            let cell = record.cell(sign.column);
+            self.collector.report.cell(
+                Kind::Rejected,
+                row,
+                sign.column,
+                cell,
+                format!("{}: row left out", sign.what),
+            );
+            return Ok(());
+        }
+        self.number += 1;
+        let id = self.layout.participant.map(|column| label(record.cell(column))).filter(|id| !id.is_empty());
+        let id = match id {
+            Some(id) => id.to_owned(),
+            None => self.number.to_string(),
+        };
+        if let Some(sign) = self.layout.unfinished.iter().find(|sign| (sign.says)(record.cell(sign.column))) {
+            let action = format!("{} ({}): answers kept as far as they go", sign.what, shorten(&id));
+            self.collector.report.cell(Kind::Noted, row, sign.column, record.cell(sign.column), action);
+        }
+        if self.layout.participant.is_some() {
+            let first = *self.ids.entry(id.clone()).or_insert(row);
+            if first != row && self.collector.mapping.duplicates == Duplicates::Refuse {
+                return Err(Fault::DuplicateParticipant { row, first, participant: shorten(&id) });
+            }
+        }
+        self.answers(record, &id)
+    }
+
+    fn check_width(&mut self, record: &Record<'_>, counted: bool) -> Result<(), Fault> {
+        let (expected, found) = (self.layout.titles.len(), record.cells.len());
+        if found == expected || (found < expected && !counted) {
+            return Ok(());
+        }
+        let beyond = record.cells.iter().skip(expected).all(|cell| is_blank(cell));
+        if found < expected || !beyond {
+            return Err(Fault::CellCount { row: record.row, expected, found });
+        }
+        let action = format!("{found} cells under {expected} headers; those beyond are empty");
+        self.collector.report.row(Kind::Noted, record.row, action);
+        Ok(())
+    }
+
+    fn answers(&mut self, record: &Record<'_>, id: &str) -> Result<(), Fault> {
+        let row = record.row;
+        let form = self.layout.form.map(|column| label(record.cell(column))).filter(|form| !form.is_empty());
+        let participant = self.collector.participant(id, form, row)?;
+        let orders = self.orders.of_row(record);
+        let mut unanswered: Vec<&str> = Vec::new();
+        let mut answered = 0;
+        for &(column, question) in &self.assigned {
+            let asked = &self.plan.questions()[question as usize];
+            match self.collector.reply(record.cell(column), Place { row, column }, &asked.id) {
+                Reply::Choice(choice) => {
+                    answered += 1;
+                    let (left, right) = (asked.left, asked.right);
+                    let order = orders.get(&question).copied();
+                    let answer = Answer { participant, question, left, right, choice, order, rt_ms: None };
+                    self.collector.answer(answer, row);
+                }
+                Reply::Blank => unanswered.push(&asked.id),
+                Reply::Unknown => answered += 1,
+            }
+        }
+        if answered == 0 {
+            self.collector.report.row(Kind::Rejected, row, format!("{} answered no question", shorten(id)));
+        } else if !unanswered.is_empty() {
+            const SHOWN: usize = 10;
+            let all = self.assigned.len();
+            let more = if unanswered.len() > SHOWN { ", ..." } else { "" };
+            let shown = unanswered.iter().take(SHOWN).copied().collect::<Vec<_>>().join(", ");
+            let action = format!(
+                "{} left {} of {all} questions unanswered: {shown}{more}",
+                shorten(id),
+                unanswered.len()
+            );
+            self.collector.report.row(Kind::Noted, row, action);
+        }
+        Ok(())
+    }
+}
+
+/// An id or name as it was before a spreadsheet was kept from running it.
+fn label(cell: &str) -> &str {
+    unescape(trim(cell))
+}
+
+/// Recovers the order in which questions were shown from columns that list their names.
+struct Orders {
+    columns: Vec<usize>,
+    by_name: HashMap<String, u32>,
+}
+
+impl Orders {
+    fn of(layout: &Layout, assigned: &Assigned) -> Self {
+        let names = assigned.iter().flat_map(|&(column, question)| {
+            layout.titles[column].iter().take(1).map(move |title| (normalise(title), question))
+        });
+        Self { columns: layout.orders.clone(), by_name: names.collect() }
+    }
+
+    fn of_row(&self, record: &Record<'_>) -> HashMap<u32, u32> {
+        let mut orders = HashMap::new();
+        for &column in &self.columns {
+            let names: Vec<&str> = record.cell(column).split('|').collect();
+            let questions: Vec<Option<&u32>> =
+                names.iter().map(|name| self.by_name.get(&normalise(name))).collect();
+            if questions.iter().any(Option::is_some) && orders.is_empty() {
+                let places = questions.into_iter().enumerate();
+                orders.extend(places.filter_map(|(place, question)| Some((*question?, place as u32 + 1))));
+            }
+        }
+        orders
+    }
+}

@@ -1,0 +1,175 @@
+//! Answers in the formats of other programs.
+
+use crate::choice::Choice;
+use crate::escape::escape;
+use crate::value::{Answer, Responses};
+use std::io::Write;
+
+/// What to do with answers without preference where a format has none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Ties {
+    /// Refuse to write.
+    #[default]
+    Refuse,
+    /// Write one win each way. A tie then weighs as much as two answers.
+    Split,
+    /// Leave them out.
+    Drop,
+}
+
+/// What was written, and what was not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Written {
+    /// Rows under the header.
+    pub rows: u64,
+    /// Answers without preference among those read.
+    pub ties: u64,
+    /// Answers to controls, which compare nothing and are left out.
+    pub controls: u64,
+}
+
+/// Why nothing, or not everything, was written.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// The format has no ties.
+    #[error("{format} has no answers without preference, and there are {ties}: split or drop them")]
+    Ties {
+        /// The format.
+        format: &'static str,
+        /// How many there are.
+        ties: u64,
+    },
+    /// What the system said.
+    #[error("writing answers")]
+    Io(#[from] csv::Error),
+}
+
+/// `participant,form,order,question,object,left,right,choice,rt_ms`: everything, with the sides as they were shown. Cells that a
+/// spreadsheet would run as a formula are escaped; reading the file gives the same answers.
+///
+/// # Errors
+/// If `out` cannot be written to.
+pub fn write_long(responses: &Responses, out: impl Write) -> Result<Written, WriteError> {
+    let mut writer = csv::Writer::from_writer(out);
+    writer.write_record([
+        "participant",
+        "form",
+        "order",
+        "question",
+        "object",
+        "left",
+        "right",
+        "choice",
+        "rt_ms",
+    ])?;
+    let mut written = Written::default();
+    for answer in &responses.answers {
+        let participant = &responses.participants[answer.participant as usize];
+        let question = &responses.questions[answer.question as usize];
+        let [left, right] = [answer.left, answer.right].map(|item| responses.items[item as usize].as_str());
+        let order = answer.order.map_or(String::new(), |order| order.to_string());
+        let rt_ms = answer.rt_ms.map_or(String::new(), |time| time.to_string());
+        let texts = [
+            participant.id.as_str(),
+            participant.form.as_deref().unwrap_or(""),
+            &order,
+            &question.id,
+            &question.object,
+            left,
+            right,
+            answer.choice.name(),
+            &rt_ms,
+        ];
+        writer.write_record(texts.map(|text| escape(text).into_owned()))?;
+        written.rows += 1;
+        written.ties += u64::from(answer.choice == Choice::NoPreference);
+    }
+    writer.flush().map_err(csv::Error::from)?;
+    Ok(written)
+}
+
+/// pwcmp: `observer,session,scene,condition_A,condition_B,is_A_selected`; A was on the left. `names` are the items'; the
+/// scene is the object, or the group.
+///
+/// # Errors
+/// [`WriteError::Ties`] before anything is written; else if `out` cannot be written to.
+///
+/// # Panics
+/// If there are fewer names than items.
+pub fn write_pwcmp(
+    responses: &Responses,
+    names: &[String],
+    ties: Ties,
+    out: impl Write,
+) -> Result<Written, WriteError> {
+    let mut written = counted(responses);
+    if ties == Ties::Refuse && written.ties > 0 {
+        return Err(WriteError::Ties { format: "pwcmp", ties: written.ties });
+    }
+    let mut writer = csv::Writer::from_writer(out);
+    writer.write_record(["observer", "session", "scene", "condition_A", "condition_B", "is_A_selected"])?;
+    for answer in comparing(responses) {
+        let participant = &responses.participants[answer.participant as usize];
+        let question = &responses.questions[answer.question as usize];
+        let scene = if question.object.is_empty() { &question.group } else { &question.object };
+        let scene = if scene.is_empty() { "all" } else { scene };
+        let session = participant.form.as_deref().unwrap_or("1");
+        let [left, right] = [answer.left, answer.right].map(|item| names[item as usize].as_str());
+        let selected: &[&str] = match (answer.choice, ties) {
+            (Choice::Left, _) => &["1"],
+            (Choice::Right, _) => &["0"],
+            (Choice::NoPreference, Ties::Split) => &["1", "0"],
+            (Choice::NoPreference, _) => &[],
+        };
+        for selected in selected {
+            let texts = [&participant.id, session, scene, left, right, selected];
+            writer.write_record(texts.map(|text| escape(text).into_owned()))?;
+            written.rows += 1;
+        }
+    }
+    writer.flush().map_err(csv::Error::from)?;
+    Ok(written)
+}
+
+/// arenakit: `model_a,model_b,winner,item_id,voter_id`; `model_a` was on the left, the winner is `a`, `b` or `tie`.
+/// `names` are the items'.
+///
+/// # Errors
+/// If `out` cannot be written to.
+///
+/// # Panics
+/// If there are fewer names than items.
+pub fn write_arenakit(
+    responses: &Responses,
+    names: &[String],
+    out: impl Write,
+) -> Result<Written, WriteError> {
+    let mut written = counted(responses);
+    let mut writer = csv::Writer::from_writer(out);
+    writer.write_record(["model_a", "model_b", "winner", "item_id", "voter_id"])?;
+    for answer in comparing(responses) {
+        let [left, right] = [answer.left, answer.right].map(|item| names[item as usize].as_str());
+        let winner = match answer.choice {
+            Choice::Left => "a",
+            Choice::NoPreference => "tie",
+            Choice::Right => "b",
+        };
+        let question = &responses.questions[answer.question as usize].id;
+        let voter = &responses.participants[answer.participant as usize].id;
+        writer.write_record([left, right, winner, question, voter].map(|text| escape(text).into_owned()))?;
+        written.rows += 1;
+    }
+    writer.flush().map_err(csv::Error::from)?;
+    Ok(written)
+}
+
+/// Answers that compare two items.
+fn comparing(responses: &Responses) -> impl Iterator<Item = &Answer> {
+    responses.answers.iter().filter(|answer| answer.left != answer.right)
+}
+
+fn counted(responses: &Responses) -> Written {
+    let ties = comparing(responses).filter(|answer| answer.choice == Choice::NoPreference).count();
+    let controls = responses.answers.len() - comparing(responses).count();
+    Written { rows: 0, ties: ties as u64, controls: controls as u64 }
+}

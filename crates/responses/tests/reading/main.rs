@@ -1,0 +1,7 @@
+//! Files of answers as people have them, whole and damaged.
+
+mod exports;
+mod mutated;
+mod refusals;
+mod study;
+mod written;
