@@ -17,6 +17,7 @@ mod respondents;
 mod scatter;
 mod stages;
 mod style;
+mod sweep;
 mod worths;
 
 use crate::ballots::{BallotGroup, ballot_groups, ballots};
@@ -25,6 +26,8 @@ use crate::statistics::Ballot;
 use crate::tally::Tally;
 use canvas::Canvas;
 use legend::Swatch;
+
+pub use sweep::sweep_figures;
 
 /// A figure.
 #[derive(Debug, Clone, PartialEq)]

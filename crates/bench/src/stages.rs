@@ -1,6 +1,7 @@
 //! The six stages of an extraction, in seconds.
 
 use design::Stage;
+use extract::StageTimes;
 use serde::{Deserialize, Serialize};
 
 /// How long each stage of one extraction took, in seconds.
@@ -13,6 +14,19 @@ pub struct StageSeconds {
     pub geometry_s: f64,
     pub clustering_s: f64,
     pub normals_s: f64,
+}
+
+impl From<&StageTimes> for StageSeconds {
+    fn from(times: &StageTimes) -> Self {
+        Self {
+            allocation_s: times.allocation.as_secs_f64(),
+            sampling_s: times.sampling.as_secs_f64(),
+            vertex_s: times.vertex.as_secs_f64(),
+            geometry_s: times.geometry.as_secs_f64(),
+            clustering_s: times.clustering.as_secs_f64(),
+            normals_s: times.normals.as_secs_f64(),
+        }
+    }
 }
 
 impl StageSeconds {

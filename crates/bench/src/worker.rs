@@ -77,7 +77,7 @@ pub fn serve<'a>(
 /// Extracts once and drops the mesh; dropping is not in any stage.
 fn time(subject: &Subject<'_>, threads: u32, reference: &mut Reference) -> Result<Measurement, String> {
     let reference_s = Some(reference.time().as_secs_f64());
-    Ok(Measurement { stages: seconds(&extract_once(subject, threads)?), reference_s })
+    Ok(Measurement { stages: StageSeconds::from(&extract_once(subject, threads)?), reference_s })
 }
 
 fn peak(subject: &Subject<'_>, threads: u32) -> Result<Option<PeakBytes>, String> {
@@ -94,17 +94,6 @@ fn extract_once(subject: &Subject<'_>, threads: u32) -> Result<StageTimes, Strin
     let execution = Execution { threads: threads as usize };
     let extraction = extract(subject.field, &subject.lattice, &subject.settings, &execution);
     extraction.map(|extraction| black_box(extraction).times).map_err(|error| error.to_string())
-}
-
-fn seconds(times: &StageTimes) -> StageSeconds {
-    StageSeconds {
-        allocation_s: times.allocation.as_secs_f64(),
-        sampling_s: times.sampling.as_secs_f64(),
-        vertex_s: times.vertex.as_secs_f64(),
-        geometry_s: times.geometry.as_secs_f64(),
-        clustering_s: times.clustering.as_secs_f64(),
-        normals_s: times.normals.as_secs_f64(),
-    }
 }
 
 impl Reply {
@@ -181,7 +170,7 @@ mod tests {
             clustering: ms(50_000),
             normals: ms(600_000),
         };
-        let stages = seconds(&times);
+        let stages = StageSeconds::from(&times);
         let expected = StageSeconds {
             allocation_s: 0.001,
             sampling_s: 0.02,

@@ -34,6 +34,8 @@ pub(crate) enum Command {
     Report(Run),
     /// Check a study file and everything it names, without doing any work
     Validate(Validate),
+    /// Extract one configuration and print what there is to know of it
+    Inspect(Inspect),
     /// Judge a questionnaire before anyone answers, and deal its forms
     #[command(subcommand)]
     Design(Design),
@@ -112,6 +114,8 @@ pub(crate) struct Bench {
 pub(crate) enum BenchVerb {
     /// Say of every configuration whether it is faster in B than in A; exit 1 if one is slower beyond both limits
     Compare(Compare),
+    /// Measure the study's [benchmark.sweep]: every resolution on every number of threads; tables and figures
+    Sweep(Run),
     /// Make a run of a published table of means, so that it can stand beside a run of ours
     Import(Import),
     /// Measure what is asked on standard input; `isostudy bench` starts this
@@ -179,6 +183,9 @@ pub(crate) struct Worker {
     pub(crate) threads: u32,
     #[arg(long)]
     pub(crate) pin: bool,
+    /// The study's sweep at so many cells per axis, instead of its benchmark
+    #[arg(long)]
+    pub(crate) cells: Option<u32>,
 }
 
 /// A number that is finite and not negative.
@@ -273,6 +280,27 @@ pub(crate) enum TieRule {
     Refuse,
     Split,
     Drop,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Inspect {
+    /// Configuration, such as ss_bi
+    pub(crate) id: String,
+    /// Cells along the longest axis of the volume [default: those of the benchmark]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub(crate) resolution: Option<u32>,
+    /// Study that has the configuration
+    #[arg(long, value_name = "TOML", default_value = "configs/paper.toml")]
+    pub(crate) study: PathBuf,
+    /// Extractions to take the median time of, after one of warm-up
+    #[arg(long, value_name = "N", default_value_t = 11, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) iterations: u32,
+    /// Threads in the sampling stage; 0 takes every core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..=1024))]
+    pub(crate) threads: u32,
+    /// Print JSON instead
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]

@@ -3,6 +3,7 @@
 mod answers;
 mod args;
 mod comparing;
+mod inspect;
 mod manifest;
 mod picture;
 mod pipeline;
@@ -88,6 +89,7 @@ fn run(command: Command) -> Result<Outcome> {
         Command::Analyse(arguments) if arguments.self_test.self_test => return self_test(&arguments),
         Command::Analyse(arguments) => analyse(&arguments),
         Command::Convert(arguments) => answers::convert(&arguments),
+        Command::Inspect(arguments) => inspect::inspect(&arguments),
         Command::Validate(arguments) => validate(&arguments.study),
         Command::Design(Design::Check(arguments)) => return questionnaire::check(&arguments),
         Command::Design(Design::Rules) => questionnaire::rules(),
@@ -102,6 +104,12 @@ fn run(command: Command) -> Result<Outcome> {
 fn time(arguments: &Bench) -> Result<Outcome> {
     match &arguments.verb {
         Some(BenchVerb::Compare(arguments)) => return comparing::compare(arguments),
+        Some(BenchVerb::Sweep(run)) => with_pipeline(run, |pipeline, out| {
+            for table in pipeline.sweep()? {
+                say(&table)?;
+            }
+            say(&out.join("bench/sweep").display().to_string())
+        }),
         Some(BenchVerb::Import(arguments)) => comparing::import(arguments),
         Some(BenchVerb::Worker(arguments)) => pipeline::measure(arguments),
         None => {

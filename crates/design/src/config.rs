@@ -312,6 +312,23 @@ pub struct BenchmarkSection {
     pub threads: u32,
     /// TOML file that describes the CPU the numbers are meant for.
     pub target: String,
+    /// What `isostudy bench sweep` measures; leave out for a study that sweeps nothing.
+    pub sweep: Option<SweepSection>,
+}
+
+/// Resolutions and thread counts, each of which is measured with each.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SweepSection {
+    /// Ids of the objects.
+    pub objects: Vec<String>,
+    /// Cells along the longest axis of an object's volume, ascending.
+    pub cells: Vec<u32>,
+    /// Threads, ascending.
+    pub threads: Vec<u32>,
+    /// Rounds for each resolution and thread count.
+    #[serde(deserialize_with = "whole")]
+    pub iterations: u32,
 }
 
 /// One question: what is shown on which side.

@@ -138,6 +138,27 @@ pub struct Topology {
     pub euler_characteristic: i64,
 }
 
+/// What one configuration of a sweep is at one resolution, with positions computed from indices.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SweepMesh {
+    /// Which configuration.
+    pub id: ConfigurationId,
+    /// Cells along the longest axis of the volume.
+    pub cells: u32,
+    /// Sample points that the lattice needs.
+    pub needed_samples: u64,
+    /// Vertices of the mesh.
+    pub vertices: u64,
+    /// Triangles of the mesh.
+    pub triangles: u64,
+    /// Mean of the normalised radius ratio; 0 of no triangle, as the others.
+    pub radius_ratio_mean: f64,
+    /// Mean of longest over shortest edge.
+    pub edge_ratio_mean: f64,
+    /// Mean of the published ratio of two edges.
+    pub published_aspect_ratio_mean: f64,
+}
+
 /// A benchmark run: every sample, the plan it followed, the machine it ran on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BenchRun {

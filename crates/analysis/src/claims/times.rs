@@ -7,9 +7,11 @@ use crate::interval::{Interval, t_over_respondents as over_rounds};
 use crate::verdict::Verdict;
 use design::Clustering::{self, EdgeCollapse, Integrated};
 use design::published::Claim;
+use design::record::BenchRun;
 
-const VERTEX: Measure = Measure { published: |p| p.vertex_s, ours: Ours::Times(|t| t.vertex_s) };
-const GEOMETRY: Measure = Measure { published: |p| p.geometry_s, ours: Ours::Times(|t| t.geometry_s) };
+pub(crate) const VERTEX: Measure = Measure { published: |p| p.vertex_s, ours: Ours::Times(|t| t.vertex_s) };
+pub(crate) const GEOMETRY: Measure =
+    Measure { published: |p| p.geometry_s, ours: Ours::Times(|t| t.geometry_s) };
 const ALL: [Clustering; 3] = [Clustering::None, Integrated, EdgeCollapse];
 
 pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
@@ -27,14 +29,7 @@ pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
         _ => Vec::new(),
     };
     let (value, run) = (claim.value?, inputs.bench?);
-    let cases = ratios(Side::Ours);
-    let ours = mean_change(&cases)?;
-    // Cases are paired within a round, so that what slows a whole round down cancels. A round that lacks a case would
-    // be a mean over others.
-    let whole = |of: &Vec<f64>| of.len() == cases.len();
-    let rounds = (0..run.iterations).map(|round| ratios(Side::Round(round))).filter(whole);
-    let changes: Vec<f64> = rounds.filter_map(|of| mean_change(&of)).collect();
-    let interval = over_rounds(&changes);
+    let Estimate { published, ours, interval } = estimate(run, ratios, mean_change)?;
     let direction = direction(value, interval);
     let verdict = if !run.differences.is_empty() {
         let model = run.machine.model.as_deref().unwrap_or("an unnamed CPU");
@@ -45,13 +40,38 @@ pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
         Verdict::differs(format!("{direction}; measured on a matching machine"))
     };
     Some(Finding {
-        from_published: mean_change(&ratios(Side::Published)),
+        from_published: published,
         as_published: Some(ours),
         ours: Some(ours),
         decimals: 2,
         remark: String::new(),
         verdict,
     })
+}
+
+/// What a time of theirs and of ours comes to.
+pub(crate) struct Estimate {
+    pub(crate) published: Option<f64>,
+    pub(crate) ours: f64,
+    /// Over rounds; `None` of too few.
+    pub(crate) interval: Option<Interval>,
+}
+
+/// What `summary` makes of the cases of each side; `None` if we have none.
+///
+/// Cases are paired within a round, so that what slows a whole round down cancels. A round that lacks a case would be a
+/// mean over others and is left out of the interval.
+pub(crate) fn estimate(
+    run: &BenchRun,
+    cases: impl Fn(Side) -> Vec<f64>,
+    summary: fn(&[f64]) -> Option<f64>,
+) -> Option<Estimate> {
+    let own = cases(Side::Ours);
+    let whole = |of: &Vec<f64>| of.len() == own.len();
+    let rounds = (0..run.iterations).map(|round| cases(Side::Round(round))).filter(whole);
+    let by_round: Vec<f64> = rounds.filter_map(|of| summary(&of)).collect();
+    let (published, interval) = (summary(&cases(Side::Published)), over_rounds(&by_round));
+    Some(Estimate { published, ours: summary(&own)?, interval })
 }
 
 /// Whether we see the published direction at all; noise has a sign too.

@@ -13,6 +13,7 @@ mod meshes;
 mod page;
 mod report;
 mod stimuli;
+mod sweep;
 mod tables;
 mod timings;
 

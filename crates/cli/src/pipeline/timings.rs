@@ -1,6 +1,6 @@
 //! The benchmark: every configuration timed, in rounds, in processes of its own; and what follows from the samples.
 
-use super::Pipeline;
+use super::{Pipeline, sweep};
 use crate::args::Worker;
 use crate::progress::Step;
 use crate::store::{Inputs, Stamp, remove_if_there, sha256, write_whole};
@@ -11,7 +11,7 @@ use anyhow::{Context, Result, bail};
 use bench::{BenchError, Entry, Plan, ProcessExecutor, Subject};
 use design::machine::Machine;
 use design::record::{BenchRun, Purpose};
-use design::{ConfigurationId, Study};
+use design::{Configuration, ConfigurationId, Study};
 use std::fs::File;
 use std::io::Write;
 use std::process::Command;
@@ -23,6 +23,21 @@ pub(crate) enum PlanLength {
     Short,
     /// `benchmark.iterations`, as in the paper, with A/A block and peak memory.
     Full,
+}
+
+/// What one run measures.
+pub(super) struct Bout<'a> {
+    pub(super) plan: &'a Plan,
+    /// In the order that the measuring process counts them.
+    pub(super) configurations: Vec<&'a Configuration>,
+    /// Cells per axis of the study's sweep; `None` for the benchmark's own spacing.
+    pub(super) cells: Option<u32>,
+}
+
+impl Bout<'_> {
+    fn ids(&self) -> Vec<ConfigurationId> {
+        self.configurations.iter().map(|configuration| configuration.id.clone()).collect()
+    }
 }
 
 impl Pipeline<'_> {
@@ -42,7 +57,9 @@ impl Pipeline<'_> {
         let step = Step::begin("timings", count * plan.iterations as usize, 0);
         let journal = self.store.journal(stage_name(length));
         let stamp = self.stage(stage_name(length), inputs, |writer| {
-            let run = self.run(&plan, machine, &journal, &key, &step)?;
+            let bout =
+                Bout { plan: &plan, configurations: self.study.configurations.iter().collect(), cells: None };
+            let run = self.run(&bout, machine, &journal, &key, &step)?;
             let folder = stage_name(length);
             writer.write_json(&format!("{folder}/run.json"), &run)?;
             writer.write(&format!("{folder}/samples.csv"), bench::samples_csv(&run.samples).as_bytes())?;
@@ -103,15 +120,16 @@ impl Pipeline<'_> {
         })
     }
 
-    fn run(
+    pub(super) fn run(
         &self,
-        plan: &Plan,
+        bout: &Bout<'_>,
         machine: Machine,
         journal: &std::path::Path,
         key: &str,
         step: &Step,
     ) -> Result<BenchRun> {
-        let done = self.take_up(journal, key, plan)?;
+        let plan = bout.plan;
+        let done = self.take_up(journal, key, bout)?;
         let lines: String = [Entry::Begun { key: key.into() }].iter().chain(&done).map(Entry::line).collect();
         write_whole(journal, lines.as_bytes())?;
         let mut file = File::options().append(true).open(journal)?;
@@ -122,25 +140,26 @@ impl Pipeline<'_> {
             command.args(["bench", "worker"]).arg(&self.study.path);
             command.args(["--sha256", &digest, "--threads", &plan.threads.to_string()]);
             command.args(plan.pin.then_some("--pin"));
+            if let Some(cells) = bout.cells {
+                command.args(["--cells", &cells.to_string()]);
+            }
             command
         };
-        let ids: Vec<ConfigurationId> = self.study.configurations.iter().map(|c| c.id.clone()).collect();
         let mut record = |entry: &Entry| file.write_all(entry.line().as_bytes());
         let mut executor = ProcessExecutor::new(&worker);
         let on_turn = &mut |done, all| step.set(done, all);
-        Ok(bench::run(plan, &ids, &mut executor, machine, done, &mut record, on_turn)?)
+        Ok(bench::run(plan, &bout.ids(), &mut executor, machine, done, &mut record, on_turn)?)
     }
 
     /// What a killed run of the same plan, machine and code left behind.
-    fn take_up(&self, journal: &std::path::Path, key: &str, plan: &Plan) -> Result<Vec<Entry>> {
+    fn take_up(&self, journal: &std::path::Path, key: &str, bout: &Bout<'_>) -> Result<Vec<Entry>> {
         let Ok(text) = std::fs::read_to_string(journal) else { return Ok(Vec::new()) };
         if self.store.forced() {
             eprintln!("timings: begun anew, as --force says; an unfinished run is not gone on with");
             return Ok(Vec::new());
         }
-        let ids: Vec<ConfigurationId> = self.study.configurations.iter().map(|c| c.id.clone()).collect();
         let read = bench::read_journal(&text, key).map_err(BenchError::from);
-        match read.and_then(|done| bench::check_journal(plan, &ids, &done).map(|()| done)) {
+        match read.and_then(|done| bench::check_journal(bout.plan, &bout.ids(), &done).map(|()| done)) {
             Ok(done) => {
                 if !done.is_empty() {
                     eprintln!("timings: an unfinished run is gone on with ({} entries)", done.len());
@@ -164,7 +183,7 @@ impl Pipeline<'_> {
     }
 
     /// What is asked of the extractor.
-    fn workload(&self, inputs: Inputs) -> Result<Inputs> {
+    pub(super) fn workload(&self, inputs: Inputs) -> Result<Inputs> {
         let mut inputs =
             inputs.value("extraction", &self.study.file.extraction).value("methods", &self.study.methods());
         for object in &self.study.file.objects {
@@ -184,15 +203,27 @@ pub(crate) fn measure(arguments: &Worker) -> Result<()> {
         bail!("{} was changed while the benchmark ran", study.path.display());
     }
     let fields = Fields::new(&study);
+    let sweep = match (arguments.cells, &study.file.benchmark.sweep) {
+        (Some(cells), Some(section)) => Some((cells, section)),
+        (Some(_), None) => bail!("{}: there is no [benchmark.sweep]", study.path.display()),
+        (None, _) => None,
+    };
+    let configurations: Vec<&Configuration> = match sweep {
+        Some((_, section)) => sweep::configurations(&study, section),
+        None => study.configurations.iter().collect(),
+    };
     let mut subject = |number: usize| -> Result<Subject<'_>, String> {
-        let configuration = study.configurations.get(number).ok_or("there is no such configuration")?;
+        let configuration = *configurations.get(number).ok_or("there is no such configuration")?;
         let object = study.object(configuration);
-        let (spacing, _) = subject::spacing(object, Purpose::Benchmark);
+        let (spacing, purpose) = match sweep {
+            Some((cells, _)) => (subject::spacing_of_cells(object, cells), Purpose::Indexed),
+            None => (object.benchmark_spacing, Purpose::Benchmark),
+        };
         let subject = || -> Result<Subject<'_>> {
             Ok(Subject {
                 field: fields.get(configuration.object)?,
                 lattice: subject::lattice(object, configuration.id.method.arrangement, spacing)?,
-                settings: subject::settings(&study, configuration, Purpose::Benchmark),
+                settings: subject::settings(&study, configuration, purpose),
             })
         };
         subject().map_err(|error| format!("{error:#}"))
@@ -202,7 +233,7 @@ pub(crate) fn measure(arguments: &Worker) -> Result<()> {
 }
 
 /// The machine, and the commit that this program was built from.
-fn read_machine() -> Machine {
+pub(super) fn read_machine() -> Machine {
     let mut machine = bench::read_machine();
     let told = |text: &'static str| (!text.is_empty()).then_some(text);
     machine.build.commit = told(env!("ISOSTUDY_COMMIT")).map(Into::into);

@@ -1,0 +1,274 @@
+//! What the published benchmark was said to show, sentence by sentence, with its numbers and ours.
+
+use super::Block;
+use super::finding::{Finding, Standing};
+use super::words::{change, interval, list, number, whole};
+use crate::claims::numbers::{Measure, Numbers, Ours, Side, mean, mean_change};
+use crate::claims::times::{Estimate, GEOMETRY, VERTEX, estimate};
+use crate::inputs::Inputs;
+use crate::mesh_set::{discard_fraction, known};
+use crate::verdict::prints_alike;
+use design::Clustering::{self, EdgeCollapse, Integrated, None as Unclustered};
+use design::{Arrangement, Method};
+
+const TOTAL: Measure =
+    Measure { published: |p| p.total_without_normals_s, ours: Ours::Times(|t| t.total_without_normals_s()) };
+const SAMPLING_SHARE: Measure = Measure {
+    published: |p| p.sampling_s / p.total_without_normals_s,
+    ours: Ours::Times(|t| t.sampling_s / t.total_without_normals_s()),
+};
+const TRIANGLES: Measure =
+    Measure { published: |p| p.triangles as f64, ours: Ours::Mesh(|m| m.counts.triangles as f64) };
+const DISCARD_AS_PUBLISHED: Measure = Measure {
+    published: |p| 100.0 * p.discard_fraction,
+    ours: Ours::Mesh(|m| 100.0 * discard_fraction(m.counts.discarded_as_published, m.counts.triangles)),
+};
+const DISCARD: Measure = Measure {
+    ours: Ours::Mesh(|m| 100.0 * discard_fraction(m.counts.discarded_triangles, m.counts.triangles)),
+    ..DISCARD_AS_PUBLISHED
+};
+const TWO_EDGES: Measure = Measure {
+    published: |p| p.aspect_ratio_mean,
+    ours: Ours::Shape(|m| known(&m.quality.published_aspect_ratio, |d| d.mean)),
+};
+/// Not published; the published side of this measure is that of two edges.
+const THREE_EDGES: Measure =
+    Measure { ours: Ours::Shape(|m| known(&m.quality.edge_ratio, |d| d.mean)), ..TWO_EDGES };
+const ALL: [Clustering; 3] = [Unclustered, Integrated, EdgeCollapse];
+
+/// Nothing if no benchmark was published.
+pub(super) fn findings(inputs: &Inputs<'_>) -> Vec<Block> {
+    if inputs.study.published.benchmark.is_empty() {
+        return Vec::new();
+    }
+    let numbers = Numbers::of(inputs);
+    let mut found = Vec::new();
+    found.extend(sampling_share(inputs, &numbers));
+    found.extend(clustering_cost(inputs, &numbers, Integrated, Unclustered));
+    found.extend(clustering_cost(inputs, &numbers, EdgeCollapse, Unclustered));
+    found.extend(clustering_cost(inputs, &numbers, EdgeCollapse, Integrated));
+    found.extend(arrangement_cost(inputs, &numbers));
+    found.extend(reduction(&numbers, Integrated));
+    found.extend(reduction(&numbers, EdgeCollapse));
+    found.extend(triangles_left(inputs, &numbers));
+    found.extend(regularity(&numbers));
+    let mut blocks = Vec::new();
+    if let (Some(run), false) = (inputs.bench, found.is_empty()) {
+        let model = run.machine.model.as_deref().unwrap_or("an unnamed CPU");
+        blocks.push(Block::Text(format!(
+            "Means over objects and lattices, or over objects and clusterings. Our times are from {} rounds on {model}; they \
+             are compared as shares and ratios only, since the published ones are from {}. Intervals are of 95 %, over rounds.",
+            run.iterations, run.target.name
+        )));
+    }
+    blocks.extend(found.into_iter().map(Block::Finding));
+    blocks
+}
+
+/// What an estimate is worth beside the published one.
+fn standing(of: &Estimate) -> Standing {
+    match (of.published, of.interval) {
+        (Some(published), Some(i)) if i.low > 0.0 || i.high < 0.0 => {
+            if i.low.signum() == published.signum() {
+                Standing::Holds
+            } else {
+                Standing::Fails
+            }
+        }
+        (_, None) => Standing::Noted,
+        _ => Standing::Open,
+    }
+}
+
+/// `+12.07 % published, +9.31 % here (8.20 to 10.42 %)`.
+fn both(of: &Estimate) -> String {
+    let published = of.published.map_or("not published".into(), |p| format!("{} published", change(p)));
+    let within =
+        of.interval.map_or("too few rounds for an interval".into(), |i| format!("{} %", interval(i, 2)));
+    format!("{published}, {} here ({within})", change(of.ours))
+}
+
+fn sampling_share(inputs: &Inputs<'_>, numbers: &Numbers<'_>) -> Option<Finding> {
+    let shares = |side| -> Vec<f64> {
+        let of = ALL.iter().flat_map(|&clustering| numbers.each(side, SAMPLING_SHARE, clustering));
+        of.map(|share| 100.0 * share).collect()
+    };
+    let found = estimate(inputs.bench?, shares, mean)?;
+    let range = |side| {
+        let of = shares(side);
+        let (low, high) = of.iter().fold((f64::MAX, f64::MIN), |(l, h), &s| (l.min(s), h.max(s)));
+        format!("{} to {} %", number(low, 0), number(high, 0))
+    };
+    let within = found.interval.map_or(String::new(), |i| format!(", interval {}", interval(i, 1)));
+    let published = found.published?;
+    let most = |share: f64| share > 50.0;
+    let text = format!(
+        "Sampling the field takes {} % of the time in the published tables ({} from configuration to configuration) and {} % \
+         here ({}{within}).{}",
+        number(published, 1),
+        range(Side::Published),
+        number(found.ours, 1),
+        range(Side::Ours),
+        if most(published) == most(found.ours) { "" } else { " What costs most is not the same." }
+    );
+    Some(Finding::new(Standing::Noted, text))
+}
+
+/// What a clustering costs, pass by pass and in all.
+fn clustering_cost(
+    inputs: &Inputs<'_>,
+    numbers: &Numbers<'_>,
+    top: Clustering,
+    bottom: Clustering,
+) -> Option<Finding> {
+    let of = |measure| {
+        let cases = |side| numbers.over_clustering(side, measure, top, bottom);
+        estimate(inputs.bench?, cases, mean_change)
+    };
+    let (vertex, geometry, total) = (of(VERTEX)?, of(GEOMETRY)?, of(TOTAL)?);
+    let verb = if top == EdgeCollapse { "Edge collapse" } else { "Integrated clustering" };
+    let against = if bottom == Unclustered { "no clustering" } else { "integrated clustering" };
+    let text = format!(
+        "{verb} against {against}: vertex pass {}; geometry pass {}; whole extraction {}.{}",
+        both(&vertex),
+        both(&geometry),
+        both(&total),
+        told_apart(&[("vertex", &vertex), ("geometry", &geometry), ("whole", &total)])
+    );
+    // The pass in which the clustering works is what its cost was said to be.
+    Some(Finding::new(standing(if top == EdgeCollapse { &geometry } else { &vertex }), text))
+}
+
+fn arrangement_cost(inputs: &Inputs<'_>, numbers: &Numbers<'_>) -> Option<Finding> {
+    let of = |measure| {
+        let cases = |side| numbers.over_arrangement(side, measure, &ALL);
+        estimate(inputs.bench?, cases, mean_change)
+    };
+    let (vertex, geometry, total) = (of(VERTEX)?, of(GEOMETRY)?, of(TOTAL)?);
+    let text = format!(
+        "The body-centred lattice against the simple cubic one: vertex pass {}; geometry pass {}; whole extraction {}.{}",
+        both(&vertex),
+        both(&geometry),
+        both(&total),
+        told_apart(&[("vertex", &vertex), ("geometry", &geometry), ("whole", &total)])
+    );
+    Some(Finding::new(standing(&vertex), text))
+}
+
+/// Names the passes whose direction is another than the published one.
+fn told_apart(passes: &[(&str, &Estimate)]) -> String {
+    let names = |wanted: Standing| -> Vec<&str> {
+        passes.iter().filter(|(_, of)| standing(of) == wanted).map(|(name, _)| *name).collect()
+    };
+    let sentence = |names: Vec<&str>, what: &str| match names.is_empty() {
+        true => String::new(),
+        false => format!(" {what}: {}.", list(&names)),
+    };
+    sentence(names(Standing::Fails), "The other way round here")
+        + &sentence(names(Standing::Open), "No change can be told from noise here")
+}
+
+fn reduction(numbers: &Numbers<'_>, clustering: Clustering) -> Option<Finding> {
+    let of = |side, measure| mean(&numbers.each(side, measure, clustering));
+    let (published, recounted, ours) = (
+        of(Side::Published, DISCARD_AS_PUBLISHED)?,
+        of(Side::Ours, DISCARD_AS_PUBLISHED)?,
+        of(Side::Ours, DISCARD)?,
+    );
+    let name = if clustering == EdgeCollapse { "Edge collapse" } else { "Integrated clustering" };
+    let start = format!("{name} takes away {} % of the triangles", number(ours, 2));
+    let (standing, rest) = if prints_alike(published, ours, 1) {
+        (Standing::Holds, format!("; {} % is published.", number(published, 2)))
+    } else {
+        let why = "the published count, which takes some triangles twice, comes to";
+        (
+            Standing::Fails,
+            format!(", not the published {} %; {why} {} % here.", number(published, 2), number(recounted, 2)),
+        )
+    };
+    Some(Finding::new(standing, start + &rest))
+}
+
+/// Integrated and edge collapse of one lattice and object.
+struct Duel {
+    name: String,
+    integrated: f64,
+    collapsed: f64,
+}
+
+fn duels(numbers: &Numbers<'_>, side: Side, measure: Measure, arrangement: Arrangement) -> Vec<Duel> {
+    let of = |(object, own): (usize, Arrangement)| {
+        let get = |clustering| numbers.get(side, measure, object, Method { arrangement, clustering });
+        let name = numbers.object_name(object).to_owned();
+        (own == arrangement).then_some(())?;
+        Some(Duel { name, integrated: get(Integrated)?, collapsed: get(EdgeCollapse)? })
+    };
+    numbers.lattice_cases().into_iter().filter_map(of).collect()
+}
+
+fn triangles_left(inputs: &Inputs<'_>, numbers: &Numbers<'_>) -> Option<Finding> {
+    let (mut parts, mut holds, mut of) = (Vec::new(), 0, 0);
+    for &arrangement in &inputs.study.file.arrangements {
+        let duels = duels(numbers, Side::Ours, TRIANGLES, arrangement);
+        let fewer = duels.iter().filter(|d| d.collapsed < d.integrated).count();
+        (holds, of) = (holds + duels.iter().filter(|d| d.collapsed > d.integrated).count(), of + duels.len());
+        let each: Vec<String> = duels
+            .iter()
+            .map(|d| {
+                format!("{} {} against {}", d.name, whole(d.collapsed as u64), whole(d.integrated as u64))
+            })
+            .collect();
+        if !each.is_empty() {
+            parts.push(format!(
+                "on the {} lattice in {fewer} of {} cases ({})",
+                arrangement.label(),
+                each.len(),
+                list(&each)
+            ));
+        }
+    }
+    let text = format!(
+        "Edge collapse is said to leave more triangles than integrated clustering. It leaves fewer {}.",
+        list(&parts)
+    );
+    (of > 0).then(|| Finding::new(if holds == of { Standing::Holds } else { Standing::Fails }, text))
+}
+
+fn regularity(numbers: &Numbers<'_>) -> Option<Finding> {
+    let both = [Arrangement::BodyCentred, Arrangement::SimpleCubic];
+    let of = |side, measure| -> Vec<(String, Duel)> {
+        let named = |a: Arrangement| {
+            duels(numbers, side, measure, a)
+                .into_iter()
+                .map(move |d| (format!("{} {}", d.name, a.label()), d))
+        };
+        both.into_iter().flat_map(named).collect()
+    };
+    let won = |duels: &[(String, Duel)]| duels.iter().filter(|(_, d)| d.integrated < d.collapsed).count();
+    let count = |duels: &[(String, Duel)]| {
+        let lost: Vec<String> = duels
+            .iter()
+            .filter(|(_, d)| d.integrated >= d.collapsed)
+            .map(|(name, d)| format!("{name} {} against {}", number(d.integrated, 3), number(d.collapsed, 3)))
+            .collect();
+        let but = if lost.is_empty() { String::new() } else { format!(", all but {}", list(&lost)) };
+        format!("{} of {}{but}", won(duels), duels.len())
+    };
+    let (three, two, published) =
+        (of(Side::Ours, THREE_EDGES), of(Side::Ours, TWO_EDGES), of(Side::Published, TWO_EDGES));
+    let means: Vec<String> = three
+        .iter()
+        .map(|(name, d)| format!("{name} {} against {}", number(d.integrated, 3), number(d.collapsed, 3)))
+        .collect();
+    let text = format!(
+        "Edge collapse is said to give the more uniform triangles. By the mean ratio of longest to shortest of all three edges \
+         integrated clustering is the more regular in {} ({}); by the published ratio of two edges in {}; in the published \
+         tables themselves in {}.",
+        count(&three),
+        list(&means),
+        count(&two),
+        count(&published)
+    );
+    let standing = if won(&three) == 0 { Standing::Holds } else { Standing::Fails };
+    (!three.is_empty()).then(|| Finding::new(standing, text))
+}
