@@ -233,3 +233,127 @@ fn the_published_table_stands_beside_a_run() {
     let missing = isostudy(&["bench", "import", "/nowhere.csv", "--machine", &machine, "--out", "x"]);
     assert!(missing.code == Some(2) && missing.stderr.contains("/nowhere.csv"), "{}", missing.stderr);
 }
+
+/// A fixture with a small sweep of the sphere.
+fn with_sweep(cells: &str) -> Fixture {
+    let fixture = Fixture::new();
+    let sweep = format!(
+        "sweep = {{ objects = [\"ss\"], cells = {cells}, threads = [1, 2], iterations = 2 }}\ntarget ="
+    );
+    fixture.edit("target =", &sweep);
+    fixture
+}
+
+fn sweep(fixture: &Fixture) -> Run {
+    let (config, out) = (fixture.config(), fixture.out());
+    isostudy(&["bench", "sweep", config.to_str().unwrap(), "--out", out.to_str().unwrap()])
+}
+
+#[test]
+fn a_sweep_goes_on_where_it_stopped() {
+    let fixture = with_sweep("[8, 12]");
+    let first = sweep(&fixture);
+    assert_eq!(first.code, Some(0), "{}", first.stderr);
+    let folder = fixture.out().join("bench/sweep");
+    let read =
+        || -> Value { serde_json::from_slice(&std::fs::read(folder.join("sweep.json")).unwrap()).unwrap() };
+    let found = read();
+    assert_eq!(found["schema"], 1);
+    assert_eq!(found["points"].as_array().unwrap().len(), 2 * 2 * 6);
+    assert_eq!(found["speed_ups"].as_array().unwrap().len(), 2 * 6);
+    for name in ["sweep", "sweep_speed_up"] {
+        for extension in ["csv", "md", "tex"] {
+            assert!(folder.join(format!("{name}.{extension}")).is_file(), "{name}.{extension}");
+        }
+    }
+    for name in ["sweep_time", "sweep_per_triangle", "sweep_speed_up", "sweep_quality"] {
+        assert!(
+            folder.join(format!("{name}.svg")).is_file() && folder.join(format!("{name}.png")).is_file(),
+            "{name}"
+        );
+    }
+    // Killed at the last resolution: only that is measured again.
+    std::fs::remove_file(folder.join("0012-2/run.json")).unwrap();
+    let second = sweep(&fixture);
+    let (made, kept) =
+        (second.stderr.matches(" made, ").count(), second.stderr.matches("up to date").count());
+    assert_eq!((second.code, made, kept), (Some(0), 1, 3), "{}", second.stderr);
+    let again = read();
+    let of = |run: &Value, cells: u64, threads: u64| -> Vec<Value> {
+        let own = |p: &&Value| p["cells"] == cells && p["threads"] == threads;
+        run["points"].as_array().unwrap().iter().filter(own).cloned().collect()
+    };
+    assert_eq!(of(&found, 12, 1), of(&again, 12, 1), "what was measured is not measured again");
+    assert_eq!(sweep(&fixture).stderr.matches(" made, ").count(), 0);
+}
+
+#[test]
+fn a_sweep_that_makes_no_sense_is_refused_by_key() {
+    for (cells, want) in [
+        ("[12, 8]", "benchmark.sweep.cells[1] = 8: must be above benchmark.sweep.cells[0] = 12"),
+        ("[2]", "benchmark.sweep.cells[0] = 2"),
+        ("[]", "benchmark.sweep.cells = []"),
+        ("[2048]", "benchmark.sweep.cells[0] = 2048: the"),
+    ] {
+        let fixture = with_sweep(cells);
+        fixture.edit("memory_gib = 8.0", "memory_gib = 0.05");
+        let refused = sweep(&fixture);
+        assert!(refused.code == Some(2) && refused.stderr.contains(want), "{cells}: {}", refused.stderr);
+    }
+    let none = Fixture::new();
+    let refused = sweep(&none);
+    assert!(
+        refused.code == Some(2) && refused.stderr.contains("there is no [benchmark.sweep]"),
+        "{}",
+        refused.stderr
+    );
+}
+
+/// The panel of the published slides: 20 cells per axis. Counts of the lattice are exact; how many vertices there are is
+/// decided by rounding where the sphere touches its volume, and 2,180 were published.
+#[test]
+fn a_configuration_is_inspected() {
+    let fixture = Fixture::new();
+    let config = fixture.config();
+    let inspect = |id: &str, more: &[&str]| {
+        let start = ["inspect", id, "--study", config.to_str().unwrap(), "--iterations", "3"];
+        isostudy(&[&start[..], more].concat())
+    };
+    let json = inspect("ss_bi", &["--resolution", "20", "--json"]);
+    assert_eq!(json.code, Some(0), "{}", json.stderr);
+    let panel: Value = serde_json::from_str(&json.stdout).unwrap();
+    let counts = &panel["mesh"]["counts"];
+    for (key, published) in [
+        ("stored_samples", 20_812),
+        ("needed_samples", 19_661),
+        ("stored_edges", 291_368),
+        ("needed_edges", 125_260),
+        ("tetrahedra_evaluated", 25_056),
+        ("tetrahedra", 100_800),
+    ] {
+        assert_eq!(counts[key], published, "{key}");
+    }
+    let vertices = counts["vertices"].as_f64().unwrap();
+    assert!((vertices / 2180.0 - 1.0).abs() < 0.01, "{vertices}");
+    assert_eq!((&panel["schema"], panel["times"].as_array().unwrap().len()), (&1.into(), 7));
+    let stages: f64 =
+        panel["times"].as_array().unwrap()[..6].iter().map(|t| t["median"].as_f64().unwrap()).sum();
+    assert!(stages > 0.0);
+    let text = inspect("ss_bi", &["--resolution", "20"]).stdout;
+    for heading in ["mesh", "generation", "timing, ms: medians on", "geometry"] {
+        assert!(text.lines().any(|line| line.starts_with(heading)), "{heading}: {text}");
+    }
+    assert!(
+        text.contains("  sample points stored                      20,812  105.85 % of those needed"),
+        "{text}"
+    );
+    let unknown = inspect("zz_bi", &[]);
+    assert!(unknown.code == Some(2) && unknown.stderr.contains("zz_bi") && unknown.stderr.contains("ss_bu"));
+    assert_eq!(inspect("ss_bi", &["--resolution", "0"]).code, Some(2));
+    let large = inspect("ss_bi", &["--resolution", "4096"]);
+    assert!(
+        large.code == Some(2) && large.stderr.contains("the body-centred lattice needs"),
+        "{}",
+        large.stderr
+    );
+}

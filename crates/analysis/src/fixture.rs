@@ -271,6 +271,7 @@ pub(crate) fn small_study() -> Study {
         format!("{}{}", &text[..from], &text[to..])
     };
     let text = without(text, "[[objects]]\nid = \"as\"", "[[objects]]");
+    let text = without(text, "[benchmark.sweep]", "# Comparison groups");
     let text = without(text, "[[groups]]\nid = \"B\"", "[[groups]]\nid = \"I\"");
     let text = without(text, "[[groups]]\nid = \"P\"", "[responses]");
     let text = &text[..text.find("[published]").unwrap()];

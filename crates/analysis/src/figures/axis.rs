@@ -99,7 +99,11 @@ impl Axis {
     pub(super) fn labels(&self) -> Vec<String> {
         let needs = |&tick: &f64| (0..6).find(|&d| round(tick, d) == round(tick, 9)).unwrap_or(6);
         if self.logarithmic {
-            return self.ticks.iter().map(|t| number(*t, needs(t))).collect();
+            let short = |t: &f64| match *t {
+                t if t >= 1e6 => format!("{} M", number(t / 1e6, 0)),
+                t => number(t, needs(&t)),
+            };
+            return self.ticks.iter().map(short).collect();
         }
         let decimals = self.ticks.iter().map(needs).max().unwrap_or(0);
         self.ticks.iter().map(|&tick| number(tick, decimals)).collect()
@@ -157,6 +161,7 @@ mod tests {
         assert_eq!(Axis::spanning(0.0, 0.0).ticks.len(), 2);
         assert_eq!(Axis::decades(0.03, 450.0).labels(), ["0.01", "0.1", "1", "10", "100", "1,000"]);
         assert_eq!(Axis::decades(0.7, 4.1).labels(), ["0.5", "1", "2", "5"]);
+        assert_eq!(Axis::decades(2e5, 3e7).labels(), ["100,000", "1 M", "10 M", "100 M"]);
         assert_eq!(Axis::decades(1.0, 1.0).labels(), ["1", "2"]);
         let decades = Axis::decades(0.01, 100.0);
         assert!((decades.place(1.0, 100.0, 0.0) - 50.0).abs() < 1e-9);
