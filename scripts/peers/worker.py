@@ -53,7 +53,7 @@ def skimage_marching_cubes():
         seconds = perf_counter() - begin
         return seconds, 0.0, positions[:, ::-1] * request["spacing"] + request["origin"], triangles
 
-    return extract, f"scikit-image {skimage.__version__} marching_cubes (Lewiner), normals included"
+    return extract, f"scikit-image {skimage.__version__} marching_cubes (Lewiner); normals included"
 
 
 def manifold_level_set():
@@ -82,7 +82,7 @@ def manifold_level_set():
         surface = solid.to_mesh()
         return seconds - spent, spent, surface.vert_properties[:, :3], surface.tri_verts
 
-    return extract, f"manifold3d {version('manifold3d')} level_set; each sample crosses into Python, which is in its time"
+    return extract, f"manifold3d {version('manifold3d')} level_set; calls the field through Python, sample by sample: the calls are in its time, which says little of the library"
 
 
 def sphere(x, y, z):

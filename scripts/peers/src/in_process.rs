@@ -34,7 +34,10 @@ struct Ours {
 
 impl Peer for Ours {
     fn name(&self) -> String {
-        format!("{}; vertices and triangles, as the others without normals", self.label)
+        format!(
+            "{}; calls the field, the time of which is taken off; normals are not in its time",
+            self.label
+        )
     }
 
     fn extract(&mut self, grid: &Grid, with_mesh: bool) -> Result<Option<Outcome>> {
@@ -73,7 +76,12 @@ impl Peer for SurfaceNets {
         surface_nets(&self.negated, &shape, [0; 3], [n - 1; 3], &mut self.buffer);
         let extraction_s = begin.elapsed().as_secs_f64();
         let mesh = with_mesh.then(|| TriangleMesh {
-            positions: self.buffer.positions.iter().map(|p| Vec3::from_array(*p) * grid.spacing - REACH).collect(),
+            positions: self
+                .buffer
+                .positions
+                .iter()
+                .map(|p| Vec3::from_array(*p) * grid.spacing - REACH)
+                .collect(),
             normals: Vec::new(),
             triangles: self.buffer.indices.as_chunks::<3>().0.to_vec(),
         });

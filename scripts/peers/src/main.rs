@@ -6,7 +6,7 @@ mod python;
 mod report;
 
 use anyhow::{Context, Result, bail};
-use bench::order;
+use bench::{CpuTimes, order};
 use extract::{Asteroid, ScalarField, Sphere};
 use glam::Vec3;
 use mesh::TriangleMesh;
@@ -53,8 +53,12 @@ pub(crate) struct Outcome {
 
 /// Something that extracts.
 pub(crate) trait Peer {
-    /// Name, version and what is in its time.
+    /// Name and version; after a semicolon, what else is in its time.
     fn name(&self) -> String;
+    /// The process that extracts, if it is another.
+    fn process(&self) -> Option<u32> {
+        None
+    }
     /// `None` if it cannot do this field.
     fn extract(&mut self, grid: &Grid, with_mesh: bool) -> Result<Option<Outcome>>;
 }
@@ -118,17 +122,35 @@ fn run() -> Result<()> {
             }
         }
     }
-    let mut rows = Vec::new();
+    let (mut rows, mut others) = (Vec::new(), Vec::new());
     let mut samples = vec!["field,cells,peer,round,place,extraction_s,sampling_s".to_owned()];
     for name in ["sphere", "asteroid"] {
         for &cells in &arguments.cells {
             let grid = Grid::new(name, cells);
             eprintln!("peers: {name}, {cells} cells per axis");
+            let ours: Vec<u32> =
+                peers.iter().filter_map(|peer| peer.process()).chain([std::process::id()]).collect();
+            let before = CpuTimes::read(&ours, pinned.as_deref());
             let measured = measure(&mut peers, &grid, arguments.rounds, &mut samples)?;
+            let after = CpuTimes::read(&ours, pinned.as_deref());
+            let shares = before.zip(after).and_then(|(before, after)| after.shares_since(&before));
+            others.extend(shares.map(|shares| shares.others + shares.steal));
             rows.extend(report::rows(&grid, measured));
         }
     }
-    report::write(&arguments.out, &rows, &samples, &skipped, pinned.is_some(), arguments.rounds)
+    let conditions = report::Conditions {
+        rounds: arguments.rounds,
+        pinned: pinned.is_some(),
+        others: others.into_iter().reduce(f64::max),
+        notes: peers.iter().map(|peer| peer.name()).collect(),
+        skipped,
+    };
+    report::write(&arguments.out, &rows, &samples, &conditions)
+}
+
+/// Name and version alone.
+fn label(name: &str) -> &str {
+    name.split(';').next().unwrap_or(name)
 }
 
 /// What a peer did with a grid.
@@ -140,15 +162,20 @@ pub(crate) struct Measured {
 }
 
 /// A warm-up that takes the mesh, then rounds in orders of their own.
-fn measure(peers: &mut [Box<dyn Peer>], grid: &Grid, rounds: u32, log: &mut Vec<String>) -> Result<Vec<Measured>> {
+fn measure(
+    peers: &mut [Box<dyn Peer>],
+    grid: &Grid,
+    rounds: u32,
+    log: &mut Vec<String>,
+) -> Result<Vec<Measured>> {
     let mut found: Vec<Option<Measured>> = Vec::new();
     for peer in peers.iter_mut() {
         let outcome = peer.extract(grid, true)?;
         if outcome.is_none() {
-            eprintln!("peers: SKIPPED: {} on the {}", peer.name(), grid.field);
+            eprintln!("peers: SKIPPED: {} on the {}", label(&peer.name()), grid.field);
         }
         found.push(outcome.map(|outcome| Measured {
-            peer: peer.name(),
+            peer: label(&peer.name()).to_owned(),
             extraction_s: Vec::new(),
             sampling_s: Vec::new(),
             mesh: outcome.mesh.unwrap_or_default(),
@@ -159,7 +186,7 @@ fn measure(peers: &mut [Box<dyn Peer>], grid: &Grid, rounds: u32, log: &mut Vec<
             let Some(measured) = &mut found[subject] else { continue };
             let Some(outcome) = peers[subject].extract(grid, false)? else { continue };
             let Outcome { extraction_s, sampling_s, .. } = outcome;
-            let (field, cells, peer) = (grid.field, grid.cells, measured.peer.split([';', ',']).next().unwrap_or_default());
+            let (field, cells, peer) = (grid.field, grid.cells, &measured.peer);
             log.push(format!("{field},{cells},{peer},{round},{place},{extraction_s},{sampling_s}"));
             measured.extraction_s.push(extraction_s);
             measured.sampling_s.push(sampling_s);

@@ -42,8 +42,14 @@ impl PythonPeer {
             .with_context(|| python.display().to_string())?;
         let requests = child.stdin.take();
         let replies = BufReader::new(child.stdout.take().context("its output is a pipe")?);
-        let mut peer =
-            Self { name: String::new(), child, requests, replies, folder: tempfile::tempdir()?, written: None };
+        let mut peer = Self {
+            name: String::new(),
+            child,
+            requests,
+            replies,
+            folder: tempfile::tempdir()?,
+            written: None,
+        };
         match peer.reply()? {
             Reply::Ready { ready } => peer.name = ready,
             Reply::Failed { failed } => bail!("{failed}"),
@@ -76,6 +82,10 @@ impl Peer for PythonPeer {
         self.name.clone()
     }
 
+    fn process(&self) -> Option<u32> {
+        Some(self.child.id())
+    }
+
     fn extract(&mut self, grid: &Grid, with_mesh: bool) -> Result<Option<Outcome>> {
         let samples = self.samples(grid)?;
         let file = self.folder.path().join("mesh.bin");
@@ -94,10 +104,7 @@ impl Peer for PythonPeer {
                 let mesh = if with_mesh { Some(read_mesh(&std::fs::read(&file)?)?) } else { None };
                 Ok(Some(Outcome { extraction_s, sampling_s: callback_s, mesh }))
             }
-            Reply::Failed { failed } => {
-                eprintln!("peers: {}: {failed}", self.name);
-                Ok(None)
-            }
+            Reply::Failed { .. } => Ok(None),
             Reply::Ready { .. } => bail!("unexpected answer"),
         }
     }

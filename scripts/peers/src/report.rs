@@ -10,6 +10,18 @@ use std::path::Path;
 /// What everything is compared with.
 const BASE: &str = "isostudy bi";
 
+/// Under which it was measured.
+pub(crate) struct Conditions {
+    pub(crate) rounds: u32,
+    pub(crate) pinned: bool,
+    /// The largest share of the CPU time that others had during a field and size.
+    pub(crate) others: Option<f64>,
+    /// Names of the peers with what is in their times.
+    pub(crate) notes: Vec<String>,
+    /// Peers that are not there, and why.
+    pub(crate) skipped: Vec<String>,
+}
+
 pub(crate) struct Row {
     field: &'static str,
     cells: u32,
@@ -72,14 +84,8 @@ fn outward(mut mesh: TriangleMesh) -> TriangleMesh {
     mesh
 }
 
-pub(crate) fn write(
-    out: &Path,
-    rows: &[Row],
-    samples: &[String],
-    skipped: &[String],
-    pinned: bool,
-    rounds: u32,
-) -> Result<()> {
+pub(crate) fn write(out: &Path, rows: &[Row], samples: &[String], conditions: &Conditions) -> Result<()> {
+    let Conditions { rounds, pinned, .. } = conditions;
     let mut csv = String::from(
         "field,cells,peer,extraction_q25_s,extraction_median_s,extraction_q75_s,sampling_median_s,ratio_q25,ratio_median,ratio_q75,\
          vertices,triangles,radius_ratio_mean,smallest_angle_deg,boundary_edges,non_manifold_edges,euler_characteristic\n",
@@ -88,7 +94,7 @@ pub(crate) fn write(
         "Extraction beside other libraries, {rounds} interleaved rounds after a warm-up, {}.\n\n\
          | field | cells | extractor | extraction, ms (quartiles) | times isostudy bi | sampling, ms | vertices | triangles | mean radius \
          ratio | smallest angle | boundary, non-manifold edges | \u{3c7} |\n|---|---:|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
-        if pinned { "all on one core" } else { "not pinned" }
+        if *pinned { "all on one core" } else { "not pinned" }
     );
     for row in rows {
         let Row { field, cells, peer, vertices, triangles, .. } = row;
@@ -122,7 +128,13 @@ pub(crate) fn write(
          twice the points of a cubic one.",
         machine.model.as_deref().unwrap_or("an unnamed CPU")
     )?;
-    for reason in skipped {
+    if let Some(others) = conditions.others {
+        writeln!(markdown, "\nOthers had up to {:.0} % of the CPU time meanwhile.", 100.0 * others)?;
+    }
+    for (label, note) in conditions.notes.iter().filter_map(|name| name.split_once("; ")) {
+        writeln!(markdown, "\n{label}: {note}.")?;
+    }
+    for reason in &conditions.skipped {
         writeln!(markdown, "\nSkipped: {reason}.")?;
     }
     std::fs::create_dir_all(out)?;

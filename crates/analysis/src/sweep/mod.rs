@@ -115,6 +115,9 @@ pub struct Sweep {
     pub schema: u32,
     /// The study's id.
     pub study: String,
+    /// The largest share of the CPU time that other processes and other machines on the host had while some of a level was
+    /// measured; `None` where that is not told.
+    pub others: Option<f64>,
     /// In the order of levels, then configurations.
     pub points: Vec<Point>,
     /// Exponents, from [`FIT_FROM`] cells on.
@@ -130,7 +133,10 @@ pub fn sweep(study: &str, levels: &[SweepLevel], meshes: &[SweepMesh]) -> Sweep 
     let points: Vec<Point> = levels.iter().flat_map(|level| points_of(level, meshes)).collect();
     let growth = growth(&points);
     let budgets = budgets::budgets(&points);
-    Sweep { schema: SWEEP_SCHEMA, study: study.into(), speed_ups: speed_ups(levels), points, growth, budgets }
+    let windows = levels.iter().flat_map(|level| &level.run.load).filter(|window| window.sitting.is_some());
+    let others = windows.map(|window| window.others + window.steal).reduce(f64::max);
+    let (study, speed_ups) = (study.into(), speed_ups(levels));
+    Sweep { schema: SWEEP_SCHEMA, study, others, points, growth, speed_ups, budgets }
 }
 
 impl Point {

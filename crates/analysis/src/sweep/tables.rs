@@ -3,6 +3,7 @@
 use super::budgets::Cost;
 use super::{FIT_FROM, Growth, Quantity, Sweep};
 use crate::table::{Cell, Table};
+use crate::timing::BUSY;
 
 const MS: f64 = 1e3;
 
@@ -58,6 +59,13 @@ fn exponents(sweep: &Sweep) -> Table {
          logarithms, which tell how far the points are from a power law. A body has cells\u{b3} sample points and its surface \
          cells\u{b2} triangles. Clustering is the edge collapse; memory is what extraction had resident at most."
     ));
+    table.notes.extend(sweep.others.filter(|others| *others > BUSY).map(|others| {
+        format!(
+            "This machine was not quiet: others had up to {:.0} % of the CPU time. Times, their exponents and speed-ups are \
+             worth little; counts, memory and regularity are not touched.",
+            100.0 * others
+        )
+    }));
     table
 }
 

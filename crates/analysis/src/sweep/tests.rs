@@ -102,6 +102,10 @@ fn tables_have_every_point_and_no_empty_column() {
     let row = tables[3].shown_rows().into_iter().find(|row| row[..3] == ["ss_bu", "32", "1"]).unwrap();
     assert_eq!((row[3].as_str(), row[5].as_str()), ("32768", "4000"));
     assert!((row[7].parse::<f64>().unwrap() - 6.06).abs() < 0.07, "{row:?}");
+    assert!(!exponents.contains("not quiet"), "{exponents}");
+    let busy = sweep_tables(&Sweep { others: Some(0.4), ..made_up() });
+    let note = "This machine was not quiet: others had up to 40 % of the CPU time.";
+    assert!(busy[0].to_markdown().contains(note));
     let empty = Sweep { points: vec![], growth: vec![], speed_ups: vec![], budgets: vec![], ..made_up() };
     assert!(sweep_tables(&empty).is_empty());
 }
