@@ -126,7 +126,7 @@ fn a_killed_study_resumes_to_the_same_bytes() {
         let mut command = killed.command("study");
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         // Ever longer, so that the run gets to its end on a machine of any speed.
-        std::thread::sleep(Duration::from_millis(20 * round));
+        std::thread::sleep(Duration::from_millis(20).mul_f64(1.15_f64.powi(round)));
         match child.try_wait().unwrap() {
             Some(status) => {
                 assert!(status.success());
@@ -420,6 +420,43 @@ fn a_design_is_judged_before_anyone_answers() {
     let quick = Fixture::new();
     let (code, _, said) = check(quick.config().to_str().unwrap(), &[]);
     assert!(code == Some(2) && said.contains("no [forms] section"), "{said}");
+}
+
+#[test]
+fn the_smallest_study_is_sound_and_says_its_power() {
+    let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/two-methods.toml");
+    let out = tempfile::tempdir().unwrap();
+    let run = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
+        let output =
+            command.args(["design", arguments[0]]).arg(&config).args(&arguments[1..]).output().unwrap();
+        (
+            output.status.code(),
+            String::from_utf8(output.stdout).unwrap(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    };
+    let (code, said, _) = run(&["check", "--results", out.path().to_str().unwrap()]);
+    assert!(code == Some(0) && said.ends_with(": no faults\n"), "{said}");
+
+    let folder = out.path().to_str().unwrap();
+    let (code, said, _) = run(&["power", "--studies", "200", "--participants", "48,6", "--out", folder]);
+    assert!(code == Some(0) && said.contains("N = 6 | N = 48"), "{said}");
+    let table = std::fs::read_to_string(out.path().join("power.csv")).unwrap();
+    let powers = |n: &str| -> Vec<f64> {
+        let rows = table.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
+        rows.filter(|row| row[5] == n && row[4] == "0.77").map(|row| row[6].parse().unwrap()).collect()
+    };
+    // Two contrasts, all answers and within the only lattice, and two questions.
+    assert_eq!(powers("6").len(), 4);
+    assert!(powers("6").iter().zip(powers("48")).all(|(few, many)| few + 0.3 < many), "{table}");
+    assert!(out.path().join("power.png").is_file() && out.path().join("power.svg").is_file());
+    for (wrong, place) in
+        [("--shares=1.5", "above 0 and below 1"), ("--person-sd=-1", "0 to 100"), ("--studies=3", "100..")]
+    {
+        let (code, _, said) = run(&["power", wrong]);
+        assert!(code == Some(2) && said.contains(place), "{said}");
+    }
 }
 
 /// What can be told of a file without looking at its pictures tells nothing of what it shows.

@@ -11,6 +11,7 @@ mod forest;
 mod legend;
 mod marks;
 mod meshes;
+mod power;
 mod prediction;
 mod preferences;
 mod respondents;
@@ -26,6 +27,7 @@ use crate::statistics::Ballot;
 use crate::tally::Tally;
 use canvas::Canvas;
 use legend::Swatch;
+pub use power::power_figure;
 
 pub use sweep::sweep_figures;
 

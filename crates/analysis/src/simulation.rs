@@ -98,7 +98,7 @@ impl Population {
 }
 
 /// Davidson's chances `[left, tie, right]` where left is ahead by this many logits.
-fn davidson(ahead: f64, nu: f64) -> [f64; 3] {
+pub(crate) fn davidson(ahead: f64, nu: f64) -> [f64; 3] {
     // Relative to the larger side, so that nothing overflows.
     let behind = (-ahead.abs()).exp();
     let (left, right) = if ahead >= 0.0 { (1.0, behind) } else { (behind, 1.0) };
@@ -138,7 +138,7 @@ pub fn simulate(
     ballots
 }
 
-fn draw([left, tie, _]: [f64; 3], stream: &mut impl Rng) -> Outcome {
+pub(crate) fn draw([left, tie, _]: [f64; 3], stream: &mut impl Rng) -> Outcome {
     let u: f64 = stream.random();
     match u {
         u if u < left => Outcome::Left,
@@ -148,7 +148,7 @@ fn draw([left, tie, _]: [f64; 3], stream: &mut impl Rng) -> Outcome {
 }
 
 /// A standard normal number (Box and Muller 1958).
-fn normal(stream: &mut impl Rng) -> f64 {
+pub(crate) fn normal(stream: &mut impl Rng) -> f64 {
     let (u, v): (f64, f64) = (stream.random(), stream.random());
     (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
 }

@@ -9,6 +9,7 @@ pub(crate) mod contrasts;
 mod design;
 mod mesh_quality;
 pub(crate) mod models;
+pub(crate) mod power;
 mod prediction;
 pub(crate) mod preferences;
 pub(crate) mod screened;

@@ -47,6 +47,8 @@ pub(crate) enum Design {
     Check(Check),
     /// Write the participants' forms, and the key to them
     Forms(Run),
+    /// Say how likely the study is to find a preference, by number of participants
+    Power(Power),
     /// List what `design check` looks for
     Rules,
 }
@@ -61,6 +63,46 @@ pub(crate) struct Check {
     /// Print the faults as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Power {
+    /// Study file with [forms], such as configs/balanced.toml
+    pub(crate) study: PathBuf,
+    /// Numbers of participants [default: from a sixth to twice of forms.participants]
+    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) participants: Vec<u32>,
+    /// Shares of decided answers for the first of two properties
+    #[arg(long, value_name = "SHARE,SHARE", value_delimiter = ',', value_parser = share, default_values_t = [0.6, 0.69, 0.77])]
+    pub(crate) shares: Vec<f64>,
+    /// Standard deviation between people, in logits
+    #[arg(long, value_name = "LOGITS", value_parser = deviation, default_value_t = 1.0)]
+    pub(crate) person_sd: f64,
+    /// Standard deviation between objects, in logits
+    #[arg(long, value_name = "LOGITS", value_parser = deviation, default_value_t = 0.5)]
+    pub(crate) object_sd: f64,
+    /// Davidson's tie parameter nu: two equal items tie with chance nu / (2 + nu)
+    #[arg(long, value_name = "NU", value_parser = deviation, default_value_t = 0.3)]
+    pub(crate) ties: f64,
+    /// Studies to simulate for each share
+    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
+    pub(crate) studies: u64,
+    /// Seed of the simulated studies; the same seed gives the same numbers on any number of threads
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Folder for tables and figure [default: results/<study id>-power]
+    #[arg(long, short, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if value > 0.0 && value < 1.0 { Ok(value) } else { Err("allowed: above 0 and below 1".into()) }
+}
+
+fn deviation(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.0..=100.0).contains(&value) { Ok(value) } else { Err("allowed: 0 to 100".into()) }
 }
 
 /// Where a study is read from and written to.
@@ -130,10 +172,10 @@ pub(crate) struct Compare {
     /// Results folder, or a run.json in it
     pub(crate) b: PathBuf,
     /// A slower configuration is a regression beyond this share of its time in A ...
-    #[arg(long, default_value_t = 0.05, value_name = "SHARE", value_parser = share)]
+    #[arg(long, default_value_t = 0.05, value_name = "SHARE", value_parser = not_negative)]
     pub(crate) relative: f64,
     /// ... and beyond this many seconds
-    #[arg(long, default_value_t = 0.0001, value_name = "SECONDS", value_parser = share)]
+    #[arg(long, default_value_t = 0.0001, value_name = "SECONDS", value_parser = not_negative)]
     pub(crate) absolute: f64,
     /// Compare runs of machines that differ; every heading and verdict then says so
     #[arg(long)]
@@ -189,7 +231,7 @@ pub(crate) struct Worker {
 }
 
 /// A number that is finite and not negative.
-fn share(text: &str) -> Result<f64, String> {
+fn not_negative(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| "is not a number".to_owned())?;
     if number.is_finite() && number >= 0.0 {
         Ok(number)

@@ -93,6 +93,7 @@ fn run(command: Command) -> Result<Outcome> {
         Command::Validate(arguments) => validate(&arguments.study),
         Command::Design(Design::Check(arguments)) => return questionnaire::check(&arguments),
         Command::Design(Design::Rules) => questionnaire::rules(),
+        Command::Design(Design::Power(arguments)) => questionnaire::power(&arguments),
         Command::Design(Design::Forms(run)) => with_pipeline(&run, |pipeline, out| {
             pipeline.forms()?.context(NO_FORMS)?;
             say(&out.join("forms").display().to_string())

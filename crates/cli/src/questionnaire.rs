@@ -1,8 +1,11 @@
-//! What `isostudy design` says of a questionnaire. What is wrong is decided in `design::lint`.
+//! What `isostudy design` says of a questionnaire. What is wrong is decided in `design::lint`, what can be found in
+//! `analysis::power`.
 
-use crate::args::Check;
-use crate::{Outcome, default_folder, say};
-use anyhow::{Context, Result};
+use crate::args::{Check, Power};
+use crate::progress::Step;
+use crate::{Outcome, default_folder, say, store};
+use analysis::power::{Assumptions, power as simulated};
+use anyhow::{Context, Result, ensure};
 use design::Study;
 use design::lint::{Fault, Rule, StimulusFacts, lint, lint_stimuli};
 use raster::Animation;
@@ -25,9 +28,7 @@ struct FaultEntry<'a> {
 /// If the study or an animation cannot be read.
 pub(crate) fn check(arguments: &Check) -> Result<Outcome> {
     let study = Study::load(&arguments.study)?;
-    study.file.forms.as_ref().with_context(|| {
-        format!("{}: no [forms] section; configs/balanced.toml has one to copy", study.path.display())
-    })?;
+    forms_of(&study)?;
     let mut faults = lint(&study);
     let results = arguments.results.clone().unwrap_or_else(|| default_folder(&study));
     match facts(&study, &results.join("stimuli/turntables"))? {
@@ -78,6 +79,60 @@ fn say_faults(study: &Study, faults: &[Fault]) -> Result<()> {
 pub(crate) fn rules() -> Result<()> {
     Rule::ALL.into_iter().try_for_each(|rule| {
         say(&format!("{}\n  {}\n  remedy: {}", rule.id(), rule.meaning(), rule.remedy()))
+    })
+}
+
+/// Prints and writes how likely the study is to find a preference.
+///
+/// # Errors
+/// If the study cannot be read or has no forms, or a file cannot be written.
+pub(crate) fn power(arguments: &Power) -> Result<()> {
+    let study = Study::load(&arguments.study)?;
+    let planned = forms_of(&study)?.participants as usize;
+    let mut participants: Vec<usize> = arguments.participants.iter().map(|&n| n as usize).collect();
+    if participants.is_empty() {
+        // In twelfths of the plan: from a sixth to twice.
+        participants = [2, 4, 6, 8, 12, 16, 24].map(|twelfths| (planned * twelfths).div_ceil(12)).into();
+    }
+    participants.sort_unstable();
+    participants.dedup();
+    let assumptions = Assumptions {
+        participants,
+        shares: arguments.shares.clone(),
+        person_sd: arguments.person_sd,
+        object_sd: arguments.object_sd,
+        ties: arguments.ties,
+        studies: arguments.studies,
+        seed: arguments.seed,
+    };
+    let studies = assumptions.shares.len() * assumptions.studies as usize;
+    let step = Step::begin("studies", studies, studies);
+    let found = simulated(&study, &assumptions, &|| step.tick(1)).unwrap_or_default();
+    step.count_all(true);
+    step.end();
+    ensure!(!found.is_empty(), "{}: no comparison differs in one property alone", study.path.display());
+
+    let tables = analysis::power_tables(&assumptions, &found);
+    let figure = analysis::power_figure(&assumptions, &found)?;
+    let folder = || Path::new("results").join(format!("{}-power", study.file.study.id));
+    let out = arguments.out.clone().unwrap_or_else(folder);
+    std::fs::create_dir_all(&out).with_context(|| out.display().to_string())?;
+    let mut files =
+        vec![("power.svg".to_owned(), figure.svg.into_bytes()), ("power.png".to_owned(), figure.png)];
+    for table in &tables {
+        files.push((format!("{}.csv", table.name), table.to_csv().into_bytes()));
+        files.push((format!("{}.md", table.name), table.to_markdown().into_bytes()));
+    }
+    for (name, bytes) in &files {
+        store::write_whole(&out.join(name), bytes)?;
+    }
+    say(&tables[1].to_markdown())?;
+    say(&out.display().to_string())
+}
+
+fn forms_of(study: &Study) -> Result<&design::config::FormsSection> {
+    study.file.forms.as_ref().with_context(|| {
+        format!("{}: no [forms] section; configs/balanced.toml has one to copy", study.path.display())
     })
 }
 

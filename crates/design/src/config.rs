@@ -84,10 +84,11 @@ pub enum Positions {
 }
 
 /// Whether clustering must keep the surface a manifold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Topology {
     /// It must: the mesh is an oriented manifold with the topology of the unclustered surface.
+    #[default]
     Guarded,
     /// The published rules as they are, defects and all.
     Published,
@@ -115,6 +116,7 @@ pub struct ExtractionSection {
     /// Where lattice positions come from.
     pub positions: Positions,
     /// Whether clustering must keep the surface a manifold.
+    #[serde(default)]
     pub topology: Topology,
     /// With accumulated positions: into how many runs of layers the z axis is cut, each starting its sum anew.
     #[serde(deserialize_with = "whole")]

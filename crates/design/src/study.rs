@@ -589,6 +589,13 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn topology_is_guarded_unless_said_otherwise() {
+        let topology = |to| paper_with("topology = \"published\"", to).unwrap().file.extraction.topology;
+        assert_eq!(topology("topology = \"published\""), crate::config::Topology::Published);
+        assert_eq!(topology(""), crate::config::Topology::Guarded);
+    }
+
+    #[test]
     fn unknown_placements_are_told_what_there_is() {
         let key = "placement = \"mean-of-crossings\"";
         let error = error_with(key, "placement = \"nearest\"");

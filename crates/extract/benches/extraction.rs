@@ -133,6 +133,13 @@ fn placed_at_refined_crossings<const N: u32>(bencher: Bencher, name: &str) {
     placed::<N>(bencher, name, Placement::MeanOfCrossings, true);
 }
 
+/// [`whole`] with an edge collapse after it.
+#[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
+fn collapsed<const N: u32>(bencher: Bencher, name: &str) {
+    let Some(mut subject) = Subject::new(name, N) else { return };
+    bencher.bench_local(|| subject.run(None, Clustering::IntegratedCollapse, 1));
+}
+
 #[divan::bench(args = ["sphere", "asteroid", "gyroid"], consts = CELLS)]
 fn all_samples<const N: u32>(bencher: Bencher, name: &str) {
     let Some(mut subject) = Subject::new(name, N) else { return };

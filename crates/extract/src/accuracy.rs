@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::ExtractError;
 use crate::field::{Kept, ScalarField};
 use crate::level::Level;
-use crate::sampling::on_threads;
+use crate::sampling::{SHARE, on_threads};
 use crate::settings::Execution;
 
 /// Points on a mesh.
@@ -64,7 +64,7 @@ pub fn accuracy(
     let every = mesh.normals.len().div_ceil(VERTICES).max(1);
     let vertices: Vec<usize> = (0..mesh.normals.len()).step_by(every).collect();
     let (distances, angles): (Vec<Option<f64>>, Vec<Option<f64>>) =
-        on_threads(execution, usize::MAX, || {
+        on_threads(execution, POINTS.max(VERTICES) / SHARE, || {
             let distance = |&p: &Vec3| level.foot(p, REACH * spacing).map(|foot| foot.distance);
             let angle = |&v: &usize| normal_error_deg(&level, mesh.positions[v], mesh.normals[v]);
             (points.par_iter().map(distance).collect(), vertices.par_iter().map(angle).collect())

@@ -24,10 +24,11 @@ pub struct Extraction {
 /// Wall-clock time of each stage. The stages follow each other without a gap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct StageTimes {
-    /// Reserving samples and edge records. Memory is handed out zeroed by the operating system, page by page on
+    /// Reserving what is held of the lattice. Memory is handed out zeroed by the operating system, page by page on
     /// first touch, so part of its cost falls on the later stages.
     pub allocation: Duration,
-    /// Evaluating the field at every stored point, with starting threads.
+    /// Finding the sides of all points and the values at crossings; with accumulated positions, evaluating the field at
+    /// every stored point. With starting threads.
     pub sampling: Duration,
     /// Finding and placing vertices; integrated clustering is part of finding them.
     pub vertex: Duration,
@@ -73,9 +74,9 @@ pub struct Counts {
     /// The same with the original's over-count, for comparison with the published column only: under integrated
     /// clustering a tetrahedron with one triangle can count two.
     pub discarded_as_published: u64,
-    /// Bytes of the stored samples: 4 each.
+    /// Bytes of the samples where all are stored: 4 each.
     pub sample_bytes: u64,
-    /// Bytes of the stored edge records: 58 a sample point, fourteen 4-byte vertex numbers and fourteen flags.
+    /// Bytes of the edge records where all are stored: 58 a sample point, fourteen 4-byte vertex numbers and fourteen flags.
     pub edge_bytes: u64,
     /// Bytes of the vertices: 24 each, a position and a normal.
     pub vertex_bytes: u64,

@@ -7,6 +7,9 @@ use crate::field::ScalarField;
 use crate::lattice::{Coordinates, Layout};
 use crate::settings::Execution;
 
+/// The fewest items that are worth a thread.
+pub(crate) const SHARE: usize = 256;
+
 /// Fills `samples`, layer by layer, fillers too. Layers are handed out to threads; each value depends on its own
 /// position alone, so the number of threads cannot show.
 pub(crate) fn sample(
@@ -59,7 +62,7 @@ pub(crate) fn for_each_on_threads<T: Send>(
         items.iter_mut().enumerate().for_each(|(i, item)| work(i, item));
         return Ok(());
     }
-    on_threads(execution, items.len().max(1), || {
-        items.par_iter_mut().enumerate().with_min_len(256).for_each(|(i, item)| work(i, item));
+    on_threads(execution, items.len().div_ceil(SHARE).max(1), || {
+        items.par_iter_mut().enumerate().with_min_len(SHARE).for_each(|(i, item)| work(i, item));
     })
 }

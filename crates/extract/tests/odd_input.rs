@@ -1,12 +1,12 @@
 //! What the crate's front page says of odd input: an error, or a mesh with a meaning.
 
 use extract::{
-    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Gyroid, Lattice, Placement,
-    Positions, ScalarField, Sphere, Topology, extract,
+    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Gyroid, Lattice, MeshDistance,
+    Placement, Positions, ScalarField, Sphere, Topology, extract,
 };
 use glam::Vec3;
-use mesh::Bounds;
 use mesh::topology::topology;
+use mesh::{Bounds, TriangleMesh};
 
 const BOTH: [Arrangement; 2] = [Arrangement::BodyCentred, Arrangement::SimpleCubic];
 const CUBE: Bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
@@ -149,6 +149,85 @@ fn bounds_hold_where_positions_are_coarse() {
         for spacing in [0.1, 0.05, 0.013] {
             let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
             let (with, without) = (surface(&Far(true), &lattice, 0.0), surface(&Far(false), &lattice, 0.0));
+            assert!(with.mesh == without.mesh && with.counts == without.counts, "{arrangement:?} {spacing}");
+            assert!(with.counts.triangles > 100);
+        }
+    }
+}
+
+/// A field without its bounds.
+struct Plain<'a>(&'a dyn ScalarField);
+
+impl ScalarField for Plain<'_> {
+    fn sample(&self, p: Vec3) -> f32 {
+        self.0.sample(p)
+    }
+}
+
+/// Pieces of planets, whose values are off by a few per cent of the spacing, and things so small or large that squares of
+/// coordinates are not numbers to rely on.
+#[test]
+fn bounds_hold_where_values_are_coarse() {
+    let diagonal = Vec3::ONE / 3.0f32.sqrt();
+    let cases = [
+        (1e5, diagonal * 1e5, 12.0, 0.3),
+        (1e6, diagonal * 1e6, 40.0, 1.0),
+        (1e6, diagonal * 1e6, 160.0, 4.0),
+        (1e-22, Vec3::ZERO, 1.1e-22, 1e-23),
+        (1e-20, Vec3::ZERO, 1.1e-20, 1e-21),
+        (1e20, Vec3::ZERO, 1.1e20, 1e19),
+    ];
+    for (radius, middle, reach, spacing) in cases {
+        let bounds = Bounds { min: middle - reach, max: middle + reach };
+        let lumpy = Asteroid { radius, amplitude: 0.1 * radius, ..Asteroid::default() };
+        for arrangement in BOTH {
+            let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
+            for field in [&Sphere { radius } as &dyn ScalarField, &lumpy] {
+                let (with, without) = (surface(field, &lattice, 0.0), surface(&Plain(field), &lattice, 0.0));
+                assert!(
+                    with.mesh == without.mesh && with.counts == without.counts,
+                    "{arrangement:?} {radius}"
+                );
+            }
+        }
+    }
+}
+
+/// The distance to a block whose triangles are a million times as wide as a cell and more.
+#[test]
+fn bounds_hold_beside_large_triangles() {
+    let size = 1e6;
+    let block = Bounds { min: Vec3::new(-size, -0.9 * size, -size), max: Vec3::new(size, size, 0.0) };
+    let corner = |i: usize| {
+        let pick = |axis: usize| if i >> axis & 1 == 0 { block.min[axis] } else { block.max[axis] };
+        Vec3::new(pick(0), pick(1), pick(2))
+    };
+    let triangles = [
+        [0, 2, 1],
+        [1, 2, 3],
+        [4, 5, 6],
+        [5, 7, 6],
+        [0, 1, 4],
+        [1, 5, 4],
+        [2, 6, 3],
+        [3, 6, 7],
+        [0, 4, 2],
+        [2, 4, 6],
+        [1, 3, 5],
+        [3, 7, 5],
+    ];
+    let mesh = TriangleMesh {
+        positions: (0..8).map(corner).collect(),
+        normals: Vec::new(),
+        triangles: triangles.to_vec(),
+    };
+    let field = MeshDistance::try_new(&mesh).unwrap();
+    for (middle, spacing) in [(0.0, 0.1), (0.0, 0.5), (1234.5, 1.0)] {
+        let middle = Vec3::new(middle, middle, 0.0);
+        let bounds = Bounds { min: middle - 15.3 * spacing, max: middle + 15.3 * spacing };
+        for arrangement in BOTH {
+            let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
+            let (with, without) = (surface(&field, &lattice, 0.0), surface(&Plain(&field), &lattice, 0.0));
             assert!(with.mesh == without.mesh && with.counts == without.counts, "{arrangement:?} {spacing}");
             assert!(with.counts.triangles > 100);
         }

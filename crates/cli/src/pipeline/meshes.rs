@@ -117,8 +117,12 @@ impl Pipeline<'_> {
         let field = self.fields.get(configuration.object)?;
         let extraction = extract::extract(field, &lattice, &settings, &execution)?;
         if extraction.mesh.triangles.is_empty() {
+            let why = match extraction.counts.crossings {
+                0 => "every sample lies on one side",
+                _ => "clustering left no triangle",
+            };
             bail!(
-                "{}: objects[{}]: no surface at isovalue {} with spacing {spacing}: every sample lies on one side",
+                "{}: objects[{}]: no surface at isovalue {} with spacing {spacing}: {why}",
                 self.study.path.display(),
                 configuration.object,
                 object.isovalue,

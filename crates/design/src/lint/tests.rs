@@ -8,6 +8,14 @@ fn balanced() -> Study {
     load("balanced.toml")
 }
 
+#[test]
+fn every_rule_is_documented() {
+    let page = include_str!("../../../../docs/questionnaire.md");
+    for rule in Rule::ALL {
+        assert!(page.contains(&format!("| `{}` |", rule.id())), "{}", rule.id());
+    }
+}
+
 fn forms(study: &mut Study) -> &mut FormsSection {
     study.file.forms.as_mut().unwrap()
 }

@@ -4,7 +4,7 @@ use glam::{Vec3, Vec3A, Vec4};
 use mesh::Bounds;
 
 use super::asteroid::{Asteroid, blend, hash};
-use super::{SAFE, ScalarField};
+use super::{SAFE, ScalarField, has_sound_lengths};
 
 /// The most whole-number points of an octave.
 const MOST_POINTS: usize = 1 << 20;
@@ -191,7 +191,7 @@ impl ScalarField for AsteroidTable {
     }
 
     fn slope(&self, bounds: Bounds) -> Option<f32> {
-        let (noise, nearest) = self.noise_slope(bounds)?;
+        let (noise, nearest) = self.noise_slope(bounds).filter(|_| has_sound_lengths(bounds))?;
         let ball = 1.0 / self.asteroid.stretch.min_element();
         Some((ball + self.asteroid.amplitude.abs() * noise / nearest) * SAFE)
     }
@@ -199,6 +199,9 @@ impl ScalarField for AsteroidTable {
     /// The ball's part from the nearest and farthest point of the box, the noise's from all directions in it. No value
     /// is needed.
     fn range(&self, bounds: Bounds, _value: f32) -> Option<(f32, f32)> {
+        if !has_sound_lengths(bounds) {
+            return None;
+        }
         let Asteroid { radius, stretch, amplitude, .. } = self.asteroid;
         let near = (Vec3::ZERO.clamp(bounds.min, bounds.max) / stretch).length();
         let far = (bounds.min.abs().max(bounds.max.abs()) / stretch).length();

@@ -49,7 +49,8 @@ pub trait ScalarField: Sync {
     }
 
     /// A bound on how fast the value changes in a box: `|sample(p) - sample(q)| <= slope * |p - q|` for all `p` and
-    /// `q` in it, up to rounding of 1e-5 of the values; and no value in it is `NaN`. `None` where nothing is known.
+    /// `q` in it, up to rounding of 1e-5 of the values, and as if `p` and `q` were off by 1e-6 of their largest
+    /// coordinates; and no value in it is `NaN`. `None` where nothing is known.
     ///
     /// With a bound, samples that cannot lie next to the surface are never taken. The mesh is the same, to the byte,
     /// as long as the promise holds.
@@ -96,6 +97,12 @@ impl Kept {
         }
         self.0.as_ref()?.downcast_ref()
     }
+}
+
+/// Whether lengths of points of a box are what they should be: nowhere do squares of coordinates overflow, nor are all
+/// so small that they lose digits.
+pub(crate) fn has_sound_lengths(bounds: Bounds) -> bool {
+    (1e-15..=1e18).contains(&bounds.min.abs().max(bounds.max.abs()).max_element())
 }
 
 /// More than one, by more than the rounding of a sample and of a bound.

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use mesh::Bounds;
 
-use super::ScalarField;
+use super::{ScalarField, has_sound_lengths};
 
 /// A ball round the origin: `f(p) = radius - |p|`, the exact signed distance, positive inside.
 ///
@@ -27,8 +27,8 @@ impl ScalarField for Sphere {
         self.radius - p.length()
     }
 
-    fn slope(&self, _: Bounds) -> Option<f32> {
-        Some(1.0)
+    fn slope(&self, bounds: Bounds) -> Option<f32> {
+        has_sound_lengths(bounds).then_some(1.0)
     }
 }
 

@@ -14,8 +14,8 @@ const BYTES_PER_SIDE: u64 = 1;
 
 /// Counts of the whole lattice. `x`, `y`, `z` are the cells along each axis.
 impl Lattice {
-    /// Sample points that are stored, all of them sampled: `(x+2)(y+2)(2z+3)` body-centred, which includes unused
-    /// fillers, and `(x+1)(y+1)(z+1)` simple cubic.
+    /// Sample points of a stored lattice: `(x+2)(y+2)(2z+3)` body-centred, which includes unused fillers, and
+    /// `(x+1)(y+1)(z+1)` simple cubic. Accumulated positions sample all of them; streaming leaves out what it can.
     pub fn stored_samples(&self) -> u64 {
         self.stored_grid().iter().map(|&n| u64::from(n)).product()
     }

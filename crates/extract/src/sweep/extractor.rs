@@ -114,13 +114,32 @@ impl Extractor {
         Ok(extraction)
     }
 
-    /// Extracts a surface into `extraction`, whose vectors are used again. After an error it holds no surface.
+    /// Extracts a surface into `extraction`, whose vectors are used again. After an error it is empty.
     ///
     /// # Errors
     /// As [`extract`](crate::extract); [`ExtractError::SampleCount`] when given samples are not as many as the
     /// lattice has, [`ExtractError::SamplesAccumulated`] when they come with accumulated positions,
     /// [`ExtractError::PlacementNeedsField`] when they come with a placement that calls the field.
     pub fn extract_into(
+        &mut self,
+        source: Source,
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        execution: &Execution,
+        extraction: &mut Extraction,
+    ) -> Result<(), ExtractError> {
+        let result = self.try_extract_into(source, lattice, settings, execution, extraction);
+        if result.is_err() {
+            let TriangleMesh { positions, normals, triangles } = &mut extraction.mesh;
+            positions.clear();
+            normals.clear();
+            triangles.clear();
+            (extraction.counts, extraction.times) = Default::default();
+        }
+        result
+    }
+
+    fn try_extract_into(
         &mut self,
         source: Source,
         lattice: &Lattice,
@@ -177,7 +196,7 @@ impl Extractor {
         result
     }
 
-    #[allow(clippy::too_many_arguments, reason = "the rest of `extract_into` for one rule")]
+    #[allow(clippy::too_many_arguments, reason = "the rest of `try_extract_into` for one rule")]
     fn run<R: ClusterRule>(
         &mut self,
         plan: &Plan,
@@ -355,6 +374,8 @@ fn join(pieces: &mut [Piece], most_vertices: u32) -> Result<Vec<Seam>, ExtractEr
     let triangles: usize = rest.iter().map(|piece| piece.surface.triangles.len()).sum();
     first.positions.try_reserve(total - first.positions.len()).map_err(|_| ExtractError::NoMemoryForMesh)?;
     first.surface.triangles.try_reserve(triangles).map_err(|_| ExtractError::NoMemoryForMesh)?;
+    let targets: usize = rest.iter().map(|piece| piece.targets.len()).sum();
+    first.targets.try_reserve(targets).map_err(|_| ExtractError::NoMemoryForMesh)?;
     seams.push(Seam { vertices: 0, head: first.head, tail: first.tail });
     for piece in rest {
         let base = first.surface.triangles.len();

@@ -1,10 +1,12 @@
-//! More vertices than may be, without making four thousand million of them.
+//! Errors on the way: more vertices than may be, without making four thousand million of them.
 
 use glam::Vec3;
 use mesh::Bounds;
 
 use super::extractor::MostVertices;
-use crate::{Arrangement, Execution, ExtractError, ExtractSettings, Extractor, Lattice, Source, Sphere};
+use crate::{
+    Arrangement, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Lattice, Source, Sphere,
+};
 
 #[test]
 fn more_vertices_than_may_be_are_an_error() {
@@ -25,5 +27,29 @@ fn more_vertices_than_may_be_are_an_error() {
             assert_eq!(run(limit).unwrap_err(), ExtractError::TooManyVertices { limit });
         }
         assert_eq!(run(u32::MAX).unwrap().mesh, mesh, "the extractor is as good as new");
+    }
+}
+
+#[test]
+fn after_an_error_nothing_is_left_of_the_surface_before() {
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.1).unwrap();
+    let (sphere, settings) = (Sphere { radius: 0.8 }, ExtractSettings::default());
+    let no_isovalue = ExtractSettings { isovalue: f32::NAN, ..settings };
+    let (field, samples) = (Source::Field(&sphere), Source::Samples(&[0.0]));
+    for threads in [1, 2] {
+        let (mut extractor, mut extraction) = (Extractor::new(), Extraction::default());
+        for (source, bad, most) in
+            [(field, no_isovalue, u32::MAX), (samples, settings, u32::MAX), (field, settings, 9)]
+        {
+            let mut run = |source, settings, most| {
+                extractor.most_vertices = MostVertices(most);
+                extractor.extract_into(source, &lattice, &settings, &Execution { threads }, &mut extraction)
+            };
+            run(field, settings, u32::MAX).unwrap();
+            run(source, bad, most).unwrap_err();
+            assert_eq!((&extraction.mesh, extraction.counts), (&Default::default(), Default::default()));
+            assert_eq!(extraction.times, Default::default());
+        }
     }
 }

@@ -76,6 +76,9 @@ impl<R: ClusterRule> PointPass<'_, R> {
             if let Some(positions) = positions.as_deref_mut() {
                 // So that memory running out is an error, and pushing never grows by itself.
                 positions.try_reserve(self.grid.size[0] * DIRECTIONS)?;
+                if self.placer.is_some() {
+                    placed.targets.try_reserve(self.grid.size[0] * DIRECTIONS)?;
+                }
             }
             self.row([row, layer], &lines, &samples, records, placed, positions.as_deref_mut());
         }

@@ -54,7 +54,9 @@ impl Known {
         // What a field may be off by rounding: 1e-5 of either value, of which the other is at most
         // |value| + |value - isovalue|.
         let slack = (self.value.abs() + isovalue.abs()) * 4e-5;
-        let reach = ((self.value - isovalue).abs() - slack) / (self.slope * SAFE);
+        // And both places may be off by 1e-6 of their largest coordinates.
+        let astray = self.at.abs().max_element() * 3e-6;
+        let reach = ((self.value - isovalue).abs() - slack) / (self.slope * SAFE) - astray;
         reach * reach.abs()
     }
 

@@ -110,7 +110,7 @@ fn what_has_no_estimate_says_why() {
     // Everybody always takes the larger: the likelihood rises for ever.
     let x: Vec<Option<Vec<f64>>> = (0..27).map(|q| Some(vec![if q % 2 == 0 { 1.0 } else { -1.0 }])).collect();
     let always = |b: &Ballot| Ballot {
-        outcome: if b.question % 2 == 0 { Outcome::Left } else { Outcome::Right },
+        outcome: if b.question.is_multiple_of(2) { Outcome::Left } else { Outcome::Right },
         ..*b
     };
     let ballots: Vec<Ballot> = ballots.iter().map(always).collect();
