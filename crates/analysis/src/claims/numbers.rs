@@ -45,7 +45,12 @@ pub(crate) struct Numbers<'a> {
 
 impl<'a> Numbers<'a> {
     pub(crate) fn of(inputs: &'a Inputs<'a>) -> Self {
-        Self { inputs, meshes: MeshSet::of(inputs, Purpose::Benchmark) }
+        Self::of_purpose(inputs, Purpose::Benchmark)
+    }
+
+    /// With the meshes of another purpose.
+    pub(crate) fn of_purpose(inputs: &'a Inputs<'a>, purpose: Purpose) -> Self {
+        Self { inputs, meshes: MeshSet::of(inputs, purpose) }
     }
 
     pub(crate) fn get(&self, side: Side, measure: Measure, object: usize, method: Method) -> Option<f64> {

@@ -29,7 +29,8 @@ pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
         _ => Vec::new(),
     };
     let (value, run) = (claim.value?, inputs.bench?);
-    let Estimate { published, ours, interval } = estimate(run, ratios, mean_change)?;
+    let ours = mean_change(&ratios(Side::Ours))?;
+    let interval = over_rounds(&by_round(run, ratios, mean_change));
     let direction = direction(value, interval);
     let verdict = if !run.differences.is_empty() {
         let model = run.machine.model.as_deref().unwrap_or("an unnamed CPU");
@@ -40,7 +41,7 @@ pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
         Verdict::differs(format!("{direction}; measured on a matching machine"))
     };
     Some(Finding {
-        from_published: published,
+        from_published: mean_change(&ratios(Side::Published)),
         as_published: Some(ours),
         ours: Some(ours),
         decimals: 2,
@@ -49,29 +50,18 @@ pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
     })
 }
 
-/// What a time of theirs and of ours comes to.
-pub(crate) struct Estimate {
-    pub(crate) published: Option<f64>,
-    pub(crate) ours: f64,
-    /// Over rounds; `None` of too few.
-    pub(crate) interval: Option<Interval>,
-}
-
-/// What `summary` makes of the cases of each side; `None` if we have none.
+/// What `summary` makes of our cases, round by round.
 ///
 /// Cases are paired within a round, so that what slows a whole round down cancels. A round that lacks a case would be a
-/// mean over others and is left out of the interval.
-pub(crate) fn estimate(
+/// mean over others and is left out.
+pub(crate) fn by_round(
     run: &BenchRun,
     cases: impl Fn(Side) -> Vec<f64>,
     summary: fn(&[f64]) -> Option<f64>,
-) -> Option<Estimate> {
-    let own = cases(Side::Ours);
-    let whole = |of: &Vec<f64>| of.len() == own.len();
-    let rounds = (0..run.iterations).map(|round| cases(Side::Round(round))).filter(whole);
-    let by_round: Vec<f64> = rounds.filter_map(|of| summary(&of)).collect();
-    let (published, interval) = (summary(&cases(Side::Published)), over_rounds(&by_round));
-    Some(Estimate { published, ours: summary(&own)?, interval })
+) -> Vec<f64> {
+    let all = cases(Side::Ours).len();
+    let rounds = (0..run.iterations).map(|round| cases(Side::Round(round))).filter(|of| of.len() == all);
+    rounds.filter_map(|of| summary(&of)).collect()
 }
 
 /// Whether we see the published direction at all; noise has a sign too.
