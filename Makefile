@@ -3,7 +3,7 @@
 ISOSTUDY = cargo run --release --locked --quiet --package cli --bin isostudy --
 BUNNY ?=
 
-.PHONY: help study test test-long quick bench figures check bunny clean
+.PHONY: help study test test-long quick bench bench-sweep figures check bunny clean
 
 help: ## list these entries
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 11
@@ -23,6 +23,9 @@ quick: bunny ## the same study made small, into results/quick/
 bench: bunny ## time every configuration 100 times, as the paper does, and renew the tables
 	$(ISOSTUDY) bench configs/paper.toml
 	$(ISOSTUDY) study configs/paper.toml
+
+bench-sweep: bunny ## time resolutions from 16 to 256 cells per axis on 1 and 2 threads, into results/paper/bench/sweep/
+	$(ISOSTUDY) bench sweep configs/paper.toml
 
 figures: bunny ## draw tables, figures and index.html again from the results that are there
 	$(ISOSTUDY) report configs/paper.toml

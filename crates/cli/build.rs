@@ -1,10 +1,11 @@
-//! Digests the sources of every room, so that results made by other code are known to be stale.
+//! Digests the sources of every room, so that results made by other code are known to be stale, and names the commit.
 //!
 //! Sources, not the executable: the same sources may be linked into different executables (for tests, say), and must
 //! not redo a study then.
 
 use std::hash::Hasher;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 const ROOMS: [&str; 9] =
     ["mesh", "design", "responses", "extract", "raster", "bench", "analysis", "serve", "cli"];
@@ -41,6 +42,30 @@ fn main() {
     let pages = pages.map(|path| root.join("crates/cli/src").join(path));
     let text = pages.map(|path| std::fs::read(path).unwrap_or_default()).concat();
     println!("cargo::rustc-env=ISOSTUDY_ROOM_PAGE={:016x}", digest(&[&text]));
+    name_commit(&root);
+}
+
+/// The commit, and whether what is built has changes on top of it; empty without version control. Looked up again after a
+/// commit or a change of a room, not at every build.
+fn name_commit(root: &Path) {
+    let git = |arguments: &[&str]| -> Option<String> {
+        let output = Command::new("git").arg("-C").arg(root).args(arguments).output().ok()?;
+        output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    };
+    let commit = git(&["rev-parse", "HEAD"]).unwrap_or_default();
+    let built = ["crates", "assets", "Cargo.toml", "Cargo.lock"];
+    let changes = git(&[&["status", "--porcelain", "--"], &built[..]].concat());
+    let dirty = changes
+        .filter(|_| !commit.is_empty())
+        .map_or("", |changes| if changes.is_empty() { "no" } else { "yes" });
+    println!("cargo::rustc-env=ISOSTUDY_COMMIT={commit}");
+    println!("cargo::rustc-env=ISOSTUDY_DIRTY={dirty}");
+    // Every commit and checkout writes here. A file that is not there would make every build start over.
+    if let Some(log) =
+        git(&["rev-parse", "--git-path", "logs/HEAD"]).map(|log| root.join(log)).filter(|log| log.is_file())
+    {
+        println!("cargo::rerun-if-changed={}", log.display());
+    }
 }
 
 fn collect(path: &Path, files: &mut Vec<PathBuf>) {

@@ -5,11 +5,11 @@
 //! from its own numbers?), from ours as the text defines it, and from ours with the definition put right.
 
 mod meshes;
-mod numbers;
+pub(crate) mod numbers;
 mod preferences;
 mod setup;
 mod shapes;
-mod times;
+pub(crate) mod times;
 
 use crate::inputs::Inputs;
 use crate::table::{Cell, Table};

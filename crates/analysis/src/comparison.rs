@@ -1,6 +1,7 @@
 //! Every published number beside ours, with a verdict.
 
 pub(crate) mod benchmark;
+mod beside;
 mod preferences;
 
 use crate::claims;
@@ -95,7 +96,9 @@ pub(crate) fn tables(inputs: &Inputs<'_>, tally: Option<&Tally>) -> Vec<Table> {
         "Equal: alike in every printed digit. A tolerance in per cent is relative to the published number."
             .into(),
     );
-    vec![summary(&all), table]
+    let mut tables = vec![summary(&all), table];
+    tables.extend(beside::table(source, &all));
+    tables
 }
 
 fn summary(all: &[Compared]) -> Table {

@@ -18,6 +18,7 @@ mod respondents;
 mod scatter;
 mod stages;
 mod style;
+mod sweep;
 mod worths;
 
 use crate::ballots::{BallotGroup, ballot_groups, ballots};
@@ -27,6 +28,8 @@ use crate::tally::Tally;
 use canvas::Canvas;
 use legend::Swatch;
 pub use power::power_figure;
+
+pub use sweep::sweep_figures;
 
 /// A figure.
 #[derive(Debug, Clone, PartialEq)]

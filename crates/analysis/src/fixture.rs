@@ -208,24 +208,31 @@ pub(crate) fn bench(study: &Study) -> BenchRun {
                     .map(|t| t * unrest);
             samples.push(BenchSample {
                 id: row.id.clone(),
+                sitting: 0,
                 iteration,
                 place: place as u32,
                 allocation_s: a,
                 sampling_s: s,
                 vertex_s: v,
                 geometry_s: g,
+                clustering_s: 0.0,
                 normals_s: n,
                 total_s: a + s + v + g + n,
+                reference_s: None,
             });
         }
     }
     BenchRun {
-        schema: 1,
+        schema: BenchRun::SCHEMA,
         study: study.file.study.id.clone(),
+        workload: None,
+        imported_from: None,
         warmup: 1,
         iterations: 5,
+        aa_iterations: 0,
         seed: 1,
         threads: 2,
+        pinned: None,
         target: study.target.clone(),
         machine: Machine {
             model: Some("Example CPU".into()),
@@ -234,9 +241,8 @@ pub(crate) fn bench(study: &Study) -> BenchRun {
             memory_bytes: Some(8 << 30),
             os: "linux".into(),
             features: vec!["avx2".into()],
-            governor: None,
             load: Some(0.1),
-            compiler: "rustc 1.95".into(),
+            ..Machine::default()
         },
         differences: vec![ProfileDifference {
             property: "model".into(),
@@ -244,6 +250,10 @@ pub(crate) fn bench(study: &Study) -> BenchRun {
             machine: "Example CPU".into(),
         }],
         samples,
+        aa_samples: Vec::new(),
+        load: Vec::new(),
+        memory: Vec::new(),
+        resumed: Vec::new(),
     }
 }
 
@@ -261,6 +271,7 @@ pub(crate) fn small_study() -> Study {
         format!("{}{}", &text[..from], &text[to..])
     };
     let text = without(text, "[[objects]]\nid = \"as\"", "[[objects]]");
+    let text = without(text, "[benchmark.sweep]", "# Comparison groups");
     let text = without(text, "[[groups]]\nid = \"B\"", "[[groups]]\nid = \"I\"");
     let text = without(text, "[[groups]]\nid = \"P\"", "[responses]");
     let text = &text[..text.find("[published]").unwrap()];

@@ -5,6 +5,7 @@
 //! answers without a study, get other sentences.
 
 mod bearing;
+mod benchmark;
 mod factors;
 mod finding;
 mod markdown;
@@ -14,6 +15,8 @@ mod preference;
 mod published;
 mod sides;
 mod words;
+
+pub(crate) use words::whole;
 
 pub use finding::{Finding, Standing};
 
@@ -146,6 +149,8 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Resu
         press.add_figures(&["prediction"]);
         press.add_tables(&["prediction", "prediction_objects", "prediction_correlations"]);
     }
+    press.section("benchmark", "The published benchmark, checked", benchmark::findings(inputs));
+    press.add_tables(&["benchmark_beside"]);
     press.section("published", "Published and recomputed", published::findings(inputs)?);
     press.add_tables(&["claims"]);
     let (title, lead) = (study.file.study.title.clone(), lead(&evidence));

@@ -9,7 +9,10 @@ pub(crate) struct StageTimes {
     pub(crate) allocation_s: f64,
     pub(crate) sampling_s: f64,
     pub(crate) vertex_s: f64,
+    /// As published: making triangles, and the edge collapse.
     pub(crate) geometry_s: f64,
+    /// The edge collapse alone.
+    pub(crate) clustering_s: f64,
     pub(crate) normals_s: f64,
     /// Median of the samples' totals without normals.
     pub(crate) median_without_normals_s: f64,
@@ -44,7 +47,8 @@ impl StageTimes {
             allocation_s: mean(|s| s.allocation_s),
             sampling_s: mean(|s| s.sampling_s),
             vertex_s: mean(|s| s.vertex_s),
-            geometry_s: mean(|s| s.geometry_s),
+            geometry_s: mean(|s| s.geometry_s + s.clustering_s),
+            clustering_s: mean(|s| s.clustering_s),
             normals_s: mean(|s| s.normals_s),
             median_without_normals_s: median,
         })
@@ -56,8 +60,13 @@ impl StageTimes {
     }
 }
 
-/// Where and how often a run was measured, for a note under a table.
+/// Where and how often a run was measured, for a note under a table of means.
 pub(crate) fn conditions(run: &BenchRun) -> String {
+    format!("Times: means over {}", circumstances(run))
+}
+
+/// How often and where a run was measured.
+pub(crate) fn circumstances(run: &BenchRun) -> String {
     let model = run.machine.model.as_deref().unwrap_or("an unnamed CPU");
     let matches = if run.differences.is_empty() {
         format!("which matches the target {}", run.target.name)
@@ -70,7 +79,7 @@ pub(crate) fn conditions(run: &BenchRun) -> String {
         format!("which does not match the target {} ({})", run.target.name, list.join("; "))
     };
     format!(
-        "Times: means over {} iterations after {} of warm-up, on {model}, {} sampling threads, {matches}.",
+        "{} iterations after {} of warm-up, on {model}, {} sampling threads, {matches}.",
         run.iterations, run.warmup, run.threads
     )
 }
@@ -97,6 +106,11 @@ mod tests {
         let without_vertex = times.total_without_normals_s() - 3.0;
         assert!((times.median_without_normals_s - 2.0 - without_vertex).abs() < 1e-3);
         assert_eq!(StageTimes::of(&run, &study.configurations[1].id), None);
+        let geometry_s = times.geometry_s;
+        run.samples.iter_mut().for_each(|sample| sample.clustering_s = 2.0);
+        let collapsed = StageTimes::of(&run, &id).unwrap();
+        assert_eq!(collapsed.clustering_s, 2.0);
+        assert!((collapsed.geometry_s - geometry_s - 2.0).abs() < 1e-12, "as published, geometry has both");
         assert!(conditions(&run).contains("does not match the target Intel Core i7-11700"));
         run.differences.clear();
         assert!(conditions(&run).contains("which matches the target"));

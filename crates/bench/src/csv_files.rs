@@ -1,13 +1,13 @@
 //! A run as CSV: every sample, and the machine beside its target.
 
 use crate::profile::compare_profile;
-use design::record::BenchRun;
+use design::record::{BenchRun, BenchSample};
 use serde::Serialize;
 
 /// Every sample in the order measured, a line each, under the column names of
 /// [`BenchSample`](design::record::BenchSample). Numbers are written so that they read back unchanged.
-pub fn samples_csv(run: &BenchRun) -> String {
-    table(&run.samples)
+pub fn samples_csv(samples: &[BenchSample]) -> String {
+    table(samples)
 }
 
 /// What is known of the machine, a property a line: `property,target,machine,matches`, the last `true`, `false` or,
@@ -31,13 +31,13 @@ fn table<T: Serialize>(rows: &[T]) -> String {
 mod tests {
     use super::*;
     use crate::run::tests::mock_run;
-    use design::record::BenchSample;
 
     #[test]
     fn samples_read_back_unchanged() {
         let run = mock_run();
-        let text = samples_csv(&run);
-        let header = "id,iteration,place,allocation_s,sampling_s,vertex_s,geometry_s,normals_s,total_s";
+        let text = samples_csv(&run.samples);
+        let header = "id,sitting,iteration,place,allocation_s,sampling_s,vertex_s,geometry_s,clustering_s,normals_s,\
+                      total_s,reference_s";
         assert_eq!(text.lines().next(), Some(header));
         let samples: Vec<BenchSample> =
             csv::Reader::from_reader(text.as_bytes()).deserialize().collect::<Result<_, _>>().unwrap();

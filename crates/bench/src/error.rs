@@ -1,11 +1,11 @@
 //! Why a benchmark stopped.
 
+use crate::journal::JournalError;
 use crate::plan::Round;
-use crate::stages::Stage;
 use design::ConfigurationId;
 use std::error::Error;
 
-/// Why a benchmark stopped. Samples taken before are gone: half a round would favour whoever was in it.
+/// Why a benchmark stopped. Samples taken before are in the journal, if one was kept.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BenchError {
@@ -28,14 +28,31 @@ pub enum BenchError {
         /// Why.
         source: Box<BenchError>,
     },
+    /// A row of a published table; the source says what is wrong with it.
+    #[error("the row of {id}")]
+    Row {
+        /// Which configuration's.
+        id: ConfigurationId,
+        /// What.
+        source: Box<BenchError>,
+    },
+    /// What was recorded before cannot be gone on from.
+    #[error("the journal cannot be used")]
+    Journal(#[from] JournalError),
+    /// An entry could not be recorded.
+    #[error("cannot write the journal")]
+    Record(#[source] std::io::Error),
+    /// The process that measures could not be started or asked.
+    #[error("the measuring process: {0}")]
+    Process(String),
     /// What an [`Executor`](crate::Executor) ran into.
     #[error(transparent)]
     Execution(Box<dyn Error + Send + Sync>),
     /// An executor returned something that is not a duration.
-    #[error("{} took {seconds} s: must be finite and not negative", .stage.label())]
+    #[error("{stage} took {seconds} s: must be finite and not negative")]
     NotADuration {
         /// Which stage.
-        stage: Stage,
+        stage: &'static str,
         /// What was returned.
         seconds: f64,
     },

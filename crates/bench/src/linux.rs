@@ -7,6 +7,14 @@ use std::fs::{read_dir, read_to_string};
 use std::path::{Path, PathBuf};
 
 const CPU_FOLDER: &str = "/sys/devices/system/cpu";
+const CACHE_FOLDER: &str = "/sys/devices/system/cpu/cpu0/cache";
+/// Whether the clock may rise: `1` says that it may not, and that it may.
+const NO_TURBO: &str = "/sys/devices/system/cpu/intel_pstate/no_turbo";
+const BOOST: &str = "/sys/devices/system/cpu/cpufreq/boost";
+/// A container's CPU limit, as cgroups version 2 and 1 write it: quota and period.
+const CPU_LIMIT: &str = "/sys/fs/cgroup/cpu.max";
+const CPU_LIMIT_1: [&str; 2] =
+    ["/sys/fs/cgroup/cpu/cpu.cfs_quota_us", "/sys/fs/cgroup/cpu/cpu.cfs_period_us"];
 /// A container's memory limit, as cgroups version 2 and 1 write it.
 const MEMORY_LIMITS: [&str; 2] = ["/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"];
 
@@ -20,8 +28,48 @@ pub(crate) fn cores() -> Option<u32> {
 
 pub(crate) fn memory_bytes() -> Option<u64> {
     let total = parse_memory_bytes(&read("/proc/meminfo")?)?;
+    Some(memory_limit_bytes().map_or(total, |limit| total.min(limit)))
+}
+
+/// What a container leaves; a limit above the machine's memory is none.
+pub(crate) fn memory_limit_bytes() -> Option<u64> {
+    let total = parse_memory_bytes(&read("/proc/meminfo")?)?;
     let limits = MEMORY_LIMITS.iter().filter_map(|path| parse_limit_bytes(&read(path)?));
-    Some(limits.fold(total, u64::min))
+    limits.filter(|limit| *limit < total).min()
+}
+
+pub(crate) fn cpu_limit() -> Option<f64> {
+    let older = || Some(CPU_LIMIT_1.map(read).into_iter().collect::<Option<Vec<_>>>()?.join(" "));
+    parse_cpu_limit(&read(CPU_LIMIT).or_else(older)?)
+}
+
+/// Sizes in KiB of a core's caches: level-1 data, level 2, level 3.
+pub(crate) fn caches_kib() -> [Option<u32>; 3] {
+    let folders = read_dir(CACHE_FOLDER).into_iter().flatten().flatten().map(|entry| entry.path());
+    let caches = folders.filter_map(|folder| {
+        let [level, kind, size] = ["level", "type", "size"].map(|file| read(folder.join(file)));
+        Some([level?, kind?, size?])
+    });
+    sort_caches(caches.collect())
+}
+
+pub(crate) fn turbo() -> Option<bool> {
+    let forbidden = || parse_switch(&read(NO_TURBO)?).map(|forbidden| !forbidden);
+    forbidden().or_else(|| parse_switch(&read(BOOST)?))
+}
+
+pub(crate) fn smt() -> Option<bool> {
+    parse_switch(&read("/sys/devices/system/cpu/smt/active")?)
+}
+
+/// The CPUs that share a core with this one, itself included, as the kernel writes them.
+pub(crate) fn siblings(cpu: u32) -> Option<String> {
+    read(format!("{CPU_FOLDER}/cpu{cpu}/topology/thread_siblings_list"))
+}
+
+pub(crate) fn max_mhz() -> Option<u32> {
+    let khz = per_cpu("cpufreq/cpuinfo_max_freq").iter().filter_map(|text| text.trim().parse().ok()).max();
+    khz.map(|khz: u32| khz / 1000)
 }
 
 pub(crate) fn governor() -> Option<String> {
@@ -104,6 +152,40 @@ fn parse_limit_bytes(limit: &str) -> Option<u64> {
     limit.trim().parse().ok()
 }
 
+/// Quota and period in microseconds; `max` or a negative quota is no limit.
+fn parse_cpu_limit(limit: &str) -> Option<f64> {
+    let mut numbers = limit.split_whitespace().map(str::parse::<f64>);
+    let (quota, period) = (numbers.next()?.ok()?, numbers.next()?.ok()?);
+    (quota > 0.0 && period > 0.0).then_some(quota / period)
+}
+
+/// `[level, type, size]` of each cache.
+fn sort_caches(caches: Vec<[String; 3]>) -> [Option<u32>; 3] {
+    let find = |wanted: &str| {
+        let is_data = |cache: &&[String; 3]| cache[0].trim() == wanted && cache[1].trim() != "Instruction";
+        parse_kib(&caches.iter().find(is_data)?[2])
+    };
+    [find("1"), find("2"), find("3")]
+}
+
+/// `512K`, or `32M`.
+fn parse_kib(size: &str) -> Option<u32> {
+    let size = size.trim();
+    let (number, factor) = match size.strip_suffix('M') {
+        Some(number) => (number, 1024),
+        None => (size.strip_suffix('K')?, 1),
+    };
+    number.parse::<u32>().ok()?.checked_mul(factor)
+}
+
+fn parse_switch(text: &str) -> Option<bool> {
+    match text.trim() {
+        "1" => Some(true),
+        "0" => Some(false),
+        _ => None,
+    }
+}
+
 /// Every governor in use, sorted: CPUs may have different ones.
 fn join_governors(mut governors: Vec<String>) -> Option<String> {
     governors.sort();
@@ -171,6 +253,9 @@ mod tests {
             assert_eq!(parse_memory_bytes(text), None, "{text:?}");
             assert_eq!(parse_limit_bytes(text), None, "{text:?}");
             assert_eq!(parse_load(text), None, "{text:?}");
+            assert_eq!(parse_cpu_limit(text), None, "{text:?}");
+            assert_eq!(parse_kib(text), None, "{text:?}");
+            assert_eq!(parse_switch(text), None, "{text:?}");
         }
         assert_eq!(count_siblings(Vec::new()), None);
         assert_eq!(join_governors(Vec::new()), None);
@@ -196,6 +281,39 @@ mod tests {
         assert_eq!(parse_limit_bytes("4294967296\n"), Some(4 << 30));
         assert_eq!(parse_limit_bytes("max\n"), None);
         assert_eq!(parse_limit_bytes("9223372036854771712\n"), Some(9_223_372_036_854_771_712));
+    }
+
+    #[test]
+    fn a_container_may_have_a_share_of_the_cpus() {
+        assert_eq!(parse_cpu_limit("150000 100000\n"), Some(1.5));
+        assert_eq!(parse_cpu_limit("max 100000\n"), None);
+        // Version 1, from two files.
+        assert_eq!(parse_cpu_limit("-1\n 100000\n"), None);
+        assert_eq!(parse_cpu_limit("400000\n 100000\n"), Some(4.0));
+        assert_eq!(parse_cpu_limit("1 0\n"), None);
+    }
+
+    #[test]
+    fn caches_of_other_machines() {
+        let cache = |level: &str, kind: &str, size: &str| [level, kind, size].map(|text| format!("{text}\n"));
+        // Intel Core i7-11700.
+        let intel = vec![
+            cache("1", "Instruction", "32K"),
+            cache("3", "Unified", "16384K"),
+            cache("1", "Data", "48K"),
+            cache("2", "Unified", "512K"),
+        ];
+        assert_eq!(sort_caches(intel), [Some(48), Some(512), Some(16384)]);
+        // A board without a third level, and one that writes mebibytes.
+        let small = vec![cache("1", "Data", "32K"), cache("2", "Unified", "1M")];
+        assert_eq!(sort_caches(small), [Some(32), Some(1024), None]);
+        assert_eq!(sort_caches(vec![cache("1", "Instruction", "32K")]), [None; 3]);
+        assert_eq!(parse_kib("4194304M"), None, "would overflow");
+    }
+
+    #[test]
+    fn switches_are_on_off_or_unknown() {
+        assert_eq!(["1\n", "0\n", "on\n"].map(parse_switch), [Some(true), Some(false), None]);
     }
 
     #[test]

@@ -4,32 +4,66 @@ use design::machine::CpuProfile;
 use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
+use serde::Serialize;
 use std::fmt;
+use std::ops::Range;
+
+/// Blocks into which measured rounds are cut where an A/A block goes between them.
+const BLOCKS: u32 = 3;
+/// Sittings of the A/A block, one after each measured block but the last.
+const AA_SITTINGS: u32 = BLOCKS - 1;
+/// Rounds of the A/A block take their orders from here on, so that none is that of a measured round.
+const AA_ORDERS: u32 = 1 << 31;
 
 /// What a benchmark runs, apart from the configurations.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {
     /// The study's id.
     pub study: String,
-    /// Rounds run and thrown away before measuring.
+    /// Digest of what the configurations ask of the extractor.
+    pub workload: String,
+    /// Rounds run and thrown away at the start of every sitting.
     pub warmup: u32,
     /// Rounds measured; at least 1.
     pub iterations: u32,
+    /// Rounds of the A/A block; 0 leaves it out.
+    pub aa_iterations: u32,
+    /// Whether peak memory is measured, in a process of its own for every configuration.
+    pub memory: bool,
     /// Seed of the order within each round.
     pub seed: u64,
     /// Threads in the sampling stage; 0 takes every core.
     pub threads: u32,
+    /// Whether the run asks to be kept on as many CPUs as it has threads.
+    pub pin: bool,
     /// The CPU the numbers are meant for.
     pub target: CpuProfile,
+}
+
+/// Rounds measured in one process, after warm-up.
+///
+/// What a process is given by chance (where its memory lies, say) stays with it and shifts its times; only another
+/// process shows by how much. So the A/A block has sittings of its own, and where there is one, the measured rounds are
+/// cut into three sittings round it: it then sees the beginning, the middle and the end of the run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Sitting {
+    /// Counted from 0.
+    pub number: u32,
+    /// Whether it belongs to the A/A block.
+    pub aa: bool,
+    /// Its rounds, counted over all sittings of its kind.
+    pub rounds: Range<u32>,
 }
 
 /// A round: every configuration once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Round {
-    /// Run and not kept; counted from 0.
+    /// Run and not kept; counted from 0 in every sitting.
     WarmUp(u32),
     /// Run and kept; counted from 0, as in [`BenchSample`](design::record::BenchSample).
     Measured(u32),
+    /// Run and kept as a round of the A/A block, counted on its own.
+    Again(u32),
 }
 
 impl fmt::Display for Round {
@@ -37,6 +71,7 @@ impl fmt::Display for Round {
         match self {
             Self::WarmUp(number) => write!(f, "warm-up round {number}"),
             Self::Measured(number) => write!(f, "iteration {number}"),
+            Self::Again(number) => write!(f, "A/A iteration {number}"),
         }
     }
 }
@@ -53,18 +88,46 @@ pub struct Turn {
 }
 
 impl Plan {
-    /// Everything that is executed, in order, for `count` configurations: warm-up rounds, then measured rounds.
-    ///
-    /// Nothing but the plan and `count` decides it, so a run that was broken off can be told what is left.
-    pub fn turns(&self, count: usize) -> impl Iterator<Item = Turn> {
-        // Warm-up takes its orders from the far end: none is repeated by a measured round, and none is taken from it.
-        let warmup = (0..self.warmup).map(|number| (Round::WarmUp(number), u32::MAX - number));
-        let measured = (0..self.iterations).map(|number| (Round::Measured(number), number));
-        let seed = self.seed;
-        warmup.chain(measured).flat_map(move |(round, number)| {
-            let places = order(seed, number, count).into_iter().zip(0..);
-            places.map(move |(subject, place)| Turn { round, place, subject })
-        })
+    /// The sittings in order. Nothing but the plan decides them, so a run that was broken off can be told what is left.
+    pub fn sittings(&self) -> Vec<Sitting> {
+        let blocks = if self.aa_iterations == 0 { 1 } else { self.iterations.min(BLOCKS) };
+        let again = self.aa_iterations.min(AA_SITTINGS);
+        let cut = |rounds: u32, parts: u32, part: u32| {
+            let at = |part: u32| (u64::from(rounds) * u64::from(part) / u64::from(parts)) as u32;
+            at(part)..at(part + 1)
+        };
+        let mut sittings = Vec::new();
+        for part in 0..blocks.max(again) {
+            if part < blocks {
+                sittings.push((false, cut(self.iterations, blocks, part)));
+            }
+            if part < again {
+                sittings.push((true, cut(self.aa_iterations, again, part)));
+            }
+        }
+        let number = |(number, (aa, rounds))| Sitting { number, aa, rounds };
+        (0..).zip(sittings).map(number).collect()
+    }
+
+    /// What a sitting executes for `count` configurations before it measures.
+    pub fn warm_up(&self, sitting: &Sitting, count: usize) -> Vec<Turn> {
+        // From the far end: no order is repeated by a measured round, and none is taken from it.
+        let stream = |number| u32::MAX - (sitting.number * self.warmup + number);
+        (0..self.warmup).flat_map(|number| self.round(Round::WarmUp(number), stream(number), count)).collect()
+    }
+
+    /// What a sitting measures, in order, for `count` configurations.
+    pub fn turns(&self, sitting: &Sitting, count: usize) -> Vec<Turn> {
+        let round = |number| match sitting.aa {
+            false => self.round(Round::Measured(number), number, count),
+            true => self.round(Round::Again(number), AA_ORDERS + number, count),
+        };
+        sitting.rounds.clone().flat_map(round).collect()
+    }
+
+    fn round(&self, round: Round, stream: u32, count: usize) -> Vec<Turn> {
+        let places = order(self.seed, stream, count).into_iter().zip(0..);
+        places.map(|(subject, place)| Turn { round, place, subject }).collect()
     }
 }
 
@@ -121,32 +184,51 @@ mod tests {
         assert!(first.iter().all(|count| (count - 1000).abs() < 144), "{first:?}");
     }
 
+    fn plan(warmup: u32, iterations: u32, aa_iterations: u32) -> Plan {
+        Plan { warmup, iterations, aa_iterations, ..crate::run::tests::plan() }
+    }
+
     #[test]
-    fn turns_go_round_by_round() {
-        let plan = Plan {
-            study: "mock".into(),
-            warmup: 2,
-            iterations: 3,
-            seed: 5,
-            threads: 1,
-            target: toml::from_str("name = \"any\"\nmodel = \"\"").unwrap(),
+    fn sittings_surround_the_second_measurement() {
+        let sittings = |iterations, aa| {
+            let of = |s: Sitting| (s.number, s.aa, s.rounds);
+            plan(1, iterations, aa).sittings().into_iter().map(of).collect::<Vec<_>>()
         };
-        let turns: Vec<Turn> = plan.turns(4).collect();
-        assert_eq!(turns.len(), 5 * 4);
-        let rounds: Vec<Round> = turns.chunks(4).map(|round| round[0].round).collect();
-        let (w, m) = (Round::WarmUp, Round::Measured);
-        assert_eq!(rounds, [w(0), w(1), m(0), m(1), m(2)]);
-        for round in turns.chunks(4) {
-            assert!(round.iter().all(|turn| turn.round == round[0].round));
-            assert_eq!(round.iter().map(|turn| turn.place).collect::<Vec<_>>(), [0, 1, 2, 3]);
-            assert_eq!(round.iter().map(|turn| turn.subject).collect::<HashSet<_>>().len(), 4);
+        let (m, a) = (false, true);
+        let want = [(0, m, 0..33), (1, a, 0..4), (2, m, 33..66), (3, a, 4..8), (4, m, 66..100)];
+        assert_eq!(sittings(100, 8), want);
+        assert_eq!(sittings(10, 0), [(0, m, 0..10)], "nothing to surround: one process");
+        assert_eq!(sittings(1, 1), [(0, m, 0..1), (1, a, 0..1)]);
+        assert_eq!(sittings(1, 5), [(0, m, 0..1), (1, a, 0..2), (2, a, 2..5)]);
+        assert_eq!(sittings(2, 2), [(0, m, 0..1), (1, a, 0..1), (2, m, 1..2), (3, a, 1..2)]);
+    }
+
+    #[test]
+    fn turns_go_round_by_round_and_no_order_twice() {
+        let plan = plan(2, 7, 3);
+        let mut orders = HashSet::new();
+        let mut rounds = 0;
+        for sitting in plan.sittings() {
+            let turns = [plan.warm_up(&sitting, 18), plan.turns(&sitting, 18)].concat();
+            for round in turns.chunks(18) {
+                assert!(round.iter().all(|turn| turn.round == round[0].round));
+                assert_eq!(
+                    round.iter().map(|turn| turn.place).collect::<Vec<_>>(),
+                    (0..18).collect::<Vec<_>>()
+                );
+                assert!(orders.insert(round.iter().map(|turn| turn.subject).collect::<Vec<_>>()));
+                rounds += 1;
+            }
         }
-        let unwarmed: Vec<Turn> = Plan { warmup: 0, ..plan.clone() }.turns(4).collect();
-        assert_eq!(unwarmed, turns[8..], "warm-up does not shift the order");
-        let subjects = |round: usize| {
-            let turns = plan.turns(18).skip(18 * round).take(18);
-            turns.map(|turn| turn.subject).collect::<Vec<_>>()
+        assert_eq!(rounds, 5 * 2 + 7 + 3);
+    }
+
+    #[test]
+    fn warm_up_and_second_measurement_do_not_shift_the_order() {
+        let measured = |plan: &Plan| -> Vec<usize> {
+            let sittings = plan.sittings().into_iter().filter(|sitting| !sitting.aa);
+            sittings.flat_map(|sitting| plan.turns(&sitting, 18)).map(|turn| turn.subject).collect()
         };
-        assert_ne!(subjects(0), subjects(2), "the first warm-up round is not the first measured one");
+        assert_eq!(measured(&plan(0, 7, 0)), measured(&plan(3, 7, 5)));
     }
 }

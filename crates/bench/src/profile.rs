@@ -25,23 +25,49 @@ pub struct ProfileRow {
 
 /// Everything that is known of the machine, beside what the profile asks for.
 ///
-/// A model matches if it contains the profile's text, in any case; an empty text matches any. Cores, threads and
-/// operating system must be equal, memory may be short by [`MEMORY_ALLOWANCE`], features must be there. What the
-/// profile asks for and the machine does not tell is no match. Clocks, governor, load and compiler are recorded only.
+/// A model matches if it contains the profile's text, in any case; an empty text matches any. Cores, threads, caches,
+/// operating system and what the program was compiled for must be equal, memory may be short by
+/// [`MEMORY_ALLOWANCE`], the instruction-set level must be reached and features must be there. What the profile asks
+/// for and the machine does not tell is no match. The rest is recorded only.
 pub fn compare_profile(target: &CpuProfile, machine: &Machine) -> Vec<ProfileRow> {
     let mut rows = vec![
         model(target, machine),
         equal("cores", target.cores.as_ref(), machine.cores.as_ref()),
         equal("threads", target.threads.as_ref(), Some(&machine.threads)),
+        equal("level-1 data cache, KiB", target.l1d_kib.as_ref(), machine.l1d_kib.as_ref()),
+        equal("level-2 cache, KiB", target.l2_kib.as_ref(), machine.l2_kib.as_ref()),
+        equal("level-3 cache, KiB", target.l3_kib.as_ref(), machine.l3_kib.as_ref()),
         memory(target, machine),
         equal("os", target.os.as_ref(), Some(&machine.os)),
     ];
+    rows.push(isa(target, machine));
+    rows.push(equal("target-cpu", target.target_cpu.as_ref(), Some(&machine.build.target_cpu)));
     rows.extend(target.features.iter().map(|feature| self::feature(feature, machine)));
     rows.push(recorded("base clock", clock(target.base_mhz), None));
-    rows.push(recorded("boost clock", clock(target.boost_mhz), None));
-    rows.push(recorded("governor", String::new(), machine.governor.clone()));
-    rows.push(recorded("load", String::new(), machine.load.map(|load| load.to_string())));
-    rows.push(recorded("compiler", String::new(), Some(machine.compiler.clone())));
+    rows.push(recorded("boost clock", clock(target.boost_mhz), machine.max_mhz.map(|mhz| clock(Some(mhz)))));
+    let on = |on: bool| if on { "on" } else { "off" }.to_owned();
+    let build = &machine.build;
+    for (property, told) in [
+        ("governor", machine.governor.clone()),
+        ("turbo", machine.turbo.map(on)),
+        ("simultaneous multithreading", machine.smt.map(on)),
+        ("load average", machine.load.map(|load| load.to_string())),
+        (
+            "container's CPUs",
+            machine.cpu_limit.map_or(Some("no limit".into()), |cpus| Some(cpus.to_string())),
+        ),
+        (
+            "container's memory",
+            machine.memory_limit_bytes.map_or(Some("no limit".into()), |b| Some(gibibytes(b))),
+        ),
+        ("compiler", Some(build.compiler.clone())),
+        ("profile", Some(format!("{}, opt-level {}", build.profile, build.opt_level))),
+        ("compiler flags", Some(build.rustflags.clone())),
+        ("commit", build.commit.clone()),
+        ("uncommitted changes", build.dirty.map(|dirty| if dirty { "yes" } else { "no" }.into())),
+    ] {
+        rows.push(recorded(property, String::new(), told));
+    }
     rows
 }
 
@@ -65,8 +91,24 @@ fn model(target: &CpuProfile, machine: &Machine) -> ProfileRow {
     }
 }
 
+fn isa(target: &CpuProfile, machine: &Machine) -> ProfileRow {
+    ProfileRow {
+        property: "instruction set".into(),
+        target: target.isa.map_or_else(String::new, |level| level.label().into()),
+        machine: told(machine.isa.map(|level| level.label().into())),
+        matches: target.isa.map(|asked| machine.isa >= Some(asked)),
+    }
+}
+
+fn gib(bytes: u64) -> f64 {
+    bytes as f64 / f64::from(1 << 30)
+}
+
+fn gibibytes(bytes: u64) -> String {
+    format!("{:.1} GiB", gib(bytes))
+}
+
 fn memory(target: &CpuProfile, machine: &Machine) -> ProfileRow {
-    let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);
     let enough = |asked: u32| {
         let least = f64::from(asked) * (1.0 - MEMORY_ALLOWANCE);
         machine.memory_bytes.is_some_and(|bytes| gib(bytes) >= least)
@@ -74,7 +116,7 @@ fn memory(target: &CpuProfile, machine: &Machine) -> ProfileRow {
     ProfileRow {
         property: "memory".into(),
         target: target.memory_gib.map_or_else(String::new, |asked| format!("{asked} GiB")),
-        machine: told(machine.memory_bytes.map(|bytes| format!("{:.1} GiB", gib(bytes)))),
+        machine: told(machine.memory_bytes.map(gibibytes)),
         matches: target.memory_gib.map(enough),
     }
 }
@@ -170,6 +212,29 @@ mod tests {
         assert!(differences.iter().all(|difference| difference.machine == "unknown"));
         let strange = CpuProfile { features: vec!["warp-drive".into()], ..i7_11700() };
         assert_eq!(super::differences(&strange, &machine())[0].machine, "unknown");
+    }
+
+    #[test]
+    fn caches_level_and_build_are_held_against_the_profile() {
+        use design::machine::{Build, IsaLevel};
+        let asking = CpuProfile {
+            l1d_kib: Some(48),
+            l2_kib: Some(512),
+            l3_kib: Some(16384),
+            isa: Some(IsaLevel::V3),
+            target_cpu: Some("x86-64-v3".into()),
+            ..i7_11700()
+        };
+        assert_eq!(differences(&asking, &machine()), []);
+        let generic = Build { target_cpu: "x86-64".into(), ..machine().build };
+        let other = Machine { l2_kib: Some(1024), isa: Some(IsaLevel::V2), build: generic, ..machine() };
+        let found = differences(&asking, &other);
+        assert_eq!(properties(&found), ["level-2 cache, KiB", "instruction set", "target-cpu"]);
+        assert_eq!((found[1].target.as_str(), found[1].machine.as_str()), ("x86-64-v3", "x86-64-v2"));
+        let newer = Machine { isa: Some(IsaLevel::V4), ..machine() };
+        assert_eq!(differences(&asking, &newer), [], "a higher level has the lower ones");
+        let foreign = Machine { isa: None, l3_kib: None, ..machine() };
+        assert_eq!(properties(&differences(&asking, &foreign)), ["level-3 cache, KiB", "instruction set"]);
     }
 
     #[test]

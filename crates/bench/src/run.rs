@@ -1,69 +1,119 @@
-//! The run itself: turn by turn, every sample kept.
+//! The run itself: sitting by sitting, turn by turn, every sample kept.
 
 use crate::error::BenchError;
-use crate::plan::{Plan, Round};
+use crate::journal::{Entry, JournalError};
+use crate::load::{CpuTimes, LEAST_TICKS};
+use crate::plan::{Plan, Round, Sitting, Turn};
 use crate::profile::differences;
 use crate::stages::StageSeconds;
 use design::ConfigurationId;
 use design::machine::Machine;
-use design::record::{BenchRun, BenchSample};
+use design::record::{BenchRun, BenchSample, LoadWindow, PeakMemory, Resumption};
 use std::collections::HashSet;
-
-/// The version of [`BenchRun`]'s layout that is written here.
-const SCHEMA: u32 = 1;
+use std::io;
 
 /// Carries out one configuration and says how long its stages took. The only part of a run that takes time, so a
 /// test can stand in for it.
 pub trait Executor {
+    /// Begins a sitting: what is executed from now on must not profit or suffer from what was before. Returns the CPUs
+    /// that it is pinned to, if it is.
+    ///
+    /// # Errors
+    /// Whatever stopped it.
+    fn sit_down(&mut self) -> Result<Option<Vec<u32>>, BenchError>;
+
     /// Executes the configuration with this index.
     ///
     /// # Errors
     /// Whatever stopped it; [`run`] adds which configuration it was.
-    fn execute(&mut self, subject: usize) -> Result<StageSeconds, BenchError>;
+    fn execute(&mut self, subject: usize) -> Result<Measurement, BenchError>;
+
+    /// What one extraction of the configuration with this index needs, in fresh circumstances; `None` where that cannot
+    /// be measured.
+    ///
+    /// # Errors
+    /// Whatever stopped it.
+    fn peak_memory(&mut self, subject: usize) -> Result<Option<PeakBytes>, BenchError>;
+
+    /// What the CPUs spent their time on until now; `None` where that is not told.
+    fn cpu_times(&mut self) -> Option<CpuTimes>;
+
+    /// The one-minute load average; `None` where that is not told.
+    fn load_average(&mut self) -> Option<f64>;
+
+    /// Waits long enough for [`Executor::cpu_times`] to show what others do when this program does nothing.
+    fn wait(&mut self);
 }
 
-/// Runs the plan over the configurations and returns every sample of the measured rounds, in the order measured.
+/// What one execution took.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Measurement {
+    /// Its stages.
+    pub stages: StageSeconds,
+    /// The [reference work](crate::Reference) just before it, in seconds.
+    pub reference_s: Option<f64>,
+}
+
+/// Resident memory in bytes, as in [`PeakMemory`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[expect(missing_docs, reason = "defined in `PeakMemory`")]
+pub struct PeakBytes {
+    pub before_bytes: u64,
+    pub peak_before_bytes: u64,
+    pub peak_bytes: u64,
+}
+
+/// Runs the plan over the configurations and returns every sample of the measured rounds and of the A/A block, in the
+/// order measured.
 ///
-/// `executor` is called with indices into `ids`, in the order of [`Plan::turns`]; `on_sample` after each call, warm-up
-/// included, with the number of calls done and to be done. `machine` is recorded as given, and so are the ways in
-/// which it differs from the plan's target. 0 threads in the plan are recorded as the machine's.
+/// `executor` is called with indices into `ids`, in the order of [`Plan::warm_up`] and [`Plan::turns`] of each of
+/// [`Plan::sittings`]. `record` is given every entry as soon as it is there, between executions, never during one.
+/// `done` are the entries of a run that was broken off: what they hold is not executed again, and a sitting that was
+/// broken off begins anew with its warm-up. `on_turn` is told after each execution how many are done and to be done,
+/// those in `done` included. `machine` is recorded as given, and so are the ways in which it differs from the plan's
+/// target. 0 threads in the plan are recorded as the machine's.
 ///
 /// # Errors
-/// [`BenchError`] if there is nothing to run, an id is there twice, or a configuration fails; the run ends there.
+/// [`BenchError`] if there is nothing to run, an id is there twice, `done` does not follow the plan, an entry cannot be
+/// recorded or a configuration fails; the run ends there.
 pub fn run(
     plan: &Plan,
     ids: &[ConfigurationId],
     executor: &mut dyn Executor,
     machine: Machine,
-    on_sample: &mut dyn FnMut(u64, u64),
+    done: Vec<Entry>,
+    record: &mut dyn FnMut(&Entry) -> io::Result<()>,
+    on_turn: &mut dyn FnMut(u64, u64),
 ) -> Result<BenchRun, BenchError> {
     check(plan, ids)?;
-    let total = (u64::from(plan.warmup) + u64::from(plan.iterations)) * ids.len() as u64;
-    let mut samples = Vec::new();
-    for (turn, done) in plan.turns(ids.len()).zip(1..) {
-        let id = &ids[turn.subject];
-        let stages = executor.execute(turn.subject).and_then(durations).map_err(|error| {
-            BenchError::Configuration { id: id.clone(), round: turn.round, source: Box::new(error) }
-        })?;
-        if let Round::Measured(iteration) = turn.round {
-            samples.push(sample(id, iteration, turn.place, &stages));
-        }
-        on_sample(done, total);
+    let sittings = plan.sittings();
+    let turns: usize =
+        sittings.iter().map(|s| plan.warm_up(s, ids.len()).len() + plan.turns(s, ids.len()).len()).sum();
+    let memory = if plan.memory { ids.len() } else { 0 };
+    let mut running = Running {
+        plan,
+        ids,
+        executor,
+        record,
+        run: empty(plan, machine),
+        turns_done: 0,
+        on_turn,
+        total: (turns + memory) as u64,
+    };
+    let fresh = done.is_empty();
+    check_journal(plan, ids, &done)?;
+    done.into_iter().for_each(|entry| running.keep(entry));
+    if fresh {
+        running.watch_idle()?;
     }
-    Ok(BenchRun {
-        schema: SCHEMA,
-        study: plan.study.clone(),
-        warmup: plan.warmup,
-        iterations: plan.iterations,
-        seed: plan.seed,
-        threads: if plan.threads == 0 { machine.threads } else { plan.threads },
-        target: plan.target.clone(),
-        differences: differences(&plan.target, &machine),
-        machine,
-        samples,
-    })
+    for sitting in &sittings {
+        running.sit(sitting)?;
+    }
+    running.measure_memory()?;
+    Ok(running.run)
 }
 
+/// Rounds per kind and configurations, before anything is measured.
 fn check(plan: &Plan, ids: &[ConfigurationId]) -> Result<(), BenchError> {
     if plan.iterations == 0 {
         return Err(BenchError::NoIterations);
@@ -78,223 +128,239 @@ fn check(plan: &Plan, ids: &[ConfigurationId]) -> Result<(), BenchError> {
     }
 }
 
-/// A NaN would become `null` in JSON and spoil every mean: better to stop where it came from.
-fn durations(stages: StageSeconds) -> Result<StageSeconds, BenchError> {
-    match stages.by_stage().into_iter().find(|(_, seconds)| !(seconds.is_finite() && *seconds >= 0.0)) {
-        Some((stage, seconds)) => Err(BenchError::NotADuration { stage, seconds }),
-        None => Ok(stages),
+/// Checks that what has been measured is what the plan begins with.
+///
+/// # Errors
+/// [`JournalError::OtherOrder`] if it is not.
+pub fn check_journal(plan: &Plan, ids: &[ConfigurationId], done: &[Entry]) -> Result<(), BenchError> {
+    let sittings = plan.sittings();
+    let planned = |aa: bool| {
+        let sittings = sittings.iter().filter(move |sitting| sitting.aa == aa);
+        sittings
+            .flat_map(|sitting| plan.turns(sitting, ids.len()).into_iter().map(|turn| (sitting.number, turn)))
+    };
+    let (mut measured, mut again, mut memory) = (planned(false), planned(true), ids.iter());
+    let is = |next: Option<(u32, Turn)>, sample: &BenchSample| {
+        next.is_some_and(|(sitting, turn)| {
+            let planned = (sitting, number(turn.round), turn.place, &ids[turn.subject]);
+            planned == (sample.sitting, sample.iteration, sample.place, &sample.id)
+        })
+    };
+    let follows = done.iter().all(|entry| match entry {
+        Entry::Sample(sample) => is(measured.next(), sample),
+        Entry::AaSample(sample) => is(again.next(), sample),
+        Entry::Memory(peak) => memory.next() == Some(&peak.id),
+        Entry::Begun { .. } | Entry::Load(_) | Entry::Resumed(_) => true,
+    });
+    if follows { Ok(()) } else { Err(JournalError::OtherOrder.into()) }
+}
+
+fn empty(plan: &Plan, machine: Machine) -> BenchRun {
+    BenchRun {
+        schema: BenchRun::SCHEMA,
+        study: plan.study.clone(),
+        workload: Some(plan.workload.clone()),
+        imported_from: None,
+        warmup: plan.warmup,
+        iterations: plan.iterations,
+        aa_iterations: plan.aa_iterations,
+        seed: plan.seed,
+        threads: if plan.threads == 0 { machine.threads } else { plan.threads },
+        pinned: None,
+        target: plan.target.clone(),
+        differences: differences(&plan.target, &machine),
+        machine,
+        samples: Vec::new(),
+        aa_samples: Vec::new(),
+        load: Vec::new(),
+        memory: Vec::new(),
+        resumed: Vec::new(),
     }
 }
 
-fn sample(id: &ConfigurationId, iteration: u32, place: u32, stages: &StageSeconds) -> BenchSample {
-    let StageSeconds { allocation_s, sampling_s, vertex_s, geometry_s, normals_s } = *stages;
-    BenchSample {
-        id: id.clone(),
-        iteration,
-        place,
-        allocation_s,
-        sampling_s,
-        vertex_s,
-        geometry_s,
-        normals_s,
-        total_s: stages.total(),
+struct Running<'a> {
+    plan: &'a Plan,
+    ids: &'a [ConfigurationId],
+    executor: &'a mut dyn Executor,
+    record: &'a mut dyn FnMut(&Entry) -> io::Result<()>,
+    run: BenchRun,
+    on_turn: &'a mut dyn FnMut(u64, u64),
+    turns_done: u64,
+    total: u64,
+}
+
+impl Running<'_> {
+    fn keep(&mut self, entry: Entry) {
+        match entry {
+            Entry::Begun { .. } => {}
+            Entry::Sample(sample) => self.run.samples.push(sample),
+            Entry::AaSample(sample) => self.run.aa_samples.push(sample),
+            Entry::Load(window) => self.run.load.push(window),
+            Entry::Memory(memory) => self.run.memory.push(memory),
+            Entry::Resumed(resumption) => self.run.resumed.push(resumption),
+        }
+    }
+
+    fn note(&mut self, entry: Entry) -> Result<(), BenchError> {
+        (self.record)(&entry).map_err(BenchError::Record)?;
+        self.keep(entry);
+        Ok(())
+    }
+
+    fn tick(&mut self, turns: u64) {
+        self.turns_done += turns;
+        (self.on_turn)(self.turns_done, self.total);
+    }
+
+    /// Before the first sitting: what others do while this program does nothing.
+    fn watch_idle(&mut self) -> Result<(), BenchError> {
+        let before = self.executor.cpu_times();
+        self.executor.wait();
+        self.note_load(before, None, None)
+    }
+
+    fn note_load(
+        &mut self,
+        before: Option<CpuTimes>,
+        sitting: Option<u32>,
+        rounds: Option<(u32, u32)>,
+    ) -> Result<(), BenchError> {
+        let shares =
+            before.zip(self.executor.cpu_times()).and_then(|(before, after)| after.shares_since(&before));
+        let Some(shares) = shares else { return Ok(()) };
+        let load_average = self.executor.load_average();
+        let window = LoadWindow { sitting, rounds, others: shares.others, steal: shares.steal, load_average };
+        self.note(Entry::Load(window))
+    }
+
+    fn sit(&mut self, sitting: &Sitting) -> Result<(), BenchError> {
+        let turns = self.plan.turns(sitting, self.ids.len());
+        let warm_up = self.plan.warm_up(sitting, self.ids.len());
+        let samples = if sitting.aa { &self.run.aa_samples } else { &self.run.samples };
+        let done = samples.iter().filter(|sample| sample.sitting == sitting.number).count();
+        if done == turns.len() {
+            self.tick((warm_up.len() + done) as u64);
+            return Ok(());
+        }
+        if done > 0 {
+            let Turn { round, place, .. } = turns[done];
+            self.note(Entry::Resumed(Resumption {
+                sitting: sitting.number,
+                iteration: number(round),
+                place,
+            }))?;
+        }
+        self.run.pinned = self.executor.sit_down()?;
+        for turn in &warm_up {
+            self.execute(turn)?;
+            self.tick(1);
+        }
+        self.tick(done as u64);
+        let mut window = Window { began: self.executor.cpu_times(), first: None };
+        for (place, turn) in turns.iter().enumerate().skip(done) {
+            let measurement = self.execute(turn)?;
+            let sample = self.sample(sitting, turn, &measurement);
+            self.note(if sitting.aa { Entry::AaSample(sample) } else { Entry::Sample(sample) })?;
+            self.tick(1);
+            let last = place + 1 == turns.len();
+            if last || turns[place + 1].round != turn.round {
+                self.close(sitting, &mut window, number(turn.round), last)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// At the end of a round: ends the window if it is long enough to take shares of.
+    fn close(
+        &mut self,
+        sitting: &Sitting,
+        window: &mut Window,
+        round: u32,
+        last: bool,
+    ) -> Result<(), BenchError> {
+        let first = *window.first.get_or_insert(round);
+        let now = self.executor.cpu_times();
+        let ticks = window.began.zip(now).map_or(0, |(began, now)| now.ticks_since(&began));
+        if last || ticks >= LEAST_TICKS {
+            self.note_load(window.began, Some(sitting.number), Some((first, round)))?;
+            *window = Window { began: now, first: None };
+        }
+        Ok(())
+    }
+
+    fn execute(&mut self, turn: &Turn) -> Result<Measurement, BenchError> {
+        self.executor.execute(turn.subject).and_then(durations).map_err(|error| BenchError::Configuration {
+            id: self.ids[turn.subject].clone(),
+            round: turn.round,
+            source: Box::new(error),
+        })
+    }
+
+    fn sample(&self, sitting: &Sitting, turn: &Turn, measurement: &Measurement) -> BenchSample {
+        let stages = &measurement.stages;
+        let StageSeconds { allocation_s, sampling_s, vertex_s, geometry_s, clustering_s, normals_s } =
+            *stages;
+        BenchSample {
+            id: self.ids[turn.subject].clone(),
+            sitting: sitting.number,
+            iteration: number(turn.round),
+            place: turn.place,
+            allocation_s,
+            sampling_s,
+            vertex_s,
+            geometry_s,
+            clustering_s,
+            normals_s,
+            total_s: stages.total(),
+            reference_s: measurement.reference_s,
+        }
+    }
+
+    fn measure_memory(&mut self) -> Result<(), BenchError> {
+        if !self.plan.memory {
+            return Ok(());
+        }
+        let done = self.run.memory.len();
+        self.tick(done as u64);
+        for (subject, id) in self.ids.iter().enumerate().skip(done) {
+            // Told for none or for all: a system does not change its mind.
+            let Some(bytes) = self.executor.peak_memory(subject)? else { break };
+            let PeakBytes { before_bytes, peak_before_bytes, peak_bytes } = bytes;
+            self.note(Entry::Memory(PeakMemory {
+                id: id.clone(),
+                before_bytes,
+                peak_before_bytes,
+                peak_bytes,
+            }))?;
+            self.tick(1);
+        }
+        Ok(())
+    }
+}
+
+/// Rounds of a sitting over which the machine is watched.
+struct Window {
+    began: Option<CpuTimes>,
+    first: Option<u32>,
+}
+
+fn number(round: Round) -> u32 {
+    match round {
+        Round::WarmUp(number) | Round::Measured(number) | Round::Again(number) => number,
+    }
+}
+
+/// A NaN would become `null` in JSON and spoil every mean: better to stop where it came from.
+fn durations(measurement: Measurement) -> Result<Measurement, BenchError> {
+    let sound = |seconds: f64| seconds.is_finite() && seconds >= 0.0;
+    if let Some((stage, seconds)) = measurement.stages.by_stage().into_iter().find(|(_, s)| !sound(*s)) {
+        return Err(BenchError::NotADuration { stage: stage.label(), seconds });
+    }
+    match measurement.reference_s.filter(|seconds| !sound(*seconds)) {
+        Some(seconds) => Err(BenchError::NotADuration { stage: "reference work", seconds }),
+        None => Ok(measurement),
     }
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
-    use super::*;
-    use crate::stages::Stage;
-    use std::collections::HashMap;
-    use std::error::Error;
-
-    /// Times made up from the subject and the number of the call, and a journal of the calls.
-    #[derive(Default)]
-    struct Mock {
-        calls: Vec<usize>,
-        fail_at_call: Option<usize>,
-        nan_at_call: Option<usize>,
-    }
-
-    impl Executor for Mock {
-        fn execute(&mut self, subject: usize) -> Result<StageSeconds, BenchError> {
-            let call = self.calls.len();
-            self.calls.push(subject);
-            if self.fail_at_call == Some(call) {
-                return Err(BenchError::Execution("the mock was told to fail".into()));
-            }
-            let normals_s = if self.nan_at_call == Some(call) { f64::NAN } else { 1e-7 * call as f64 };
-            Ok(StageSeconds {
-                allocation_s: 0.001,
-                sampling_s: 0.01 * (subject + 1) as f64,
-                vertex_s: 0.1,
-                geometry_s: 0.3,
-                normals_s,
-            })
-        }
-    }
-
-    pub(crate) fn machine() -> Machine {
-        Machine {
-            model: Some("11th Gen Intel(R) Core(TM) i7-11700 @ 2.50GHz".into()),
-            cores: Some(8),
-            threads: 16,
-            memory_bytes: Some(33_421_000_000),
-            os: "windows".into(),
-            features: ["avx2", "bmi1", "bmi2", "fma"].map(String::from).into(),
-            governor: None,
-            load: Some(0.25),
-            compiler: "rustc 1.95.0".into(),
-        }
-    }
-
-    pub(crate) fn plan() -> Plan {
-        Plan {
-            study: "mock".into(),
-            warmup: 2,
-            iterations: 5,
-            seed: 2026,
-            threads: 0,
-            target: toml::from_str("name = \"any\"\nmodel = \"\"").unwrap(),
-        }
-    }
-
-    pub(crate) fn ids() -> Vec<ConfigurationId> {
-        ["ss_bu", "ss_bi", "as_sp", "bs_su"].iter().map(|id| id.parse().unwrap()).collect()
-    }
-
-    pub(crate) fn mock_run() -> BenchRun {
-        run(&plan(), &ids(), &mut Mock::default(), machine(), &mut |_, _| ()).unwrap()
-    }
-
-    fn error_of(plan: &Plan, ids: &[ConfigurationId], mut mock: Mock) -> (BenchError, usize) {
-        let error = run(plan, ids, &mut mock, machine(), &mut |_, _| ()).unwrap_err();
-        (error, mock.calls.len())
-    }
-
-    #[test]
-    fn warm_up_is_executed_and_not_kept() {
-        let mut mock = Mock::default();
-        let run = run(&plan(), &ids(), &mut mock, machine(), &mut |_, _| ()).unwrap();
-        assert_eq!(mock.calls.len(), (2 + 5) * 4);
-        assert_eq!(run.samples.len(), 5 * 4);
-        // The mock's normals count calls: the first sample kept is the ninth call.
-        assert_eq!(run.samples[0].normals_s, 8e-7);
-    }
-
-    #[test]
-    fn every_configuration_once_a_round() {
-        let run = mock_run();
-        for (round, iteration) in run.samples.chunks(4).zip(0..) {
-            assert!(round.iter().all(|sample| sample.iteration == iteration));
-            assert_eq!(round.iter().map(|sample| sample.place).collect::<Vec<_>>(), [0, 1, 2, 3]);
-            let seen: HashSet<_> = round.iter().map(|sample| &sample.id).collect();
-            assert_eq!(seen.len(), 4);
-        }
-        let mut counts = HashMap::new();
-        run.samples.iter().for_each(|sample| *counts.entry(&sample.id).or_insert(0) += 1);
-        assert!(counts.values().all(|count| *count == 5), "{counts:?}");
-    }
-
-    #[test]
-    fn samples_carry_the_id_that_was_executed() {
-        let mut mock = Mock::default();
-        let run = run(&plan(), &ids(), &mut mock, machine(), &mut |_, _| ()).unwrap();
-        for (sample, subject) in run.samples.iter().zip(&mock.calls[8..]) {
-            assert_eq!(sample.id, ids()[*subject]);
-            assert_eq!(sample.sampling_s, 0.01 * (subject + 1) as f64);
-        }
-    }
-
-    #[test]
-    fn stages_add_up() {
-        for sample in mock_run().samples {
-            let stages = &Stage::ALL[..5];
-            let sum = stages.iter().fold(0.0, |sum, stage| sum + stage.of(&sample));
-            assert_eq!(sum, sample.total_s);
-        }
-    }
-
-    #[test]
-    fn the_same_plan_gives_the_same_run() {
-        assert_eq!(mock_run(), mock_run());
-        let other = run(&Plan { seed: 1, ..plan() }, &ids(), &mut Mock::default(), machine(), &mut |_, _| ());
-        let order = |run: &BenchRun| run.samples.iter().map(|s| s.id.to_string()).collect::<Vec<_>>();
-        assert_ne!(order(&other.unwrap()), order(&mock_run()));
-    }
-
-    #[test]
-    fn progress_counts_every_call() {
-        let mut seen = Vec::new();
-        let mut note = |done, total| seen.push((done, total));
-        run(&plan(), &ids(), &mut Mock::default(), machine(), &mut note).unwrap();
-        assert_eq!(seen, (1..=28).map(|done| (done, 28)).collect::<Vec<_>>());
-    }
-
-    #[test]
-    fn the_record_says_what_was_planned() {
-        let run = mock_run();
-        assert_eq!((run.schema, run.study.as_str(), run.warmup, run.iterations), (1, "mock", 2, 5));
-        assert_eq!((run.seed, run.threads), (2026, 16), "0 threads are the machine's");
-        assert_eq!(run.machine, machine());
-        assert!(run.differences.is_empty());
-        let narrow = Plan { threads: 3, ..plan() };
-        let run = super::run(&narrow, &ids(), &mut Mock::default(), machine(), &mut |_, _| ()).unwrap();
-        assert_eq!(run.threads, 3);
-    }
-
-    #[test]
-    fn a_failure_names_the_configuration_and_ends_the_run() {
-        let failing = |call| Mock { fail_at_call: Some(call), ..Default::default() };
-        let (error, calls) = error_of(&plan(), &ids(), failing(13));
-        let turn = plan().turns(4).nth(13).unwrap();
-        assert_eq!(calls, 14);
-        assert_eq!(error.to_string(), format!("{} failed in iteration 1", ids()[turn.subject]));
-        assert_eq!(error.source().unwrap().to_string(), "the mock was told to fail");
-        let (error, calls) = error_of(&plan(), &ids(), failing(0));
-        assert_eq!(calls, 1);
-        assert!(error.to_string().ends_with(" failed in warm-up round 0"), "{error}");
-    }
-
-    #[test]
-    fn what_is_not_a_duration_is_refused() {
-        let (error, calls) = error_of(&plan(), &ids(), Mock { nan_at_call: Some(9), ..Default::default() });
-        assert_eq!(calls, 10);
-        let source = error.source().unwrap().to_string();
-        assert_eq!(source, "normals took NaN s: must be finite and not negative");
-    }
-
-    #[test]
-    fn nothing_to_do_is_refused_before_anything_runs() {
-        let error = |plan: &Plan, ids: &[ConfigurationId]| {
-            let (error, calls) = error_of(plan, ids, Mock::default());
-            assert_eq!(calls, 0);
-            error
-        };
-        assert!(matches!(error(&Plan { iterations: 0, ..plan() }, &ids()), BenchError::NoIterations));
-        assert!(matches!(error(&plan(), &[]), BenchError::NoConfigurations));
-        let twice = [ids(), ids()].concat();
-        assert!(matches!(error(&plan(), &twice), BenchError::Repeated(id) if id == ids()[0]));
-    }
-
-    /// JSON holds every digit. serde_json reads numbers back to the last digit only with its `float_roundtrip`, which is
-    /// the reader's choice, so that one digit is allowed for here.
-    #[test]
-    fn json_gives_the_run_back() {
-        let run = mock_run();
-        let mut back: BenchRun = serde_json::from_str(&serde_json::to_string(&run).unwrap()).unwrap();
-        for (back, sample) in back.samples.iter_mut().zip(&run.samples) {
-            for stage in Stage::ALL {
-                let (read, measured) = (stage.of(back), stage.of(sample));
-                assert!((read - measured).abs() <= measured * f64::EPSILON, "{read} {measured}");
-            }
-            *back = BenchSample {
-                id: back.id.clone(),
-                iteration: back.iteration,
-                place: back.place,
-                ..sample.clone()
-            };
-        }
-        assert_eq!(back, run);
-    }
-}
+pub(crate) mod tests;

@@ -40,6 +40,8 @@ pub(crate) enum Command {
     Report(Run),
     /// Check a study file and everything it names, without doing any work
     Validate(Validate),
+    /// Extract one configuration and print what there is to know of it
+    Inspect(Inspect),
     /// Judge a questionnaire before anyone answers, and deal its forms
     #[command(subcommand)]
     Design(Design),
@@ -187,12 +189,103 @@ pub(crate) struct Pairs {
 }
 
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(crate) struct Bench {
+    #[command(subcommand)]
+    pub(crate) verb: Option<BenchVerb>,
     #[command(flatten)]
-    pub(crate) run: Run,
-    /// Take the short plan of `isostudy study` instead
+    pub(crate) run: Option<Run>,
+    /// Take the short plan of `isostudy study` instead: no A/A block, no memory
     #[arg(long)]
     pub(crate) short: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum BenchVerb {
+    /// Say of every configuration whether it is faster in B than in A; exit 1 if one is slower beyond both limits
+    Compare(Compare),
+    /// Measure the study's [benchmark.sweep]: every resolution on every number of threads; tables and figures
+    Sweep(Run),
+    /// Make a run of a published table of means, so that it can stand beside a run of ours
+    Import(Import),
+    /// Measure what is asked on standard input; `isostudy bench` starts this
+    #[command(hide = true)]
+    Worker(Worker),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Compare {
+    /// Results folder, or a run.json in it: what B is compared with
+    pub(crate) a: PathBuf,
+    /// Results folder, or a run.json in it
+    pub(crate) b: PathBuf,
+    /// A slower configuration is a regression beyond this share of its time in A ...
+    #[arg(long, default_value_t = 0.05, value_name = "SHARE", value_parser = not_negative)]
+    pub(crate) relative: f64,
+    /// ... and beyond this many seconds
+    #[arg(long, default_value_t = 0.0001, value_name = "SECONDS", value_parser = not_negative)]
+    pub(crate) absolute: f64,
+    /// Compare runs of machines that differ; every heading and verdict then says so
+    #[arg(long)]
+    pub(crate) across_machines: bool,
+    /// What to print
+    #[arg(long, default_value = "markdown")]
+    pub(crate) format: Format,
+}
+
+/// How a table is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Format {
+    Markdown,
+    Csv,
+    Latex,
+    Json,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Import {
+    /// Table with the columns of study/paper/published_benchmark.csv
+    pub(crate) table: PathBuf,
+    /// Where to write the run
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// Where the table is from
+    #[arg(long, default_value = "Costen (2026)")]
+    pub(crate) source: String,
+    /// The machine it was measured on
+    #[arg(long, default_value = "configs/cpu/i7-11700.toml", value_name = "TOML")]
+    pub(crate) machine: PathBuf,
+    /// How many rounds each mean is of
+    #[arg(long, default_value_t = 100, value_name = "N")]
+    pub(crate) iterations: u32,
+    /// How many threads sampled
+    #[arg(long, default_value_t = 16, value_name = "N")]
+    pub(crate) threads: u32,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Worker {
+    pub(crate) study: PathBuf,
+    /// Digest that the study file must have
+    #[arg(long)]
+    pub(crate) sha256: String,
+    #[arg(long)]
+    pub(crate) threads: u32,
+    #[arg(long)]
+    pub(crate) pin: bool,
+    /// The study's sweep at so many cells per axis, instead of its benchmark
+    #[arg(long)]
+    pub(crate) cells: Option<u32>,
+}
+
+/// A number that is finite and not negative.
+fn not_negative(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "is not a number".to_owned())?;
+    if number.is_finite() && number >= 0.0 {
+        Ok(number)
+    } else {
+        Err("must be finite and not negative".into())
+    }
 }
 
 #[derive(Debug, Args)]
@@ -277,6 +370,27 @@ pub(crate) enum TieRule {
     Refuse,
     Split,
     Drop,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Inspect {
+    /// Configuration, such as ss_bi
+    pub(crate) id: String,
+    /// Cells along the longest axis of the volume [default: those of the benchmark]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub(crate) resolution: Option<u32>,
+    /// Study that has the configuration
+    #[arg(long, value_name = "TOML", default_value = "configs/paper.toml")]
+    pub(crate) study: PathBuf,
+    /// Extractions to take the median time of, after one of warm-up
+    #[arg(long, value_name = "N", default_value_t = 11, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) iterations: u32,
+    /// Threads in the sampling stage; 0 takes every core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..=1024))]
+    pub(crate) threads: u32,
+    /// Print JSON instead
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]

@@ -3,6 +3,8 @@
 mod answers;
 mod args;
 mod asking;
+mod comparing;
+mod inspect;
 mod manifest;
 mod picture;
 mod pipeline;
@@ -15,11 +17,8 @@ mod subject;
 mod video;
 
 use anyhow::{Context, Result};
-use args::{Analyse, Cli, Command, Design, Run, Selection};
-use bench::Summary;
+use args::{Analyse, Bench, BenchVerb, Cli, Command, Design, Run, Selection};
 use clap::Parser;
-
-use design::record::BenchRun;
 use design::{ConfigurationId, Published, Study};
 use pipeline::{Pipeline, PlanLength};
 use std::io::{ErrorKind, Write};
@@ -90,14 +89,11 @@ fn run(command: Command) -> Result<Outcome> {
         Command::Serve(arguments) => asking::serve(&arguments),
         Command::Collect(arguments) => asking::collect(&arguments),
         Command::Deidentify(arguments) => asking::deidentify(&arguments),
-        Command::Bench(bench) => with_pipeline(&bench.run, |pipeline, _| {
-            let length = if bench.short { PlanLength::Short } else { PlanLength::Full };
-            let stamp = pipeline.timings(length)?;
-            say_summary(&pipeline.bench_run(&stamp)?)
-        }),
+        Command::Bench(bench) => return time(&bench),
         Command::Analyse(arguments) if arguments.self_test.self_test => return self_test(&arguments),
         Command::Analyse(arguments) => analyse(&arguments),
         Command::Convert(arguments) => answers::convert(&arguments),
+        Command::Inspect(arguments) => inspect::inspect(&arguments),
         Command::Validate(arguments) => validate(&arguments.study),
         Command::Design(Design::Check(arguments)) => return questionnaire::check(&arguments),
         Command::Design(Design::Rules) => questionnaire::rules(),
@@ -106,6 +102,32 @@ fn run(command: Command) -> Result<Outcome> {
             pipeline.forms()?.context(NO_FORMS)?;
             say(&out.join("forms").display().to_string())
         }),
+    }?;
+    Ok(Outcome::Sound)
+}
+
+fn time(arguments: &Bench) -> Result<Outcome> {
+    match &arguments.verb {
+        Some(BenchVerb::Compare(arguments)) => return comparing::compare(arguments),
+        Some(BenchVerb::Sweep(run)) => with_pipeline(run, |pipeline, out| {
+            for table in pipeline.sweep()? {
+                say(&table)?;
+            }
+            say(&out.join("bench/sweep").display().to_string())
+        }),
+        Some(BenchVerb::Import(arguments)) => comparing::import(arguments),
+        Some(BenchVerb::Worker(arguments)) => pipeline::measure(arguments),
+        None => {
+            let run = arguments.run.as_ref().context("a study file is needed")?;
+            let length = if arguments.short { PlanLength::Short } else { PlanLength::Full };
+            with_pipeline(run, |pipeline, _| {
+                let timings = pipeline.timings(length)?;
+                for table in pipeline.timing_statements(&timings)? {
+                    say(&table)?;
+                }
+                Ok(())
+            })
+        }
     }?;
     Ok(Outcome::Sound)
 }
@@ -265,17 +287,6 @@ fn load(path: &Path) -> Result<Study> {
 
 fn default_folder(study: &Study) -> PathBuf {
     Path::new("results").join(&study.file.study.id)
-}
-
-/// The medians of a run, one line a configuration.
-fn say_summary(run: &BenchRun) -> Result<()> {
-    say(&format!("{}\nmedians in ms:", bench::caption(run)))?;
-    for of_configuration in bench::summarise(run).chunk_by(|a, b| a.id == b.id) {
-        let stage = |summary: &Summary| format!("{} {:.3}", summary.stage.label(), 1e3 * summary.median_s);
-        let stages: Vec<String> = of_configuration.iter().map(stage).collect();
-        say(&format!("{}  {}", of_configuration[0].id, stages.join("  ")))?;
-    }
-    Ok(())
 }
 
 /// Prints a line on standard output. A reader that has gone away is no error.

@@ -63,7 +63,7 @@ pub(crate) fn write(subject: &Subject<'_>, store: &Store) -> Result<()> {
         study_sha256: subject.sha256.clone(),
         seed: subject.seed,
         // How busy the machine is now says nothing about results made earlier.
-        machine: Machine { load: None, ..bench::read_machine() },
+        machine: bench::read_machine().lasting(),
         files: files.collect(),
     };
     let mut json = serde_json::to_vec_pretty(&manifest)?;

@@ -43,6 +43,12 @@ impl Step {
         }
     }
 
+    /// Sets the bar, whose length is known only now.
+    pub(crate) fn set(&self, done: u64, all: u64) {
+        self.bar.set_length(all);
+        self.bar.set_position(done);
+    }
+
     /// Counts an item that was not up to date.
     pub(crate) fn count(&self, redone: bool) {
         self.redone.fetch_add(usize::from(redone), Ordering::Relaxed);

@@ -90,6 +90,16 @@ impl Store {
         &self.root
     }
 
+    /// A file for a stage to keep its progress in. No stage is named like it, and nothing removes it but its stage.
+    pub(crate) fn journal(&self, name: &str) -> PathBuf {
+        self.root.join(STAMPS).join(format!("{}.journal", name.replace('/', ".")))
+    }
+
+    /// Whether what is up to date is redone as well.
+    pub(crate) fn forced(&self) -> bool {
+        self.force
+    }
+
     /// Does a stage, or finds it done.
     ///
     /// # Errors
@@ -228,7 +238,8 @@ impl Inputs {
         stamp.files.iter().fold(self, |inputs, file| inputs.text(&file.path, &file.sha256))
     }
 
-    fn finish(self) -> String {
+    /// The digest.
+    pub(crate) fn finish(self) -> String {
         hexadecimal(&self.digest.finalize())
     }
 }
@@ -313,7 +324,7 @@ fn partial_file() -> tempfile::Builder<'static, 'static> {
     builder
 }
 
-fn remove_if_there(path: &Path) -> Result<()> {
+pub(crate) fn remove_if_there(path: &Path) -> Result<()> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => {
             Err(error).with_context(|| format!("cannot remove {}", path.display()))

@@ -2,7 +2,9 @@
 
 use crate::store::sha256;
 use anyhow::{Context, Result, bail};
-use design::config::{FieldSection, MeshSourceSection, ObjectSection, Placement, Positions, Topology};
+use design::config::{
+    FieldSection, MeshSourceSection, ObjectSection, Placement, Positions, SweepSection, Topology,
+};
 use design::record::Purpose;
 use design::{Arrangement, Clustering, Configuration, Study};
 use extract::{Execution, ExtractSettings, Lattice, ScalarField};
@@ -132,6 +134,12 @@ pub(crate) fn spacing(object: &ObjectSection, purpose: Purpose) -> (f64, &'stati
     }
 }
 
+/// The spacing that cuts the longest axis of an object's volume into so many cells.
+pub(crate) fn spacing_of_cells(object: &ObjectSection, cells: u32) -> f64 {
+    let longest = (0..3).map(|axis| object.max[axis] - object.min[axis]).fold(0.0, f64::max);
+    longest / f64::from(cells)
+}
+
 /// The lattice of an arrangement over an object's volume.
 ///
 /// # Errors
@@ -188,24 +196,14 @@ pub(crate) fn settings(study: &Study, configuration: &Configuration, purpose: Pu
 /// The first that cannot, naming file, key and limit.
 pub(crate) fn check_lattices(study: &Study, machine_bytes: Option<u64>) -> Result<()> {
     let file = study.path.display();
-    let allowed = (study.file.limits.memory_gib * GIB) as u64;
-    let (limit, limit_name) = match machine_bytes {
-        Some(machine) if machine < allowed => (machine, "this machine has"),
-        _ => (allowed, "limits.memory_gib allows"),
-    };
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
     let execution = Execution { threads: cores.max(study.file.benchmark.threads as usize) };
     let check = |key: String, object: &ObjectSection, arrangement, spacing: f64, purpose| -> Result<()> {
         let lattice =
             lattice(object, arrangement, spacing).with_context(|| format!("{file}: {key} = {spacing:?}"))?;
         let settings = ExtractSettings { positions: positions(study, purpose), ..Default::default() };
-        let needed = lattice.memory_bytes_for(&settings, &execution);
-        if needed > limit {
-            let (needed, limit) = (gibibytes(needed), gibibytes(limit));
-            let lattice = arrangement.label();
-            bail!("{file}: {key} = {spacing:?}: the {lattice} lattice needs {needed}, {limit_name} {limit}");
-        }
-        Ok(())
+        check_memory(study, &lattice, &settings, &execution, machine_bytes)
+            .with_context(|| format!("{file}: {key} = {spacing:?}"))
     };
     for (i, object) in study.file.objects.iter().enumerate() {
         for purpose in [Purpose::Benchmark, Purpose::Stimulus] {
@@ -220,6 +218,55 @@ pub(crate) fn check_lattices(study: &Study, machine_bytes: Option<u64>) -> Resul
         let object = study.object(named.expect("checked when the study was read"));
         let arrangement = still.configuration.method.arrangement;
         check(format!("stills[{i}].spacing"), object, arrangement, still.spacing, Purpose::Stimulus)?;
+    }
+    Ok(())
+}
+
+/// Checks every lattice of a sweep, as [`check_lattices`].
+///
+/// # Errors
+/// The first that cannot be made or does not fit, naming file, key and limit.
+pub(crate) fn check_sweep(study: &Study, section: &SweepSection, machine_bytes: Option<u64>) -> Result<()> {
+    let threads = section.threads.iter().copied().max().unwrap_or(1) as usize;
+    let settings = ExtractSettings { positions: extract::Positions::Indexed, ..Default::default() };
+    for (i, &cells) in section.cells.iter().enumerate() {
+        for object in study.file.objects.iter().filter(|object| section.objects.contains(&object.id)) {
+            for &arrangement in &study.file.arrangements {
+                let key = || format!("{}: benchmark.sweep.cells[{i}] = {cells}", study.path.display());
+                let lattice =
+                    lattice(object, arrangement, spacing_of_cells(object, cells)).with_context(key)?;
+                check_memory(study, &lattice, &settings, &Execution { threads }, machine_bytes)
+                    .with_context(key)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Checks that what the extractor holds of a lattice fits into what the study allows and the machine has.
+///
+/// # Errors
+/// If it does not, naming the limit.
+pub(crate) fn check_memory(
+    study: &Study,
+    lattice: &Lattice,
+    settings: &ExtractSettings,
+    execution: &Execution,
+    machine_bytes: Option<u64>,
+) -> Result<()> {
+    let allowed = (study.file.limits.memory_gib * GIB) as u64;
+    let (limit, limit_name) = match machine_bytes {
+        Some(machine) if machine < allowed => (machine, "this machine has"),
+        _ => (allowed, "limits.memory_gib allows"),
+    };
+    let needed = lattice.memory_bytes_for(settings, execution);
+    if needed > limit {
+        let (needed, limit) = (gibibytes(needed), gibibytes(limit));
+        let arrangement = match lattice.arrangement() {
+            extract::Arrangement::BodyCentred => Arrangement::BodyCentred,
+            extract::Arrangement::SimpleCubic => Arrangement::SimpleCubic,
+        };
+        bail!("the {} lattice needs {needed}, {limit_name} {limit}", arrangement.label());
     }
     Ok(())
 }

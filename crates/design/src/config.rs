@@ -310,7 +310,7 @@ pub struct StillSection {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BenchmarkSection {
-    /// Rounds run and thrown away before measuring.
+    /// Rounds run and thrown away at the start of every measuring process.
     #[serde(deserialize_with = "whole")]
     pub warmup: u32,
     /// Rounds of `isostudy bench`.
@@ -319,11 +319,34 @@ pub struct BenchmarkSection {
     /// Rounds of the short plan that `isostudy study` takes.
     #[serde(deserialize_with = "whole")]
     pub short_iterations: u32,
+    /// Rounds of `isostudy bench` measured once more, for the noise floor.
+    #[serde(default, deserialize_with = "whole")]
+    pub aa_iterations: u32,
+    /// Whether the run is kept on as many CPUs as it has threads.
+    #[serde(default)]
+    pub pin: bool,
     /// Threads in the sampling stage; 0 takes every core.
     #[serde(deserialize_with = "whole")]
     pub threads: u32,
     /// TOML file that describes the CPU the numbers are meant for.
     pub target: String,
+    /// What `isostudy bench sweep` measures; leave out for a study that sweeps nothing.
+    pub sweep: Option<SweepSection>,
+}
+
+/// Resolutions and thread counts, each of which is measured with each.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SweepSection {
+    /// Ids of the objects.
+    pub objects: Vec<String>,
+    /// Cells along the longest axis of an object's volume, ascending.
+    pub cells: Vec<u32>,
+    /// Threads, ascending.
+    pub threads: Vec<u32>,
+    /// Rounds for each resolution and thread count.
+    #[serde(deserialize_with = "whole")]
+    pub iterations: u32,
 }
 
 /// One question: what is shown on which side.

@@ -17,8 +17,10 @@ pub mod machine;
 mod method;
 pub mod published;
 pub mod record;
+mod stage;
 mod study;
 
 pub use check::ConfigError;
 pub use method::{Arrangement, Clustering, ConfigurationId, Method, ParseIdError};
+pub use stage::Stage;
 pub use study::{Comparison, Configuration, Group, Published, Study};

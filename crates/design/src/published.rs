@@ -1,7 +1,9 @@
 //! Published numbers, as a study supplies them for comparison.
 
+use crate::check::ConfigError;
 use crate::method::{ConfigurationId, Method};
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
 /// One row of the published benchmark. Times are means over the published run, in seconds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -42,6 +44,14 @@ pub struct BenchmarkRow {
     pub aspect_ratio_mean: f64,
     pub aspect_ratio_sd: f64,
     pub aspect_ratio_max: f64,
+}
+
+/// Reads a published benchmark; lines that begin with `#` are comments.
+///
+/// # Errors
+/// If the file cannot be read or a row or column is not as it should be, naming file, row and column.
+pub fn read_benchmark(path: &Path) -> Result<Vec<BenchmarkRow>, ConfigError> {
+    crate::study::read_table(path)
 }
 
 /// What a published preference number is.

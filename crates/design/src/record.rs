@@ -138,37 +138,83 @@ pub struct Topology {
     pub euler_characteristic: i64,
 }
 
+/// What one configuration of a sweep is at one resolution, with positions computed from indices.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SweepMesh {
+    /// Which configuration.
+    pub id: ConfigurationId,
+    /// Cells along the longest axis of the volume.
+    pub cells: u32,
+    /// Sample points that the lattice needs.
+    pub needed_samples: u64,
+    /// Vertices of the mesh.
+    pub vertices: u64,
+    /// Triangles of the mesh.
+    pub triangles: u64,
+    /// Mean of the normalised radius ratio; 0 of no triangle, as the others.
+    pub radius_ratio_mean: f64,
+    /// Mean of longest over shortest edge.
+    pub edge_ratio_mean: f64,
+    /// Mean of the published ratio of two edges.
+    pub published_aspect_ratio_mean: f64,
+}
+
 /// A benchmark run: every sample, the plan it followed, the machine it ran on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BenchRun {
-    /// Version of this layout; 1.
+    /// Version of this layout; [`BenchRun::SCHEMA`].
     pub schema: u32,
     /// The study's id.
     pub study: String,
-    /// Rounds run and thrown away.
+    /// Digest of everything that was asked of the extractor; runs of different work cannot be compared. `None` if it is not
+    /// known.
+    pub workload: Option<String>,
+    /// Where the numbers are from if they were not measured here: each sample is then a mean that somebody published.
+    pub imported_from: Option<String>,
+    /// Rounds run and thrown away at the start of every sitting.
     pub warmup: u32,
     /// Rounds measured.
     pub iterations: u32,
+    /// Rounds measured once more, in sittings of their own between the others: the A/A block.
+    pub aa_iterations: u32,
     /// Seed of the order within each round.
     pub seed: u64,
     /// Threads in the sampling stage.
     pub threads: u32,
+    /// The CPUs that the run was pinned to; `None` if it was not.
+    pub pinned: Option<Vec<u32>>,
     /// The CPU the numbers are meant for.
     pub target: CpuProfile,
     /// The machine they were measured on.
     pub machine: Machine,
     /// How the two differ; empty when they match.
     pub differences: Vec<ProfileDifference>,
-    /// Every sample, in the order measured.
+    /// Every measured sample, in the order measured.
     pub samples: Vec<BenchSample>,
+    /// Every sample of the A/A block, in the order measured.
+    pub aa_samples: Vec<BenchSample>,
+    /// What else the machine did meanwhile, in the order observed.
+    pub load: Vec<LoadWindow>,
+    /// What one extraction of each configuration needs.
+    pub memory: Vec<PeakMemory>,
+    /// Where the run was broken off and taken up again.
+    pub resumed: Vec<Resumption>,
 }
 
-/// One timed extraction. The five stages add up to the total.
+impl BenchRun {
+    /// The version of the layout that is written and read here. 2 has the edge collapse as a stage of its own, the A/A
+    /// block, load, memory and resumptions.
+    pub const SCHEMA: u32 = 2;
+}
+
+/// One timed extraction. The six stages add up to the total.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BenchSample {
     /// What was extracted.
     pub id: ConfigurationId,
-    /// Round, from 0.
+    /// The process it was measured in: sittings are counted from 0 over measured rounds and A/A block alike.
+    pub sitting: u32,
+    /// Round, from 0; of the A/A block counted on its own.
     pub iteration: u32,
     /// Place within the round, from 0.
     pub place: u32,
@@ -176,12 +222,55 @@ pub struct BenchSample {
     pub allocation_s: f64,
     /// Seconds to sample the field.
     pub sampling_s: f64,
-    /// Seconds in the vertex stage.
+    /// Seconds in the vertex stage, integrated clustering included.
     pub vertex_s: f64,
-    /// Seconds in the geometry stage, edge collapse included.
+    /// Seconds in the geometry stage; the published one has `clustering_s` in it.
     pub geometry_s: f64,
+    /// Seconds in the edge collapse; 0 without one.
+    pub clustering_s: f64,
     /// Seconds to compute vertex normals.
     pub normals_s: f64,
     /// Their sum.
     pub total_s: f64,
+    /// Seconds that a fixed piece of work, the same in every run, took just before: the machine's speed at the time.
+    pub reference_s: Option<f64>,
+}
+
+/// What others had of the machine during some rounds of a sitting, or before the run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LoadWindow {
+    /// Which sitting; `None` before the first.
+    pub sitting: Option<u32>,
+    /// First and last round of the window, as in [`BenchSample::iteration`]; `None` before the first sitting.
+    pub rounds: Option<(u32, u32)>,
+    /// Share of the CPU time that other processes had, 0 to 1, of the CPUs that the run may use.
+    pub others: f64,
+    /// Share that the hypervisor gave to other machines, 0 to 1.
+    pub steal: f64,
+    /// One-minute load average at the end.
+    pub load_average: Option<f64>,
+}
+
+/// The resident memory of a process that extracts one configuration once, in bytes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PeakMemory {
+    /// What was extracted.
+    pub id: ConfigurationId,
+    /// Resident when the field was ready and extraction had not begun.
+    pub before_bytes: u64,
+    /// The most that had been resident until then; making the field may have taken more than it holds.
+    pub peak_before_bytes: u64,
+    /// The most that was resident at any time. No more than `peak_before_bytes` says that extraction needed no more.
+    pub peak_bytes: u64,
+}
+
+/// Where a run was taken up again, in a new process and after warm-up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Resumption {
+    /// The sitting that was broken off.
+    pub sitting: u32,
+    /// The first round with something left to measure.
+    pub iteration: u32,
+    /// The first place in it that was left.
+    pub place: u32,
 }

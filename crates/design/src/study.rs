@@ -2,7 +2,7 @@
 
 use crate::check::{Checker, ConfigError, short};
 use crate::code_names;
-use crate::config::{FieldSection, ObjectSection, ResponsesSection, StudyFile};
+use crate::config::{FieldSection, ObjectSection, ResponsesSection, StudyFile, SweepSection};
 use crate::forms::Questionnaire;
 use crate::machine::CpuProfile;
 use crate::method::{ConfigurationId, Method};
@@ -112,9 +112,7 @@ impl Study {
         check_forms(&checker, &file, &configurations)?;
 
         let target_path = checker.existing("benchmark.target", &file.benchmark.target, "")?;
-        let target_text = std::fs::read_to_string(&target_path)
-            .map_err(|source| ConfigError::Read { file: target_path.clone(), source })?;
-        let target = parse_toml(&target_text, &target_path)?;
+        let target = CpuProfile::load(&target_path)?;
         let responses = match &file.responses {
             Some(ResponsesSection { file: Some(written), .. }) => {
                 Some(checker.existing("responses.file", written, "")?)
@@ -191,7 +189,7 @@ fn published_table<T: DeserializeOwned>(
     written.as_ref().map_or(Ok(Vec::new()), |written| read_table(&c.existing(key, written, "")?))
 }
 
-fn read_table<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ConfigError> {
+pub(crate) fn read_table<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ConfigError> {
     let table_error =
         |error: csv::Error| ConfigError::Table { file: path.into(), message: error.to_string() };
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(path).map_err(table_error)?;
@@ -249,8 +247,37 @@ fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigError> 
     c.count("benchmark.warmup", b.warmup, 0, 10_000)?;
     c.count("benchmark.iterations", b.iterations, 1, 100_000)?;
     c.count("benchmark.short_iterations", b.short_iterations, 1, 100_000)?;
+    c.count("benchmark.aa_iterations", b.aa_iterations, 0, 100_000)?;
     c.count("benchmark.threads", b.threads, 0, 1024)?;
-    Ok(())
+    b.sweep.as_ref().map_or(Ok(()), |sweep| check_sweep(c, file, sweep))
+}
+
+fn check_sweep(c: &Checker<'_>, file: &StudyFile, sweep: &SweepSection) -> Result<(), ConfigError> {
+    let known: Vec<&str> = file.objects.iter().map(|object| object.id.as_str()).collect();
+    if sweep.objects.is_empty() {
+        return c.refuse("benchmark.sweep.objects", "[]", "must list at least one object");
+    }
+    for (i, object) in sweep.objects.iter().enumerate() {
+        if !known.contains(&object.as_str()) {
+            let limit = format!("must be an object of this study: {}", known.join(", "));
+            return c.refuse(format!("benchmark.sweep.objects[{i}]"), object, limit);
+        }
+    }
+    c.distinct(|i| format!("benchmark.sweep.objects[{i}]"), &sweep.objects)?;
+    for (name, values, low, high) in [("cells", &sweep.cells, 4, 2048), ("threads", &sweep.threads, 1, 1024)]
+    {
+        let key = |i: usize| format!("benchmark.sweep.{name}[{i}]");
+        if values.is_empty() {
+            return c.refuse(format!("benchmark.sweep.{name}"), "[]", "must list at least one");
+        }
+        for (i, &value) in values.iter().enumerate() {
+            c.count(&key(i), value, low, high)?;
+            if i > 0 && value <= values[i - 1] {
+                return c.refuse(key(i), value, format!("must be above {} = {}", key(i - 1), values[i - 1]));
+            }
+        }
+    }
+    c.count("benchmark.sweep.iterations", sweep.iterations, 1, 100_000)
 }
 
 fn check_objects(c: &Checker<'_>, objects: &[ObjectSection]) -> Result<(), ConfigError> {

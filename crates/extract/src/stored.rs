@@ -47,11 +47,13 @@ pub(crate) fn extract(
     let vertex = clock.lap();
 
     let mut surface = triangulate(lattice, &layout, &sides, &edges)?;
-    placement::finish(Some(level), lattice, settings, execution, &targets, &mut positions, &mut surface)?;
-    let geometry = clock.lap();
+    let collapsing =
+        placement::finish(Some(level), lattice, settings, execution, &targets, &mut positions, &mut surface)?;
+    let clustering = collapsing.unwrap_or_default();
+    let geometry = clock.lap() - clustering;
 
     let normals = vertex_normals(&positions, &surface.triangles)?;
-    let times = StageTimes { allocation, sampling, vertex, geometry, normals: clock.lap() };
+    let times = StageTimes { allocation, sampling, vertex, geometry, clustering, normals: clock.lap() };
 
     let mesh = TriangleMesh { positions, normals, triangles: std::mem::take(&mut surface.triangles) };
     let counts = Counts::of(lattice, &mesh, &surface, crossings);

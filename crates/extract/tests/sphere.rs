@@ -169,12 +169,22 @@ fn threads_do_not_show() {
 
 #[test]
 fn stage_times_add_up() {
-    let before = std::time::Instant::now();
-    let times =
-        run(&Sphere { radius: 0.9 }, Arrangement::BodyCentred, 0.05, ExtractSettings::default()).times;
-    let around = before.elapsed();
-    let stages = [times.allocation, times.sampling, times.vertex, times.geometry, times.normals];
-    assert_eq!(times.total(), stages.iter().sum());
-    assert!(times.total() <= around);
-    assert!(stages.iter().all(|stage| !stage.is_zero()));
+    for positions in [Positions::Indexed, Positions::Accumulated { chunks: 1 }] {
+        for (clustering, collapses) in [
+            (Clustering::None, false),
+            (Clustering::Integrated, false),
+            (Clustering::EdgeCollapse, true),
+            (Clustering::IntegratedCollapse, true),
+        ] {
+            let settings = ExtractSettings { clustering, positions, ..ExtractSettings::default() };
+            let before = std::time::Instant::now();
+            let times = run(&Sphere { radius: 0.9 }, Arrangement::BodyCentred, 0.05, settings).times;
+            let around = before.elapsed();
+            let always = [times.allocation, times.sampling, times.vertex, times.geometry, times.normals];
+            assert_eq!(times.total(), always.iter().sum::<std::time::Duration>() + times.clustering);
+            assert!(times.total() <= around);
+            assert!(always.iter().all(|stage| !stage.is_zero()), "{clustering:?}: {times:?}");
+            assert_eq!(!times.clustering.is_zero(), collapses, "{clustering:?}: {times:?}");
+        }
+    }
 }

@@ -14,14 +14,14 @@ const PRINTED: f64 = 1e-6;
 
 /// A number of one configuration, and where each side keeps it.
 #[derive(Clone, Copy)]
-pub(super) struct Measure {
-    pub(super) published: fn(&BenchmarkRow) -> f64,
-    pub(super) ours: Ours,
+pub(crate) struct Measure {
+    pub(crate) published: fn(&BenchmarkRow) -> f64,
+    pub(crate) ours: Ours,
 }
 
 /// Where our side keeps it.
 #[derive(Clone, Copy)]
-pub(super) enum Ours {
+pub(crate) enum Ours {
     Mesh(fn(&MeshRecord) -> f64),
     /// Of the triangles' shapes: nothing if there is no triangle.
     Shape(fn(&MeshRecord) -> Option<f64>),
@@ -30,7 +30,7 @@ pub(super) enum Ours {
 
 /// Whose numbers.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Side {
+pub(crate) enum Side {
     Published,
     Ours,
     /// Ours, with the times of one round of the benchmark alone.
@@ -38,17 +38,22 @@ pub(super) enum Side {
 }
 
 /// Looks numbers up.
-pub(super) struct Numbers<'a> {
+pub(crate) struct Numbers<'a> {
     inputs: &'a Inputs<'a>,
     meshes: MeshSet<'a>,
 }
 
 impl<'a> Numbers<'a> {
-    pub(super) fn of(inputs: &'a Inputs<'a>) -> Self {
-        Self { inputs, meshes: MeshSet::of(inputs, Purpose::Benchmark) }
+    pub(crate) fn of(inputs: &'a Inputs<'a>) -> Self {
+        Self::of_purpose(inputs, Purpose::Benchmark)
     }
 
-    pub(super) fn get(&self, side: Side, measure: Measure, object: usize, method: Method) -> Option<f64> {
+    /// With the meshes of another purpose.
+    pub(crate) fn of_purpose(inputs: &'a Inputs<'a>, purpose: Purpose) -> Self {
+        Self { inputs, meshes: MeshSet::of(inputs, purpose) }
+    }
+
+    pub(crate) fn get(&self, side: Side, measure: Measure, object: usize, method: Method) -> Option<f64> {
         let id = ConfigurationId { object: self.inputs.study.file.objects[object].id.clone(), method };
         match (side, measure.ours) {
             (Side::Published, _) => {
@@ -69,14 +74,14 @@ impl<'a> Numbers<'a> {
     }
 
     /// Objects crossed with arrangements: the text's six cases.
-    pub(super) fn lattice_cases(&self) -> Vec<(usize, Arrangement)> {
+    pub(crate) fn lattice_cases(&self) -> Vec<(usize, Arrangement)> {
         let file = &self.inputs.study.file;
         let with = |object| file.arrangements.iter().map(move |&arrangement| (object, arrangement));
         (0..file.objects.len()).flat_map(with).collect()
     }
 
     /// Objects crossed with some clusterings.
-    pub(super) fn clustering_cases(&self, of: &[Clustering]) -> Vec<(usize, Clustering)> {
+    pub(crate) fn clustering_cases(&self, of: &[Clustering]) -> Vec<(usize, Clustering)> {
         let known = &self.inputs.study.file.clusterings;
         let of: Vec<Clustering> = of.iter().copied().filter(|c| known.contains(c)).collect();
         let objects = 0..self.inputs.study.file.objects.len();
@@ -84,7 +89,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// `measure` with one clustering over that with another, for every lattice case that has both.
-    pub(super) fn over_clustering(
+    pub(crate) fn over_clustering(
         &self,
         side: Side,
         measure: Measure,
@@ -99,7 +104,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// `measure` of body-centred over that of simple cubic, for every object and some clusterings.
-    pub(super) fn over_arrangement(&self, side: Side, measure: Measure, of: &[Clustering]) -> Vec<f64> {
+    pub(crate) fn over_arrangement(&self, side: Side, measure: Measure, of: &[Clustering]) -> Vec<f64> {
         let ratio = |&(object, clustering): &(usize, Clustering)| {
             let get = |arrangement| self.get(side, measure, object, Method { arrangement, clustering });
             Some(get(Arrangement::BodyCentred)? / get(Arrangement::SimpleCubic)?)
@@ -108,12 +113,12 @@ impl<'a> Numbers<'a> {
     }
 
     /// `measure` of one clustering in every lattice case.
-    pub(super) fn each(&self, side: Side, measure: Measure, clustering: Clustering) -> Vec<f64> {
+    pub(crate) fn each(&self, side: Side, measure: Measure, clustering: Clustering) -> Vec<f64> {
         self.each_case(side, measure, clustering).into_iter().map(|(.., value)| value).collect()
     }
 
     /// The same, with the object and the method of each.
-    pub(super) fn each_case(
+    pub(crate) fn each_case(
         &self,
         side: Side,
         measure: Measure,
@@ -127,13 +132,13 @@ impl<'a> Numbers<'a> {
     }
 
     /// What may move an object's numbers; `None` if nothing may.
-    pub(super) fn cause(&self, object: usize) -> Option<Cause> {
+    pub(crate) fn cause(&self, object: usize) -> Option<Cause> {
         cause(&self.inputs.study.file.objects[object].field)
     }
 
     /// What moves `measure` with these clusterings: the causes of the objects on which it is not the published one.
     /// `None` if there are none, or one of these objects has no cause.
-    pub(super) fn causes(&self, measure: Measure, of: &[Clustering]) -> Option<String> {
+    pub(crate) fn causes(&self, measure: Measure, of: &[Clustering]) -> Option<String> {
         let mut causes: Vec<&str> = Vec::new();
         for &clustering in of {
             for (object, method, ours) in self.each_case(Side::Ours, measure, clustering) {
@@ -150,18 +155,23 @@ impl<'a> Numbers<'a> {
         (!causes.is_empty()).then(|| causes.join(", "))
     }
 
+    /// What an object is called.
+    pub(crate) fn object_name(&self, object: usize) -> &str {
+        &self.inputs.study.file.objects[object].name
+    }
+
     /// The id of a configuration, for people.
-    pub(super) fn id(&self, object: usize, method: Method) -> String {
+    pub(crate) fn id(&self, object: usize, method: Method) -> String {
         ConfigurationId { object: self.inputs.study.file.objects[object].id.clone(), method }.to_string()
     }
 }
 
 /// Arithmetic mean; `None` of nothing.
-pub(super) fn mean(values: &[f64]) -> Option<f64> {
+pub(crate) fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
 /// Mean of ratios as a change in per cent.
-pub(super) fn mean_change(ratios: &[f64]) -> Option<f64> {
+pub(crate) fn mean_change(ratios: &[f64]) -> Option<f64> {
     mean(ratios).map(|ratio| 100.0 * (ratio - 1.0))
 }

@@ -7,9 +7,11 @@ use crate::interval::{Interval, t_over_respondents as over_rounds};
 use crate::verdict::Verdict;
 use design::Clustering::{self, EdgeCollapse, Integrated};
 use design::published::Claim;
+use design::record::BenchRun;
 
-const VERTEX: Measure = Measure { published: |p| p.vertex_s, ours: Ours::Times(|t| t.vertex_s) };
-const GEOMETRY: Measure = Measure { published: |p| p.geometry_s, ours: Ours::Times(|t| t.geometry_s) };
+pub(crate) const VERTEX: Measure = Measure { published: |p| p.vertex_s, ours: Ours::Times(|t| t.vertex_s) };
+pub(crate) const GEOMETRY: Measure =
+    Measure { published: |p| p.geometry_s, ours: Ours::Times(|t| t.geometry_s) };
 const ALL: [Clustering; 3] = [Clustering::None, Integrated, EdgeCollapse];
 
 pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
@@ -27,14 +29,8 @@ pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
         _ => Vec::new(),
     };
     let (value, run) = (claim.value?, inputs.bench?);
-    let cases = ratios(Side::Ours);
-    let ours = mean_change(&cases)?;
-    // Cases are paired within a round, so that what slows a whole round down cancels. A round that lacks a case would
-    // be a mean over others.
-    let whole = |of: &Vec<f64>| of.len() == cases.len();
-    let rounds = (0..run.iterations).map(|round| ratios(Side::Round(round))).filter(whole);
-    let changes: Vec<f64> = rounds.filter_map(|of| mean_change(&of)).collect();
-    let interval = over_rounds(&changes);
+    let ours = mean_change(&ratios(Side::Ours))?;
+    let interval = over_rounds(&by_round(run, ratios, mean_change));
     let direction = direction(value, interval);
     let verdict = if !run.differences.is_empty() {
         let model = run.machine.model.as_deref().unwrap_or("an unnamed CPU");
@@ -52,6 +48,20 @@ pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
         remark: String::new(),
         verdict,
     })
+}
+
+/// What `summary` makes of our cases, round by round.
+///
+/// Cases are paired within a round, so that what slows a whole round down cancels. A round that lacks a case would be a
+/// mean over others and is left out.
+pub(crate) fn by_round(
+    run: &BenchRun,
+    cases: impl Fn(Side) -> Vec<f64>,
+    summary: fn(&[f64]) -> Option<f64>,
+) -> Vec<f64> {
+    let all = cases(Side::Ours).len();
+    let rounds = (0..run.iterations).map(|round| cases(Side::Round(round))).filter(|of| of.len() == all);
+    rounds.filter_map(|of| summary(&of)).collect()
 }
 
 /// Whether we see the published direction at all; noise has a sign too.

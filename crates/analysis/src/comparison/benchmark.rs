@@ -109,6 +109,13 @@ const QUANTITIES: &[Quantity] = &[
     count!(needed_samples, Kind::Needed(samples_with_the_wrong_sign)),
     count!(needed_edges, Kind::Needed(edges_with_the_wrong_sign)),
     count!(tetrahedra_evaluated, Kind::Surface),
+    Quantity {
+        name: "evaluated_fraction",
+        decimals: 6,
+        kind: Kind::Surface,
+        published: |p| p.tetrahedra_evaluated as f64 / p.tetrahedra as f64,
+        ours: |m| Some(m.counts.tetrahedra_evaluated as f64 / m.counts.tetrahedra as f64),
+    },
     count!(vertices, Kind::Surface),
     count!(triangles, Kind::Surface),
     count!(vertex_bytes, Kind::Surface),
@@ -148,6 +155,21 @@ const STAGES: &[Stage] = &[
     ("geometry_s", |p| p.geometry_s, |t| t.geometry_s),
     ("normals_s", |p| p.normals_s, |t| t.normals_s),
     ("total_without_normals_s", |p| p.total_without_normals_s, |t| t.total_without_normals_s()),
+    (
+        "sampling_fraction",
+        |p| p.sampling_s / p.total_without_normals_s,
+        |t| t.sampling_s / t.total_without_normals_s(),
+    ),
+    (
+        "vertex_fraction",
+        |p| p.vertex_s / p.total_without_normals_s,
+        |t| t.vertex_s / t.total_without_normals_s(),
+    ),
+    (
+        "geometry_fraction",
+        |p| p.geometry_s / p.total_without_normals_s,
+        |t| t.geometry_s / t.total_without_normals_s(),
+    ),
 ];
 
 /// (x-1)(y-1)(z-1): the published count of sample points that a simple cubic lattice needs.

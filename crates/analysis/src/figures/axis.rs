@@ -59,6 +59,31 @@ impl Axis {
         Self { low: 1.0, high, ticks, logarithmic: true }
     }
 
+    /// Logarithmic, from the tenfold at or below `low` to the one at or above `high`; where that is one decade or less, from
+    /// and to 1, 2 or 5 times a tenfold.
+    pub(super) fn decades(low: f64, high: f64) -> Self {
+        let low = if low > 0.0 && low.is_finite() { low } else { 1.0 };
+        let high = if high.is_finite() { high.max(low) } else { low };
+        let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
+        let steps: &[f64] = if high / low > 30.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+        let all =
+            (first..=last.max(first + 1)).flat_map(|power| steps.iter().map(move |s| s * 10_f64.powi(power)));
+        let all: Vec<f64> = all.collect();
+        let begin = all.iter().rposition(|tick| *tick <= low * (1.0 + 1e-9)).unwrap_or(0);
+        let end =
+            all.iter().position(|tick| *tick >= high * (1.0 - 1e-9)).unwrap_or(all.len() - 1).max(begin + 1);
+        let ticks = all[begin..=end].to_vec();
+        Self { low: ticks[0], high: ticks[ticks.len() - 1], ticks, logarithmic: true }
+    }
+
+    /// Whole numbers, a little room on both sides; every one marked while they are few.
+    pub(super) fn whole(low: u32, high: u32) -> Self {
+        let step = (high - low).div_ceil(8).max(1) as usize;
+        let ticks = (low..=high).step_by(step).map(f64::from).collect();
+        let room = 0.1 * f64::from((high - low).max(1));
+        Self { low: f64::from(low) - room, high: f64::from(high) + room, ticks, logarithmic: false }
+    }
+
     /// Where a value falls between the axis's bottom and top; cut to both.
     pub(super) fn place(&self, value: f64, bottom: f64, top: f64) -> f64 {
         let value = value.clamp(self.low, self.high);
@@ -74,7 +99,11 @@ impl Axis {
     pub(super) fn labels(&self) -> Vec<String> {
         let needs = |&tick: &f64| (0..6).find(|&d| round(tick, d) == round(tick, 9)).unwrap_or(6);
         if self.logarithmic {
-            return self.ticks.iter().map(|t| number(*t, needs(t))).collect();
+            let short = |t: &f64| match *t {
+                t if t >= 1e6 => format!("{} M", number(t / 1e6, 0)),
+                t => number(t, needs(&t)),
+            };
+            return self.ticks.iter().map(short).collect();
         }
         let decimals = self.ticks.iter().map(needs).max().unwrap_or(0);
         self.ticks.iter().map(|&tick| number(tick, decimals)).collect()
@@ -130,6 +159,13 @@ mod tests {
         assert_eq!(Axis::logarithmic(2000.0).labels(), ["1", "10", "100", "1,000", "10,000"]);
         assert_eq!(Axis::spanning(-0.42, 1.02).labels(), ["-0.5", "0.0", "0.5", "1.0", "1.5"]);
         assert_eq!(Axis::spanning(0.0, 0.0).ticks.len(), 2);
+        assert_eq!(Axis::decades(0.03, 450.0).labels(), ["0.01", "0.1", "1", "10", "100", "1,000"]);
+        assert_eq!(Axis::decades(0.7, 4.1).labels(), ["0.5", "1", "2", "5"]);
+        assert_eq!(Axis::decades(2e5, 3e7).labels(), ["100,000", "1 M", "10 M", "100 M"]);
+        assert_eq!(Axis::decades(1.0, 1.0).labels(), ["1", "2"]);
+        let decades = Axis::decades(0.01, 100.0);
+        assert!((decades.place(1.0, 100.0, 0.0) - 50.0).abs() < 1e-9);
+        assert_eq!(Axis::whole(1, 4).labels(), ["1", "2", "3", "4"]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The published factor against the share of wins over appearances: two scales in one sum.
 
 use super::axis::Axis;
+use super::canvas::BLACK;
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::{Corner, Scatter};
@@ -64,7 +65,7 @@ pub(super) fn draft(study: &Study, tally: &Tally) -> Option<Draft> {
         labels: ("preference factor, as published".into(), "wins / appearances".into()),
         x: Axis::up_to(1.0),
         y: Axis::up_to(1.0),
-        lines: caps.iter().map(|cap| vec![(0.0, 0.0), (cap.value(), 1.0)]).collect(),
+        lines: caps.iter().map(|cap| (BLACK, vec![(0.0, 0.0), (cap.value(), 1.0)])).collect(),
         dashed: None,
         marks,
         names,

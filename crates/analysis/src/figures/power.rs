@@ -1,6 +1,7 @@
 //! Power against the number of participants: a panel a share, a line for all contrasts of a family with as many questions.
 
 use super::axis::Axis;
+use super::canvas::BLACK;
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
@@ -58,7 +59,7 @@ fn panel(assumptions: &Assumptions, all: &[Power], share: f64, kinds: &[(&str, u
         };
         let line: Vec<(f64, f64)> = assumptions.participants.iter().map(mean).collect();
         marks.extend(line.iter().map(|&at| (at, Mark::nth(i, true))));
-        lines.push(line);
+        lines.push((BLACK, line));
     }
     let most = assumptions.participants.last().copied().unwrap_or(1);
     Scatter {

@@ -1,6 +1,7 @@
 //! Metric against preference: a panel a metric, a mark a pair.
 
 use super::axis::Axis;
+use super::canvas::BLACK;
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
@@ -71,7 +72,7 @@ fn panel(study: &Study, found: &MetricPrediction, counts: &[[u64; 3]]) -> Scatte
     };
     let lines = found.coefficient.iter().map(|c| {
         let share = |advantage: f64| 1.0 / (1.0 + (-c.estimate * advantage / found.unit).exp());
-        (0..=40).map(|i| most * f64::from(i) / 40.0).map(|a| (of_scale(a), share(a))).collect()
+        (BLACK, (0..=40).map(|i| most * f64::from(i) / 40.0).map(|a| (of_scale(a), share(a))).collect())
     });
     Scatter {
         heading: found.metric.label.into(),

@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::bars::frame;
-use super::canvas::{Align, BLACK, Canvas};
+use super::canvas::{Align, BLACK, Canvas, Colour};
 use super::marks::Mark;
 use super::style::GRID;
 
@@ -26,7 +26,7 @@ pub(super) struct Scatter {
     pub(super) x: Axis,
     pub(super) y: Axis,
     /// Lines under the marks.
-    pub(super) lines: Vec<Vec<(f64, f64)>>,
+    pub(super) lines: Vec<(Colour, Vec<(f64, f64)>)>,
     /// A dashed line at this height.
     pub(super) dashed: Option<f64>,
     pub(super) marks: Vec<((f64, f64), Mark)>,
@@ -52,8 +52,8 @@ impl Scatter {
         if let Some(height) = self.dashed {
             canvas.dashes(left, right, self.y.place(height, bottom, top), BLACK);
         }
-        for line in &self.lines {
-            canvas.line(line.iter().map(|&point| place(point)).collect(), BLACK, 1.5);
+        for (colour, line) in &self.lines {
+            canvas.line(line.iter().map(|&point| place(point)).collect(), *colour, 1.5);
         }
         for (at, mark) in &self.marks {
             mark.draw(canvas, place(*at));

@@ -11,6 +11,8 @@ use crate::statistics::contrast::ContrastTest;
 pub enum Standing {
     /// It holds at the stated level.
     Holds,
+    /// The opposite of what was stated is there.
+    Fails,
     /// What is there is smaller than the declared margin.
     Equal,
     /// Neither a difference nor equality was shown.
@@ -28,6 +30,7 @@ impl Standing {
     pub fn label(self) -> &'static str {
         match self {
             Self::Holds => "holds",
+            Self::Fails => "does not hold",
             Self::Equal => "equal",
             Self::Open => "open",
             Self::TooFew => "too few",

@@ -65,6 +65,7 @@ fn the_papers_answers() {
         "unanswerable",
         "bearing",
         "prediction",
+        "benchmark",
         "published",
         "appendix",
     ];

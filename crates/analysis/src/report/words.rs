@@ -32,6 +32,20 @@ pub(super) fn interval(interval: Interval, decimals: usize) -> String {
     format!("{} to {}", number(interval.low, decimals), number(interval.high, decimals))
 }
 
+/// `+12.07 %`.
+pub(super) fn change(percent: f64) -> String {
+    let text = number(percent, 2);
+    if text.starts_with('\u{2212}') { format!("{text} %") } else { format!("+{text} %") }
+}
+
+/// `26,144`.
+pub(crate) fn whole(count: u64) -> String {
+    let digits = count.to_string();
+    let groups: Vec<&str> =
+        digits.as_bytes().rchunks(3).rev().map(|g| std::str::from_utf8(g).expect("digits")).collect();
+    groups.join(",")
+}
+
 /// `73 %`.
 pub(super) fn percent(share: f64) -> String {
     format!("{} %", number(100.0 * share, 0))
@@ -98,5 +112,10 @@ mod tests {
         assert_eq!(against([1, 0, 5]), "1 answer against 5, none without preference");
         assert_eq!(percents(Interval { low: 0.661, high: 1.2 }), "66 to 100 %");
         assert_eq!(capital("über"), "Über");
+        assert_eq!(
+            (change(12.066), change(-1.96), change(-0.001)),
+            ("+12.07 %".into(), "\u{2212}1.96 %".into(), "+0.00 %".into())
+        );
+        assert_eq!([0, 999, 1000, 1_026_144].map(whole), ["0", "999", "1,000", "1,026,144"]);
     }
 }

@@ -131,6 +131,25 @@ pub(super) fn bca_interval(
     Some(Interval { low: end(0.5 - LEVEL / 2.0), high: end(0.5 + LEVEL / 2.0) })
 }
 
+/// The percentile interval of a statistic of participants: quantiles of the replicates. For
+/// statistics whose jackknife says nothing of their spread, such as a median. `None` if the statistic or more than half of
+/// the resamples have no estimate.
+pub fn percentile(
+    counts: &[u64],
+    resampling: Resampling,
+    statistic: impl Fn(&[u64]) -> Option<f64> + Sync,
+) -> Option<BootstrapInterval> {
+    let mut replicates = replicates(counts, resampling, statistic);
+    let without_estimate = resampling.resamples - replicates.len();
+    if replicates.is_empty() || 2 * without_estimate > resampling.resamples {
+        return None;
+    }
+    replicates.sort_by(f64::total_cmp);
+    let end = |level: f64| quantile(&replicates, level);
+    let interval = Interval { low: end(0.5 - LEVEL / 2.0), high: end(0.5 + LEVEL / 2.0) };
+    Some(BootstrapInterval { interval, without_estimate })
+}
+
 /// The studentised (bootstrap-t) interval: estimate - q s, where q are quantiles of (replicate - estimate) / its own
 /// standard error and s is the estimate's (Davison and Hinkley 1997, section 2.4). `statistic` gives estimate and standard
 /// error. `None` as for [`bca`], or if a standard error is not above zero in more than half of the resamples.

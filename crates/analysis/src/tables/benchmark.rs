@@ -65,6 +65,7 @@ const TIME_COLUMNS: &[TimeEntry] = &[
     ("vertex_s", "Vertex, s", |t| Cell::Number(t.vertex_s, 6)),
     ("vertex_fraction", "Vertex fraction", |t| fraction(t, t.vertex_s)),
     ("geometry_s", "Geometry, s", |t| Cell::Number(t.geometry_s, 6)),
+    ("clustering_s", "Edge collapse within it, s", |t| Cell::Number(t.clustering_s, 6)),
     ("geometry_fraction", "Geometry fraction", |t| fraction(t, t.geometry_s)),
     ("normals_s", "Normals, s", |t| Cell::Number(t.normals_s, 6)),
 ];
@@ -96,6 +97,7 @@ const BLOCKS: &[(&str, &[&str])] = &[
             "vertex_s",
             "vertex_fraction",
             "geometry_s",
+            "clustering_s",
             "geometry_fraction",
         ],
     ),

@@ -13,13 +13,14 @@ mod meshes;
 mod page;
 mod report;
 mod stimuli;
+mod sweep;
 mod tables;
 mod timings;
 
 pub(crate) use bundle::forms_digest;
 pub(crate) use meshes::Meshes;
 pub(crate) use tables::{write_answers_only, write_without_study};
-pub(crate) use timings::PlanLength;
+pub(crate) use timings::{PlanLength, measure};
 
 use crate::store::{Inputs, Stamp, Store, Writer};
 use crate::subject::Fields;

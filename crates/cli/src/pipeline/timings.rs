@@ -1,49 +1,100 @@
-//! The benchmark: every configuration timed, in rounds.
+//! The benchmark: every configuration timed, in rounds, in processes of its own; and what follows from the samples.
 
-use super::Pipeline;
+use super::{Pipeline, sweep};
+use crate::args::Worker;
 use crate::progress::Step;
-use crate::store::{Inputs, Stamp};
+use crate::store::{Inputs, Stamp, remove_if_there, sha256, write_whole};
+use crate::subject::Fields;
 use crate::{rooms, subject};
-use anyhow::Result;
-use bench::{ExtractExecutor, Plan, Subject};
-use design::ConfigurationId;
+use analysis::timing;
+use anyhow::{Context, Result, bail};
+use bench::{BenchError, Entry, Plan, ProcessExecutor, Subject};
 use design::machine::Machine;
 use design::record::{BenchRun, Purpose};
+use design::{Configuration, ConfigurationId, Study};
+use std::fs::File;
+use std::io::Write;
+use std::process::Command;
 
 /// How many rounds are run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PlanLength {
-    /// `benchmark.short_iterations`, for a whole study in minutes.
+    /// `benchmark.short_iterations` and no more, for a whole study in minutes.
     Short,
-    /// `benchmark.iterations`, as in the paper.
+    /// `benchmark.iterations`, as in the paper, with A/A block and peak memory.
     Full,
+}
+
+/// What one run measures.
+pub(super) struct Bout<'a> {
+    pub(super) plan: &'a Plan,
+    /// In the order that the measuring process counts them.
+    pub(super) configurations: Vec<&'a Configuration>,
+    /// Cells per axis of the study's sweep; `None` for the benchmark's own spacing.
+    pub(super) cells: Option<u32>,
+}
+
+impl Bout<'_> {
+    fn ids(&self) -> Vec<ConfigurationId> {
+        self.configurations.iter().map(|configuration| configuration.id.clone()).collect()
+    }
 }
 
 impl Pipeline<'_> {
     /// Times every configuration. The short plan is not run where a full run is up to date: the full one stands for it.
     pub(crate) fn timings(&self, length: PlanLength) -> Result<Stamp> {
-        let machine = bench::read_machine();
+        let machine = read_machine();
         if length == PlanLength::Short
             && let Some(full) =
                 self.store.peek(stage_name(PlanLength::Full), self.inputs(PlanLength::Full, &machine)?)
         {
             return Ok(full);
         }
-        let plan = self.plan(length);
+        let plan = self.plan(length)?;
         let inputs = self.inputs(length, &machine)?;
-        let rounds = (plan.warmup + plan.iterations) as usize;
+        let key = self.inputs(length, &machine)?.finish();
         let count = self.study.configurations.len();
-        let step = Step::begin("timings", count * plan.iterations as usize, count * rounds);
+        let step = Step::begin("timings", count * plan.iterations as usize, 0);
+        let journal = self.store.journal(stage_name(length));
         let stamp = self.stage(stage_name(length), inputs, |writer| {
-            let run = self.run(&plan, machine, &step)?;
+            let bout =
+                Bout { plan: &plan, configurations: self.study.configurations.iter().collect(), cells: None };
+            let run = self.run(&bout, machine, &journal, &key, &step)?;
             let folder = stage_name(length);
             writer.write_json(&format!("{folder}/run.json"), &run)?;
-            writer.write(&format!("{folder}/samples.csv"), bench::samples_csv(&run).as_bytes())?;
-            writer.write(&format!("{folder}/machine.csv"), bench::machine_csv(&run).as_bytes())
+            writer.write(&format!("{folder}/samples.csv"), bench::samples_csv(&run.samples).as_bytes())?;
+            writer
+                .write(&format!("{folder}/aa_samples.csv"), bench::samples_csv(&run.aa_samples).as_bytes())?;
+            writer.write(&format!("{folder}/machine.csv"), bench::machine_csv(&run).as_bytes())?;
+            for warning in timing::warnings(&run) {
+                eprintln!("timings: {warning}");
+            }
+            Ok(())
         })?;
+        remove_if_there(&journal)?;
         step.count_all(stamp.redone);
         step.end();
         Ok(stamp)
+    }
+
+    /// Writes what follows from a run, as JSON, CSV, Markdown and LaTeX, and returns the tables as Markdown.
+    pub(crate) fn timing_statements(&self, timings: &Stamp) -> Result<Vec<String>> {
+        let run = self.bench_run(timings)?;
+        let statements = timing::statements(&run);
+        let tables = timing::statement_tables(&run, &statements);
+        let inputs = Inputs::of_rooms(rooms::TABLES).stamp(timings);
+        self.store.stage(&format!("{}/statements", timings.stage), inputs, |writer| {
+            let folder = &timings.stage;
+            writer.write_json(&format!("{folder}/statements.json"), &statements)?;
+            for table in &tables {
+                let path = format!("{folder}/{}", table.name);
+                writer.write(&format!("{path}.csv"), table.to_csv().as_bytes())?;
+                writer.write(&format!("{path}.md"), table.to_markdown().as_bytes())?;
+                writer.write(&format!("{path}.tex"), table.to_latex().as_bytes())?;
+            }
+            Ok(())
+        })?;
+        Ok(tables.iter().map(analysis::Table::to_markdown).collect())
     }
 
     /// A finished run.
@@ -52,48 +103,89 @@ impl Pipeline<'_> {
         Ok(serde_json::from_slice(&text)?)
     }
 
-    fn plan(&self, length: PlanLength) -> Plan {
+    fn plan(&self, length: PlanLength) -> Result<Plan> {
         let section = &self.study.file.benchmark;
-        Plan {
+        let full = length == PlanLength::Full;
+        Ok(Plan {
             study: self.study.file.study.id.clone(),
+            workload: self.workload(Inputs::default())?.finish(),
             warmup: section.warmup,
-            iterations: match length {
-                PlanLength::Short => section.short_iterations,
-                PlanLength::Full => section.iterations,
-            },
+            iterations: if full { section.iterations } else { section.short_iterations },
+            aa_iterations: if full { section.aa_iterations } else { 0 },
+            memory: full,
             seed: self.study.file.study.seed,
             threads: section.threads,
+            pin: section.pin,
             target: self.study.target.clone(),
-        }
+        })
     }
 
-    fn run(&self, plan: &Plan, machine: Machine, step: &Step) -> Result<BenchRun> {
-        let mut subjects = Vec::new();
-        for configuration in &self.study.configurations {
-            let object = self.study.object(configuration);
-            let (spacing, _) = subject::spacing(object, Purpose::Benchmark);
-            subjects.push(Subject {
-                id: configuration.id.clone(),
-                field: self.fields.get(configuration.object)?,
-                lattice: subject::lattice(object, configuration.id.method.arrangement, spacing)?,
-                settings: subject::settings(self.study, configuration, Purpose::Benchmark),
-            });
+    pub(super) fn run(
+        &self,
+        bout: &Bout<'_>,
+        machine: Machine,
+        journal: &std::path::Path,
+        key: &str,
+        step: &Step,
+    ) -> Result<BenchRun> {
+        let plan = bout.plan;
+        let done = self.take_up(journal, key, bout)?;
+        let lines: String = [Entry::Begun { key: key.into() }].iter().chain(&done).map(Entry::line).collect();
+        write_whole(journal, lines.as_bytes())?;
+        let mut file = File::options().append(true).open(journal)?;
+        let program = std::env::current_exe().context("cannot find this program to start it again")?;
+        let digest = sha256(&std::fs::read(&self.study.path)?);
+        let worker = || {
+            let mut command = Command::new(&program);
+            command.args(["bench", "worker"]).arg(&self.study.path);
+            command.args(["--sha256", &digest, "--threads", &plan.threads.to_string()]);
+            command.args(plan.pin.then_some("--pin"));
+            if let Some(cells) = bout.cells {
+                command.args(["--cells", &cells.to_string()]);
+            }
+            command
+        };
+        let mut record = |entry: &Entry| file.write_all(entry.line().as_bytes());
+        let mut executor = ProcessExecutor::new(&worker);
+        let on_turn = &mut |done, all| step.set(done, all);
+        Ok(bench::run(plan, &bout.ids(), &mut executor, machine, done, &mut record, on_turn)?)
+    }
+
+    /// What a killed run of the same plan, machine and code left behind.
+    fn take_up(&self, journal: &std::path::Path, key: &str, bout: &Bout<'_>) -> Result<Vec<Entry>> {
+        let Ok(text) = std::fs::read_to_string(journal) else { return Ok(Vec::new()) };
+        if self.store.forced() {
+            eprintln!("timings: begun anew, as --force says; an unfinished run is not gone on with");
+            return Ok(Vec::new());
         }
-        let ids: Vec<ConfigurationId> = subjects.iter().map(|subject| subject.id.clone()).collect();
-        let mut executor = ExtractExecutor::new(&subjects, plan.threads);
-        Ok(bench::run(plan, &ids, &mut executor, machine, &mut |_, _| step.tick(1))?)
+        let read = bench::read_journal(&text, key).map_err(BenchError::from);
+        match read.and_then(|done| bench::check_journal(bout.plan, &bout.ids(), &done).map(|()| done)) {
+            Ok(done) => {
+                if !done.is_empty() {
+                    eprintln!("timings: an unfinished run is gone on with ({} entries)", done.len());
+                }
+                Ok(done)
+            }
+            Err(error) => {
+                let error = anyhow::Error::from(error);
+                eprintln!("timings: begun anew; {} is not gone on from: {error:#}", journal.display());
+                Ok(Vec::new())
+            }
+        }
     }
 
     /// What a run depends on: the extractions, the plan, and the machine, but not how busy the machine is.
     fn inputs(&self, length: PlanLength, machine: &Machine) -> Result<Inputs> {
-        let machine = Machine { load: None, governor: None, ..machine.clone() };
-        let plan = self.plan(length);
-        let mut inputs = Inputs::of_rooms(rooms::TIMINGS)
-            .value("machine", &machine)
-            .value("target", &plan.target)
-            .value("plan", &(plan.warmup, plan.iterations, plan.seed, plan.threads))
-            .value("extraction", &self.study.file.extraction)
-            .value("methods", &self.study.methods());
+        let inputs = Inputs::of_rooms(rooms::TIMINGS)
+            .value("machine", &machine.lasting())
+            .value("plan", &self.plan(length)?);
+        self.workload(inputs)
+    }
+
+    /// What is asked of the extractor.
+    pub(super) fn workload(&self, inputs: Inputs) -> Result<Inputs> {
+        let mut inputs =
+            inputs.value("extraction", &self.study.file.extraction).value("methods", &self.study.methods());
         for object in &self.study.file.objects {
             inputs = inputs
                 .value("volume", &(object.min, object.max, object.benchmark_spacing, object.isovalue))
@@ -101,6 +193,52 @@ impl Pipeline<'_> {
         }
         Ok(inputs)
     }
+}
+
+/// The measuring process: answers requests on standard input until there are no more.
+pub(crate) fn measure(arguments: &Worker) -> Result<()> {
+    let pinned = if arguments.pin { bench::pin(arguments.threads) } else { None };
+    let study = Study::load(&arguments.study)?;
+    if sha256(&std::fs::read(&study.path)?) != arguments.sha256 {
+        bail!("{} was changed while the benchmark ran", study.path.display());
+    }
+    let fields = Fields::new(&study);
+    let sweep = match (arguments.cells, &study.file.benchmark.sweep) {
+        (Some(cells), Some(section)) => Some((cells, section)),
+        (Some(_), None) => bail!("{}: there is no [benchmark.sweep]", study.path.display()),
+        (None, _) => None,
+    };
+    let configurations: Vec<&Configuration> = match sweep {
+        Some((_, section)) => sweep::configurations(&study, section),
+        None => study.configurations.iter().collect(),
+    };
+    let mut subject = |number: usize| -> Result<Subject<'_>, String> {
+        let configuration = *configurations.get(number).ok_or("there is no such configuration")?;
+        let object = study.object(configuration);
+        let (spacing, purpose) = match sweep {
+            Some((cells, _)) => (subject::spacing_of_cells(object, cells), Purpose::Indexed),
+            None => (object.benchmark_spacing, Purpose::Benchmark),
+        };
+        let subject = || -> Result<Subject<'_>> {
+            Ok(Subject {
+                field: fields.get(configuration.object)?,
+                lattice: subject::lattice(object, configuration.id.method.arrangement, spacing)?,
+                settings: subject::settings(&study, configuration, purpose),
+            })
+        };
+        subject().map_err(|error| format!("{error:#}"))
+    };
+    let (requests, replies) = (std::io::stdin().lock(), std::io::stdout().lock());
+    Ok(bench::serve(requests, replies, pinned, arguments.threads, &mut subject)?)
+}
+
+/// The machine, and the commit that this program was built from.
+pub(super) fn read_machine() -> Machine {
+    let mut machine = bench::read_machine();
+    let told = |text: &'static str| (!text.is_empty()).then_some(text);
+    machine.build.commit = told(env!("ISOSTUDY_COMMIT")).map(Into::into);
+    machine.build.dirty = told(env!("ISOSTUDY_DIRTY")).map(|dirty| dirty == "yes");
+    machine
 }
 
 fn stage_name(length: PlanLength) -> &'static str {

@@ -28,6 +28,10 @@ fn balanced(participants: u32, controls: u32, repeats: u32, max_questions: u32) 
         repeats,
         max_questions,
         training: Vec::new(),
+        consent: "Yes".into(),
+        instructions: "Look".into(),
+        page_scale: 1,
+        completion: None,
     }
 }
 

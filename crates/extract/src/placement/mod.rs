@@ -8,6 +8,9 @@ mod curvature;
 mod moves;
 mod relaxation;
 
+use std::collections::TryReserveError;
+use std::time::{Duration, Instant};
+
 use glam::Vec3;
 use mesh::Bounds;
 
@@ -38,7 +41,7 @@ pub(crate) fn check(settings: &ExtractSettings, has_field: bool) -> Result<(), E
 }
 
 /// Moves vertices, collapses edges, moves vertices, as the settings say. `targets` are those of a [`CrossingPlacer`],
-/// none if there was none. Returns whether edges were collapsed.
+/// none if there was none. Returns how long the edge collapse took, where there was one.
 ///
 /// # Errors
 /// [`ExtractError::Threads`], [`ExtractError::NoMemoryForMesh`].
@@ -50,18 +53,18 @@ pub(crate) fn finish(
     targets: &[Vec3],
     positions: &mut Vec<Vec3>,
     surface: &mut Triangulation,
-) -> Result<bool, ExtractError> {
+) -> Result<Option<Duration>, ExtractError> {
     let (spacing, bounds) = (lattice.spacing(), lattice.bounds());
     let level = level.filter(|_| settings.placement.calls_the_field());
     if targets.is_empty() && level.is_none() {
-        return Ok(collapse(settings, spacing, positions, surface)?);
+        return Ok(timed_collapse(settings, spacing, positions, surface)?);
     }
     let mut moves = Moves::start(positions)?;
     if !targets.is_empty() {
         moves.advance(positions, targets, &surface.triangles, &bounds)?;
     }
-    let collapsed = collapse(settings, spacing, positions, surface)?;
-    if collapsed {
+    let collapsing = timed_collapse(settings, spacing, positions, surface)?;
+    if collapsing.is_some() {
         moves = Moves::start(positions)?;
     }
     if let Some(level) = level {
@@ -72,7 +75,18 @@ pub(crate) fn finish(
         project(&level, &bounds, execution, positions, &mut targets)?;
         moves.advance(positions, &targets, &surface.triangles, &bounds)?;
     }
-    Ok(collapsed)
+    Ok(collapsing)
+}
+
+/// Collapses edges if the settings say so, and says how long that took.
+fn timed_collapse(
+    settings: &ExtractSettings,
+    spacing: f32,
+    positions: &mut Vec<Vec3>,
+    surface: &mut Triangulation,
+) -> Result<Option<Duration>, TryReserveError> {
+    let start = Instant::now();
+    Ok(collapse(settings, spacing, positions, surface)?.then(|| start.elapsed()))
 }
 
 /// Takes each target to the isosurface; where there is no way, the vertex's position becomes the target.

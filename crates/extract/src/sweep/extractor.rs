@@ -261,13 +261,14 @@ impl Extractor {
         mesh.positions = std::mem::take(&mut first.positions);
         let surface = &mut first.surface;
         let (lattice, targets) = (&grid.lattice, std::mem::take(&mut first.targets));
-        let collapsed =
+        let collapsing =
             placement::finish(level, lattice, settings, execution, &targets, &mut mesh.positions, surface)?;
         mesh.triangles = std::mem::take(&mut surface.triangles);
-        times.geometry += joining.elapsed();
+        times.clustering = collapsing.unwrap_or_default();
+        times.geometry += joining.elapsed() - times.clustering;
 
         let making_normals = Instant::now();
-        let seams = if collapsed { None } else { Some(&seams) };
+        let seams = if collapsing.is_some() { None } else { Some(&seams) };
         make_normals(mesh, seams, threads)?;
         times.normals = making_normals.elapsed();
 

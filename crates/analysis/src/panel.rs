@@ -1,0 +1,197 @@
+//! One configuration at a glance: mesh, generation, timing, geometry.
+
+use crate::interval::LEVEL;
+use crate::statistics::{Median, median};
+use design::record::{BenchSample, Distribution, MeshRecord};
+use design::{Configuration, Stage};
+use serde::Serialize;
+use std::fmt::Write;
+
+/// The version of [`Panel`] as JSON.
+pub const PANEL_SCHEMA: u32 = 1;
+
+/// What is known of one configuration.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Panel {
+    /// Version of this layout; [`PANEL_SCHEMA`].
+    pub schema: u32,
+    /// What the object is called.
+    pub object: String,
+    /// What the method is called.
+    pub method: String,
+    /// Threads in the sampling stage.
+    pub threads: u32,
+    /// Median seconds of the six stages and of their total, in their order.
+    pub times: Vec<StageTime>,
+    /// Counts, geometry and topology.
+    pub mesh: MeshRecord,
+}
+
+/// The median time of a stage.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StageTime {
+    /// Which stage.
+    pub stage: Stage,
+    /// The median in seconds with its order-statistic interval.
+    #[serde(flatten)]
+    pub seconds: Median,
+}
+
+impl Panel {
+    /// Puts a mesh and the samples of its extraction together. Samples of other configurations are not counted.
+    pub fn new(
+        object: &str,
+        configuration: &Configuration,
+        mesh: MeshRecord,
+        samples: &[BenchSample],
+        threads: u32,
+    ) -> Self {
+        let own: Vec<&BenchSample> = samples.iter().filter(|sample| sample.id == mesh.id).collect();
+        let time = |stage: Stage| {
+            let seconds = median(own.iter().map(|sample| stage.of(sample)).collect(), LEVEL)?;
+            Some(StageTime { stage, seconds })
+        };
+        Self {
+            schema: PANEL_SCHEMA,
+            object: object.into(),
+            method: configuration.id.method.label(),
+            threads,
+            times: Stage::ALL.into_iter().filter_map(time).collect(),
+            mesh,
+        }
+    }
+
+    /// The panel as text, a line each number.
+    pub fn to_text(&self) -> String {
+        let mut text = Lines::default();
+        let (m, c) = (&self.mesh, &self.mesh.counts);
+        let [x, y, z] = m.cells;
+        text.heading(&format!(
+            "{}: {}, {}, {x} x {y} x {z} cubes of {}",
+            m.id, self.object, self.method, m.spacing
+        ));
+        text.heading("mesh");
+        text.count("vertices", c.vertices);
+        text.count("triangles", c.triangles);
+        let unclustered = c.triangles + c.discarded_triangles;
+        text.share("discarded triangles", c.discarded_triangles, unclustered, "of all");
+        text.count("  as published, some twice", c.discarded_as_published);
+        let t = &m.topology;
+        text.line("Euler characteristic", &t.euler_characteristic.to_string(), "");
+        text.count("components", t.components);
+        text.count("boundary edges", t.boundary_edges);
+        text.count("edges of more than two triangles", t.non_manifold_edges);
+        text.heading("generation");
+        text.share("sample points stored", c.stored_samples, c.needed_samples, "of those needed");
+        text.count("  needed", c.needed_samples);
+        text.share("edges stored", c.stored_edges, c.needed_edges, "of those needed");
+        text.count("  needed", c.needed_edges);
+        text.share("tetrahedra evaluated", c.tetrahedra_evaluated, c.tetrahedra, "of all");
+        text.count("  all", c.tetrahedra);
+        text.count("lattice edges that cross", c.crossings);
+        text.count("bytes of samples", c.sample_bytes);
+        text.count("bytes of edges", c.edge_bytes);
+        text.count("bytes of vertices", c.vertex_bytes);
+        text.count("bytes of indices", c.index_bytes);
+        self.timing(&mut text);
+        text.heading("geometry");
+        text.spread("area", &m.quality.area, 6);
+        text.spread("ratio of two edges, published", &m.quality.published_aspect_ratio, 3);
+        text.spread("ratio of three edges", &m.quality.edge_ratio, 3);
+        text.spread("radius ratio", &m.quality.radius_ratio, 3);
+        text.spread("smallest angle, degrees", &m.quality.min_angle_deg, 1);
+        text.count("degenerate triangles", m.quality.degenerate);
+        text.spread("distance to the isosurface", &m.accuracy.distance, 6);
+        text.0
+    }
+
+    fn timing(&self, text: &mut Lines) {
+        let threads = if self.threads == 1 {
+            "1 sampling thread".into()
+        } else {
+            format!("{} sampling threads", self.threads)
+        };
+        text.heading(&format!("timing, ms: medians on {threads}"));
+        let total =
+            self.times.iter().find(|time| time.stage == Stage::Total).map_or(0.0, |t| t.seconds.median);
+        for StageTime { stage, seconds } in &self.times {
+            let ms = format!("{:.3}", 1e3 * seconds.median);
+            let remark = match (seconds.interval, stage) {
+                (Some(i), Stage::Total) => format!("{:.3} to {:.3}", 1e3 * i.low, 1e3 * i.high),
+                (_, Stage::Total) => String::new(),
+                _ if total > 0.0 => format!("{:.1} %", 100.0 * seconds.median / total),
+                _ => String::new(),
+            };
+            text.line(stage.label(), &ms, &remark);
+        }
+    }
+}
+
+/// Lines of name, number and remark.
+#[derive(Default)]
+struct Lines(String);
+
+impl Lines {
+    fn heading(&mut self, heading: &str) {
+        let gap = if self.0.is_empty() { "" } else { "\n" };
+        writeln!(self.0, "{gap}{heading}").expect("a string takes everything");
+    }
+
+    fn line(&mut self, name: &str, value: &str, remark: &str) {
+        let line = format!("  {name:<34}{value:>14}  {remark}");
+        writeln!(self.0, "{}", line.trim_end()).expect("a string takes everything");
+    }
+
+    fn count(&mut self, name: &str, count: u64) {
+        self.line(name, &crate::report::whole(count), "");
+    }
+
+    fn share(&mut self, name: &str, part: u64, whole: u64, of: &str) {
+        let share = if whole > 0 {
+            format!("{:.2} % {of}", 100.0 * part as f64 / whole as f64)
+        } else {
+            String::new()
+        };
+        self.line(name, &crate::report::whole(part), &share);
+    }
+
+    fn spread(&mut self, name: &str, of: &Distribution, decimals: usize) {
+        if of.count == 0 {
+            return self.line(name, "none", "");
+        }
+        let remark = format!("SD {:.decimals$}, {:.decimals$} to {:.decimals$}", of.sd, of.min, of.max);
+        self.line(name, &format!("{:.decimals$}", of.mean), &remark);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn a_panel_has_what_was_counted_and_measured() {
+        let study = fixture::study();
+        let configuration = study.configurations.iter().find(|c| c.id.to_string() == "ss_bi").unwrap();
+        let mesh = fixture::meshes(&study).into_iter().find(|mesh| mesh.id == configuration.id).unwrap();
+        let mut samples = fixture::bench(&study).samples;
+        for sample in &mut samples {
+            // The median of 1, 2, 3 ... rounds, and a total that is not their sum, so that none stands for another.
+            sample.vertex_s = 0.001 * f64::from(sample.iteration + 1);
+            sample.total_s = 0.010;
+        }
+        let panel = Panel::new("sphere", configuration, mesh, &samples, 2);
+        let text = panel.to_text();
+        let has = |line: &str| assert!(text.lines().any(|l| l == line), "{line}\n{text}");
+        has("ss_bi: sphere, body-centred, integrated, 50 x 50 x 50 cubes of 0.04");
+        has("  vertices                                  13,605");
+        // 101,720 without clustering.
+        has("  discarded triangles                       74,520  73.26 % of all");
+        has("    as published, some twice               105,086");
+        has("  tetrahedra evaluated                     160,992  10.52 % of all");
+        has("timing, ms: medians on 2 sampling threads");
+        has("  vertex                                     3.000  30.0 %");
+        assert_eq!(panel.times.len(), 7);
+        assert!((panel.times[2].seconds.median - 0.003).abs() < 1e-12);
+    }
+}

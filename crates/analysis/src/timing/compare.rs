@@ -1,0 +1,142 @@
+//! Two runs, configuration by configuration.
+
+use super::floor::{NoiseFloor, between, speed_shift};
+use super::series::{Judgement, Verdict, by_configuration, middle, thirds, values};
+use super::statements::STATEMENTS_SCHEMA;
+use crate::interval::Interval;
+use crate::statistics::median;
+use design::record::{BenchRun, BenchSample};
+use design::{ConfigurationId, Stage};
+use serde::Serialize;
+
+/// The chance that any one interval of a stage misses, over all its configurations together (Bonferroni).
+const MISSES: f64 = 0.05;
+
+/// What two runs say of each other.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Version of this layout; [`STATEMENTS_SCHEMA`].
+    pub schema: u32,
+    /// How the machines differ, each difference in a line; empty if they do not.
+    pub across: Vec<String>,
+    /// Log-ratio of the machines' speeds: the reference work's time in B over that in A. Part of every floor.
+    pub speed_shift: Option<f64>,
+    /// Of each stage, total first, each configuration that both runs have.
+    pub rows: Vec<Row>,
+    /// Configurations that only one of the runs has.
+    pub unmatched: Vec<ConfigurationId>,
+}
+
+/// One stage of one configuration in both runs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// Which configuration.
+    pub id: ConfigurationId,
+    /// Which stage.
+    pub stage: Stage,
+    /// Median in A, seconds.
+    pub a_s: f64,
+    /// Median in B, seconds.
+    pub b_s: f64,
+    /// B over A; `None` where a stage takes no time.
+    pub ratio: Option<f64>,
+    /// Where the ratio may lie, at 95 % for all configurations of the stage together; `None` of means.
+    pub interval: Option<Interval>,
+    /// Ratios up to this, and down to its inverse, are no more than noise; `None` without an A/A block.
+    pub floor: Option<f64>,
+    /// What can be said of B.
+    pub judgement: Judgement,
+}
+
+/// What is a regression: B slower, by more than both.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Share of A's time, 0.05 for 5 %.
+    pub relative: f64,
+    /// Seconds.
+    pub absolute_s: f64,
+}
+
+/// Compares run B with run A. `across` are the differences of their machines, if they are to be compared nevertheless.
+///
+/// The interval of a ratio is made from the order-statistic intervals of both medians, each end at its own distance, by the
+/// rule for differences of independent estimates (Zou & Donner 2008), on logarithms. It speaks of the rounds that were
+/// measured; that processes, hours and loads differ is the floor's part.
+pub fn compare(a: &BenchRun, b: &BenchRun, across: Vec<String>) -> Comparison {
+    let floors = [a, b].map(NoiseFloor::of);
+    let shift = speed_shift(a, b);
+    let (in_a, in_b) = (by_configuration(&a.samples), by_configuration(&b.samples));
+    let both: Vec<_> = in_a.iter().filter_map(|(id, a)| Some((*id, [a, in_b.get(id)?]))).collect();
+    let only_a = in_a.keys().filter(|id| !in_b.contains_key(*id));
+    let alone = only_a.chain(in_b.keys().filter(|id| !in_a.contains_key(*id)));
+    let level = 1.0 - MISSES / both.len().max(1) as f64;
+    let of_stage = |stage: Stage| {
+        let floor = between(&floors[0], &floors[1], shift, stage);
+        both.iter().map(move |(id, samples)| row(*samples, id, stage, floor, level))
+    };
+    let stages = stages(a.imported_from.is_some() || b.imported_from.is_some());
+    Comparison {
+        schema: STATEMENTS_SCHEMA,
+        across,
+        speed_shift: shift,
+        rows: stages.into_iter().flat_map(of_stage).collect(),
+        unmatched: alone.map(|id| (*id).clone()).collect(),
+    }
+}
+
+impl Comparison {
+    /// The configurations whose total is slower in B by more than the limits.
+    pub fn regressions(&self, limits: &Limits) -> Vec<&Row> {
+        let beyond = |row: &&Row| {
+            row.stage == Stage::Total
+                && row.judgement.verdict == Verdict::Slower
+                && row.b_s > row.a_s * (1.0 + limits.relative)
+                && row.b_s > row.a_s + limits.absolute_s
+        };
+        self.rows.iter().filter(beyond).collect()
+    }
+
+    /// Of one stage.
+    pub fn of_stage(&self, stage: Stage) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(move |row| row.stage == stage)
+    }
+}
+
+/// Total first. Published geometry has the edge collapse in it.
+fn stages(published: bool) -> Vec<Stage> {
+    use Stage::{Allocation, Clustering, Geometry, GeometryAsPublished, Normals, Sampling, Total, Vertex};
+    match published {
+        true => vec![Total, Allocation, Sampling, Vertex, GeometryAsPublished, Normals],
+        false => vec![Total, Allocation, Sampling, Vertex, Geometry, Clustering, Normals],
+    }
+}
+
+fn row(
+    samples: [&Vec<&BenchSample>; 2],
+    id: &ConfigurationId,
+    stage: Stage,
+    floor: Option<f64>,
+    level: f64,
+) -> Row {
+    let values = samples.map(|samples| values(samples, stage));
+    let [a, b] = values.each_ref().map(|values| median(values.clone(), level).expect("both have samples"));
+    let [a_s, b_s] = [a.median, b.median];
+    let (judgement, interval) = match a.interval.zip(b.interval) {
+        _ if a_s == 0.0 || b_s == 0.0 => (Judgement::cannot_say("takes no time"), None),
+        None => (Judgement::cannot_say("a mean has no interval"), None),
+        Some((around_a, around_b)) => {
+            let difference = (b_s / a_s).ln();
+            let below = (b_s / around_b.low).ln().hypot((around_a.high / a_s).ln());
+            let above = (around_b.high / b_s).ln().hypot((a_s / around_a.low).ln());
+            let (low, high) = (difference - below, difference + above);
+            let [thirds_a, thirds_b] = values.each_ref().map(|values| thirds(values));
+            let parts =
+                thirds_a.zip(thirds_b).map(|(a, b)| [0, 1, 2].map(|i| (middle(b[i]) / middle(a[i])).ln()));
+            let parts = parts.as_ref().map(|parts| &parts[..]);
+            let interval = Interval { low: low.exp(), high: high.exp() };
+            (Judgement::of(low, high, floor, parts), (interval.high.is_finite()).then_some(interval))
+        }
+    };
+    let ratio = (a_s > 0.0 && b_s > 0.0).then(|| b_s / a_s);
+    Row { id: id.clone(), stage, a_s, b_s, ratio, interval, floor: floor.map(f64::exp), judgement }
+}

@@ -1,0 +1,43 @@
+//! What the samples of a benchmark say, and what they do not.
+//!
+//! ```text
+//! BenchRun ──┬── medians, outliers ──────────────┐
+//!            ├── A/A block ── NoiseFloor ── ratios ── Statements ── tables
+//!            └── load windows ── quiet ───────────┘
+//! BenchRun, BenchRun ── machine differences, compare ── Comparison ── tables, regressions
+//! ```
+//!
+//! Times are compared through the logarithm of their ratio, so that twice as slow and twice as fast are equally far from
+//! alike. A verdict needs three things: an interval that lies beyond the [`NoiseFloor`], a floor in the first place, and the
+//! same direction in each third of the run.
+//!
+//! # Guarantees
+//! - No sample is left out of a median or an interval. Outliers are named, and what they do to the median is said.
+//! - The same runs give the same statements: what is drawn is drawn from a seed.
+//!
+//! # Not guaranteed
+//! - "Cannot say" is not "equally fast".
+//! - What changes only from one hour to the next, and spares the reference work, is seen by no run.
+
+mod compare;
+mod differences;
+mod floor;
+mod outliers;
+mod quiet;
+mod ratios;
+mod series;
+mod statements;
+mod tables;
+
+#[cfg(test)]
+mod simulation;
+
+pub use compare::{Comparison, Limits, Row, compare};
+pub use differences::machine_differences;
+pub use floor::{AA_MARGIN, NoiseFloor};
+pub use outliers::{MAD_LIMIT, Outlier};
+pub use quiet::{BUSY, warnings};
+pub use ratios::Ratio;
+pub use series::{Judgement, Verdict};
+pub use statements::{STATEMENTS_SCHEMA, StageMedian, Statements, statements};
+pub use tables::{comparison_tables, statement_tables};

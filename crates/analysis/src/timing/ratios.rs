@@ -1,0 +1,92 @@
+//! Configurations against each other within one run, paired round by round.
+
+use super::floor::NoiseFloor;
+use super::series::{Judgement, by_configuration, middle, thirds};
+use crate::interval::Interval;
+use crate::statistics::bootstrap::{Resampling, percentile};
+use design::record::{BenchRun, BenchSample};
+use design::{ConfigurationId, Stage};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The time of one configuration over that of another, of the same object and in the same round: what slows a round down
+/// falls on both.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Ratio {
+    /// The configuration below the line.
+    pub first: ConfigurationId,
+    /// The configuration above the line.
+    pub second: ConfigurationId,
+    /// Of which stage.
+    pub stage: Stage,
+    /// Median over rounds of second / first.
+    pub ratio: f64,
+    /// Its 95 % interval: percentile bootstrap of whole rounds; `None` of a single one.
+    pub interval: Option<Interval>,
+    /// What can be said of the second beside the first.
+    pub judgement: Judgement,
+}
+
+/// The stages that are put into ratios; the others are small or the same in all.
+const STAGES: [Stage; 5] =
+    [Stage::Total, Stage::Sampling, Stage::Vertex, Stage::GeometryAsPublished, Stage::Normals];
+
+/// All pairs of one object that share the arrangement or the clustering, in the order of their ids.
+pub(super) fn ratios(run: &BenchRun, floor: &NoiseFloor, resampling: Resampling) -> Vec<Ratio> {
+    let series: Vec<_> = by_configuration(&run.samples).into_iter().collect();
+    let mut ratios = Vec::new();
+    for (i, first) in series.iter().enumerate() {
+        for second in &series[i + 1..] {
+            let (a, b) = (first.0.method, second.0.method);
+            if first.0.object == second.0.object
+                && (a.arrangement == b.arrangement || a.clustering == b.clustering)
+            {
+                ratios.extend(
+                    STAGES.iter().filter_map(|stage| ratio(floor, first, second, *stage, resampling)),
+                );
+            }
+        }
+    }
+    ratios
+}
+
+fn ratio(
+    floor: &NoiseFloor,
+    first: &(&ConfigurationId, Vec<&BenchSample>),
+    second: &(&ConfigurationId, Vec<&BenchSample>),
+    stage: Stage,
+    resampling: Resampling,
+) -> Option<Ratio> {
+    let by_round = |samples: &[&BenchSample]| -> BTreeMap<u32, f64> {
+        samples.iter().map(|sample| (sample.iteration, stage.of(sample))).collect()
+    };
+    let (below, above) = (by_round(&first.1), by_round(&second.1));
+    let log_ratio = |(round, a): (&u32, &f64)| Some((above.get(round)? / a).ln());
+    let logs: Vec<f64> = below.iter().filter_map(log_ratio).collect();
+    if logs.is_empty() || !logs.iter().all(|log| log.is_finite()) {
+        return None;
+    }
+    let statistic = |draws: &[u64]| {
+        let drawn =
+            logs.iter().zip(draws).flat_map(|(&log, &times)| std::iter::repeat_n(log, times as usize));
+        Some(middle(&drawn.collect::<Vec<_>>()))
+    };
+    let interval =
+        (logs.len() > 1).then(|| percentile(&vec![1; logs.len()], resampling, statistic)).flatten();
+    let interval = interval.map(|found| found.interval);
+    let parts = thirds(&logs).map(|parts| parts.map(middle));
+    let judgement = match interval {
+        None => Judgement::cannot_say("a single value has no interval"),
+        Some(Interval { low, high }) => {
+            Judgement::of(low, high, floor.within(stage), parts.as_ref().map(|parts| &parts[..]))
+        }
+    };
+    Some(Ratio {
+        first: first.0.clone(),
+        second: second.0.clone(),
+        stage,
+        ratio: middle(&logs).exp(),
+        interval: interval.map(|i| Interval { low: i.low.exp(), high: i.high.exp() }),
+        judgement,
+    })
+}

@@ -1,0 +1,238 @@
+//! Statements and comparisons as tables.
+
+use super::compare::{Comparison, Row};
+use super::quiet::warnings;
+use super::series::by_configuration;
+use super::statements::Statements;
+use crate::interval::Interval;
+use crate::stage_times::circumstances;
+use crate::table::{Cell, Table};
+use design::Stage;
+use design::record::BenchRun;
+
+const MS: f64 = 1e3;
+
+/// A run's statements: medians, ratios within the run, outliers, and what to know of machine and noise.
+pub fn statement_tables(run: &BenchRun, statements: &Statements) -> Vec<Table> {
+    let mut tables = vec![medians(run, statements), ratios(statements), outliers(statements)];
+    tables.retain(|table| !table.rows.is_empty());
+    tables
+}
+
+fn medians(run: &BenchRun, statements: &Statements) -> Table {
+    let mut columns = vec![
+        ("id", "Id"),
+        ("samples", "Samples"),
+        ("total_ms", "Total, ms"),
+        ("total_low_ms", "from"),
+        ("total_high_ms", "to"),
+    ];
+    columns.extend([
+        ("allocation_ms", "Allocation"),
+        ("sampling_ms", "Sampling"),
+        ("vertex_ms", "Vertex"),
+        ("geometry_ms", "Geometry"),
+        ("clustering_ms", "Clustering"),
+        ("normals_ms", "Normals"),
+        ("peak_mib", "Peak memory, MiB"),
+        ("extraction_mib", "of it extraction"),
+    ]);
+    let mut table = Table::new("bench_medians", "Median times", &columns);
+    for id in by_configuration(&run.samples).into_keys() {
+        let of = |stage: Stage| {
+            let found = statements.medians.iter().find(|median| median.id == *id && median.stage == stage);
+            found.expect("every stage of every configuration has a median")
+        };
+        let total = of(Stage::Total);
+        let end = |end: fn(Interval) -> f64| Cell::number(total.seconds.interval.map(|i| MS * end(i)), 3);
+        let mut row = vec![
+            Cell::text(id),
+            Cell::count(total.samples as u64),
+            Cell::Number(MS * total.seconds.median, 3),
+            end(|i| i.low),
+            end(|i| i.high),
+        ];
+        row.extend(Stage::ALL[..6].iter().map(|stage| Cell::Number(MS * of(*stage).seconds.median, 3)));
+        let memory = statements.memory.iter().find(|memory| memory.id == *id);
+        let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+        row.push(Cell::number(memory.map(|m| mib(m.peak_bytes)), 1));
+        // Below what making the field had taken before, extraction's own peak is not seen.
+        let seen = memory.filter(|m| m.peak_bytes > m.peak_before_bytes);
+        row.push(Cell::number(seen.map(|m| mib(m.peak_bytes - m.before_bytes)), 1));
+        table.push(row);
+    }
+    table.notes.push(format!(
+        "Over {} Medians with their order-statistic intervals of at least 95 %; medians of stages need not add up to that of \
+         the total. Clustering is the edge collapse; integrated clustering is part of the vertex stage.",
+        circumstances(run)
+    ));
+    if !statements.memory.is_empty() {
+        table.notes.push(
+            "Peak memory is the most that was resident in a process that extracts the configuration once, field \
+             included; the last column leaves out what was resident before, and is empty where making the field had \
+             taken more than extraction."
+                .into(),
+        );
+    }
+    table.notes.push(match statements.floor.aa.get(Stage::Total.label()) {
+        Some(floor) => format!(
+            "Noise floor of the total, from {} rounds measured again in other processes: {:.1} %.",
+            run.aa_iterations,
+            percent(*floor)
+        ),
+        None => "No A/A block: the noise floor is not known, and no verdict is given.".into(),
+    });
+    table.notes.extend(warnings(run));
+    table
+}
+
+fn ratios(statements: &Statements) -> Table {
+    let columns = [
+        ("stage", "Stage"),
+        ("first", "First"),
+        ("second", "Second"),
+        ("ratio", "second / first"),
+        ("low", "from"),
+        ("high", "to"),
+        ("verdict", "Second is"),
+        ("reason", "Why not more"),
+    ];
+    let mut table = Table::new("bench_ratios", "Configurations against each other", &columns);
+    for ratio in &statements.ratios {
+        let end = |end: fn(Interval) -> f64| Cell::number(ratio.interval.map(end), 3);
+        table.push(vec![
+            Cell::text(ratio.stage.label()),
+            Cell::text(&ratio.first),
+            Cell::text(&ratio.second),
+            Cell::Number(ratio.ratio, 3),
+            end(|i| i.low),
+            end(|i| i.high),
+            Cell::text(ratio.judgement.verdict.label()),
+            Cell::text(ratio.judgement.reason),
+        ]);
+    }
+    table.notes.push(
+        "Medians over rounds of the ratio within a round; 95 % percentile intervals of 2,000 bootstrap resamples of \
+         whole rounds; a verdict where the interval lies beyond the stage's noise floor and each third of the run has \
+         the same direction."
+            .into(),
+    );
+    table
+}
+
+fn outliers(statements: &Statements) -> Table {
+    let columns = [
+        ("id", "Id"),
+        ("outliers", "Outliers"),
+        ("median_ms", "Median, ms"),
+        ("median_without_ms", "without them"),
+        ("change_percent", "change, %"),
+    ];
+    let mut table = Table::new("bench_outliers", "What outliers do to medians", &columns);
+    for effect in &statements.outlier_effects {
+        table.push(vec![
+            Cell::text(&effect.id),
+            Cell::count(effect.outliers as u64),
+            Cell::Number(MS * effect.median_s, 3),
+            Cell::Number(MS * effect.median_without_s, 3),
+            Cell::Number(100.0 * (effect.median_without_s / effect.median_s - 1.0), 2),
+        ]);
+    }
+    table.notes.push(format!(
+        "Totals further than {} scaled median absolute deviations from the median. They stay in every statement.",
+        super::MAD_LIMIT
+    ));
+    table
+}
+
+/// A comparison: totals with their verdicts, then every stage.
+pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) -> Vec<Table> {
+    let across = match comparison.across.is_empty() {
+        true => String::new(),
+        false => " (ACROSS MACHINES)".to_owned(),
+    };
+    let mut totals = Table::new("bench_comparison", format!("B against A{across}"), &columns(&[]));
+    for row in comparison.of_stage(Stage::Total) {
+        totals.push(cells(row, false, &across));
+    }
+    totals.notes.push(format!("A: {}", circumstances(a)));
+    totals.notes.push(format!("B: {}", circumstances(b)));
+    if !comparison.across.is_empty() {
+        totals.notes.push(format!(
+            "A and B are not of one machine ({}). A ratio says how much faster one machine is with its program, not what \
+             the program does.",
+            comparison.across.join("; ")
+        ));
+    }
+    if a.workload.is_none() || b.workload.is_none() {
+        totals.notes.push(
+            "One of them does not tell what was asked of the extractor: see to it that resolutions are the same.".into(),
+        );
+    }
+    if let Some(shift) = comparison.speed_shift {
+        totals.notes.push(format!(
+            "The reference work took {:+.1} % more time in B; a change of the machine is no change of the program, and \
+             is part of the floor.",
+            100.0 * (shift.exp() - 1.0)
+        ));
+    }
+    if !comparison.unmatched.is_empty() {
+        let ids: Vec<String> = comparison.unmatched.iter().map(ToString::to_string).collect();
+        totals.notes.push(format!("In one of the runs only: {}.", ids.join(", ")));
+    }
+    for (name, run) in [("A", a), ("B", b)] {
+        totals.notes.extend(warnings(run).into_iter().map(|warning| format!("{name}: {warning}")));
+    }
+    totals.notes.push(
+        "Ratios of medians; intervals hold for all configurations together at 95 %. A verdict needs an interval beyond the \
+         noise floor (A/A block, load of others, reference work) and the same direction in each third of the runs."
+            .into(),
+    );
+    let mut stages = Table::new(
+        "bench_comparison_stages",
+        format!("B against A, stage by stage{across}"),
+        &columns(&[("stage", "Stage")]),
+    );
+    for row in comparison.rows.iter().filter(|row| row.stage != Stage::Total) {
+        stages.push(cells(row, true, &across));
+    }
+    vec![totals, stages]
+}
+
+fn columns(before: &[(&'static str, &'static str)]) -> Vec<(&'static str, &'static str)> {
+    let rest = [
+        ("id", "Id"),
+        ("a_ms", "A, ms"),
+        ("b_ms", "B, ms"),
+        ("ratio", "B / A"),
+        ("low", "from"),
+        ("high", "to"),
+        ("floor", "Noise up to"),
+        ("verdict", "B is"),
+        ("reason", "Why not more"),
+    ];
+    [before, &rest].concat()
+}
+
+fn cells(row: &Row, with_stage: bool, across: &str) -> Vec<Cell> {
+    let end = |end: fn(Interval) -> f64| Cell::number(row.interval.map(end), 3);
+    let mut cells = vec![
+        Cell::text(&row.id),
+        Cell::Number(MS * row.a_s, 3),
+        Cell::Number(MS * row.b_s, 3),
+        Cell::number(row.ratio, 3),
+        end(|i| i.low),
+        end(|i| i.high),
+        Cell::number(row.floor, 3),
+        Cell::text(format!("{}{}", row.judgement.verdict.label(), across.to_lowercase())),
+        Cell::text(row.judgement.reason),
+    ];
+    if with_stage {
+        cells.insert(0, Cell::text(row.stage.label()));
+    }
+    cells
+}
+
+fn percent(log_ratio: f64) -> f64 {
+    100.0 * (log_ratio.exp() - 1.0)
+}

@@ -1,0 +1,215 @@
+//! What the measuring process does: it reads requests, a line each, and answers each with a line, in JSON.
+
+use crate::error::BenchError;
+use crate::load::resident_bytes;
+use crate::reference::Reference;
+use crate::run::{Measurement, PeakBytes};
+use crate::stages::StageSeconds;
+use extract::{Execution, ExtractSettings, Lattice, ScalarField, StageTimes, extract};
+use serde::{Deserialize, Serialize};
+use std::hint::black_box;
+use std::io::{self, BufRead, Write};
+
+/// A configuration, ready to extract.
+pub struct Subject<'a> {
+    /// What is sampled.
+    pub field: &'a dyn ScalarField,
+    /// Where it is sampled.
+    pub lattice: Lattice,
+    /// Isovalue, clustering, positions.
+    pub settings: ExtractSettings,
+}
+
+/// What the measuring process is asked; subjects are numbered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Request {
+    /// Extract once and say how long each stage took.
+    Time(usize),
+    /// Extract once and say how much memory that took.
+    Memory(usize),
+}
+
+/// What it answers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reply {
+    /// Said once, unasked: ready, pinned to these CPUs.
+    Ready(Option<Vec<u32>>),
+    /// To [`Request::Time`].
+    Measurement(Measurement),
+    /// To [`Request::Memory`]; `None` where it is not told.
+    Memory(Option<PeakBytes>),
+    /// To either: why not.
+    Failed(String),
+}
+
+/// Answers requests until there are no more. `subject` makes a configuration ready, untimed; `threads` are those of the
+/// sampling stage, 0 for every core.
+///
+/// # Errors
+/// If a request cannot be read or understood or an answer not written. What an extraction refuses is an answer.
+pub fn serve<'a>(
+    requests: impl BufRead,
+    mut replies: impl Write,
+    pinned: Option<Vec<u32>>,
+    threads: u32,
+    subject: &mut dyn FnMut(usize) -> Result<Subject<'a>, String>,
+) -> io::Result<()> {
+    let mut reference = Reference::default();
+    let mut say = |reply: &Reply| {
+        writeln!(replies, "{}", serde_json::to_string(reply)?)?;
+        replies.flush()
+    };
+    say(&Reply::Ready(pinned))?;
+    for line in requests.lines() {
+        let reply = match serde_json::from_str(&line?)? {
+            Request::Time(number) => {
+                subject(number).and_then(|s| time(&s, threads, &mut reference)).map(Reply::Measurement)
+            }
+            Request::Memory(number) => subject(number).and_then(|s| peak(&s, threads)).map(Reply::Memory),
+        };
+        say(&reply.unwrap_or_else(Reply::Failed))?;
+    }
+    Ok(())
+}
+
+/// Extracts once and drops the mesh; dropping is not in any stage.
+fn time(subject: &Subject<'_>, threads: u32, reference: &mut Reference) -> Result<Measurement, String> {
+    let reference_s = Some(reference.time().as_secs_f64());
+    Ok(Measurement { stages: StageSeconds::from(&extract_once(subject, threads)?), reference_s })
+}
+
+fn peak(subject: &Subject<'_>, threads: u32) -> Result<Option<PeakBytes>, String> {
+    let before = resident_bytes();
+    extract_once(subject, threads)?;
+    Ok(before.zip(resident_bytes()).map(|([before_bytes, peak_before_bytes], [_, peak_bytes])| PeakBytes {
+        before_bytes,
+        peak_before_bytes,
+        peak_bytes,
+    }))
+}
+
+fn extract_once(subject: &Subject<'_>, threads: u32) -> Result<StageTimes, String> {
+    let execution = Execution { threads: threads as usize };
+    let extraction = extract(subject.field, &subject.lattice, &subject.settings, &execution);
+    extraction.map(|extraction| black_box(extraction).times).map_err(|error| error.to_string())
+}
+
+impl Reply {
+    /// The answer to [`Request::Time`].
+    pub(crate) fn measurement(self) -> Result<Measurement, BenchError> {
+        match self {
+            Self::Measurement(measurement) => Ok(measurement),
+            other => Err(other.unexpected()),
+        }
+    }
+
+    /// The answer to [`Request::Memory`].
+    pub(crate) fn memory(self) -> Result<Option<PeakBytes>, BenchError> {
+        match self {
+            Self::Memory(memory) => Ok(memory),
+            other => Err(other.unexpected()),
+        }
+    }
+
+    /// What is said unasked.
+    pub(crate) fn ready(self) -> Result<Option<Vec<u32>>, BenchError> {
+        match self {
+            Self::Ready(pinned) => Ok(pinned),
+            other => Err(other.unexpected()),
+        }
+    }
+
+    fn unexpected(self) -> BenchError {
+        match self {
+            Self::Failed(reason) => BenchError::Execution(reason.into()),
+            other => BenchError::Process(format!("unexpected answer {other:?}")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use extract::{Arrangement, Clustering, Positions, Sphere};
+    use glam::Vec3;
+    use mesh::Bounds;
+    use std::time::Duration;
+
+    fn sphere(settings: ExtractSettings) -> Subject<'static> {
+        let bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) };
+        let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.5).unwrap();
+        Subject { field: &Sphere { radius: 1.0 }, lattice, settings }
+    }
+
+    fn replies(requests: &[Request]) -> Vec<Reply> {
+        let lines: Vec<String> =
+            requests.iter().map(|request| serde_json::to_string(request).unwrap()).collect();
+        let mut out = Vec::new();
+        let subject = &mut |number| match number {
+            0 => Ok(sphere(ExtractSettings { clustering: Clustering::EdgeCollapse, ..Default::default() })),
+            1 => {
+                let positions = Positions::Accumulated { chunks: 0 };
+                Ok(sphere(ExtractSettings { positions, ..Default::default() }))
+            }
+            _ => Err("there are two subjects".into()),
+        };
+        serve(lines.join("\n").as_bytes(), &mut out, Some(vec![3]), 1, subject).unwrap();
+        String::from_utf8(out).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+    }
+
+    #[test]
+    fn each_stage_goes_where_it_belongs() {
+        let ms = Duration::from_millis;
+        let times = StageTimes {
+            allocation: ms(1),
+            sampling: ms(20),
+            vertex: ms(300),
+            geometry: ms(4000),
+            clustering: ms(50_000),
+            normals: ms(600_000),
+        };
+        let stages = StageSeconds::from(&times);
+        let expected = StageSeconds {
+            allocation_s: 0.001,
+            sampling_s: 0.02,
+            vertex_s: 0.3,
+            geometry_s: 4.0,
+            clustering_s: 50.0,
+            normals_s: 600.0,
+        };
+        assert_eq!(stages, expected);
+        assert!((stages.total() - times.total().as_secs_f64()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn requests_are_answered_in_order() {
+        let [ready, measurement, memory] = &replies(&[Request::Time(0), Request::Memory(0)])[..] else {
+            panic!()
+        };
+        assert_eq!(*ready, Reply::Ready(Some(vec![3])));
+        let Reply::Measurement(measurement) = measurement else { panic!("{measurement:?}") };
+        assert!(measurement.stages.clustering_s > 0.0 && measurement.reference_s > Some(0.0));
+        let Reply::Memory(memory) = memory else { panic!("{memory:?}") };
+        if let Some(memory) = memory {
+            assert!(memory.before_bytes > 0 && memory.peak_bytes >= memory.peak_before_bytes);
+            assert!(memory.peak_before_bytes >= memory.before_bytes);
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_extracted_is_an_answer() {
+        let answers = replies(&[Request::Time(1), Request::Memory(2)]);
+        assert!(matches!(&answers[1], Reply::Failed(reason) if reason.contains("chunk")), "{answers:?}");
+        assert_eq!(answers[2], Reply::Failed("there are two subjects".into()));
+        assert_eq!(answers[2].clone().measurement().unwrap_err().to_string(), "there are two subjects");
+        assert!(answers[0].clone().memory().unwrap_err().to_string().contains("unexpected answer Ready"));
+    }
+
+    #[test]
+    fn what_is_no_request_ends_the_process() {
+        let mut never = |_| -> Result<Subject<'static>, String> { unreachable!() };
+        assert!(serve("{\"sing\":1}\n".as_bytes(), &mut Vec::new(), None, 1, &mut never).is_err());
+    }
+}

@@ -1,0 +1,94 @@
+//! Two finished runs side by side, and published tables made into runs.
+
+use crate::args::{Compare, Format, Import};
+use crate::store::write_whole;
+use crate::{Outcome, say};
+use analysis::timing::{self, Limits};
+use anyhow::{Context, Result, bail};
+use design::machine::CpuProfile;
+use design::published::read_benchmark;
+use design::record::BenchRun;
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// Where a results folder keeps its runs; the full one stands for the short one.
+const RUNS: [&str; 3] = ["bench/full/run.json", "bench/short/run.json", "run.json"];
+
+/// Prints the comparison; a regression is a check that failed.
+pub(crate) fn compare(arguments: &Compare) -> Result<Outcome> {
+    let [a, b] = [&arguments.a, &arguments.b].map(|path| read_run(path));
+    let (a, b) = (a?, b?);
+    if let (Some(of_a), Some(of_b)) = (&a.workload, &b.workload)
+        && of_a != of_b
+    {
+        bail!(
+            "A and B were asked for different extractions (study {} and {}); their times say nothing of each other",
+            a.study,
+            b.study
+        );
+    }
+    let across = timing::machine_differences(&a, &b);
+    if !across.is_empty() && !arguments.across_machines {
+        let list = across.join("\n  ");
+        bail!(
+            "A and B are not of one machine:\n  {list}\n--across-machines compares them nevertheless, and says so"
+        );
+    }
+    let comparison = timing::compare(&a, &b, across);
+    let tables = timing::comparison_tables(&a, &b, &comparison);
+    match arguments.format {
+        Format::Json => say(&serde_json::to_string_pretty(&comparison)?)?,
+        format => {
+            for table in &tables {
+                say(&match format {
+                    Format::Csv => table.to_csv(),
+                    Format::Latex => table.to_latex(),
+                    _ => table.to_markdown(),
+                })?;
+            }
+        }
+    }
+    let limits = Limits { relative: arguments.relative, absolute_s: arguments.absolute };
+    let regressions = comparison.regressions(&limits);
+    for row in &regressions {
+        let (id, a, b) = (&row.id, 1e3 * row.a_s, 1e3 * row.b_s);
+        let label = if comparison.across.is_empty() { "" } else { " (across machines)" };
+        eprintln!("regression{label}: {id} takes {b:.3} ms, {a:.3} ms before");
+    }
+    Ok(if regressions.is_empty() { Outcome::Sound } else { Outcome::CheckFailed })
+}
+
+/// Writes the run that a table of means makes.
+pub(crate) fn import(arguments: &Import) -> Result<()> {
+    let rows = read_benchmark(&arguments.table)?;
+    let machine = CpuProfile::load(&arguments.machine)?;
+    let run = bench::import(&rows, &arguments.source, arguments.iterations, arguments.threads, &machine)
+        .with_context(|| arguments.table.display().to_string())?;
+    let mut json = serde_json::to_vec_pretty(&run)?;
+    json.push(b'\n');
+    write_whole(&arguments.out, &json)?;
+    say(&arguments.out.display().to_string())
+}
+
+/// A run from its file, or from the results folder that has one.
+fn read_run(path: &Path) -> Result<BenchRun> {
+    #[derive(Deserialize)]
+    struct Versioned {
+        schema: u32,
+    }
+    let file = if path.is_dir() { in_folder(path)? } else { path.to_owned() };
+    let name = || file.display().to_string();
+    let text = std::fs::read(&file).with_context(name)?;
+    let Versioned { schema } = serde_json::from_slice(&text).with_context(name)?;
+    if schema != BenchRun::SCHEMA {
+        bail!("{}: schema = {schema}: this version reads {}", name(), BenchRun::SCHEMA);
+    }
+    serde_json::from_slice(&text).with_context(name)
+}
+
+fn in_folder(folder: &Path) -> Result<PathBuf> {
+    let found = RUNS.iter().map(|run| folder.join(run)).find(|run| run.is_file());
+    found.with_context(|| {
+        format!("{} has none of {}; `isostudy bench` makes them", folder.display(), RUNS.join(", "))
+    })
+}

@@ -1,0 +1,75 @@
+//! One configuration at one resolution: extracted, measured, timed, printed.
+
+use crate::args::Inspect;
+use crate::records::mesh_record;
+use crate::subject::Fields;
+use crate::{say, subject};
+use analysis::Panel;
+use anyhow::{Context, Result, bail};
+use bench::StageSeconds;
+use design::record::{BenchSample, Purpose};
+use design::{ConfigurationId, Study};
+use extract::{Execution, extract};
+
+/// Prints the panel.
+pub(crate) fn inspect(arguments: &Inspect) -> Result<()> {
+    let study = Study::load(&arguments.study)?;
+    let id: ConfigurationId = arguments.id.parse().with_context(|| arguments.id.clone())?;
+    let Some(configuration) = study.configurations.iter().find(|configuration| configuration.id == id) else {
+        let known: Vec<String> = study.configurations.iter().map(|c| c.id.to_string()).collect();
+        bail!("{id}: {} has {}", study.path.display(), known.join(", "));
+    };
+    let object = study.object(configuration);
+    let spacing = match arguments.resolution {
+        Some(cells) => subject::spacing_of_cells(object, cells),
+        None => object.benchmark_spacing,
+    };
+    let method = configuration.id.method;
+    let lattice = subject::lattice(object, method.arrangement, spacing)?;
+    let settings = subject::settings(&study, configuration, Purpose::Benchmark);
+    let execution = Execution { threads: arguments.threads as usize };
+    let memory_bytes = bench::read_machine().memory_bytes;
+    subject::check_memory(&study, &lattice, &settings, &execution, memory_bytes)
+        .with_context(|| format!("{id} with spacing {spacing}"))?;
+    let fields = Fields::new(&study);
+    let field = fields.get(configuration.object)?;
+    let extraction = extract(field, &lattice, &settings, &execution)?;
+    if extraction.mesh.triangles.is_empty() {
+        bail!(
+            "{id}: no surface at isovalue {} with spacing {spacing}: every sample lies on one side",
+            object.isovalue
+        );
+    }
+    let accuracy = extract::accuracy(&extraction.mesh, field, settings.isovalue, spacing as f32, &execution)?;
+    let record = mesh_record(&id, Purpose::Benchmark, spacing, &lattice, &extraction, &accuracy);
+    // The extraction above was the warm-up.
+    let mut samples = Vec::new();
+    for iteration in 0..arguments.iterations {
+        let times = extract(field, &lattice, &settings, &execution)?.times;
+        samples.push(sample(&id, iteration, &StageSeconds::from(&times)));
+    }
+    let threads = match arguments.threads {
+        0 => std::thread::available_parallelism().map_or(1, |n| n.get() as u32),
+        threads => threads,
+    };
+    let panel = Panel::new(&object.name, configuration, record, &samples, threads);
+    say(&if arguments.json { serde_json::to_string_pretty(&panel)? } else { panel.to_text() })
+}
+
+fn sample(id: &ConfigurationId, iteration: u32, stages: &StageSeconds) -> BenchSample {
+    let StageSeconds { allocation_s, sampling_s, vertex_s, geometry_s, clustering_s, normals_s } = *stages;
+    BenchSample {
+        id: id.clone(),
+        sitting: 0,
+        iteration,
+        place: 0,
+        allocation_s,
+        sampling_s,
+        vertex_s,
+        geometry_s,
+        clustering_s,
+        normals_s,
+        total_s: stages.total(),
+        reference_s: None,
+    }
+}

@@ -1,0 +1,152 @@
+//! The sweep over resolutions and threads: each pair of them a benchmark run of its own, so that a killed sweep goes on.
+
+use super::Pipeline;
+use super::timings::{Bout, read_machine};
+use crate::progress::Step;
+use crate::store::{Inputs, Stamp, remove_if_there};
+use crate::{rooms, subject};
+use analysis::sweep::SweepLevel;
+use anyhow::{Context, Result, bail};
+use bench::Plan;
+use design::config::SweepSection;
+use design::machine::Machine;
+use design::record::{Purpose, SweepMesh};
+use design::{Configuration, Study};
+use extract::Execution;
+
+/// The configurations that a study's sweep is about. The measuring process counts them alike.
+pub(super) fn configurations<'s>(study: &'s Study, section: &SweepSection) -> Vec<&'s Configuration> {
+    let swept = |c: &&Configuration| section.objects.contains(&c.id.object);
+    study.configurations.iter().filter(swept).collect()
+}
+
+impl Pipeline<'_> {
+    /// Measures what is not up to date, writes tables and figures, and returns the tables as Markdown.
+    pub(crate) fn sweep(&self) -> Result<Vec<String>> {
+        let file = &self.study.file;
+        let Some(section) = &file.benchmark.sweep else {
+            bail!("{}: there is no [benchmark.sweep]; configs/paper.toml has one", self.study.path.display());
+        };
+        subject::check_sweep(self.study, section, bench::read_machine().memory_bytes)?;
+        let machine = read_machine();
+        let (mut levels, mut meshes, mut stamps) = (Vec::new(), Vec::new(), Vec::new());
+        // Threads inside: what is compared is measured close together.
+        for &cells in &section.cells {
+            let stamp = self.sweep_meshes(section, cells)?;
+            let bytes = std::fs::read(self.store.root().join(stamp.file(".json")))?;
+            meshes.extend(serde_json::from_slice::<Vec<SweepMesh>>(&bytes)?);
+            stamps.push(stamp);
+            for &threads in &section.threads {
+                let stamp = self.sweep_level(section, cells, threads, &machine)?;
+                levels.push(SweepLevel { cells, threads, run: self.bench_run(&stamp)? });
+                stamps.push(stamp);
+            }
+        }
+        let found = analysis::sweep::sweep(&file.study.id, &levels, &meshes);
+        let tables = analysis::sweep::sweep_tables(&found);
+        let mut inputs = Inputs::of_rooms(rooms::TABLES);
+        for stamp in &stamps {
+            inputs = inputs.stamp(stamp);
+        }
+        self.store.stage("bench/sweep", inputs, |writer| {
+            writer.write_json("bench/sweep/sweep.json", &found)?;
+            for table in &tables {
+                let path = format!("bench/sweep/{}", table.name);
+                writer.write(&format!("{path}.csv"), table.to_csv().as_bytes())?;
+                writer.write(&format!("{path}.md"), table.to_markdown().as_bytes())?;
+                writer.write(&format!("{path}.tex"), table.to_latex().as_bytes())?;
+            }
+            for figure in analysis::sweep_figures(self.study, &found)? {
+                writer.write(&format!("bench/sweep/{}.svg", figure.name), figure.svg.as_bytes())?;
+                writer.write(&format!("bench/sweep/{}.png", figure.name), &figure.png)?;
+            }
+            Ok(())
+        })?;
+        Ok(tables.iter().filter(|t| t.name != "sweep").map(analysis::Table::to_markdown).collect())
+    }
+
+    /// One resolution on so many threads.
+    fn sweep_level(
+        &self,
+        section: &SweepSection,
+        cells: u32,
+        threads: u32,
+        machine: &Machine,
+    ) -> Result<Stamp> {
+        let configurations = configurations(self.study, section);
+        let inputs = || -> Result<Inputs> {
+            let inputs = Inputs::of_rooms(rooms::TIMINGS).value("machine", &machine.lasting());
+            Ok(self
+                .sweep_inputs(inputs, section, cells)?
+                .value("plan", &self.sweep_plan(section, cells, threads)?))
+        };
+        let plan = self.sweep_plan(section, cells, threads)?;
+        let name = format!("bench/sweep/{cells:04}-{threads}");
+        let (journal, key) = (self.store.journal(&name), inputs()?.finish());
+        eprintln!("sweep: {cells} cells per axis, threads: {threads}");
+        let step = Step::begin("sweep", configurations.len() * plan.iterations as usize, 0);
+        let bout = Bout { plan: &plan, configurations, cells: Some(cells) };
+        let stamp = self.stage(&name, inputs()?, |writer| {
+            let run = self.run(&bout, machine.clone(), &journal, &key, &step)?;
+            writer.write_json(&format!("{name}/run.json"), &run)?;
+            writer.write(&format!("{name}/samples.csv"), bench::samples_csv(&run.samples).as_bytes())
+        })?;
+        remove_if_there(&journal)?;
+        step.count_all(stamp.redone);
+        step.end();
+        Ok(stamp)
+    }
+
+    fn sweep_plan(&self, section: &SweepSection, cells: u32, threads: u32) -> Result<Plan> {
+        let benchmark = &self.study.file.benchmark;
+        Ok(Plan {
+            study: self.study.file.study.id.clone(),
+            workload: self.sweep_inputs(Inputs::default(), section, cells)?.finish(),
+            warmup: benchmark.warmup,
+            iterations: section.iterations,
+            aa_iterations: 0,
+            memory: true,
+            seed: self.study.file.study.seed,
+            threads,
+            pin: benchmark.pin,
+            target: self.study.target.clone(),
+        })
+    }
+
+    /// What is asked of the extractor at a resolution.
+    fn sweep_inputs(&self, inputs: Inputs, section: &SweepSection, cells: u32) -> Result<Inputs> {
+        Ok(self.workload(inputs)?.value("objects", &section.objects).value("cells", &cells))
+    }
+
+    /// What is extracted at a resolution, untimed.
+    fn sweep_meshes(&self, section: &SweepSection, cells: u32) -> Result<Stamp> {
+        let inputs = self.sweep_inputs(Inputs::of_rooms(rooms::MESHES), section, cells)?;
+        let configurations = configurations(self.study, section);
+        self.stage(&format!("bench/sweep/{cells:04}-meshes"), inputs, |writer| {
+            let meshes: Result<Vec<SweepMesh>> =
+                configurations.iter().map(|configuration| self.sweep_mesh(configuration, cells)).collect();
+            writer.write_json(&format!("bench/sweep/{cells:04}-meshes.json"), &meshes?)
+        })
+    }
+
+    fn sweep_mesh(&self, configuration: &Configuration, cells: u32) -> Result<SweepMesh> {
+        let object = self.study.object(configuration);
+        let spacing = subject::spacing_of_cells(object, cells);
+        let lattice = subject::lattice(object, configuration.id.method.arrangement, spacing)?;
+        let settings = subject::settings(self.study, configuration, Purpose::Indexed);
+        let field = self.fields.get(configuration.object)?;
+        let extraction = extract::extract(field, &lattice, &settings, &Execution { threads: self.threads })
+            .with_context(|| format!("{} at {cells} cells per axis", configuration.id))?;
+        let quality = mesh::quality::quality(&extraction.mesh);
+        Ok(SweepMesh {
+            id: configuration.id.clone(),
+            cells,
+            needed_samples: extraction.counts.needed_samples,
+            vertices: extraction.counts.vertices,
+            triangles: extraction.counts.triangles,
+            radius_ratio_mean: quality.radius_ratio.mean,
+            edge_ratio_mean: quality.edge_ratio.mean,
+            published_aspect_ratio_mean: quality.published_aspect_ratio.mean,
+        })
+    }
+}

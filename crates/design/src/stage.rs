@@ -1,0 +1,67 @@
+//! The six stages of an extraction.
+
+use crate::record::BenchSample;
+use serde::{Deserialize, Serialize};
+
+/// A stage of an extraction, or all six together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stage {
+    /// Allocating buffers.
+    Allocation,
+    /// Sampling the field.
+    Sampling,
+    /// Finding and placing vertices, integrated clustering included.
+    Vertex,
+    /// Making triangles.
+    Geometry,
+    /// The edge collapse.
+    Clustering,
+    /// Computing vertex normals.
+    Normals,
+    /// The sum of the six. The paper's total leaves the normals out.
+    Total,
+    /// Geometry and edge collapse together: the published geometry stage.
+    GeometryAsPublished,
+}
+
+impl Stage {
+    /// The six stages in their order, then the total.
+    pub const ALL: [Self; 7] = [
+        Self::Allocation,
+        Self::Sampling,
+        Self::Vertex,
+        Self::Geometry,
+        Self::Clustering,
+        Self::Normals,
+        Self::Total,
+    ];
+
+    /// The name used in tables and errors.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Allocation => "allocation",
+            Self::Sampling => "sampling",
+            Self::Vertex => "vertex",
+            Self::Geometry => "geometry",
+            Self::Clustering => "clustering",
+            Self::Normals => "normals",
+            Self::Total => "total",
+            Self::GeometryAsPublished => "geometry and clustering",
+        }
+    }
+
+    /// What a sample says about this stage, in seconds.
+    pub fn of(self, sample: &BenchSample) -> f64 {
+        match self {
+            Self::Allocation => sample.allocation_s,
+            Self::Sampling => sample.sampling_s,
+            Self::Vertex => sample.vertex_s,
+            Self::Geometry => sample.geometry_s,
+            Self::Clustering => sample.clustering_s,
+            Self::Normals => sample.normals_s,
+            Self::Total => sample.total_s,
+            Self::GeometryAsPublished => sample.geometry_s + sample.clustering_s,
+        }
+    }
+}

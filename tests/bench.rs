@@ -1,0 +1,360 @@
+//! The benchmark as a user runs it: killed and gone on with, compared, imported. No test here judges a measured time.
+
+mod fixture;
+
+use fixture::{Fixture, Run};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+const JOURNAL: &str = ".stages/bench.full.journal";
+
+fn run_of(folder: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(folder.join("bench/full/run.json")).unwrap()).unwrap()
+}
+
+/// Starts the benchmark and kills it when its journal has so many lines.
+fn kill_at(fixture: &Fixture, lines: usize) -> Vec<Value> {
+    let mut child = fixture.command("bench").stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let journal = fixture.out().join(JOURNAL);
+    let read = || std::fs::read_to_string(&journal).unwrap_or_default();
+    while read().matches('\n').count() < lines {
+        assert_eq!(child.try_wait().unwrap(), None, "it ended before it could be killed");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let text = read();
+    let whole = &text[..text.rfind('\n').unwrap()];
+    whole.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+#[test]
+fn a_killed_benchmark_goes_on_in_the_middle_of_a_round() {
+    let fixture = Fixture::new();
+    // The first line, the machine at rest, and the first sitting: one round of 18, so that 10 samples are not all.
+    let journal = kill_at(&fixture, 2 + 10);
+    let again = fixture.succeed("bench", &[]);
+    assert!(again.stderr.contains("an unfinished run is gone on with"), "{}", again.stderr);
+    assert!(!fixture.out().join(JOURNAL).exists());
+    let run = run_of(fixture.out());
+    let samples = run["samples"].as_array().unwrap();
+    assert_eq!((samples.len(), run["aa_samples"].as_array().unwrap().len()), (5 * 18, 4 * 18));
+    let kept = journal.iter().filter(|entry| entry["entry"] == "sample");
+    for (before, after) in kept.zip(samples) {
+        assert_eq!(before["total_s"], after["total_s"], "what was measured is not measured again");
+    }
+    let resumed = run["resumed"].as_array().unwrap();
+    assert_eq!(resumed.len(), 1);
+    assert_eq!((&resumed[0]["sitting"], &resumed[0]["iteration"]), (&0.into(), &0.into()));
+    assert!(resumed[0]["place"].as_u64().unwrap() >= 10);
+    assert!(again.stderr.contains("was broken off and taken up again"), "{}", again.stderr);
+    let finished = fixture.succeed("bench", &[]);
+    assert!(finished.stderr.contains("up to date"), "{}", finished.stderr);
+}
+
+#[test]
+fn a_journal_of_another_plan_is_not_used() {
+    let fixture = Fixture::new();
+    kill_at(&fixture, 2 + 5);
+    fixture.edit("seed = 2026", "seed = 2027");
+    let run = fixture.succeed("bench", &[]);
+    assert!(run.stderr.contains("begun anew"), "{}", run.stderr);
+    assert!(run.stderr.contains("another plan, machine or version"), "{}", run.stderr);
+    assert_eq!(run_of(fixture.out())["resumed"], Value::Array(vec![]));
+}
+
+#[test]
+fn every_statement_is_there_in_every_format() {
+    let fixture = Fixture::new();
+    let run = fixture.succeed("bench", &[]);
+    assert!(run.stdout.contains("**Median times**") && run.stdout.contains("Noise floor"), "{}", run.stdout);
+    for name in ["bench_medians", "bench_ratios"] {
+        for extension in ["csv", "md", "tex"] {
+            assert!(
+                fixture.out().join(format!("bench/full/{name}.{extension}")).is_file(),
+                "{name}.{extension}"
+            );
+        }
+    }
+    let path = fixture.out().join("bench/full/statements.json");
+    let statements: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
+    assert_eq!(statements["schema"], 1);
+    assert_eq!(statements["medians"].as_array().unwrap().len(), 18 * 7);
+    assert_eq!(statements["ratios"].as_array().unwrap().len(), 27 * 5);
+    let machine = std::fs::read_to_string(fixture.out().join("bench/full/machine.csv")).unwrap();
+    assert!(machine.contains("\ncompiler,,rustc"), "{machine}");
+}
+
+/// Runs that differ as a test wants them to.
+struct Pair {
+    fixture: Fixture,
+    a: PathBuf,
+    b: PathBuf,
+}
+
+impl Pair {
+    /// Of one run whose times have been replaced: every sample 10 ms and a little more from round to round.
+    fn new() -> Self {
+        let fixture = Fixture::new();
+        fixture.succeed("bench", &[]);
+        let mut run = run_of(fixture.out());
+        run["load"] = Value::Array(vec![]);
+        for block in ["samples", "aa_samples"] {
+            for sample in run[block].as_array_mut().unwrap() {
+                let unrest = 1.0 + 0.001 * (sample["iteration"].as_u64().unwrap() % 3) as f64;
+                for stage in ["allocation", "sampling", "vertex", "geometry", "clustering", "normals"] {
+                    sample[format!("{stage}_s")] = (0.01 * unrest / 6.0).into();
+                }
+                sample["total_s"] = (0.01 * unrest).into();
+                sample["reference_s"] = 0.001.into();
+            }
+        }
+        let (a, b) = (fixture.folder().join("a.json"), fixture.folder().join("b.json"));
+        let pair = Self { fixture, a, b };
+        pair.write(&pair.a, &run);
+        pair.write(&pair.b, &run);
+        pair
+    }
+
+    fn write(&self, path: &Path, run: &Value) {
+        std::fs::write(path, serde_json::to_vec(run).unwrap()).unwrap();
+    }
+
+    fn change_b(&self, change: impl FnOnce(&mut Value)) {
+        let mut run: Value = serde_json::from_slice(&std::fs::read(&self.b).unwrap()).unwrap();
+        change(&mut run);
+        self.write(&self.b, &run);
+    }
+
+    fn compare(&self, arguments: &[&str]) -> Run {
+        isostudy(
+            &[&["bench", "compare", self.a.to_str().unwrap(), self.b.to_str().unwrap()], arguments].concat(),
+        )
+    }
+}
+
+fn isostudy(arguments: &[&str]) -> Run {
+    let output = Command::new(env!("CARGO_BIN_EXE_isostudy")).args(arguments).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    Run { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+}
+
+#[test]
+fn comparisons_end_as_scripts_expect() {
+    let pair = Pair::new();
+    let same = pair.compare(&[]);
+    assert_eq!(same.code, Some(0), "{}", same.stderr);
+    assert!(same.stdout.contains("cannot say") && !same.stdout.contains("slower"), "{}", same.stdout);
+
+    pair.change_b(|run| {
+        for sample in run["samples"].as_array_mut().unwrap().iter_mut().filter(|s| s["id"] == "ss_bi") {
+            sample["total_s"] = (1.2 * sample["total_s"].as_f64().unwrap()).into();
+        }
+    });
+    // Its A/A block is as it was: the build is slower, not the machine restless.
+    pair.change_b(|run| {
+        for sample in run["aa_samples"].as_array_mut().unwrap().iter_mut().filter(|s| s["id"] == "ss_bi") {
+            sample["total_s"] = (1.2 * sample["total_s"].as_f64().unwrap()).into();
+        }
+    });
+    let slower = pair.compare(&["--format", "json"]);
+    assert_eq!(slower.code, Some(1), "{}", slower.stderr);
+    assert!(
+        slower.stderr.contains("regression: ss_bi takes 12.012 ms, 10.010 ms before"),
+        "{}",
+        slower.stderr
+    );
+    let comparison: Value = serde_json::from_str(&slower.stdout).unwrap();
+    let rows = comparison["rows"].as_array().unwrap();
+    let totals: Vec<&Value> = rows.iter().filter(|row| row["stage"] == "total").collect();
+    assert_eq!(totals.len(), 18);
+    for row in totals {
+        let want = if row["id"] == "ss_bi" { "slower" } else { "cannot-say" };
+        assert_eq!(row["judgement"]["verdict"], want, "{row}");
+    }
+    assert_eq!(pair.compare(&["--relative", "0.3"]).code, Some(0), "slower, but within the limit");
+    assert_eq!(pair.compare(&["--absolute", "0.01"]).code, Some(0), "slower, but by too little");
+    let (csv, latex) = (pair.compare(&["--format", "csv"]), pair.compare(&["--format", "latex"]));
+    assert!(csv.stdout.starts_with("id,a_ms,b_ms,ratio,low,high,floor,verdict,reason\n"), "{}", csv.stdout);
+    assert!(latex.stdout.contains("\\begin{tabular}"), "{}", latex.stdout);
+
+    pair.change_b(|run| run["machine"]["model"] = "Another CPU".into());
+    let refused = pair.compare(&[]);
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.stderr.contains("Another CPU in B") && refused.stderr.contains("--across-machines"));
+    let labelled = pair.compare(&["--across-machines"]);
+    assert_eq!(labelled.code, Some(1));
+    assert!(labelled.stdout.contains("slower (across machines)"), "{}", labelled.stdout);
+    assert!(labelled.stderr.contains("regression (across machines)"), "{}", labelled.stderr);
+    let headings = labelled.stdout.lines().filter(|line| line.starts_with("**B against A"));
+    assert!(headings.clone().count() == 2 && headings.clone().all(|line| line.contains("(ACROSS MACHINES)")));
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused_by_name() {
+    let pair = Pair::new();
+    pair.change_b(|run| run["workload"] = "other".into());
+    let refused = pair.compare(&["--across-machines"]);
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.stderr.contains("different extractions"), "{}", refused.stderr);
+    pair.change_b(|run| run["schema"] = 1.into());
+    let refused = pair.compare(&[]);
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.stderr.contains("b.json: schema = 1: this version reads 2"), "{}", refused.stderr);
+    std::fs::write(&pair.b, "{").unwrap();
+    assert_eq!(pair.compare(&[]).code, Some(2));
+    let empty = isostudy(&["bench", "compare", pair.a.to_str().unwrap(), "/nowhere"]);
+    assert!(empty.code == Some(2) && empty.stderr.contains("/nowhere"), "{}", empty.stderr);
+    assert_eq!(pair.compare(&["--relative", "-1"]).code, Some(2));
+    // The results folder stands for its run.
+    let folder = pair.fixture.out().to_str().unwrap();
+    assert_eq!(isostudy(&["bench", "compare", folder, folder]).code, Some(0));
+}
+
+#[test]
+fn the_published_table_stands_beside_a_run() {
+    let pair = Pair::new();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let at = |path: &str| root.join(path).to_str().unwrap().to_owned();
+    let out = pair.fixture.folder().join("published.json");
+    let (table, machine) = (at("study/paper/published_benchmark.csv"), at("configs/cpu/i7-11700.toml"));
+    let import = ["bench", "import", &table, "--machine", &machine, "--out", out.to_str().unwrap()];
+    let made = isostudy(&import);
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    std::fs::copy(&out, &pair.b).unwrap();
+    let beside = pair.compare(&["--across-machines", "--format", "csv"]);
+    assert_eq!(beside.code, Some(0), "{}", beside.stderr);
+    let row = beside.stdout.lines().find(|line| line.starts_with("ss_bu,")).unwrap().to_owned();
+    // 0.771 + 7.032 + 6.958 + 3.084 + 0.627 ms over 10.01 ms.
+    let numbers: Vec<f64> = row.split(',').skip(1).take(3).map(|cell| cell.parse().unwrap()).collect();
+    assert!((numbers[1] - 18.472).abs() < 1e-9 && (numbers[2] - 18.472 / 10.01).abs() < 1e-9, "{row}");
+    assert!(row.ends_with("cannot say (across machines),a mean has no interval"), "{row}");
+    let missing = isostudy(&["bench", "import", "/nowhere.csv", "--machine", &machine, "--out", "x"]);
+    assert!(missing.code == Some(2) && missing.stderr.contains("/nowhere.csv"), "{}", missing.stderr);
+}
+
+/// A fixture with a small sweep of the sphere.
+fn with_sweep(cells: &str) -> Fixture {
+    let fixture = Fixture::new();
+    let sweep = format!(
+        "sweep = {{ objects = [\"ss\"], cells = {cells}, threads = [1, 2], iterations = 2 }}\ntarget ="
+    );
+    fixture.edit("target =", &sweep);
+    fixture
+}
+
+fn sweep(fixture: &Fixture) -> Run {
+    let (config, out) = (fixture.config(), fixture.out());
+    isostudy(&["bench", "sweep", config.to_str().unwrap(), "--out", out.to_str().unwrap()])
+}
+
+#[test]
+fn a_sweep_goes_on_where_it_stopped() {
+    let fixture = with_sweep("[8, 12]");
+    let first = sweep(&fixture);
+    assert_eq!(first.code, Some(0), "{}", first.stderr);
+    let folder = fixture.out().join("bench/sweep");
+    let read =
+        || -> Value { serde_json::from_slice(&std::fs::read(folder.join("sweep.json")).unwrap()).unwrap() };
+    let found = read();
+    assert_eq!(found["schema"], 1);
+    assert_eq!(found["points"].as_array().unwrap().len(), 2 * 2 * 6);
+    assert_eq!(found["speed_ups"].as_array().unwrap().len(), 2 * 6);
+    for name in ["sweep", "sweep_speed_up"] {
+        for extension in ["csv", "md", "tex"] {
+            assert!(folder.join(format!("{name}.{extension}")).is_file(), "{name}.{extension}");
+        }
+    }
+    for name in ["sweep_time", "sweep_per_triangle", "sweep_speed_up", "sweep_quality"] {
+        assert!(
+            folder.join(format!("{name}.svg")).is_file() && folder.join(format!("{name}.png")).is_file(),
+            "{name}"
+        );
+    }
+    // Killed at the last resolution: only that is measured again.
+    std::fs::remove_file(folder.join("0012-2/run.json")).unwrap();
+    let second = sweep(&fixture);
+    let (made, kept) =
+        (second.stderr.matches(" made, ").count(), second.stderr.matches("up to date").count());
+    assert_eq!((second.code, made, kept), (Some(0), 1, 3), "{}", second.stderr);
+    let again = read();
+    let of = |run: &Value, cells: u64, threads: u64| -> Vec<Value> {
+        let own = |p: &&Value| p["cells"] == cells && p["threads"] == threads;
+        run["points"].as_array().unwrap().iter().filter(own).cloned().collect()
+    };
+    assert_eq!(of(&found, 12, 1), of(&again, 12, 1), "what was measured is not measured again");
+    assert_eq!(sweep(&fixture).stderr.matches(" made, ").count(), 0);
+}
+
+#[test]
+fn a_sweep_that_makes_no_sense_is_refused_by_key() {
+    for (cells, want) in [
+        ("[12, 8]", "benchmark.sweep.cells[1] = 8: must be above benchmark.sweep.cells[0] = 12"),
+        ("[2]", "benchmark.sweep.cells[0] = 2"),
+        ("[]", "benchmark.sweep.cells = []"),
+        ("[1024]", "benchmark.sweep.cells[0] = 1024: the"),
+    ] {
+        let fixture = with_sweep(cells);
+        fixture.edit("memory_gib = 8.0", "memory_gib = 0.05");
+        let refused = sweep(&fixture);
+        assert!(refused.code == Some(2) && refused.stderr.contains(want), "{cells}: {}", refused.stderr);
+    }
+    let none = Fixture::new();
+    let refused = sweep(&none);
+    assert!(
+        refused.code == Some(2) && refused.stderr.contains("there is no [benchmark.sweep]"),
+        "{}",
+        refused.stderr
+    );
+}
+
+/// The panel of the published slides: 20 cells per axis. Counts of the lattice are exact; how many vertices there are is
+/// decided by rounding where the sphere touches its volume, and 2,180 were published.
+#[test]
+fn a_configuration_is_inspected() {
+    let fixture = Fixture::new();
+    let config = fixture.config();
+    let inspect = |id: &str, more: &[&str]| {
+        let start = ["inspect", id, "--study", config.to_str().unwrap(), "--iterations", "3"];
+        isostudy(&[&start[..], more].concat())
+    };
+    let json = inspect("ss_bi", &["--resolution", "20", "--json"]);
+    assert_eq!(json.code, Some(0), "{}", json.stderr);
+    let panel: Value = serde_json::from_str(&json.stdout).unwrap();
+    let counts = &panel["mesh"]["counts"];
+    for (key, published) in [
+        ("stored_samples", 20_812),
+        ("needed_samples", 19_661),
+        ("stored_edges", 291_368),
+        ("needed_edges", 125_260),
+        ("tetrahedra_evaluated", 25_056),
+        ("tetrahedra", 100_800),
+    ] {
+        assert_eq!(counts[key], published, "{key}");
+    }
+    let vertices = counts["vertices"].as_f64().unwrap();
+    assert!((vertices / 2180.0 - 1.0).abs() < 0.01, "{vertices}");
+    assert_eq!((&panel["schema"], panel["times"].as_array().unwrap().len()), (&1.into(), 7));
+    let stages: f64 =
+        panel["times"].as_array().unwrap()[..6].iter().map(|t| t["median"].as_f64().unwrap()).sum();
+    assert!(stages > 0.0);
+    let text = inspect("ss_bi", &["--resolution", "20"]).stdout;
+    for heading in ["mesh", "generation", "timing, ms: medians on", "geometry"] {
+        assert!(text.lines().any(|line| line.starts_with(heading)), "{heading}: {text}");
+    }
+    assert!(
+        text.contains("  sample points stored                      20,812  105.85 % of those needed"),
+        "{text}"
+    );
+    let unknown = inspect("zz_bi", &[]);
+    assert!(unknown.code == Some(2) && unknown.stderr.contains("zz_bi") && unknown.stderr.contains("ss_bu"));
+    assert_eq!(inspect("ss_bi", &["--resolution", "0"]).code, Some(2));
+    let large = inspect("ss_bi", &["--resolution", "1024"]);
+    assert!(
+        large.code == Some(2) && large.stderr.contains("the body-centred lattice needs"),
+        "{}",
+        large.stderr
+    );
+}
