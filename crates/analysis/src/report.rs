@@ -5,6 +5,7 @@
 //! answers without a study, get other sentences.
 
 mod bearing;
+mod checks;
 mod factors;
 mod finding;
 mod markdown;
@@ -255,15 +256,10 @@ impl Press {
         self.section("unanswerable", "What cannot be answered here", sides::findings(evidence));
         self.section("bearing", "How much the answers can bear", bearing::findings(evidence));
         self.add_figures(&["respondents"]);
-        self.add_tables(&[
-            "tests",
-            "omnibus",
-            "worths",
-            "models",
-            "agreement",
-            "respondents",
-            "answer_counts",
-        ]);
+        self.add_tables(&["tests", "omnibus", "worths", "models", "agreement", "answer_counts"]);
+        let checks = checks::findings(|name| self.tables.iter().find(|table| table.name == name));
+        self.section("checks", "Checks of the answers", checks);
+        self.add_tables(&["audit", "screened", "respondents"]);
     }
 
     fn finish(mut self, title: String, lead: Vec<String>) -> Report {

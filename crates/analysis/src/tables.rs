@@ -15,9 +15,10 @@ pub(crate) mod screened;
 
 use crate::inputs::{AnalysisError, Inputs};
 use crate::prediction::Prediction;
+use crate::recorded::Recorded;
 use crate::table::Table;
 use crate::tally::Tally;
-use crate::{ballots, claims, comparison};
+use crate::{audit as probes, ballots, claims, comparison};
 use responses::Responses;
 
 /// Every table whose inputs are there, in the order of the paper's and then our own.
@@ -53,11 +54,11 @@ fn statistics(inputs: &Inputs<'_>, answers: &Responses) -> Vec<Table> {
     let groups = ballots::ballot_groups(study, &ballots);
     let mut tables = vec![contrasts::study_tests(study, &ballots), contrasts::omnibus(study, &ballots)];
     tables.extend(models::model_tables(&groups));
-    let scenes = agreement::scenes(study);
-    let protocol = agreement::protocol(study, &scenes);
-    tables.extend([agreement::agreement(study, &ballots), agreement::respondents(&ballots, &protocol)]);
-    tables.push(screened::of_study(study, &ballots, &protocol));
-    tables.push(audit::audit_table(&crate::audit::of_study(study, &ballots)));
+    let recorded = Recorded::of_study(study, answers, &ballots);
+    tables.push(agreement::agreement(study, &ballots));
+    tables.push(agreement::respondents(recorded.ballots(), &recorded.protocol()));
+    tables.push(screened::of_study(study, &ballots, &recorded));
+    tables.push(audit::audit_table(&probes::audit(&recorded.audited(&groups))));
     let prediction = Prediction::of(inputs, &ballots);
     tables.extend(prediction.iter().flat_map(|found| prediction::all(study, found)));
     tables.retain(|table| !table.rows.is_empty());

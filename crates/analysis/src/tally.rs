@@ -1,6 +1,6 @@
 //! From answers to counts: the long table and what is counted over it.
 
-use crate::ballots::method_of_item;
+use crate::ballots::{is_asked, method_of_item};
 use crate::inputs::Inputs;
 use design::{Method, Study};
 use polars::prelude::*;
@@ -87,10 +87,10 @@ impl Tally {
 }
 
 /// One row an answer: respondent, comparison and what it compares, the choice by declared side, the chosen method.
-/// Controls are left out.
+/// Controls and repeats are left out.
 fn long_table(answers: &Responses, study: &Study) -> PolarsResult<DataFrame> {
     let items = method_of_item(study, answers);
-    let asked = || answers.answers.iter().filter(|answer| answer.left != answer.right);
+    let asked = || answers.answers.iter().filter(|answer| is_asked(study, answer));
     let column = |of: &dyn Fn(&responses::Answer) -> u32| asked().map(of).collect::<Vec<u32>>();
     let comparison = |answer: &responses::Answer| &study.comparisons[answer.question as usize];
     let chosen = |answer: &responses::Answer| answer.chosen().map(|item| items[item as usize] as u32);

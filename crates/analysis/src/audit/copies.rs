@@ -175,14 +175,14 @@ fn variance_of_overlaps(people: &[Range<usize>], sorted: &[Ballot]) -> f64 {
     };
     let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
     let m = people.len();
-    for a in 0..m {
+    for (a, of) in people.iter().enumerate() {
         let few = m <= PARTNERS;
         let partners = if few { m - 1 - a } else { PARTNERS };
         // Spread evenly over all people, whatever their order.
         for k in 1..=partners {
             let b = if few { a + k } else { (a + k * (m / (PARTNERS + 1)).max(1)) % m };
             let x = overlap(a, b);
-            if x < people[a].len() {
+            if x < of.len() {
                 let x = x as f64;
                 (count, sum, squares) = (count + 1.0, sum + x, squares + x * x);
             }

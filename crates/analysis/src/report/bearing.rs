@@ -93,7 +93,7 @@ fn consistency(evidence: &Evidence<'_>) -> Option<Finding> {
 }
 
 /// What is tested of a study or its groups; single questions are exploratory.
-fn declared<'a>(hypotheses: &'a [Hypothesis]) -> impl Iterator<Item = &'a Hypothesis> {
+fn declared(hypotheses: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
     hypotheses.iter().filter(|h| !matches!(h.subject, Subject::Question(_)))
 }
 

@@ -64,6 +64,7 @@ fn the_papers_answers() {
         "open",
         "unanswerable",
         "bearing",
+        "checks",
         "prediction",
         "published",
         "appendix",
@@ -128,6 +129,21 @@ fn the_papers_answers() {
         bearing.contains("of 108 triads of three items, 82 were decided throughout, and 5 go in a circle"),
         "{bearing}"
     );
+    let checks = texts(&report, "checks");
+    assert!(
+        checks[0].starts_with("1 of 18 participants broke a rule of screening that is declared beforehand")
+            && checks[0]
+                .contains("Not judged, because nothing of the kind is recorded: controls, repeats, times."),
+        "{checks:#?}"
+    );
+    assert!(
+        checks[1]
+            .starts_with("Rule odd, broken by participant 16: without them, 1 of 25 declared tests comes"),
+        "{checks:#?}"
+    );
+    assert!(checks.iter().any(|text| text
+        == "Does anybody answer against the others? Found: respondent 16 agrees with the others' majority on 37 %; everybody \
+            else on 64 to 95 % (p = 0.0067)."), "{checks:#?}");
     // Every table and figure is printed once.
     let mut printed = 0;
     for block in report.sections.iter().flat_map(|s| &s.blocks) {

@@ -102,6 +102,7 @@ impl Planted {
             groups: &[group],
             scenes: &scenes,
             questions: &numbered("Q", self.plan.questions.len()),
+            sides_recorded: true,
             objects: &numbered("object ", scenes.iter().max().map_or(0, |last| last + 1)),
         })
     }

@@ -85,7 +85,7 @@ mod tests {
         let mut stream = Pcg64::seed_from_u64(n ^ 77);
         let of = Binomial::new(p, n).unwrap();
         let edges: Vec<u64> = (1..12).map(|i| of.inverse_cdf(f64::from(i) / 12.0)).collect();
-        let mut seen = vec![0.0; 12];
+        let mut seen = [0.0; 12];
         let draws = 20_000;
         (0..draws).for_each(|_| {
             let k = binomial(&mut stream, n, p);

@@ -71,7 +71,7 @@ pub(crate) fn write_without_study(
 ) -> Result<Vec<Table>> {
     let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
     let inputs = Inputs::of_rooms(rooms::TABLES).value("mapping", section).text("responses", &sha256(&bytes));
-    let tables = analysis::answer_tables(&reading.responses, None)?;
+    let tables = analysis::answer_tables(&reading.responses, section.shown_s);
     let groups = analysis::open_groups(&reading.responses);
     let title = path.file_name().unwrap_or_default().to_string_lossy();
     store.stage("answers", inputs, |writer| {

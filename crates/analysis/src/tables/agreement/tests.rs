@@ -45,7 +45,11 @@ fn respondent_sixteen_stands_out() {
 fn of_many_participants_those_who_break_a_rule_are_printed() {
     let of = |participant: usize| {
         let outcome = move |q: usize| {
-            if participant == 7 || (participant + q) % 2 == 0 { Outcome::Left } else { Outcome::Right }
+            if participant == 7 || (participant + q).is_multiple_of(2) {
+                Outcome::Left
+            } else {
+                Outcome::Right
+            }
         };
         (0..10).map(move |question| Ballot {
             participant,
