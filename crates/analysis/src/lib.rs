@@ -2,8 +2,8 @@
 //!
 //! Takes plain records from [`design::record`] and answers that were read ([`responses::Responses`]); gives [`Table`]s that print
 //! themselves as CSV, Markdown, LaTeX and HTML, and [`Figure`]s as SVG and PNG. Knows nothing of files to write, of
-//! geometry or of command lines. polars does the table verbs (join, group, count); from the counts on,
-//! preference factors are exact fractions ([`Fraction`]) until they are printed.
+//! geometry or of command lines. From the counts of answers on, preference factors are exact fractions ([`Fraction`]) until they
+//! are printed.
 //!
 //! # Guarantees
 //! - The same inputs give the same bytes. Rows follow the study's order, never a hash's.

@@ -21,7 +21,7 @@ pub use finding::{Finding, Standing};
 use crate::ballots::{BallotGroup, ballot_groups, ballots};
 use crate::figures::Figure;
 use crate::hypotheses::{self, Hypothesis};
-use crate::inputs::{AnalysisError, Inputs};
+use crate::inputs::Inputs;
 use crate::prediction::Prediction;
 use crate::statistics::Ballot;
 use crate::table::Table;
@@ -118,10 +118,7 @@ const PAPER: [(&str, bool); 8] = [
 ];
 
 /// The report of a study. `tables` and `figures` are those made from the same inputs; each is printed once.
-///
-/// # Errors
-/// If counting the answers fails, which is not to be expected of answers read for this study.
-pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Result<Report, AnalysisError> {
+pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Report {
     let study = inputs.study;
     let ballots = inputs.answers.map(|answers| ballots(study, answers)).unwrap_or_default();
     let groups = ballot_groups(study, &ballots);
@@ -134,7 +131,7 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Resu
     }
     paper.extend(press.figures(&["preference_overall", "answers"]));
     press.section("tables", "The tables of the study", paper);
-    if let Some(tally) = Tally::of_inputs(inputs)? {
+    if let Some(tally) = Tally::of_inputs(inputs) {
         press.section("factors", "What the sums hide", factors::findings(study, &tally, &evidence));
         press.add_figures(&["factor_share", "preference_objects"]);
         press.preferences(&evidence);
@@ -147,10 +144,10 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Resu
         press.add_figures(&["prediction"]);
         press.add_tables(&["prediction", "prediction_objects", "prediction_correlations"]);
     }
-    press.section("published", "Published and recomputed", published::findings(inputs)?);
+    press.section("published", "Published and recomputed", published::findings(inputs));
     press.add_tables(&["claims"]);
     let (title, lead) = (study.file.study.title.clone(), lead(&evidence));
-    Ok(press.finish(title, lead))
+    press.finish(title, lead)
 }
 
 /// The report of answers without a study: groups of items, as [`report`].
