@@ -1,5 +1,6 @@
 //! The whole chain as a user runs it: the `isostudy` command on a small study with real answers.
 
+mod answers;
 mod fixture;
 mod page;
 

@@ -12,9 +12,8 @@ mod side;
 mod stimuli;
 mod swapped;
 
-use crate::ballots::{BallotGroup, ballot_groups};
+use crate::ballots::BallotGroup;
 use crate::statistics::{Ballot, Pairs, Separation, oddness, screening, separation};
-use design::Study;
 use stimuli::Stimuli;
 
 /// A probe speaks up at this p, adjusted for all that it looks at.
@@ -121,19 +120,12 @@ pub struct Audited<'a> {
     pub questions: &'a [String],
     /// Names of the objects.
     pub objects: &'a [String],
+    /// Whether left and right are sides.
+    pub sides_recorded: bool,
 }
 
-/// Runs every probe on a study's answers, whose groups are those of [`ballot_groups`].
-pub fn of_study(study: &Study, ballots: &[Ballot]) -> Vec<Report> {
-    let questions: Vec<String> = study.comparisons.iter().map(|c| c.question.clone()).collect();
-    audit(&Audited {
-        ballots,
-        groups: &ballot_groups(study, ballots),
-        scenes: &study.comparisons.iter().map(|c| c.object).collect::<Vec<_>>(),
-        questions: &questions,
-        objects: &study.file.objects.iter().map(|o| o.name.clone()).collect::<Vec<_>>(),
-    })
-}
+/// Why nothing about sides can be seen.
+const NO_SIDES: &str = "the file does not say which item was on which side";
 
 /// Runs every probe.
 ///

@@ -16,17 +16,16 @@ pub struct BallotGroup {
 }
 
 /// Every answer to a study's questions, question by question, with the sides as they were shown; items are methods in the
-/// study's order. Controls, which show one item twice, are left out.
+/// study's order. Controls and repeats, which check answers and are none of the study's comparisons, are left out.
 ///
 /// # Panics
 /// If the answers were read for another study.
 pub fn ballots(study: &Study, answers: &Responses) -> Vec<Ballot> {
     let items = method_of_item(study, answers);
-    let asked = |answer: &&responses::Answer| answer.left != answer.right;
     let mut ballots: Vec<Ballot> = answers
         .answers
         .iter()
-        .filter(asked)
+        .filter(|answer| is_asked(study, answer))
         .map(|answer| Ballot {
             participant: answer.participant as usize,
             question: answer.question as usize,
@@ -51,6 +50,11 @@ pub fn as_declared(study: &Study, ballots: &[Ballot]) -> Vec<Ballot> {
         }
     };
     ballots.iter().map(declared).collect()
+}
+
+/// Whether an answer is to one of a study's comparisons, rather than to a control or a repeat.
+pub(crate) fn is_asked(study: &Study, answer: &responses::Answer) -> bool {
+    (answer.question as usize) < study.comparisons.len()
 }
 
 /// The index of each item's method: a study's items are its configurations.

@@ -5,7 +5,7 @@ mod beside;
 mod preferences;
 
 use crate::claims;
-use crate::inputs::{AnalysisError, Inputs};
+use crate::inputs::Inputs;
 use crate::table::{Cell, Table};
 use crate::tally::Tally;
 use crate::verdict::Verdict;
@@ -35,11 +35,8 @@ pub(crate) fn all(inputs: &Inputs<'_>, tally: Option<&Tally>) -> Vec<Compared> {
 
 /// Published numbers and claims of the text that ours differ from without a known reason: table, row and quantity of
 /// each, both numbers, and what is known. A study is sound if there are none.
-///
-/// # Errors
-/// As [`tables`](crate::tables()).
-pub fn unexplained_differences(inputs: &Inputs<'_>) -> Result<Vec<String>, AnalysisError> {
-    let tally = Tally::of_inputs(inputs)?;
+pub fn unexplained_differences(inputs: &Inputs<'_>) -> Vec<String> {
+    let tally = Tally::of_inputs(inputs);
     let name = |of: String, published: Option<f64>, ours: Option<f64>, decimals: usize, verdict: &Verdict| {
         let [published, ours] = [published, ours].map(|value| match value {
             Some(value) => format!("{value:.decimals$}"),
@@ -58,7 +55,7 @@ pub fn unexplained_differences(inputs: &Inputs<'_>) -> Result<Vec<String>, Analy
         let of = format!("claims, {}, {}", claim.id, claim.statement);
         name(of, claim.value, found.ours, found.decimals, &found.verdict)
     });
-    Ok(numbers.chain(claims).collect())
+    numbers.chain(claims).collect()
 }
 
 /// The comparison number by number, and a summary by quantity; nothing if nothing was published.

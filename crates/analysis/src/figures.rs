@@ -47,9 +47,9 @@ pub struct Figure {
 /// Every figure whose inputs are there, in the order of the paper's and then our own.
 ///
 /// # Errors
-/// If counting the answers or drawing fails, neither of which is to be expected.
+/// If drawing fails, which is not to be expected.
 pub fn figures(inputs: &Inputs<'_>) -> Result<Vec<Figure>, AnalysisError> {
-    drafts(inputs)?.into_iter().map(Draft::finish).collect()
+    drafts(inputs).into_iter().map(Draft::finish).collect()
 }
 
 /// The figures that need nothing but answers: worths and respondents.
@@ -62,7 +62,7 @@ pub fn figures_of_groups(groups: &[BallotGroup]) -> Result<Vec<Figure>, Analysis
     drafts.into_iter().flatten().map(Draft::finish).collect()
 }
 
-fn drafts(inputs: &Inputs<'_>) -> Result<Vec<Draft>, AnalysisError> {
+fn drafts(inputs: &Inputs<'_>) -> Vec<Draft> {
     let mut drafts = Vec::new();
     drafts.extend(meshes::triangles(inputs));
     drafts.extend(meshes::pass_times(inputs));
@@ -70,7 +70,7 @@ fn drafts(inputs: &Inputs<'_>) -> Result<Vec<Draft>, AnalysisError> {
     drafts.extend(stages::stage_times(inputs));
     drafts.extend(distributions::aspect_ratios(inputs));
     if let (Some(answers), false) = (inputs.answers, inputs.study.comparisons.is_empty()) {
-        let tally = Tally::of(answers, inputs.study)?;
+        let tally = Tally::of(answers, inputs.study);
         drafts.push(answers::per_question(inputs.study, &tally));
         drafts.push(preferences::per_object(inputs.study, &tally));
         drafts.push(preferences::overall(inputs.study, &tally));
@@ -81,7 +81,7 @@ fn drafts(inputs: &Inputs<'_>) -> Result<Vec<Draft>, AnalysisError> {
         drafts.extend(respondents::draft(&ballots));
         drafts.extend(prediction::draft(inputs, &ballots));
     }
-    Ok(drafts)
+    drafts
 }
 
 /// Width of every figure in units.

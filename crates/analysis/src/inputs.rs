@@ -17,12 +17,9 @@ pub struct Inputs<'a> {
     pub answers: Option<&'a Responses>,
 }
 
-/// Why tables or figures could not be made.
+/// Why figures could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum AnalysisError {
-    /// A table verb failed.
-    #[error("counting answers")]
-    Counting(#[from] polars::error::PolarsError),
     /// A figure could not be drawn.
     #[error("figure {figure}: {message}")]
     Drawing {

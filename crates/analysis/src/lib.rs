@@ -2,8 +2,8 @@
 //!
 //! Takes plain records from [`design::record`] and answers that were read ([`responses::Responses`]); gives [`Table`]s that print
 //! themselves as CSV, Markdown, LaTeX and HTML, and [`Figure`]s as SVG and PNG. Knows nothing of files to write, of
-//! geometry or of command lines. polars does the table verbs (join, group, count); from the counts on,
-//! preference factors are exact fractions ([`Fraction`]) until they are printed.
+//! geometry or of command lines. From the counts of answers on, preference factors are exact fractions ([`Fraction`]) until they
+//! are printed.
 //!
 //! # Guarantees
 //! - The same inputs give the same bytes. Rows follow the study's order, never a hash's.
@@ -28,6 +28,7 @@ pub mod power;
 mod prediction;
 pub mod preference;
 mod published_ratio;
+mod recorded;
 pub mod report;
 pub mod self_test;
 pub mod simulation;
@@ -50,6 +51,7 @@ pub use figures::{Figure, figures, figures_of_groups, power_figure, sweep_figure
 pub use fraction::Fraction;
 pub use inputs::{AnalysisError, Inputs};
 pub use panel::{PANEL_SCHEMA, Panel, StageTime};
+pub use recorded::Recorded;
 pub use report::{Report, report, report_of_groups};
 pub use table::{Cell, Column, Table};
 pub use tables::audit::audit_table;

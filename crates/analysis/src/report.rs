@@ -6,6 +6,7 @@
 
 mod bearing;
 mod benchmark;
+mod checks;
 mod factors;
 mod finding;
 mod markdown;
@@ -23,7 +24,7 @@ pub use finding::{Finding, Standing};
 use crate::ballots::{BallotGroup, ballot_groups, ballots};
 use crate::figures::Figure;
 use crate::hypotheses::{self, Hypothesis};
-use crate::inputs::{AnalysisError, Inputs};
+use crate::inputs::Inputs;
 use crate::prediction::Prediction;
 use crate::statistics::Ballot;
 use crate::table::Table;
@@ -120,10 +121,7 @@ const PAPER: [(&str, bool); 8] = [
 ];
 
 /// The report of a study. `tables` and `figures` are those made from the same inputs; each is printed once.
-///
-/// # Errors
-/// If counting the answers fails, which is not to be expected of answers read for this study.
-pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Result<Report, AnalysisError> {
+pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Report {
     let study = inputs.study;
     let ballots = inputs.answers.map(|answers| ballots(study, answers)).unwrap_or_default();
     let groups = ballot_groups(study, &ballots);
@@ -136,7 +134,7 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Resu
     }
     paper.extend(press.figures(&["preference_overall", "answers"]));
     press.section("tables", "The tables of the study", paper);
-    if let Some(tally) = Tally::of_inputs(inputs)? {
+    if let Some(tally) = Tally::of_inputs(inputs) {
         press.section("factors", "What the sums hide", factors::findings(study, &tally, &evidence));
         press.add_figures(&["factor_share", "preference_objects"]);
         press.preferences(&evidence);
@@ -151,10 +149,10 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Resu
     }
     press.section("benchmark", "The published benchmark, checked", benchmark::findings(inputs));
     press.add_tables(&["benchmark_beside"]);
-    press.section("published", "Published and recomputed", published::findings(inputs)?);
+    press.section("published", "Published and recomputed", published::findings(inputs));
     press.add_tables(&["claims"]);
     let (title, lead) = (study.file.study.title.clone(), lead(&evidence));
-    Ok(press.finish(title, lead))
+    press.finish(title, lead)
 }
 
 /// The report of answers without a study: groups of items, as [`report`].
@@ -260,15 +258,10 @@ impl Press {
         self.section("unanswerable", "What cannot be answered here", sides::findings(evidence));
         self.section("bearing", "How much the answers can bear", bearing::findings(evidence));
         self.add_figures(&["respondents"]);
-        self.add_tables(&[
-            "tests",
-            "omnibus",
-            "worths",
-            "models",
-            "agreement",
-            "respondents",
-            "answer_counts",
-        ]);
+        self.add_tables(&["tests", "omnibus", "worths", "models", "agreement", "answer_counts"]);
+        let checks = checks::findings(|name| self.tables.iter().find(|table| table.name == name));
+        self.section("checks", "Checks of the answers", checks);
+        self.add_tables(&["audit", "screened", "respondents"]);
     }
 
     fn finish(mut self, title: String, lead: Vec<String>) -> Report {

@@ -18,6 +18,7 @@ mod ballot;
 pub mod bootstrap;
 pub mod contrast;
 mod equivalence;
+mod exchange;
 mod fit;
 mod friedman;
 mod kendall;
@@ -46,6 +47,7 @@ mod golden;
 
 pub use ballot::{Ballot, Outcome};
 pub use equivalence::{Equivalence, MARGIN, equivalence};
+pub use exchange::{Split, exchange};
 pub use fit::{FitError, WorthFit, clustered_covariance, fit};
 pub use friedman::{ChiSquareTest, friedman};
 pub use kendall::{Agreement, Triads, agreement, outcome_counts, triads, zeta, zetas};

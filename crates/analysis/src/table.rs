@@ -78,6 +78,14 @@ impl Cell {
         }
     }
 
+    /// In full, and no formula to a spreadsheet: names come from files of answers.
+    fn in_csv(&self) -> String {
+        match self {
+            Self::Text(text) => responses::escape(text).into_owned(),
+            other => other.in_full(),
+        }
+    }
+
     /// For people: numbers to the column's decimals.
     pub fn shown(&self) -> String {
         match self {
@@ -163,7 +171,7 @@ impl Table {
         let into_memory = "writing to memory cannot fail";
         writer.write_record(self.columns.iter().map(|column| &column.name)).expect(into_memory);
         for row in &self.rows {
-            writer.write_record(row.iter().map(Cell::in_full)).expect(into_memory);
+            writer.write_record(row.iter().map(Cell::in_csv)).expect(into_memory);
         }
         String::from_utf8(writer.into_inner().expect(into_memory)).expect("made of strings")
     }
@@ -172,6 +180,13 @@ impl Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_name_is_no_formula() {
+        let mut table = Table::new("t", "", &[("item", "Item"), ("net", "Net")]);
+        table.push(vec![Cell::text("=HYPERLINK(1)"), Cell::Count(-3)]);
+        assert_eq!(table.to_csv(), "item,net\n'=HYPERLINK(1),-3\n");
+    }
 
     fn awkward() -> Table {
         let mut table =

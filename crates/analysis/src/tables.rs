@@ -14,19 +14,17 @@ mod prediction;
 pub(crate) mod preferences;
 pub(crate) mod screened;
 
-use crate::inputs::{AnalysisError, Inputs};
+use crate::inputs::Inputs;
 use crate::prediction::Prediction;
+use crate::recorded::Recorded;
 use crate::table::Table;
 use crate::tally::Tally;
-use crate::{ballots, claims, comparison};
+use crate::{audit as probes, ballots, claims, comparison};
 use responses::Responses;
 
 /// Every table whose inputs are there, in the order of the paper's and then our own.
-///
-/// # Errors
-/// If counting the answers fails, which is not to be expected of answers read for this study.
-pub fn tables(inputs: &Inputs<'_>) -> Result<Vec<Table>, AnalysisError> {
-    let tally = Tally::of_inputs(inputs)?;
+pub fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
+    let tally = Tally::of_inputs(inputs);
     let tally = tally.as_ref();
     let mut tables = vec![design::configurations(inputs.study)];
     tables.extend(benchmark::benchmark(inputs));
@@ -44,7 +42,7 @@ pub fn tables(inputs: &Inputs<'_>) -> Result<Vec<Table>, AnalysisError> {
     tables.extend(mesh_quality::positions(inputs));
     tables.extend(comparison::tables(inputs, tally));
     tables.extend(claims::table(inputs, tally));
-    Ok(tables)
+    tables
 }
 
 /// What holds up beside the factors: tests, models, agreement, screening, and what predicts preference.
@@ -54,11 +52,11 @@ fn statistics(inputs: &Inputs<'_>, answers: &Responses) -> Vec<Table> {
     let groups = ballots::ballot_groups(study, &ballots);
     let mut tables = vec![contrasts::study_tests(study, &ballots), contrasts::omnibus(study, &ballots)];
     tables.extend(models::model_tables(&groups));
-    let scenes = agreement::scenes(study);
-    let protocol = agreement::protocol(study, &scenes);
-    tables.extend([agreement::agreement(study, &ballots), agreement::respondents(&ballots, &protocol)]);
-    tables.push(screened::of_study(study, &ballots, &protocol));
-    tables.push(audit::audit_table(&crate::audit::of_study(study, &ballots)));
+    let recorded = Recorded::of_study(study, answers, &ballots);
+    tables.push(agreement::agreement(study, &ballots));
+    tables.push(agreement::respondents(recorded.ballots(), &recorded.protocol()));
+    tables.push(screened::of_study(study, &ballots, &recorded));
+    tables.push(audit::audit_table(&probes::audit(&recorded.audited(&groups))));
     let prediction = Prediction::of(inputs, &ballots);
     tables.extend(prediction.iter().flat_map(|found| prediction::all(study, found)));
     tables.retain(|table| !table.rows.is_empty());

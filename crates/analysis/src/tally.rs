@@ -1,10 +1,13 @@
-//! From answers to counts: the long table and what is counted over it.
+//! From answers to counts.
 
-use crate::ballots::method_of_item;
+use crate::ballots::{is_asked, method_of_item};
 use crate::inputs::Inputs;
 use design::{Method, Study};
 use polars::prelude::*;
-use responses::{Choice, Responses};
+use responses::Responses;
+
+/// Respondent, object, group, and the method chosen, which is nothing for no preference.
+type Choice = (u32, u32, u32, Option<u32>);
 
 /// How often each choice was made in one question, with the sides as the study declares them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -33,6 +36,21 @@ pub struct Tally {
     pub rows: Vec<TallyRow>,
     /// One a question, in the study's order.
     pub questions: Vec<QuestionCount>,
+    /// The same answers whoever gave them: counts above zero, ordered by object, group and method (no preference first).
+    pub methods: Vec<MethodCount>,
+}
+
+/// How many answers to one group's questions on one object went to one method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MethodCount {
+    /// Index of the object.
+    pub object: usize,
+    /// Index of the comparison group.
+    pub group: usize,
+    /// The method chosen; `None` is no preference.
+    pub chosen: Option<Method>,
+    /// How many answers.
+    pub answers: u64,
 }
 
 /// How many answers of one respondent, in one group's questions on one object, went to one method.
@@ -51,98 +69,89 @@ pub struct TallyRow {
 }
 
 impl Tally {
-    /// Counts the answers to a study's questions.
-    ///
-    /// # Errors
-    /// What polars says; not to be expected for answers that were read for this study.
+    /// Counts the answers to a study's questions; controls and repeats are none.
     ///
     /// # Panics
     /// If the answers were read for another study.
-    pub fn of(answers: &Responses, study: &Study) -> PolarsResult<Self> {
-        let long = long_table(answers, study)?;
-        Ok(Self {
-            respondents: answers.participants.len(),
-            rows: count_choices(long.clone().lazy(), study)?,
-            questions: count_questions(long.lazy(), study)?,
-        })
+    pub fn of(answers: &Responses, study: &Study) -> Self {
+        let items = method_of_item(study, answers);
+        let mut questions = vec![QuestionCount::default(); study.comparisons.len()];
+        let mut chosen: Vec<Choice> = Vec::with_capacity(answers.answers.len());
+        for answer in answers.answers.iter().filter(|answer| is_asked(study, answer)) {
+            let count = &mut questions[answer.question as usize];
+            *match answers.declared_choice(answer) {
+                responses::Choice::Left => &mut count.left,
+                responses::Choice::NoPreference => &mut count.none,
+                responses::Choice::Right => &mut count.right,
+            } += 1;
+            let comparison = &study.comparisons[answer.question as usize];
+            chosen.push((
+                answer.participant,
+                comparison.object as u32,
+                comparison.group as u32,
+                answer.chosen().map(|item| items[item as usize] as u32),
+            ));
+        }
+        chosen.sort_unstable();
+        let methods = study.methods();
+        let row = |same: &[Choice]| {
+            let (respondent, object, group, method) = same[0];
+            let (respondent, object, group) = (respondent as usize, object as usize, group as usize);
+            let chosen = method.map(|method| methods[method as usize]);
+            TallyRow { respondent, object, group, chosen, answers: same.len() as u64 }
+        };
+        let rows = chosen.chunk_by(|a, b| a == b).map(row).collect();
+        let methods = by_method(study, &questions).expect("columns of numbers, all of one length");
+        Self { respondents: answers.participants.len(), rows, questions, methods }
     }
 
     /// Counts the answers, if there are any to questions.
-    ///
-    /// # Errors
-    /// As [`Tally::of`].
-    pub(crate) fn of_inputs(inputs: &Inputs<'_>) -> PolarsResult<Option<Self>> {
-        match inputs.answers {
-            Some(answers) if !inputs.study.comparisons.is_empty() => {
-                Self::of(answers, inputs.study).map(Some)
-            }
-            _ => Ok(None),
-        }
+    pub(crate) fn of_inputs(inputs: &Inputs<'_>) -> Option<Self> {
+        let answers = inputs.answers.filter(|_| !inputs.study.comparisons.is_empty())?;
+        Some(Self::of(answers, inputs.study))
     }
 
-    /// The number of answers in the rows that `holds` picks.
-    pub fn count(&self, holds: impl Fn(&TallyRow) -> bool) -> u64 {
-        self.rows.iter().filter(|row| holds(row)).map(|row| row.answers).sum()
+    /// The number of answers in the counts that `holds` picks.
+    pub fn count(&self, holds: impl Fn(&MethodCount) -> bool) -> u64 {
+        self.methods.iter().filter(|count| holds(count)).map(|count| count.answers).sum()
     }
 }
 
-/// One row an answer: respondent, comparison and what it compares, the choice by declared side, the chosen method.
-/// Controls are left out.
-fn long_table(answers: &Responses, study: &Study) -> PolarsResult<DataFrame> {
-    let items = method_of_item(study, answers);
-    let asked = || answers.answers.iter().filter(|answer| answer.left != answer.right);
-    let column = |of: &dyn Fn(&responses::Answer) -> u32| asked().map(of).collect::<Vec<u32>>();
-    let comparison = |answer: &responses::Answer| &study.comparisons[answer.question as usize];
-    let chosen = |answer: &responses::Answer| answer.chosen().map(|item| items[item as usize] as u32);
-    df!(
-        "respondent" => column(&|answer| answer.participant),
-        "comparison" => column(&|answer| answer.question),
-        "object" => column(&|answer| comparison(answer).object as u32),
-        "group" => column(&|answer| comparison(answer).group as u32),
-        "choice" => column(&|answer| answers.declared_choice(answer) as u32),
-        "chosen" => asked().map(chosen).collect::<Vec<Option<u32>>>(),
-    )
-}
-
-fn count_choices(long: LazyFrame, study: &Study) -> PolarsResult<Vec<TallyRow>> {
-    let keys = ["respondent", "object", "group", "chosen"];
-    let counted = long
-        .group_by(keys.map(col))
-        .agg([len().alias("answers")])
-        .sort(keys, SortMultipleOptions::default())
-        .collect()?;
+/// Counts of questions added up over those of one object and group.
+fn by_method(study: &Study, questions: &[QuestionCount]) -> PolarsResult<Vec<MethodCount>> {
     let methods = study.methods();
-    let mut rows = Vec::with_capacity(counted.height());
-    let [respondent, object, group, chosen] = keys.map(|key| counted.column(key).and_then(|c| c.u32()));
-    let (respondent, object, group, chosen) = (respondent?, object?, group?, chosen?);
-    let answers = counted.column("answers")?.cast(&DataType::UInt64)?;
-    let answers = answers.u64()?;
-    for i in 0..counted.height() {
-        rows.push(TallyRow {
-            respondent: respondent.get(i).expect("never null") as usize,
-            object: object.get(i).expect("never null") as usize,
-            group: group.get(i).expect("never null") as usize,
+    let place = |method: Method| methods.iter().position(|m| *m == method).map(|place| place as u32);
+    let counts = study.comparisons.iter().zip(questions).flat_map(|(comparison, count)| {
+        let chosen = [
+            (place(comparison.left.method), count.left),
+            (None, count.none),
+            (place(comparison.right.method), count.right),
+        ];
+        chosen.map(|(method, answers)| (comparison.object as u32, comparison.group as u32, method, answers))
+    });
+    let counts: Vec<(u32, u32, Option<u32>, u64)> = counts.collect();
+    let keys = ["object", "group", "chosen"];
+    let added = df!(
+        "object" => counts.iter().map(|count| count.0).collect::<Vec<_>>(),
+        "group" => counts.iter().map(|count| count.1).collect::<Vec<_>>(),
+        "chosen" => counts.iter().map(|count| count.2).collect::<Vec<_>>(),
+        "answers" => counts.iter().map(|count| count.3).collect::<Vec<_>>(),
+    )?
+    .lazy()
+    .filter(col("answers").gt(lit(0_u64)))
+    .group_by(keys.map(col))
+    .agg([col("answers").sum()])
+    .sort(keys, SortMultipleOptions::default())
+    .collect()?;
+    let [object, group, chosen] = keys.map(|key| added.column(key).and_then(|column| column.u32()));
+    let (object, group, chosen, answers) = (object?, group?, chosen?, added.column("answers")?.u64()?);
+    let row = |i| {
+        Some(MethodCount {
+            object: object.get(i)? as usize,
+            group: group.get(i)? as usize,
             chosen: chosen.get(i).map(|method| methods[method as usize]),
-            answers: answers.get(i).expect("never null"),
-        });
-    }
-    Ok(rows)
-}
-
-fn count_questions(long: LazyFrame, study: &Study) -> PolarsResult<Vec<QuestionCount>> {
-    let counted =
-        long.group_by([col("comparison"), col("choice")]).agg([len().alias("answers")]).collect()?;
-    let mut counts = vec![QuestionCount::default(); study.comparisons.len()];
-    let (comparison, choice) = (counted.column("comparison")?.u32()?, counted.column("choice")?.u32()?);
-    let answers = counted.column("answers")?.cast(&DataType::UInt64)?;
-    for (i, answers) in answers.u64()?.iter().enumerate() {
-        let count = &mut counts[comparison.get(i).expect("never null") as usize];
-        let choice = Choice::ALL[choice.get(i).expect("never null") as usize];
-        *match choice {
-            Choice::Left => &mut count.left,
-            Choice::NoPreference => &mut count.none,
-            Choice::Right => &mut count.right,
-        } = answers.expect("never null");
-    }
-    Ok(counts)
+            answers: answers.get(i)?,
+        })
+    };
+    Ok((0..added.height()).filter_map(row).collect())
 }

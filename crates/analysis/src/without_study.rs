@@ -1,26 +1,16 @@
 //! Tables of answers that no study file explains: items, groups and questions are what the answers name.
 
 use crate::ballots::{BallotGroup, outcome};
-use crate::inputs::{AnalysisError, Inputs};
-use crate::statistics::{Ballot, Model, Protocol};
+use crate::recorded::Recorded;
+use crate::statistics::{Ballot, Model};
 use crate::table::{Cell, Table};
-use crate::{interval, tables};
-use design::Study;
+use crate::{audit, interval, tables};
 use responses::Responses;
 use std::collections::BTreeMap;
 
-/// Every table about answers: a study's if there is one, else `answer_counts`, `tests`, `worths`, `models` and `respondents`.
-///
-/// # Errors
-/// As [`tables`](crate::tables()).
-pub fn answer_tables(answers: &Responses, study: Option<&Study>) -> Result<Vec<Table>, AnalysisError> {
-    match study {
-        Some(study) => tables::tables(&Inputs { study, meshes: &[], bench: None, answers: Some(answers) }),
-        None => Ok(without_study(answers)),
-    }
-}
-
-fn without_study(answers: &Responses) -> Vec<Table> {
+/// Every table about answers that no study explains: `answer_counts`, `tests`, `worths`, `models`, `respondents`, `screened`
+/// and `audit`, as far as they have rows. `shown_s` is how long what a question shows lasts, in seconds.
+pub fn answer_tables(answers: &Responses, shown_s: Option<f64>) -> Vec<Table> {
     let groups = open_groups(answers);
     let mut tables = vec![counts(answers), tables::contrasts::pair_tests(&groups)];
     for mut table in tables::models::model_tables(&groups) {
@@ -34,8 +24,10 @@ fn without_study(answers: &Responses) -> Vec<Table> {
         }
         tables.push(table);
     }
-    let ballots: Vec<Ballot> = groups.iter().flat_map(|group| &group.ballots).copied().collect();
-    tables.push(tables::agreement::respondents(&ballots, &Protocol::default()));
+    let recorded = Recorded::without_study(answers, shown_s);
+    tables.push(tables::agreement::respondents(recorded.ballots(), &recorded.protocol()));
+    tables.push(tables::screened::screened_pair_tests(&groups, &recorded));
+    tables.push(tables::audit::audit_table(&audit::audit(&recorded.audited(&groups))));
     tables.retain(|table| !table.rows.is_empty());
     tables
 }

@@ -497,6 +497,8 @@ pub struct ResponsesSection {
     pub unknown: Option<String>,
     /// `refuse` (default), `first` or `last`: which of several answers to the same counts.
     pub duplicates: Option<String>,
+    /// How long what a question shows lasts, in seconds, above 0: nobody has seen it in less. A study's turntables say it too.
+    pub shown_s: Option<f64>,
     /// The questions of answers without a study; a study has its comparisons.
     #[serde(default)]
     pub pairs: Vec<PairSection>,

@@ -9,7 +9,7 @@ use crate::plan::Plan;
 use crate::records::{Record, is_blank, trim};
 use crate::report::{Kind, Report};
 use crate::source::Source;
-use crate::value::{Answer, Responses};
+use crate::value::{Answer, Question, Responses};
 use crate::words::normalise;
 
 /// Columns that are read; others are noted.
@@ -30,6 +30,14 @@ pub(crate) struct Columns {
     pub(crate) form: Option<usize>,
     pub(crate) order: Option<usize>,
     pub(crate) rt_ms: Option<usize>,
+}
+
+/// What the id of a repeat has behind that of its question, and that of training before its number, in a study's forms.
+const REPEAT: &str = "-r";
+const TRAINING: &str = "training-";
+
+fn is_training(id: &str) -> bool {
+    id.strip_prefix(TRAINING).is_some_and(|number| number.parse::<u32>().is_ok())
 }
 
 /// What differs between formats with one row an answer.
@@ -229,6 +237,16 @@ impl Rows<'_> {
             return Ok(Some((self.collector.question(asked, object, group, left, right), left, right)));
         };
         let known = plan.question(asked);
+        // Forms of a study have repeats and training beside its questions.
+        if known.is_none() && is_training(asked) {
+            self.collector.report.row(Kind::Noted, record.row, "training, which is not analysed: not read");
+            return Ok(None);
+        }
+        let repeated =
+            asked.strip_suffix(REPEAT).filter(|_| known.is_none()).and_then(|id| plan.question(id));
+        if let Some(question) = repeated {
+            return self.repeat(record, asked, &plan.questions()[question as usize], sides).map(Some);
+        }
         let Some((left, right)) = sides else {
             let question = known.ok_or_else(|| self.unknown_question(record))?;
             let of = &plan.questions()[question as usize];
@@ -254,12 +272,40 @@ impl Rows<'_> {
         }
     }
 
+    /// A question again, as a question of its own: it checks answers and is not one of the study's. Where the file has no
+    /// sides they are exchanged.
+    fn repeat(
+        &mut self,
+        record: &Record<'_>,
+        asked: &str,
+        of: &Question,
+        sides: Option<(&str, &str)>,
+    ) -> Result<(u32, u32, u32), Fault> {
+        let plan = self.plan.expect("only a plan's questions are repeated");
+        let known = plan.question(&of.id);
+        let (left, right) = match sides {
+            None => (of.right, of.left),
+            Some((left, right)) => match (plan.item(left, known), plan.item(right, known)) {
+                (Some(a), Some(b)) if a != b => (a, b),
+                _ => {
+                    return Err(Fault::Pair {
+                        row: record.row,
+                        question: shorten(asked),
+                        declared: plan.pair(known.expect("found by this id")),
+                        found: format!("{} and {}", shorten(left), shorten(right)),
+                    });
+                }
+            },
+        };
+        Ok((self.collector.question(asked, &of.object, &of.group, left, right), left, right))
+    }
+
     fn unknown_question(&self, record: &Record<'_>) -> Fault {
         self.refuse(
             record,
             self.columns.question,
             "question",
-            "is not a question of this study, nor a control",
+            "is not a question of this study, nor a control or a repeat",
         )
     }
 

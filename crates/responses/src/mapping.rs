@@ -83,6 +83,9 @@ impl Mapping {
                 return refuse("separator", format!("{other:?}"), "must be \",\", \";\", \"|\" or \"tab\"");
             }
         };
+        if let Some(seconds) = section.shown_s.filter(|s| !(s.is_finite() && *s > 0.0)) {
+            return refuse("shown_s", seconds.to_string(), "must be a number of seconds above 0");
+        }
         let columns = section.question_columns.iter().flatten().chain(&section.first_question_column);
         if let Some(0) = columns.chain(&section.participant_column).min() {
             return refuse("question_columns", "0".into(), "columns are counted from 1");

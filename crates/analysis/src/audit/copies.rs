@@ -17,8 +17,12 @@ const PARTNERS: usize = 100;
 /// Sameness has to exceed this many times what chance makes of the overlaps, which are extrapolated.
 const ALLOWANCE: f64 = 3.0;
 
-/// Among people who saw the same questions on the same sides: how many pairs gave the same answers, against the number
-/// that chance makes of how much rows overlap, three times over, as Poisson.
+/// Among people who saw the same questions on the same sides, the smaller of two p, doubled:
+/// - how many pairs gave the same answers, against the number that chance makes of how much rows overlap, three times
+///   over, as Poisson;
+/// - how improbable the least probable of these rows is: the number of pairs times the chance that somebody gives that
+///   row, three times over, which bounds the chance that any two people give one as improbable. One copy of a row that is
+///   nobody's modal one shows here long before it does in the count.
 pub(super) fn probe(ballots: &[Ballot]) -> Report {
     let mut sorted: Vec<Ballot> = ballots.to_vec();
     sorted.sort_unstable();
@@ -33,69 +37,134 @@ pub(super) fn probe(ballots: &[Ballot]) -> Report {
     let row = |of: &Range<usize>| sorted[of.clone()].iter().map(|b| b.outcome);
     // Stable: people of one form stay in their order.
     people.sort_by(|a, b| form(a).cmp(form(b)));
-    let (mut expected, mut same, mut copies, mut judged) = (0.0, 0_u64, Vec::new(), 0);
+    let mut seen = Seen { least: f64::INFINITY, ..Seen::default() };
     for of_form in people.chunk_by(|a, b| form(a).eq(form(b))) {
         if of_form.len() < FEWEST_PEOPLE {
             continue;
         }
-        judged += of_form.len();
+        seen.judged += of_form.len();
+        let chances = Chances::of(of_form, &sorted);
         let m = of_form.len() as f64;
-        expected += 0.5 * m * (m - 1.0) * chance_of_sameness(of_form, &sorted);
+        let pairs = 0.5 * m * (m - 1.0);
+        seen.expected += pairs * chances.of_any_row();
         let mut by_row: Vec<&Range<usize>> = of_form.iter().collect();
         by_row.sort_by(|a, b| row(a).cmp(row(b)));
         for twins in by_row.chunk_by(|a, b| row(a).eq(row(b))).filter(|twins| twins.len() > 1) {
-            same += (twins.len() * (twins.len() - 1) / 2) as u64;
+            seen.same += (twins.len() * (twins.len() - 1) / 2) as u64;
+            seen.least = seen.least.min(pairs * chances.of_row(&sorted[twins[0].clone()], twins.len()));
             let names: Vec<String> =
                 twins.iter().map(|of| (sorted[of.start].participant + 1).to_string()).collect();
-            copies.push(format!("respondents {}", list(&names)));
+            seen.copies.push(format!("respondents {}", list(&names)));
         }
     }
-    if judged == 0 {
-        let reason = "no five people answered the same ten questions on the same sides";
-        return Report::not_answerable(Probe::CopiedRows, reason);
+    seen.report()
+}
+
+/// What was seen of all forms.
+#[derive(Debug, Default)]
+struct Seen {
+    /// People who were compared with others.
+    judged: usize,
+    /// Pairs with the same answers, and how many chance makes.
+    same: u64,
+    expected: f64,
+    /// How many pairs chance makes of a row as improbable as the least probable one that was given twice.
+    least: f64,
+    /// Who gave the same answers.
+    copies: Vec<String>,
+}
+
+impl Seen {
+    fn report(self) -> Report {
+        let Self { judged, same, expected, least, copies } = self;
+        if judged == 0 {
+            let reason = "no five people answered the same ten questions on the same sides";
+            return Report::not_answerable(Probe::CopiedRows, reason);
+        }
+        let p_count = match (same, expected > 0.0) {
+            (0, _) => 1.0,
+            (same, true) => Poisson::new(ALLOWANCE * expected).expect("above zero").sf(same - 1),
+            (_, false) => 0.0,
+        };
+        let p = (2.0 * p_count.min(ALLOWANCE * least)).min(1.0);
+        let evidence = match same {
+            0 => format!(
+                "no two of {judged} people gave the same answers; by chance about {} would",
+                few(expected)
+            ),
+            1 => format!(
+                "{} gave the same answers; by chance about {} pairs would give these",
+                copies[0],
+                few(least)
+            ),
+            same => format!(
+                "{same} pairs gave the same answers, by chance about {} would, and about {} the least probable of them: {}",
+                few(expected),
+                few(least),
+                list(&copies)
+            ),
+        };
+        Report::tested(Probe::CopiedRows, p, evidence)
     }
-    let p = match (same, expected > 0.0) {
-        (0, _) => 1.0,
-        (same, true) => Poisson::new(ALLOWANCE * expected).expect("above zero").sf(same - 1),
-        (_, false) => 0.0,
-    };
-    let chance = format!("by chance about {}", few(expected));
-    let evidence = match same {
-        0 => format!("no two of {judged} people gave the same answers; {chance} would"),
-        1 => format!("{} gave the same answers; {chance} pairs would", copies[0]),
-        same => format!("{same} pairs gave the same answers, {chance} would: {}", list(&copies)),
-    };
-    Report::tested(Probe::CopiedRows, p, evidence)
 }
 
 fn few(expected: f64) -> String {
     if expected < 0.001 { "none (below 0.001)".into() } else { format!("{expected:.3}") }
 }
 
-/// The chance that two rows of one form are the same: that they are at every question, people taken as independent, and
-/// more as far as overlaps of rows vary more than that. With P_q the chance of the same answer at question q and v the
-/// variance of overlaps, rho = (v / sum P_q (1 - P_q) - 1) / (n - 1), and the chance is that of n successes of a
-/// beta-binomial distribution with correlation rho and the P_q's geometric mean.
-fn chance_of_sameness(people: &[Range<usize>], sorted: &[Ballot]) -> f64 {
-    let n = people[0].len();
-    let (mut ln_product, mut independent) = (0.0, 0.0);
-    for question in 0..n {
-        let mut counts = [0_u64; 3];
-        people.iter().for_each(|of| counts[sorted[of.start + question].outcome.index()] += 1);
-        let (same, m) =
-            (counts.iter().map(|c| (c * c.saturating_sub(1)) as f64).sum::<f64>(), people.len() as f64);
-        let p = same / (m * (m - 1.0));
-        ln_product += p.ln();
-        independent += p * (1.0 - p);
+/// How probable rows of one form are: that they are at every question, people taken as independent, and more as far as
+/// overlaps of rows vary more than that. With P_q the chance of the same answer at question q and v the variance of
+/// overlaps, rho = (v / sum P_q (1 - P_q) - 1) / (n - 1); a chance is that of n successes of a beta-binomial distribution
+/// with correlation rho and the geometric mean of the questions' chances.
+struct Chances {
+    /// By question, how often each answer was given.
+    counts: Vec<[u64; 3]>,
+    people: u64,
+    rho: f64,
+}
+
+impl Chances {
+    fn of(people: &[Range<usize>], sorted: &[Ballot]) -> Self {
+        let n = people[0].len();
+        let mut counts = vec![[0_u64; 3]; n];
+        for of in people {
+            counts.iter_mut().zip(&sorted[of.clone()]).for_each(|(c, b)| c[b.outcome.index()] += 1);
+        }
+        let m = people.len() as u64;
+        let independent: f64 = counts.iter().map(|c| same_answer(c, m)).map(|p| p * (1.0 - p)).sum();
+        let rho = (variance_of_overlaps(people, sorted) / independent - 1.0) / (n as f64 - 1.0);
+        Self { counts, people: m, rho: if rho.is_nan() { 0.0 } else { rho.clamp(0.0, 0.99) } }
     }
-    let p = (ln_product / n as f64).exp();
-    let variance = variance_of_overlaps(people, sorted);
-    let rho = ((variance / independent - 1.0) / (n as f64 - 1.0)).clamp(0.0, 0.99);
-    if rho.is_nan() || rho == 0.0 || p == 0.0 {
-        return p.powf(n as f64);
+
+    /// That two people give the same row, whichever.
+    fn of_any_row(&self) -> f64 {
+        self.joint(self.counts.iter().map(|counts| same_answer(counts, self.people)))
     }
-    let (a, sum) = (p * (1.0 - rho) / rho, (1.0 - rho) / rho);
-    (0..n).map(|i| (a + i as f64) / (sum + i as f64)).product()
+
+    /// That somebody gives the row which so many gave, who count once.
+    fn of_row(&self, row: &[Ballot], gave: usize) -> f64 {
+        let extra = gave as u64 - 1;
+        let rest = (self.people - extra) as f64;
+        self.joint(
+            row.iter().zip(&self.counts).map(|(b, counts)| (counts[b.outcome.index()] - extra) as f64 / rest),
+        )
+    }
+
+    fn joint(&self, chances: impl Iterator<Item = f64>) -> f64 {
+        let n = self.counts.len();
+        let p = (chances.map(f64::ln).sum::<f64>() / n as f64).exp();
+        if self.rho == 0.0 || p == 0.0 {
+            return p.powf(n as f64);
+        }
+        let (a, sum) = (p * (1.0 - self.rho) / self.rho, (1.0 - self.rho) / self.rho);
+        (0..n).map(|i| (a + i as f64) / (sum + i as f64)).product()
+    }
+}
+
+/// The chance that two of so many people gave the same answer to a question.
+fn same_answer(counts: &[u64; 3], people: u64) -> f64 {
+    let same: u64 = counts.iter().map(|c| c * c.saturating_sub(1)).sum();
+    same as f64 / (people * (people - 1)) as f64
 }
 
 /// Over pairs of rows that differ: every pair, or so many of each row's.
@@ -106,14 +175,14 @@ fn variance_of_overlaps(people: &[Range<usize>], sorted: &[Ballot]) -> f64 {
     };
     let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
     let m = people.len();
-    for (a, own) in people.iter().enumerate() {
+    for (a, of) in people.iter().enumerate() {
         let few = m <= PARTNERS;
         let partners = if few { m - 1 - a } else { PARTNERS };
         // Spread evenly over all people, whatever their order.
         for k in 1..=partners {
             let b = if few { a + k } else { (a + k * (m / (PARTNERS + 1)).max(1)) % m };
             let x = overlap(a, b);
-            if x < own.len() {
+            if x < of.len() {
                 let x = x as f64;
                 (count, sum, squares) = (count + 1.0, sum + x, squares + x * x);
             }

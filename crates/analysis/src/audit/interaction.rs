@@ -2,7 +2,7 @@
 
 use super::{ALARM, Audited, Probe, Report, list};
 use crate::ballots::BallotGroup;
-use crate::statistics::{holm, sign_flip};
+use crate::statistics::{Split, exchange, holm};
 use std::collections::BTreeSet;
 
 /// One pair of items in one group, on one object against the others.
@@ -13,8 +13,8 @@ struct Comparison {
     p: f64,
 }
 
-/// For each group, pair of items and object: each participant's mean on the object against that on the others, by the
-/// sign-flip test; Holm over all. Questions with a suspect key are left out.
+/// For each group, pair of items and object: each participant's answers on the object against those on the others, by the
+/// permutation test within participants ([`exchange`]); Holm over all. Questions with a suspect key are left out.
 pub(super) fn probe(audited: &Audited<'_>, suspects: &BTreeSet<usize>) -> Report {
     let mut all: Vec<Comparison> = Vec::new();
     for group in audited.groups {
@@ -50,41 +50,38 @@ fn compare(
     (first, second): (usize, usize),
 ) -> Vec<Comparison> {
     let scenes = audited.objects.len();
-    // By participant and scene: answers for the first less those for the second, and answers.
-    let mut seen: Vec<(i64, i64)> = Vec::new();
+    // By participant and scene: answers for the first, neither, for the second.
+    let mut seen: Vec<[u64; 3]> = Vec::new();
     let mut shown = vec![false; scenes];
     for ballot in group.ballots.iter().filter(|b| !suspects.contains(&b.question)) {
-        let towards = match (ballot.left, ballot.right) {
-            sides if sides == (first, second) => 1,
-            sides if sides == (second, first) => -1,
+        let outcome = match (ballot.left, ballot.right) {
+            sides if sides == (first, second) => ballot.outcome,
+            sides if sides == (second, first) => ballot.outcome.swapped(),
             _ => continue,
         };
         let scene = audited.scenes[ballot.question];
         let place = ballot.participant * scenes + scene;
         if place >= seen.len() {
-            seen.resize((ballot.participant + 1) * scenes, (0, 0));
+            seen.resize((ballot.participant + 1) * scenes, [0; 3]);
         }
-        seen[place].0 += towards * ballot.outcome.sign();
-        seen[place].1 += 1;
+        seen[place][outcome.index()] += 1;
         shown[scene] = true;
     }
+    let add = |a: [u64; 3], b: &[u64; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+    let mean = |of: [u64; 3]| (of[0] as f64 - of[2] as f64) / of.iter().sum::<u64>() as f64;
     let of_scene = |scene: usize| {
-        let (mut differences, mut own, mut others) = (Vec::new(), 0.0, 0.0);
-        for of in seen.chunks(scenes) {
-            let (a, n) = of[scene];
-            let (sum, all) = of.iter().fold((0, 0), |(sum, all), (a, n)| (sum + a, all + n));
-            let (b, rest) = (sum - a, all - n);
-            if n > 0 && rest > 0 {
-                // The difference of the two means, in whole numbers.
-                differences.push(a * rest - b * n);
-                own += a as f64 / n as f64;
-                others += b as f64 / rest as f64;
-            }
-        }
-        let m = differences.len() as f64;
+        let split = |of: &[[u64; 3]]| Split { own: of[scene], all: of.iter().fold([0; 3], add) };
+        let rest = |of: &Split| [0, 1, 2].map(|o| of.all[o] - of.own[o]);
+        let mut splits: Vec<Split> = seen.chunks(scenes).map(split).collect();
+        splits.retain(|of| of.own != [0; 3] && rest(of) != [0; 3]);
+        let m = splits.len() as f64;
+        let means = [
+            splits.iter().map(|of| mean(of.own)).sum::<f64>() / m,
+            splits.iter().map(|of| mean(rest(of))).sum::<f64>() / m,
+        ];
         let items = [first, second].map(|item| group.items[item].as_str()).join("-");
         let name = format!("{items} ({}) on {}", group.name, audited.objects[scene]);
-        (m > 0.0).then(|| Comparison { name, means: [own / m, others / m], p: sign_flip(&differences).p() })
+        (m > 0.0).then(|| Comparison { name, means, p: exchange(&splits) })
     };
     let several = shown.iter().filter(|&&shown| shown).count() > 1;
     (0..scenes).filter(|&scene| several && shown[scene]).filter_map(of_scene).collect()

@@ -10,6 +10,9 @@ use std::collections::{BTreeMap, BTreeSet};
 /// taken off, against zero as t. From controls: the exact sign-flip test of left against right. If there are both, the
 /// smaller p, doubled. Questions with a suspect key are left out.
 pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSet<usize>) -> Report {
+    if !audited.sides_recorded {
+        return Report::not_answerable(Probe::Side, super::NO_SIDES);
+    }
     let controls = audited.ballots.iter().filter(|b| b.left == b.right);
     let controls = ContrastTest::of(controls.map(|b| (b.participant, 1, b.outcome)));
     let of_pairs = pull(audited, stimuli, suspects);

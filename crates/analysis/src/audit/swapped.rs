@@ -18,6 +18,9 @@ const FEWEST_STIMULI: usize = 4;
 /// For each stimulus the left side's pull is compared with the mean of the others', as t; p times the number of stimuli.
 /// Suspect is only who, the others' pull taken off, has the two orders choose different items.
 pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli) -> (Report, BTreeSet<usize>) {
+    if !audited.sides_recorded {
+        return (Report::not_answerable(Probe::SwappedKey, super::NO_SIDES), BTreeSet::new());
+    }
     let judged: Vec<&Stimulus> = stimuli.in_both_orders(FEWEST_ANSWERS).map(|(_, s)| s).collect();
     if judged.len() < FEWEST_STIMULI {
         let reason =

@@ -10,7 +10,10 @@ fn report(reports: &[Report], probe: Probe) -> &Report {
 #[test]
 fn the_papers_answers() {
     let study = fixture::study();
-    let reports = of_study(&study, &crate::ballots(&study, &fixture::answers(&study)));
+    let answers = fixture::answers(&study);
+    let ballots = crate::ballots(&study, &answers);
+    let groups = crate::ballot_groups(&study, &ballots);
+    let reports = audit(&crate::Recorded::of_study(&study, &answers, &ballots).audited(&groups));
     let found = |probe| report(&reports, probe);
     assert_eq!(reports.len(), Probe::ALL.len());
     let side = found(Probe::Side);
@@ -59,8 +62,14 @@ fn a_side_is_seen_in_controls_alone() {
     ballots.extend((0..12).map(shown));
     let names = ["Q1".to_owned(), "Q2".to_owned()];
     let objects = ["all".to_owned()];
-    let audited =
-        Audited { ballots: &ballots, groups: &[], scenes: &[0, 0], questions: &names, objects: &objects };
+    let audited = Audited {
+        ballots: &ballots,
+        groups: &[],
+        scenes: &[0, 0],
+        questions: &names,
+        objects: &objects,
+        sides_recorded: true,
+    };
     let reports = audit(&audited);
     let side = report(&reports, Probe::Side);
     assert_eq!((side.finding, side.p), (Finding::Found, Some(2.0 / 4096.0)));
@@ -71,6 +80,13 @@ fn a_side_is_seen_in_controls_alone() {
 
 #[test]
 fn nothing_was_answered() {
-    let audited = Audited { ballots: &[], groups: &[], scenes: &[], questions: &[], objects: &[] };
+    let audited = Audited {
+        ballots: &[],
+        groups: &[],
+        scenes: &[],
+        questions: &[],
+        objects: &[],
+        sides_recorded: true,
+    };
     assert!(audit(&audited).iter().all(|r| r.finding == Finding::NotAnswerable));
 }

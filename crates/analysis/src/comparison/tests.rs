@@ -6,7 +6,7 @@ fn find<'a>(all: &'a [Compared], row: &str, quantity: &str) -> &'a Compared {
 }
 
 fn compared(everything: &Everything) -> Vec<Compared> {
-    let tally = Tally::of(&everything.answers, &everything.study).unwrap();
+    let tally = Tally::of(&everything.answers, &everything.study);
     all(&everything.inputs(), Some(&tally))
 }
 
@@ -73,7 +73,7 @@ fn an_unknown_difference_is_not_explained_away() {
 #[test]
 fn what_is_not_explained_is_listed() {
     let mut everything = Everything::of(fixture::study());
-    let listed = |everything: &Everything| unexplained_differences(&everything.inputs()).unwrap();
+    let listed = |everything: &Everything| unexplained_differences(&everything.inputs());
     assert_eq!(listed(&everything), Vec::<String>::new());
     everything.meshes[0].counts.vertices += 100;
     let claims = &mut everything.study.published.claims;
@@ -101,7 +101,7 @@ fn another_resolution_is_not_compared() {
 #[test]
 fn the_summary_adds_up() {
     let everything = Everything::of(fixture::study());
-    let tally = Tally::of(&everything.answers, &everything.study).unwrap();
+    let tally = Tally::of(&everything.answers, &everything.study);
     let tables = tables(&everything.inputs(), Some(&tally));
     let counted: i64 = tables[0]
         .rows

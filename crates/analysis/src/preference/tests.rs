@@ -3,7 +3,7 @@ use crate::fixture;
 use proptest::prelude::*;
 
 fn counted(study: &Study) -> Tally {
-    Tally::of(&fixture::answers(study), study).unwrap()
+    Tally::of(&fixture::answers(study), study)
 }
 
 #[test]
@@ -133,7 +133,7 @@ proptest! {
         let mut people: Vec<usize> = (0..answers.len()).collect();
         let straight: Vec<usize> = (0..27).collect();
         let read = |text: String| {
-            Tally::of(&fixture::parse(&text, &study), &study).unwrap()
+            Tally::of(&fixture::parse(&text, &study), &study)
         };
         let tally = read(csv(&study, &answers, &straight, &people));
         people.rotate_left(turn % answers.len());

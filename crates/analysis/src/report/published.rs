@@ -5,12 +5,12 @@ use super::finding::{Finding, Standing};
 use super::words::{counted, list};
 use crate::claims;
 use crate::comparison;
-use crate::inputs::{AnalysisError, Inputs};
+use crate::inputs::Inputs;
 use crate::tally::Tally;
 use crate::verdict::Verdict;
 
-pub(super) fn findings(inputs: &Inputs<'_>) -> Result<Vec<Block>, AnalysisError> {
-    let tally = Tally::of_inputs(inputs)?;
+pub(super) fn findings(inputs: &Inputs<'_>) -> Vec<Block> {
+    let tally = Tally::of_inputs(inputs);
     let source = &inputs.study.published.source;
     let numbers = comparison::all(inputs, tally.as_ref());
     let claims = claims::all(inputs, tally.as_ref());
@@ -38,7 +38,7 @@ pub(super) fn findings(inputs: &Inputs<'_>) -> Result<Vec<Block>, AnalysisError>
             ));
         }
     }
-    Ok(found.into_iter().map(|text| Block::Finding(Finding::new(Standing::Noted, text))).collect())
+    found.into_iter().map(|text| Block::Finding(Finding::new(Standing::Noted, text))).collect()
 }
 
 /// `12 are equal, 3 differ and 1 is not comparable`.

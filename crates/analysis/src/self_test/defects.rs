@@ -13,7 +13,7 @@ const WORTHS: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
 /// Difference between people, in logits.
 const SD: f64 = 0.5;
 /// How the studies are, for people.
-pub(super) const DESCRIPTION: &str = "36 people, 4 items, 4 objects, 24 questions, sides counterbalanced; Davidson's model \
+pub(super) const DESCRIPTION: &str = "36 people, 4 items, 5 objects, 30 questions, sides counterbalanced; Davidson's model \
     with tie parameter 0.3, people 0.5 logits apart, items at 0, 1, 2, 3 logits";
 
 /// What is wrong with a study.
@@ -102,6 +102,7 @@ impl Planted {
             groups: &[group],
             scenes: &scenes,
             questions: &numbered("Q", self.plan.questions.len()),
+            sides_recorded: true,
             objects: &numbered("object ", scenes.iter().max().map_or(0, |last| last + 1)),
         })
     }
@@ -109,7 +110,7 @@ impl Planted {
 
 /// Study number `study` with a defect. The same numbers, the same study.
 pub fn planted(defect: Defect, seed: u64, study: u64) -> Planted {
-    let plan = Plan::round_robin(WORTHS.len(), 4);
+    let plan = Plan::round_robin(WORTHS.len(), 5);
     let mut population = Population { worths: WORTHS.to_vec(), ..Population::indifferent(WORTHS.len(), SD) };
     match defect {
         Defect::NoEffect => population.worths.fill(0.0),

@@ -23,7 +23,9 @@ pub struct Protocol<'a> {
     /// empty, only a question answered twice is one.
     pub scenes: &'a [usize],
     /// How long what a question shows lasts, in milliseconds: nobody has seen it in less.
-    pub loop_ms: Option<f64>,
+    pub shown_ms: Option<f64>,
+    /// Whether left and right are no sides; then nobody is one-sided.
+    pub sides_unknown: bool,
 }
 
 /// One participant's answers, seen from outside.
@@ -106,15 +108,16 @@ impl Screening {
         (self.repeats > 0).then(|| 1.0 - self.repeats_opposite as f64 / self.repeats as f64)
     }
 
-    /// The rules broken, given how long a question's showing lasts.
-    pub fn flags(&self, loop_ms: Option<f64>) -> Vec<Flag> {
+    /// The rules broken.
+    pub fn flags(&self, protocol: &Protocol<'_>) -> Vec<Flag> {
         let [left, _, right] = self.answers;
         let breaks = |flag: &Flag| match flag {
-            Flag::OneSided => left + right >= 10 && left.min(right) == 0,
+            Flag::OneSided => !protocol.sides_unknown && left + right >= 10 && left.min(right) == 0,
             Flag::Controls => self.controls_decided >= 2 && 2 * self.controls_decided > self.controls,
             Flag::Repeats => self.repeats_opposite >= 2 && 2 * self.repeats_opposite > self.repeats,
             Flag::Time => {
-                loop_ms.is_some_and(|each| self.timed > 0 && self.time_ms < each * self.timed as f64)
+                let least = protocol.shown_ms.map(|each| each * self.timed as f64);
+                self.timed > 0 && least.is_some_and(|least| self.time_ms < least)
             }
             Flag::Odd => self.odd_p.is_some_and(|p| p < 0.01),
         };

@@ -92,20 +92,6 @@ fn consistency(study: &Study, ballots: &[Ballot]) -> (Triads, (u64, f64)) {
 /// Answers beyond which a table of participants is printed for those alone who break a rule.
 const MANY: usize = 200;
 
-/// What a study tells about how its answers were given.
-pub(super) fn protocol<'a>(study: &Study, scenes: &'a [usize]) -> Protocol<'a> {
-    let turntable = &study.file.turntable;
-    // A frame lasts a whole number of centiseconds.
-    let frames = f64::from(turntable.frames);
-    let loop_ms = 10.0 * (100.0 * turntable.duration_s / frames).floor() * frames;
-    Protocol { circumstances: &[], scenes, loop_ms: Some(loop_ms) }
-}
-
-/// The object of each question.
-pub(super) fn scenes(study: &Study) -> Vec<usize> {
-    study.comparisons.iter().map(|comparison| comparison.object).collect()
-}
-
 /// One row a participant: what careless answering would show in.
 pub(crate) fn respondents(ballots: &[Ballot], protocol: &Protocol<'_>) -> Table {
     let mut table = Table::new(
@@ -134,7 +120,7 @@ pub(crate) fn respondents(ballots: &[Ballot], protocol: &Protocol<'_>) -> Table 
     let mut flagged = table.clone();
     for seen in screening_with(ballots, protocol) {
         let [left, none, right] = seen.answers;
-        let flags = seen.flags(protocol.loop_ms);
+        let flags = seen.flags(protocol);
         let row = vec![
             Cell::count(seen.participant as u64 + 1),
             Cell::count(left),
@@ -168,15 +154,15 @@ pub(crate) fn respondents(ballots: &[Ballot], protocol: &Protocol<'_>) -> Table 
         flagged.caption = String::new();
         table.parts = vec![flagged];
     }
-    table.notes.push(
-        "Agreement: share of the decided answers that side with the majority of the others' decided answers, where they have \
+    table.notes.push(format!(
+        "Controls and repeats are counted here, and nowhere else. Agreement: share of the decided answers that side with the majority of the others' decided answers, where they have \
          one. Longest run: of one side. Repeats: the same pair again, both times decided. Rules, declared beforehand: \
          one-sided (ten decided answers or more, all on one side), controls (two or more decided, and more than half), \
-         repeats (two or more for the other item, and more than half), time (less than the animations last), odd (agrees on \
+         repeats (two or more for the other item, and more than half), time (all timed answers together took less than what they show lasts{}), odd (agrees on \
          less than half, and so much less than the others that p, with Bonferroni's correction and an allowance of 5, is \
-         below 0.01). Only the last has seen what was preferred: a reason to look, not to exclude."
-            .into(),
-    );
+         below 0.01). Only the last has seen what was preferred: a reason to look, not to exclude.",
+        protocol.shown_ms.map_or(", which nobody has said: shown_s".into(), |ms| format!(", {} s each", ms / 1000.0))
+    ));
     table
 }
 

@@ -1,5 +1,6 @@
 //! The answers themselves, and how they fall on each question.
 
+use crate::ballots::is_asked;
 use crate::interval;
 use crate::table::{Cell, Column, Table};
 use crate::tally::Tally;
@@ -24,7 +25,7 @@ pub(super) fn answers(study: &Study, answers: &Responses) -> Option<Table> {
         .columns
         .extend(respondents.map(|i| Column { name: format!("respondent_{i}"), heading: i.to_string() }));
     let mut said = vec![vec![String::new(); answers.participants.len()]; study.comparisons.len()];
-    for answer in answers.answers.iter().filter(|answer| answer.left != answer.right) {
+    for answer in answers.answers.iter().filter(|answer| is_asked(study, answer)) {
         let cell = &mut said[answer.question as usize][answer.participant as usize];
         let space = if cell.is_empty() { "" } else { " " };
         *cell = format!("{cell}{space}{}", answers.declared_choice(answer).code());
@@ -36,7 +37,8 @@ pub(super) fn answers(study: &Study, answers: &Responses) -> Option<Table> {
         );
         table.push(row);
     }
-    if answers.answers.iter().any(|a| a.left != answers.questions[a.question as usize].left) {
+    let turned = |a: &responses::Answer| a.left != answers.questions[a.question as usize].left;
+    if answers.answers.iter().any(|a| is_asked(study, a) && turned(a)) {
         let note = "Sides are the questionnaire's; answers to a pair shown the other way round are turned.";
         table.notes.push(note.into());
     }

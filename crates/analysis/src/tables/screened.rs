@@ -2,14 +2,15 @@
 
 use crate::ballots::BallotGroup;
 use crate::hypotheses::{self, Hypothesis, Subject};
-use crate::statistics::{Ballot, Flag, Protocol, screening_with};
+use crate::recorded::Recorded;
+use crate::statistics::{Ballot, Flag, screening_with};
 use crate::table::{Cell, Table};
 use design::Study;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Every contrast of a study; single questions are left out.
-pub(super) fn of_study(study: &Study, ballots: &[Ballot], protocol: &Protocol<'_>) -> Table {
-    screened(ballots, protocol, |keep| {
+/// Every contrast of a study; single questions are left out. `recorded` is what is screened.
+pub(super) fn of_study(study: &Study, ballots: &[Ballot], recorded: &Recorded<'_>) -> Table {
+    screened(recorded, |keep| {
         let kept: Vec<Ballot> = ballots.iter().filter(|b| keep(b)).copied().collect();
         let mut all = hypotheses::of_study(study, &kept);
         all.retain(|h| !matches!(h.subject, Subject::Question(_)));
@@ -17,13 +18,10 @@ pub(super) fn of_study(study: &Study, ballots: &[Ballot], protocol: &Protocol<'_
     })
 }
 
-/// Every pair of items, group by group: [`pair_tests`](crate::pair_tests) with everybody and without. `ballots` and
-/// `protocol` are what is screened.
-///
-/// # Panics
-/// As [`screening_with`].
-pub fn screened_pair_tests(groups: &[BallotGroup], ballots: &[Ballot], protocol: &Protocol<'_>) -> Table {
-    screened(ballots, protocol, |keep| {
+/// Every pair of items, group by group: [`pair_tests`](crate::pair_tests) with everybody and without. `recorded` is what is
+/// screened.
+pub fn screened_pair_tests(groups: &[BallotGroup], recorded: &Recorded<'_>) -> Table {
+    screened(recorded, |keep| {
         let kept = |group: &BallotGroup| BallotGroup {
             ballots: group.ballots.iter().filter(|b| keep(b)).copied().collect(),
             ..group.clone()
@@ -32,11 +30,7 @@ pub fn screened_pair_tests(groups: &[BallotGroup], ballots: &[Ballot], protocol:
     })
 }
 
-fn screened(
-    ballots: &[Ballot],
-    protocol: &Protocol<'_>,
-    tested: impl Fn(&dyn Fn(&Ballot) -> bool) -> Vec<Hypothesis>,
-) -> Table {
+fn screened(recorded: &Recorded<'_>, tested: impl Fn(&dyn Fn(&Ballot) -> bool) -> Vec<Hypothesis>) -> Table {
     let mut table = Table::new(
         "screened",
         "Tests with everybody, and without those who broke a rule",
@@ -57,8 +51,9 @@ fn screened(
         ],
     );
     let mut broken: BTreeMap<Option<Flag>, BTreeSet<usize>> = BTreeMap::new();
-    for seen in screening_with(ballots, protocol) {
-        let flags = seen.flags(protocol.loop_ms);
+    let protocol = recorded.protocol();
+    for seen in screening_with(recorded.ballots(), &protocol) {
+        let flags = seen.flags(&protocol);
         let any = (!flags.is_empty()).then_some(None);
         for rule in flags.into_iter().map(Some).chain(any) {
             broken.entry(rule).or_default().insert(seen.participant);
@@ -132,8 +127,10 @@ mod tests {
     #[test]
     fn the_papers_tests_without_respondent_sixteen() {
         let study = fixture::study();
-        let ballots = ballots(&study, &fixture::answers(&study));
-        let table = of_study(&study, &ballots, &Protocol::default());
+        let answers = fixture::answers(&study);
+        let ballots = ballots(&study, &answers);
+        let recorded = Recorded::of_study(&study, &answers, &ballots);
+        let table = of_study(&study, &ballots, &recorded);
         assert_eq!(table.rows.len(), 4 + 9 + 3 + 9);
         let of = |column| cell(&table, &["odd", "B-S", "all"], column).shown();
         assert_eq!(
@@ -147,15 +144,16 @@ mod tests {
         let alone = hypotheses::of_study(&study, &kept);
         let same = alone.iter().find(|h| h.contrast == "B-S" && h.scope == "all").unwrap();
         assert_eq!(p, same.test.sign_flip.p());
-        let pairs = screened_pair_tests(&ballot_groups(&study, &ballots), &ballots, &Protocol::default());
+        let pairs = screened_pair_tests(&ballot_groups(&study, &ballots), &recorded);
         assert!(pairs.rows.iter().any(|row| row[4].in_full() == "bu-bi"));
     }
 
     #[test]
     fn nobody_broke_a_rule() {
         let study = fixture::study();
-        let mut ballots = ballots(&study, &fixture::answers(&study));
-        ballots.retain(|b| b.participant != 15);
-        assert!(of_study(&study, &ballots, &Protocol::default()).rows.is_empty());
+        let mut answers = fixture::answers(&study);
+        answers.answers.retain(|answer| answer.participant != 15);
+        let ballots = ballots(&study, &answers);
+        assert!(of_study(&study, &ballots, &Recorded::of_study(&study, &answers, &ballots)).rows.is_empty());
     }
 }

@@ -13,7 +13,7 @@ fn header(table: &Table) -> String {
 #[test]
 fn every_table_is_there_and_scripts_find_their_columns() {
     let all = Everything::of(fixture::study());
-    let tables = tables(&all.inputs()).unwrap();
+    let tables = tables(&all.inputs());
     let names: Vec<&str> = tables.iter().map(|t| t.name.as_str()).collect();
     assert_eq!(
         names,
@@ -72,7 +72,7 @@ fn every_table_is_there_and_scripts_find_their_columns() {
 #[test]
 fn rows_of_the_scripted_tables() {
     let all = Everything::of(fixture::study());
-    let tables = tables(&all.inputs()).unwrap();
+    let tables = tables(&all.inputs());
     let groups = named(&tables, "preference_groups").to_csv();
     let first: Vec<&str> = groups.lines().nth(2).unwrap().split(',').take(6).collect();
     assert_eq!(first, ["B", "bi", "68", "19", "162", "0.41975308641975306"]);
@@ -114,7 +114,7 @@ fn statistics_of_nothing_are_missing() {
     }
     let is_shape = |name: &str| ["ratio_", "angle_", "area_"].iter().any(|of| name.contains(of));
     let mut missing = 0;
-    for table in &tables(&all.inputs()).unwrap() {
+    for table in &tables(&all.inputs()) {
         let numbers = table.name == "comparison";
         let of_mesh = |row: &&Vec<Cell>| {
             row[usize::from(numbers)].in_full() == "bs_bi" && (!numbers || is_shape(&row[2].in_full()))
@@ -133,13 +133,13 @@ fn statistics_of_nothing_are_missing() {
     }
     // Benchmark: 4; quality: 9 of 6 at two spacings; positions: 2 twice; comparison: 6; side by side: 6 and 2 put right.
     assert_eq!(missing, 4 + 2 * 9 * 6 + 2 * 2 + 6 + 8);
-    assert!(crate::unexplained_differences(&all.inputs()).unwrap().is_empty());
+    assert!(crate::unexplained_differences(&all.inputs()).is_empty());
 }
 
 #[test]
 fn intervals_stay_within_what_is_possible() {
     let all = Everything::of(fixture::study());
-    let tables = tables(&all.inputs()).unwrap();
+    let tables = tables(&all.inputs());
     let caps: std::collections::BTreeMap<(String, String), f64> = named(&tables, "preference_groups")
         .rows
         .iter()
@@ -159,7 +159,7 @@ fn intervals_stay_within_what_is_possible() {
 #[test]
 fn latex_names_its_packages_and_breaks_long_tables() {
     let all = Everything::of(fixture::study());
-    for table in tables(&all.inputs()).unwrap() {
+    for table in tables(&all.inputs()) {
         let latex = table.to_latex();
         let needs = latex.lines().next().unwrap();
         for (package, used) in
@@ -177,24 +177,23 @@ fn latex_names_its_packages_and_breaks_long_tables() {
 #[test]
 fn order_of_records_changes_nothing() {
     let mut all = Everything::of(fixture::study());
-    let before = tables(&all.inputs()).unwrap();
+    let before = tables(&all.inputs());
     all.meshes.reverse();
-    assert!(tables(&all.inputs()).unwrap() == before);
+    assert!(tables(&all.inputs()) == before);
 }
 
 #[test]
 fn absent_parts_leave_out_their_tables() {
     let all = Everything::of(fixture::study());
-    let names = |inputs: &Inputs<'_>| -> Vec<String> {
-        tables(inputs).unwrap().into_iter().map(|table| table.name).collect()
-    };
+    let names =
+        |inputs: &Inputs<'_>| -> Vec<String> { tables(inputs).into_iter().map(|table| table.name).collect() };
     let nothing = Inputs { study: &all.study, meshes: &[], bench: None, answers: None };
     assert_eq!(names(&nothing), ["configurations", "questionnaire", "claims"]);
     let answers_only = Inputs { answers: Some(&all.answers), ..nothing };
     assert!(names(&answers_only).contains(&"preference_overall".to_owned()));
     assert!(!names(&answers_only).contains(&"benchmark".to_owned()));
     let meshes_only = Inputs { meshes: &all.meshes, ..nothing };
-    let tables = tables(&meshes_only).unwrap();
+    let tables = tables(&meshes_only);
     let benchmark = named(&tables, "benchmark");
     assert!(!header(benchmark).contains("vertex_s") && benchmark.printed().len() == 3);
 }
@@ -206,7 +205,7 @@ fn another_study_works_as_well() {
     let paper = fixture::study();
     let (meshes, bench) = (fixture::meshes(&paper), fixture::bench(&paper));
     let inputs = Inputs { study: &study, meshes: &meshes, bench: Some(&bench), answers: Some(&answers) };
-    let tables = tables(&inputs).unwrap();
+    let tables = tables(&inputs);
     let overall = named(&tables, "preference_overall").to_csv();
     assert_eq!(overall, "configuration,factor\nbi,0.25\nsi,0.5\n");
     assert!(!tables.iter().any(|table| ["comparison", "claims", "asteroid"].contains(&table.name.as_str())));

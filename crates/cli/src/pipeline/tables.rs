@@ -31,7 +31,7 @@ impl Pipeline<'_> {
                 answers: answers.as_ref().map(|reading| &reading.responses),
             };
             write(writer, &inputs, true)?;
-            writer.write_json(UNEXPLAINED, &analysis::unexplained_differences(&inputs)?)
+            writer.write_json(UNEXPLAINED, &analysis::unexplained_differences(&inputs))
         })?;
         step.count(stamp.redone);
         step.end();
@@ -52,11 +52,13 @@ impl Pipeline<'_> {
 /// If the files cannot be written.
 pub(crate) fn write_answers_only(study: &Study, reading: &Reading, store: &Store) -> Result<Vec<Table>> {
     let inputs = analysis::Inputs { study, meshes: &[], bench: None, answers: Some(&reading.responses) };
+    let mut made = None;
     store.stage("answers", study_inputs(study)?, |writer| {
         writer.write(READING, reading.report.to_csv().as_bytes())?;
-        write(writer, &inputs, false)
+        made = Some(write(writer, &inputs, false)?);
+        Ok(())
     })?;
-    Ok(analysis::tables(&inputs)?)
+    Ok(made.unwrap_or_else(|| analysis::tables(&inputs)))
 }
 
 /// Tables, figures and report of answers without a study, into a folder of their own, with how the answers were read.
@@ -71,7 +73,7 @@ pub(crate) fn write_without_study(
 ) -> Result<Vec<Table>> {
     let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
     let inputs = Inputs::of_rooms(rooms::TABLES).value("mapping", section).text("responses", &sha256(&bytes));
-    let tables = analysis::answer_tables(&reading.responses, None)?;
+    let tables = analysis::answer_tables(&reading.responses, section.shown_s);
     let groups = analysis::open_groups(&reading.responses);
     let title = path.file_name().unwrap_or_default().to_string_lossy();
     store.stage("answers", inputs, |writer| {
@@ -105,14 +107,15 @@ const UNEXPLAINED: &str = "tables/unexplained.json";
 pub(super) const TABLE_CONTENTS: &str = "tables/contents.json";
 pub(super) const FIGURE_CONTENTS: &str = "figures/contents.json";
 
-/// `gallery` says whether an `index.html` will stand beside the report.
-fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>, gallery: bool) -> Result<()> {
-    let tables = analysis::tables(inputs).context("tables")?;
+/// The tables that were written. `gallery` says whether an `index.html` will stand beside the report.
+fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>, gallery: bool) -> Result<Vec<Table>> {
+    let tables = analysis::tables(inputs);
     write_tables(writer, &tables)?;
     let figures = analysis::figures(inputs).context("figures")?;
     write_figures(writer, &figures)?;
-    let report = analysis::report(inputs, &tables, &figures).context("report")?;
-    super::report::write(writer, &report, gallery)
+    let report = analysis::report(inputs, &tables, &figures);
+    super::report::write(writer, &report, gallery)?;
+    Ok(tables)
 }
 
 fn write_figures(writer: &mut Writer<'_>, figures: &[Figure]) -> Result<()> {

@@ -65,16 +65,24 @@ fn controls_repeats_and_time() {
     ]);
     // Questions 0 and 1 show the same pair on the same object in both orders; question 2 the same pair on another.
     let scenes = [7, 7, 8, 7, 7, 7];
-    let protocol = Protocol { circumstances: &circumstances, scenes: &scenes, loop_ms: Some(650.0) };
+    let protocol = Protocol {
+        circumstances: &circumstances,
+        scenes: &scenes,
+        shown_ms: Some(650.0),
+        sides_unknown: false,
+    };
     let seen = screening_with(&ballots, &protocol)[0];
     assert_eq!((seen.answers, seen.controls, seen.controls_decided), ([3, 0, 0], 3, 2));
     // Left both times, with the sides swapped: the other item.
     assert_eq!((seen.repeats, seen.repeats_opposite, seen.consistency()), (1, 1, Some(0.0)));
     // In order of presentation: L L L L - R.
     assert_eq!((seen.longest_run, seen.timed, seen.time_ms), (4, 6, 3900.0));
-    assert_eq!(seen.flags(Some(650.0)), [Flag::Controls]);
-    assert_eq!(seen.flags(Some(650.1)), [Flag::Controls, Flag::Time]);
-    assert_eq!(seen.flags(None), [Flag::Controls]);
+    assert_eq!(seen.flags(&Protocol { shown_ms: Some(650.0), ..Protocol::default() }), [Flag::Controls]);
+    assert_eq!(
+        seen.flags(&Protocol { shown_ms: Some(650.1), ..Protocol::default() }),
+        [Flag::Controls, Flag::Time]
+    );
+    assert_eq!(seen.flags(&Protocol::default()), [Flag::Controls]);
     // Nothing known but the ballots: no order, no time, and no question was answered twice.
     let bare = screening(&ballots)[0];
     assert_eq!((bare.repeats, bare.timed, bare.consistency()), (0, 0, None));
@@ -90,13 +98,15 @@ fn rules_by_hand() {
         repeats_opposite,
         ..Screening::default()
     };
-    assert_eq!(of([10, 3, 0], 0, 0).flags(None), [Flag::OneSided]);
-    assert_eq!(of([0, 0, 9], 0, 0).flags(None), []);
-    assert_eq!(of([20, 0, 1], 4, 2).flags(None), []);
-    assert_eq!(of([20, 0, 1], 3, 2).flags(None), [Flag::Repeats]);
-    assert_eq!(of([20, 0, 1], 1, 1).flags(None), []);
+    assert_eq!(of([10, 3, 0], 0, 0).flags(&Protocol::default()), [Flag::OneSided]);
+    let no_sides = Protocol { sides_unknown: true, ..Protocol::default() };
+    assert_eq!(of([10, 3, 0], 0, 0).flags(&no_sides), []);
+    assert_eq!(of([0, 0, 9], 0, 0).flags(&Protocol::default()), []);
+    assert_eq!(of([20, 0, 1], 4, 2).flags(&Protocol::default()), []);
+    assert_eq!(of([20, 0, 1], 3, 2).flags(&Protocol::default()), [Flag::Repeats]);
+    assert_eq!(of([20, 0, 1], 1, 1).flags(&Protocol::default()), []);
     let odd = Screening { odd_p: Some(0.009), ..Screening::default() };
-    assert_eq!(odd.flags(None), [Flag::Odd]);
+    assert_eq!(odd.flags(&Protocol::default()), [Flag::Odd]);
 }
 
 #[test]

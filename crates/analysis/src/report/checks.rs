@@ -1,0 +1,120 @@
+//! Checks of the answers: who broke a rule of screening and what the tests are without them, and what probes found. Said from
+//! the tables, which hold both.
+
+use super::Block;
+use super::finding::{Finding, Standing};
+use super::words::{counted, list, p as p_value};
+use crate::audit::Finding as Probed;
+use crate::statistics::Flag;
+use crate::table::{Cell, Table};
+
+/// Tests named at most.
+const NAMED: usize = 6;
+
+pub(super) fn findings<'t>(table: impl Fn(&str) -> Option<&'t Table>) -> Vec<Block> {
+    let mut found = Vec::new();
+    if let Some(respondents) = table("respondents") {
+        found.push(screened(respondents));
+    }
+    found.extend(table("screened").map(without).unwrap_or_default());
+    found.extend(table("audit").map(probed).unwrap_or_default());
+    found.into_iter().map(Block::Finding).collect()
+}
+
+/// The column of this name in every row.
+fn column<'t>(table: &'t Table, name: &str) -> impl Iterator<Item = &'t Cell> + use<'t> {
+    let place = table.columns.iter().position(|column| column.name == name).expect("a column of this table");
+    table.rows.iter().map(move |row| &row[place])
+}
+
+fn sum(table: &Table, name: &str) -> u64 {
+    column(table, name).filter_map(|cell| cell.in_full().parse::<u64>().ok()).sum()
+}
+
+/// How many broke which rule, and what was there to judge.
+fn screened(respondents: &Table) -> Finding {
+    let people = respondents.rows.len();
+    let flags: Vec<String> = column(respondents, "flags").map(Cell::in_full).collect();
+    let broken = flags.iter().filter(|flags| !flags.is_empty()).count();
+    let rule = |flag: &Flag| {
+        let own = flags.iter().filter(|flags| flags.split(' ').any(|code| code == flag.code())).count();
+        (own > 0).then(|| format!("{} by {own}", flag.code()))
+    };
+    let rules: Vec<String> = Flag::ALL.iter().filter_map(rule).collect();
+    let kinds = [("controls", "control"), ("repeats", "repeat"), ("timed", "timed answer")];
+    let (mut judged, mut absent) = (vec!["one-sidedness".to_owned(), "agreement".to_owned()], Vec::new());
+    for (name, noun) in kinds {
+        match sum(respondents, name) {
+            0 => absent.push(if name == "timed" { "times" } else { name }),
+            n => judged.push(counted(n as usize, noun)),
+        }
+    }
+    let who = match broken {
+        0 => format!("None of {} broke", counted(people, "participant")),
+        _ => format!("{broken} of {} broke", counted(people, "participant")),
+    };
+    let which = if rules.is_empty() { String::new() } else { format!(" ({})", list(&rules)) };
+    let mut text = format!(
+        "{who} a rule of screening that is declared beforehand{which}. Nobody is left out of any other part of this report. \
+         Judged: {}.",
+        list(&judged)
+    );
+    if !absent.is_empty() {
+        text.push_str(&format!(
+            " Not judged, because nothing of the kind is recorded: {}.",
+            absent.join(", ")
+        ));
+    }
+    Finding::new(Standing::Noted, text)
+}
+
+/// Rule by rule, the tests that come out otherwise without those who broke it.
+fn without(screened: &Table) -> Vec<Finding> {
+    let names = ["rule", "left_out", "respondents", "contrast", "scope", "conclusion", "conclusion_without"];
+    let columns: Vec<Vec<String>> =
+        names.iter().map(|name| column(screened, name).map(Cell::in_full).collect()).collect();
+    let rows: Vec<usize> = (0..screened.rows.len()).collect();
+    let of_rule = |rows: &[usize]| {
+        let [rule, left_out, people] = [0, 1, 2].map(|c| columns[c][rows[0]].as_str());
+        let changed: Vec<usize> = rows.iter().copied().filter(|&r| columns[5][r] != columns[6][r]).collect();
+        let tests = counted(rows.len(), "declared test");
+        let outcome = match changed.len() {
+            0 => format!("none of {tests} comes out otherwise"),
+            n => {
+                let name = |&r: &usize| {
+                    let [contrast, scope, with, without] = [3, 4, 5, 6].map(|c| &columns[c][r]);
+                    format!("{contrast} {scope} ({with}, then {without})")
+                };
+                let mut named: Vec<String> = changed.iter().take(NAMED).map(name).collect();
+                if n > NAMED {
+                    named.push(format!("{} more", n - NAMED));
+                }
+                let comes = if n == 1 { "comes" } else { "come" };
+                format!("{n} of {tests} {comes} out otherwise: {}", list(&named))
+            }
+        };
+        let noun = if left_out == "1" { "participant" } else { "participants" };
+        let people = people.replace(' ', ", ").replace(", and, ", " and ").replace(", more", " more");
+        let rule = if rule == "any" { "Any rule".into() } else { format!("Rule {rule}") };
+        Finding::new(Standing::Noted, format!("{rule}, broken by {noun} {people}: without them, {outcome}."))
+    };
+    rows.chunk_by(|&a, &b| columns[0][a] == columns[0][b]).map(of_rule).collect()
+}
+
+/// What each probe found.
+fn probed(audit: &Table) -> Vec<Finding> {
+    let texts = |name| column(audit, name).map(Cell::in_full).collect::<Vec<String>>();
+    let (questions, found, evidence) = (texts("question"), texts("finding"), texts("evidence"));
+    let one = |(i, p): (usize, &Cell)| {
+        let (question, evidence) = (&questions[i], &evidence[i]);
+        let p = if let Cell::P(p, _) = p { format!(" ({})", p_value(*p)) } else { String::new() };
+        if found[i] == Probed::NotAnswerable.label() {
+            let because = evidence.trim_start_matches("not answerable here, ");
+            let text = format!("{question} Not answerable here, {because}.");
+            return Finding::new(Standing::NotAnswerable, text);
+        }
+        let word = if found[i] == Probed::Found.label() { "Found" } else { "Not found" };
+        Finding::new(Standing::Noted, format!("{question} {word}: {evidence}{p}."))
+    };
+    column(audit, "p").enumerate().map(one).collect()
+}

@@ -1,0 +1,152 @@
+//! Answers as people send them, analysed with a study and without.
+
+use crate::fixture::{Fixture, Run};
+use std::path::Path;
+use std::process::Command;
+
+/// Runs the command on a file of answers that no study explains.
+fn analyse(arguments: &[&str]) -> Run {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_isostudy")).arg("analyse").args(arguments).output().unwrap();
+    Run {
+        code: output.status.code(),
+        stdout: String::from_utf8(output.stdout).unwrap(),
+        stderr: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+/// The study's answers in the long format, with what its forms add: two controls and two repeats with exchanged sides for
+/// each, at their places, with times. Respondent 3 decides both controls, 5 contradicts both repeats, 7 is done in a tenth of
+/// a second each.
+fn recorded(fixture: &Fixture) -> String {
+    let plain = fixture.folder().join("plain.csv");
+    let answers = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../study/paper/responses.csv");
+    let output = Command::new(env!("CARGO_BIN_EXE_isostudy"))
+        .arg("convert")
+        .arg(answers)
+        .arg("--study")
+        .arg(fixture.config())
+        .args(["--to", "long", "--out"])
+        .arg(&plain)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = std::fs::read_to_string(plain).unwrap();
+    let mut lines = text.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let at = |name: &str| header.iter().position(|column| *column == name).unwrap();
+    let [who, question, left, right, choice] = ["participant", "question", "left", "right", "choice"].map(at);
+    let (order, rt) = (at("order"), at("rt_ms"));
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    for line in lines {
+        let row: Vec<String> = line.split(',').map(str::to_owned).collect();
+        let number: u32 = row[who].parse().unwrap();
+        rows.push(row.clone());
+        let asked = row[question].clone();
+        if asked == "Q1" || asked == "Q2" {
+            let mut again = row.clone();
+            again.swap(left, right);
+            again[question] = format!("{asked}-r");
+            again[choice] = match (row[choice].as_str(), number == 5) {
+                // The same side again is the other item. Whoever had no preference has one now.
+                ("none", true) => "left".into(),
+                (same, true) => same.into(),
+                ("left", false) => "right".into(),
+                ("right", false) => "left".into(),
+                (other, false) => other.into(),
+            };
+            rows.push(again);
+            let mut control = row;
+            control[right] = control[left].clone();
+            control[question] = format!("control-{}", &asked[1..]);
+            control[choice] = if number == 3 { "left".into() } else { "none".into() };
+            rows.push(control);
+        }
+    }
+    let mut text = header.join(",");
+    for (place, mut row) in rows.into_iter().enumerate() {
+        row[rt] = if row[who] == "7" { "100".into() } else { "9000.5".into() };
+        row[order] = (place + 1).to_string();
+        text.push_str(&format!("\n{}", row.join(",")));
+    }
+    text + "\n"
+}
+
+/// A column of a table without quoted cells, by the first one.
+fn cells(out: &Path, table: &str, column: &str) -> Vec<(String, String)> {
+    let text = std::fs::read_to_string(out.join(format!("tables/{table}.csv"))).unwrap();
+    let mut lines = text.lines();
+    let place = lines.next().unwrap().split(',').position(|name| name == column).unwrap();
+    let cell = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        (cells[0].to_owned(), cells[place].to_owned())
+    };
+    lines.map(cell).collect()
+}
+
+fn rules_broken(out: &Path) -> Vec<(String, String)> {
+    cells(out, "respondents", "flags").into_iter().filter(|(_, flags)| !flags.is_empty()).collect()
+}
+
+#[test]
+fn controls_repeats_and_times_are_screened_and_change_nothing_else() {
+    let fixture = Fixture::new();
+    fixture.succeed("analyse", &[]);
+    let table =
+        |name: &str| std::fs::read_to_string(fixture.out().join(format!("tables/{name}.csv"))).unwrap();
+    let before = ["preference_groups", "answer_counts", "tests", "worths"].map(table);
+    let path = fixture.folder().join("recorded.csv");
+    std::fs::write(&path, recorded(&fixture)).unwrap();
+    fixture.succeed("analyse", &["--responses", path.to_str().unwrap()]);
+    assert_eq!(["preference_groups", "answer_counts", "tests", "worths"].map(table), before);
+
+    let want = [("3", "controls"), ("5", "repeats"), ("7", "time"), ("16", "odd")];
+    assert_eq!(rules_broken(fixture.out()), want.map(|(who, rule)| (who.to_owned(), rule.to_owned())));
+    let column = |name| cells(fixture.out(), "respondents", name);
+    assert!(
+        column("controls").iter().all(|(_, n)| n == "2") && column("timed").iter().all(|(_, n)| n == "31")
+    );
+    let rules: std::collections::BTreeSet<String> =
+        cells(fixture.out(), "screened", "rule").into_iter().map(|(rule, _)| rule).collect();
+    assert_eq!(rules.into_iter().collect::<Vec<_>>(), ["any", "controls", "odd", "repeats", "time"]);
+    let report = std::fs::read_to_string(fixture.out().join("report.md")).unwrap();
+    for said in [
+        "4 of 18 participants broke a rule of screening that is declared beforehand (controls by 1, repeats by 1, time by 1 and \
+         odd by 1)",
+        "Rule controls, broken by participant 3: without them, ",
+        "Rule any",
+        "36 controls",
+        "Found: respondent 16 agrees with the others' majority",
+    ] {
+        assert!(
+            report.contains(said) || said == "Rule any" && report.contains("Any rule, broken by"),
+            "{said}: {report}"
+        );
+    }
+}
+
+#[test]
+fn the_same_without_a_study() {
+    let fixture = Fixture::new();
+    let path = fixture.folder().join("recorded.csv");
+    std::fs::write(&path, recorded(&fixture)).unwrap();
+    let mapping = fixture.folder().join("mapping.toml");
+    std::fs::write(&mapping, "shown_s = 4.0\n").unwrap();
+    let out = fixture.folder().join("answers");
+    let [path, mapping, folder] = [&path, &mapping, &out].map(|path| path.to_str().unwrap());
+    let run = analyse(&[path, "--mapping", mapping, "--out", folder]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let broken = rules_broken(&out);
+    for (who, rule) in [("3", "controls"), ("5", "repeats"), ("7", "time")] {
+        assert!(broken.contains(&(who.to_owned(), rule.to_owned())), "{broken:?}");
+    }
+    let audit = std::fs::read_to_string(out.join("tables/audit.csv")).unwrap();
+    assert_eq!(audit.lines().count(), 7);
+    let report = std::fs::read_to_string(out.join("report.md")).unwrap();
+    assert!(
+        report.contains("## Checks of the answers") && report.contains("Rule time, broken by participant 7")
+    );
+    std::fs::write(mapping, "shown_s = -4.0\n").unwrap();
+    let run = analyse(&[path, "--mapping", mapping, "--out", folder]);
+    assert!(run.code == Some(2) && run.stderr.contains("shown_s = -4"), "{}", run.stderr);
+}
