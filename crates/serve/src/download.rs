@@ -110,7 +110,7 @@ mod tests {
     fn what_is_not_a_download_says_where() {
         let wrong = |text: &str| read(text, "s").unwrap_err().to_string();
         assert!(
-            wrong(&CSV.replace("NP", "maybe")).contains("line: 2"),
+            wrong(&CSV.replace("NP", "maybe")).contains("record 1"),
             "{}",
             wrong(&CSV.replace("NP", "maybe"))
         );
