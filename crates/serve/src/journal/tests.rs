@@ -74,7 +74,7 @@ const LATE: u32 = crate::record::LONGEST_MS + 1;
 fn forms_are_dealt_evenly_even_when_people_give_up() {
     let folder = tempdir().unwrap();
     let mut journal = Journal::open(folder.path(), &file(5), "d").unwrap();
-    let mut dealt = vec![0_u32; 5];
+    let mut dealt = [0_u32; 5];
     for n in 0..23 {
         dealt[journal.begin(nobody(), n).unwrap().unwrap().form.form - 1] += 1;
         assert!(dealt.iter().max().unwrap() - dealt.iter().min().unwrap() <= 1);
