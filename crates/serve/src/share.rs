@@ -31,7 +31,7 @@ pub fn codebook(file: &FormFile, digest: &str, participants: usize, answers: usi
          | `participant` | who answered | `p1`, `p2`, ... |\n\
          | `form` | number of the form | 1 to {forms} |\n\
          | `order` | place in the form, practice included | from 1 |\n\
-         | `question` | what was compared; the same for a repeat | id of the study file; `control-1`, ... |\n\
+         | `question` | what was compared | id of the study file, with `-r` where it was asked again; `control-1`, ... |\n\
          | `object` | what both sides show | name of the study file |\n\
          | `group` | comparison group; empty for controls | id of the study file |\n\
          | `left`, `right` | configuration shown on that side | object, underscore, method |\n\

@@ -56,7 +56,7 @@ pub struct KeyEntry {
     pub stimulus: String,
     /// Why it is shown.
     pub role: Role,
-    /// The comparison's question, for its repeat as well; `control-1` and `training-1` and so on.
+    /// The comparison's question; that and `-r` for its repeat; `control-1` and `training-1` and so on.
     pub question: String,
     /// Name of the object.
     pub object: String,
@@ -108,7 +108,7 @@ impl Questionnaire<'_> {
                     order: place + 1,
                     stimulus: code(&left, &right),
                     role: trial.role,
-                    question: comparison.map_or_else(|| trial.question.clone(), |c| c.question.clone()),
+                    question: trial.question.clone(),
                     object: object.map_or_else(String::new, |object| object.name.clone()),
                     group: comparison.map_or_else(String::new, |c| self.study.groups[c.group].id.clone()),
                     left,
