@@ -2,10 +2,12 @@
 //!
 //! The study's own forms are answered by simulated people, and each study is tested as [`statistics`](crate::statistics)
 //! tests a real one: exact sign-flip over participants, two-sided at 5 %, with and without adjustment in its family.
+//! What is found must be what was assumed: a rejection in favour of the wrong one is none.
 //!
 //! In every contrast the first property is ahead by the same number of logits. Each person deviates by an own amount for
 //! each arrangement and each clustering, and so does each object, for everybody; two properties' deviations differ by the
-//! given standard deviation. Answers follow Davidson's model. Controls, repeats and training are left out, as in the tests.
+//! given standard deviation. The tests are about the study's own objects: a preference that is there on these alone is
+//! found as well. Answers follow Davidson's model. Controls, repeats and training are left out, as in the tests.
 
 #[cfg(test)]
 mod tests;
@@ -56,7 +58,7 @@ pub struct Power {
     pub participants: usize,
     /// Assumed share of decided answers for the first.
     pub share: f64,
-    /// Share of the studies that rejected, unadjusted.
+    /// Share of the studies that found it, unadjusted; at a share of 0.5, that found either.
     pub power: f64,
     /// The same, adjusted in its family: Holm's adjustment, for single questions Benjamini and Hochberg's.
     pub adjusted: f64,
@@ -65,9 +67,14 @@ pub struct Power {
 }
 
 impl Power {
-    /// Monte-Carlo standard error of [`Power::power`].
-    pub fn error(&self) -> f64 {
-        (self.power * (1.0 - self.power) / self.studies as f64).sqrt()
+    /// Monte-Carlo standard errors of [`Power::power`] and [`Power::adjusted`], with two studies more that found it and two
+    /// that did not (Agresti and Coull 1998), so that they are not 0 where all studies ended alike.
+    pub fn errors(&self) -> [f64; 2] {
+        let studies = self.studies as f64 + 4.0;
+        [self.power, self.adjusted].map(|share| {
+            let near = (share * self.studies as f64 + 2.0) / studies;
+            (near * (1.0 - near) / studies).sqrt()
+        })
     }
 }
 
@@ -187,7 +194,7 @@ impl Setting {
         let of_objects = deviations(assumptions.object_sd, self.objects * self.levels);
         let of_people = deviations(assumptions.person_sd, self.forms.len() * self.levels);
         let numbers = &assumptions.participants;
-        let mut p = vec![1.0; numbers.len() * self.targets.len()];
+        let mut p = vec![(1.0, false); numbers.len() * self.targets.len()];
         // By target: how many participants have each difference.
         let mut counts: Vec<BTreeMap<i64, u64>> = vec![BTreeMap::new(); self.targets.len()];
         let mut signs = vec![None; self.questions.len()];
@@ -214,7 +221,10 @@ impl Setting {
             }
             while numbers.get(place) == Some(&(participant + 1)) {
                 for (target, counts) in counts.iter().enumerate() {
-                    p[target * numbers.len() + place] = sign_flip_of_counts(counts).p();
+                    let test = sign_flip_of_counts(counts);
+                    // For the wrong one: it takes its place in the adjustment, and is not counted.
+                    let wrong = ahead * (test.net as f64) < 0.0;
+                    p[target * numbers.len() + place] = (test.p(), wrong);
                 }
                 place += 1;
             }
@@ -222,19 +232,21 @@ impl Setting {
         self.rejected(&p, numbers.len())
     }
 
-    fn rejected(&self, p: &[f64], numbers: usize) -> Vec<[u64; 2]> {
-        let mut rejected: Vec<[u64; 2]> = p.iter().map(|&p| [u64::from(p <= ALPHA), 0]).collect();
+    /// Of each p, and whether it speaks for the wrong one: whether it is a find, unadjusted and adjusted.
+    fn rejected(&self, p: &[(f64, bool)], numbers: usize) -> Vec<[u64; 2]> {
+        let found = |p: f64, wrong: bool| u64::from(p <= ALPHA && !wrong);
+        let mut rejected: Vec<[u64; 2]> = p.iter().map(|&(p, wrong)| [found(p, wrong), 0]).collect();
         for place in 0..numbers {
             let mut begin = 0;
             for family in self.targets.chunk_by(|a, b| a.family == b.family) {
                 let members = (begin..begin + family.len()).map(|target| target * numbers + place);
-                let of_family: Vec<f64> = members.clone().map(|i| p[i]).collect();
+                let of_family: Vec<f64> = members.clone().map(|i| p[i].0).collect();
                 let adjusted = if family[0].family == QUESTIONS {
                     benjamini_hochberg(&of_family)
                 } else {
                     holm(&of_family)
                 };
-                members.zip(adjusted).for_each(|(i, p)| rejected[i][1] = u64::from(p <= ALPHA));
+                members.zip(adjusted).for_each(|(i, adjusted)| rejected[i][1] = found(adjusted, p[i].1));
                 begin += family.len();
             }
         }

@@ -28,36 +28,51 @@ pub fn power_figure(assumptions: &Assumptions, all: &[Power]) -> Result<Figure, 
     let plural = |n: usize| if n == 1 { "question" } else { "questions" };
     let mut legend: Vec<(Swatch, String)> = Vec::new();
     for (i, (family, questions)) in kinds.iter().enumerate() {
-        let name = format!("{family}, {questions} {}", plural(*questions));
+        let name = format!("{}: {questions} {}", over(family), plural(*questions));
         legend.push((Swatch::Mark(Mark::nth(i, true)), name));
     }
+    legend.push((Swatch::Mark(Mark::nth(0, false)), "hollow: adjusted in its family".into()));
     legend.push((Swatch::Dashes, format!("power {WANTED}")));
-    let rows: Vec<&[f64]> = assumptions.shares.chunks(PER_ROW).collect();
+    let per_row = assumptions.shares.len().clamp(1, PER_ROW);
+    let rows: Vec<&[f64]> = assumptions.shares.chunks(per_row).collect();
     let (mut canvas, top) = canvas_with_legend(&legend, ROW * rows.len() as f64);
     for (r, row) in rows.iter().enumerate() {
-        let (width, y) = (WIDTH / PER_ROW as f64, top + ROW * r as f64);
+        let (width, y) = (WIDTH / per_row as f64, top + ROW * r as f64);
         for (i, &share) in row.iter().enumerate() {
             let x = width * i as f64;
             panel(assumptions, all, share, &kinds).draw(&mut canvas, (x, y), (x + width, y + ROW));
         }
     }
-    let caption = "Chance that the exact sign-flip test finds a preference, unadjusted: mean over the contrasts of a family that \
-                   have as many questions, for three shares of decided answers. Contrasts of one kind differ by chance alone."
-        .replace("three", &assumptions.shares.len().to_string());
+    let caption = "Chance that the exact sign-flip test finds a preference that is there, by number of participants: mean over the \
+                   contrasts of a family that have as many questions, which differ by chance alone. Lines and filled marks: \
+                   each test by itself; hollow marks: adjusted for all tests of the family."
+        .into();
     Draft { name: "power", caption, canvas }.finish()
+}
+
+/// What the contrasts of a family are over.
+fn over(family: &str) -> &str {
+    match family {
+        "pooled" => "all answers",
+        "groups" => "within one lattice or clustering",
+        "objects" => "one object",
+        _ => "one question alone",
+    }
 }
 
 fn panel(assumptions: &Assumptions, all: &[Power], share: f64, kinds: &[(&str, usize)]) -> Scatter {
     let (mut lines, mut marks) = (Vec::new(), Vec::new());
     for (i, &(family, questions)) in kinds.iter().enumerate() {
-        let mean = |&n: &usize| {
+        let mean = |n: usize, value: fn(&Power) -> f64| {
             let of_kind = |p: &&Power| {
                 (p.family, p.questions, p.participants) == (family, questions, n) && p.share == share
             };
-            let found: Vec<f64> = all.iter().filter(of_kind).map(|p| p.power).collect();
+            let found: Vec<f64> = all.iter().filter(of_kind).map(value).collect();
             (n as f64, found.iter().sum::<f64>() / found.len() as f64)
         };
-        let line: Vec<(f64, f64)> = assumptions.participants.iter().map(mean).collect();
+        let numbers = &assumptions.participants;
+        marks.extend(numbers.iter().map(|&n| (mean(n, |p| p.adjusted), Mark::nth(i, false))));
+        let line: Vec<(f64, f64)> = numbers.iter().map(|&n| mean(n, |p| p.power)).collect();
         marks.extend(line.iter().map(|&at| (at, Mark::nth(i, true))));
         lines.push((BLACK, line));
     }

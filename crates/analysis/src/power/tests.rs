@@ -48,7 +48,7 @@ fn as_simulated_independently() {
     }
 }
 
-/// Chance that the sign test of one answer each rejects, added up over all ways to answer.
+/// Chance that the sign test of one answer each rejects in favour of the first, added up over all ways to answer.
 fn exactly([first, _, second]: [f64; 3], participants: u64) -> f64 {
     let ln_choose = |n: u64, k: u64| {
         ((n - k + 1)..=n).map(|i| (i as f64).ln()).sum::<f64>()
@@ -59,7 +59,7 @@ fn exactly([first, _, second]: [f64; 3], participants: u64) -> f64 {
     for decided in 0..=participants {
         for wins in 0..=decided {
             let counts = BTreeMap::from([(1, wins), (-1, decided - wins)]);
-            if sign_flip_of_counts(&counts).p() <= ALPHA {
+            if 2 * wins > decided && sign_flip_of_counts(&counts).p() <= ALPHA {
                 let ways = ln_choose(participants, decided) + ln_choose(decided, wins);
                 let chance = first.powi(wins as i32) * second.powi((decided - wins) as i32);
                 sum += ways.exp() * chance * tie.powi((participants - decided) as i32);
@@ -125,4 +125,17 @@ fn blocks_ask_each_participant_a_part() {
     assert!(sum(&blocks) < 0.8 * sum(&whole));
     study.file.forms = None;
     assert_eq!(power(&study, &assumptions(1), &|| ()), None);
+}
+
+#[test]
+fn what_is_found_is_what_was_assumed() {
+    // Objects differ much more than the assumed preference: half of them favour the other.
+    let chance =
+        Assumptions { shares: vec![0.501], object_sd: 3.0, participants: vec![200], ..assumptions(400) };
+    let all = power(&study(), &chance, &|| ()).unwrap();
+    for power in all.iter().filter(|p| p.family == "objects") {
+        assert!((0.3..0.55).contains(&power.power), "{power:?}");
+    }
+    let certain = Power { power: 1.0, adjusted: 0.0, studies: 10, ..all[0].clone() };
+    assert!(certain.errors().into_iter().all(|error| error > 0.05 && error < 0.15), "{:?}", certain.errors());
 }

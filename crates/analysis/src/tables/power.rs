@@ -19,9 +19,11 @@ fn in_full(all: &[Power]) -> Table {
         ("power", "Power"),
         ("power_error", "Monte-Carlo error"),
         ("power_adjusted", "Power, adjusted"),
+        ("power_adjusted_error", "Monte-Carlo error"),
     ];
     let mut table = Table::new("power", "Power of every contrast and question", &columns);
     for power in all {
+        let [error, adjusted_error] = power.errors();
         table.push(vec![
             Cell::text(power.family),
             Cell::text(&power.contrast),
@@ -30,8 +32,9 @@ fn in_full(all: &[Power]) -> Table {
             Cell::number(Some(power.share), 3),
             Cell::count(power.participants as u64),
             Cell::number(Some(power.power), 3),
-            Cell::number(Some(power.error()), 4),
+            Cell::number(Some(error), 4),
             Cell::number(Some(power.adjusted), 3),
+            Cell::number(Some(adjusted_error), 4),
         ]);
     }
     table
@@ -67,12 +70,13 @@ fn by_participants(assumptions: &Assumptions, all: &[Power]) -> Table {
         cells.extend(row.iter().map(|p| Cell::text(format!("{:.2} ({:.2})", p.power, p.adjusted))));
         table.push(cells);
     }
-    let largest = all.iter().map(Power::error).fold(0.0, f64::max);
+    let largest = all.iter().flat_map(Power::errors).fold(0.0, f64::max);
     table.notes.push(format!(
         "Exact sign-flip test over participants at 5 %, two-sided; {} simulated studies a share, Monte-Carlo standard error at \
          most {largest:.3}. Assumed: in every contrast the first is chosen in this share of decided answers by a person who \
          does not deviate; differences between people have standard deviation {} logits, between objects {}; Davidson's tie \
-         parameter {}. Seed {}.",
+         parameter {}. Rejections in favour of the other do not count. Objects are taken as they are: \
+         what is preferred on these alone is found too. Seed {}.",
         assumptions.studies, assumptions.person_sd, assumptions.object_sd, assumptions.ties, assumptions.seed
     ));
     table

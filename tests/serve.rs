@@ -1,0 +1,259 @@
+//! The questionnaire's server as participants, and those who mean ill, meet it.
+
+mod fixture;
+mod http;
+
+use fixture::Fixture;
+use http::{get, post, raw};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::io::{BufRead, BufReader, Write};
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+const TOKEN: &str = "a-token-for-this-test";
+
+/// The quick study asked as in configs/balanced.toml, bundled.
+fn bundled() -> Fixture {
+    let fixture = Fixture::new();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let text = std::fs::read_to_string(root.join("configs/balanced.toml")).unwrap();
+    let forms = text[text.find("[forms]").unwrap()..].to_owned();
+    fixture.edit_with(|study| format!("{study}\n{forms}"));
+    fixture.succeed("bundle", &[]);
+    fixture
+}
+
+struct Server {
+    child: Child,
+    address: SocketAddr,
+}
+
+impl Server {
+    fn start(fixture: &Fixture, port: u16) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_isostudy"))
+            .arg("serve")
+            .arg(fixture.config())
+            .arg("--out")
+            .arg(fixture.out())
+            .arg("--answers")
+            .arg(fixture.folder().join("answers"))
+            .args(["--port", &port.to_string(), "--admin-token", TOKEN])
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
+        let line = lines.find(|line| line.starts_with("questionnaire")).expect("it listens");
+        let address = line.split("http://").nth(1).unwrap().trim_end_matches('/').parse().unwrap();
+        // Nobody reads the rest, and a full pipe must not stop the server.
+        std::thread::spawn(move || lines.for_each(drop));
+        Self { child, address }
+    }
+
+    fn kill(mut self) {
+        self.child.kill().unwrap();
+        self.child.wait().unwrap();
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        drop(self.child.kill());
+        drop(self.child.wait());
+    }
+}
+
+fn free_port() -> u16 {
+    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+}
+
+fn begin(address: SocketAddr) -> Value {
+    let (status, body) = post(address, "/api/sessions", "{}").unwrap();
+    assert_eq!(status, 200, "{body}");
+    serde_json::from_str(&body).unwrap()
+}
+
+fn answer(session: &Value, question: usize, choice: &str) -> String {
+    let form = &session["form"];
+    let first = form["training"].as_array().unwrap().len() + 1;
+    json!({
+        "token": session["token"], "order": first + question, "stimulus": form["questions"][question],
+        "choice": choice, "rt_ms": 1500,
+    })
+    .to_string()
+}
+
+/// Every answer there is: participant and place to choice.
+fn kept(address: SocketAddr) -> BTreeMap<(String, String), String> {
+    let (status, csv) = get(address, "/api/admin/answers.csv", TOKEN).unwrap();
+    assert_eq!(status, 200, "{csv}");
+    let lines: Vec<Vec<&str>> = csv.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let count = lines.len();
+    let kept: BTreeMap<_, _> = lines
+        .into_iter()
+        .map(|line| ((line[0].to_owned(), line[2].to_owned()), line[8].to_owned()))
+        .collect();
+    assert_eq!(kept.len(), count, "an answer is there twice");
+    kept
+}
+
+#[test]
+fn what_is_not_meant_well_changes_nothing() {
+    let fixture = bundled();
+    let server = Server::start(&fixture, 0);
+    let at = server.address;
+    let status = |path: &str, body: &str| post(at, path, body).unwrap().0;
+    let session = begin(at);
+    let token = session["token"].as_str().unwrap();
+    assert_eq!(status("/api/answers", &answer(&session, 0, "L")), 200);
+    let before = kept(at);
+    assert_eq!(before.len(), 1);
+
+    // Replayed, changed, out of order, of another form, of nobody.
+    assert_eq!(status("/api/answers", &answer(&session, 0, "L")), 200);
+    assert_eq!(status("/api/answers", &answer(&session, 0, "R")), 409);
+    assert_eq!(status("/api/answers", &answer(&session, 2, "R")), 409);
+    let mut other = session.clone();
+    other["form"]["questions"][1] = json!("../key");
+    assert_eq!(status("/api/answers", &answer(&other, 1, "R")), 422);
+    other = session.clone();
+    other["token"] = json!("00000000000000000000000000000000");
+    assert_eq!(status("/api/answers", &answer(&other, 1, "R")), 404);
+    assert_eq!(status("/api/finish", &json!({ "token": token }).to_string()), 409);
+
+    // Wrong types, words and sizes.
+    for bad in [
+        "",
+        "{",
+        "[]",
+        "{}",
+        r#"{"token":1}"#,
+        "\u{0}",
+        r#"{"token":"x","order":-1,"stimulus":"a","choice":"L","rt_ms":1}"#,
+    ] {
+        let found = status("/api/answers", bad);
+        assert!(found == 400 || found == 422, "{bad}: {found}");
+    }
+    let long = answer(&session, 1, "L").replace("1500", "86400001");
+    assert_eq!(status("/api/answers", &long), 422);
+    assert_eq!(status("/api/answers", &answer(&session, 1, "maybe")), 422);
+    assert_eq!(status("/api/answers", &format!("{{\"token\":\"{}\"}}", "x".repeat(10_000))), 413);
+    assert_eq!(status("/api/sessions", r#"{"prolific_pid":"<script>"}"#), 422);
+    assert_eq!(status("/api/sessions", r#"{"ip":"1.2.3.4"}"#), 422);
+    let plain = "POST /api/answers HTTP/1.1\r\nhost: x\r\ncontent-length: 2\r\nconnection: close\r\n\r\n{}";
+    assert_eq!(raw(at, plain.as_bytes()).unwrap().0, 415);
+
+    // Files that are nobody's.
+    for path in [
+        "/stimuli/../key/stimuli.csv",
+        "/stimuli/..%2f..%2fkey%2fstimuli.csv",
+        "/%2e%2e/key/forms.csv",
+        "/key/forms.csv",
+        "/answers.sqlite",
+        "/stimuli/none.gif",
+        "/stimuli/",
+        "/forms.json",
+        "//etc/passwd",
+    ] {
+        assert_eq!(get(at, path, "").unwrap().0, 404, "{path}");
+    }
+    let code = session["form"]["questions"][0].as_str().unwrap();
+    let whole = get(at, &format!("/stimuli/{code}.gif"), "").unwrap();
+    assert!(whole.0 == 200 && whole.1.starts_with("GIF89a"));
+
+    // The researcher's door.
+    for path in ["/api/admin/summary", "/api/admin/answers.csv", "/api/admin/identities.csv"] {
+        for wrong in ["", "a", "a-token-for-this-tesT", "a-token-for-this-test "] {
+            let found = get(at, path, wrong).unwrap();
+            // Spaces round a header's value are no part of it.
+            assert_eq!(found.0, if wrong.ends_with(' ') { 200 } else { 401 }, "{path} {wrong:?}");
+        }
+    }
+    // What a participant's page knows says nothing of others, nor of what is shown.
+    let known = get(at, "/forms.js", "").unwrap().1;
+    assert!(known.contains("\"forms\":[]") && !known.contains("_b"), "{known}");
+    assert_eq!(kept(at), before);
+}
+
+#[test]
+fn a_slow_client_is_cut_off_and_holds_up_nobody() {
+    let fixture = bundled();
+    let server = Server::start(&fixture, 0);
+    let mut slow = TcpStream::connect(server.address).unwrap();
+    slow.write_all(b"POST /api/answers HTTP/1.1\r\nhost: x\r\n").unwrap();
+    let session = begin(server.address);
+    assert_eq!(post(server.address, "/api/answers", &answer(&session, 0, "NP")).unwrap().0, 200);
+    // The server gives up after ten seconds; the client would wait for a minute.
+    slow.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
+    let mut said = Vec::new();
+    std::io::Read::read_to_end(&mut slow, &mut said).unwrap();
+    let said = String::from_utf8_lossy(&said);
+    assert!(said.is_empty() || said.contains(" 408 "), "{said}");
+}
+
+/// Killed ten times while people answer: what was acknowledged is there once, and forms stay balanced.
+#[test]
+fn nothing_acknowledged_is_lost_when_the_server_is_killed() {
+    const PEOPLE: usize = 40;
+    let fixture = bundled();
+    let port = free_port();
+    let address = SocketAddr::from(([127, 0, 0, 1], port));
+    let mut server = Server::start(&fixture, port);
+    let acknowledged: Mutex<BTreeMap<(String, String), String>> = Mutex::default();
+    let dealt: Mutex<Vec<u64>> = Mutex::default();
+    let enough = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        for person in 0..PEOPLE {
+            let (acknowledged, dealt, enough) = (&acknowledged, &dealt, &enough);
+            scope.spawn(move || {
+                let pause = || std::thread::sleep(Duration::from_millis(20));
+                let session: Value = loop {
+                    match post(address, "/api/sessions", "{}") {
+                        Ok((200, body)) => break serde_json::from_str(&body).unwrap(),
+                        _ => pause(),
+                    }
+                };
+                dealt.lock().unwrap().push(session["form"]["form"].as_u64().unwrap());
+                let count = session["form"]["questions"].as_array().unwrap().len();
+                for question in 0..count {
+                    let choice = ["L", "NP", "R"][(person + question) % 3];
+                    let sent = answer(&session, question, choice);
+                    let order = serde_json::from_str::<Value>(&sent).unwrap()["order"].to_string();
+                    loop {
+                        match post(address, "/api/answers", &sent) {
+                            Ok((200, _)) => break,
+                            Ok((status, body)) => panic!("{status} {body}"),
+                            Err(_) => pause(),
+                        }
+                    }
+                    let key = (session["participant"].as_str().unwrap().to_owned(), order);
+                    acknowledged.lock().unwrap().insert(key, choice.to_owned());
+                    if !enough.load(Ordering::Relaxed) {
+                        pause();
+                    }
+                }
+            });
+        }
+        for _ in 0..10 {
+            std::thread::sleep(Duration::from_millis(150));
+            server.kill();
+            server = Server::start(&fixture, port);
+        }
+        enough.store(true, Ordering::Relaxed);
+    });
+    let (kept, acknowledged) = (kept(server.address), acknowledged.into_inner().unwrap());
+    assert_eq!(acknowledged.len(), PEOPLE * 32);
+    assert!(kept == acknowledged, "{} kept, {} acknowledged", kept.len(), acknowledged.len());
+    // Somebody whose first request died with the server was dealt a form that nobody knows of.
+    let (_, summary) = get(server.address, "/api/admin/summary", TOKEN).unwrap();
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+    let live: Vec<u64> =
+        summary["forms"].as_array().unwrap().iter().map(|form| form[1].as_u64().unwrap()).collect();
+    assert!(live.iter().max().unwrap() - live.iter().min().unwrap() <= 1, "{live:?}");
+    assert_eq!(dealt.into_inner().unwrap().len(), PEOPLE);
+}
