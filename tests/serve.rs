@@ -55,7 +55,7 @@ impl Server {
         Self { child, address }
     }
 
-    fn kill(mut self) {
+    fn kill(&mut self) {
         self.child.kill().unwrap();
         self.child.wait().unwrap();
     }
@@ -203,7 +203,7 @@ fn nothing_acknowledged_is_lost_when_the_server_is_killed() {
     let fixture = bundled();
     let port = free_port();
     let address = SocketAddr::from(([127, 0, 0, 1], port));
-    let mut server = Server::start(&fixture, port);
+    let server = Mutex::new(Server::start(&fixture, port));
     let acknowledged: Mutex<BTreeMap<(String, String), String>> = Mutex::default();
     let dealt: Mutex<Vec<u64>> = Mutex::default();
     let enough = AtomicBool::new(false);
@@ -241,16 +241,17 @@ fn nothing_acknowledged_is_lost_when_the_server_is_killed() {
         }
         for _ in 0..10 {
             std::thread::sleep(Duration::from_millis(150));
+            let mut server = server.lock().unwrap();
             server.kill();
-            server = Server::start(&fixture, port);
+            *server = Server::start(&fixture, port);
         }
         enough.store(true, Ordering::Relaxed);
     });
-    let (kept, acknowledged) = (kept(server.address), acknowledged.into_inner().unwrap());
+    let (kept, acknowledged) = (kept(address), acknowledged.into_inner().unwrap());
     assert_eq!(acknowledged.len(), PEOPLE * 32);
     assert!(kept == acknowledged, "{} kept, {} acknowledged", kept.len(), acknowledged.len());
     // Somebody whose first request died with the server was dealt a form that nobody knows of.
-    let (_, summary) = get(server.address, "/api/admin/summary", TOKEN).unwrap();
+    let (_, summary) = get(address, "/api/admin/summary", TOKEN).unwrap();
     let summary: Value = serde_json::from_str(&summary).unwrap();
     let live: Vec<u64> =
         summary["forms"].as_array().unwrap().iter().map(|form| form[1].as_u64().unwrap()).collect();
