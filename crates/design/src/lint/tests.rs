@@ -66,6 +66,7 @@ fn sides_that_never_change() {
     assert_eq!(faults.len(), 9);
 }
 
+/// Over the contrast 72 to 36, and in every question 36 to 0.
 #[test]
 fn sides_that_change_from_object_to_object_only() {
     let mut study = balanced();
@@ -74,8 +75,34 @@ fn sides_that_change_from_object_to_object_only() {
         std::mem::swap(&mut comparison.left, &mut comparison.right);
     }
     let faults = lint(&study);
-    assert_eq!(rules(&faults), [Rule::SidesUnbalanced]);
+    assert_eq!(rules(&faults), [Rule::SideConfounded]);
     assert_eq!(faults.len(), 9);
+    let evidence = "bu on the left 72 times, on the right 36 times; always the same side in Q1 Q10 Q19";
+    assert_eq!(faults[0].evidence, evidence);
+}
+
+/// The contrast as a whole has each side 24 times.
+#[test]
+fn a_side_for_each_question() {
+    let mut study = load("two-methods.toml");
+    forms(&mut study).sides = SideRule::AsListed;
+    let second = &mut study.comparisons[1];
+    std::mem::swap(&mut second.left, &mut second.right);
+    let faults = lint(&study);
+    assert_eq!(rules(&faults), [Rule::SideConfounded]);
+    assert_eq!((faults.len(), faults[0].place.as_str()), (1, "bu against bi in group B"));
+    let evidence = "bu on the left 24 times, on the right 24 times; always the same side in Q1 Q2";
+    assert_eq!(faults[0].evidence, evidence);
+}
+
+/// One showing cannot be on both sides, an odd number not equally often on each.
+#[test]
+fn one_side_more_often() {
+    let counts = [[6, 3], [3, 6], [4, 5], [1, 0], [2, 0], [0, 7], [0, 0]];
+    let expected = [Some(Rule::SidesUnbalanced), Some(Rule::SidesUnbalanced), None, None]
+        .into_iter()
+        .chain([Some(Rule::SideConfounded), Some(Rule::SideConfounded), None]);
+    assert!(counts.map(side_rule).into_iter().eq(expected));
 }
 
 #[test]
