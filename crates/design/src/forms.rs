@@ -13,6 +13,9 @@
 //! - Within a form, a method is on the left as often as on the right, to within one, and so is each side of two methods
 //!   that meet on several objects.
 //! - A repeat shows its comparison the other way round, half a form away. A control shows one configuration twice.
+//! - Repeats favour nothing: over blocks, configurations appear through them as evenly as a search finds, then methods,
+//!   pairs of methods and objects. Controls take methods evenly, then objects. Both are the same for all participants
+//!   of a block: a place of the Latin square belongs to one question.
 //!
 //! # Not guaranteed
 //!
@@ -23,6 +26,7 @@
 mod file;
 mod order;
 mod sides;
+mod spread;
 
 pub use file::{FormEntry, FormFile, KeyEntry, Stimulus};
 
@@ -96,8 +100,14 @@ impl<'a> Questionnaire<'a> {
     /// The questionnaire of a study; `None` if it plans no forms or compares nothing.
     pub fn of(study: &'a Study) -> Option<Self> {
         let section = study.file.forms.as_ref().filter(|_| !study.comparisons.is_empty())?;
-        let blocks = split(study, section).into_iter().enumerate();
-        let blocks = blocks.map(|(number, members)| block(study, section, number, &members));
+        let split = split(study, section);
+        let repeated = repeated(study, section, &split);
+        let controls = controls(study, section);
+        let blocks = split.iter().zip(&repeated).enumerate().map(|(number, (members, repeated))| {
+            let comparisons = oriented(study, section, number, members);
+            let repeats = repeated.iter().map(|&place| again(&comparisons[place])).collect();
+            Block { comparisons, repeats, controls: controls.clone() }
+        });
         Some(Self { study, section, blocks: blocks.collect() })
     }
 
@@ -195,12 +205,13 @@ fn split(study: &Study, section: &FormsSection) -> Vec<Vec<usize>> {
     blocks
 }
 
-fn block(study: &Study, section: &FormsSection, number: usize, members: &[usize]) -> Block {
-    let mut random = random(study.file.study.seed, &[number, SIDES]);
+/// The comparisons of a block, sides as in its first form.
+fn oriented(study: &Study, section: &FormsSection, number: usize, members: &[usize]) -> Vec<Trial> {
     let swapped = match section.sides {
         SideRule::AsListed => vec![false; members.len()],
         SideRule::Balanced => {
             let ends = |&i: &usize| (study.comparisons[i].left.method, study.comparisons[i].right.method);
+            let mut random = random(study.file.study.seed, &[number, SIDES]);
             sides::balanced(&members.iter().map(ends).collect::<Vec<_>>(), &mut random)
         }
     };
@@ -210,30 +221,48 @@ fn block(study: &Study, section: &FormsSection, number: usize, members: &[usize]
         let (left, right) = (left.clone(), right.clone());
         Trial { role: Role::Comparison, question: question.clone(), comparison: Some(i), left, right }
     };
-    let comparisons: Vec<Trial> = members.iter().zip(&swapped).map(trial).collect();
-    let repeat = |i: usize| {
-        let Trial { question, comparison, left, right, .. } = comparisons[i].clone();
-        Trial { role: Role::Repeat, question: format!("{question}-r"), comparison, left: right, right: left }
+    members.iter().zip(&swapped).map(trial).collect()
+}
+
+/// A comparison's repeat.
+fn again(of: &Trial) -> Trial {
+    let (left, right) = (of.right.clone(), of.left.clone());
+    Trial { role: Role::Repeat, question: format!("{}-r", of.question), left, right, ..of.clone() }
+}
+
+/// Which of each block's comparisons are repeated: over all blocks configurations as evenly as can be, then methods, then
+/// pairs of methods, then objects.
+fn repeated(study: &Study, section: &FormsSection, split: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    let (methods, objects) = (study.methods(), study.file.objects.len());
+    let labels = |&i: &usize| {
+        let Comparison { object, left, right, .. } = &study.comparisons[i];
+        let at = |id: &ConfigurationId| methods.iter().position(|&method| method == id.method).unwrap_or(0);
+        let (a, b) = (at(left), at(right));
+        let ends = vec![object * methods.len() + a, object * methods.len() + b];
+        vec![ends, vec![a, b], vec![a.min(b) * methods.len() + a.max(b)], vec![*object]]
     };
-    let repeats = spread(section.repeats as usize, comparisons.len(), &mut random).map(repeat).collect();
-    // The same controls in every block: fewer animations, more answers to each.
-    let mut of_study = self::random(study.file.study.seed, &[CONTROLS]);
+    let sizes = [objects * methods.len(), methods.len(), methods.len().pow(2), objects];
+    let pools: Vec<Vec<spread::Labels>> =
+        split.iter().map(|members| members.iter().map(labels).collect()).collect();
+    let mut random = random(study.file.study.seed, &[REPEATS]);
+    spread::spread(section.repeats as usize, &pools, &sizes, &mut random)
+}
+
+/// The same in every block: fewer animations, more answers to each. Methods as evenly as can be, then objects.
+fn controls(study: &Study, section: &FormsSection) -> Vec<Trial> {
+    let methods = study.methods().len();
+    // Configurations are objects crossed with methods.
+    let labels = |i: usize| vec![vec![i % methods], vec![study.configurations[i].object]];
+    let pool = (0..study.configurations.len()).map(labels).collect();
+    let sizes = [methods, study.file.objects.len()];
+    let mut random = random(study.file.study.seed, &[CONTROLS]);
+    let chosen = spread::spread(section.controls as usize, &[pool], &sizes, &mut random);
     let control = |(n, i): (usize, usize)| {
         let shown = study.configurations[i].id.clone();
         let question = format!("control-{}", n + 1);
         Trial { role: Role::Control, question, comparison: None, left: shown.clone(), right: shown }
     };
-    let chosen = spread(section.controls as usize, study.configurations.len(), &mut of_study);
-    let controls = chosen.enumerate().map(control).collect();
-    Block { comparisons, repeats, controls }
-}
-
-/// `count` of `total` places, evenly spread from a random first; distinct as long as `count <= total`.
-fn spread(count: usize, total: usize, random: &mut Pcg64) -> impl Iterator<Item = usize> + use<> {
-    let mut first: Vec<usize> = (0..total).collect();
-    first.shuffle(random);
-    let first = first.first().copied().unwrap_or(0);
-    (0..count).map(move |i| (first + i * total / count) % total)
+    chosen.into_iter().flatten().enumerate().map(control).collect()
 }
 
 /// What random numbers are drawn for; each has a stream of its own.
@@ -241,6 +270,7 @@ const SIDES: usize = 1;
 const CONTROLS: usize = 2;
 const CIRCLE: usize = 3;
 const SHUFFLED: usize = 4;
+const REPEATS: usize = 5;
 
 fn random(seed: u64, parts: &[usize]) -> Pcg64 {
     // FNV-1a: any fixed mixing will do, as long as it is ours and never changes.
