@@ -25,6 +25,7 @@ pub enum Rule {
     NoControls,
     NoRepeats,
     OrderFixed,
+    UntestableComparison,
     NotEnoughParticipants,
     NamesReveal,
     StimuliDiffer,
@@ -32,7 +33,7 @@ pub enum Rule {
 
 impl Rule {
     /// Every rule, in the order of reports.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::SideConfounded,
         Self::SidesUnbalanced,
         Self::AppearancesUnequal,
@@ -40,6 +41,7 @@ impl Rule {
         Self::NoControls,
         Self::NoRepeats,
         Self::OrderFixed,
+        Self::UntestableComparison,
         Self::NotEnoughParticipants,
         Self::NamesReveal,
         Self::StimuliDiffer,
@@ -55,6 +57,7 @@ impl Rule {
             Self::NoControls => "no-controls",
             Self::NoRepeats => "no-repeats",
             Self::OrderFixed => "order-fixed",
+            Self::UntestableComparison => "untestable-comparison",
             Self::NotEnoughParticipants => "not-enough-participants",
             Self::NamesReveal => "names-reveal",
             Self::StimuliDiffer => "stimuli-differ",
@@ -89,6 +92,10 @@ impl Rule {
             Self::OrderFixed => {
                 "Everybody is asked in the same order: what comes late is judged by tired or practised eyes."
             }
+            Self::UntestableComparison => {
+                "A comparison's methods differ in both arrangement and clustering: no contrast is about it, and a liking \
+                 can be put down to neither."
+            }
             Self::NotEnoughParticipants => {
                 "Even if all planned participants agree, the exact sign-flip test with Holm's correction cannot reach \
                  5 %."
@@ -114,6 +121,7 @@ impl Rule {
             Self::NoControls => "forms.controls = 2 or more",
             Self::NoRepeats => "forms.repeats = 2 or more",
             Self::OrderFixed => "forms.order = \"latin-square\"",
+            Self::UntestableComparison => "compare methods that differ in one of the two",
             Self::NotEnoughParticipants => "plan more participants, or fewer contrasts",
             Self::NamesReveal => "forms.names = \"code-names\"",
             Self::StimuliDiffer => "render both with the same turntable, shading and camera",
@@ -157,6 +165,7 @@ pub fn lint(study: &Study) -> Vec<Fault> {
         let evidence = format!("{} forms, one order", forms.len());
         faults.push(Fault { rule: Rule::OrderFixed, place: "forms.order".into(), evidence });
     }
+    faults.extend(showings.untestable(study));
     faults.extend(showings.participants());
     faults.extend(names(study, section.names));
     faults
@@ -299,6 +308,18 @@ impl Showings {
             }
         }
         faults
+    }
+
+    /// One fault a pair of methods.
+    fn untestable(&self, study: &Study) -> Vec<Fault> {
+        let both = |(_, a, b): &&Contrast| a.arrangement != b.arrangement && a.clustering != b.clustering;
+        let fault = |contrast: &Contrast| {
+            let own = study.comparisons.iter().filter(|comparison| contrast_of(comparison) == *contrast);
+            let questions: Vec<&str> = own.map(|comparison| comparison.question.as_str()).collect();
+            let evidence = format!("in no contrast: {}", questions.join(" "));
+            Fault { rule: Rule::UntestableComparison, place: self.name(contrast), evidence }
+        };
+        self.sides.keys().filter(both).map(fault).collect()
     }
 
     /// All agreeing, one of the 2^m sign patterns and its opposite are as extreme: p = 2^(1-m). Holm multiplies the smallest

@@ -143,6 +143,26 @@ fn methods_that_are_never_compared() {
 }
 
 #[test]
+fn methods_that_differ_in_two_properties() {
+    let mut study = balanced();
+    forms(&mut study).max_questions = 35;
+    let group = study.groups.len();
+    let own = study.comparisons.len()..study.comparisons.len() + 3;
+    let members = ["bu", "si"].map(|method| method.parse().unwrap()).to_vec();
+    let comparisons = own.collect();
+    study.groups.push(crate::Group { id: "X".into(), label: "both".into(), members, comparisons });
+    for (object, id) in ["ss", "as", "bs"].iter().enumerate() {
+        let id = |method: &str| format!("{id}_{method}").parse::<ConfigurationId>().unwrap();
+        let (question, left, right) = (format!("X{object}"), id("bu"), id("si"));
+        study.comparisons.push(Comparison { question, object, group, left, right });
+    }
+    let faults = lint(&study);
+    assert_eq!(rules(&faults), [Rule::UntestableComparison]);
+    assert_eq!((faults.len(), faults[0].place.as_str()), (1, "bu against si in group X"));
+    assert_eq!(faults[0].evidence, "in no contrast: X0 X1 X2");
+}
+
+#[test]
 fn no_controls_and_no_repeats() {
     let mut study = balanced();
     forms(&mut study).controls = 0;
