@@ -6,7 +6,7 @@
 
 mod stimuli;
 
-use crate::config::{OrderRule, ShownNames};
+use crate::config::{OrderRule, ShownNames, SideRule};
 use crate::forms::{Form, Questionnaire, Role, Trial};
 use crate::method::{ConfigurationId, Method};
 use crate::study::{Comparison, Study};
@@ -113,7 +113,9 @@ impl Rule {
     /// What to change.
     pub fn remedy(self) -> &'static str {
         match self {
-            Self::SideConfounded | Self::SidesUnbalanced => "forms.sides = \"balanced\"",
+            Self::SideConfounded | Self::SidesUnbalanced => {
+                "forms.sides = \"balanced\"; where it is, as many participants as said above"
+            }
             Self::AppearancesUnequal => "list every pair of a group's members on every object",
             Self::ComparisonsDisconnected => {
                 "add comparisons between the parts, or make them groups of their own"
@@ -150,7 +152,8 @@ pub fn lint(study: &Study) -> Vec<Fault> {
     };
     let forms = questionnaire.planned();
     let showings = Showings::of(study, &forms);
-    let mut faults = showings.sides(study);
+    let even = (section.sides == SideRule::Balanced).then_some(2 * questionnaire.blocks());
+    let mut faults = showings.sides(study, even);
     faults.extend(showings.appearances(study));
     faults.extend(showings.connections(study));
     let mut none = |rule: Rule, key: &str, count: u32, role: Role| {
@@ -222,8 +225,8 @@ impl Showings {
     }
 
     /// Sides over a contrast's questions together, and within each: single questions and objects are tested too. One fault a
-    /// contrast, the graver.
-    fn sides(&self, study: &Study) -> Vec<Fault> {
+    /// contrast, the graver. A multiple of `even` participants makes sides even, if the forms balance them at all.
+    fn sides(&self, study: &Study, even: Option<usize>) -> Vec<Fault> {
         let mut faults = Vec::new();
         for (contrast, &counts) in &self.sides {
             let of = self.comparisons.iter().zip(&study.comparisons);
@@ -242,6 +245,9 @@ impl Showings {
                 let how =
                     if rule == Rule::SideConfounded { "always the same side" } else { "one side more often" };
                 evidence += &format!("; {how} in {}", found.join(" "));
+            }
+            if let Some(even) = even {
+                evidence += &format!("; a multiple of {even} participants makes them even");
             }
             faults.push(Fault { rule, place: self.name(contrast), evidence });
         }

@@ -103,6 +103,9 @@ proptest! {
             }
         }
         prop_assert!(lead.values().all(|lead| lead.abs() <= 1), "{lead:?}");
+        if participants as usize % (2 * questionnaire.blocks()) == 0 {
+            prop_assert!(lead.values().all(|&lead| lead == 0), "{lead:?}");
+        }
         prop_assert!(places.values().all(|counts| even(counts.iter().copied())), "{places:?}");
         prop_assert!(even(shown.values().copied()), "{shown:?}");
         prop_assert!(even(sizes.iter().map(|&size| size as i64)), "{sizes:?}");

@@ -1,7 +1,7 @@
 //! Each rule fires on a defect planted for it, and no other rule does.
 
 use super::*;
-use crate::config::{FormsSection, SideRule};
+use crate::config::FormsSection;
 use crate::study::tests::{load, paper_with};
 
 fn balanced() -> Study {
@@ -103,6 +103,41 @@ fn one_side_more_often() {
         .into_iter()
         .chain([Some(Rule::SideConfounded), Some(Rule::SideConfounded), None]);
     assert!(counts.map(side_rule).into_iter().eq(expected));
+}
+
+/// Three blocks, dealt to an odd number of participants each: what is left over in each block cancels out over them.
+#[test]
+fn sides_are_even_over_blocks() {
+    for seed in 0..20 {
+        for participants in [3, 9, 27, 36] {
+            let mut study = balanced();
+            study.file.study.seed = seed;
+            forms(&mut study).max_questions = 14;
+            forms(&mut study).participants = participants;
+            let faults = lint(&study);
+            let about_sides: Vec<&Fault> = faults
+                .iter()
+                .filter(|fault| matches!(fault.rule, Rule::SideConfounded | Rule::SidesUnbalanced))
+                .collect();
+            assert!(about_sides.is_empty(), "{seed} {participants} {about_sides:?}");
+        }
+    }
+}
+
+/// A number of participants that leaves blocks unlike: in two of three blocks U, I and P have leads that follow from each other.
+#[test]
+fn sides_that_the_number_of_participants_leaves_uneven() {
+    let mut study = balanced();
+    forms(&mut study).max_questions = 14;
+    let uneven = (37..42).find_map(|participants| {
+        forms(&mut study).participants = participants;
+        Some(lint(&study)).filter(|faults| !faults.is_empty())
+    });
+    let faults = uneven.expect("some number does");
+    assert_eq!(rules(&faults), [Rule::SidesUnbalanced]);
+    assert!(faults[0].evidence.ends_with("; a multiple of 6 participants makes them even"), "{faults:?}");
+    forms(&mut study).participants = 42;
+    assert_eq!(lint(&study), []);
 }
 
 #[test]
