@@ -12,7 +12,8 @@
 //!   ask, comparisons are dealt into blocks whose sizes differ by at most one; a participant is asked one block.
 //! - Within a form, a method is on the left as often as on the right, to within one, and so is each side of two methods
 //!   that meet on several objects.
-//! - A repeat shows its comparison the other way round, half a form away. A control shows one configuration twice.
+//! - A repeat shows its comparison the other way round, half a form away; in shuffled order too. As listed, repeats and then
+//!   controls follow all comparisons. A control shows one configuration twice.
 //! - Repeats favour nothing: over blocks, configurations appear through them as evenly as a search finds, then methods,
 //!   pairs of methods and objects. Controls take methods evenly, then objects. Both are the same for all participants
 //!   of a block: a place of the Latin square belongs to one question.
@@ -35,8 +36,7 @@ pub use file::{FormEntry, FormFile, KeyEntry, Stimulus};
 use crate::config::{FormsSection, OrderRule, SideRule};
 use crate::method::{ConfigurationId, Method};
 use crate::study::{Comparison, Study};
-use rand::SeedableRng;
-use rand::seq::SliceRandom;
+use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
@@ -140,7 +140,12 @@ impl<'a> Questionnaire<'a> {
             [comparisons, repeats, controls].into_iter().flatten().cloned().collect();
         match self.section.order {
             OrderRule::AsListed => {}
-            OrderRule::Shuffled => trials.shuffle(&mut random(seed, &[block, SHUFFLED, turn])),
+            OrderRule::Shuffled => {
+                // A circle for each participant, begun anywhere: what lies opposite stays half a form apart.
+                let mut random = random(seed, &[block, SHUFFLED, turn]);
+                trials = order::circle(comparisons, repeats, controls, &mut random);
+                trials.rotate_left(random.random_range(..count));
+            }
             OrderRule::LatinSquare => {
                 // A cycle and its mirror image have one circle, so that each form has a twin with all sides swapped.
                 let mut random = random(seed, &[block, CIRCLE, cycle / 2]);

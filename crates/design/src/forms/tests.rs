@@ -152,6 +152,31 @@ proptest! {
 }
 
 #[test]
+fn repeats_are_half_a_form_away_in_shuffled_order_too() {
+    for (max_questions, repeats) in [(32, 3), (50, 20), (14, 3), (8, 3)] {
+        let section = FormsSection { order: OrderRule::Shuffled, ..balanced(36, 2, repeats, max_questions) };
+        let study = study(|_| true, section);
+        let forms = Questionnaire::of(&study).unwrap().planned();
+        let mut orders = BTreeSet::new();
+        let mut first = BTreeSet::new();
+        for form in &forms {
+            let asked: Vec<&str> = form.trials.iter().map(|trial| trial.question.as_str()).collect();
+            let place = |question: &str| asked.iter().position(|of| *of == question).unwrap();
+            let again: Vec<&str> = asked.iter().filter_map(|question| question.strip_suffix("-r")).collect();
+            assert_eq!(again.len(), repeats as usize);
+            for question in again {
+                let apart = place(question).abs_diff(place(&format!("{question}-r")));
+                assert!(apart >= asked.len() / 2, "{apart} of {}", asked.len());
+            }
+            first.insert(asked[0].to_owned());
+            orders.insert(asked.join(" "));
+        }
+        assert_eq!(orders.len(), 36, "everybody has an order of their own");
+        assert!(first.len() > 10, "and any question first: {first:?}");
+    }
+}
+
+#[test]
 fn each_form_has_a_twin_with_all_sides_swapped() {
     for questions in [31, 32] {
         let study = study(|_| true, balanced(1, questions - 30, 3, questions));
