@@ -103,7 +103,7 @@ proptest! {
             }
         }
         prop_assert!(lead.values().all(|lead| lead.abs() <= 1), "{lead:?}");
-        if participants as usize % (2 * questionnaire.blocks()) == 0 {
+        if (participants as usize).is_multiple_of(2 * questionnaire.blocks()) {
             prop_assert!(lead.values().all(|&lead| lead == 0), "{lead:?}");
         }
         prop_assert!(places.values().all(|counts| even(counts.iter().copied())), "{places:?}");
