@@ -12,10 +12,16 @@
 //!   ask, comparisons are dealt into blocks whose sizes differ by at most one; a participant is asked one block.
 //! - Within a form, a method is on the left as often as on the right, to within one, and so is each side of two methods
 //!   that meet on several objects.
-//! - A repeat shows its comparison the other way round, half a form away. A control shows one configuration twice.
+//! - A repeat shows its comparison the other way round, half a form away; in shuffled order too. As listed, repeats and then
+//!   controls follow all comparisons. A control shows one configuration twice.
+//! - Repeats favour nothing: over blocks, configurations appear through them as evenly as a search finds, then methods,
+//!   pairs of methods and objects. Controls take methods evenly, then objects. Both are the same for all participants
+//!   of a block: a place of the Latin square belongs to one question.
 //!
 //! # Not guaranteed
 //!
+//! - Sides of two methods over blocks: with a multiple of twice as many participants as there are blocks they are even; with others
+//!   they are as even as a search finds, and the linter says where they are not.
 //! - Which question follows which: neighbours in a form are neighbours in most forms, in either order. Sources: a cyclic
 //!   Latin square read alternately forwards and backwards; for squares balanced for neighbours see E. J. Williams,
 //!   Australian Journal of Scientific Research A 2 (1949).
@@ -23,14 +29,14 @@
 mod file;
 mod order;
 mod sides;
+mod spread;
 
 pub use file::{FormEntry, FormFile, KeyEntry, Stimulus};
 
 use crate::config::{FormsSection, OrderRule, SideRule};
-use crate::method::ConfigurationId;
+use crate::method::{ConfigurationId, Method};
 use crate::study::{Comparison, Study};
-use rand::SeedableRng;
-use rand::seq::SliceRandom;
+use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
@@ -96,8 +102,15 @@ impl<'a> Questionnaire<'a> {
     /// The questionnaire of a study; `None` if it plans no forms or compares nothing.
     pub fn of(study: &'a Study) -> Option<Self> {
         let section = study.file.forms.as_ref().filter(|_| !study.comparisons.is_empty())?;
-        let blocks = split(study, section).into_iter().enumerate();
-        let blocks = blocks.map(|(number, members)| block(study, section, number, &members));
+        let split = split(study, section);
+        let repeated = repeated(study, section, &split);
+        let controls = controls(study, section);
+        let swapped = swapped(study, section, &split);
+        let blocks = split.iter().zip(&swapped).zip(&repeated).map(|((members, swapped), repeated)| {
+            let comparisons = oriented(study, members, swapped);
+            let repeats = repeated.iter().map(|&place| again(&comparisons[place])).collect();
+            Block { comparisons, repeats, controls: controls.clone() }
+        });
         Some(Self { study, section, blocks: blocks.collect() })
     }
 
@@ -127,7 +140,12 @@ impl<'a> Questionnaire<'a> {
             [comparisons, repeats, controls].into_iter().flatten().cloned().collect();
         match self.section.order {
             OrderRule::AsListed => {}
-            OrderRule::Shuffled => trials.shuffle(&mut random(seed, &[block, SHUFFLED, turn])),
+            OrderRule::Shuffled => {
+                // A circle for each participant, begun anywhere: what lies opposite stays half a form apart.
+                let mut random = random(seed, &[block, SHUFFLED, turn]);
+                trials = order::circle(comparisons, repeats, controls, &mut random);
+                trials.rotate_left(random.random_range(..count));
+            }
             OrderRule::LatinSquare => {
                 // A cycle and its mirror image have one circle, so that each form has a twin with all sides swapped.
                 let mut random = random(seed, &[block, CIRCLE, cycle / 2]);
@@ -195,45 +213,69 @@ fn split(study: &Study, section: &FormsSection) -> Vec<Vec<usize>> {
     blocks
 }
 
-fn block(study: &Study, section: &FormsSection, number: usize, members: &[usize]) -> Block {
-    let mut random = random(study.file.study.seed, &[number, SIDES]);
-    let swapped = match section.sides {
-        SideRule::AsListed => vec![false; members.len()],
+/// Which of each block's comparisons its first form shows the other way round than listed.
+fn swapped(study: &Study, section: &FormsSection, split: &[Vec<usize>]) -> Vec<Vec<bool>> {
+    let ends = |&i: &usize| (study.comparisons[i].left.method, study.comparisons[i].right.method);
+    let of_block = |members: &Vec<usize>| members.iter().map(ends).collect();
+    match section.sides {
+        SideRule::AsListed => split.iter().map(|members| vec![false; members.len()]).collect(),
         SideRule::Balanced => {
-            let ends = |&i: &usize| (study.comparisons[i].left.method, study.comparisons[i].right.method);
-            sides::balanced(&members.iter().map(ends).collect::<Vec<_>>(), &mut random)
+            let blocks: Vec<Vec<(Method, Method)>> = split.iter().map(of_block).collect();
+            sides::over_blocks(&blocks, &mut random(study.file.study.seed, &[SIDES]))
         }
-    };
+    }
+}
+
+/// The comparisons of a block, sides as in its first form.
+fn oriented(study: &Study, members: &[usize], swapped: &[bool]) -> Vec<Trial> {
     let trial = |(&i, &swapped): (&usize, &bool)| {
         let Comparison { question, left, right, .. } = &study.comparisons[i];
         let (left, right) = if swapped { (right, left) } else { (left, right) };
         let (left, right) = (left.clone(), right.clone());
         Trial { role: Role::Comparison, question: question.clone(), comparison: Some(i), left, right }
     };
-    let comparisons: Vec<Trial> = members.iter().zip(&swapped).map(trial).collect();
-    let repeat = |i: usize| {
-        let Trial { question, comparison, left, right, .. } = comparisons[i].clone();
-        Trial { role: Role::Repeat, question: format!("{question}-r"), comparison, left: right, right: left }
+    members.iter().zip(swapped).map(trial).collect()
+}
+
+/// A comparison's repeat.
+fn again(of: &Trial) -> Trial {
+    let (left, right) = (of.right.clone(), of.left.clone());
+    Trial { role: Role::Repeat, question: format!("{}-r", of.question), left, right, ..of.clone() }
+}
+
+/// Which of each block's comparisons are repeated: over all blocks configurations as evenly as can be, then methods, then
+/// pairs of methods, then objects.
+fn repeated(study: &Study, section: &FormsSection, split: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    let (methods, objects) = (study.methods(), study.file.objects.len());
+    let labels = |&i: &usize| {
+        let Comparison { object, left, right, .. } = &study.comparisons[i];
+        let at = |id: &ConfigurationId| methods.iter().position(|&method| method == id.method).unwrap_or(0);
+        let (a, b) = (at(left), at(right));
+        let ends = vec![object * methods.len() + a, object * methods.len() + b];
+        vec![ends, vec![a, b], vec![a.min(b) * methods.len() + a.max(b)], vec![*object]]
     };
-    let repeats = spread(section.repeats as usize, comparisons.len(), &mut random).map(repeat).collect();
-    // The same controls in every block: fewer animations, more answers to each.
-    let mut of_study = self::random(study.file.study.seed, &[CONTROLS]);
+    let sizes = [objects * methods.len(), methods.len(), methods.len().pow(2), objects];
+    let pools: Vec<Vec<spread::Labels>> =
+        split.iter().map(|members| members.iter().map(labels).collect()).collect();
+    let mut random = random(study.file.study.seed, &[REPEATS]);
+    spread::spread(section.repeats as usize, &pools, &sizes, &mut random)
+}
+
+/// The same in every block: fewer animations, more answers to each. Methods as evenly as can be, then objects.
+fn controls(study: &Study, section: &FormsSection) -> Vec<Trial> {
+    let methods = study.methods().len();
+    // Configurations are objects crossed with methods.
+    let labels = |i: usize| vec![vec![i % methods], vec![study.configurations[i].object]];
+    let pool = (0..study.configurations.len()).map(labels).collect();
+    let sizes = [methods, study.file.objects.len()];
+    let mut random = random(study.file.study.seed, &[CONTROLS]);
+    let chosen = spread::spread(section.controls as usize, &[pool], &sizes, &mut random);
     let control = |(n, i): (usize, usize)| {
         let shown = study.configurations[i].id.clone();
         let question = format!("control-{}", n + 1);
         Trial { role: Role::Control, question, comparison: None, left: shown.clone(), right: shown }
     };
-    let chosen = spread(section.controls as usize, study.configurations.len(), &mut of_study);
-    let controls = chosen.enumerate().map(control).collect();
-    Block { comparisons, repeats, controls }
-}
-
-/// `count` of `total` places, evenly spread from a random first; distinct as long as `count <= total`.
-fn spread(count: usize, total: usize, random: &mut Pcg64) -> impl Iterator<Item = usize> + use<> {
-    let mut first: Vec<usize> = (0..total).collect();
-    first.shuffle(random);
-    let first = first.first().copied().unwrap_or(0);
-    (0..count).map(move |i| (first + i * total / count) % total)
+    chosen.into_iter().flatten().enumerate().map(control).collect()
 }
 
 /// What random numbers are drawn for; each has a stream of its own.
@@ -241,6 +283,7 @@ const SIDES: usize = 1;
 const CONTROLS: usize = 2;
 const CIRCLE: usize = 3;
 const SHUFFLED: usize = 4;
+const REPEATS: usize = 5;
 
 fn random(seed: u64, parts: &[usize]) -> Pcg64 {
     // FNV-1a: any fixed mixing will do, as long as it is ours and never changes.

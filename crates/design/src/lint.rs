@@ -6,10 +6,10 @@
 
 mod stimuli;
 
-use crate::config::{OrderRule, ShownNames};
+use crate::config::{OrderRule, ShownNames, SideRule};
 use crate::forms::{Form, Questionnaire, Role, Trial};
 use crate::method::{ConfigurationId, Method};
-use crate::study::Study;
+use crate::study::{Comparison, Study};
 use std::collections::{BTreeMap, BTreeSet};
 
 pub use stimuli::{EXPOSURE_TOLERANCE, StimulusFacts, lint_stimuli};
@@ -25,6 +25,7 @@ pub enum Rule {
     NoControls,
     NoRepeats,
     OrderFixed,
+    UntestableComparison,
     NotEnoughParticipants,
     NamesReveal,
     StimuliDiffer,
@@ -32,7 +33,7 @@ pub enum Rule {
 
 impl Rule {
     /// Every rule, in the order of reports.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::SideConfounded,
         Self::SidesUnbalanced,
         Self::AppearancesUnequal,
@@ -40,6 +41,7 @@ impl Rule {
         Self::NoControls,
         Self::NoRepeats,
         Self::OrderFixed,
+        Self::UntestableComparison,
         Self::NotEnoughParticipants,
         Self::NamesReveal,
         Self::StimuliDiffer,
@@ -55,6 +57,7 @@ impl Rule {
             Self::NoControls => "no-controls",
             Self::NoRepeats => "no-repeats",
             Self::OrderFixed => "order-fixed",
+            Self::UntestableComparison => "untestable-comparison",
             Self::NotEnoughParticipants => "not-enough-participants",
             Self::NamesReveal => "names-reveal",
             Self::StimuliDiffer => "stimuli-differ",
@@ -65,11 +68,11 @@ impl Rule {
     pub fn meaning(self) -> &'static str {
         match self {
             Self::SideConfounded => {
-                "Two methods are shown on the same sides every time: nothing can tell a liking for the method from a \
+                "Two methods are shown on the same sides every time, or in a question every time: nothing can tell a liking for the method from a \
                  liking for the side."
             }
             Self::SidesUnbalanced => {
-                "Of two methods one is on the left more often, by more than one showing: a liking for a side shifts \
+                "Of two methods one is on the left more often, by more than one showing, in all or in a question: a liking for a side shifts \
                  the result."
             }
             Self::AppearancesUnequal => {
@@ -89,6 +92,10 @@ impl Rule {
             Self::OrderFixed => {
                 "Everybody is asked in the same order: what comes late is judged by tired or practised eyes."
             }
+            Self::UntestableComparison => {
+                "A comparison's methods differ in both arrangement and clustering: no contrast is about it, and a liking \
+                 can be put down to neither."
+            }
             Self::NotEnoughParticipants => {
                 "Even if all planned participants agree, the exact sign-flip test with Holm's correction cannot reach \
                  5 %."
@@ -106,7 +113,9 @@ impl Rule {
     /// What to change.
     pub fn remedy(self) -> &'static str {
         match self {
-            Self::SideConfounded | Self::SidesUnbalanced => "forms.sides = \"balanced\"",
+            Self::SideConfounded | Self::SidesUnbalanced => {
+                "forms.sides = \"balanced\"; where it is, as many participants as said above"
+            }
             Self::AppearancesUnequal => "list every pair of a group's members on every object",
             Self::ComparisonsDisconnected => {
                 "add comparisons between the parts, or make them groups of their own"
@@ -114,6 +123,7 @@ impl Rule {
             Self::NoControls => "forms.controls = 2 or more",
             Self::NoRepeats => "forms.repeats = 2 or more",
             Self::OrderFixed => "forms.order = \"latin-square\"",
+            Self::UntestableComparison => "compare methods that differ in one of the two",
             Self::NotEnoughParticipants => "plan more participants, or fewer contrasts",
             Self::NamesReveal => "forms.names = \"code-names\"",
             Self::StimuliDiffer => "render both with the same turntable, shading and camera",
@@ -142,7 +152,8 @@ pub fn lint(study: &Study) -> Vec<Fault> {
     };
     let forms = questionnaire.planned();
     let showings = Showings::of(study, &forms);
-    let mut faults = showings.sides();
+    let even = (section.sides == SideRule::Balanced).then_some(2 * questionnaire.blocks());
+    let mut faults = showings.sides(study, even);
     faults.extend(showings.appearances(study));
     faults.extend(showings.connections(study));
     let mut none = |rule: Rule, key: &str, count: u32, role: Role| {
@@ -157,6 +168,7 @@ pub fn lint(study: &Study) -> Vec<Fault> {
         let evidence = format!("{} forms, one order", forms.len());
         faults.push(Fault { rule: Rule::OrderFixed, place: "forms.order".into(), evidence });
     }
+    faults.extend(showings.untestable(study));
     faults.extend(showings.participants());
     faults.extend(names(study, section.names));
     faults
@@ -165,6 +177,20 @@ pub fn lint(study: &Study) -> Vec<Fault> {
 /// Two methods of one group, the lower first.
 type Contrast = (usize, Method, Method);
 
+fn contrast_of(comparison: &Comparison) -> Contrast {
+    let (left, right) = (comparison.left.method, comparison.right.method);
+    (comparison.group, left.min(right), left.max(right))
+}
+
+/// What is wrong with having been shown so often one way and the other: one showing cannot be on both sides.
+fn side_rule([one, other]: [u64; 2]) -> Option<Rule> {
+    match (one.min(other), one.abs_diff(other)) {
+        (_, 0 | 1) => None,
+        (0, _) => Some(Rule::SideConfounded),
+        _ => Some(Rule::SidesUnbalanced),
+    }
+}
+
 /// How often what was shown, over all planned forms. Comparisons only: controls and repeats are there to check answers.
 struct Showings {
     group_ids: Vec<String>,
@@ -172,23 +198,23 @@ struct Showings {
     sides: BTreeMap<Contrast, [u64; 2]>,
     /// For each contrast: the participants who are asked about it.
     asked: BTreeMap<Contrast, BTreeSet<usize>>,
-    /// For each comparison.
-    comparisons: Vec<u64>,
+    /// For each comparison: how often it was shown as listed and swapped.
+    comparisons: Vec<[u64; 2]>,
 }
 
 impl Showings {
     fn of(study: &Study, forms: &[Form]) -> Self {
         let group_ids = study.groups.iter().map(|group| group.id.clone()).collect();
-        let comparisons = vec![0; study.comparisons.len()];
+        let comparisons = vec![[0; 2]; study.comparisons.len()];
         let mut showings = Self { group_ids, sides: BTreeMap::new(), asked: BTreeMap::new(), comparisons };
         for form in forms {
-            for Trial { role, comparison, left, right, .. } in &form.trials {
+            for Trial { role, comparison, left, .. } in &form.trials {
                 let (Role::Comparison, Some(comparison)) = (role, *comparison) else { continue };
-                let (a, b) = (left.method.min(right.method), left.method.max(right.method));
-                let contrast = (study.comparisons[comparison].group, a, b);
-                showings.sides.entry(contrast).or_default()[usize::from(left.method != a)] += 1;
+                let contrast = contrast_of(&study.comparisons[comparison]);
+                showings.sides.entry(contrast).or_default()[usize::from(left.method != contrast.1)] += 1;
                 showings.asked.entry(contrast).or_default().insert(form.participant);
-                showings.comparisons[comparison] += 1;
+                let swapped = *left != study.comparisons[comparison].left;
+                showings.comparisons[comparison][usize::from(swapped)] += 1;
             }
         }
         showings
@@ -198,15 +224,31 @@ impl Showings {
         format!("{a} against {b} in group {}", self.group_ids[*group])
     }
 
-    fn sides(&self) -> Vec<Fault> {
+    /// Sides over a contrast's questions together, and within each: single questions and objects are tested too. One fault a
+    /// contrast, the graver. A multiple of `even` participants makes sides even, if the forms balance them at all.
+    fn sides(&self, study: &Study, even: Option<usize>) -> Vec<Fault> {
         let mut faults = Vec::new();
-        for (contrast, &[left, right]) in &self.sides {
-            let rule = match (left.min(right), left.abs_diff(right)) {
-                (0, 1) | (_, 0 | 1) => continue,
-                (0, _) => Rule::SideConfounded,
-                _ => Rule::SidesUnbalanced,
+        for (contrast, &counts) in &self.sides {
+            let of = self.comparisons.iter().zip(&study.comparisons);
+            let own = of.filter(|(_, comparison)| contrast_of(comparison) == *contrast);
+            let questions: Vec<(&str, Option<Rule>)> =
+                own.map(|(&counts, comparison)| (comparison.question.as_str(), side_rule(counts))).collect();
+            let Some(rule) = questions.iter().filter_map(|(_, rule)| *rule).chain(side_rule(counts)).min()
+            else {
+                continue;
             };
-            let evidence = format!("{} on the left {left} times, on the right {right} times", contrast.1);
+            let [left, right] = counts;
+            let mut evidence = format!("{} on the left {left} times, on the right {right} times", contrast.1);
+            let found: Vec<&str> =
+                questions.iter().filter(|(_, of)| *of == Some(rule)).map(|(q, _)| *q).collect();
+            if side_rule(counts) != Some(rule) {
+                let how =
+                    if rule == Rule::SideConfounded { "always the same side" } else { "one side more often" };
+                evidence += &format!("; {how} in {}", found.join(" "));
+            }
+            if let Some(even) = even {
+                evidence += &format!("; a multiple of {even} participants makes them even");
+            }
             faults.push(Fault { rule, place: self.name(contrast), evidence });
         }
         faults.sort_by_key(|fault| fault.rule);
@@ -226,7 +268,7 @@ impl Showings {
             }
         };
         let by_question = study.comparisons.iter().map(|c| c.question.clone());
-        let counts = by_question.zip(self.comparisons.iter().copied()).collect();
+        let counts = by_question.zip(self.comparisons.iter().map(|[a, b]| a + b)).collect();
         judge("comparisons".into(), "question", &counts, 1);
         for group in &study.groups {
             // By design, not by showing: showings of single comparisons are judged above.
@@ -272,6 +314,18 @@ impl Showings {
             }
         }
         faults
+    }
+
+    /// One fault a pair of methods.
+    fn untestable(&self, study: &Study) -> Vec<Fault> {
+        let both = |(_, a, b): &&Contrast| a.arrangement != b.arrangement && a.clustering != b.clustering;
+        let fault = |contrast: &Contrast| {
+            let own = study.comparisons.iter().filter(|comparison| contrast_of(comparison) == *contrast);
+            let questions: Vec<&str> = own.map(|comparison| comparison.question.as_str()).collect();
+            let evidence = format!("in no contrast: {}", questions.join(" "));
+            Fault { rule: Rule::UntestableComparison, place: self.name(contrast), evidence }
+        };
+        self.sides.keys().filter(both).map(fault).collect()
     }
 
     /// All agreeing, one of the 2^m sign patterns and its opposite are as extreme: p = 2^(1-m). Holm multiplies the smallest

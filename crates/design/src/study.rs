@@ -491,6 +491,9 @@ fn check_forms(
     configurations: &[Configuration],
 ) -> Result<(), ConfigError> {
     let Some(forms) = &file.forms else { return Ok(()) };
+    if file.comparisons.is_empty() {
+        return c.refuse("comparisons", "[]", "[forms] needs something to ask: must list at least one");
+    }
     let comparisons = u32::try_from(file.comparisons.len()).unwrap_or(u32::MAX);
     c.count("forms.participants", forms.participants, 1, 100_000)?;
     c.count("forms.controls", forms.controls, 0, configurations.len() as u32)?;
@@ -654,6 +657,22 @@ pub(crate) mod tests {
         let placement = |to| paper_with(key, to).unwrap().file.extraction.placement;
         assert_eq!(placement(""), crate::config::Placement::MeanOfCrossings);
         assert_eq!(placement("placement = \"relaxed\""), crate::config::Placement::Relaxed);
+    }
+
+    #[test]
+    fn forms_need_something_to_ask() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/two-methods.toml");
+        let text = std::fs::read_to_string(&path).unwrap();
+        let (before, rest) = text.split_once("comparisons = [").unwrap();
+        let (_, after) = rest.split_once("\n]\n").unwrap();
+        let text = format!("{before}comparisons = []\n{after}");
+        let error = Study::parse(&text, &path).map(|_| ()).unwrap_err().to_string();
+        assert!(
+            error.contains("two-methods.toml: comparisons = []: [forms] needs something to ask"),
+            "{error}"
+        );
+        let (asks_nobody, _) = text.split_once("[forms]").unwrap();
+        assert!(Study::parse(asks_nobody, &path).is_ok());
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! Forms as a file for whoever puts them to people, and the key for whoever reads the answers.
 
 use super::{Form, Questionnaire, Role};
+use crate::method::ConfigurationId;
 use crate::study::Study;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// What a page, a printed sheet or an online form needs: `forms.json`.
 ///
@@ -71,11 +73,11 @@ pub struct KeyEntry {
 impl Questionnaire<'_> {
     /// The planned forms, for participants.
     pub fn file(&self) -> FormFile {
-        let code = self.codes();
+        let codes = self.codes();
         let entry = |form: &Form| {
             let of = |training: bool| {
                 let own = form.trials.iter().filter(|trial| (trial.role == Role::Training) == training);
-                own.map(|trial| code(&trial.left.to_string(), &trial.right.to_string())).collect()
+                own.map(|trial| codes[&trial.left][&trial.right].clone()).collect()
             };
             FormEntry { form: form.participant + 1, training: of(true), questions: of(false) }
         };
@@ -95,37 +97,36 @@ impl Questionnaire<'_> {
 
     /// What each place of each planned form shows.
     pub fn key(&self) -> Vec<KeyEntry> {
-        let code = self.codes();
+        let codes = self.codes();
         let mut key = Vec::new();
         for form in self.planned() {
             for (place, trial) in form.trials.iter().enumerate() {
                 let comparison = trial.comparison.map(|i| &self.study.comparisons[i]);
                 let objects = &self.study.file.objects;
                 let object = objects.iter().find(|object| object.id == trial.left.object);
-                let (left, right) = (trial.left.to_string(), trial.right.to_string());
                 key.push(KeyEntry {
                     form: form.participant + 1,
                     order: place + 1,
-                    stimulus: code(&left, &right),
+                    stimulus: codes[&trial.left][&trial.right].clone(),
                     role: trial.role,
                     question: trial.question.clone(),
                     object: object.map_or_else(String::new, |object| object.name.clone()),
                     group: comparison.map_or_else(String::new, |c| self.study.groups[c.group].id.clone()),
-                    left,
-                    right,
+                    left: trial.left.to_string(),
+                    right: trial.right.to_string(),
                 });
             }
         }
         key
     }
 
-    /// The code name of a pair that is shown.
-    fn codes(&self) -> impl Fn(&str, &str) -> String + use<> {
-        let stimuli = self.study.stimuli();
-        move |left, right| {
-            let shown = stimuli.iter().find(|s| s.left.to_string() == left && s.right.to_string() == right);
-            shown.expect("a study's stimuli are all that its forms show").code.clone()
+    /// Code names by what is on the left, then on the right. A study's stimuli are all that its forms show.
+    fn codes(&self) -> BTreeMap<ConfigurationId, BTreeMap<ConfigurationId, String>> {
+        let mut codes: BTreeMap<_, BTreeMap<_, _>> = BTreeMap::new();
+        for Stimulus { code, left, right } in self.study.stimuli() {
+            codes.entry(left).or_default().insert(right, code);
         }
+        codes
     }
 }
 
@@ -144,16 +145,15 @@ pub struct Stimulus {
     /// Its code name.
     pub code: String,
     /// On the left.
-    pub left: crate::ConfigurationId,
+    pub left: ConfigurationId,
     /// On the right.
-    pub right: crate::ConfigurationId,
+    pub right: ConfigurationId,
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::study::tests::load;
-    use std::collections::BTreeMap;
 
     #[test]
     fn the_file_tells_nothing_and_the_key_everything() {

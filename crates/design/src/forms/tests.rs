@@ -41,6 +41,27 @@ fn even(counts: impl IntoIterator<Item = i64>) -> bool {
     counts.iter().max().zip(counts.iter().min()).is_none_or(|(most, least)| most - least <= 1)
 }
 
+/// Every choice of `count` of `all`.
+fn choices(all: &[usize], count: usize) -> Box<dyn Iterator<Item = Vec<usize>> + '_> {
+    if count == 0 {
+        return Box::new(std::iter::once(Vec::new()));
+    }
+    Box::new((0..all.len()).flat_map(move |i| {
+        choices(&all[i + 1..], count - 1).map(move |mut rest| {
+            rest.push(all[i]);
+            rest
+        })
+    }))
+}
+
+/// Sum over configurations of the square of how often they appear.
+fn uneven(study: &Study, comparisons: &[usize]) -> usize {
+    let shown: Vec<&ConfigurationId> =
+        comparisons.iter().flat_map(|&i| [&study.comparisons[i].left, &study.comparisons[i].right]).collect();
+    // Pairs of equal ones, in either order, each with itself included.
+    shown.iter().map(|a| shown.iter().filter(|b| a == *b).count()).sum()
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
@@ -82,6 +103,9 @@ proptest! {
             }
         }
         prop_assert!(lead.values().all(|lead| lead.abs() <= 1), "{lead:?}");
+        if (participants as usize).is_multiple_of(2 * questionnaire.blocks()) {
+            prop_assert!(lead.values().all(|&lead| lead == 0), "{lead:?}");
+        }
         prop_assert!(places.values().all(|counts| even(counts.iter().copied())), "{places:?}");
         prop_assert!(even(shown.values().copied()), "{shown:?}");
         prop_assert!(even(sizes.iter().map(|&size| size as i64)), "{sizes:?}");
@@ -93,6 +117,15 @@ proptest! {
             prop_assert!(of(Role::Control).all(|trial| trial.left == trial.right));
             let different: BTreeSet<_> = form.trials.iter().map(|trial| (trial.role, &trial.left, &trial.right)).collect();
             prop_assert_eq!(different.len(), form.trials.len(), "nothing twice");
+            let mut of_controls: BTreeMap<Method, i64> = study.methods().into_iter().map(|m| (m, 0)).collect();
+            of(Role::Control).for_each(|trial| *of_controls.entry(trial.left.method).or_default() += 1);
+            prop_assert!(even(of_controls.values().copied()), "{of_controls:?}");
+            if questionnaire.blocks() == 1 {
+                let repeated: Vec<usize> = of(Role::Repeat).filter_map(|trial| trial.comparison).collect();
+                let all: Vec<usize> = (0..study.comparisons.len()).collect();
+                let least = choices(&all, repeats as usize).map(|chosen| uneven(&study, &chosen)).min();
+                prop_assert_eq!(Some(uneven(&study, &repeated)), least);
+            }
 
             let mut method_lead: BTreeMap<Method, i64> = BTreeMap::new();
             let mut pair_lead: BTreeMap<(Method, Method), i64> = BTreeMap::new();
@@ -115,6 +148,31 @@ proptest! {
                 prop_assert_eq!((&original.left, &original.right), (&repeat.right, &repeat.left));
             }
         }
+    }
+}
+
+#[test]
+fn repeats_are_half_a_form_away_in_shuffled_order_too() {
+    for (max_questions, repeats) in [(32, 3), (50, 20), (14, 3), (8, 3)] {
+        let section = FormsSection { order: OrderRule::Shuffled, ..balanced(36, 2, repeats, max_questions) };
+        let study = study(|_| true, section);
+        let forms = Questionnaire::of(&study).unwrap().planned();
+        let mut orders = BTreeSet::new();
+        let mut first = BTreeSet::new();
+        for form in &forms {
+            let asked: Vec<&str> = form.trials.iter().map(|trial| trial.question.as_str()).collect();
+            let place = |question: &str| asked.iter().position(|of| *of == question).unwrap();
+            let again: Vec<&str> = asked.iter().filter_map(|question| question.strip_suffix("-r")).collect();
+            assert_eq!(again.len(), repeats as usize);
+            for question in again {
+                let apart = place(question).abs_diff(place(&format!("{question}-r")));
+                assert!(apart >= asked.len() / 2, "{apart} of {}", asked.len());
+            }
+            first.insert(asked[0].to_owned());
+            orders.insert(asked.join(" "));
+        }
+        assert_eq!(orders.len(), 36, "everybody has an order of their own");
+        assert!(first.len() > 10, "and any question first: {first:?}");
     }
 }
 
@@ -187,4 +245,39 @@ fn the_original_shows_everybody_the_same_sides_in_an_order_of_their_own() {
     let orders: BTreeSet<Vec<usize>> =
         forms.iter().map(|form| form.trials.iter().map(|t| t.comparison.unwrap()).collect()).collect();
     assert_eq!(orders.len(), 18);
+}
+
+/// Three repeats have six ends, and the study six methods. Two and three blocks hold other contrasts each.
+#[test]
+fn repeats_favour_no_method_no_contrast_and_no_object() {
+    for seed in 0..20 {
+        for max_questions in [15, 20, 33] {
+            let mut study = study(|_| true, balanced(6, 3, 3, max_questions));
+            study.file.study.seed = seed;
+            let questionnaire = Questionnaire::of(&study).unwrap();
+            let (mut methods, mut objects, mut contrasts) =
+                (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
+            let mut configurations: BTreeMap<&ConfigurationId, i64> = BTreeMap::new();
+            for trial in questionnaire.blocks.iter().flat_map(|block| &block.repeats) {
+                for end in [&trial.left, &trial.right] {
+                    *methods.entry(end.method).or_insert(0) += 1;
+                    *configurations.entry(end).or_insert(0) += 1;
+                }
+                *objects.entry(&trial.left.object).or_insert(0) += 1;
+                let ends = (trial.left.method, trial.right.method);
+                *contrasts.entry((ends.0.min(ends.1), ends.0.max(ends.1))).or_insert(0) += 1;
+            }
+            let blocks = questionnaire.blocks();
+            assert!(configurations.values().all(|&n| n <= blocks.min(2) as i64), "{seed} {configurations:?}");
+            assert!(contrasts.len() >= 3 * blocks - usize::from(blocks > 1), "{seed} {contrasts:?}");
+            if blocks == 1 {
+                assert!(methods.len() == 6 && methods.into_values().all(|n| n == 1), "{seed}");
+                assert!(objects.len() == 3 && objects.into_values().all(|n| n == 1), "{seed}");
+            }
+            let controls = &questionnaire.blocks[0].controls;
+            let of_controls: BTreeSet<_> = controls.iter().map(|trial| trial.left.method).collect();
+            let on: BTreeSet<_> = controls.iter().map(|trial| &trial.left.object).collect();
+            assert_eq!((of_controls.len(), on.len()), (3, 3), "{seed}");
+        }
+    }
 }
