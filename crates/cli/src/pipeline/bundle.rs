@@ -9,10 +9,24 @@ use anyhow::Result;
 use design::ConfigurationId;
 use design::forms::{FormFile, Questionnaire, Stimulus};
 use design::record::Purpose;
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
 use raster::tiny_skia::Pixmap;
+use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 
 const BUNDLE: &str = "bundle";
+
+/// So that the largest file, too, ends like the others.
+const LEAST_PADDING: usize = 64;
+
+/// Noise after the end of the file, where no reader of GIFs looks: unlike zeros it neither shows nor can be compressed.
+fn pad(bytes: &mut Vec<u8>, size: usize, seed: u64, name: &str) {
+    let digest: [u8; 32] = Sha256::digest(format!("padding {seed} {name}")).into();
+    let from = bytes.len();
+    bytes.resize(size, 0);
+    Pcg64::from_seed(digest).fill_bytes(&mut bytes[from..]);
+}
 
 /// Tells one version of a study's forms from another: 16 hexadecimal digits.
 ///
@@ -42,10 +56,11 @@ impl Pipeline<'_> {
     }
 
     /// The folder for participants: the page, the forms and every pair, and nothing that tells what a pair shows. All animations are
-    /// made the same size, with zeros after the end of the file, since a smoother surface compresses better.
+    /// made the same size, since a smoother surface compresses better.
     pub(crate) fn bundle(&self, forms: &Stamp, pairs: &[Stamp]) -> Result<Stamp> {
         let step = Step::begin("bundle", 1, pairs.len());
-        let mut inputs = Inputs::of_rooms(rooms::BUNDLES).stamp(forms);
+        let seed = self.study.file.study.seed;
+        let mut inputs = Inputs::of_rooms(rooms::BUNDLES).value("seed", &seed).stamp(forms);
         for stamp in pairs {
             inputs = inputs.stamp(stamp);
         }
@@ -54,10 +69,10 @@ impl Pipeline<'_> {
             let mut files: Vec<_> = pairs.iter().flat_map(|stamp| &stamp.files).collect();
             // In the order of names, so that times of modification tell nothing either.
             files.sort_by(|a, b| a.path.cmp(&b.path));
-            let size = files.iter().map(|file| file.bytes).max().unwrap_or(0) as usize;
+            let size = files.iter().map(|file| file.bytes).max().unwrap_or(0) as usize + LEAST_PADDING;
             for file in files {
                 let mut bytes = std::fs::read(root.join(&file.path))?;
-                bytes.resize(size, 0);
+                pad(&mut bytes, size, seed, &file.path);
                 let name = file.path.rsplit('/').next().unwrap_or(&file.path);
                 writer.write(&format!("{BUNDLE}/stimuli/{name}"), &bytes)?;
                 step.tick(1);
