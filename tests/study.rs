@@ -557,6 +557,40 @@ fn videos_are_ffmpegs_and_said_to_be_missing_where_it_is() {
     }
 }
 
+/// What ffmpeg made, each of another length, is in the bundle: of one length, as old as its name says.
+#[cfg(unix)]
+#[test]
+fn a_bundles_videos_tell_nothing_either() {
+    let fixture = balanced();
+    let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncksum > \"$last\"\n\
+        head -c $(($$ % 50)) /dev/zero >> \"$last\"\n";
+    let program = fixture.folder().join("ffmpeg");
+    std::fs::write(&program, script).unwrap();
+    make_executable(&program);
+    let path = format!("{}:{}", fixture.folder().display(), std::env::var("PATH").unwrap());
+    let output = fixture.command("bundle").arg("--mp4").env("PATH", path).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let made = files(&fixture.out().join("stimuli/pairs"));
+    let own: BTreeMap<&String, &Vec<u8>> = made.iter().filter(|(name, _)| name.ends_with(".mp4")).collect();
+    assert!(own.len() == 56 && own.values().map(|video| video.len()).collect::<BTreeSet<_>>().len() > 1);
+    let folder = fixture.out().join("bundle/stimuli");
+    let given = files(&folder);
+    let length = given[own.keys().next().unwrap().as_str()].len();
+    for (name, video) in own {
+        let padded = &given[name];
+        assert!(padded.len() == length && padded.starts_with(video), "{name}");
+        let free = &padded[video.len()..];
+        assert_eq!(free[..4], (free.len() as u32).to_be_bytes(), "{name}");
+        assert!(free[4..8] == *b"free" && free[8..].iter().any(|byte| *byte != 0), "{name}");
+    }
+    let mut by_age: Vec<&String> = given.keys().collect();
+    by_age.sort_by_key(|name| std::fs::metadata(folder.join(name)).unwrap().modified().unwrap());
+    assert!(by_age.is_sorted());
+    // Not asked for, they go.
+    fixture.succeed("bundle", &[]);
+    assert!(files(&folder).keys().all(|name| name.ends_with(".gif")));
+}
+
 #[cfg(unix)]
 fn make_executable(path: &Path) {
     use std::os::unix::fs::PermissionsExt;

@@ -23,7 +23,7 @@ pub(crate) enum Command {
     /// Compose the side-by-side pairs and write the key
     Pairs(Pairs),
     /// Put together what participants get (forms and pairs, no key), and the researcher's contact sheet
-    Bundle(Run),
+    Bundle(Bundle),
     /// Put the questionnaire on the web, and keep the answers
     Serve(Serve),
     /// Join what participants downloaded from the page into one file of answers
@@ -69,6 +69,15 @@ pub(crate) struct Check {
     /// Print the faults as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Bundle {
+    #[command(flatten)]
+    pub(crate) run: Run,
+    /// Put each pair in as H.264 video as well, by the ffmpeg on the PATH
+    #[arg(long)]
+    pub(crate) mp4: bool,
 }
 
 #[derive(Debug, Args)]

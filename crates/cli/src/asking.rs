@@ -40,7 +40,7 @@ pub(crate) fn serve(arguments: &Serve) -> Result<()> {
         let turntables = pipeline.turntables(&meshes, &[])?;
         let pairs = pipeline.pairs(&turntables)?;
         pipeline.contact_sheet(&meshes)?;
-        pipeline.bundle(&forms, &pairs).map(drop)
+        pipeline.bundle(&forms, &pairs, &[]).map(drop)
     })?;
     let out = arguments.run.out.clone().unwrap_or_else(|| default_folder(&study));
     let admin_token = match &arguments.admin_token {

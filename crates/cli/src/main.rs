@@ -77,15 +77,21 @@ fn run(command: Command) -> Result<Outcome> {
                 say(&out.join("stimuli/pairs").display().to_string())
             })
         }
-        Command::Bundle(run) => with_pipeline(&run, |pipeline, out| {
-            let forms = pipeline.forms()?.context(NO_FORMS)?;
-            let meshes = pipeline.stimulus_meshes(&[])?;
-            let turntables = pipeline.turntables(&meshes, &[])?;
-            let pairs = pipeline.pairs(&turntables)?;
-            pipeline.contact_sheet(&meshes)?;
-            pipeline.bundle(&forms, &pairs)?;
-            say(&out.join("bundle").display().to_string())
-        }),
+        Command::Bundle(arguments) => {
+            if arguments.mp4 {
+                video::check()?;
+            }
+            with_pipeline(&arguments.run, |pipeline, out| {
+                let forms = pipeline.forms()?.context(NO_FORMS)?;
+                let meshes = pipeline.stimulus_meshes(&[])?;
+                let turntables = pipeline.turntables(&meshes, &[])?;
+                let pairs = pipeline.pairs(&turntables)?;
+                let videos = if arguments.mp4 { pipeline.videos(&pairs)? } else { Vec::new() };
+                pipeline.contact_sheet(&meshes)?;
+                pipeline.bundle(&forms, &pairs, &videos)?;
+                say(&out.join("bundle").display().to_string())
+            })
+        }
         Command::Serve(arguments) => asking::serve(&arguments),
         Command::Collect(arguments) => asking::collect(&arguments),
         Command::Deidentify(arguments) => asking::deidentify(&arguments),

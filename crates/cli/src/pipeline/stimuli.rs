@@ -124,7 +124,7 @@ impl Pipeline<'_> {
         Animation::read_gif(bytes.as_slice()).with_context(|| file.to_owned())
     }
 
-    /// The key is kept apart from the stimuli, so that a folder of stimuli can be given away.
+    /// The key is kept apart from the stimuli. Sizes and times of the stimuli still tell; those of the bundle do not.
     fn key(&self) -> Result<Stamp> {
         let (turntables, _) = self.study.code_names();
         let mut key = String::from("file,question,left,right\n");
