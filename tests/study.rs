@@ -424,6 +424,52 @@ fn a_design_is_judged_before_anyone_answers() {
     assert!(code == Some(2) && said.contains("no [forms] section"), "{said}");
 }
 
+/// What participants are given is judged, and the camera that each side was really made with.
+#[test]
+fn finished_files_are_judged() {
+    let fixture = balanced();
+    fixture.succeed("bundle", &[]);
+    let faults = || -> Vec<(String, String, String)> {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"))
+            .args(["design", "check", "--json", "--results"])
+            .args([fixture.out(), &fixture.config()])
+            .output()
+            .unwrap();
+        let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let text = |fault: &serde_json::Value, key: &str| fault[key].as_str().unwrap().to_owned();
+        let all = found.as_array().unwrap().iter();
+        all.map(|f| (text(f, "rule"), text(f, "place"), text(f, "evidence"))).collect()
+    };
+    assert_eq!(faults(), []);
+    for folder in ["stimuli/pairs", "bundle/stimuli"] {
+        let folder = fixture.out().join(folder);
+        let file = folder.join(files(&folder).keys().next().unwrap());
+        let whole = std::fs::read(&file).unwrap();
+        let mut planted = whole.clone();
+        let end = gif_length(&whole) - 1;
+        planted.splice(end..end, *b"\x21\xfe\x05as_bi\x00");
+        planted.truncate(whole.len().max(end + 10));
+        std::fs::write(&file, planted).unwrap();
+        let found = faults();
+        assert!(found.len() == 1 && found[0].0 == "names-reveal", "{found:?}");
+        assert!(found[0].1 == file.display().to_string() && found[0].2.ends_with("names as_bi"), "{found:?}");
+        std::fs::write(&file, &whole).unwrap();
+        if folder.ends_with("bundle/stimuli") {
+            std::fs::write(&file, &whole[..whole.len() - 1]).unwrap();
+            let found = faults();
+            assert!(found.len() == 1 && found[0].2.contains(" bytes, "), "{found:?}");
+            std::fs::write(&file, &whole).unwrap();
+        }
+    }
+    fixture.edit("camera = { distance = 1.2,", "camera = { distance = 1.21,");
+    fixture.succeed("turntable", &["--only", "ss_bu"]);
+    let found = faults();
+    assert!(
+        !found.is_empty() && found.iter().all(|f| f.0 == "stimuli-differ" && f.2.starts_with("camera")),
+        "{found:?}"
+    );
+}
+
 #[test]
 fn the_smallest_study_is_sound_and_says_its_power() {
     let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/two-methods.toml");
@@ -554,6 +600,36 @@ fn videos_are_ffmpegs_and_said_to_be_missing_where_it_is() {
         let sent = 2 * number("width") * number("height") * 3 * number("frames");
         let read = |video: &Vec<u8>| String::from_utf8_lossy(video).trim().parse::<u64>().unwrap();
         assert!(videos.iter().all(|video| read(video) == sent), "{sent}");
+    }
+}
+
+/// A pair that is enlarged already is not enlarged again, and no player has to guess its colours.
+#[cfg(unix)]
+#[test]
+fn a_video_has_twice_the_size_of_its_turntables_and_says_its_colours() {
+    for (scale, filter) in [(1, "scale=iw*2:ih*2:"), (2, "scale=iw*1:ih*1:")] {
+        let fixture = Fixture::new();
+        fixture.edit("pair_scale = 1", &format!("pair_scale = {scale}"));
+        let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncat > /dev/null\necho \"$@\" > \"$last\"\n";
+        let program = fixture.folder().join("ffmpeg");
+        std::fs::write(&program, script).unwrap();
+        make_executable(&program);
+        let path = format!("{}:{}", fixture.folder().display(), std::env::var("PATH").unwrap());
+        let output = fixture.command("pairs").arg("--mp4").env("PATH", path).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let made = files(fixture.out());
+        let asked = made.iter().find(|(path, _)| path.ends_with(".mp4")).unwrap().1;
+        let asked = String::from_utf8_lossy(asked);
+        for part in [
+            filter,
+            "out_color_matrix=bt709",
+            "-colorspace bt709",
+            "-color_primaries bt709",
+            "-color_trc bt709",
+            "-color_range tv",
+        ] {
+            assert!(asked.contains(part), "{part} is not in {asked}");
+        }
     }
 }
 
