@@ -470,6 +470,48 @@ fn finished_files_are_judged() {
     );
 }
 
+/// Faults are said and nothing is bundled, unless they are accepted; a study without forms is named.
+#[test]
+fn a_faulty_design_is_not_bundled() {
+    let fixture = balanced();
+    fixture.edit("sides = \"balanced\"", "sides = \"as-listed\"");
+    for verb in ["bundle", "serve"] {
+        let Run { code, stderr, .. } = fixture.run(verb, &[]);
+        assert!(
+            code == Some(1) && stderr.contains("side-confounded") && stderr.contains("--with-faults"),
+            "{stderr}"
+        );
+        assert!(!fixture.out().exists(), "{verb}");
+    }
+    let said = fixture.succeed("bundle", &["--with-faults"]).stderr;
+    assert!(said.contains("side-confounded") && fixture.out().join("bundle/forms.json").is_file(), "{said}");
+
+    let quick = Fixture::new();
+    let Run { code, stderr, .. } = quick.run("bundle", &[]);
+    assert!(code == Some(2) && stderr.contains("study.toml: no [forms] section"), "{stderr}");
+}
+
+/// Turntables that are wider than high are so in the contact sheet.
+#[test]
+fn the_contact_sheet_keeps_proportions() {
+    let height = |edit: bool| {
+        let fixture = balanced();
+        if edit {
+            fixture.edit_with(|text| {
+                let line = text.lines().find(|line| line.starts_with("height = ")).unwrap();
+                let half = line["height = ".len()..].parse::<u32>().unwrap() / 2;
+                text.replacen(line, &format!("height = {half}"), 1)
+            });
+        }
+        fixture.succeed("bundle", &[]);
+        let png = std::fs::read(fixture.out().join("key/contact_sheet.png")).unwrap();
+        // The header's height, after the signature, the chunk's own header and the width.
+        u32::from_be_bytes(png[20..24].try_into().unwrap())
+    };
+    let (square, flat) = (height(false), height(true));
+    assert!((square - flat) % 64 == 0 && square - flat >= 5 * 64, "{square} and {flat}");
+}
+
 #[test]
 fn the_smallest_study_is_sound_and_says_its_power() {
     let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/two-methods.toml");

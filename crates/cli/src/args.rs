@@ -78,6 +78,9 @@ pub(crate) struct Bundle {
     /// Put each pair in as H.264 video as well, by the ffmpeg on the PATH
     #[arg(long)]
     pub(crate) mp4: bool,
+    /// Go on where `design check` finds faults
+    #[arg(long)]
+    pub(crate) with_faults: bool,
 }
 
 #[derive(Debug, Args)]
@@ -87,6 +90,9 @@ pub(crate) struct Serve {
     /// Folder of the answers, which are never among the results [default: answers/<study id>]
     #[arg(long, value_name = "DIR")]
     pub(crate) answers: Option<PathBuf>,
+    /// Go on where `design check` finds faults
+    #[arg(long)]
+    pub(crate) with_faults: bool,
     /// Address to listen on; 0.0.0.0 lets others in
     #[arg(long, value_name = "IP", default_value = "127.0.0.1")]
     pub(crate) address: std::net::IpAddr,

@@ -53,24 +53,45 @@ pub(crate) fn check(arguments: &Check) -> Result<Outcome> {
         let entries = faults.iter().map(entry).collect::<Result<Vec<_>, _>>()?;
         say(&serde_json::to_string_pretty(&entries)?)?;
     } else {
-        say_faults(&study, &faults)?;
+        say(&faults_text(&study, &faults))?;
     }
     Ok(if faults.is_empty() { Outcome::Sound } else { Outcome::CheckFailed })
 }
 
-fn say_faults(study: &Study, faults: &[Fault]) -> Result<()> {
-    let file = study.path.display();
+/// Whether a study's participants may be given what was asked for: faults of its forms, or of the animations in `results`
+/// where that is given, are printed and forbid it unless they are `allowed`.
+///
+/// # Errors
+/// If an animation cannot be read.
+pub(crate) fn fit_to_show(study: &Study, results: Option<&Path>, allowed: bool) -> Result<bool> {
+    let faults = match results {
+        None => lint(study),
+        Some(results) => stimulus_faults(study, results)?.unwrap_or_default(),
+    };
+    if faults.is_empty() {
+        return Ok(true);
+    }
+    eprintln!("{}", faults_text(study, &faults));
+    if !allowed {
+        eprintln!("nothing is bundled: mend the faults, or go on with --with-faults");
+    }
+    Ok(allowed)
+}
+
+fn faults_text(study: &Study, faults: &[Fault]) -> String {
+    let mut text = String::new();
     for of_rule in faults.chunk_by(|a, b| a.rule == b.rule) {
         let rule = of_rule[0].rule;
-        say(&format!("{}: {}", rule.id(), rule.meaning()))?;
+        text += &format!("{}: {}\n", rule.id(), rule.meaning());
         for fault in of_rule {
-            say(&format!("  {}: {}", fault.place, fault.evidence))?;
+            text += &format!("  {}: {}\n", fault.place, fault.evidence);
         }
-        say(&format!("  remedy: {}\n", rule.remedy()))?;
+        text += &format!("  remedy: {}\n\n", rule.remedy());
     }
-    match faults.len() {
-        0 => say(&format!("{file}: no faults")),
-        count => say(&format!("{file}: {count} faults")),
+    let file = study.path.display();
+    text + &match faults.len() {
+        0 => format!("{file}: no faults"),
+        count => format!("{file}: {count} faults"),
     }
 }
 
@@ -143,7 +164,7 @@ fn forms_of(study: &Study) -> Result<&design::config::FormsSection> {
 ///
 /// # Errors
 /// If a file cannot be read.
-pub(crate) fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Vec<Fault>>> {
+fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Vec<Fault>>> {
     let (codes, _) = study.code_names();
     let path = |code: &String| results.join("stimuli/turntables").join(format!("{code}.gif"));
     let files: Vec<_> = codes.iter().map(path).collect();

@@ -125,7 +125,11 @@ impl Pipeline<'_> {
                 let shows = |c: &&design::Comparison| {
                     (&c.left, &c.right) == (&s.left, &s.right) || (&c.left, &c.right) == (&s.right, &s.left)
                 };
-                self.study.comparisons.iter().find(shows).map_or("control", |c| c.question.as_str())
+                self.study
+                    .comparisons
+                    .iter()
+                    .find(shows)
+                    .map_or(if s.left == s.right { "control" } else { "training" }, |c| c.question.as_str())
             };
             let pairs: Vec<(String, Pixmap)> = stimuli
                 .iter()
