@@ -58,7 +58,7 @@ pub(crate) fn mp4(animation: &Animation, scale: u32) -> Result<Vec<u8>> {
     // A file and not a pipe: the index of an MP4 is written when all else is known.
     let path = folder.path().join("pair.mp4");
     let size = format!("{}x{}", animation.width, animation.height);
-    let even = animation.width % 2 == 0 && animation.height % 2 == 0;
+    let even = animation.width.is_multiple_of(2) && animation.height.is_multiple_of(2);
     let enlarged = if scale > 1 && even { 1 } else { 2 };
     let filter =
         format!("scale=iw*{enlarged}:ih*{enlarged}:flags=neighbor:out_color_matrix=bt709:out_range=tv");
