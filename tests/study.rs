@@ -6,6 +6,7 @@ mod page;
 
 use fixture::{Fixture, Run, files, without_measured_times};
 use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write;
 use std::path::Path;
 use std::process::Stdio;
 use std::time::Duration;
@@ -413,14 +414,105 @@ fn a_design_is_judged_before_anyone_answers() {
         faults.as_array().unwrap().iter().map(|f| f["rule"].as_str().unwrap()).collect();
     assert_eq!(rules.into_iter().collect::<Vec<_>>(), ["names-reveal", "side-confounded", "stimuli-differ"]);
     let differing = faults.as_array().unwrap().iter().filter(|f| f["rule"] == "stimuli-differ");
-    assert!(
-        differing.clone().count() == 3
-            && differing.clone().all(|f| f["evidence"].as_str().unwrap().starts_with("duration"))
-    );
+    // Every pair that has the odd one on one side.
+    let odd = |line: &&str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        !cells[3].is_empty() && (cells[2] == "ss_bu") != (cells[3] == "ss_bu")
+    };
+    assert_eq!(differing.clone().count(), key.lines().skip(1).filter(odd).count());
+    assert!(differing.clone().all(|f| f["evidence"].as_str().unwrap().starts_with("duration")));
 
     let quick = Fixture::new();
     let (code, _, said) = check(quick.config().to_str().unwrap(), &[]);
     assert!(code == Some(2) && said.contains("no [forms] section"), "{said}");
+}
+
+/// What participants are given is judged, and the camera that each side was really made with.
+#[test]
+fn finished_files_are_judged() {
+    let fixture = balanced();
+    fixture.succeed("bundle", &[]);
+    let faults = || -> Vec<(String, String, String)> {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"))
+            .args(["design", "check", "--json", "--results"])
+            .args([fixture.out(), &fixture.config()])
+            .output()
+            .unwrap();
+        let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let text = |fault: &serde_json::Value, key: &str| fault[key].as_str().unwrap().to_owned();
+        let all = found.as_array().unwrap().iter();
+        all.map(|f| (text(f, "rule"), text(f, "place"), text(f, "evidence"))).collect()
+    };
+    assert_eq!(faults(), []);
+    for folder in ["stimuli/pairs", "bundle/stimuli"] {
+        let folder = fixture.out().join(folder);
+        let file = folder.join(files(&folder).keys().next().unwrap());
+        let whole = std::fs::read(&file).unwrap();
+        let mut planted = whole.clone();
+        let end = gif_length(&whole) - 1;
+        planted.splice(end..end, *b"\x21\xfe\x05as_bi\x00");
+        planted.truncate(whole.len().max(end + 10));
+        std::fs::write(&file, planted).unwrap();
+        let found = faults();
+        assert!(found.len() == 1 && found[0].0 == "names-reveal", "{found:?}");
+        assert!(found[0].1 == file.display().to_string() && found[0].2.ends_with("names as_bi"), "{found:?}");
+        std::fs::write(&file, &whole).unwrap();
+        if folder.ends_with("bundle/stimuli") {
+            std::fs::write(&file, &whole[..whole.len() - 1]).unwrap();
+            let found = faults();
+            assert!(found.len() == 1 && found[0].2.contains(" bytes, "), "{found:?}");
+            std::fs::write(&file, &whole).unwrap();
+        }
+    }
+    fixture.edit("camera = { distance = 1.2,", "camera = { distance = 1.21,");
+    fixture.succeed("turntable", &["--only", "ss_bu"]);
+    let found = faults();
+    assert!(
+        !found.is_empty() && found.iter().all(|f| f.0 == "stimuli-differ" && f.2.starts_with("camera")),
+        "{found:?}"
+    );
+}
+
+/// Faults are said and nothing is bundled, unless they are accepted; a study without forms is named.
+#[test]
+fn a_faulty_design_is_not_bundled() {
+    let fixture = balanced();
+    fixture.edit("sides = \"balanced\"", "sides = \"as-listed\"");
+    for verb in ["bundle", "serve"] {
+        let Run { code, stderr, .. } = fixture.run(verb, &[]);
+        assert!(
+            code == Some(1) && stderr.contains("side-confounded") && stderr.contains("--with-faults"),
+            "{stderr}"
+        );
+        assert!(!fixture.out().exists(), "{verb}");
+    }
+    let said = fixture.succeed("bundle", &["--with-faults"]).stderr;
+    assert!(said.contains("side-confounded") && fixture.out().join("bundle/forms.json").is_file(), "{said}");
+
+    let quick = Fixture::new();
+    let Run { code, stderr, .. } = quick.run("bundle", &[]);
+    assert!(code == Some(2) && stderr.contains("study.toml: no [forms] section"), "{stderr}");
+}
+
+/// Turntables that are wider than high are so in the contact sheet.
+#[test]
+fn the_contact_sheet_keeps_proportions() {
+    let height = |edit: bool| {
+        let fixture = balanced();
+        if edit {
+            fixture.edit_with(|text| {
+                let line = text.lines().find(|line| line.starts_with("height = ")).unwrap();
+                let half = line["height = ".len()..].parse::<u32>().unwrap() / 2;
+                text.replacen(line, &format!("height = {half}"), 1)
+            });
+        }
+        fixture.succeed("bundle", &[]);
+        let png = std::fs::read(fixture.out().join("key/contact_sheet.png")).unwrap();
+        // The header's height, after the signature, the chunk's own header and the width.
+        u32::from_be_bytes(png[20..24].try_into().unwrap())
+    };
+    let (square, flat) = (height(false), height(true));
+    assert!((square - flat) % 64 == 0 && square - flat >= 5 * 64, "{square} and {flat}");
 }
 
 #[test]
@@ -475,6 +567,23 @@ fn a_bundle_tells_nothing_of_the_key() {
     let file = |path: &str| std::fs::metadata(bundle.join(path)).unwrap();
     let sizes: BTreeSet<u64> = stimuli.iter().map(|path| file(path).len()).collect();
     assert_eq!(sizes.len(), 1, "a smoother surface makes a smaller file");
+    // Nor does trimming or packing a file bring its own size back: the pictures themselves can be packed by 0 to 3 %, the
+    // noise after them not at all.
+    let pad = |path: &&String| made[*path].len() - gif_length(&made[*path]);
+    assert!(stimuli.iter().map(pad).all(|pad| pad >= 64));
+    let trimmed = |path: &&String| made[*path].iter().rposition(|byte| *byte != 0).unwrap() + 1;
+    assert!(stimuli.iter().all(|path| trimmed(path) + 4 > made[*path].len()));
+    let packed = |path: &&String| {
+        let mut packer = flate2::write::DeflateEncoder::new(Vec::new(), flate2::Compression::default());
+        packer.write_all(&made[*path]).unwrap();
+        packer.finish().unwrap().len()
+    };
+    let packed: Vec<usize> = stimuli.iter().map(packed).collect();
+    let (least, most) = (*packed.iter().min().unwrap(), *packed.iter().max().unwrap());
+    let own = stimuli.iter().map(|path| gif_length(&made[*path]));
+    let (shortest, longest) = (own.clone().min().unwrap(), own.max().unwrap());
+    assert!(shortest * 10 < longest * 9, "{shortest} to {longest}: there is something to hide");
+    assert!(least * 100 > most * 97, "packed {least} to {most}");
     assert!(stimuli.is_sorted());
     stimuli.sort_by_key(|path| file(path).modified().unwrap());
     assert!(stimuli.is_sorted(), "files are as old as their names say");
@@ -539,6 +648,70 @@ fn videos_are_ffmpegs_and_said_to_be_missing_where_it_is() {
     }
 }
 
+/// A pair that is enlarged already is not enlarged again, and no player has to guess its colours.
+#[cfg(unix)]
+#[test]
+fn a_video_has_twice_the_size_of_its_turntables_and_says_its_colours() {
+    for (scale, filter) in [(1, "scale=iw*2:ih*2:"), (2, "scale=iw*1:ih*1:")] {
+        let fixture = Fixture::new();
+        fixture.edit("pair_scale = 1", &format!("pair_scale = {scale}"));
+        let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncat > /dev/null\necho \"$@\" > \"$last\"\n";
+        let program = fixture.folder().join("ffmpeg");
+        std::fs::write(&program, script).unwrap();
+        make_executable(&program);
+        let path = format!("{}:{}", fixture.folder().display(), std::env::var("PATH").unwrap());
+        let output = fixture.command("pairs").arg("--mp4").env("PATH", path).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let made = files(fixture.out());
+        let asked = made.iter().find(|(path, _)| path.ends_with(".mp4")).unwrap().1;
+        let asked = String::from_utf8_lossy(asked);
+        for part in [
+            filter,
+            "out_color_matrix=bt709",
+            "-colorspace bt709",
+            "-color_primaries bt709",
+            "-color_trc bt709",
+            "-color_range tv",
+        ] {
+            assert!(asked.contains(part), "{part} is not in {asked}");
+        }
+    }
+}
+
+/// What ffmpeg made, each of another length, is in the bundle: of one length, as old as its name says.
+#[cfg(unix)]
+#[test]
+fn a_bundles_videos_tell_nothing_either() {
+    let fixture = balanced();
+    let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncksum > \"$last\"\n\
+        head -c $(($$ % 50)) /dev/zero >> \"$last\"\n";
+    let program = fixture.folder().join("ffmpeg");
+    std::fs::write(&program, script).unwrap();
+    make_executable(&program);
+    let path = format!("{}:{}", fixture.folder().display(), std::env::var("PATH").unwrap());
+    let output = fixture.command("bundle").arg("--mp4").env("PATH", path).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let made = files(&fixture.out().join("stimuli/pairs"));
+    let own: BTreeMap<&String, &Vec<u8>> = made.iter().filter(|(name, _)| name.ends_with(".mp4")).collect();
+    assert!(own.len() == 56 && own.values().map(|video| video.len()).collect::<BTreeSet<_>>().len() > 1);
+    let folder = fixture.out().join("bundle/stimuli");
+    let given = files(&folder);
+    let length = given[own.keys().next().unwrap().as_str()].len();
+    for (name, video) in own {
+        let padded = &given[name];
+        assert!(padded.len() == length && padded.starts_with(video), "{name}");
+        let free = &padded[video.len()..];
+        assert_eq!(free[..4], (free.len() as u32).to_be_bytes(), "{name}");
+        assert!(free[4..8] == *b"free" && free[8..].iter().any(|byte| *byte != 0), "{name}");
+    }
+    let mut by_age: Vec<&String> = given.keys().collect();
+    by_age.sort_by_key(|name| std::fs::metadata(folder.join(name)).unwrap().modified().unwrap());
+    assert!(by_age.is_sorted());
+    // Not asked for, they go.
+    fixture.succeed("bundle", &[]);
+    assert!(files(&folder).keys().all(|name| name.ends_with(".gif")));
+}
+
 #[cfg(unix)]
 fn make_executable(path: &Path) {
     use std::os::unix::fs::PermissionsExt;
@@ -550,6 +723,15 @@ fn make_executable(_: &Path) {}
 
 /// The text extensions of a GIF: comments, plain texts, and the names of application extensions.
 fn extensions(gif: &[u8]) -> Vec<String> {
+    blocks(gif).0
+}
+
+/// Up to and with the trailer.
+fn gif_length(gif: &[u8]) -> usize {
+    blocks(gif).1
+}
+
+fn blocks(gif: &[u8]) -> (Vec<String>, usize) {
     const GRAPHIC_CONTROL: u8 = 0xf9;
     let table = |flags: u8| if flags & 0x80 == 0 { 0 } else { 3 << ((flags & 7) + 1) };
     let mut at = 13 + table(gif[10]);
@@ -564,7 +746,7 @@ fn extensions(gif: &[u8]) -> Vec<String> {
                 at += 10 + table(gif[at + 9]) + 1;
                 None
             }
-            0x3b => return found,
+            0x3b => return (found, at + 1),
             other => panic!("block {other:#x} at {at}"),
         };
         let mut first = String::new();

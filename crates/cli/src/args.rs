@@ -23,7 +23,7 @@ pub(crate) enum Command {
     /// Compose the side-by-side pairs and write the key
     Pairs(Pairs),
     /// Put together what participants get (forms and pairs, no key), and the researcher's contact sheet
-    Bundle(Run),
+    Bundle(Bundle),
     /// Put the questionnaire on the web, and keep the answers
     Serve(Serve),
     /// Join what participants downloaded from the page into one file of answers
@@ -72,12 +72,27 @@ pub(crate) struct Check {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct Bundle {
+    #[command(flatten)]
+    pub(crate) run: Run,
+    /// Put each pair in as H.264 video as well, by the ffmpeg on the PATH
+    #[arg(long)]
+    pub(crate) mp4: bool,
+    /// Go on where `design check` finds faults
+    #[arg(long)]
+    pub(crate) with_faults: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct Serve {
     #[command(flatten)]
     pub(crate) run: Run,
     /// Folder of the answers, which are never among the results [default: answers/<study id>]
     #[arg(long, value_name = "DIR")]
     pub(crate) answers: Option<PathBuf>,
+    /// Go on where `design check` finds faults
+    #[arg(long)]
+    pub(crate) with_faults: bool,
     /// Address to listen on; 0.0.0.0 lets others in
     #[arg(long, value_name = "IP", default_value = "127.0.0.1")]
     pub(crate) address: std::net::IpAddr,

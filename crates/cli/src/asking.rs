@@ -1,8 +1,9 @@
-//! `isostudy serve`, `collect` and `deidentify`: what a study's people are asked, and what they answered.
+//! `isostudy bundle`, `serve`, `collect` and `deidentify`: what a study's people are asked, and what they answered.
 
-use crate::args::{Collect, Deidentify, Serve};
+use crate::args::{Bundle, Collect, Deidentify, Run, Serve};
 use crate::pipeline::forms_digest;
-use crate::{NO_FORMS, default_folder, load, say, store, with_pipeline};
+use crate::questionnaire::fit_to_show;
+use crate::{Outcome, load, no_forms, say, store, video, with_pipeline};
 use anyhow::{Context, Result, bail};
 use design::Study;
 use design::forms::{FormFile, KeyEntry, Questionnaire};
@@ -15,8 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// A study's forms, their key, and their digest.
 fn forms(study: &Study) -> Result<(FormFile, Vec<KeyEntry>, String)> {
-    let questionnaire =
-        Questionnaire::of(study).with_context(|| format!("{}: {NO_FORMS}", study.path.display()))?;
+    let questionnaire = Questionnaire::of(study).with_context(|| no_forms(&study.path))?;
     let file = questionnaire.file();
     let digest = forms_digest(&file)?;
     Ok((file, questionnaire.key(), digest))
@@ -27,22 +27,55 @@ fn answers_folder(study: &Study, given: Option<&PathBuf>) -> PathBuf {
     given.cloned().unwrap_or_else(|| Path::new("answers").join(&study.file.study.id))
 }
 
-/// Makes the bundle and serves it until told to stop.
+/// Makes the bundle.
 ///
 /// # Errors
-/// If the bundle cannot be made, or the server cannot run.
-pub(crate) fn serve(arguments: &Serve) -> Result<()> {
-    let study = load(&arguments.run.study)?;
-    let (file, key, digest) = forms(&study)?;
-    with_pipeline(&arguments.run, |pipeline, _| {
-        let forms = pipeline.forms()?.context(NO_FORMS)?;
+/// If a file cannot be read or made.
+pub(crate) fn bundle(arguments: &Bundle) -> Result<Outcome> {
+    if arguments.mp4 {
+        video::check()?;
+    }
+    let made = make_bundle(&arguments.run, arguments.mp4, arguments.with_faults)?;
+    made.map_or(Ok(Outcome::CheckFailed), |out| {
+        say(&out.join("bundle").display().to_string()).map(|()| Outcome::Sound)
+    })
+}
+
+/// Returns the folder of results; `None` where faults forbid a bundle.
+fn make_bundle(run: &Run, mp4: bool, with_faults: bool) -> Result<Option<PathBuf>> {
+    let study = load(&run.study)?;
+    forms(&study)?;
+    if !fit_to_show(&study, None, with_faults)? {
+        return Ok(None);
+    }
+    let mut made = None;
+    with_pipeline(run, |pipeline, out| {
+        let forms = pipeline.forms()?.with_context(|| no_forms(&run.study))?;
         let meshes = pipeline.stimulus_meshes(&[])?;
         let turntables = pipeline.turntables(&meshes, &[])?;
         let pairs = pipeline.pairs(&turntables)?;
         pipeline.contact_sheet(&meshes)?;
-        pipeline.bundle(&forms, &pairs).map(drop)
+        if !fit_to_show(&study, Some(out), with_faults)? {
+            return Ok(());
+        }
+        let videos = if mp4 { pipeline.videos(&pairs)? } else { Vec::new() };
+        pipeline.bundle(&forms, &pairs, &videos)?;
+        made = Some(out.to_owned());
+        Ok(())
     })?;
-    let out = arguments.run.out.clone().unwrap_or_else(|| default_folder(&study));
+    Ok(made)
+}
+
+/// Makes the bundle and serves it until told to stop.
+///
+/// # Errors
+/// If the bundle cannot be made, or the server cannot run.
+pub(crate) fn serve(arguments: &Serve) -> Result<Outcome> {
+    let study = load(&arguments.run.study)?;
+    let (file, key, digest) = forms(&study)?;
+    let Some(out) = make_bundle(&arguments.run, false, arguments.with_faults)? else {
+        return Ok(Outcome::CheckFailed);
+    };
     let admin_token = match &arguments.admin_token {
         Some(token) if token.len() < 12 => bail!("--admin-token: at least 12 characters"),
         Some(token) => token.clone(),
@@ -68,7 +101,7 @@ pub(crate) fn serve(arguments: &Serve) -> Result<()> {
         eprintln!("answers         {}", answers.display());
         eprintln!("Ctrl-C stops it; nothing that was acknowledged is lost.");
     })?;
-    Ok(())
+    Ok(Outcome::Sound)
 }
 
 /// Joins the page's downloads with the key into one file that `analyse` reads.

@@ -28,7 +28,6 @@ use store::Store;
 
 /// The work was done, but something in it is not as it should be.
 const CHECK_FAILED: u8 = 1;
-const NO_FORMS: &str = "the study has no [forms] section, or no comparisons: configs/balanced.toml has both";
 /// Wrong usage or input; clap uses the same.
 const INPUT_ERROR: u8 = 2;
 
@@ -77,16 +76,8 @@ fn run(command: Command) -> Result<Outcome> {
                 say(&out.join("stimuli/pairs").display().to_string())
             })
         }
-        Command::Bundle(run) => with_pipeline(&run, |pipeline, out| {
-            let forms = pipeline.forms()?.context(NO_FORMS)?;
-            let meshes = pipeline.stimulus_meshes(&[])?;
-            let turntables = pipeline.turntables(&meshes, &[])?;
-            let pairs = pipeline.pairs(&turntables)?;
-            pipeline.contact_sheet(&meshes)?;
-            pipeline.bundle(&forms, &pairs)?;
-            say(&out.join("bundle").display().to_string())
-        }),
-        Command::Serve(arguments) => asking::serve(&arguments),
+        Command::Bundle(arguments) => return asking::bundle(&arguments),
+        Command::Serve(arguments) => return asking::serve(&arguments),
         Command::Collect(arguments) => asking::collect(&arguments),
         Command::Deidentify(arguments) => asking::deidentify(&arguments),
         Command::Bench(bench) => return time(&bench),
@@ -99,7 +90,7 @@ fn run(command: Command) -> Result<Outcome> {
         Command::Design(Design::Rules) => questionnaire::rules(),
         Command::Design(Design::Power(arguments)) => questionnaire::power(&arguments),
         Command::Design(Design::Forms(run)) => with_pipeline(&run, |pipeline, out| {
-            pipeline.forms()?.context(NO_FORMS)?;
+            pipeline.forms()?.with_context(|| no_forms(&run.study))?;
             say(&out.join("forms").display().to_string())
         }),
     }?;
@@ -283,6 +274,10 @@ fn load(path: &Path) -> Result<Study> {
         answers::announce(&reading.report);
     }
     Ok(study)
+}
+
+fn no_forms(study: &Path) -> String {
+    format!("{}: no [forms] section, or no comparisons; configs/balanced.toml has both", study.display())
 }
 
 fn default_folder(study: &Study) -> PathBuf {

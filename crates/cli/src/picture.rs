@@ -63,7 +63,7 @@ pub(crate) fn still_sheet(
     Ok(StillSheet { png, svg: svg(&panels) })
 }
 
-/// The first frame of a turntable, small and square.
+/// The first frame of a turntable, its longer side `side_px` long.
 ///
 /// # Errors
 /// If the rasteriser refuses mesh or camera.
@@ -73,7 +73,10 @@ pub(crate) fn thumbnail(
     shading: &Shading,
     side_px: u32,
 ) -> Result<Pixmap> {
-    let viewport = Viewport { width: side_px, height: side_px, ..turntable.viewport() };
+    let longer = f64::from(turntable.width.max(turntable.height));
+    let shrunk = |pixels: u32| (f64::from(pixels * side_px) / longer).round().max(1.0) as u32;
+    let (width, height) = (shrunk(turntable.width), shrunk(turntable.height));
+    let viewport = Viewport { width, height, ..turntable.viewport() };
     Ok(raster::render(mesh, &turntable.camera(0), viewport, shading, raster::Look::Smooth)?)
 }
 

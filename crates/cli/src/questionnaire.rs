@@ -2,17 +2,18 @@
 //! `analysis::power`.
 
 use crate::args::{Check, Power};
+use crate::pipeline::camera_file;
 use crate::progress::Step;
 use crate::{Outcome, default_folder, say, store};
 use analysis::power::{Assumptions, power as simulated};
 use anyhow::{Context, Result, ensure};
-use design::Study;
 use design::lint::{Fault, Rule, StimulusFacts, lint, lint_stimuli};
+use design::{Configuration, Study};
 use raster::Animation;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A fault as JSON.
 #[derive(Serialize)]
@@ -31,14 +32,15 @@ pub(crate) fn check(arguments: &Check) -> Result<Outcome> {
     forms_of(&study)?;
     let mut faults = lint(&study);
     let results = arguments.results.clone().unwrap_or_else(|| default_folder(&study));
-    match facts(&study, &results.join("stimuli/turntables"))? {
-        Some(pairs) => faults.extend(lint_stimuli(&study, &pairs)),
+    match stimulus_faults(&study, &results)? {
+        Some(found) => faults.extend(found),
         None => eprintln!(
             "no animations in {}: {} not judged; `isostudy pairs` makes them",
             results.display(),
             Rule::StimuliDiffer.id()
         ),
     }
+    faults.extend(bundle_faults(&study, &results.join("bundle/stimuli"))?);
     faults.sort_by_key(|fault| fault.rule);
     if arguments.json {
         let entry = |fault: &Fault| {
@@ -51,24 +53,45 @@ pub(crate) fn check(arguments: &Check) -> Result<Outcome> {
         let entries = faults.iter().map(entry).collect::<Result<Vec<_>, _>>()?;
         say(&serde_json::to_string_pretty(&entries)?)?;
     } else {
-        say_faults(&study, &faults)?;
+        say(&faults_text(&study, &faults))?;
     }
     Ok(if faults.is_empty() { Outcome::Sound } else { Outcome::CheckFailed })
 }
 
-fn say_faults(study: &Study, faults: &[Fault]) -> Result<()> {
-    let file = study.path.display();
+/// Whether a study's participants may be given what was asked for: faults of its forms, or of the animations in `results`
+/// where that is given, are printed and forbid it unless they are `allowed`.
+///
+/// # Errors
+/// If an animation cannot be read.
+pub(crate) fn fit_to_show(study: &Study, results: Option<&Path>, allowed: bool) -> Result<bool> {
+    let faults = match results {
+        None => lint(study),
+        Some(results) => stimulus_faults(study, results)?.unwrap_or_default(),
+    };
+    if faults.is_empty() {
+        return Ok(true);
+    }
+    eprintln!("{}", faults_text(study, &faults));
+    if !allowed {
+        eprintln!("nothing is bundled: mend the faults, or go on with --with-faults");
+    }
+    Ok(allowed)
+}
+
+fn faults_text(study: &Study, faults: &[Fault]) -> String {
+    let mut text = String::new();
     for of_rule in faults.chunk_by(|a, b| a.rule == b.rule) {
         let rule = of_rule[0].rule;
-        say(&format!("{}: {}", rule.id(), rule.meaning()))?;
+        text += &format!("{}: {}\n", rule.id(), rule.meaning());
         for fault in of_rule {
-            say(&format!("  {}: {}", fault.place, fault.evidence))?;
+            text += &format!("  {}: {}\n", fault.place, fault.evidence);
         }
-        say(&format!("  remedy: {}\n", rule.remedy()))?;
+        text += &format!("  remedy: {}\n\n", rule.remedy());
     }
-    match faults.len() {
-        0 => say(&format!("{file}: no faults")),
-        count => say(&format!("{file}: {count} faults")),
+    let file = study.path.display();
+    text + &match faults.len() {
+        0 => format!("{file}: no faults"),
+        count => format!("{file}: {count} faults"),
     }
 }
 
@@ -136,22 +159,99 @@ fn forms_of(study: &Study) -> Result<&design::config::FormsSection> {
     })
 }
 
-/// Both sides of every pair; `None` unless every turntable is there.
-fn facts(study: &Study, folder: &Path) -> Result<Option<Vec<(String, StimulusFacts, StimulusFacts)>>> {
+/// The faults of the animations in a folder of results: of both sides of every pair, and of the pairs where they have
+/// been made. `None` unless every turntable is there.
+///
+/// # Errors
+/// If a file cannot be read.
+fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Vec<Fault>>> {
     let (codes, _) = study.code_names();
-    let files: Vec<_> = codes.iter().map(|code| folder.join(format!("{code}.gif"))).collect();
+    let path = |code: &String| results.join("stimuli/turntables").join(format!("{code}.gif"));
+    let files: Vec<_> = codes.iter().map(path).collect();
     if !files.iter().all(|file| file.is_file()) {
         return Ok(None);
     }
-    let read = |path: &std::path::PathBuf| fact(path).with_context(|| path.display().to_string());
-    let facts: Vec<StimulusFacts> = files.par_iter().map(read).collect::<Result<_>>()?;
+    let read = |(file, configuration): (&PathBuf, &Configuration)| {
+        let camera = camera(&results.join(camera_file(&configuration.id)))?;
+        fact(file, camera).with_context(|| file.display().to_string())
+    };
+    let facts: Vec<StimulusFacts> =
+        files.par_iter().zip(&study.configurations).map(read).collect::<Result<_>>()?;
     let by_id: HashMap<_, _> = study.configurations.iter().map(|c| &c.id).zip(&facts).collect();
-    let pair =
-        |s: &design::forms::Stimulus| (s.code.clone(), by_id[&s.left].clone(), by_id[&s.right].clone());
-    Ok(Some(study.stimuli().iter().map(pair).collect()))
+    let mut pairs = Vec::new();
+    for stimulus in study.stimuli() {
+        let (left, right) = (by_id[&stimulus.left], by_id[&stimulus.right]);
+        pairs.push((stimulus.code.clone(), left.clone(), right.clone()));
+    }
+    let mut faults = lint_stimuli(study, &pairs);
+    faults.extend(said_by_files(study, &results.join("stimuli/pairs"))?);
+    Ok(Some(faults))
 }
 
-fn fact(path: &Path) -> Result<StimulusFacts> {
+/// The faults of what participants get: text in the files, and sizes that differ.
+fn bundle_faults(study: &Study, folder: &Path) -> Result<Vec<Fault>> {
+    let mut faults = said_by_files(study, folder)?;
+    for ending in ["gif", "mp4"] {
+        let mut sizes = Vec::new();
+        for file in files_of(folder, ending)? {
+            sizes.push((std::fs::metadata(&file)?.len(), file));
+        }
+        sizes.sort();
+        if let (Some((least, small)), Some((most, large))) = (sizes.first(), sizes.last())
+            && least != most
+        {
+            let evidence =
+                format!("{} has {least} bytes, {} has {most} bytes", file_name(small), file_name(large));
+            let place = format!("bundle/stimuli/*.{ending}");
+            faults.push(Fault { rule: Rule::NamesReveal, place, evidence });
+        }
+    }
+    Ok(faults)
+}
+
+/// Configurations that GIFs name in the text they hold.
+fn said_by_files(study: &Study, folder: &Path) -> Result<Vec<Fault>> {
+    let mut faults = Vec::new();
+    for file in files_of(folder, "gif")? {
+        let bytes = std::fs::read(&file).with_context(|| file.display().to_string())?;
+        for text in raster::gif_texts(&bytes) {
+            let told = study.configurations.iter().find(|c| text.contains(&c.id.to_string()));
+            let evidence = told.map(|c| format!("\"{text}\" names {}", c.id));
+            let place = file.display().to_string();
+            faults.extend(evidence.map(|evidence| Fault { rule: Rule::NamesReveal, place, evidence }));
+        }
+    }
+    Ok(faults)
+}
+
+/// The files of a folder with an extension, in the order of names; none where there is no folder.
+fn files_of(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    if folder.is_dir() {
+        for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
+            let path = entry?.path();
+            files.extend(path.extension().is_some_and(|e| e == extension).then_some(path));
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// What a turntable's camera was; `None` where that was not written down.
+fn camera(path: &Path) -> Result<Option<[f64; 3]>> {
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let place = || path.display().to_string();
+    let text = std::fs::read(path).with_context(place)?;
+    serde_json::from_slice(&text).map(Some).with_context(place)
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}
+
+fn fact(path: &Path, camera: Option<[f64; 3]>) -> Result<StimulusFacts> {
     let bytes = std::fs::read(path)?;
     let animation = Animation::read_gif(bytes.as_slice())?;
     let colours = animation.palette.colours();
@@ -163,14 +263,13 @@ fn fact(path: &Path) -> Result<StimulusFacts> {
     let luminance =
         |[r, g, b]: [u8; 3]| (0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)) / 255.0;
     let sum: f64 = colours.iter().zip(counts).map(|(&colour, count)| luminance(colour) * count as f64).sum();
-    let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     Ok(StimulusFacts {
-        file: name,
+        file: file_name(path),
         frames: animation.frames.len() as u32,
         duration_cs: animation.frames.len() as u32 * u32::from(animation.delay_cs),
         size: [animation.width, animation.height],
         background: colours[usize::from(corner)],
-        camera: None,
+        camera,
         exposure: if total == 0 { 0.0 } else { sum / total as f64 },
         bytes: bytes.len() as u64,
         text: raster::gif_texts(&bytes),

@@ -5,17 +5,23 @@ use raster::Animation;
 use std::io::{ErrorKind, Write};
 use std::process::{Command, Stdio};
 
-/// The paper's pairs: twice the size, nearest neighbour, constant rate factor 12. Nothing is written of time, tool or
-/// name.
+/// The paper's pairs: constant rate factor 12. Colours are converted as the tags say, which players would guess otherwise.
+/// Nothing is written of time, tool or name.
 const ARGUMENTS: &[&str] = &[
-    "-vf",
-    "scale=iw*2:ih*2:flags=neighbor",
     "-c:v",
     "libx264",
     "-crf",
     "12",
     "-pix_fmt",
     "yuv420p",
+    "-colorspace",
+    "bt709",
+    "-color_primaries",
+    "bt709",
+    "-color_trc",
+    "bt709",
+    "-color_range",
+    "tv",
     "-map_metadata",
     "-1",
     "-fflags",
@@ -42,18 +48,24 @@ pub(crate) fn check() -> Result<()> {
     }
 }
 
-/// One turn of the animation as MP4.
+/// One turn of a pair that was enlarged `scale` times, as MP4 of twice the size of its turntables, as the paper's are; of the
+/// pair's own where that is larger already and even, as the format wants it.
 ///
 /// # Errors
 /// If ffmpeg fails, with what it said.
-pub(crate) fn mp4(animation: &Animation) -> Result<Vec<u8>> {
+pub(crate) fn mp4(animation: &Animation, scale: u32) -> Result<Vec<u8>> {
     let folder = tempfile::tempdir()?;
     // A file and not a pipe: the index of an MP4 is written when all else is known.
     let path = folder.path().join("pair.mp4");
     let size = format!("{}x{}", animation.width, animation.height);
+    let even = animation.width.is_multiple_of(2) && animation.height.is_multiple_of(2);
+    let enlarged = if scale > 1 && even { 1 } else { 2 };
+    let filter =
+        format!("scale=iw*{enlarged}:ih*{enlarged}:flags=neighbor:out_color_matrix=bt709:out_range=tv");
     let rate = format!("100/{}", animation.delay_cs);
     let mut ffmpeg = Command::new("ffmpeg")
         .args(["-v", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", &size, "-r", &rate, "-i", "-"])
+        .args(["-vf", &filter])
         .args(ARGUMENTS)
         .arg(&path)
         .stdin(Stdio::piped())

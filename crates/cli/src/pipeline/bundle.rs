@@ -9,10 +9,24 @@ use anyhow::Result;
 use design::ConfigurationId;
 use design::forms::{FormFile, Questionnaire, Stimulus};
 use design::record::Purpose;
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
 use raster::tiny_skia::Pixmap;
+use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 
 const BUNDLE: &str = "bundle";
+
+/// So that the largest file, too, ends like the others.
+const LEAST_PADDING: usize = 64;
+
+/// Noise after the end of a GIF, where no reader looks, or in an MP4's free space: unlike zeros it neither shows nor can be compressed.
+fn pad(bytes: &mut Vec<u8>, size: usize, seed: u64, name: &str) {
+    let digest: [u8; 32] = Sha256::digest(format!("padding {seed} {name}")).into();
+    let from = bytes.len();
+    bytes.resize(size, 0);
+    Pcg64::from_seed(digest).fill_bytes(&mut bytes[from..]);
+}
 
 /// Tells one version of a study's forms from another: 16 hexadecimal digits.
 ///
@@ -42,22 +56,35 @@ impl Pipeline<'_> {
     }
 
     /// The folder for participants: the page, the forms and every pair, and nothing that tells what a pair shows. All animations are
-    /// made the same size, with zeros after the end of the file, since a smoother surface compresses better.
-    pub(crate) fn bundle(&self, forms: &Stamp, pairs: &[Stamp]) -> Result<Stamp> {
-        let step = Step::begin("bundle", 1, pairs.len());
-        let mut inputs = Inputs::of_rooms(rooms::BUNDLES).stamp(forms);
-        for stamp in pairs {
+    /// made the same size, and all videos, since a smoother surface compresses better.
+    pub(crate) fn bundle(&self, forms: &Stamp, pairs: &[Stamp], videos: &[Stamp]) -> Result<Stamp> {
+        let shown = [pairs, videos].concat();
+        let step = Step::begin("bundle", 1, shown.len());
+        let seed = self.study.file.study.seed;
+        let mut inputs = Inputs::of_rooms(rooms::BUNDLES).value("seed", &seed).stamp(forms);
+        for stamp in &shown {
             inputs = inputs.stamp(stamp);
         }
         let stamp = self.stage(BUNDLE, inputs, |writer| {
             let root = self.store.root();
-            let mut files: Vec<_> = pairs.iter().flat_map(|stamp| &stamp.files).collect();
+            let mut files: Vec<_> = shown.iter().flat_map(|stamp| &stamp.files).collect();
             // In the order of names, so that times of modification tell nothing either.
             files.sort_by(|a, b| a.path.cmp(&b.path));
-            let size = files.iter().map(|file| file.bytes).max().unwrap_or(0) as usize;
+            let size = |ending: &str| {
+                let of_kind = files.iter().filter(|file| file.path.ends_with(ending));
+                of_kind.map(|file| file.bytes).max().unwrap_or(0) as usize + LEAST_PADDING
+            };
+            let (gif, mp4) = (size(".gif"), size(".mp4"));
             for file in files {
                 let mut bytes = std::fs::read(root.join(&file.path))?;
-                bytes.resize(size, 0);
+                if file.path.ends_with(".mp4") {
+                    // A box that says it is free space: as long as what follows, its own eight bytes included.
+                    bytes.extend(u32::try_from(mp4 - bytes.len())?.to_be_bytes());
+                    bytes.extend(b"free");
+                    pad(&mut bytes, mp4, seed, &file.path);
+                } else {
+                    pad(&mut bytes, gif, seed, &file.path);
+                }
                 let name = file.path.rsplit('/').next().unwrap_or(&file.path);
                 writer.write(&format!("{BUNDLE}/stimuli/{name}"), &bytes)?;
                 step.tick(1);
@@ -98,7 +125,11 @@ impl Pipeline<'_> {
                 let shows = |c: &&design::Comparison| {
                     (&c.left, &c.right) == (&s.left, &s.right) || (&c.left, &c.right) == (&s.right, &s.left)
                 };
-                self.study.comparisons.iter().find(shows).map_or("control", |c| c.question.as_str())
+                self.study
+                    .comparisons
+                    .iter()
+                    .find(shows)
+                    .map_or(if s.left == s.right { "control" } else { "training" }, |c| c.question.as_str())
             };
             let pairs: Vec<(String, Pixmap)> = stimuli
                 .iter()

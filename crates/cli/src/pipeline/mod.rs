@@ -19,6 +19,7 @@ mod timings;
 
 pub(crate) use bundle::forms_digest;
 pub(crate) use meshes::Meshes;
+pub(crate) use stimuli::camera_file;
 pub(crate) use tables::{write_answers_only, write_without_study};
 pub(crate) use timings::{PlanLength, measure};
 

@@ -7,7 +7,7 @@ use crate::progress::Step;
 use crate::store::{Inputs, Stamp};
 use crate::{rooms, video};
 use anyhow::{Context, Result};
-use design::config::StillSection;
+use design::config::{CameraSection, StillSection, TurntableSection};
 use design::forms::Stimulus;
 use design::record::Purpose;
 use design::{Comparison, Configuration, ConfigurationId};
@@ -17,6 +17,16 @@ use std::collections::HashMap;
 
 const TURNTABLES: &str = "stimuli/turntables";
 const PAIRS: &str = "stimuli/pairs";
+
+/// Distance, vertical field of view and elevation of a turntable's camera.
+fn camera(camera: &CameraSection, turntable: &TurntableSection) -> [f64; 3] {
+    [camera.distance, camera.vertical_fov_rad, turntable.elevation_rad]
+}
+
+/// Where it is written which camera a turntable was made with: with the key, since it is of a configuration.
+pub(crate) fn camera_file(id: &ConfigurationId) -> String {
+    format!("key/cameras/{id}.json")
+}
 
 impl Pipeline<'_> {
     /// Renders the configurations in `only`, or all if it is empty, and writes the key to their code names. The last
@@ -61,7 +71,9 @@ impl Pipeline<'_> {
             let animation = raster::turntable(&mesh, &settings, &shading, Look::Smooth, &|| step.tick(1))?;
             let mut gif = Vec::new();
             animation.write_gif(&mut gif)?;
-            writer.write(&format!("{TURNTABLES}/{code}.gif"), &gif)
+            writer.write(&format!("{TURNTABLES}/{code}.gif"), &gif)?;
+            let seen = camera(&object.camera, &self.study.file.turntable);
+            writer.write_json(&camera_file(&configuration.id), &seen)
         })?;
         Ok(stamp)
     }
@@ -108,7 +120,8 @@ impl Pipeline<'_> {
             let path = pair.file(".gif").replace(".gif", ".mp4");
             let inputs = Inputs::of_rooms(rooms::PICTURES).stamp(pair);
             let stamp = self.stage(&name, inputs, |writer| {
-                writer.write(&path, &video::mp4(&self.read_animation(pair)?)?)
+                let scale = self.study.file.stimuli.pair_scale;
+                writer.write(&path, &video::mp4(&self.read_animation(pair)?, scale)?)
             })?;
             step.tick(1);
             step.count(stamp.redone);
@@ -124,7 +137,7 @@ impl Pipeline<'_> {
         Animation::read_gif(bytes.as_slice()).with_context(|| file.to_owned())
     }
 
-    /// The key is kept apart from the stimuli, so that a folder of stimuli can be given away.
+    /// The key is kept apart from the stimuli. Sizes and times of the stimuli still tell; those of the bundle do not.
     fn key(&self) -> Result<Stamp> {
         let (turntables, _) = self.study.code_names();
         let mut key = String::from("file,question,left,right\n");
