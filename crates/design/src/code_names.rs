@@ -7,8 +7,17 @@ use rand_pcg::Pcg64;
 const CONSONANTS: &[u8] = b"bdfgklmnprstvz";
 const VOWELS: &[u8] = b"aeiou";
 
+/// Names that hurt or amuse in one of the languages that participants may speak, and so are never given.
+const UNFIT: [&str; 54] = [
+    "bita", "bite", "bito", "dago", "dede", "dike", "fuka", "fuke", "fuki", "fuko", "fuku", "gaza", "gipo",
+    "kaka", "kaki", "kike", "kiki", "kuka", "kulo", "loli", "mata", "mato", "nazi", "nega", "nege", "negi",
+    "niga", "nige", "nigi", "nigo", "nigu", "nuda", "nude", "nudi", "nudo", "paki", "pede", "pedo", "pene",
+    "peni", "pipi", "puta", "pute", "puto", "rape", "sado", "sida", "tete", "tita", "tite", "titi", "vaga",
+    "vagi", "zizi",
+];
+
 /// How many names there are.
-pub const LIMIT: usize = (CONSONANTS.len() * VOWELS.len()).pow(2);
+pub const LIMIT: usize = (CONSONANTS.len() * VOWELS.len()).pow(2) - UNFIT.len();
 
 /// Draws `count` different pronounceable names (consonant, vowel, consonant, vowel) from a seed.
 ///
@@ -28,8 +37,9 @@ pub fn draw(seed: u64, count: usize) -> Vec<String> {
             }
         }
     }
-    assert!(count <= names.len(), "{count} code names asked for, {} exist", names.len());
     names.shuffle(&mut Pcg64::seed_from_u64(seed));
+    names.retain(|name| !UNFIT.contains(&name.as_str()));
+    assert!(count <= names.len(), "{count} code names asked for, {} exist", names.len());
     names.truncate(count);
     names
 }
@@ -38,6 +48,13 @@ pub fn draw(seed: u64, count: usize) -> Vec<String> {
 mod tests {
     use super::*;
     use std::collections::HashSet;
+
+    #[test]
+    fn unfit_names_are_never_given() {
+        let all: HashSet<String> = draw(3, LIMIT).into_iter().collect();
+        assert_eq!(all.len(), LIMIT);
+        assert!(UNFIT.iter().all(|name| !all.contains(*name)));
+    }
 
     #[test]
     fn names_are_distinct_four_letters_and_reproducible() {
