@@ -20,14 +20,17 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<(Cow<'_, str>, &'static str), Fault
     if let Some(rest) = bytes.strip_prefix(b"\xfe\xff") {
         return utf16(UTF_16BE, rest).map(|text| (text, "UTF-16, big end first, by its byte-order mark"));
     }
-    // Every second byte of Western text in UTF-16 is zero, and no byte of it in UTF-8.
+    // Every second byte of Western text in UTF-16 is zero, and no byte of it in UTF-8; and its first line ends as lines do in
+    // UTF-16, which those of a damaged file in UTF-8 do not.
+    let feed = bytes.iter().position(|&byte| byte == b'\n');
+    let ends_line = |offset: usize| feed.is_none_or(|at| at % 2 == offset && bytes.get(at ^ 1) == Some(&0));
     let head = &bytes[..bytes.len().min(1 << 12) & !1];
     let zeros = |offset: usize| head.iter().skip(offset).step_by(2).filter(|&&byte| byte == 0).count();
     let (even, odd, most) = (zeros(0), zeros(1), head.len() / 4);
-    if head.len() >= 4 && odd > most && even < odd / 8 {
+    if head.len() >= 4 && odd > most && even < odd / 8 && ends_line(0) {
         return utf16(UTF_16LE, bytes).map(|text| (text, "UTF-16, little end first, by its zero bytes"));
     }
-    if head.len() >= 4 && even > most && odd < even / 8 {
+    if head.len() >= 4 && even > most && odd < even / 8 && ends_line(1) {
         return utf16(UTF_16BE, bytes).map(|text| (text, "UTF-16, big end first, by its zero bytes"));
     }
     if let Ok(text) = std::str::from_utf8(bytes) {
@@ -118,6 +121,9 @@ mod tests {
         }
         assert_eq!(decode(b"T\xe4glich \x80\n").unwrap().0, "Täglich €\n");
         assert_eq!(decode(b"").unwrap().0, "");
+        // A header in UTF-8 over a cell full of zero bytes.
+        let damaged = [b"name,choice\n".as_slice(), &b"x\0".repeat(40)].concat();
+        assert_eq!(decode(&damaged).unwrap().1, "UTF-8, which it keeps to");
         let broken = decode(b"\xef\xbb\xbfa\nb\xff\n").unwrap_err();
         assert_eq!(broken, Fault::Encoding { encoding: "UTF-8", row: 2 });
         let lone = decode(b"\xff\xfea\0\n\0\x00\xd8x\0").unwrap_err();
