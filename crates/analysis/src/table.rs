@@ -2,7 +2,7 @@
 
 mod html;
 mod latex;
-mod markdown;
+pub(crate) mod markdown;
 
 /// One cell.
 #[derive(Debug, Clone, PartialEq)]

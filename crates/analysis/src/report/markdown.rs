@@ -1,6 +1,7 @@
 //! A report as Markdown.
 
 use super::{Block, Report};
+use crate::table::markdown::escape;
 
 impl Report {
     /// GitHub-flavoured Markdown; figures are links to `figures/<name>.svg` beside it.
@@ -34,18 +35,4 @@ impl Report {
         }
         text
     }
-}
-
-/// What Markdown would read as mark-up.
-fn escape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '\\' | '|' | '_' | '*' | '`' | '[' | ']' => out.extend(['\\', letter]),
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            _ => out.push(letter),
-        }
-    }
-    out
 }

@@ -30,7 +30,7 @@ impl Table {
 }
 
 /// What Markdown would read as mark-up, and line breaks, which end a row.
-fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {
