@@ -129,7 +129,7 @@ fn site(shared: Arc<Shared>) -> Router {
         .layer(fixed("referrer-policy", "no-referrer"))
         .layer(fixed(
             "content-security-policy",
-            "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; form-action 'none'; base-uri 'none'",
+            "default-src 'self'; img-src 'self' blob: data:; frame-ancestors 'none'; form-action 'none'; base-uri 'none'",
         ))
         .with_state(shared)
 }
