@@ -271,7 +271,6 @@ fn fact(path: &Path, camera: Option<[f64; 3]>) -> Result<StimulusFacts> {
         background: colours[usize::from(corner)],
         camera,
         exposure: if total == 0 { 0.0 } else { sum / total as f64 },
-        bytes: bytes.len() as u64,
         text: raster::gif_texts(&bytes),
     })
 }

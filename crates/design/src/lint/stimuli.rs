@@ -20,8 +20,6 @@ pub struct StimulusFacts {
     pub camera: Option<[f64; 3]>,
     /// Mean brightness of what is not background, 0 to 1.
     pub exposure: f64,
-    /// Size of the file.
-    pub bytes: u64,
     /// Text in the file: comments, titles, tool names.
     pub text: Vec<String>,
 }

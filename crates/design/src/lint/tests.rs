@@ -249,7 +249,6 @@ fn facts(file: &str) -> StimulusFacts {
         background: [1, 130, 129],
         camera: Some([1.2, 1.57, 0.52]),
         exposure: 0.4,
-        bytes: 400_000,
         text: Vec::new(),
     }
 }
@@ -260,7 +259,7 @@ fn stimuli_that_differ() {
     let right = facts("lobi.gif");
     let judge = |left: StimulusFacts| lint_stimuli(&study, &[("Q1".into(), left, right.clone())]);
     assert_eq!(judge(facts("vusa.gif")), []);
-    assert_eq!(judge(StimulusFacts { exposure: 0.44, bytes: 500_000, ..facts("vusa.gif") }), []);
+    assert_eq!(judge(StimulusFacts { exposure: 0.44, ..facts("vusa.gif") }), []);
     let planted = [
         (StimulusFacts { frames: 60, ..facts("vusa.gif") }, "frames: 60 on the left, 120 on the right"),
         (StimulusFacts { duration_cs: 800, ..facts("vusa.gif") }, "duration: 800 cs"),
