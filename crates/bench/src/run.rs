@@ -297,23 +297,8 @@ impl Running<'_> {
     }
 
     fn sample(&self, sitting: &Sitting, turn: &Turn, measurement: &Measurement) -> BenchSample {
-        let stages = &measurement.stages;
-        let StageSeconds { allocation_s, sampling_s, vertex_s, geometry_s, clustering_s, normals_s } =
-            *stages;
-        BenchSample {
-            id: self.ids[turn.subject].clone(),
-            sitting: sitting.number,
-            iteration: number(turn.round),
-            place: turn.place,
-            allocation_s,
-            sampling_s,
-            vertex_s,
-            geometry_s,
-            clustering_s,
-            normals_s,
-            total_s: stages.total(),
-            reference_s: measurement.reference_s,
-        }
+        let at = [sitting.number, number(turn.round), turn.place];
+        measurement.stages.sample(self.ids[turn.subject].clone(), at, measurement.reference_s)
     }
 
     fn measure_memory(&mut self) -> Result<(), BenchError> {

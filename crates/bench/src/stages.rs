@@ -1,6 +1,7 @@
 //! The six stages of an extraction, in seconds.
 
-use design::Stage;
+use design::record::BenchSample;
+use design::{ConfigurationId, Stage};
 use extract::StageTimes;
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +31,31 @@ impl From<&StageTimes> for StageSeconds {
 }
 
 impl StageSeconds {
+    /// These times as a sample of a run: which sitting, which round, which place in it, and the reference work's time.
+    pub fn sample(
+        self,
+        id: ConfigurationId,
+        [sitting, iteration, place]: [u32; 3],
+        reference_s: Option<f64>,
+    ) -> BenchSample {
+        let total_s = self.total();
+        let Self { allocation_s, sampling_s, vertex_s, geometry_s, clustering_s, normals_s } = self;
+        BenchSample {
+            id,
+            sitting,
+            iteration,
+            place,
+            allocation_s,
+            sampling_s,
+            vertex_s,
+            geometry_s,
+            clustering_s,
+            normals_s,
+            total_s,
+            reference_s,
+        }
+    }
+
     /// The sum of the six, added in their order.
     pub fn total(&self) -> f64 {
         self.allocation_s

@@ -7,7 +7,7 @@ use crate::{say, subject};
 use analysis::Panel;
 use anyhow::{Context, Result, bail};
 use bench::StageSeconds;
-use design::record::{BenchSample, Purpose};
+use design::record::Purpose;
 use design::{ConfigurationId, Study};
 use extract::{Execution, extract};
 
@@ -46,7 +46,7 @@ pub(crate) fn inspect(arguments: &Inspect) -> Result<()> {
     let mut samples = Vec::new();
     for iteration in 0..arguments.iterations {
         let times = extract(field, &lattice, &settings, &execution)?.times;
-        samples.push(sample(&id, iteration, &StageSeconds::from(&times)));
+        samples.push(StageSeconds::from(&times).sample(id.clone(), [0, iteration, 0], None));
     }
     let threads = match arguments.threads {
         0 => std::thread::available_parallelism().map_or(1, |n| n.get() as u32),
@@ -54,22 +54,4 @@ pub(crate) fn inspect(arguments: &Inspect) -> Result<()> {
     };
     let panel = Panel::new(&object.name, configuration, record, &samples, threads);
     say(&if arguments.json { serde_json::to_string_pretty(&panel)? } else { panel.to_text() })
-}
-
-fn sample(id: &ConfigurationId, iteration: u32, stages: &StageSeconds) -> BenchSample {
-    let StageSeconds { allocation_s, sampling_s, vertex_s, geometry_s, clustering_s, normals_s } = *stages;
-    BenchSample {
-        id: id.clone(),
-        sitting: 0,
-        iteration,
-        place: 0,
-        allocation_s,
-        sampling_s,
-        vertex_s,
-        geometry_s,
-        clustering_s,
-        normals_s,
-        total_s: stages.total(),
-        reference_s: None,
-    }
 }
