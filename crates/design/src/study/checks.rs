@@ -1,0 +1,245 @@
+//! What may stand in each section of a study file.
+
+use super::Configuration;
+use crate::check::{Checker, ConfigError, short};
+use crate::config::{FieldSection, ObjectSection, StudyFile, SweepSection};
+
+const FETCH_HINT: &str = "; `make bunny` (scripts/fetch-bunny.sh) fetches the mesh";
+
+/// Everything that does not need another section to judge.
+pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigError> {
+    if file.schema != 1 {
+        return c.refuse("schema", file.schema, "this version reads schema 1");
+    }
+    let id = &file.study.id;
+    let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-';
+    if id.is_empty() || id.len() > 64 || !id.bytes().all(plain) {
+        return c.refuse("study.id", id, "must be 1 to 64 lower-case letters, digits or hyphens");
+    }
+    c.positive("limits.memory_gib", file.limits.memory_gib, 1024.0)?;
+    c.count("extraction.accumulation_chunks", file.extraction.accumulation_chunks, 1, 4096)?;
+
+    let t = &file.turntable;
+    c.count("turntable.width", t.width, 16, 4096)?;
+    c.count("turntable.height", t.height, 16, 4096)?;
+    c.count("turntable.frames", t.frames, 1, 3600)?;
+    c.number("turntable.duration_s", t.duration_s, 0.01, 600.0)?;
+    let delay_cs = t.delay_cs();
+    if !(1.0..=65535.0).contains(&delay_cs) {
+        return c.refuse(
+            "turntable.duration_s",
+            short(t.duration_s),
+            format!("gives {delay_cs} centiseconds a frame; a GIF holds 1 to 65535"),
+        );
+    }
+    c.number("turntable.elevation_rad", t.elevation_rad, -1.5, 1.5)?;
+    c.positive("turntable.near", t.near, 1e3)?;
+    c.positive("turntable.far", t.far, 1e9)?;
+    if t.far <= t.near {
+        let limit = format!("must be above turntable.near = {}", short(t.near));
+        return c.refuse("turntable.far", short(t.far), limit);
+    }
+    c.count("turntable.supersampling", t.supersampling, 1, 4)?;
+
+    let s = &file.shading;
+    c.numbers("shading.light", &s.light, -10.0, 10.0)?;
+    for (key, colour) in [
+        ("shading.lit", &s.lit),
+        ("shading.shade", &s.shade),
+        ("shading.highlight", &s.highlight),
+        ("shading.background", &s.background),
+    ] {
+        c.numbers(key, colour, 0.0, 1.0)?;
+    }
+    c.count("stimuli.pair_scale", file.stimuli.pair_scale, 1, 4)?;
+
+    let b = &file.benchmark;
+    c.count("benchmark.warmup", b.warmup, 0, 10_000)?;
+    c.count("benchmark.iterations", b.iterations, 1, 100_000)?;
+    c.count("benchmark.short_iterations", b.short_iterations, 1, 100_000)?;
+    c.count("benchmark.aa_iterations", b.aa_iterations, 0, 100_000)?;
+    c.count("benchmark.threads", b.threads, 0, 1024)?;
+    b.sweep.as_ref().map_or(Ok(()), |sweep| check_sweep(c, file, sweep))
+}
+
+fn check_sweep(c: &Checker<'_>, file: &StudyFile, sweep: &SweepSection) -> Result<(), ConfigError> {
+    let known: Vec<&str> = file.objects.iter().map(|object| object.id.as_str()).collect();
+    if sweep.objects.is_empty() {
+        return c.refuse("benchmark.sweep.objects", "[]", "must list at least one object");
+    }
+    for (i, object) in sweep.objects.iter().enumerate() {
+        if !known.contains(&object.as_str()) {
+            let limit = format!("must be an object of this study: {}", known.join(", "));
+            return c.refuse(format!("benchmark.sweep.objects[{i}]"), object, limit);
+        }
+    }
+    c.distinct(|i| format!("benchmark.sweep.objects[{i}]"), &sweep.objects)?;
+    for (name, values, low, high) in [("cells", &sweep.cells, 4, 2048), ("threads", &sweep.threads, 1, 1024)]
+    {
+        let key = |i: usize| format!("benchmark.sweep.{name}[{i}]");
+        if values.is_empty() {
+            return c.refuse(format!("benchmark.sweep.{name}"), "[]", "must list at least one");
+        }
+        for (i, &value) in values.iter().enumerate() {
+            c.count(&key(i), value, low, high)?;
+            if i > 0 && value <= values[i - 1] {
+                return c.refuse(key(i), value, format!("must be above {} = {}", key(i - 1), values[i - 1]));
+            }
+        }
+    }
+    c.count("benchmark.sweep.iterations", sweep.iterations, 1, 100_000)
+}
+
+pub(super) fn check_objects(c: &Checker<'_>, objects: &[ObjectSection]) -> Result<(), ConfigError> {
+    if objects.is_empty() {
+        return c.refuse("objects", "[]", "must list at least one object");
+    }
+    let ids: Vec<String> = objects.iter().map(|o| o.id.clone()).collect();
+    c.distinct(|i| format!("objects[{i}].id"), &ids)?;
+    for (i, object) in objects.iter().enumerate() {
+        let key = |name: &str| format!("objects[{i}].{name}");
+        if object.id.is_empty() || !object.id.bytes().all(|b| b.is_ascii_alphanumeric()) {
+            return c.refuse(key("id"), &object.id, "must be letters and digits");
+        }
+        c.number(&key("isovalue"), object.isovalue, -1e9, 1e9)?;
+        c.numbers(&key("min"), &object.min, -1e6, 1e6)?;
+        c.numbers(&key("max"), &object.max, -1e6, 1e6)?;
+        for axis in 0..3 {
+            let (min, max) = (object.min[axis], object.max[axis]);
+            // Volumes are single precision.
+            if max as f32 <= min as f32 {
+                let by = if max > min { " by more than single precision loses" } else { "" };
+                let limit = format!("must be above {} = {}{by}", key("min"), short(min));
+                return c.refuse(format!("{}[{axis}]", key("max")), short(max), limit);
+            }
+        }
+        c.length(&key("benchmark_spacing"), object.benchmark_spacing, 1e6)?;
+        c.length(&key("stimulus_spacing"), object.stimulus_spacing, 1e6)?;
+        c.positive(&key("camera.distance"), object.camera.distance, 1e6)?;
+        c.number(&key("camera.vertical_fov_rad"), object.camera.vertical_fov_rad, 0.01, 3.1)?;
+        check_field(c, &key("field"), &object.field)?;
+    }
+    Ok(())
+}
+
+fn check_field(c: &Checker<'_>, key: &str, field: &FieldSection) -> Result<(), ConfigError> {
+    match field {
+        FieldSection::Sphere { radius } => c.length(&format!("{key}.radius"), *radius, 1e6),
+        FieldSection::Asteroid => Ok(()),
+        FieldSection::Mesh { sources } => {
+            for (i, source) in sources.iter().enumerate() {
+                let key = |name: &str| format!("{key}.sources[{i}].{name}");
+                let mut letters: Vec<&str> =
+                    source.axes.iter().map(|axis| axis.strip_prefix('-').unwrap_or(axis)).collect();
+                letters.sort_unstable();
+                if letters != ["x", "y", "z"] {
+                    let limit = "must name x, y and z once each, with an optional minus";
+                    return c.refuse(key("axes"), format!("{:?}", source.axes), limit);
+                }
+                if source.sha256.len() != 64 || !source.sha256.bytes().all(|b| b.is_ascii_hexdigit()) {
+                    return c.refuse(key("sha256"), &source.sha256, "must be 64 hexadecimal digits");
+                }
+                c.positive(&key("scale"), source.scale, 1e6)?;
+                c.numbers(&key("offset"), &source.offset, -1e6, 1e6)?;
+            }
+            let there = |file: &str| c.resolve(file).is_file();
+            match sources.first() {
+                None => c.refuse(format!("{key}.sources"), "[]", "must list at least one file"),
+                Some(_) if sources.iter().any(|source| there(&source.file)) => Ok(()),
+                Some(first) => {
+                    c.existing(&format!("{key}.sources[0].file"), &first.file, FETCH_HINT).map(|_| ())
+                }
+            }
+        }
+    }
+}
+
+pub(super) fn check_stills(
+    c: &Checker<'_>,
+    file: &StudyFile,
+    configurations: &[Configuration],
+) -> Result<(), ConfigError> {
+    let ids: Vec<String> = file.stills.iter().map(|still| still.id.clone()).collect();
+    c.distinct(|i| format!("stills[{i}].id"), &ids)?;
+    for (i, still) in file.stills.iter().enumerate() {
+        let key = |name: &str| format!("stills[{i}].{name}");
+        let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_';
+        if still.id.is_empty() || !still.id.bytes().all(plain) {
+            return c.refuse(key("id"), &still.id, "must be lower-case letters, digits or underscores");
+        }
+        if !configurations.iter().any(|configuration| configuration.id == still.configuration) {
+            return c.refuse(
+                key("configuration"),
+                &still.configuration,
+                "is not a configuration of this study",
+            );
+        }
+        c.length(&key("spacing"), still.spacing, 1e6)?;
+        if still.looks.is_empty() {
+            return c.refuse(key("looks"), "[]", "must list at least one look");
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn check_forms(
+    c: &Checker<'_>,
+    file: &StudyFile,
+    configurations: &[Configuration],
+) -> Result<(), ConfigError> {
+    let Some(forms) = &file.forms else { return Ok(()) };
+    if file.comparisons.is_empty() {
+        return c.refuse("comparisons", "[]", "[forms] needs something to ask: must list at least one");
+    }
+    let comparisons = u32::try_from(file.comparisons.len()).unwrap_or(u32::MAX);
+    c.count("forms.participants", forms.participants, 1, 100_000)?;
+    c.count("forms.controls", forms.controls, 0, configurations.len() as u32)?;
+    c.count("forms.max_questions", forms.max_questions, forms.controls + 1, 10_000)?;
+    // The smallest block must hold what is repeated in it.
+    let holds = |repeats: u32| match (forms.max_questions - forms.controls).checked_sub(repeats) {
+        None | Some(0) => false,
+        Some(room) => comparisons / comparisons.div_ceil(room).max(1) >= repeats,
+    };
+    if !holds(forms.repeats) {
+        let most = (0..forms.repeats).rev().find(|&repeats| holds(repeats)).unwrap_or(0);
+        let limit = format!("with forms.max_questions = {} at most {most} fit", forms.max_questions);
+        return c.refuse("forms.repeats", forms.repeats, limit);
+    }
+    if forms.prompt.trim().is_empty() {
+        return c.refuse("forms.prompt", "\"\"", "must say what is asked about each pair");
+    }
+    if let Some(i) = forms.choices.iter().position(|choice| choice.trim().is_empty()) {
+        return c.refuse(format!("forms.choices[{i}]"), "\"\"", "must be a text");
+    }
+    c.distinct(|i| format!("forms.choices[{i}]"), &forms.choices)?;
+    for (key, text) in [("forms.consent", &forms.consent), ("forms.instructions", &forms.instructions)] {
+        if text.trim().is_empty() {
+            return c.refuse(key, "\"\"", "must be a text");
+        }
+    }
+    c.count("forms.page_scale", forms.page_scale, 1, 4)?;
+    if let Some(completion) = &forms.completion {
+        let code = completion.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '-');
+        if completion.is_empty() || completion.len() > 500 || !(code || completion.starts_with("https://")) {
+            return c.refuse(
+                "forms.completion",
+                completion,
+                "letters, digits and hyphens, or an https:// address; up to 500",
+            );
+        }
+    }
+    c.count("forms.training", forms.training.len() as u32, 0, 100)?;
+    for (i, pair) in file.forms.iter().flat_map(|forms| &forms.training).enumerate() {
+        for (name, id) in [("left", &pair.left), ("right", &pair.right)] {
+            if !configurations.iter().any(|configuration| configuration.id == *id) {
+                let key = format!("forms.training[{i}].{name}");
+                return c.refuse(key, id, "is not a configuration of this study");
+            }
+        }
+        if pair.left.object != pair.right.object {
+            let limit = format!("must show the same object as the left side, {}", pair.left);
+            return c.refuse(format!("forms.training[{i}].right"), &pair.right, limit);
+        }
+    }
+    Ok(())
+}

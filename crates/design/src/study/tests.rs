@@ -1,0 +1,136 @@
+use super::*;
+
+/// A study file of this project, its mesh source pointing at a file that is always there.
+pub(crate) fn load(name: &str) -> Study {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs").join(name);
+    let text = std::fs::read_to_string(&path).unwrap();
+    Study::parse(&text.replace("../cache/bunny.ply", name), &path).unwrap()
+}
+
+/// The paper's file with one passage replaced, its mesh source pointing at a file that is always there.
+pub(crate) fn paper_with(from: &str, to: &str) -> Result<Study, ConfigError> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/paper.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(text.contains(from), "{from} is not in {}", path.display());
+    let text = text.replacen(from, to, 1).replace("../cache/bunny.ply", "paper.toml");
+    Study::parse(&text, &path)
+}
+
+fn error_with(from: &str, to: &str) -> String {
+    paper_with(from, to).map(|_| ()).unwrap_err().to_string()
+}
+
+#[test]
+fn the_papers_design_is_whole() {
+    let study = paper_with("schema = 1", "schema = 1").unwrap();
+    assert_eq!(study.configurations.len(), 18);
+    let ids: Vec<String> = study.configurations.iter().map(|c| c.id.to_string()).collect();
+    assert_eq!(ids[..6], ["ss_bu", "ss_bi", "ss_bp", "ss_su", "ss_si", "ss_sp"]);
+    assert_eq!(ids[17], "bs_sp");
+    assert_eq!(study.comparisons.len(), 27);
+    let sizes: Vec<usize> = study.groups.iter().map(|g| g.comparisons.len()).collect();
+    assert_eq!(sizes, [9, 9, 3, 3, 3]);
+    assert_eq!(study.published.benchmark.len(), 18);
+    assert_eq!(study.published.preferences.len(), 12 + 6 + 5);
+    let (turntables, pairs) = study.code_names();
+    assert_eq!((turntables.len(), pairs.len()), (18, 27));
+}
+
+#[test]
+fn an_error_names_file_key_and_limit() {
+    let error = error_with("isovalue = 0.0", "isovalue = nan");
+    assert!(error.contains("paper.toml: objects[0].isovalue = NaN: must be a finite number"), "{error}");
+    let error = error_with("benchmark_spacing = 0.04", "benchmark_spacing = -0.04");
+    assert!(error.contains("objects[0].benchmark_spacing = -0.04: must be above 0"), "{error}");
+    let error = error_with("supersampling = 2", "supersampling = 9");
+    assert!(error.contains("turntable.supersampling = 9: must lie between 1 and 4"), "{error}");
+    let error = error_with("max = [1.0, 1.0, 1.0]", "max = [1.0, -2.0, 1.0]");
+    assert!(error.contains("objects[0].max[1] = -2: must be above objects[0].min = -1"), "{error}");
+}
+
+#[test]
+fn extreme_numbers_are_told_in_few_letters() {
+    let key = "benchmark_spacing = 0.04";
+    let error = error_with(key, "benchmark_spacing = 1e300");
+    assert!(error.contains("benchmark_spacing = 1e300: must be above 0 and at most 1000000"), "{error}");
+    let error = error_with(key, "benchmark_spacing = 1e-300");
+    assert!(error.contains("benchmark_spacing = 1e-300: is 0 in single precision"), "{error}");
+    let error = error_with("radius = 1.0", "radius = 1e-60");
+    assert!(error.contains("field.radius = 1e-60: is 0 in single precision"), "{error}");
+    let error = error_with("isovalue = 0.0", "isovalue = -1e300");
+    assert!(error.contains("isovalue = -1e300: must lie between -1000000000 and"), "{error}");
+    let error = error_with("max = [1.0, 1.0, 1.0]", "max = [1.0, 1.0, -0.99999999999]");
+    let told = "max[2] = -0.99999999999: must be above objects[0].min = -1 by more than single precision";
+    assert!(error.contains(told), "{error}");
+}
+
+#[test]
+fn unknown_keys_and_missing_files_are_named() {
+    let error = error_with("memory_gib = 8.0", "memory_gib = 8.0\nmemory_gb = 1");
+    assert!(error.contains("memory_gb") && error.contains("paper.toml"), "{error}");
+    let error = error_with("radius = 1.0", "radius = 1.0, diameter = 2.0");
+    assert!(error.contains("diameter"), "{error}");
+    let error = error_with("../study/paper/responses.csv", "../study/paper/nobody.csv");
+    assert!(error.contains("responses.file") && error.contains("nobody.csv"), "{error}");
+    let path = Path::new("/nowhere/study.toml");
+    assert!(Study::load(path).unwrap_err().to_string().contains("/nowhere/study.toml"));
+}
+
+#[test]
+fn topology_is_guarded_unless_said_otherwise() {
+    let topology = |to| paper_with("topology = \"published\"", to).unwrap().file.extraction.topology;
+    assert_eq!(topology("topology = \"published\""), crate::config::Topology::Published);
+    assert_eq!(topology(""), crate::config::Topology::Guarded);
+}
+
+#[test]
+fn chunks_of_layers_may_be_left_out() {
+    let chunks = |to| paper_with("accumulation_chunks = 16", to).unwrap().file.extraction.accumulation_chunks;
+    assert_eq!((chunks("accumulation_chunks = 16"), chunks("")), (16, 1));
+    let error = error_with("accumulation_chunks = 16", "accumulation_chunks = 0");
+    assert!(error.contains("accumulation_chunks = 0: must lie between 1 and 4096"), "{error}");
+}
+
+#[test]
+fn unknown_placements_are_told_what_there_is() {
+    let key = "placement = \"mean-of-crossings\"";
+    let error = error_with(key, "placement = \"nearest\"");
+    for part in
+        ["paper.toml", "placement = ", "nearest", "mean-of-crossings", "curvature-weighted", "relaxed"]
+    {
+        assert!(error.contains(part), "{error}");
+    }
+    let error = error_with("refine_crossings = false", "refine_crossings = 4");
+    assert!(error.contains("refine_crossings = 4") && error.contains("boolean"), "{error}");
+    let placement = |to| paper_with(key, to).unwrap().file.extraction.placement;
+    assert_eq!(placement(""), crate::config::Placement::MeanOfCrossings);
+    assert_eq!(placement("placement = \"relaxed\""), crate::config::Placement::Relaxed);
+}
+
+#[test]
+fn forms_need_something_to_ask() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/two-methods.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let (before, rest) = text.split_once("comparisons = [").unwrap();
+    let (_, after) = rest.split_once("\n]\n").unwrap();
+    let text = format!("{before}comparisons = []\n{after}");
+    let error = Study::parse(&text, &path).map(|_| ()).unwrap_err().to_string();
+    assert!(error.contains("two-methods.toml: comparisons = []: [forms] needs something to ask"), "{error}");
+    let (asks_nobody, _) = text.split_once("[forms]").unwrap();
+    assert!(Study::parse(asks_nobody, &path).is_ok());
+}
+
+#[test]
+fn comparisons_must_make_sense() {
+    let error = error_with("left = \"ss_bu\", right = \"ss_bi\"", "left = \"ss_bu\", right = \"as_bi\"");
+    assert!(error.contains("comparisons[0].right = as_bi: must show the same object"), "{error}");
+    let error = error_with("left = \"ss_bu\", right = \"ss_bi\"", "left = \"ss_bu\", right = \"ss_si\"");
+    assert!(error.contains("no group has bu against si"), "{error}");
+    let error = error_with("question = \"Q2\"", "question = \"Q1\"");
+    assert!(
+        error.contains("comparisons[1].question = Q1: already used by comparisons[0].question"),
+        "{error}"
+    );
+    let error = error_with("members = [\"si\", \"bi\"]", "members = [\"su\", \"bu\"]");
+    assert!(error.contains("is in groups U and I"), "{error}");
+}
