@@ -1,0 +1,424 @@
+//! The questionnaire as a researcher makes it and as participants get it.
+
+use crate::fixture::{Fixture, Run, files};
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write;
+use std::path::Path;
+
+#[test]
+fn stimuli_say_nothing_about_what_they_show() {
+    let fixture = Fixture::new();
+    fixture.succeed("pairs", &[]);
+    let made = files(fixture.out());
+    for path in made.keys().filter(|path| path.starts_with("stimuli/")) {
+        let name = Path::new(path).file_name().unwrap().to_str().unwrap();
+        let stem = name.strip_suffix(".gif").unwrap_or_else(|| panic!("{path} among the stimuli"));
+        assert!(stem.len() == 4 && stem.bytes().all(|b| b.is_ascii_lowercase()), "{path}");
+        assert_eq!(extensions(&made[path]), ["NETSCAPE2.0"], "{path}: extensions that hold text");
+    }
+    let key = String::from_utf8(made["key/stimuli.csv"].clone()).unwrap();
+    assert_eq!(key.lines().count(), 1 + 18 + 27);
+    assert!(key.contains(",Q1,ss_bu,ss_bi\n"));
+    for line in key.lines().skip(1) {
+        assert!(made.contains_key(line.split(',').next().unwrap()), "{line}");
+    }
+}
+
+/// The quick study asked as in configs/balanced.toml.
+fn balanced() -> Fixture {
+    let fixture = Fixture::new();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let text = std::fs::read_to_string(root.join("configs/balanced.toml")).unwrap();
+    let forms = &text[text.find("[forms]").unwrap()..];
+    fixture.edit_with(|study| format!("{study}\n{forms}"));
+    fixture
+}
+
+#[test]
+fn a_design_is_judged_before_anyone_answers() {
+    let check = |study: &str, arguments: &[&str]| {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"))
+            .args(["design", "check", study])
+            .args(arguments)
+            .output()
+            .unwrap();
+        (
+            output.status.code(),
+            String::from_utf8(output.stdout).unwrap(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    };
+    let fixture = balanced();
+    let (config, out) = (fixture.config(), fixture.out().to_str().unwrap());
+    let (code, said, _) = check(config.to_str().unwrap(), &["--results", out]);
+    assert!(code == Some(0) && said.ends_with(": no faults\n"), "{said}");
+
+    // The original's sides, and animations of which one is not like the others.
+    fixture.edit("sides = \"balanced\"", "sides = \"as-listed\"");
+    fixture.succeed("pairs", &[]);
+    let key = std::fs::read_to_string(fixture.out().join("key/stimuli.csv")).unwrap();
+    let code_of = |id: &str| {
+        let line = key.lines().find(|line| line.ends_with(&format!(",,{id},"))).unwrap();
+        line.split(',').next().unwrap().to_owned()
+    };
+    let [odd, other] = ["ss_bu", "as_si"].map(|id| fixture.out().join(code_of(id)));
+    let mut bytes = std::fs::read(&other).unwrap();
+    bytes.splice(bytes.len() - 1.., *b"\x21\xfe\x05as_si\x00\x3b");
+    std::fs::write(&other, bytes).unwrap();
+    // Three times the delay between frames: every graphic control block holds it, little-endian, at the third byte.
+    let mut bytes = std::fs::read(&odd).unwrap();
+    for at in 0..bytes.len() - 8 {
+        if bytes[at..at + 3] == [0x21, 0xf9, 4] {
+            bytes[at + 4] *= 3;
+        }
+    }
+    std::fs::write(&odd, bytes).unwrap();
+    let (code, said, _) = check(config.to_str().unwrap(), &["--results", out, "--json"]);
+    assert_eq!(code, Some(1));
+    let faults: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let rules: BTreeSet<&str> =
+        faults.as_array().unwrap().iter().map(|f| f["rule"].as_str().unwrap()).collect();
+    assert_eq!(rules.into_iter().collect::<Vec<_>>(), ["names-reveal", "side-confounded", "stimuli-differ"]);
+    let differing = faults.as_array().unwrap().iter().filter(|f| f["rule"] == "stimuli-differ");
+    // Every pair that has the odd one on one side.
+    let odd = |line: &&str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        !cells[3].is_empty() && (cells[2] == "ss_bu") != (cells[3] == "ss_bu")
+    };
+    assert_eq!(differing.clone().count(), key.lines().skip(1).filter(odd).count());
+    assert!(differing.clone().all(|f| f["evidence"].as_str().unwrap().starts_with("duration")));
+
+    let quick = Fixture::new();
+    let (code, _, said) = check(quick.config().to_str().unwrap(), &[]);
+    assert!(code == Some(2) && said.contains("no [forms] section"), "{said}");
+}
+
+/// What participants are given is judged, and the camera that each side was really made with.
+#[test]
+fn finished_files_are_judged() {
+    let fixture = balanced();
+    fixture.succeed("bundle", &[]);
+    let faults = || -> Vec<(String, String, String)> {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"))
+            .args(["design", "check", "--json", "--results"])
+            .args([fixture.out(), &fixture.config()])
+            .output()
+            .unwrap();
+        let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let text = |fault: &serde_json::Value, key: &str| fault[key].as_str().unwrap().to_owned();
+        let all = found.as_array().unwrap().iter();
+        all.map(|f| (text(f, "rule"), text(f, "place"), text(f, "evidence"))).collect()
+    };
+    assert_eq!(faults(), []);
+    for folder in ["stimuli/pairs", "bundle/stimuli"] {
+        let folder = fixture.out().join(folder);
+        let file = folder.join(files(&folder).keys().next().unwrap());
+        let whole = std::fs::read(&file).unwrap();
+        let mut planted = whole.clone();
+        let end = gif_length(&whole) - 1;
+        planted.splice(end..end, *b"\x21\xfe\x05as_bi\x00");
+        planted.truncate(whole.len().max(end + 10));
+        std::fs::write(&file, planted).unwrap();
+        let found = faults();
+        assert!(found.len() == 1 && found[0].0 == "names-reveal", "{found:?}");
+        assert!(found[0].1 == file.display().to_string() && found[0].2.ends_with("names as_bi"), "{found:?}");
+        std::fs::write(&file, &whole).unwrap();
+        if folder.ends_with("bundle/stimuli") {
+            std::fs::write(&file, &whole[..whole.len() - 1]).unwrap();
+            let found = faults();
+            assert!(found.len() == 1 && found[0].2.contains(" bytes, "), "{found:?}");
+            std::fs::write(&file, &whole).unwrap();
+        }
+    }
+    fixture.edit("camera = { distance = 1.2,", "camera = { distance = 1.21,");
+    fixture.succeed("turntable", &["--only", "ss_bu"]);
+    let found = faults();
+    assert!(
+        !found.is_empty() && found.iter().all(|f| f.0 == "stimuli-differ" && f.2.starts_with("camera")),
+        "{found:?}"
+    );
+}
+
+/// Faults are said and nothing is bundled, unless they are accepted; a study without forms is named.
+#[test]
+fn a_faulty_design_is_not_bundled() {
+    let fixture = balanced();
+    fixture.edit("sides = \"balanced\"", "sides = \"as-listed\"");
+    for verb in ["bundle", "serve"] {
+        let Run { code, stderr, .. } = fixture.run(verb, &[]);
+        assert!(
+            code == Some(1) && stderr.contains("side-confounded") && stderr.contains("--with-faults"),
+            "{stderr}"
+        );
+        assert!(!fixture.out().exists(), "{verb}");
+    }
+    let said = fixture.succeed("bundle", &["--with-faults"]).stderr;
+    assert!(said.contains("side-confounded") && fixture.out().join("bundle/forms.json").is_file(), "{said}");
+
+    let quick = Fixture::new();
+    let Run { code, stderr, .. } = quick.run("bundle", &[]);
+    assert!(code == Some(2) && stderr.contains("study.toml: no [forms] section"), "{stderr}");
+}
+
+/// Turntables that are wider than high are so in the contact sheet.
+#[test]
+fn the_contact_sheet_keeps_proportions() {
+    let height = |edit: bool| {
+        let fixture = balanced();
+        if edit {
+            fixture.edit_with(|text| {
+                let line = text.lines().find(|line| line.starts_with("height = ")).unwrap();
+                let half = line["height = ".len()..].parse::<u32>().unwrap() / 2;
+                text.replacen(line, &format!("height = {half}"), 1)
+            });
+        }
+        fixture.succeed("bundle", &[]);
+        let png = std::fs::read(fixture.out().join("key/contact_sheet.png")).unwrap();
+        // The header's height, after the signature, the chunk's own header and the width.
+        u32::from_be_bytes(png[20..24].try_into().unwrap())
+    };
+    let (square, flat) = (height(false), height(true));
+    assert!((square - flat) % 64 == 0 && square - flat >= 5 * 64, "{square} and {flat}");
+}
+
+#[test]
+fn the_smallest_study_is_sound_and_says_its_power() {
+    let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/two-methods.toml");
+    let out = tempfile::tempdir().unwrap();
+    let run = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
+        let output =
+            command.args(["design", arguments[0]]).arg(&config).args(&arguments[1..]).output().unwrap();
+        (
+            output.status.code(),
+            String::from_utf8(output.stdout).unwrap(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    };
+    let (code, said, _) = run(&["check", "--results", out.path().to_str().unwrap()]);
+    assert!(code == Some(0) && said.ends_with(": no faults\n"), "{said}");
+
+    let folder = out.path().to_str().unwrap();
+    let (code, said, _) = run(&["power", "--studies", "200", "--participants", "48,6", "--out", folder]);
+    assert!(code == Some(0) && said.contains("N = 6 | N = 48"), "{said}");
+    let table = std::fs::read_to_string(out.path().join("power.csv")).unwrap();
+    let powers = |n: &str| -> Vec<f64> {
+        let rows = table.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
+        rows.filter(|row| row[5] == n && row[4] == "0.77").map(|row| row[6].parse().unwrap()).collect()
+    };
+    // Two contrasts, all answers and within the only lattice, and two questions.
+    assert_eq!(powers("6").len(), 4);
+    assert!(powers("6").iter().zip(powers("48")).all(|(few, many)| few + 0.3 < many), "{table}");
+    assert!(out.path().join("power.png").is_file() && out.path().join("power.svg").is_file());
+    for (wrong, place) in
+        [("--shares=1.5", "above 0 and below 1"), ("--person-sd=-1", "0 to 100"), ("--studies=3", "100..")]
+    {
+        let (code, _, said) = run(&["power", wrong]);
+        assert!(code == Some(2) && said.contains(place), "{said}");
+    }
+}
+
+/// What can be told of a file without looking at its pictures tells nothing of what it shows.
+#[test]
+fn a_bundle_tells_nothing_of_the_key() {
+    let fixture = balanced();
+    fixture.succeed("bundle", &[]);
+    let bundle = fixture.out().join("bundle");
+    let made = files(&bundle);
+    assert_eq!(made.len(), 5 + 2 * 27 + 2, "{:?}", made.keys());
+    let key = std::fs::read_to_string(fixture.out().join("key/stimuli.csv")).unwrap();
+    let shown: BTreeMap<&str, &str> =
+        key.lines().filter_map(|line| line.strip_prefix("stimuli/pairs/")?.split_once(',')).collect();
+    let mut stimuli: Vec<&String> = made.keys().filter(|path| path.ends_with(".gif")).collect();
+    let file = |path: &str| std::fs::metadata(bundle.join(path)).unwrap();
+    let sizes: BTreeSet<u64> = stimuli.iter().map(|path| file(path).len()).collect();
+    assert_eq!(sizes.len(), 1, "a smoother surface makes a smaller file");
+    // Nor does trimming or packing a file bring its own size back: the pictures themselves can be packed by 0 to 3 %, the
+    // noise after them not at all.
+    let pad = |path: &&String| made[*path].len() - gif_length(&made[*path]);
+    assert!(stimuli.iter().map(pad).all(|pad| pad >= 64));
+    let trimmed = |path: &&String| made[*path].iter().rposition(|byte| *byte != 0).unwrap() + 1;
+    assert!(stimuli.iter().all(|path| trimmed(path) + 4 > made[*path].len()));
+    let packed = |path: &&String| {
+        let mut packer = flate2::write::DeflateEncoder::new(Vec::new(), flate2::Compression::default());
+        packer.write_all(&made[*path]).unwrap();
+        packer.finish().unwrap().len()
+    };
+    let packed: Vec<usize> = stimuli.iter().map(packed).collect();
+    let (least, most) = (*packed.iter().min().unwrap(), *packed.iter().max().unwrap());
+    let own = stimuli.iter().map(|path| gif_length(&made[*path]));
+    let (shortest, longest) = (own.clone().min().unwrap(), own.max().unwrap());
+    assert!(shortest * 10 < longest * 9, "{shortest} to {longest}: there is something to hide");
+    assert!(least * 100 > most * 97, "packed {least} to {most}");
+    assert!(stimuli.is_sorted());
+    stimuli.sort_by_key(|path| file(path).modified().unwrap());
+    assert!(stimuli.is_sorted(), "files are as old as their names say");
+    for path in &stimuli {
+        assert_eq!(extensions(&made[*path]), ["NETSCAPE2.0"], "{path}");
+    }
+    // The order of names against the order of the study: Spearman's rho of 56 is within 0.4 with probability 0.998.
+    let place = |path: &&String| {
+        key.lines().position(|line| line.contains(path.rsplit('/').next().unwrap())).unwrap()
+    };
+    let places: Vec<f64> = stimuli.iter().map(|path| place(path) as f64 - 19.0).collect();
+    let mean = (places.len() - 1) as f64 / 2.0;
+    let products: f64 = places.iter().enumerate().map(|(i, place)| (i as f64 - mean) * (place - mean)).sum();
+    let squares: f64 = (0..places.len()).map(|i| (i as f64 - mean).powi(2)).sum();
+    assert!((products / squares).abs() < 0.4, "{}", products / squares);
+
+    let text = String::from_utf8(made["forms.json"].clone()).unwrap();
+    for id in shown.values().flat_map(|line| line.split(',')).filter(|id| id.contains('_')) {
+        assert!(!text.contains(id), "{id}");
+    }
+    let forms: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(forms["forms"].as_array().unwrap().len(), 36);
+    let of_form = |form: &serde_json::Value| form["questions"].as_array().unwrap().clone();
+    for stimulus in forms["forms"].as_array().unwrap().iter().flat_map(of_form) {
+        assert!(made.contains_key(&format!("stimuli/{}.gif", stimulus.as_str().unwrap())), "{stimulus}");
+    }
+    let again = fixture.succeed("bundle", &[]);
+    assert!(!again.stderr.contains(" made, "), "{}", again.stderr);
+}
+
+#[test]
+fn videos_are_ffmpegs_and_said_to_be_missing_where_it_is() {
+    let fixture = Fixture::new();
+    let mut command = fixture.command("pairs");
+    let output = command.arg("--mp4").env("PATH", fixture.folder()).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("no ffmpeg on the PATH"), "{said}");
+    assert!(!fixture.out().exists(), "nothing is made before");
+
+    // A stand-in that keeps how many bytes it was sent, and writes that as the video.
+    #[cfg(unix)]
+    {
+        let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\nwc -c > \"$last\"\n";
+        let path = with_ffmpeg(&fixture, script);
+        let output = fixture.command("pairs").arg("--mp4").env("PATH", path).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let made = files(fixture.out());
+        let videos: Vec<&Vec<u8>> =
+            made.iter().filter(|(path, _)| path.ends_with(".mp4")).map(|(_, v)| v).collect();
+        assert_eq!(videos.len(), 27);
+        let study = std::fs::read_to_string(fixture.config()).unwrap();
+        let number = |key: &str| -> u64 {
+            let line = study.lines().find_map(|line| line.strip_prefix(&format!("{key} = "))).unwrap();
+            line.parse().unwrap()
+        };
+        let sent = 2 * number("width") * number("height") * 3 * number("frames");
+        let read = |video: &Vec<u8>| String::from_utf8_lossy(video).trim().parse::<u64>().unwrap();
+        assert!(videos.iter().all(|video| read(video) == sent), "{sent}");
+    }
+}
+
+/// A pair that is enlarged already is not enlarged again, and no player has to guess its colours.
+#[cfg(unix)]
+#[test]
+fn a_video_has_twice_the_size_of_its_turntables_and_says_its_colours() {
+    for (scale, filter) in [(1, "scale=iw*2:ih*2:"), (2, "scale=iw*1:ih*1:")] {
+        let fixture = Fixture::new();
+        fixture.edit("pair_scale = 1", &format!("pair_scale = {scale}"));
+        let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncat > /dev/null\necho \"$@\" > \"$last\"\n";
+        let path = with_ffmpeg(&fixture, script);
+        let output = fixture.command("pairs").arg("--mp4").env("PATH", path).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let made = files(fixture.out());
+        let asked = made.iter().find(|(path, _)| path.ends_with(".mp4")).unwrap().1;
+        let asked = String::from_utf8_lossy(asked);
+        for part in [
+            filter,
+            "out_color_matrix=bt709",
+            "-colorspace bt709",
+            "-color_primaries bt709",
+            "-color_trc bt709",
+            "-color_range tv",
+        ] {
+            assert!(asked.contains(part), "{part} is not in {asked}");
+        }
+    }
+}
+
+/// What ffmpeg made, each of another length, is in the bundle: of one length, as old as its name says.
+#[cfg(unix)]
+#[test]
+fn a_bundles_videos_tell_nothing_either() {
+    let fixture = balanced();
+    let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncksum > \"$last\"\n\
+        head -c $(($$ % 50)) /dev/zero >> \"$last\"\n";
+    let path = with_ffmpeg(&fixture, script);
+    let output = fixture.command("bundle").arg("--mp4").env("PATH", path).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let made = files(&fixture.out().join("stimuli/pairs"));
+    let own: BTreeMap<&String, &Vec<u8>> = made.iter().filter(|(name, _)| name.ends_with(".mp4")).collect();
+    assert!(own.len() == 56 && own.values().map(|video| video.len()).collect::<BTreeSet<_>>().len() > 1);
+    let folder = fixture.out().join("bundle/stimuli");
+    let given = files(&folder);
+    let length = given[own.keys().next().unwrap().as_str()].len();
+    for (name, video) in own {
+        let padded = &given[name];
+        assert!(padded.len() == length && padded.starts_with(video), "{name}");
+        let free = &padded[video.len()..];
+        assert_eq!(free[..4], (free.len() as u32).to_be_bytes(), "{name}");
+        assert!(free[4..8] == *b"free" && free[8..].iter().any(|byte| *byte != 0), "{name}");
+    }
+    let mut by_age: Vec<&String> = given.keys().collect();
+    by_age.sort_by_key(|name| std::fs::metadata(folder.join(name)).unwrap().modified().unwrap());
+    assert!(by_age.is_sorted());
+    // Not asked for, they go.
+    fixture.succeed("bundle", &[]);
+    assert!(files(&folder).keys().all(|name| name.ends_with(".gif")));
+}
+
+/// Puts a shell script in ffmpeg's place; returns the PATH that finds it first.
+#[cfg(unix)]
+fn with_ffmpeg(fixture: &Fixture, script: &str) -> String {
+    use std::os::unix::fs::PermissionsExt;
+    let program = fixture.folder().join("ffmpeg");
+    std::fs::write(&program, script).unwrap();
+    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    format!("{}:{}", fixture.folder().display(), std::env::var("PATH").unwrap())
+}
+
+/// The text extensions of a GIF: comments, plain texts, and the names of application extensions.
+fn extensions(gif: &[u8]) -> Vec<String> {
+    blocks(gif).0
+}
+
+/// Up to and with the trailer.
+fn gif_length(gif: &[u8]) -> usize {
+    blocks(gif).1
+}
+
+fn blocks(gif: &[u8]) -> (Vec<String>, usize) {
+    const GRAPHIC_CONTROL: u8 = 0xf9;
+    let table = |flags: u8| if flags & 0x80 == 0 { 0 } else { 3 << ((flags & 7) + 1) };
+    let mut at = 13 + table(gif[10]);
+    let mut found = Vec::new();
+    loop {
+        let label = match gif[at] {
+            0x21 => {
+                at += 2;
+                Some(gif[at - 1])
+            }
+            0x2c => {
+                at += 10 + table(gif[at + 9]) + 1;
+                None
+            }
+            0x3b => return (found, at + 1),
+            other => panic!("block {other:#x} at {at}"),
+        };
+        let mut first = String::new();
+        while gif[at] != 0 {
+            let size = gif[at] as usize;
+            if first.is_empty() {
+                first = String::from_utf8_lossy(&gif[at + 1..at + 1 + size]).into_owned();
+            }
+            at += 1 + size;
+        }
+        at += 1;
+        if label.is_some_and(|label| label != GRAPHIC_CONTROL) {
+            found.push(first);
+        }
+    }
+}
