@@ -11,8 +11,9 @@ help: ## list these entries
 study: bunny ## regenerate every mesh, animation, table and figure of the paper into results/paper/
 	$(ISOSTUDY) study configs/paper.toml
 
-test: bunny ## run every test
+test: bunny ## run every test; those in a browser need Node and chromium and say so where there is none
 	cargo test --release --locked --workspace
+	scripts/test-browser.sh
 
 test-long: bunny ## run the tests that take minutes: 74,640 volumes against the manifold guarantee, and more
 	cargo test --release --locked --workspace -- --ignored

@@ -1,18 +1,21 @@
 #!/usr/bin/env bash
 # The questionnaire in headless Chromium. Needs Node with npm, and a chromium on the PATH (or CHROMIUM=path).
-# Without a browser nothing is tested, which is said loudly; BROWSER_REQUIRED=1 makes that an error.
+# Without them nothing is tested, which is said loudly; BROWSER_REQUIRED=1 makes that an error.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 CHROMIUM=${CHROMIUM:-$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)}
-if [ -z "$CHROMIUM" ] || ! command -v node >/dev/null || ! command -v npm >/dev/null; then
-  echo "SKIPPED: NO BROWSER OR NO NODE - the questionnaire's page was not tested" >&2
+skip() {
+  echo "SKIPPED: $1 - the questionnaire's page was not tested in a browser" >&2
   exit "${BROWSER_REQUIRED:-0}"
-fi
+}
+[ -n "$CHROMIUM" ] || skip "NO CHROMIUM"
+{ command -v node && command -v npm; } >/dev/null || skip "NO NODE OR NO NPM"
 MODULES=${CARGO_TARGET_DIR:-$PWD/target}/browser
 mkdir -p "$MODULES"
 [ -f "$MODULES/package.json" ] || echo '{ "private": true }' >"$MODULES/package.json"
-npm install --prefix "$MODULES" --silent --no-audit --no-fund --no-save playwright-core@1.64.1 axe-core@4.14.1
+npm install --prefix "$MODULES" --silent --no-audit --no-fund --no-save playwright-core@1.64.1 axe-core@4.14.1 ||
+  skip "NPM COULD NOT INSTALL playwright-core AND axe-core"
 cargo build --release --locked --quiet --package cli
 export ISOSTUDY=${CARGO_TARGET_DIR:-$PWD/target}/release/isostudy CHROMIUM MODULES
 node --test tests/browser/questionnaire.mjs
