@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// Runs the command on a file of answers that no study explains.
-fn analyse(arguments: &[&str]) -> Run {
+pub(crate) fn analyse(arguments: &[&str]) -> Run {
     let output =
         Command::new(env!("CARGO_BIN_EXE_isostudy")).arg("analyse").args(arguments).output().unwrap();
     Run {

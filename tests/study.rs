@@ -3,6 +3,7 @@
 mod answers;
 mod asking;
 mod fixture;
+mod football;
 mod page;
 
 use fixture::{Fixture, Run, files, without_measured_times};

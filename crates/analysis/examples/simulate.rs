@@ -29,13 +29,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut file = std::io::BufWriter::new(std::fs::File::create(out)?);
     let header: Vec<&str> = study.comparisons.iter().map(|c| c.question.as_str()).collect();
     writeln!(file, "{}", header.join(","))?;
-    for row in ballots.chunk_by(|a, b| a.participant == b.participant) {
+    for row in ballots.chunk_by(|a, b| a.participant() == b.participant()) {
         let cell = |outcome| match outcome {
             Outcome::Left => "L",
             Outcome::Tie => "NP",
             Outcome::Right => "R",
         };
-        let cells: Vec<&str> = row.iter().map(|ballot| cell(ballot.outcome)).collect();
+        let cells: Vec<&str> = row.iter().map(|ballot| cell(ballot.outcome())).collect();
         writeln!(file, "{}", cells.join(","))?;
     }
     Ok(file.flush()?)

@@ -26,15 +26,16 @@ pub fn ballots(study: &Study, answers: &Responses) -> Vec<Ballot> {
         .answers
         .iter()
         .filter(|answer| is_asked(study, answer))
-        .map(|answer| Ballot {
-            participant: answer.participant as usize,
-            question: answer.question as usize,
-            left: items[answer.left as usize],
-            right: items[answer.right as usize],
-            outcome: outcome(answer.choice),
+        .map(|answer| {
+            Ballot::new(
+                answer.participant as usize,
+                answer.question as usize,
+                [items[answer.left as usize], items[answer.right as usize]],
+                outcome(answer.choice),
+            )
         })
         .collect();
-    ballots.sort_by_key(|ballot| ballot.question);
+    ballots.sort_by_key(|ballot| ballot.question());
     ballots
 }
 
@@ -43,11 +44,7 @@ pub fn ballots(study: &Study, answers: &Responses) -> Vec<Ballot> {
 pub fn as_declared(study: &Study, ballots: &[Ballot]) -> Vec<Ballot> {
     let methods = study.methods();
     let declared = |b: &Ballot| {
-        if methods[b.left] == study.comparisons[b.question].left.method {
-            *b
-        } else {
-            Ballot { left: b.right, right: b.left, outcome: b.outcome.swapped(), ..*b }
-        }
+        if methods[b.left()] == study.comparisons[b.question()].left.method { *b } else { b.turned() }
     };
     ballots.iter().map(declared).collect()
 }
@@ -83,24 +80,24 @@ pub fn ballot_groups(study: &Study, ballots: &[Ballot]) -> Vec<BallotGroup> {
         .enumerate()
         .map(|(g, group)| {
             let place = |method| group.members.iter().position(|&m| m == method);
-            let own = ballots.iter().filter(|b| study.comparisons[b.question].group == g);
+            let own = ballots.iter().filter(|b| study.comparisons[b.question()].group == g);
             let items = group.members.iter().map(Method::to_string).collect();
             BallotGroup { name: group.id.clone(), items, ballots: relabel(own, |item| place(methods[item])) }
         })
         .collect();
     let one_group = |ballots: &[Ballot]| {
-        let group = |b: &Ballot| study.comparisons[b.question].group;
+        let group = |b: &Ballot| study.comparisons[b.question()].group;
         ballots.iter().all(|b| group(b) == group(&ballots[0]))
     };
     let code = |code: char| code.to_ascii_uppercase().to_string();
     let clusterings = &study.file.clusterings;
-    let same = |b: &&Ballot| methods[b.left].arrangement == methods[b.right].arrangement;
+    let same = |b: &&Ballot| methods[b.left()].arrangement == methods[b.right()].arrangement;
     let place = |item: usize| clusterings.iter().position(|&c| c == methods[item].clustering);
     let items = clusterings.iter().map(|c| code(c.code())).collect();
     let pooled = relabel(ballots.iter().filter(same), place);
     let clustering = BallotGroup { name: "clustering".into(), items, ballots: pooled };
     let arrangements = &study.file.arrangements;
-    let same = |b: &&Ballot| methods[b.left].clustering == methods[b.right].clustering;
+    let same = |b: &&Ballot| methods[b.left()].clustering == methods[b.right()].clustering;
     let place = |item: usize| arrangements.iter().position(|&a| a == methods[item].arrangement);
     let items = arrangements.iter().map(|a| code(a.code())).collect();
     let pooled = relabel(ballots.iter().filter(same), place);
@@ -115,7 +112,7 @@ fn relabel<'a>(
     ballots: impl Iterator<Item = &'a Ballot>,
     place: impl Fn(usize) -> Option<usize>,
 ) -> Vec<Ballot> {
-    let renamed = |b: &Ballot| Some(Ballot { left: place(b.left)?, right: place(b.right)?, ..*b });
+    let renamed = |b: &Ballot| Some(b.with_items([place(b.left())?, place(b.right())?]));
     ballots.filter_map(renamed).collect()
 }
 
@@ -150,8 +147,8 @@ mod tests {
             assert_eq!((*name, sorted, *ballots), (want.0, wanted, want.2));
         }
         // Q7 shows bu on the left of su; sixteen of eighteen chose it.
-        let own = groups[2].ballots.iter().filter(|b| b.question == 6 && b.outcome == Outcome::Left);
+        let own = groups[2].ballots.iter().filter(|b| b.question() == 6 && b.outcome() == Outcome::Left);
         assert_eq!(own.clone().count(), 16);
-        assert!(own.clone().all(|b| groups[2].items[b.left] == "bu" && groups[2].items[b.right] == "su"));
+        assert!(own.clone().all(|b| groups[2].items[b.left()] == "bu" && groups[2].items[b.right()] == "su"));
     }
 }

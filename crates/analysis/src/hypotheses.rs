@@ -116,8 +116,8 @@ pub(crate) fn of_study(study: &Study, ballots: &[Ballot]) -> Vec<Hypothesis> {
     };
     let declared = as_declared(study, ballots);
     let of_question = |(q, comparison): (usize, &design::Comparison)| {
-        let own = declared.iter().filter(|b| b.question == q);
-        let test = ContrastTest::of(own.map(|b| (b.participant, 1, b.outcome)));
+        let own = declared.iter().filter(|b| b.question() == q);
+        let test = ContrastTest::of(own.map(|b| (b.participant(), 1, b.outcome())));
         let contrast = format!("{}-{}", comparison.left.method, comparison.right.method);
         Hypothesis::new("questions", contrast, &comparison.question, Subject::Question(q), test)
     };
@@ -135,9 +135,9 @@ pub(crate) fn of_groups(groups: &[BallotGroup]) -> Vec<Hypothesis> {
     for group in groups {
         for (i, first) in group.items.iter().enumerate() {
             for (j, second) in group.items.iter().enumerate().skip(i + 1) {
-                let weight = |b: &Ballot| match (b.left, b.right) {
-                    (l, r) if (l, r) == (i, j) => Some((b.participant, 1, b.outcome)),
-                    (l, r) if (l, r) == (j, i) => Some((b.participant, -1, b.outcome)),
+                let weight = |b: &Ballot| match (b.left(), b.right()) {
+                    (l, r) if (l, r) == (i, j) => Some((b.participant(), 1, b.outcome())),
+                    (l, r) if (l, r) == (j, i) => Some((b.participant(), -1, b.outcome())),
                     _ => None,
                 };
                 let test = ContrastTest::of(group.ballots.iter().filter_map(weight));

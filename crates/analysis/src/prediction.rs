@@ -65,7 +65,7 @@ impl Prediction {
     pub(crate) fn of(inputs: &Inputs<'_>, ballots: &[Ballot]) -> Option<Self> {
         let study = inputs.study;
         let meshes = MeshSet::of(inputs, Purpose::Stimulus);
-        let answered: BTreeSet<usize> = ballots.iter().map(|ballot| ballot.question).collect();
+        let answered: BTreeSet<usize> = ballots.iter().map(|ballot| ballot.question()).collect();
         let mut metrics = Vec::new();
         for metric in METRICS {
             let advantage = |(q, c): (usize, &design::Comparison)| {

@@ -111,13 +111,12 @@ impl<'a> Recorded<'a> {
 }
 
 fn ballot(answer: &Answer, item: impl Fn(u32) -> usize) -> Ballot {
-    Ballot {
-        participant: answer.participant as usize,
-        question: answer.question as usize,
-        left: item(answer.left),
-        right: item(answer.right),
-        outcome: outcome(answer.choice),
-    }
+    Ballot::new(
+        answer.participant as usize,
+        answer.question as usize,
+        [item(answer.left), item(answer.right)],
+        outcome(answer.choice),
+    )
 }
 
 fn circumstances<'a>(answers: impl Iterator<Item = &'a Answer> + Clone) -> Vec<Circumstances> {

@@ -80,11 +80,11 @@ struct Evidence<'a> {
 
 impl Evidence<'_> {
     fn participants(&self) -> usize {
-        self.ballots.iter().map(|b| b.participant).collect::<BTreeSet<_>>().len()
+        self.ballots.iter().map(|b| b.participant()).collect::<BTreeSet<_>>().len()
     }
 
     fn questions(&self) -> usize {
-        self.ballots.iter().map(|b| b.question).collect::<BTreeSet<_>>().len()
+        self.ballots.iter().map(|b| b.question()).collect::<BTreeSet<_>>().len()
     }
 
     /// Every hypothesis on some of the ballots.
@@ -92,12 +92,12 @@ impl Evidence<'_> {
         match self.study {
             Some(study) => hypotheses::of_study(study, ballots),
             None => {
-                let kept: BTreeSet<usize> = ballots.iter().map(|b| b.participant).collect();
+                let kept: BTreeSet<usize> = ballots.iter().map(|b| b.participant()).collect();
                 let some = |group: &BallotGroup| BallotGroup {
                     ballots: group
                         .ballots
                         .iter()
-                        .filter(|b| kept.contains(&b.participant))
+                        .filter(|b| kept.contains(&b.participant()))
                         .copied()
                         .collect(),
                     ..group.clone()

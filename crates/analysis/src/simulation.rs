@@ -132,7 +132,7 @@ pub fn simulate(
             let ahead =
                 population.advantage((left, right), shown.scene) + deviations[left] - deviations[right];
             let outcome = draw(davidson(ahead, population.nu), stream);
-            ballots.push(Ballot { participant, question, left, right, outcome });
+            ballots.push(Ballot::new(participant, question, [left, right], outcome));
         }
     }
     ballots

@@ -54,7 +54,7 @@ pub fn open_groups(answers: &Responses) -> Vec<BallotGroup> {
             })
         });
         let (participant, question) = (answer.participant as usize, answer.question as usize);
-        group.ballots.push(Ballot { participant, question, left, right, outcome: outcome(answer.choice) });
+        group.ballots.push(Ballot::new(participant, question, [left, right], outcome(answer.choice)));
     }
     groups
 }

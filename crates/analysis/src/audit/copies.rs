@@ -28,13 +28,13 @@ pub(super) fn probe(ballots: &[Ballot]) -> Report {
     sorted.sort_unstable();
     let mut people: Vec<Range<usize>> = Vec::new();
     let mut start = 0;
-    for of in sorted.chunk_by(|a, b| a.participant == b.participant) {
+    for of in sorted.chunk_by(|a, b| a.participant() == b.participant()) {
         people.push(start..start + of.len());
         start += of.len();
     }
     people.retain(|of| of.len() >= FEWEST_ANSWERS);
-    let form = |of: &Range<usize>| sorted[of.clone()].iter().map(|b| (b.question, b.left, b.right));
-    let row = |of: &Range<usize>| sorted[of.clone()].iter().map(|b| b.outcome);
+    let form = |of: &Range<usize>| sorted[of.clone()].iter().map(|b| (b.question(), b.left(), b.right()));
+    let row = |of: &Range<usize>| sorted[of.clone()].iter().map(|b| b.outcome());
     // Stable: people of one form stay in their order.
     people.sort_by(|a, b| form(a).cmp(form(b)));
     let mut seen = Seen { least: f64::INFINITY, ..Seen::default() };
@@ -53,7 +53,7 @@ pub(super) fn probe(ballots: &[Ballot]) -> Report {
             seen.same += (twins.len() * (twins.len() - 1) / 2) as u64;
             seen.least = seen.least.min(pairs * chances.of_row(&sorted[twins[0].clone()], twins.len()));
             let names: Vec<String> =
-                twins.iter().map(|of| (sorted[of.start].participant + 1).to_string()).collect();
+                twins.iter().map(|of| (sorted[of.start].participant() + 1).to_string()).collect();
             seen.copies.push(format!("respondents {}", list(&names)));
         }
     }
@@ -128,7 +128,7 @@ impl Chances {
         let n = people[0].len();
         let mut counts = vec![[0_u64; 3]; n];
         for of in people {
-            counts.iter_mut().zip(&sorted[of.clone()]).for_each(|(c, b)| c[b.outcome.index()] += 1);
+            counts.iter_mut().zip(&sorted[of.clone()]).for_each(|(c, b)| c[b.outcome().index()] += 1);
         }
         let m = people.len() as u64;
         let independent: f64 = counts.iter().map(|c| same_answer(c, m)).map(|p| p * (1.0 - p)).sum();
@@ -146,7 +146,9 @@ impl Chances {
         let extra = gave as u64 - 1;
         let rest = (self.people - extra) as f64;
         self.joint(
-            row.iter().zip(&self.counts).map(|(b, counts)| (counts[b.outcome.index()] - extra) as f64 / rest),
+            row.iter()
+                .zip(&self.counts)
+                .map(|(b, counts)| (counts[b.outcome().index()] - extra) as f64 / rest),
         )
     }
 
@@ -171,7 +173,7 @@ fn same_answer(counts: &[u64; 3], people: u64) -> f64 {
 fn variance_of_overlaps(people: &[Range<usize>], sorted: &[Ballot]) -> f64 {
     let overlap = |a: usize, b: usize| {
         let (a, b) = (&sorted[people[a].clone()], &sorted[people[b].clone()]);
-        a.iter().zip(b).filter(|(a, b)| a.outcome == b.outcome).count()
+        a.iter().zip(b).filter(|(a, b)| a.outcome() == b.outcome()).count()
     };
     let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
     let m = people.len();

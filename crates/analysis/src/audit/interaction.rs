@@ -53,16 +53,16 @@ fn compare(
     // By participant and scene: answers for the first, neither, for the second.
     let mut seen: Vec<[u64; 3]> = Vec::new();
     let mut shown = vec![false; scenes];
-    for ballot in group.ballots.iter().filter(|b| !suspects.contains(&b.question)) {
-        let outcome = match (ballot.left, ballot.right) {
-            sides if sides == (first, second) => ballot.outcome,
-            sides if sides == (second, first) => ballot.outcome.swapped(),
+    for ballot in group.ballots.iter().filter(|b| !suspects.contains(&b.question())) {
+        let outcome = match (ballot.left(), ballot.right()) {
+            sides if sides == (first, second) => ballot.outcome(),
+            sides if sides == (second, first) => ballot.outcome().swapped(),
             _ => continue,
         };
-        let scene = audited.scenes[ballot.question];
-        let place = ballot.participant * scenes + scene;
+        let scene = audited.scenes[ballot.question()];
+        let place = ballot.participant() * scenes + scene;
         if place >= seen.len() {
-            seen.resize((ballot.participant + 1) * scenes, [0; 3]);
+            seen.resize((ballot.participant() + 1) * scenes, [0; 3]);
         }
         seen[place][outcome.index()] += 1;
         shown[scene] = true;

@@ -13,8 +13,8 @@ pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSe
     if !audited.sides_recorded {
         return Report::not_answerable(Probe::Side, super::NO_SIDES);
     }
-    let controls = audited.ballots.iter().filter(|b| b.left == b.right);
-    let controls = ContrastTest::of(controls.map(|b| (b.participant, 1, b.outcome)));
+    let controls = audited.ballots.iter().filter(|b| b.left() == b.right());
+    let controls = ContrastTest::of(controls.map(|b| (b.participant(), 1, b.outcome())));
     let of_pairs = pull(audited, stimuli, suspects);
     let mut evidence = Vec::new();
     let mut p = Vec::new();
@@ -49,14 +49,14 @@ fn pull(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSet<usize>) ->
         .map(|(place, s)| (place, 0.5 * (s.orders[0].mean() + s.orders[1].mean())))
         .collect();
     let mut sums: Vec<(f64, f64)> = Vec::new();
-    for ballot in audited.ballots.iter().filter(|b| !suspects.contains(&b.question)) {
+    for ballot in audited.ballots.iter().filter(|b| !suspects.contains(&b.question())) {
         let place = stimuli.place(ballot, audited.scenes);
         let Some(middle) = place.and_then(|place| middles.get(&place)) else { continue };
-        if ballot.participant >= sums.len() {
-            sums.resize(ballot.participant + 1, (0.0, 0.0));
+        if ballot.participant() >= sums.len() {
+            sums.resize(ballot.participant() + 1, (0.0, 0.0));
         }
-        let towards = if ballot.left < ballot.right { 1.0 } else { -1.0 };
-        let (sum, n) = &mut sums[ballot.participant];
+        let towards = if ballot.left() < ballot.right() { 1.0 } else { -1.0 };
+        let (sum, n) = &mut sums[ballot.participant()];
         *sum += towards * (for_lower(ballot) - middle);
         *n += 1.0;
     }

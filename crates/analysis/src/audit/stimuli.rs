@@ -51,17 +51,17 @@ pub(super) struct Stimuli {
 impl Stimuli {
     pub(super) fn of(ballots: &[Ballot], scenes: &[usize]) -> Self {
         let mut stimuli = Self { places: BTreeMap::new(), all: Vec::new() };
-        for ballot in ballots.iter().filter(|b| b.left != b.right) {
+        for ballot in ballots.iter().filter(|b| b.left() != b.right()) {
             let next = stimuli.all.len();
             let place = *stimuli.places.entry(key(ballot, scenes)).or_insert(next);
             if place == next {
                 stimuli.all.push(Stimulus { questions: Vec::new(), orders: [Answers::default(); 2] });
             }
             let stimulus = &mut stimuli.all[place];
-            if !stimulus.questions.contains(&ballot.question) {
-                stimulus.questions.push(ballot.question);
+            if !stimulus.questions.contains(&ballot.question()) {
+                stimulus.questions.push(ballot.question());
             }
-            let answers = &mut stimulus.orders[usize::from(ballot.left > ballot.right)];
+            let answers = &mut stimulus.orders[usize::from(ballot.left() > ballot.right())];
             let x = for_lower(ballot);
             answers.n += 1.0;
             answers.sum += x;
@@ -82,11 +82,11 @@ impl Stimuli {
 }
 
 fn key(ballot: &Ballot, scenes: &[usize]) -> (usize, usize, usize) {
-    (scenes[ballot.question], ballot.left.min(ballot.right), ballot.left.max(ballot.right))
+    (scenes[ballot.question()], ballot.left().min(ballot.right()), ballot.left().max(ballot.right()))
 }
 
 /// 1 if the lower item was chosen, -1 if the other.
 pub(super) fn for_lower(ballot: &Ballot) -> f64 {
-    let sign = ballot.outcome.sign() as f64;
-    if ballot.left < ballot.right { sign } else { -sign }
+    let sign = ballot.outcome().sign() as f64;
+    if ballot.left() < ballot.right() { sign } else { -sign }
 }

@@ -56,8 +56,8 @@ fn planted_defects_are_found_with_their_place() {
 
 #[test]
 fn a_side_is_seen_in_controls_alone() {
-    let control = |participant, outcome| Ballot { participant, question: 0, left: 1, right: 1, outcome };
-    let shown = |participant| Ballot { participant, question: 1, left: 0, right: 1, outcome: Outcome::Tie };
+    let control = |participant, outcome| Ballot::new(participant, 0, [1, 1], outcome);
+    let shown = |participant| Ballot::new(participant, 1, [0, 1], Outcome::Tie);
     let mut ballots: Vec<Ballot> = (0..12).map(|participant| control(participant, Outcome::Right)).collect();
     ballots.extend((0..12).map(shown));
     let names = ["Q1".to_owned(), "Q2".to_owned()];

@@ -37,10 +37,10 @@ pub(super) fn by_object(study: &Study, ballots: &[Ballot]) -> Option<Draft> {
 
 fn block(study: &Study, ballots: &[Ballot], contrast: &Contrast) -> Option<Block> {
     let row = |object: Option<usize>| {
-        let inside = |b: &&Ballot| object.is_none_or(|o| study.comparisons[b.question].object == o);
+        let inside = |b: &&Ballot| object.is_none_or(|o| study.comparisons[b.question()].object == o);
         let own = ballots.iter().filter(inside);
         let weighted =
-            own.filter_map(|b| Some((b.participant, *contrast.weights.get(&b.question)?, b.outcome)));
+            own.filter_map(|b| Some((b.participant(), *contrast.weights.get(&b.question())?, b.outcome())));
         let test = ContrastTest::of(weighted);
         let [first, ties, second] = test.counts?;
         let cut = |i: Interval| Interval { low: i.low.max(-1.0), high: i.high.min(1.0) };

@@ -47,12 +47,12 @@ impl Better {
             Some(advantage) if advantage < 0.0 => Some(-1),
             _ => None,
         };
-        let weighted = |b: &Ballot| Some((b.participant, weight(b.question)?, b.outcome));
+        let weighted = |b: &Ballot| Some((b.participant(), weight(b.question())?, b.outcome()));
         let mut people: BTreeMap<usize, BTreeMap<usize, [u64; 2]>> = BTreeMap::new();
         for ballot in ballots {
-            let Some(weight) = weight(ballot.question) else { continue };
-            let of = people.entry(ballot.participant).or_default().entry(ballot.question).or_default();
-            match weight * ballot.outcome.sign() {
+            let Some(weight) = weight(ballot.question()) else { continue };
+            let of = people.entry(ballot.participant()).or_default().entry(ballot.question()).or_default();
+            match weight * ballot.outcome().sign() {
                 1 => of[0] += 1,
                 -1 => of[1] += 1,
                 _ => {}
@@ -109,7 +109,7 @@ mod tests {
     use crate::statistics::Outcome::{self, Left, Right, Tie};
 
     fn ballot(participant: usize, question: usize, outcome: Outcome) -> Ballot {
-        Ballot { participant, question, left: 0, right: 1, outcome }
+        Ballot::new(participant, question, [0, 1], outcome)
     }
 
     #[test]

@@ -24,9 +24,9 @@ impl HeldOut {
     /// `covariates` by question. `None` with fewer than two objects, if a fit has no estimate, or if an outcome that a fit
     /// never saw occurs on the object left out (its loss is infinite).
     pub(crate) fn of(study: &Study, covariates: &[Option<Vec<f64>>], ballots: &[Ballot]) -> Option<Self> {
-        let object = |b: &Ballot| study.comparisons[b.question].object;
+        let object = |b: &Ballot| study.comparisons[b.question()].object;
         let used: Vec<Ballot> =
-            ballots.iter().filter(|b| covariates[b.question].is_some()).copied().collect();
+            ballots.iter().filter(|b| covariates[b.question()].is_some()).copied().collect();
         let objects: BTreeSet<usize> = used.iter().map(object).collect();
         if objects.len() < 2 {
             return None;
@@ -37,15 +37,15 @@ impl HeldOut {
             let (own, others): (Vec<Ballot>, Vec<Ballot>) = used.iter().partition(|b| object(b) == left_out);
             let fit = regression(covariates, &others).ok()?;
             let ties =
-                others.iter().filter(|b| b.outcome == Outcome::Tie).count() as f64 / others.len() as f64;
+                others.iter().filter(|b| b.outcome() == Outcome::Tie).count() as f64 / others.len() as f64;
             let constant = [0.5 * (1.0 - ties), ties, 0.5 * (1.0 - ties)];
             let (mut hits, mut decided) = (0.0, 0.0);
             for ballot in &own {
-                let x = covariates[ballot.question].as_ref().expect("filtered above");
-                let sign = (fit.log_odds(x) * ballot.outcome.sign() as f64).partial_cmp(&0.0)?;
-                let place = (1 - ballot.outcome.sign()) as usize;
-                let person = people.entry(ballot.participant).or_default();
-                if ballot.outcome != Outcome::Tie {
+                let x = covariates[ballot.question()].as_ref().expect("filtered above");
+                let sign = (fit.log_odds(x) * ballot.outcome().sign() as f64).partial_cmp(&0.0)?;
+                let place = (1 - ballot.outcome().sign()) as usize;
+                let person = people.entry(ballot.participant()).or_default();
+                if ballot.outcome() != Outcome::Tie {
                     let hit = 0.5 + 0.5 * f64::from(sign as i8);
                     (hits, decided) = (hits + hit, decided + 1.0);
                     (person.hits, person.decided) = (person.hits + hit, person.decided + 1.0);

@@ -65,7 +65,7 @@ fn a_planted_metric_is_found() {
     }
     let mut ballots = ballots(&all.study, &all.answers);
     for ballot in &mut ballots {
-        let c = &all.study.comparisons[ballot.question];
+        let c = &all.study.comparisons[ballot.question()];
         let ratio = |id: &design::ConfigurationId| match id.method.clustering {
             Clustering::None => 5,
             Clustering::EdgeCollapse => 8,
@@ -76,8 +76,8 @@ fn a_planted_metric_is_found() {
             std::cmp::Ordering::Equal => Outcome::Tie,
             std::cmp::Ordering::Less => Outcome::Right,
         };
-        let slip = ballot.question == 9 * (ballot.participant % 3) + ballot.participant % 6;
-        ballot.outcome = if slip { rounder.swapped() } else { rounder };
+        let slip = ballot.question() == 9 * (ballot.participant() % 3) + ballot.participant() % 6;
+        *ballot = ballot.with_outcome(if slip { rounder.swapped() } else { rounder });
     }
     let prediction = Prediction::of(&all.inputs(), &ballots).unwrap();
     let found = named(&prediction, "radius_ratio");
@@ -100,13 +100,13 @@ fn nothing_measured_or_nothing_answered_predicts_nothing() {
     let bare = Inputs { meshes: &[], ..all.inputs() };
     assert!(Prediction::of(&bare, &ballots).is_none());
     // One object: a fit, but nothing to judge it on.
-    let sphere: Vec<Ballot> = ballots.iter().filter(|b| b.question < 9).copied().collect();
+    let sphere: Vec<Ballot> = ballots.iter().filter(|b| b.question() < 9).copied().collect();
     let prediction = Prediction::of(&all.inputs(), &sphere).unwrap();
     assert_eq!((prediction.pairs, prediction.independent), (9, 5));
     let found = named(&prediction, "triangles");
     assert!(found.held_out.is_none() && found.coefficient.is_ok());
     // Only ties: counts, and no coefficient.
-    let ties: Vec<Ballot> = ballots.iter().map(|b| Ballot { outcome: Outcome::Tie, ..*b }).collect();
+    let ties: Vec<Ballot> = ballots.iter().map(|b| b.with_outcome(Outcome::Tie)).collect();
     let prediction = Prediction::of(&all.inputs(), &ties).unwrap();
     let found = named(&prediction, "triangles");
     assert_eq!(found.coefficient, Err(FitError::OnlyTies));

@@ -57,7 +57,7 @@ fn consistency(evidence: &Evidence<'_>) -> Option<Finding> {
             for object in 0..study.file.objects.len() {
                 for group in 0..study.groups.len() {
                     let inside = |b: &&Ballot| {
-                        let c = &study.comparisons[b.question];
+                        let c = &study.comparisons[b.question()];
                         c.object == object && c.group == group
                     };
                     let own: Vec<Ballot> = evidence.ballots.iter().filter(inside).copied().collect();
@@ -190,7 +190,7 @@ fn without(evidence: &Evidence<'_>, left_out: &[usize]) -> Finding {
     let kept: Vec<Ballot> = evidence
         .ballots
         .iter()
-        .filter(|b| left_out.binary_search(&b.participant).is_err())
+        .filter(|b| left_out.binary_search(&b.participant()).is_err())
         .copied()
         .collect();
     let again = evidence.tested(&kept);

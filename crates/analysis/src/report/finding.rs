@@ -2,7 +2,7 @@
 
 use super::words::{against, capital, counted, interval, number, p};
 use crate::hypotheses::{ALPHA, Conclusion, Hypothesis};
-use crate::interval::Interval;
+use crate::interval::{Interval, unanimous};
 use crate::statistics::MARGIN;
 use crate::statistics::contrast::ContrastTest;
 
@@ -142,7 +142,8 @@ pub(super) fn score(test: &ContrastTest, towards_first: bool) -> String {
         true => cut(i.low, i.high),
         false => cut(-i.high, -i.low),
     });
-    let within = turned.map_or(people.clone(), |i| format!("95 % t interval {}, {people}", interval(i, 2)));
+    let kind = if unanimous(&test.scores).is_some() { "interval" } else { "t interval" };
+    let within = turned.map_or(people.clone(), |i| format!("95 % {kind} {}, {people}", interval(i, 2)));
     format!("Mean score {} ({within})", number(sign * test.mean, 2))
 }
 

@@ -179,9 +179,12 @@ fn on_and_off(
 ) -> Option<(ContrastTest, ContrastTest)> {
     let all = contrasts(study).into_iter().find(|c| c.levels == levels && c.over == Over::All)?;
     let of = |on: bool| {
-        let weight = |b: &&crate::statistics::Ballot| (study.comparisons[b.question].object == object) == on;
+        let weight =
+            |b: &&crate::statistics::Ballot| (study.comparisons[b.question()].object == object) == on;
         let own = evidence.ballots.iter().filter(weight);
-        ContrastTest::of(own.filter_map(|b| Some((b.participant, *all.weights.get(&b.question)?, b.outcome))))
+        ContrastTest::of(
+            own.filter_map(|b| Some((b.participant(), *all.weights.get(&b.question())?, b.outcome()))),
+        )
     };
     Some((of(true), of(false)))
 }

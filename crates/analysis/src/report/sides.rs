@@ -29,10 +29,10 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
 
 fn side(evidence: &Evidence<'_>) -> Vec<Finding> {
     let mut counts = [0_u64; 3];
-    evidence.ballots.iter().for_each(|b| counts[b.outcome.index()] += 1);
+    evidence.ballots.iter().for_each(|b| counts[b.outcome().index()] += 1);
     let [left, none, right] = counts;
     let totals = format!("{left} answers went left, {right} right and {none} to neither");
-    let items = evidence.ballots.iter().map(|b| b.left.max(b.right) + 1).max().unwrap_or(0);
+    let items = evidence.ballots.iter().map(|b| b.left().max(b.right()) + 1).max().unwrap_or(0);
     let mut designs: BTreeMap<&str, (SideDesign, &[Ballot], usize)> = BTreeMap::new();
     for group in evidence.groups {
         let pairs = Pairs::of(group.items.len(), &group.ballots);

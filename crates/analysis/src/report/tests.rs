@@ -7,8 +7,8 @@ fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'stati
     let study = fixture::study();
     let ballots: Vec<Ballot> = crate::ballots::ballots(&study, &fixture::answers(&study))
         .into_iter()
-        .filter(|b| b.participant < people)
-        .map(|b| Ballot { outcome: answer(b.participant, b.question), ..b })
+        .filter(|b| b.participant() < people)
+        .map(|b| b.with_outcome(answer(b.participant(), b.question())))
         .collect();
     let groups = ballot_groups(&study, &ballots);
     let hypotheses = hypotheses::of_study(&study, &ballots);
@@ -25,12 +25,8 @@ fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'stati
 }
 
 fn groups(answers: &[(usize, usize, usize, Outcome)]) -> Vec<BallotGroup> {
-    let ballot = |&(participant, left, right, outcome)| Ballot {
-        participant,
-        question: left + right - 1,
-        left,
-        right,
-        outcome,
+    let ballot = |&(participant, left, right, outcome)| {
+        Ballot::new(participant, left + right - 1, [left, right], outcome)
     };
     let items = ["oak", "elm", "ash"].map(String::from).into();
     vec![BallotGroup { name: "trees".into(), items, ballots: answers.iter().map(ballot).collect() }]
@@ -162,7 +158,7 @@ fn a_planted_effect_holds_whoever_stands_left() {
     assert_eq!(
         found.text,
         "The body-centred lattice was preferred to the simple cubic lattice: 162 answers against 0, none without preference. \
-         Mean score 1.00 (95 % t interval 1.00 to 1.00, 18 participants); exact sign-flip test, p = 0.0000076, p = 0.000031 \
+         Mean score 1.00 (95 % interval 0.63 to 1.00, 18 participants); exact sign-flip test, p = 0.0000076, p = 0.000031 \
          after Holm's correction for 4 tests."
     );
     let found = of(&said, "open", "No clustering against edge collapse: nobody");

@@ -131,16 +131,16 @@ pub fn planted(defect: Defect, seed: u64, study: u64) -> Planted {
         Defect::OddRespondent => {
             let contrary = Population { worths: WORTHS.iter().map(|l| -l).collect(), ..population };
             let own = simulate(&plan, &contrary, 8, &mut numbers);
-            replace(&mut ballots, 7, own.into_iter().filter(|b| b.participant == 7));
+            replace(&mut ballots, 7, own.into_iter().filter(|b| b.participant() == 7));
         }
         Defect::CopiedRows => {
-            let first: Vec<Ballot> = ballots.iter().filter(|b| b.participant == 4).copied().collect();
-            replace(&mut ballots, 16, first.into_iter().map(|b| Ballot { participant: 16, ..b }));
+            let first: Vec<Ballot> = ballots.iter().filter(|b| b.participant() == 4).copied().collect();
+            replace(&mut ballots, 16, first.into_iter().map(|b| b.with_participant(16)));
         }
         Defect::SwappedKey => {
             // Items 1 and 4 on the first object.
-            let wrong = |b: &&mut Ballot| b.question == 2 && b.left < b.right;
-            ballots.iter_mut().filter(wrong).for_each(|b| b.outcome = b.outcome.swapped());
+            let wrong = |b: &&mut Ballot| b.question() == 2 && b.left() < b.right();
+            ballots.iter_mut().filter(wrong).for_each(|b| *b = b.with_outcome(b.outcome().swapped()));
         }
         _ => {}
     }
@@ -148,5 +148,5 @@ pub fn planted(defect: Defect, seed: u64, study: u64) -> Planted {
 }
 
 fn replace(ballots: &mut [Ballot], participant: usize, with: impl Iterator<Item = Ballot>) {
-    ballots.iter_mut().filter(|b| b.participant == participant).zip(with).for_each(|(b, new)| *b = new);
+    ballots.iter_mut().filter(|b| b.participant() == participant).zip(with).for_each(|(b, new)| *b = new);
 }

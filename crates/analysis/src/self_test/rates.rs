@@ -116,7 +116,9 @@ fn pair(by: f64) -> Population {
 }
 
 fn contrast(ballots: &[Ballot]) -> ContrastTest {
-    ContrastTest::of(ballots.iter().map(|b| (b.participant, if b.left == 0 { 1 } else { -1 }, b.outcome)))
+    ContrastTest::of(
+        ballots.iter().map(|b| (b.participant(), if b.left() == 0 { 1 } else { -1 }, b.outcome())),
+    )
 }
 
 fn covers(interval: Interval, truth: f64) -> bool {
@@ -142,7 +144,7 @@ fn one_contrast(studies: u64, seed: u64, by: f64, name: &str) -> Vec<Rate> {
         if by == 0.0 {
             let [a, _, b] = test.counts.expect("one weight for all");
             let few = |questions: usize| {
-                let own: Vec<Ballot> = ballots.iter().filter(|b| b.question < questions).copied().collect();
+                let own: Vec<Ballot> = ballots.iter().filter(|b| b.question() < questions).copied().collect();
                 contrast(&own)
             };
             let single = few(1);
@@ -215,9 +217,9 @@ fn three_items(studies: u64, seed: u64, worths: [f64; 3], name: &str) -> Vec<Rat
         ];
         if worths == [0.0; 3] {
             let p = pairs.map(|(i, j)| {
-                let towards = |b: &Ballot| match (b.left, b.right) {
-                    sides if sides == (i, j) => Some((b.participant, 1, b.outcome)),
-                    sides if sides == (j, i) => Some((b.participant, -1, b.outcome)),
+                let towards = |b: &Ballot| match (b.left(), b.right()) {
+                    sides if sides == (i, j) => Some((b.participant(), 1, b.outcome())),
+                    sides if sides == (j, i) => Some((b.participant(), -1, b.outcome())),
                     _ => None,
                 };
                 ContrastTest::of(ballots.iter().filter_map(towards)).sign_flip.p()
@@ -225,8 +227,8 @@ fn three_items(studies: u64, seed: u64, worths: [f64; 3], name: &str) -> Vec<Rat
             let any = holm(&p).into_iter().any(|p| p <= LEVEL);
             let mut scores = vec![vec![0.0; 3]; PEOPLE];
             for ballot in &ballots {
-                scores[ballot.participant][ballot.left] += ballot.outcome.sign() as f64;
-                scores[ballot.participant][ballot.right] -= ballot.outcome.sign() as f64;
+                scores[ballot.participant()][ballot.left()] += ballot.outcome().sign() as f64;
+                scores[ballot.participant()][ballot.right()] -= ballot.outcome().sign() as f64;
             }
             let pairs = Pairs::of(3, &ballots);
             let side = [Model::DavidsonSide, Model::Davidson].map(|model| fit(model, &pairs).ok());

@@ -12,7 +12,7 @@ fn rate(
     let plan = Plan { counterbalanced: false, ..Plan::round_robin(2, questions) };
     let one = |study: u64| {
         let ballots = simulate(&plan, population, people, &mut stream(5, study));
-        holds(&ContrastTest::of(ballots.iter().map(|b| (b.participant, 1, b.outcome))))
+        holds(&ContrastTest::of(ballots.iter().map(|b| (b.participant(), 1, b.outcome()))))
     };
     let count = (0..studies as u64).into_par_iter().filter(|&study| one(study)).count();
     count as f64 / studies as f64
@@ -44,10 +44,10 @@ fn answers_have_these_chances() {
     let plan = Plan::round_robin(2, 2);
     let ballots = simulate(&plan, &population, 40_000, &mut stream(1, 0));
     for sides in [(0, 1), (1, 0)] {
-        let own: Vec<&Ballot> = ballots.iter().filter(|b| (b.left, b.right) == sides).collect();
+        let own: Vec<&Ballot> = ballots.iter().filter(|b| (b.left(), b.right()) == sides).collect();
         assert_eq!(own.len(), 40_000);
         for (o, want) in population.chances(sides, 0).into_iter().enumerate() {
-            let share = own.iter().filter(|b| b.outcome.index() == o).count() as f64 / 40_000.0;
+            let share = own.iter().filter(|b| b.outcome().index() == o).count() as f64 / 40_000.0;
             assert!((share - want).abs() < 0.01, "{sides:?} {o}: {share} is not {want}");
         }
     }

@@ -3,7 +3,7 @@
 use super::ballot::{Ballot, Outcome};
 use super::bootstrap::{BootstrapInterval, Resampling, bca, kinds, mean, mean_and_error, studentised};
 use super::sign_flip::{SignFlip, sign_flip, sign_flip_of_counts};
-use crate::interval::{Interval, t_over_respondents};
+use crate::interval::{Interval, of_mean_score};
 use design::{Arrangement, Clustering, Study};
 use std::collections::BTreeMap;
 
@@ -86,7 +86,7 @@ pub struct ContrastTest {
     pub sign_flip: SignFlip,
     /// Mean of the scores; 0 without participants.
     pub mean: f64,
-    /// t interval for it over participants.
+    /// Interval for it over participants: [`of_mean_score`].
     pub interval: Option<Interval>,
 }
 
@@ -107,8 +107,8 @@ impl Contrast {
         let weights: Vec<i64> =
             (0..questions).map(|q| self.weights.get(&q).copied().unwrap_or_default()).collect();
         let weighted = |ballot: &Ballot| {
-            let weight = *weights.get(ballot.question).filter(|&&weight| weight != 0)?;
-            Some((ballot.participant, weight, ballot.outcome))
+            let weight = *weights.get(ballot.question()).filter(|&&weight| weight != 0)?;
+            Some((ballot.participant(), weight, ballot.outcome()))
         };
         let test = ContrastTest::of(ballots.iter().filter_map(weighted));
         // Counts of answers mean something only if all weigh the same.
@@ -139,7 +139,7 @@ impl ContrastTest {
             counts: Some(counts),
             sign_flip: sign_flip(&differences),
             mean: if scores.is_empty() { 0.0 } else { scores.iter().sum::<f64>() / scores.len() as f64 },
-            interval: t_over_respondents(&scores),
+            interval: of_mean_score(&scores),
             differences,
             scores,
         }

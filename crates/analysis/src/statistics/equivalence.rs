@@ -1,5 +1,6 @@
 //! Is a difference small enough to call it none? "Not significant" does not say so.
 
+use crate::interval::{chance_of_unanimity, unanimous};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// The declared margin for mean scores, which run from -1 to 1: a mean within 0.2 of zero means that, of a hundred
@@ -11,7 +12,8 @@ pub const MARGIN: f64 = 0.2;
 pub struct Equivalence {
     /// The mean is asked to lie within plus and minus this.
     pub margin: f64,
-    /// The larger p of the two: below 0.05 exactly if the 90 % t interval lies inside the margin.
+    /// The larger p of the two: below 0.05 exactly if the 90 % t interval lies inside the margin. Where all scores are the
+    /// same there is no t, and it is the greatest chance of that with a mean at the margin.
     pub p: f64,
 }
 
@@ -25,10 +27,10 @@ pub fn equivalence(scores: &[f64], margin: f64) -> Option<Equivalence> {
     let mean = scores.iter().sum::<f64>() / m;
     let variance = scores.iter().map(|s| (s - mean) * (s - mean)).sum::<f64>() / (m - 1.0);
     let room = margin - mean.abs();
-    let error = (variance / m).sqrt();
-    let p = match error > 0.0 {
-        true => StudentsT::new(0.0, 1.0, m - 1.0).expect("m - 1 > 0").sf(room / error),
-        false => f64::from(u8::from(room <= 0.0)),
+    let p = match unanimous(scores) {
+        Some(_) if room <= 0.0 => 1.0,
+        Some(score) => chance_of_unanimity(score.abs(), scores.len(), margin),
+        None => StudentsT::new(0.0, 1.0, m - 1.0).expect("m - 1 > 0").sf(room / (variance / m).sqrt()),
     };
     Some(Equivalence { margin, p })
 }
@@ -53,7 +55,9 @@ mod tests {
 
     #[test]
     fn without_spread() {
-        assert_eq!(equivalence(&[0.0; 4], MARGIN).unwrap().p, 0.0);
+        // Nobody of m has a preference: 0.8^m, if one in five were all for one side.
+        assert!((equivalence(&[0.0; 4], MARGIN).unwrap().p - 0.8_f64.powi(4)).abs() < 1e-15);
+        assert!((equivalence(&[-0.1; 30], MARGIN).unwrap().p - (0.8_f64 / 0.9).powi(30)).abs() < 1e-12);
         assert_eq!(equivalence(&[0.5; 4], MARGIN).unwrap().p, 1.0);
         assert_eq!(equivalence(&[0.5], MARGIN), None);
     }

@@ -29,7 +29,7 @@ pub(super) fn ballots(study: &Study) -> Vec<Ballot> {
                 other => panic!("{other}"),
             };
             let (left, right) = (item(comparison.left.method), item(comparison.right.method));
-            ballots.push(Ballot { participant, question, left, right, outcome });
+            ballots.push(Ballot::new(participant, question, [left, right], outcome));
         }
     }
     ballots
@@ -41,9 +41,9 @@ pub(super) fn clusterings(study: &Study, of: Option<Arrangement>) -> Vec<Ballot>
     let item = |clustering| order.iter().position(|&c| c == clustering).unwrap();
     let mut kept = ballots(study);
     kept.retain_mut(|ballot| {
-        let comparison = &study.comparisons[ballot.question];
+        let comparison = &study.comparisons[ballot.question()];
         let (left, right) = (comparison.left.method, comparison.right.method);
-        (ballot.left, ballot.right) = (item(left.clustering), item(right.clustering));
+        *ballot = ballot.with_items([item(left.clustering), item(right.clustering)]);
         left.arrangement == right.arrangement && of.is_none_or(|of| of == left.arrangement)
     });
     kept
@@ -196,8 +196,8 @@ fn friedman_on_clustering_scores() {
     let study = study();
     let mut scores = vec![vec![0.0; 3]; 18];
     for ballot in clusterings(&study, None) {
-        scores[ballot.participant][ballot.left] += ballot.outcome.sign() as f64;
-        scores[ballot.participant][ballot.right] -= ballot.outcome.sign() as f64;
+        scores[ballot.participant()][ballot.left()] += ballot.outcome().sign() as f64;
+        scores[ballot.participant()][ballot.right()] -= ballot.outcome().sign() as f64;
     }
     let test = friedman(&scores).unwrap();
     prints(test.statistic, "23.690");
@@ -218,7 +218,7 @@ fn triads_of_the_clusterings() {
     for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
         for object in 0..3 {
             let mut of = clusterings(&study, Some(arrangement));
-            of.retain(|ballot| study.comparisons[ballot.question].object == object);
+            of.retain(|ballot| study.comparisons[ballot.question()].object == object);
             all = all.and(triads(&of));
         }
     }

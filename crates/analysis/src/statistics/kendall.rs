@@ -116,7 +116,7 @@ impl Tournament {
 
 fn tournaments(ballots: &[Ballot]) -> impl Iterator<Item = Tournament> {
     let mut items: Vec<usize> = Vec::new();
-    for item in ballots.iter().flat_map(|b| [b.left, b.right]) {
+    for item in ballots.iter().flat_map(|b| [b.left(), b.right()]) {
         if let Err(place) = items.binary_search(&item) {
             items.insert(place, item);
         }
@@ -127,14 +127,14 @@ fn tournaments(ballots: &[Ballot]) -> impl Iterator<Item = Tournament> {
         let place = |item: usize| items.binary_search(&item).expect("collected above");
         let mut signs = vec![None; items.len() * items.len()];
         for ballot in of {
-            let (left, right, sign) = (place(ballot.left), place(ballot.right), ballot.outcome.sign());
+            let (left, right, sign) = (place(ballot.left()), place(ballot.right()), ballot.outcome().sign());
             signs[left * items.len() + right] = Some(sign);
             signs[right * items.len() + left] = Some(-sign);
         }
         Tournament { items: items.len(), signs }
     };
     let all: Vec<Tournament> =
-        sorted.chunk_by(|a, b| a.participant == b.participant).map(of_participant).collect();
+        sorted.chunk_by(|a, b| a.participant() == b.participant()).map(of_participant).collect();
     all.into_iter()
 }
 
@@ -166,7 +166,7 @@ pub fn outcome_counts(ballots: &[Ballot]) -> Vec<[u64; 3]> {
     let reading = Reading::of(ballots);
     let mut counts = vec![[0; 3]; reading.questions()];
     for ballot in ballots {
-        counts[ballot.question][reading.outcome(ballot).index()] += 1;
+        counts[ballot.question()][reading.outcome(ballot).index()] += 1;
     }
     counts
 }

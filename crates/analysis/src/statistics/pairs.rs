@@ -44,8 +44,9 @@ impl Pairs {
     /// # Panics
     /// If an item is not below `items`.
     pub fn of<'a>(items: usize, ballots: impl IntoIterator<Item = &'a Ballot>) -> Self {
-        let one = |b: &Ballot| (b.left, b.right, Outcome::ALL.map(|o| f64::from(u8::from(o == b.outcome))));
-        Self::new(items, ballots.into_iter().filter(|b| b.left != b.right).map(one))
+        let one =
+            |b: &Ballot| (b.left(), b.right(), Outcome::ALL.map(|o| f64::from(u8::from(o == b.outcome()))));
+        Self::new(items, ballots.into_iter().filter(|b| b.left() != b.right()).map(one))
     }
 
     /// Half a win each way on every compared pair, shared by its two orders if both were shown: the stated penalty that

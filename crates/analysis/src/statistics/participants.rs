@@ -22,9 +22,12 @@ pub struct Participants {
 impl Participants {
     /// Everyone with a ballot about two different items. The order of ballots does not matter.
     pub fn of(items: usize, ballots: &[Ballot]) -> Self {
-        let useful = |b: &&Ballot| b.left != b.right;
-        let mut sorted: Vec<(usize, usize, usize, Outcome)> =
-            ballots.iter().filter(useful).map(|b| (b.participant, b.left, b.right, b.outcome)).collect();
+        let useful = |b: &&Ballot| b.left() != b.right();
+        let mut sorted: Vec<(usize, usize, usize, Outcome)> = ballots
+            .iter()
+            .filter(useful)
+            .map(|b| (b.participant(), b.left(), b.right(), b.outcome()))
+            .collect();
         sorted.sort_unstable();
         let mut shown: Vec<(usize, usize)> = Vec::new();
         for &(_, left, right, _) in &sorted {
@@ -97,7 +100,7 @@ mod tests {
         assert_eq!(participants.sum(&participants.counts), Pairs::of(3, &ballots));
         // Everyone three times: the same kinds, three times as many.
         let again = |times: usize| {
-            let copy = move |b: &Ballot| Ballot { participant: b.participant + 18 * times, ..*b };
+            let copy = move |b: &Ballot| b.with_participant(b.participant() + 18 * times);
             ballots.iter().rev().map(copy).collect::<Vec<_>>()
         };
         let tripled = Participants::of(3, &[again(2), again(0), again(1)].concat());
@@ -109,8 +112,7 @@ mod tests {
 
     #[test]
     fn controls_say_nothing_about_worths() {
-        let ballot =
-            |left, right| Ballot { participant: 3, question: 0, left, right, outcome: Outcome::Left };
+        let ballot = |left, right| Ballot::new(3, 0, [left, right], Outcome::Left);
         assert_eq!(Participants::of(2, &[ballot(1, 1)]).number(), 0);
         assert_eq!(Participants::of(2, &[ballot(1, 1), ballot(1, 0)]).counts, [1]);
     }

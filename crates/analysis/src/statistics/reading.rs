@@ -12,10 +12,10 @@ pub(crate) struct Reading {
 
 impl Reading {
     pub(crate) fn of(ballots: &[Ballot]) -> Self {
-        let questions = ballots.iter().map(|b| b.question + 1).max().unwrap_or(0);
+        let questions = ballots.iter().map(|b| b.question() + 1).max().unwrap_or(0);
         // Few questions are shown in more than two orders of sides.
         let mut shown: Vec<BTreeMap<usize, u64>> = vec![BTreeMap::new(); questions];
-        ballots.iter().for_each(|b| *shown[b.question].entry(b.left).or_default() += 1);
+        ballots.iter().for_each(|b| *shown[b.question()].entry(b.left()).or_default() += 1);
         let most = |lefts: BTreeMap<usize, u64>| {
             let of = lefts.into_iter().max_by_key(|&(item, n)| (n, std::cmp::Reverse(item)));
             of.map_or(0, |(item, _)| item)
@@ -30,11 +30,11 @@ impl Reading {
 
     /// Whether a ballot shows its question's first item on the left.
     pub(crate) fn first_is_left(&self, ballot: &Ballot) -> bool {
-        self.first[ballot.question] == ballot.left
+        self.first[ballot.question()] == ballot.left()
     }
 
     /// The outcome with the question's first item on the left.
     pub(crate) fn outcome(&self, ballot: &Ballot) -> Outcome {
-        if self.first_is_left(ballot) { ballot.outcome } else { ballot.outcome.swapped() }
+        if self.first_is_left(ballot) { ballot.outcome() } else { ballot.outcome().swapped() }
     }
 }

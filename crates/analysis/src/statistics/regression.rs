@@ -37,14 +37,14 @@ pub struct Regression {
 /// [`FitError::Nothing`] without an answer or a covariate, [`FitError::OnlyTies`], and [`FitError::NoMaximum`] if
 /// covariates are collinear or separate the answers.
 pub fn regression(covariates: &[Option<Vec<f64>>], ballots: &[Ballot]) -> Result<Regression, FitError> {
-    let of = |ballot: &&Ballot| covariates.get(ballot.question).is_some_and(Option::is_some);
+    let of = |ballot: &&Ballot| covariates.get(ballot.question()).is_some_and(Option::is_some);
     let used: Vec<&Ballot> = ballots.iter().filter(of).collect();
     let width = covariates.iter().flatten().map(Vec::len).next().unwrap_or(0);
     if used.is_empty() || width == 0 {
         return Err(FitError::Nothing);
     }
     let mut answers = vec![[0.0; 3]; covariates.len()];
-    used.iter().for_each(|ballot| answers[ballot.question][ballot.outcome.index()] += 1.0);
+    used.iter().for_each(|ballot| answers[ballot.question()][ballot.outcome().index()] += 1.0);
     let ties: f64 = answers.iter().map(|answers| answers[1]).sum();
     if ties == used.len() as f64 {
         return Err(FitError::OnlyTies);
@@ -77,8 +77,8 @@ pub fn regression(covariates: &[Option<Vec<f64>>], ballots: &[Ballot]) -> Result
     let scores: Vec<[Vec<f64>; 3]> = (0..rows.len()).map(|q| [0, 1, 2].map(|o| score(q, o))).collect();
     let mut sums: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     for ballot in &used {
-        let sum = sums.entry(ballot.participant).or_insert_with(|| vec![0.0; size]);
-        let own = &scores[ballot.question][ballot.outcome.index()];
+        let sum = sums.entry(ballot.participant()).or_insert_with(|| vec![0.0; size]);
+        let own = &scores[ballot.question()][ballot.outcome().index()];
         sum.iter_mut().zip(own).for_each(|(sum, score)| *sum += score);
     }
     let bread = inverse(&likelihood(&at).information).ok_or(FitError::NoMaximum)?;

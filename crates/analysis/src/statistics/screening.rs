@@ -145,13 +145,13 @@ pub fn screening_with(ballots: &[Ballot], protocol: &Protocol<'_>) -> Vec<Screen
     let mut places: Vec<usize> = (0..ballots.len()).collect();
     places.sort_by_key(|&i| {
         let order = if ordered { known[i].order } else { None };
-        (ballots[i].participant, order, ballots[i].question)
+        (ballots[i].participant(), order, ballots[i].question())
     });
     let of_participant = |places: &[usize]| {
-        let mut seen = Screening { participant: ballots[places[0]].participant, ..Screening::default() };
+        let mut seen = Screening { participant: ballots[places[0]].participant(), ..Screening::default() };
         let (mut run, mut last) = (0, 0);
         for &i in places {
-            let (ballot, sign) = (&ballots[i], ballots[i].outcome.sign());
+            let (ballot, sign) = (&ballots[i], ballots[i].outcome().sign());
             if let Some(time) = known.get(i).and_then(|of| of.rt_ms) {
                 seen.timed += 1;
                 seen.time_ms += time;
@@ -159,16 +159,16 @@ pub fn screening_with(ballots: &[Ballot], protocol: &Protocol<'_>) -> Vec<Screen
             run = if sign != 0 && sign == last { run + 1 } else { sign.unsigned_abs() };
             last = sign;
             seen.longest_run = seen.longest_run.max(run);
-            if ballot.left == ballot.right {
+            if ballot.left() == ballot.right() {
                 seen.controls += 1;
                 seen.controls_decided += sign.unsigned_abs();
                 continue;
             }
-            seen.answers[ballot.outcome.index()] += 1;
+            seen.answers[ballot.outcome().index()] += 1;
             let own = reading.outcome(ballot).sign();
-            let [first, _, second] = counts[ballot.question];
+            let [first, _, second] = counts[ballot.question()];
             let others = first as i64 - second as i64 - own;
-            if ballot.outcome != Outcome::Tie && others != 0 {
+            if ballot.outcome() != Outcome::Tie && others != 0 {
                 seen.comparable += 1;
                 seen.agreeing += u64::from(others.signum() == own);
             }
@@ -176,7 +176,7 @@ pub fn screening_with(ballots: &[Ballot], protocol: &Protocol<'_>) -> Vec<Screen
         seen.count_repeats(places.iter().map(|&i| &ballots[i]), protocol.scenes);
         seen
     };
-    let same = |a: &usize, b: &usize| ballots[*a].participant == ballots[*b].participant;
+    let same = |a: &usize, b: &usize| ballots[*a].participant() == ballots[*b].participant();
     let mut screened: Vec<Screening> = places.chunk_by(same).map(of_participant).collect();
     for odd in oddness(&screened) {
         let place = screened.binary_search_by_key(&odd.participant, |s| s.participant).expect("one of them");
@@ -189,12 +189,14 @@ impl Screening {
     /// Decided answers about the same items in the same scene, each against the one before.
     fn count_repeats<'a>(&mut self, own: impl Iterator<Item = &'a Ballot>, scenes: &[usize]) {
         // Without scenes every question is its own.
-        let scene =
-            |b: &Ballot| (scenes.get(b.question).copied(), if scenes.is_empty() { b.question } else { 0 });
-        let chosen = |b: &Ballot| if b.outcome == Outcome::Left { b.left } else { b.right };
-        let decided = own.filter(|b| b.left != b.right && b.outcome != Outcome::Tie);
-        let mut shown: Vec<_> =
-            decided.map(|b| (scene(b), b.left.min(b.right), b.left.max(b.right), chosen(b))).collect();
+        let scene = |b: &Ballot| {
+            (scenes.get(b.question()).copied(), if scenes.is_empty() { b.question() } else { 0 })
+        };
+        let chosen = |b: &Ballot| if b.outcome() == Outcome::Left { b.left() } else { b.right() };
+        let decided = own.filter(|b| b.left() != b.right() && b.outcome() != Outcome::Tie);
+        let mut shown: Vec<_> = decided
+            .map(|b| (scene(b), b.left().min(b.right()), b.left().max(b.right()), chosen(b)))
+            .collect();
         // Stable: the order of presentation stays within each.
         shown.sort_by_key(|&(scene, low, high, _)| (scene, low, high));
         for pair in shown.windows(2) {

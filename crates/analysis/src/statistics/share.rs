@@ -12,7 +12,8 @@ pub struct ClusteredShare {
     pub of: f64,
     /// `hits / of`.
     pub share: f64,
-    /// t interval at [`LEVEL`], participants as clusters; `None` for fewer than two. Not cut to 0..=1.
+    /// t interval at [`LEVEL`], participants as clusters; `None` for fewer than two and where all have the same
+    /// share, which tells no spread. Not cut to 0..=1.
     pub interval: Option<Interval>,
 }
 
@@ -26,7 +27,8 @@ pub fn clustered_share(counts: impl IntoIterator<Item = (f64, f64)>) -> Option<C
     let (hits, of) = counts.iter().fold((0.0, 0.0), |(hits, of), (a, n)| (hits + a, of + n));
     let (share, m) = (hits / of, counts.len() as f64);
     let squares: f64 = counts.iter().map(|(a, n)| (a - share * n) * (a - share * n)).sum();
-    let interval = (counts.len() > 1).then(|| {
+    let spread = counts.iter().any(|(a, n)| a * of != hits * n);
+    let interval = (counts.len() > 1 && spread).then(|| {
         let t = StudentsT::new(0.0, 1.0, m - 1.0).expect("m - 1 > 0").inverse_cdf(0.5 + LEVEL / 2.0);
         let half = t * (m / (m - 1.0) * squares).sqrt() / of;
         Interval { low: share - half, high: share + half }

@@ -33,7 +33,7 @@ pub(super) fn agreement(study: &Study, ballots: &[Ballot]) -> Table {
     );
     let ballots = as_declared(study, ballots);
     for group in std::iter::once(None).chain((0..study.groups.len()).map(Some)) {
-        let inside = |b: &&Ballot| group.is_none_or(|g| study.comparisons[b.question].group == g);
+        let inside = |b: &&Ballot| group.is_none_or(|g| study.comparisons[b.question()].group == g);
         let own: Vec<Ballot> = ballots.iter().filter(inside).copied().collect();
         let counts: Vec<[u64; 3]> =
             outcome_counts(&own).into_iter().filter(|counts| counts.iter().sum::<u64>() > 0).collect();
@@ -78,7 +78,7 @@ pub(super) fn agreement(study: &Study, ballots: &[Ballot]) -> Table {
 /// Triads within one object and group, and Kendall's zeta of whoever decided all pairs there: how many, and their sum.
 fn consistency(study: &Study, ballots: &[Ballot]) -> (Triads, (u64, f64)) {
     let scope = |b: &Ballot| {
-        let comparison = &study.comparisons[b.question];
+        let comparison = &study.comparisons[b.question()];
         comparison.object * study.groups.len() + comparison.group
     };
     let mut scopes: Vec<Vec<Ballot>> = vec![Vec::new(); study.file.objects.len() * study.groups.len()];

@@ -57,8 +57,8 @@ fn table(rows: &[Hypothesis]) -> Table {
     table.notes.push(
         "p: exact sign-flip test over participants, two-sided; net is answers for the first minus answers for the second. \
          Adjusted within the family: Holm, for single questions Benjamini and Hochberg. Mean score: a participant's net over \
-         the questions answered, -1 to 1; from and to: t interval at 95 % over participants; BCa and studentised: 2000 \
-         resamples of participants. Equivalence: two one-sided t tests of a mean score within 0.2 of zero, which is 60 \
+         the questions answered, -1 to 1; from and to: t interval at 95 % over participants, or, where all have one \
+         score, the means that make this at least 2.5 % probable; BCa and studentised: 2000 resamples of participants. Equivalence: two one-sided t tests of a mean score within 0.2 of zero, which is 60 \
          answers to 40, adjusted in the same way. Conclusion: at 5 % of both adjusted p; a large p alone is open, not equal. \
          p without one: range when each participant in turn is left out. Interactions are differences of two \
          mean scores, weighed to whole numbers. Binomial and trinomial treat all answers as independent and are there for \
@@ -154,24 +154,24 @@ pub(crate) struct StudyScores {
 pub(crate) fn study_scores(study: &Study, ballots: &[Ballot]) -> StudyScores {
     let methods = study.methods();
     let at = |clustering: Clustering| study.file.clusterings.iter().position(|&c| c == clustering);
-    let sign = |b: &Ballot| b.outcome.sign() as f64;
+    let sign = |b: &Ballot| b.outcome().sign() as f64;
     let clusterings = scores(ballots, study.file.clusterings.len(), |b| {
-        let (left, right) = (methods[b.left], methods[b.right]);
+        let (left, right) = (methods[b.left()], methods[b.right()]);
         let same = left.arrangement == right.arrangement;
         let place = |clustering| if same { at(clustering) } else { None };
         [place(left.clustering).map(|c| (c, sign(b))), place(right.clustering).map(|c| (c, -sign(b)))]
     });
     let arrangement = |b: &Ballot| {
-        let (left, right) = (methods[b.left], methods[b.right]);
+        let (left, right) = (methods[b.left()], methods[b.right()]);
         let direct = left.clustering == right.clustering && left.arrangement != right.arrangement;
         let towards = if left.arrangement == Arrangement::BodyCentred { 1.0 } else { -1.0 };
         direct.then(|| towards * sign(b))
     };
     let by_clustering = scores(ballots, study.file.clusterings.len(), |b| {
-        [arrangement(b).and_then(|score| Some((at(methods[b.left].clustering)?, score))), None]
+        [arrangement(b).and_then(|score| Some((at(methods[b.left()].clustering)?, score))), None]
     });
     let by_object = scores(ballots, study.file.objects.len(), |b| {
-        [arrangement(b).map(|score| (study.comparisons[b.question].object, score)), None]
+        [arrangement(b).map(|score| (study.comparisons[b.question()].object, score)), None]
     });
     StudyScores { clusterings, by_clustering, by_object }
 }
@@ -184,7 +184,7 @@ fn scores(
 ) -> Vec<Vec<f64>> {
     let mut rows: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     for ballot in ballots {
-        let row = rows.entry(ballot.participant).or_insert_with(|| vec![0.0; columns]);
+        let row = rows.entry(ballot.participant()).or_insert_with(|| vec![0.0; columns]);
         parts(ballot).into_iter().flatten().for_each(|(column, score)| row[column] += score);
     }
     rows.into_values().collect()

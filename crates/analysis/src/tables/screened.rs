@@ -65,7 +65,7 @@ fn screened(recorded: &Recorded<'_>, tested: impl Fn(&dyn Fn(&Ballot) -> bool) -
     }
     let all = if broken.is_empty() { Vec::new() } else { tested(&|_| true) };
     for (rule, people) in broken {
-        let others = tested(&|b: &Ballot| !people.contains(&b.participant));
+        let others = tested(&|b: &Ballot| !people.contains(&b.participant()));
         let same = |a: &Hypothesis, b: &Hypothesis| {
             (&a.family, &a.contrast, &a.scope) == (&b.family, &b.contrast, &b.scope)
         };
@@ -140,7 +140,7 @@ mod tests {
         // p without 16 is one end of the leave-one-out range or inside it: STATISTICS 3.12, 0.0063 to 0.0188.
         let Cell::P(p, _) = cell(&table, &["odd", "B-S", "all"], "p_without") else { panic!("no p") };
         assert!((0.0062..0.0189).contains(&p), "{p}");
-        let kept: Vec<Ballot> = ballots.iter().filter(|b| b.participant != 15).copied().collect();
+        let kept: Vec<Ballot> = ballots.iter().filter(|b| b.participant() != 15).copied().collect();
         let alone = hypotheses::of_study(&study, &kept);
         let same = alone.iter().find(|h| h.contrast == "B-S" && h.scope == "all").unwrap();
         assert_eq!(p, same.test.sign_flip.p());

@@ -59,8 +59,7 @@ fn partly_answered_rows_count_as_far_as_they_go() {
         over: Over::All,
         weights: [(0, 1), (1, -1), (2, 1)].into(),
     };
-    let ballot =
-        |participant, question, outcome| Ballot { participant, question, left: 0, right: 1, outcome };
+    let ballot = |participant, question, outcome| Ballot::new(participant, question, [0, 1], outcome);
     use Outcome::{Left, Right, Tie};
     let ballots =
         [ballot(0, 0, Left), ballot(0, 1, Right), ballot(0, 2, Tie), ballot(4, 1, Left), ballot(5, 9, Left)];
@@ -79,8 +78,8 @@ proptest! {
         let all = golden::ballots(&study);
         let kept: Vec<Ballot> = all.into_iter().zip(keep).filter(|(_, keep)| *keep).map(|(b, _)| b).collect();
         let mut turned: Vec<Ballot> =
-            kept.iter().rev().map(|b| Ballot { participant: 17 - b.participant, ..*b }).collect();
-        let swapped = |b: &Ballot| Ballot { outcome: b.outcome.swapped(), ..*b };
+            kept.iter().rev().map(|b| b.with_participant(17 - b.participant())).collect();
+        let swapped = |b: &Ballot| b.with_outcome(b.outcome().swapped());
         for contrast in contrasts(&study) {
             let (test, other) = (contrast.test(&kept), contrast.test(&turned));
             prop_assert_eq!(test.counts, other.counts);

@@ -43,13 +43,7 @@ fn agreement_at_its_ends() {
 /// One participant's answers to the pairs 0-1, 1-2, 0-2.
 fn three(signs: [Outcome; 3]) -> Vec<Ballot> {
     let pairs = [(0, 1), (1, 2), (0, 2)];
-    let ballot = |(i, (left, right)): (usize, (usize, usize))| Ballot {
-        participant: 0,
-        question: i,
-        left,
-        right,
-        outcome: signs[i],
-    };
+    let ballot = |(i, (left, right)): (usize, (usize, usize))| Ballot::new(0, i, [left, right], signs[i]);
     pairs.into_iter().enumerate().map(ballot).collect()
 }
 
@@ -75,7 +69,7 @@ fn zetas_of_those_who_decided_everything() {
     use Outcome::{Left, Right, Tie};
     // An order, a circle, an order; a tie leaves the last out.
     let rows = [[Left, Left, Left], [Left, Left, Right], [Right, Left, Left], [Left, Tie, Left]];
-    let of = |(participant, signs)| three(signs).into_iter().map(move |b| Ballot { participant, ..b });
+    let of = |(participant, signs)| three(signs).into_iter().map(move |b| b.with_participant(participant));
     let all: Vec<Ballot> = rows.into_iter().enumerate().flat_map(of).collect();
     assert_eq!(zetas(&all), (3, 2.0));
     assert_eq!(zetas(&all[..2]), (0, 0.0));
@@ -83,8 +77,7 @@ fn zetas_of_those_who_decided_everything() {
 
 #[test]
 fn outcomes_are_counted_for_items_whatever_their_sides() {
-    let ballot =
-        |participant, left, outcome| Ballot { participant, question: 1, left, right: 5 - left, outcome };
+    let ballot = |participant, left, outcome| Ballot::new(participant, 1, [left, 5 - left], outcome);
     use Outcome::{Left, Right, Tie};
     let all = [
         ballot(0, 2, Left),
@@ -107,8 +100,7 @@ proptest! {
         let mut turned = straight.clone();
         for (ballot, swap) in turned.iter_mut().zip(swapped) {
             if swap {
-                (ballot.left, ballot.right) = (ballot.right, ballot.left);
-                ballot.outcome = ballot.outcome.swapped();
+                *ballot = ballot.turned();
             }
         }
         prop_assert_eq!(triads(&straight), triads(&turned));

@@ -26,7 +26,7 @@ fn without_ties_as_statsmodels_has_it() {
     // statsmodels 0.15.0 on the decided answers, y = left: Logit(y, x).fit(tol=1e-14) without intercept: params, llf, bse;
     // fit(cov_type="cluster", cov_kwds={"groups": respondent, "use_correction": False}): bse times sqrt(18/17).
     let mut ballots = golden::ballots(&golden::study());
-    ballots.retain(|ballot| ballot.outcome != Outcome::Tie);
+    ballots.retain(|ballot| ballot.outcome() != Outcome::Tie);
     let fit = regression(&covariates(), &ballots).unwrap();
     assert_eq!((fit.ln_nu, fit.participants), (None, 18));
     close(fit.coefficients[0], 0.108_274_578_369);
@@ -66,8 +66,7 @@ fn with_ties_as_a_log_linear_model_has_it() {
 #[test]
 fn two_items_are_the_saturated_davidson_model() {
     // 36 : 8 : 10 (STATISTICS 3.4): ln 3.6 = 1.2809, nu = 8 / sqrt(360) = 0.4216.
-    let answer =
-        |participant: usize, outcome| Ballot { participant, question: 0, left: 0, right: 1, outcome };
+    let answer = |participant: usize, outcome| Ballot::new(participant, 0, [0, 1], outcome);
     let counts = [(36, Outcome::Left), (8, Outcome::Tie), (10, Outcome::Right)];
     let ballots: Vec<Ballot> =
         counts.iter().flat_map(|&(n, outcome)| (0..n).map(move |p| answer(p, outcome))).collect();
@@ -81,9 +80,7 @@ fn exchanged_sides_change_nothing() {
     let ballots = golden::ballots(&golden::study());
     let turned: Vec<Ballot> = ballots
         .iter()
-        .map(
-            |b| if b.question.is_multiple_of(2) { *b } else { Ballot { outcome: b.outcome.swapped(), ..*b } },
-        )
+        .map(|b| if b.question().is_multiple_of(2) { *b } else { b.with_outcome(b.outcome().swapped()) })
         .collect();
     let x = covariates();
     let turn = |(q, x): (usize, Option<Vec<f64>>)| {
@@ -102,16 +99,15 @@ fn what_has_no_estimate_says_why() {
     let ballots = golden::ballots(&golden::study());
     assert_eq!(regression(&covariates(), &[]), Err(FitError::Nothing));
     assert_eq!(regression(&[None, None], &ballots), Err(FitError::Nothing));
-    let ties: Vec<Ballot> = ballots.iter().map(|b| Ballot { outcome: Outcome::Tie, ..*b }).collect();
+    let ties: Vec<Ballot> = ballots.iter().map(|b| b.with_outcome(Outcome::Tie)).collect();
     assert_eq!(regression(&covariates(), &ties), Err(FitError::OnlyTies));
     let twice: Vec<Option<Vec<f64>>> =
         covariates().into_iter().map(|x| x.map(|x| vec![x[0], -3.0 * x[0]])).collect();
     assert_eq!(regression(&twice, &ballots), Err(FitError::NoMaximum));
     // Everybody always takes the larger: the likelihood rises for ever.
     let x: Vec<Option<Vec<f64>>> = (0..27).map(|q| Some(vec![if q % 2 == 0 { 1.0 } else { -1.0 }])).collect();
-    let always = |b: &Ballot| Ballot {
-        outcome: if b.question.is_multiple_of(2) { Outcome::Left } else { Outcome::Right },
-        ..*b
+    let always = |b: &Ballot| {
+        b.with_outcome(if b.question().is_multiple_of(2) { Outcome::Left } else { Outcome::Right })
     };
     let ballots: Vec<Ballot> = ballots.iter().map(always).collect();
     assert_eq!(regression(&x, &ballots), Err(FitError::NoMaximum));

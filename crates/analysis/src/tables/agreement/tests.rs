@@ -51,13 +51,7 @@ fn of_many_participants_those_who_break_a_rule_are_printed() {
                 Outcome::Right
             }
         };
-        (0..10).map(move |question| Ballot {
-            participant,
-            question,
-            left: 0,
-            right: 1,
-            outcome: outcome(question),
-        })
+        (0..10).map(move |question| Ballot::new(participant, question, [0, 1], outcome(question)))
     };
     let ballots: Vec<Ballot> = (0..201).flat_map(of).collect();
     let table = respondents(&ballots, &Protocol::default());

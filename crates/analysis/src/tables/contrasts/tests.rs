@@ -62,8 +62,7 @@ fn does_anything_differ() {
 
 #[test]
 fn every_compared_pair_is_tested_whatever_the_side() {
-    let ballot =
-        |participant, left, right, outcome| Ballot { participant, question: 0, left, right, outcome };
+    let ballot = |participant, left, right, outcome| Ballot::new(participant, 0, [left, right], outcome);
     use Outcome::{Left, Right, Tie};
     let group = BallotGroup {
         name: "g".into(),
