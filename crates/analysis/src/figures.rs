@@ -21,13 +21,14 @@ mod style;
 mod sweep;
 mod worths;
 
-use crate::ballots::{BallotGroup, ballot_groups, ballots};
+use crate::answered::Answered;
+use crate::ballots::BallotGroup;
 use crate::inputs::{AnalysisError, Inputs};
 use crate::statistics::Ballot;
-use crate::tally::Tally;
 use canvas::Canvas;
 use legend::Swatch;
 pub use power::power_figure;
+use rayon::prelude::*;
 
 pub use sweep::sweep_figures;
 
@@ -49,7 +50,7 @@ pub struct Figure {
 /// # Errors
 /// If drawing fails, which is not to be expected.
 pub fn figures(inputs: &Inputs<'_>) -> Result<Vec<Figure>, AnalysisError> {
-    drafts(inputs).into_iter().map(Draft::finish).collect()
+    drafts(inputs).into_par_iter().map(Draft::finish).collect()
 }
 
 /// The figures that need nothing but answers: worths and respondents.
@@ -69,17 +70,15 @@ fn drafts(inputs: &Inputs<'_>) -> Vec<Draft> {
     drafts.extend(meshes::aspect_ratios(inputs));
     drafts.extend(stages::stage_times(inputs));
     drafts.extend(distributions::aspect_ratios(inputs));
-    if let (Some(answers), false) = (inputs.answers, inputs.study.comparisons.is_empty()) {
-        let tally = Tally::of(answers, inputs.study);
-        drafts.push(answers::per_question(inputs.study, &tally));
-        drafts.push(preferences::per_object(inputs.study, &tally));
-        drafts.push(preferences::overall(inputs.study, &tally));
-        let ballots = ballots(inputs.study, answers);
-        drafts.extend(factor_share::draft(inputs.study, &tally));
-        drafts.extend(worths::draft(&ballot_groups(inputs.study, &ballots)));
-        drafts.extend(contests::by_object(inputs.study, &ballots));
-        drafts.extend(respondents::draft(&ballots));
-        drafts.extend(prediction::draft(inputs, &ballots));
+    if let Some(Answered { tally, ballots, groups, .. }) = inputs.answers {
+        drafts.push(answers::per_question(inputs.study, tally));
+        drafts.push(preferences::per_object(inputs.study, tally));
+        drafts.push(preferences::overall(inputs.study, tally));
+        drafts.extend(factor_share::draft(inputs.study, tally));
+        drafts.extend(worths::draft(groups));
+        drafts.extend(contests::by_object(inputs.study, ballots));
+        drafts.extend(respondents::draft(ballots));
+        drafts.extend(prediction::draft(inputs, ballots));
     }
     drafts
 }

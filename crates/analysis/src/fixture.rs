@@ -1,5 +1,6 @@
 //! A study with everything: the paper's file, and records made up from its published benchmark.
 
+use crate::answered::Answered;
 use crate::inputs::Inputs;
 use design::Study;
 use design::config::FieldSection;
@@ -34,6 +35,11 @@ pub(crate) fn answers(study: &Study) -> Responses {
     parse(&text, study)
 }
 
+/// The published answers, counted and tested.
+pub(crate) fn answered(study: &Study) -> Answered {
+    Answered::of(study, answers(study)).unwrap()
+}
+
 /// Answers in the text, read for the study.
 pub(crate) fn parse(text: &str, study: &Study) -> Responses {
     let (path, plan) = (Path::new("answers.csv"), Plan::of_study(study));
@@ -45,12 +51,12 @@ pub(crate) struct Everything {
     pub(crate) study: Study,
     pub(crate) meshes: Vec<MeshRecord>,
     pub(crate) bench: BenchRun,
-    pub(crate) answers: Responses,
+    pub(crate) answers: Answered,
 }
 
 impl Everything {
     pub(crate) fn of(study: Study) -> Self {
-        let (meshes, bench, answers) = (meshes(&study), bench(&study), answers(&study));
+        let (meshes, bench, answers) = (meshes(&study), bench(&study), answered(&study));
         Self { study, meshes, bench, answers }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::ballots::{BallotGroup, as_declared};
 use crate::statistics::contrast::{Contrast, ContrastTest, Level, Over, contrasts};
-use crate::statistics::{Ballot, MARGIN, benjamini_hochberg, equivalence, holm};
+use crate::statistics::{Ballot, benjamini_hochberg, holm};
 use design::Study;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -107,26 +107,41 @@ impl Hypothesis {
     }
 }
 
-/// Every contrast of a study, then every question.
+/// Every contrast of a study, then every question. `ballots` are by question.
 pub(crate) fn of_study(study: &Study, ballots: &[Ballot]) -> Vec<Hypothesis> {
+    let mut all = of_contrasts(study, ballots);
+    all.extend(of_questions(study, ballots));
+    all
+}
+
+/// Every contrast of a study. `ballots` are by question.
+pub(crate) fn of_contrasts(study: &Study, ballots: &[Ballot]) -> Vec<Hypothesis> {
     let of_contrast = |contrast: Contrast| {
         let subject = Subject::Contrast { levels: contrast.levels, over: contrast.over };
-        let test = contrast.test(ballots);
+        let test = contrast.test(contrast.weights.keys().flat_map(|&question| of_one(ballots, question)));
         Hypothesis::new(contrast.family.code(), contrast.name, &contrast.scope, subject, test)
-    };
-    let declared = as_declared(study, ballots);
-    let of_question = |(q, comparison): (usize, &design::Comparison)| {
-        let own = declared.iter().filter(|b| b.question() == q);
-        let test = ContrastTest::of(own.map(|b| (b.participant(), 1, b.outcome())));
-        let contrast = format!("{}-{}", comparison.left.method, comparison.right.method);
-        Hypothesis::new("questions", contrast, &comparison.question, Subject::Question(q), test)
     };
     let mut all: Vec<Hypothesis> = contrasts(study).into_par_iter().map(of_contrast).collect();
     adjust(&mut all, Adjustment::Holm);
-    let mut questions: Vec<Hypothesis> = study.comparisons.par_iter().enumerate().map(of_question).collect();
-    adjust(&mut questions, Adjustment::BenjaminiHochberg);
-    all.extend(questions);
     all
+}
+
+fn of_questions(study: &Study, ballots: &[Ballot]) -> Vec<Hypothesis> {
+    let of_question = |(q, comparison): (usize, &design::Comparison)| {
+        let own = as_declared(study, of_one(ballots, q));
+        let test = ContrastTest::of(own.iter().map(|b| (b.participant(), 1, b.outcome())));
+        let contrast = format!("{}-{}", comparison.left.method, comparison.right.method);
+        Hypothesis::new("questions", contrast, &comparison.question, Subject::Question(q), test)
+    };
+    let mut all: Vec<Hypothesis> = study.comparisons.par_iter().enumerate().map(of_question).collect();
+    adjust(&mut all, Adjustment::BenjaminiHochberg);
+    all
+}
+
+/// The ballots of one question.
+fn of_one(ballots: &[Ballot], question: usize) -> &[Ballot] {
+    let below = |end: usize| ballots.partition_point(|ballot| ballot.question() < end);
+    &ballots[below(question)..below(question + 1)]
 }
 
 /// Every pair of items that was compared, group by group; the group is the family.
@@ -141,7 +156,7 @@ pub(crate) fn of_groups(groups: &[BallotGroup]) -> Vec<Hypothesis> {
                     _ => None,
                 };
                 let test = ContrastTest::of(group.ballots.iter().filter_map(weight));
-                if !test.differences.is_empty() {
+                if test.participants() > 0 {
                     let (first, second) = (first.clone(), second.clone());
                     let contrast = format!("{first}-{second}");
                     let subject = Subject::Items { group: group.name.clone(), first, second };
@@ -163,7 +178,7 @@ fn adjust(all: &mut [Hypothesis], adjustment: Adjustment) {
     all.iter().enumerate().for_each(|(i, h)| families.entry(h.family.clone()).or_default().push(i));
     for members in families.into_values() {
         let different = adjusted(members.iter().map(|&i| all[i].test.sign_flip.p()).collect());
-        let equal = |i: &usize| equivalence(&all[*i].test.scores, MARGIN).map(|test| test.p);
+        let equal = |i: &usize| all[*i].test.equivalence().map(|test| test.p);
         let tested: Vec<Option<f64>> = members.iter().map(equal).collect();
         // One participant alone has no test of equivalence, and then adds none to the family.
         let mut equal = adjusted(tested.iter().flatten().copied().collect()).into_iter();

@@ -1,8 +1,8 @@
 //! What tables and figures are made from.
 
+use crate::answered::Answered;
 use design::Study;
 use design::record::{BenchRun, MeshRecord};
-use responses::Responses;
 
 /// What tables and figures are made from. Absent or empty parts leave out what depends on them.
 #[derive(Debug, Clone, Copy)]
@@ -13,8 +13,8 @@ pub struct Inputs<'a> {
     pub meshes: &'a [MeshRecord],
     /// The benchmark run.
     pub bench: Option<&'a BenchRun>,
-    /// The answers, read for this study.
-    pub answers: Option<&'a Responses>,
+    /// The answers to this study's comparisons.
+    pub answers: Option<&'a Answered>,
 }
 
 /// Why figures could not be made.

@@ -34,15 +34,16 @@ pub fn t_over_respondents(scores: &[f64]) -> Option<Interval> {
     Some(Interval { low: mean - half, high: mean + half })
 }
 
-/// The mean of one score a person between -1 and 1: the t interval, or, where all scores are the same, the means that would
-/// have made so many equal scores at least as probable as 2.5 % ([`chance_of_unanimity`]). `None` for fewer than two people.
-pub fn of_mean_score(scores: &[f64]) -> Option<Interval> {
+/// The mean of one score a person between -`reach` and `reach`: the t interval, or, where all scores are the same, the means
+/// that would have made so many equal scores at least as probable as 2.5 % ([`chance_of_unanimity`]). `None` for fewer than
+/// two people.
+pub fn of_mean_score(scores: &[f64], reach: f64) -> Option<Interval> {
     let Some(score) = unanimous(scores).filter(|_| scores.len() > 1) else {
         return t_over_respondents(scores);
     };
-    // (1 - mean) / (1 - score) is the greatest chance of one such score from above; likewise from below.
+    // (reach - mean) / (reach - score) is the greatest chance of one such score from above; likewise from below.
     let root = ((1.0 - LEVEL) / 2.0).powf(1.0 / scores.len() as f64);
-    Some(Interval { low: (1.0 + score) * root - 1.0, high: 1.0 - (1.0 - score) * root })
+    Some(Interval { low: (reach + score) * root - reach, high: reach - (reach - score) * root })
 }
 
 /// The one value that all scores have.
@@ -51,10 +52,11 @@ pub(crate) fn unanimous(scores: &[f64]) -> Option<f64> {
     others.iter().all(|score| score == first).then_some(*first)
 }
 
-/// The greatest chance of `people` independent scores between -1 and 1 being all `score`, whatever their distribution, if
-/// its mean is `mean`: the rest of it is then at the far end. For a score of 1 it is Clopper and Pearson's bound (1934).
-pub(crate) fn chance_of_unanimity(score: f64, people: usize, mean: f64) -> f64 {
-    let far = if mean > score { 1.0 } else { -1.0 };
+/// The greatest chance of `people` independent scores between -`reach` and `reach` being all `score`, whatever their
+/// distribution, if its mean is `mean`: the rest of it is then at the far end. For a score of 1 that reaches as far it is
+/// Clopper and Pearson's bound (1934).
+pub(crate) fn chance_of_unanimity(score: f64, people: usize, mean: f64, reach: f64) -> f64 {
+    let far = if mean > score { reach } else { -reach };
     if mean == score { 1.0 } else { ((far - mean) / (far - score)).powf(people as f64) }
 }
 
@@ -100,25 +102,28 @@ mod tests {
         assert!((interval.high - 7.709_980_742).abs() < 1e-8, "{interval:?}");
         assert_eq!(t_over_respondents(&[1.0]), None);
         assert_eq!(t_over_respondents(&[1.0; 5]), None);
-        assert_eq!(of_mean_score(&[0.5, -0.5, 0.25]), t_over_respondents(&[0.5, -0.5, 0.25]));
+        assert_eq!(of_mean_score(&[0.5, -0.5, 0.25], 1.0), t_over_respondents(&[0.5, -0.5, 0.25]));
     }
 
     #[test]
     fn all_the_same_is_no_certainty() {
         // scipy.stats.binomtest(18, 18).proportion_ci().low = 0.8146980319, and a mean score is 2 p - 1.
-        let all = of_mean_score(&[1.0; 18]).unwrap();
+        let all = of_mean_score(&[1.0; 18], 1.0).unwrap();
         assert!((all.low - (2.0 * 0.814_698_031_9 - 1.0)).abs() < 1e-9 && all.high == 1.0, "{all:?}");
-        let against = of_mean_score(&[-1.0; 18]).unwrap();
+        let against = of_mean_score(&[-1.0; 18], 1.0).unwrap();
         assert_eq!((against.low, against.high), (-all.high, -all.low));
         // Two people without a preference tell next to nothing; the ends have a chance of 2.5 % each.
-        let none = of_mean_score(&[0.0; 2]).unwrap();
+        let none = of_mean_score(&[0.0; 2], 1.0).unwrap();
         assert!((none.high - (1.0 - 0.025_f64.sqrt())).abs() < 1e-15 && none.low == -none.high);
-        for (score, people) in [(0.0, 2), (0.25, 7), (-1.0, 4)] {
-            let interval = of_mean_score(&vec![score; people]).unwrap();
-            for end in [interval.low, interval.high].into_iter().filter(|end| end.abs() < 1.0) {
-                assert!((chance_of_unanimity(score, people, end) - 0.025).abs() < 1e-12, "{score} {end}");
+        for (score, people, reach) in [(0.0, 2, 1.0), (0.25, 7, 1.0), (-1.0, 4, 1.0), (-1.0, 4, 2.0)] {
+            let interval = of_mean_score(&vec![score; people], reach).unwrap();
+            for end in [interval.low, interval.high].into_iter().filter(|end| end.abs() < reach) {
+                assert!(
+                    (chance_of_unanimity(score, people, end, reach) - 0.025).abs() < 1e-12,
+                    "{score} {end}"
+                );
             }
         }
-        assert_eq!((of_mean_score(&[1.0]), of_mean_score(&[])), (None, None));
+        assert_eq!((of_mean_score(&[1.0], 1.0), of_mean_score(&[], 1.0)), (None, None));
     }
 }

@@ -13,6 +13,7 @@
 //! Tests and models of preference are in [`statistics`], over plain ballots; [`audit`] looks for defects of a study,
 //! [`simulation`] makes studies whose truth is known, and [`self_test`] tries the ones on the others.
 
+mod answered;
 pub mod audit;
 mod ballots;
 mod claims;
@@ -45,6 +46,7 @@ mod without_study;
 #[cfg(test)]
 mod fixture;
 
+pub use answered::Answered;
 pub use ballots::{BallotGroup, as_declared, ballot_groups, ballots};
 pub use comparison::unexplained_differences;
 pub use figures::{Figure, figures, figures_of_groups, power_figure, sweep_figures};

@@ -21,14 +21,14 @@ pub(crate) use words::whole;
 
 pub use finding::{Finding, Standing};
 
-use crate::ballots::{BallotGroup, ballot_groups, ballots};
+use crate::answered::Answered;
+use crate::ballots::BallotGroup;
 use crate::figures::Figure;
 use crate::hypotheses::{self, Hypothesis};
 use crate::inputs::Inputs;
 use crate::prediction::Prediction;
 use crate::statistics::Ballot;
 use crate::table::Table;
-use crate::tally::Tally;
 use design::Study;
 use std::collections::BTreeSet;
 use words::{counted, list};
@@ -75,10 +75,17 @@ struct Evidence<'a> {
     study: Option<&'a Study>,
     ballots: &'a [Ballot],
     groups: &'a [BallotGroup],
-    hypotheses: Vec<Hypothesis>,
+    hypotheses: &'a [Hypothesis],
 }
 
-impl Evidence<'_> {
+impl<'a> Evidence<'a> {
+    fn of_study(study: &'a Study, answers: Option<&'a Answered>) -> Self {
+        let Some(Answered { ballots, groups, hypotheses, .. }) = answers else {
+            return Self { study: Some(study), ballots: &[], groups: &[], hypotheses: &[] };
+        };
+        Self { study: Some(study), ballots, groups, hypotheses }
+    }
+
     fn participants(&self) -> usize {
         self.ballots.iter().map(|b| b.participant()).collect::<BTreeSet<_>>().len()
     }
@@ -123,10 +130,7 @@ const PAPER: [(&str, bool); 8] = [
 /// The report of a study. `tables` and `figures` are those made from the same inputs; each is printed once.
 pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Report {
     let study = inputs.study;
-    let ballots = inputs.answers.map(|answers| ballots(study, answers)).unwrap_or_default();
-    let groups = ballot_groups(study, &ballots);
-    let hypotheses = hypotheses::of_study(study, &ballots);
-    let evidence = Evidence { study: Some(study), ballots: &ballots, groups: &groups, hypotheses };
+    let evidence = Evidence::of_study(study, inputs.answers);
     let mut press = Press::new(tables, figures);
     let mut paper = Vec::new();
     for (name, at_once) in PAPER {
@@ -134,11 +138,11 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Repo
     }
     paper.extend(press.figures(&["preference_overall", "answers"]));
     press.section("tables", "The tables of the study", paper);
-    if let Some(tally) = Tally::of_inputs(inputs) {
-        press.section("factors", "What the sums hide", factors::findings(study, &tally, &evidence));
+    if let Some(Answered { tally, ballots, .. }) = inputs.answers {
+        press.section("factors", "What the sums hide", factors::findings(study, tally, &evidence));
         press.add_figures(&["factor_share", "preference_objects"]);
         press.preferences(&evidence);
-        let predicted = Prediction::of(inputs, &ballots);
+        let predicted = Prediction::of(inputs, ballots);
         press.section(
             "prediction",
             "What predicts preference",
@@ -159,7 +163,7 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Repo
 pub fn report_of_groups(title: &str, groups: &[BallotGroup], tables: &[Table], figures: &[Figure]) -> Report {
     let ballots: Vec<Ballot> = groups.iter().flat_map(|group| group.ballots.iter().copied()).collect();
     let hypotheses = hypotheses::of_groups(groups);
-    let evidence = Evidence { study: None, ballots: &ballots, groups, hypotheses };
+    let evidence = Evidence { study: None, ballots: &ballots, groups, hypotheses: &hypotheses };
     let mut press = Press::new(tables, figures);
     press.preferences(&evidence);
     press.finish(title.into(), lead(&evidence))

@@ -14,26 +14,24 @@ mod prediction;
 pub(crate) mod preferences;
 pub(crate) mod screened;
 
+use crate::answered::Answered;
 use crate::inputs::Inputs;
 use crate::prediction::Prediction;
 use crate::recorded::Recorded;
 use crate::table::Table;
-use crate::tally::Tally;
-use crate::{audit as probes, ballots, claims, comparison};
-use responses::Responses;
+use crate::{audit as probes, claims, comparison};
 
 /// Every table whose inputs are there, in the order of the paper's and then our own.
 pub fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
-    let tally = Tally::of_inputs(inputs);
-    let tally = tally.as_ref();
+    let tally = inputs.answers.map(|answers| &answers.tally);
     let mut tables = vec![design::configurations(inputs.study)];
     tables.extend(benchmark::benchmark(inputs));
     tables.extend(benchmark::asteroid(inputs));
     tables.extend(design::questionnaire(inputs.study));
-    if let (Some(answers), Some(tally)) = (inputs.answers, tally) {
-        tables.extend(answers::answers(inputs.study, answers));
-        tables.push(answers::counts(inputs.study, tally));
-        tables.extend(preferences::all(inputs.study, tally));
+    if let Some(answers) = inputs.answers {
+        tables.extend(answers::answers(inputs.study, &answers.responses));
+        tables.push(answers::counts(inputs.study, &answers.tally));
+        tables.extend(preferences::all(inputs.study, &answers.tally));
         tables.extend(statistics(inputs, answers));
     }
     tables.extend(mesh_quality::quality(inputs));
@@ -46,18 +44,27 @@ pub fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
 }
 
 /// What holds up beside the factors: tests, models, agreement, screening, and what predicts preference.
-fn statistics(inputs: &Inputs<'_>, answers: &Responses) -> Vec<Table> {
+fn statistics(inputs: &Inputs<'_>, answers: &Answered) -> Vec<Table> {
     let study = inputs.study;
-    let ballots = ballots::ballots(study, answers);
-    let groups = ballots::ballot_groups(study, &ballots);
-    let mut tables = vec![contrasts::study_tests(study, &ballots), contrasts::omnibus(study, &ballots)];
-    tables.extend(models::model_tables(&groups));
-    let recorded = Recorded::of_study(study, answers, &ballots);
-    tables.push(agreement::agreement(study, &ballots));
-    tables.push(agreement::respondents(recorded.ballots(), &recorded.protocol()));
-    tables.push(screened::of_study(study, &ballots, &recorded));
-    tables.push(audit::audit_table(&probes::audit(&recorded.audited(&groups))));
-    let prediction = Prediction::of(inputs, &ballots);
+    let Answered { ballots, groups, hypotheses, .. } = answers;
+    let recorded = Recorded::of_study(study, &answers.responses, ballots);
+    let (models, ([respondents, screened], audited)) = rayon::join(
+        || models::model_tables(groups),
+        || {
+            rayon::join(
+                || {
+                    let respondents = agreement::respondents(recorded.ballots(), &recorded.protocol());
+                    [respondents, screened::of_study(study, ballots, hypotheses, &recorded)]
+                },
+                || audit::audit_table(&probes::audit(&recorded.audited(groups))),
+            )
+        },
+    );
+    let mut tables = vec![contrasts::study_tests(hypotheses), contrasts::omnibus(study, ballots)];
+    tables.extend(models);
+    tables.push(agreement::agreement(study, ballots));
+    tables.extend([respondents, screened, audited]);
+    let prediction = Prediction::of(inputs, ballots);
     tables.extend(prediction.iter().flat_map(|found| prediction::all(study, found)));
     tables.retain(|table| !table.rows.is_empty());
     tables

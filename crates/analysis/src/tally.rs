@@ -1,7 +1,6 @@
 //! From answers to counts.
 
 use crate::ballots::{is_asked, method_of_item};
-use crate::inputs::Inputs;
 use design::{Method, Study};
 use polars::prelude::*;
 use responses::Responses;
@@ -103,12 +102,6 @@ impl Tally {
         let rows = chosen.chunk_by(|a, b| a == b).map(row).collect();
         let methods = by_method(study, &questions).expect("columns of numbers, all of one length");
         Self { respondents: answers.participants.len(), rows, questions, methods }
-    }
-
-    /// Counts the answers, if there are any to questions.
-    pub(crate) fn of_inputs(inputs: &Inputs<'_>) -> Option<Self> {
-        let answers = inputs.answers.filter(|_| !inputs.study.comparisons.is_empty())?;
-        Some(Self::of(answers, inputs.study))
     }
 
     /// The number of answers in the counts that `holds` picks.

@@ -210,7 +210,7 @@ fn analyse(arguments: &Analyse) -> Result<()> {
     let folder = || Path::new("results").join(format!("{}-answers", study.file.study.id));
     let out = arguments.out.clone().unwrap_or_else(folder);
     let store = Store::open(&out, false)?;
-    let tables = pipeline::write_answers_only(&study, &reading, &store)?;
+    let tables = pipeline::write_answers_only(&study, reading, &store)?;
     store.remove_retired()?;
     manifest::write(&manifest::Subject::of(&study)?, &store)?;
     for table in tables.iter().filter(|table| table.name.starts_with("preference_")) {

@@ -23,7 +23,7 @@ pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSe
         evidence.push(format!("{pairs} pairs seen in both orders pull {:.3} to the {towards}", mean.abs()));
         p.push(of);
     }
-    if let (Some([left, none, right]), false) = (controls.counts, controls.differences.is_empty()) {
+    if let (Some([left, none, right]), false) = (controls.counts, controls.participants() == 0) {
         evidence.push(format!("controls: {left} left, {none} none, {right} right"));
         p.push(controls.sign_flip.p());
     }

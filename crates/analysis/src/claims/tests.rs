@@ -3,7 +3,7 @@ use crate::fixture::{self, Everything};
 
 /// The rows of the claims table by id.
 fn rows(everything: &Everything) -> std::collections::BTreeMap<String, Vec<String>> {
-    let tally = Tally::of(&everything.answers, &everything.study);
+    let tally = everything.answers.tally.clone();
     let table = table(&everything.inputs(), Some(&tally)).unwrap();
     table.shown_rows().into_iter().map(|row| (row[0].clone(), row)).collect()
 }

@@ -6,7 +6,7 @@ fn find<'a>(all: &'a [Compared], row: &str, quantity: &str) -> &'a Compared {
 }
 
 fn compared(everything: &Everything) -> Vec<Compared> {
-    let tally = Tally::of(&everything.answers, &everything.study);
+    let tally = everything.answers.tally.clone();
     all(&everything.inputs(), Some(&tally))
 }
 
@@ -101,7 +101,7 @@ fn another_resolution_is_not_compared() {
 #[test]
 fn the_summary_adds_up() {
     let everything = Everything::of(fixture::study());
-    let tally = Tally::of(&everything.answers, &everything.study);
+    let tally = everything.answers.tally.clone();
     let tables = tables(&everything.inputs(), Some(&tally));
     let counted: i64 = tables[0]
         .rows

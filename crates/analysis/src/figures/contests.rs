@@ -44,7 +44,7 @@ fn block(study: &Study, ballots: &[Ballot], contrast: &Contrast) -> Option<Block
         let test = ContrastTest::of(weighted);
         let [first, ties, second] = test.counts?;
         let cut = |i: Interval| Interval { low: i.low.max(-1.0), high: i.high.min(1.0) };
-        (!test.scores.is_empty()).then(|| Row {
+        (test.participants() > 0).then(|| Row {
             label: object.map_or("all objects".into(), |o| study.file.objects[o].name.clone()),
             value: Some(test.mean),
             interval: test.interval.map(cut),

@@ -128,7 +128,7 @@ mod tests {
         ];
         let found = Better::of(&advantages, &ballots);
         assert_eq!(found.test.counts, Some([3, 1, 2]));
-        assert_eq!(found.test.differences, [2, 0, -1]);
+        assert_eq!(found.test.kinds.iter().map(|kind| kind.net).collect::<Vec<_>>(), [-1, 0, 2]);
         // 2 of 2, 1 of 2, 0 of 1: p = 3/5; residuals 0.8, -0.2, -0.6, squares 1.04; se = sqrt(1.5 * 1.04) / 5 = 0.2498.
         let share = found.share.unwrap();
         assert_eq!((share.hits, share.of), (3.0, 5.0));

@@ -1,6 +1,5 @@
 use super::better::PairCount;
 use super::*;
-use crate::ballots::ballots;
 use crate::fixture::{self, Everything};
 use crate::statistics::Outcome;
 use design::Clustering;
@@ -18,7 +17,7 @@ fn close(got: f64, want: f64) {
 #[test]
 fn the_papers_answers_on_published_triangle_counts() {
     let all = Everything::of(fixture::study());
-    let ballots = ballots(&all.study, &all.answers);
+    let ballots = all.answers.ballots.clone();
     let prediction = Prediction::of(&all.inputs(), &ballots).unwrap();
     let codes: Vec<&str> = prediction.metrics.iter().map(|m| m.metric.code).collect();
     assert_eq!(codes, ["published_aspect_ratio", "triangles"]);
@@ -63,7 +62,7 @@ fn a_planted_metric_is_found() {
             _ => 0.9,
         };
     }
-    let mut ballots = ballots(&all.study, &all.answers);
+    let mut ballots = all.answers.ballots.clone();
     for ballot in &mut ballots {
         let c = &all.study.comparisons[ballot.question()];
         let ratio = |id: &design::ConfigurationId| match id.method.clustering {
@@ -95,7 +94,7 @@ fn a_planted_metric_is_found() {
 #[test]
 fn nothing_measured_or_nothing_answered_predicts_nothing() {
     let all = Everything::of(fixture::study());
-    let ballots = ballots(&all.study, &all.answers);
+    let ballots = all.answers.ballots.clone();
     assert!(Prediction::of(&all.inputs(), &[]).is_none());
     let bare = Inputs { meshes: &[], ..all.inputs() };
     assert!(Prediction::of(&bare, &ballots).is_none());

@@ -232,7 +232,7 @@ fn single_questions(evidence: &Evidence<'_>) -> Option<Finding> {
     let all: Vec<&Hypothesis> =
         evidence.hypotheses.iter().filter(|h| matches!(h.subject, Subject::Question(_))).collect();
     let holding: Vec<&str> = all.iter().filter(|h| differs(h)).map(|h| h.scope.as_str()).collect();
-    let asked = all.iter().filter(|h| !h.test.differences.is_empty()).count();
+    let asked = all.iter().filter(|h| h.test.participants() > 0).count();
     let bare = |h: &&&Hypothesis| match h.test.counts {
         Some([a, _, b]) => sign_test::binomial(a, b) <= ALPHA,
         None => false,

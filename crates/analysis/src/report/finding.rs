@@ -58,7 +58,7 @@ impl Finding {
     pub(super) fn of_preference(hypothesis: &Hypothesis, first: &str, second: &str, scope: &str) -> Self {
         let test = &hypothesis.test;
         let counts = test.counts.unwrap_or_default();
-        let leaning = test.differences.iter().filter(|d| **d != 0).count();
+        let leaning = test.leaning();
         if leaning == 0 {
             let text = format!(
                 "{} against {second}{scope}: nobody leans either way ({}), so no test has anything to work on.",
@@ -135,14 +135,14 @@ impl Finding {
 /// `Mean score 0.17 (95 % t interval 0.06 to 0.29, 18 participants)`, turned round for the second.
 pub(super) fn score(test: &ContrastTest, towards_first: bool) -> String {
     let sign = if towards_first { 1.0 } else { -1.0 };
-    let people = counted(test.scores.len(), "participant");
-    // A score lies between -1 and 1; its t interval does not know that.
-    let cut = |low: f64, high: f64| Interval { low: low.max(-1.0), high: high.min(1.0) };
+    let people = counted(test.participants(), "participant");
+    // A score lies between -1 and 1, a difference of two between -2 and 2; the t interval does not know that.
+    let cut = |low: f64, high: f64| Interval { low: low.max(-test.reach), high: high.min(test.reach) };
     let turned = test.interval.map(|i| match towards_first {
         true => cut(i.low, i.high),
         false => cut(-i.high, -i.low),
     });
-    let kind = if unanimous(&test.scores).is_some() { "interval" } else { "t interval" };
+    let kind = if unanimous(&test.scores()).is_some() { "interval" } else { "t interval" };
     let within = turned.map_or(people.clone(), |i| format!("95 % {kind} {}, {people}", interval(i, 2)));
     format!("Mean score {} ({within})", number(sign * test.mean, 2))
 }

@@ -30,7 +30,7 @@ fn metric(found: &MetricPrediction, family: usize) -> Finding {
         String::new()
     };
     let people = share.interval.map_or(String::new(), |i| {
-        format!(", 95 % t interval {}, {}", percents(i), counted(better.test.scores.len(), "participant"))
+        format!(", 95 % t interval {}, {}", percents(i), counted(better.test.participants(), "participant"))
     });
     let toward = better.test.sign_flip.net >= 0;
     let (standing, verdict) = match (found.adjusted <= ALPHA, toward) {

@@ -29,7 +29,7 @@ impl Sorted {
 pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
     let mut sorted = Sorted::default();
     let Some(study) = evidence.study else {
-        for hypothesis in &evidence.hypotheses {
+        for hypothesis in evidence.hypotheses {
             if let Subject::Items { group, first, second } = &hypothesis.subject {
                 let scope =
                     if evidence.groups.len() > 1 { format!(" in group {group}") } else { String::new() };

@@ -6,14 +6,13 @@ use super::words::{counted, list};
 use crate::claims;
 use crate::comparison;
 use crate::inputs::Inputs;
-use crate::tally::Tally;
 use crate::verdict::Verdict;
 
 pub(super) fn findings(inputs: &Inputs<'_>) -> Vec<Block> {
-    let tally = Tally::of_inputs(inputs);
+    let tally = inputs.answers.map(|answers| &answers.tally);
     let source = &inputs.study.published.source;
-    let numbers = comparison::all(inputs, tally.as_ref());
-    let claims = claims::all(inputs, tally.as_ref());
+    let numbers = comparison::all(inputs, tally);
+    let claims = claims::all(inputs, tally);
     let mut found = Vec::new();
     if !numbers.is_empty() {
         let tallied = tallied(numbers.iter().map(|c| &c.verdict));

@@ -10,9 +10,10 @@ fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'stati
         .filter(|b| b.participant() < people)
         .map(|b| b.with_outcome(answer(b.participant(), b.question())))
         .collect();
-    let groups = ballot_groups(&study, &ballots);
+    let groups = crate::ballot_groups(&study, &ballots);
     let hypotheses = hypotheses::of_study(&study, &ballots);
-    let evidence = Evidence { study: Some(&study), ballots: &ballots, groups: &groups, hypotheses };
+    let evidence =
+        Evidence { study: Some(&study), ballots: &ballots, groups: &groups, hypotheses: &hypotheses };
     let mut press = Press::new(&[], &[]);
     press.preferences(&evidence);
     let report = press.finish("A test".into(), lead(&evidence));

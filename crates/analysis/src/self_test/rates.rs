@@ -5,8 +5,7 @@ use crate::simulation::{Plan, Population, simulate, stream};
 use crate::statistics::bootstrap::{Resampling, bca_each};
 use crate::statistics::contrast::ContrastTest;
 use crate::statistics::{
-    Ballot, MARGIN, Model, Pairs, Participants, clustered_covariance, equivalence, fit, friedman, holm,
-    sign_test,
+    Ballot, MARGIN, Model, Pairs, Participants, clustered_covariance, fit, friedman, holm, sign_test,
 };
 use rayon::prelude::*;
 
@@ -176,7 +175,7 @@ fn at_the_margin(studies: u64, seed: u64) -> Vec<Rate> {
     let (plan, population) = (Plan::round_robin(2, 9), pair(low));
     count(studies, "mean score at the margin, 0.2", |study| {
         let ballots = simulate(&plan, &population, PEOPLE, &mut stream(seed, study));
-        let p = equivalence(&contrast(&ballots).scores, MARGIN).map(|test| test.p <= LEVEL);
+        let p = contrast(&ballots).equivalence().map(|test| test.p <= LEVEL);
         vec![("equivalence, two one-sided t tests", Counted::Rejections, p)]
     })
 }

@@ -2,7 +2,8 @@
 
 use super::ballot::{Ballot, Outcome};
 use super::bootstrap::{BootstrapInterval, Resampling, bca, kinds, mean, mean_and_error, studentised};
-use super::sign_flip::{SignFlip, sign_flip, sign_flip_of_counts};
+use super::equivalence::{Equivalence, MARGIN, equivalence};
+use super::sign_flip::{SignFlip, sign_flip_of_counts};
 use crate::interval::{Interval, of_mean_score};
 use design::{Arrangement, Clustering, Study};
 use std::collections::BTreeMap;
@@ -78,16 +79,27 @@ pub struct Contrast {
 pub struct ContrastTest {
     /// Answers for the first, none, for the second; of a contrast with weights other than 1 and -1, `None`.
     pub counts: Option<[u64; 3]>,
-    /// One integer a participant who answered at least one of the questions: sum of weight times sign.
-    pub differences: Vec<i64>,
-    /// Each participant's difference over the weights of the questions answered: -1..=1.
-    pub scores: Vec<f64>,
-    /// The exact test.
+    /// Whoever counts, those with the same answers together; ascending.
+    pub kinds: Vec<Kind>,
+    /// The exact test of the nets.
     pub sign_flip: SignFlip,
+    /// How far scores can be from zero: 1, and 2 for interactions, which are differences of two mean scores.
+    pub reach: f64,
     /// Mean of the scores; 0 without participants.
     pub mean: f64,
     /// Interval for it over participants: [`of_mean_score`].
     pub interval: Option<Interval>,
+}
+
+/// Participants with the same answers to a contrast's questions, as far as it can tell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Kind {
+    /// Sum of weight times sign.
+    pub net: i64,
+    /// Sum of the weights' sizes over the questions answered.
+    pub size: i64,
+    /// How many participants.
+    pub people: u64,
 }
 
 impl Level {
@@ -102,7 +114,10 @@ impl Level {
 
 impl Contrast {
     /// Tests it on ballots, whose questions are the study's.
-    pub fn test(&self, ballots: &[Ballot]) -> ContrastTest {
+    ///
+    /// Whoever answered some of its questions counts as far as that goes; for an interaction, whoever answered all of them:
+    /// of half a difference nothing can be said.
+    pub fn test<'a>(&self, ballots: impl IntoIterator<Item = &'a Ballot>) -> ContrastTest {
         let questions = self.weights.keys().last().map_or(0, |last| last + 1);
         let weights: Vec<i64> =
             (0..questions).map(|q| self.weights.get(&q).copied().unwrap_or_default()).collect();
@@ -110,66 +125,126 @@ impl Contrast {
             let weight = *weights.get(ballot.question()).filter(|&&weight| weight != 0)?;
             Some((ballot.participant(), weight, ballot.outcome()))
         };
-        let test = ContrastTest::of(ballots.iter().filter_map(weighted));
-        // Counts of answers mean something only if all weigh the same.
-        let counts = test.counts.filter(|_| self.family != Family::Interactions);
-        ContrastTest { counts, ..test }
+        let answers = ballots.into_iter().filter_map(weighted);
+        match self.family {
+            Family::Interactions => {
+                ContrastTest::of_difference(answers, self.weights.values().map(|w| w.abs()).sum())
+            }
+            _ => ContrastTest::of(answers),
+        }
     }
 }
 
 impl ContrastTest {
-    /// Tests answers given as `(participant, weight, outcome)`; a positive weight speaks for the left side.
+    /// Tests answers given as `(participant, weight, outcome)`; a positive weight speaks for the left side. A participant's
+    /// score is the net over the size: -1..=1.
     pub fn of(answers: impl IntoIterator<Item = (usize, i64, Outcome)>) -> Self {
-        // By participant: sum of weight times sign, and the weights' size, which is above zero for whoever answered.
-        let mut of: Vec<(i64, i64)> = Vec::new();
-        let mut counts = [0; 3];
-        for (participant, weight, outcome) in answers {
-            if participant >= of.len() {
-                of.resize(participant + 1, (0, 0));
-            }
-            let signed = weight * outcome.sign();
-            of[participant].0 += signed;
-            of[participant].1 += weight.abs();
-            counts[(1 - signed.signum()) as usize] += 1;
-        }
-        of.retain(|&(_, size)| size > 0);
-        let differences: Vec<i64> = of.iter().map(|&(sum, _)| sum).collect();
-        let scores: Vec<f64> = of.iter().map(|&(sum, size)| sum as f64 / size as f64).collect();
-        Self {
-            counts: Some(counts),
-            sign_flip: sign_flip(&differences),
-            mean: if scores.is_empty() { 0.0 } else { scores.iter().sum::<f64>() / scores.len() as f64 },
-            interval: of_mean_score(&scores),
-            differences,
-            scores,
-        }
+        let (people, counts) = add_up(answers);
+        Self::of_people(people.into_iter().filter(|&(_, size)| size > 0), Some(counts), 1.0)
+    }
+
+    /// Tests a difference of two mean scores, each part of which has half of the weights' sizes, `all` together. Only those
+    /// who answered everything count. Scores are -2..=2; counts of answers mean nothing, since not all weigh the same.
+    fn of_difference(answers: impl IntoIterator<Item = (usize, i64, Outcome)>, all: i64) -> Self {
+        let (people, _) = add_up(answers);
+        Self::of_people(people.into_iter().filter(|&(_, size)| size == all), None, 2.0)
+    }
+
+    fn of_people(people: impl Iterator<Item = (i64, i64)>, counts: Option<[u64; 3]>, reach: f64) -> Self {
+        let mut alike: BTreeMap<(i64, i64), u64> = BTreeMap::new();
+        people.for_each(|person| *alike.entry(person).or_default() += 1);
+        let kinds: Vec<Kind> =
+            alike.into_iter().map(|((net, size), people)| Kind { net, size, people }).collect();
+        let test = Self {
+            counts,
+            sign_flip: sign_flip_of_counts(&nets(&kinds)),
+            kinds,
+            reach,
+            mean: 0.0,
+            interval: None,
+        };
+        let scores = test.scores();
+        let mean = if scores.is_empty() { 0.0 } else { scores.iter().sum::<f64>() / scores.len() as f64 };
+        // Rounding must not make a preference of none.
+        let mean = if test.sign_flip.net == 0 && test.kinds.iter().all(|k| k.size == test.kinds[0].size) {
+            0.0
+        } else {
+            mean
+        };
+        Self { mean, interval: of_mean_score(&scores, reach), ..test }
+    }
+
+    /// How many participants count.
+    pub fn participants(&self) -> usize {
+        self.kinds.iter().map(|kind| kind.people as usize).sum()
+    }
+
+    /// How many of them lean to one side.
+    pub fn leaning(&self) -> usize {
+        self.kinds.iter().filter(|kind| kind.net != 0).map(|kind| kind.people as usize).sum()
+    }
+
+    /// One score a participant, ascending by net.
+    pub fn scores(&self) -> Vec<f64> {
+        let of = |kind: &Kind| {
+            std::iter::repeat_n(self.reach * kind.net as f64 / kind.size as f64, kind.people as usize)
+        };
+        self.kinds.iter().flat_map(of).collect()
+    }
+
+    /// The test that the mean score lies within [`MARGIN`] of zero.
+    pub fn equivalence(&self) -> Option<Equivalence> {
+        equivalence(&self.scores(), MARGIN, self.reach)
     }
 
     /// Smallest and largest p when each participant in turn is left out; `None` for fewer than two.
     pub fn leave_one_out(&self) -> Option<(f64, f64)> {
         // Participants with the same difference leave the same p behind.
-        let mut counts: BTreeMap<i64, u64> = BTreeMap::new();
-        self.differences.iter().for_each(|&d| *counts.entry(d).or_default() += 1);
+        let counts = nets(&self.kinds);
         let without = |left_out: &i64| {
             let mut others = counts.clone();
             *others.get_mut(left_out).expect("one of them") -= 1;
             sign_flip_of_counts(&others).p()
         };
-        let all = (self.differences.len() > 1).then(|| counts.keys().map(without));
+        let all = (self.participants() > 1).then(|| counts.keys().map(without));
         all.map(|p| p.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p))))
     }
 
     /// BCa interval for the mean score, resampling participants.
     pub fn bca(&self, resampling: Resampling) -> Option<BootstrapInterval> {
-        let (scores, counts) = kinds(&self.scores);
+        let (scores, counts) = kinds(&self.scores());
         bca(&counts, resampling, |weights| mean(&scores, weights))
     }
 
     /// Studentised bootstrap interval for the mean score, resampling participants.
     pub fn studentised(&self, resampling: Resampling) -> Option<BootstrapInterval> {
-        let (scores, counts) = kinds(&self.scores);
+        let (scores, counts) = kinds(&self.scores());
         studentised(&counts, resampling, |weights| mean_and_error(&scores, weights))
     }
+}
+
+/// By participant, sum of weight times sign and of the weights' sizes, which is 0 for whoever did not answer; and counts of
+/// answers for, neither, against.
+fn add_up(answers: impl IntoIterator<Item = (usize, i64, Outcome)>) -> (Vec<(i64, i64)>, [u64; 3]) {
+    let mut people: Vec<(i64, i64)> = Vec::new();
+    let mut counts = [0; 3];
+    for (participant, weight, outcome) in answers {
+        if participant >= people.len() {
+            people.resize(participant + 1, (0, 0));
+        }
+        let signed = weight * outcome.sign();
+        people[participant].0 += signed;
+        people[participant].1 += weight.abs();
+        counts[(1 - signed.signum()) as usize] += 1;
+    }
+    (people, counts)
+}
+
+/// How many participants have each net.
+fn nets(kinds: &[Kind]) -> BTreeMap<i64, u64> {
+    let mut nets = BTreeMap::new();
+    kinds.iter().for_each(|kind| *nets.entry(kind.net).or_default() += kind.people);
+    nets
 }
 
 /// What a question compares, if its sides differ in one property alone.
@@ -204,7 +279,7 @@ fn weights(questions: &[(usize, Single)], weight: impl Fn(usize, Single) -> i64)
 /// Every contrast that the study's questions allow, by family, then in the study's order.
 ///
 /// `A-B` counts answers for A as positive; A is the code that a question shows on the left first. Interactions are
-/// differences of two contrasts, and those of one object against the others.
+/// differences of two contrasts' mean scores, and those of one object against the others.
 pub fn contrasts(study: &Study) -> Vec<Contrast> {
     let questions: Vec<(usize, Single)> =
         (0..study.comparisons.len()).filter_map(|q| single(study, q).map(|single| (q, single))).collect();

@@ -17,9 +17,9 @@ pub struct Equivalence {
     pub p: f64,
 }
 
-/// Tests whether the mean of one score a participant lies within `margin` of zero: t over participants, m - 1 degrees of
-/// freedom. `None` for fewer than two participants.
-pub fn equivalence(scores: &[f64], margin: f64) -> Option<Equivalence> {
+/// Tests whether the mean of one score a participant, between -`reach` and `reach`, lies within `margin` of zero: t over
+/// participants, m - 1 degrees of freedom. `None` for fewer than two participants.
+pub fn equivalence(scores: &[f64], margin: f64, reach: f64) -> Option<Equivalence> {
     if scores.len() < 2 {
         return None;
     }
@@ -29,7 +29,7 @@ pub fn equivalence(scores: &[f64], margin: f64) -> Option<Equivalence> {
     let room = margin - mean.abs();
     let p = match unanimous(scores) {
         Some(_) if room <= 0.0 => 1.0,
-        Some(score) => chance_of_unanimity(score.abs(), scores.len(), margin),
+        Some(score) => chance_of_unanimity(score.abs(), scores.len(), margin, reach),
         None => StudentsT::new(0.0, 1.0, m - 1.0).expect("m - 1 > 0").sf(room / (variance / m).sqrt()),
     };
     Some(Equivalence { margin, p })
@@ -44,21 +44,21 @@ mod tests {
         // SciPy 1.17.1, ttest_1samp: x = [.1, -.2, .3, 0, .1, -.1, .05]; the larger p of popmean -.2, alternative
         // "greater", and popmean .2, alternative "less".
         let scores = [0.1, -0.2, 0.3, 0.0, 0.1, -0.1, 0.05];
-        let test = equivalence(&scores, MARGIN).unwrap();
+        let test = equivalence(&scores, MARGIN, 1.0).unwrap();
         assert!((test.p - 0.017_393_486_936_827_105).abs() < 1e-10, "{test:?}");
         let negative = scores.map(|s| -s);
-        assert!((equivalence(&negative, MARGIN).unwrap().p - test.p).abs() < 1e-12);
+        assert!((equivalence(&negative, MARGIN, 1.0).unwrap().p - test.p).abs() < 1e-12);
         // The 90 % interval touches the margin exactly where p is 0.05.
-        assert!(equivalence(&scores, 0.1).unwrap().p > 0.05);
-        assert!(equivalence(&scores.map(|s| s + 1.0), MARGIN).unwrap().p > 0.99);
+        assert!(equivalence(&scores, 0.1, 1.0).unwrap().p > 0.05);
+        assert!(equivalence(&scores.map(|s| s + 1.0), MARGIN, 1.0).unwrap().p > 0.99);
     }
 
     #[test]
     fn without_spread() {
         // Nobody of m has a preference: 0.8^m, if one in five were all for one side.
-        assert!((equivalence(&[0.0; 4], MARGIN).unwrap().p - 0.8_f64.powi(4)).abs() < 1e-15);
-        assert!((equivalence(&[-0.1; 30], MARGIN).unwrap().p - (0.8_f64 / 0.9).powi(30)).abs() < 1e-12);
-        assert_eq!(equivalence(&[0.5; 4], MARGIN).unwrap().p, 1.0);
-        assert_eq!(equivalence(&[0.5], MARGIN), None);
+        assert!((equivalence(&[0.0; 4], MARGIN, 1.0).unwrap().p - 0.8_f64.powi(4)).abs() < 1e-15);
+        assert!((equivalence(&[-0.1; 30], MARGIN, 1.0).unwrap().p - (0.8_f64 / 0.9).powi(30)).abs() < 1e-12);
+        assert_eq!(equivalence(&[0.5; 4], MARGIN, 1.0).unwrap().p, 1.0);
+        assert_eq!(equivalence(&[0.5], MARGIN, 1.0), None);
     }
 }

@@ -7,11 +7,10 @@ use crate::statistics::{Ballot, ChiSquareTest, friedman, sign_test};
 use crate::table::{Cell, Table};
 use design::{Arrangement, Clustering, Study};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
 /// Every contrast of a study, then every question.
-pub(super) fn study_tests(study: &Study, ballots: &[Ballot]) -> Table {
-    table(&hypotheses::of_study(study, ballots))
+pub(super) fn study_tests(hypotheses: &[Hypothesis]) -> Table {
+    table(hypotheses)
 }
 
 /// Every pair of items that was compared, group by group; the group is the family.
@@ -61,7 +60,7 @@ fn table(rows: &[Hypothesis]) -> Table {
          score, the means that make this at least 2.5 % probable; BCa and studentised: 2000 resamples of participants. Equivalence: two one-sided t tests of a mean score within 0.2 of zero, which is 60 \
          answers to 40, adjusted in the same way. Conclusion: at 5 % of both adjusted p; a large p alone is open, not equal. \
          p without one: range when each participant in turn is left out. Interactions are differences of two \
-         mean scores, weighed to whole numbers. Binomial and trinomial treat all answers as independent and are there for \
+         mean scores, -2 to 2, of those who answered all of their questions. Binomial and trinomial treat all answers as independent and are there for \
          comparison; they hold for single questions only."
             .into(),
     );
@@ -116,27 +115,25 @@ pub(super) fn omnibus(study: &Study, ballots: &[Ballot]) -> Table {
             ("chi_square", "Chi-square"),
             ("degrees", "Degrees"),
             ("p", "p"),
+            ("participants", "Participants"),
         ],
     );
     let StudyScores { clusterings, by_clustering, by_object } = study_scores(study, ballots);
     let cases = [
-        ("clustering", "wins minus losses of each clustering", friedman(&clusterings)),
-        (
-            "arrangement x clustering",
-            "body-centred minus simple cubic, by clustering",
-            friedman(&by_clustering),
-        ),
-        ("object x arrangement", "body-centred minus simple cubic, by object", friedman(&by_object)),
+        ("clustering", "wins minus losses of each clustering", &clusterings),
+        ("arrangement x clustering", "body-centred minus simple cubic, by clustering", &by_clustering),
+        ("object x arrangement", "body-centred minus simple cubic, by object", &by_object),
     ];
-    for (question, scores, test) in cases {
-        if let Some(ChiSquareTest { statistic, degrees, p }) = test {
-            let numbers = [Cell::Number(statistic, 3), Cell::Number(degrees, 0), Cell::P(p, 5)];
+    for (question, scores, rows) in cases {
+        if let Some(ChiSquareTest { statistic, degrees, p }) = friedman(rows) {
+            let people = Cell::count(rows.len() as u64);
+            let numbers = [Cell::Number(statistic, 3), Cell::Number(degrees, 0), Cell::P(p, 5), people];
             table.push([Cell::text(question), Cell::text(scores)].into_iter().chain(numbers).collect());
         }
     }
     table
         .notes
-        .push("Chi-square approximation with correction for ties; participants are the blocks.".into());
+        .push("Chi-square approximation with correction for ties; the blocks are the participants who answered all of its questions.".into());
     table
 }
 
@@ -176,18 +173,28 @@ pub(crate) fn study_scores(study: &Study, ballots: &[Ballot]) -> StudyScores {
     StudyScores { clusterings, by_clustering, by_object }
 }
 
-/// One row of sums a participant; participants and columns without any answer stay at zero.
+/// One row of sums for each participant who answered every question that has a part in them: what was not answered is not
+/// zero, and people who stop before the last object would look as if they liked it less.
 fn scores(
     ballots: &[Ballot],
     columns: usize,
     parts: impl Fn(&Ballot) -> [Option<(usize, f64)>; 2],
 ) -> Vec<Vec<f64>> {
-    let mut rows: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    let people = ballots.iter().map(|ballot| ballot.participant() + 1).max().unwrap_or_default();
+    let (mut sums, mut answered) = (vec![0.0; people * columns], vec![0; people]);
+    let mut asked = vec![false; ballots.iter().map(|ballot| ballot.question() + 1).max().unwrap_or_default()];
     for ballot in ballots {
-        let row = rows.entry(ballot.participant()).or_insert_with(|| vec![0.0; columns]);
-        parts(ballot).into_iter().flatten().for_each(|(column, score)| row[column] += score);
+        let parts = parts(ballot);
+        if parts.iter().any(Option::is_some) {
+            asked[ballot.question()] = true;
+            answered[ballot.participant()] += 1;
+        }
+        let row = ballot.participant() * columns;
+        parts.into_iter().flatten().for_each(|(column, score)| sums[row + column] += score);
     }
-    rows.into_values().collect()
+    let all = asked.into_iter().filter(|asked| *asked).count();
+    let complete = sums.chunks_exact(columns.max(1)).zip(answered).filter(|&(_, answered)| answered == all);
+    if all == 0 { Vec::new() } else { complete.map(|(row, _)| row.to_vec()).collect() }
 }
 
 #[cfg(test)]

@@ -8,20 +8,26 @@ use crate::table::{Cell, Table};
 use design::Study;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Every contrast of a study; single questions are left out. `recorded` is what is screened.
-pub(super) fn of_study(study: &Study, ballots: &[Ballot], recorded: &Recorded<'_>) -> Table {
-    screened(recorded, |keep| {
+/// Every contrast of a study; single questions are left out. `hypotheses` are those of all ballots, `recorded` is what is
+/// screened.
+pub(super) fn of_study(
+    study: &Study,
+    ballots: &[Ballot],
+    hypotheses: &[Hypothesis],
+    recorded: &Recorded<'_>,
+) -> Table {
+    let contrasts = hypotheses.iter().filter(|h| !matches!(h.subject, Subject::Question(_)));
+    screened(recorded, &contrasts.collect::<Vec<_>>(), |keep| {
         let kept: Vec<Ballot> = ballots.iter().filter(|b| keep(b)).copied().collect();
-        let mut all = hypotheses::of_study(study, &kept);
-        all.retain(|h| !matches!(h.subject, Subject::Question(_)));
-        all
+        hypotheses::of_contrasts(study, &kept)
     })
 }
 
 /// Every pair of items, group by group: [`pair_tests`](crate::pair_tests) with everybody and without. `recorded` is what is
 /// screened.
 pub fn screened_pair_tests(groups: &[BallotGroup], recorded: &Recorded<'_>) -> Table {
-    screened(recorded, |keep| {
+    let hypotheses = hypotheses::of_groups(groups);
+    screened(recorded, &hypotheses.iter().collect::<Vec<_>>(), |keep| {
         let kept = |group: &BallotGroup| BallotGroup {
             ballots: group.ballots.iter().filter(|b| keep(b)).copied().collect(),
             ..group.clone()
@@ -30,7 +36,11 @@ pub fn screened_pair_tests(groups: &[BallotGroup], recorded: &Recorded<'_>) -> T
     })
 }
 
-fn screened(recorded: &Recorded<'_>, tested: impl Fn(&dyn Fn(&Ballot) -> bool) -> Vec<Hypothesis>) -> Table {
+fn screened(
+    recorded: &Recorded<'_>,
+    all: &[&Hypothesis],
+    tested: impl Fn(&dyn Fn(&Ballot) -> bool) -> Vec<Hypothesis>,
+) -> Table {
     let mut table = Table::new(
         "screened",
         "Tests with everybody, and without those who broke a rule",
@@ -63,15 +73,14 @@ fn screened(recorded: &Recorded<'_>, tested: impl Fn(&dyn Fn(&Ballot) -> bool) -
     if broken.len() == 2 {
         broken.remove(&None);
     }
-    let all = if broken.is_empty() { Vec::new() } else { tested(&|_| true) };
     for (rule, people) in broken {
         let others = tested(&|b: &Ballot| !people.contains(&b.participant()));
         let same = |a: &Hypothesis, b: &Hypothesis| {
             (&a.family, &a.contrast, &a.scope) == (&b.family, &b.contrast, &b.scope)
         };
-        for with in &all {
+        for &with in all {
             let without = others.iter().find(|other| same(with, other));
-            let answered = without.filter(|other| !other.test.differences.is_empty());
+            let answered = without.filter(|other| other.test.participants() > 0);
             table.push(vec![
                 Cell::text(rule.map_or("any", Flag::code)),
                 Cell::count(people.len() as u64),
@@ -130,7 +139,7 @@ mod tests {
         let answers = fixture::answers(&study);
         let ballots = ballots(&study, &answers);
         let recorded = Recorded::of_study(&study, &answers, &ballots);
-        let table = of_study(&study, &ballots, &recorded);
+        let table = of_study(&study, &ballots, &hypotheses::of_study(&study, &ballots), &recorded);
         assert_eq!(table.rows.len(), 4 + 9 + 3 + 9);
         let of = |column| cell(&table, &["odd", "B-S", "all"], column).shown();
         assert_eq!(
@@ -154,6 +163,8 @@ mod tests {
         let mut answers = fixture::answers(&study);
         answers.answers.retain(|answer| answer.participant != 15);
         let ballots = ballots(&study, &answers);
-        assert!(of_study(&study, &ballots, &Recorded::of_study(&study, &answers, &ballots)).rows.is_empty());
+        assert!(
+            of_study(&study, &ballots, &[], &Recorded::of_study(&study, &answers, &ballots)).rows.is_empty()
+        );
     }
 }

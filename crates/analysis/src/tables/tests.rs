@@ -201,7 +201,7 @@ fn absent_parts_leave_out_their_tables() {
 #[test]
 fn another_study_works_as_well() {
     let study = fixture::small_study();
-    let answers = fixture::parse("Q17,Q8\nL,R\nNP,R\n", &study);
+    let answers = Answered::of(&study, fixture::parse("Q17,Q8\nL,R\nNP,R\n", &study)).unwrap();
     let paper = fixture::study();
     let (meshes, bench) = (fixture::meshes(&paper), fixture::bench(&paper));
     let inputs = Inputs { study: &study, meshes: &meshes, bench: Some(&bench), answers: Some(&answers) };

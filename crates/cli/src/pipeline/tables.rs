@@ -4,7 +4,7 @@ use super::{Meshes, Pipeline};
 use crate::progress::Step;
 use crate::rooms;
 use crate::store::{Inputs, Stamp, Store, Writer, sha256};
-use analysis::{Figure, Table};
+use analysis::{Answered, Figure, Table};
 use anyhow::{Context, Result};
 use design::Study;
 use design::config::ResponsesSection;
@@ -24,11 +24,12 @@ impl Pipeline<'_> {
             let records = self.mesh_records(meshes)?;
             let run = self.bench_run(timings)?;
             let answers = crate::answers::of_study(self.study)?;
+            let answers = answers.and_then(|reading| Answered::of(self.study, reading.responses));
             let inputs = analysis::Inputs {
                 study: self.study,
                 meshes: &records,
                 bench: Some(&run),
-                answers: answers.as_ref().map(|reading| &reading.responses),
+                answers: answers.as_ref(),
             };
             write(writer, &inputs, true)?;
             writer.write_json(UNEXPLAINED, &analysis::unexplained_differences(&inputs))
@@ -50,8 +51,9 @@ impl Pipeline<'_> {
 ///
 /// # Errors
 /// If the files cannot be written.
-pub(crate) fn write_answers_only(study: &Study, reading: &Reading, store: &Store) -> Result<Vec<Table>> {
-    let inputs = analysis::Inputs { study, meshes: &[], bench: None, answers: Some(&reading.responses) };
+pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store) -> Result<Vec<Table>> {
+    let answers = Answered::of(study, reading.responses);
+    let inputs = analysis::Inputs { study, meshes: &[], bench: None, answers: answers.as_ref() };
     let mut made = None;
     store.stage("answers", study_inputs(study)?, |writer| {
         writer.write(READING, reading.report.to_csv().as_bytes())?;

@@ -64,8 +64,9 @@ fn partly_answered_rows_count_as_far_as_they_go() {
     let ballots =
         [ballot(0, 0, Left), ballot(0, 1, Right), ballot(0, 2, Tie), ballot(4, 1, Left), ballot(5, 9, Left)];
     let test = contrast.test(&ballots);
-    assert_eq!((test.counts, test.differences.as_slice()), (Some([2, 1, 1]), [2, -1].as_slice()));
-    assert_eq!(test.scores, [2.0 / 3.0, -1.0]);
+    let kinds = [Kind { net: -1, size: 1, people: 1 }, Kind { net: 2, size: 3, people: 1 }];
+    assert_eq!((test.counts, test.kinds.as_slice()), (Some([2, 1, 1]), kinds.as_slice()));
+    assert_eq!(test.scores(), [-1.0, 2.0 / 3.0]);
     assert_eq!((test.sign_flip.net, test.sign_flip.p()), (1, 1.0));
     assert_eq!(contrast.test(&[]).leave_one_out(), None);
 }

@@ -10,7 +10,7 @@ fn rows(table: &Table, start: &str) -> Vec<String> {
 #[test]
 fn the_papers_tests() {
     let study = fixture::study();
-    let table = study_tests(&study, &ballots(&study, &fixture::answers(&study)));
+    let table = study_tests(&fixture::answered(&study).hypotheses);
     assert_eq!(table.rows.len(), 4 + 9 + 3 + 9 + 27);
     let header = table.columns.iter().map(|c| c.name.as_str()).collect::<Vec<_>>();
     let header = &header;
@@ -43,6 +43,9 @@ fn the_papers_tests() {
     holm.iter().for_each(|(c, scope, p)| assert_eq!(shown(&["groups", c, scope])("p_adjusted"), *p));
     let sphere = shown(&["interactions", "B-S", "sphere - others"]);
     assert_eq!((sphere("p_sign_flip"), sphere("first")), ("0.00005".into(), String::new()));
+    // The difference of the means 0.722 on the sphere and -0.102 elsewhere: -2 to 2.
+    assert_eq!([sphere("mean"), sphere("low"), sphere("high")], ["0.824", "0.563", "1.085"]);
+    assert_eq!(shown(&["interactions", "U-I", "B - S"])("conclusion"), "open");
     // Q7: 16 left, 1 none, 1 right; one answer a person, so the sign flip is the binomial test of 16 against 1.
     let question = shown(&["questions", "bu-su", "Q7"]);
     assert_eq!(question("p_sign_flip"), format!("{:.5}", 36.0 / 131_072.0));
@@ -56,8 +59,29 @@ fn does_anything_differ() {
     // SciPy 1.17.1 friedmanchisquare on the same sums: Q = 23.690; 9.9692, p 0.006842; 19.9062, p 0.00004758.
     assert_eq!(
         table.shown_rows().iter().map(|row| row[2..].join(" ")).collect::<Vec<_>>(),
-        ["23.690 2 0.00001", "9.969 2 0.00684", "19.906 2 0.00005"]
+        ["23.690 2 0.00001 18", "9.969 2 0.00684 18", "19.906 2 0.00005 18"]
     );
+}
+
+#[test]
+fn who_stops_early_tells_nothing_about_differences() {
+    // Half of the people stop before the last object, which is the bunny: a taste is not a change of taste.
+    let study = fixture::study();
+    let answered = fixture::answered(&study);
+    let last = study.file.objects.len() - 1;
+    let stops = |b: &&Ballot| b.participant() < 9 || study.comparisons[b.question()].object != last;
+    let kept: Vec<Ballot> = answered.ballots.iter().filter(stops).copied().collect();
+    let complete: Vec<Ballot> = kept.iter().filter(|b| b.participant() < 9).copied().collect();
+    let interactions = |ballots: &[Ballot]| {
+        let all = hypotheses::of_study(&study, ballots).into_iter().filter(|h| h.family == "interactions");
+        all.map(|h| (h.contrast, h.scope, h.test)).collect::<Vec<_>>()
+    };
+    assert_eq!(interactions(&kept), interactions(&complete));
+    assert!(interactions(&kept).iter().all(|(_, _, test)| test.participants() == 9));
+    assert_eq!(omnibus(&study, &kept).rows, omnibus(&study, &complete).rows);
+    // What is no difference counts them.
+    let overall = |ballots: &[Ballot]| hypotheses::of_study(&study, ballots)[0].test.participants();
+    assert_eq!((overall(&kept), overall(&complete)), (18, 9));
 }
 
 #[test]
