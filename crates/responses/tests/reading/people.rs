@@ -1,6 +1,6 @@
 //! Who is who: one person under two ids, one sheet twice, and addresses that nobody is shown.
 
-use crate::study::{parse, parse_with, plan, remarks, said};
+use crate::study::{export, parse, parse_with, plan, read, remarks, said};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use responses::{Duplicates, Mapping, Reading};
@@ -57,6 +57,22 @@ fn an_address_in_two_rows_is_one_person() {
             assert_eq!(parse_with(&text, &declared).unwrap().responses.participants.len(), 2);
         }
     }
+}
+
+#[test]
+fn exports_with_somebody_twice() {
+    let path = export("microsoft_twice.csv");
+    let refused = responses::read(&path, Some(&plan()), &Mapping::default()).unwrap_err().to_string();
+    assert!(refused.contains("microsoft_twice.csv: row 4: the e-mail address of row 2 again"), "{refused}");
+    let first = read("microsoft_twice.csv", &keeping(Duplicates::First));
+    let ids: Vec<&str> = first.responses.participants.iter().map(|p| p.id.as_str()).collect();
+    assert_eq!(ids, ["1", "2", "4"]);
+    let copy = "5 noted: the same time and the same 3 answers as row 3: perhaps a copy; both are counted";
+    assert!(remarks(&first).iter().any(|remark| remark == copy), "{}", first.report);
+    let long = read("long_addresses.csv", &Mapping::default());
+    let want = ["row 2' Q1 a<b", "row 2' Q2 a=c", "row 2 Q1 b>a", "row 5 Q1 a>b", "row 2' Q3 b>c"];
+    assert_eq!(said(&long), want);
+    assert!(!all_of(&first).contains('@') && !all_of(&long).contains('@'));
 }
 
 #[test]
@@ -118,12 +134,12 @@ fn addresses_as_ids_are_neither_kept_nor_shown() {
     // `row 2` and `row 4` are somebody's own names.
     let text = "participant,question,left,right,choice\na@x.org,q,a,b,left\nrow 2,q,a,b,none\nb@x.org,q,a,b,right\n\
         A@X.ORG,r,a,b,left\nrow 4,q,a,b,left\n";
-    let read = |text: &str| responses::parse(text.as_bytes(), Path::new("x"), None, &Mapping::default());
-    let reading = read(text).unwrap();
+    let parse = |text: &str| responses::parse(text.as_bytes(), Path::new("x"), None, &Mapping::default());
+    let reading = parse(text).unwrap();
     let ids: Vec<&str> = reading.responses.participants.iter().map(|p| p.id.as_str()).collect();
     assert_eq!(ids, ["row 2'", "row 2", "row 4'", "row 4"]);
     assert!(!all_of(&reading).contains('@'), "{}", all_of(&reading));
-    let twice = read(&text.replace("A@X.ORG,r", "A@X.ORG,q")).unwrap_err().to_string();
+    let twice = parse(&text.replace("A@X.ORG,r", "A@X.ORG,q")).unwrap_err().to_string();
     assert!(twice.contains("row 5: row 2' has already answered q") && !twice.contains('@'), "{twice}");
     let declared = Mapping { participant_column: Some(2), ..Mapping::default() };
     let text = format!("{GOOGLE}x,a@x.org,L,NP,R\ny,A@x.org,L,NP,L\n");
