@@ -40,15 +40,20 @@ pub(crate) fn is_title(title: &str) -> bool {
 
 /// Whether a cell is one address: `name@host.domain`. What forms write for nobody, such as `anonymous`, is none.
 pub(crate) fn is_address(cell: &str) -> bool {
-    /// The longest that mail knows.
-    const LONGEST: usize = 254;
-    let cell = trim(cell);
-    if cell.len() > LONGEST || cell.contains(|c: char| c.is_whitespace() || c.is_control()) {
+    /// The longest that mail knows has 254 bytes; space may stand round it.
+    const LONGEST: usize = 300;
+    if cell.len() > LONGEST {
         return false;
     }
-    let Some((name, host)) = cell.split_once('@') else { return false };
+    let Some((name, host)) = trim(cell).split_once('@') else { return false };
     let Some((host, domain)) = host.rsplit_once('.') else { return false };
-    !is_blank(name) && !host.is_empty() && !domain.is_empty() && domain.chars().all(char::is_alphabetic)
+    let space = |part: &str| part.contains(|c: char| c.is_whitespace() || c.is_control());
+    !space(name)
+        && !space(host)
+        && !is_blank(name)
+        && !host.is_empty()
+        && !domain.is_empty()
+        && domain.chars().all(char::is_alphabetic)
 }
 
 /// An address as it is compared: case does not matter.

@@ -17,7 +17,7 @@ pub(crate) struct People {
     /// The row and the id of each e-mail address.
     addresses: HashMap<String, (u64, String)>,
     /// The row of each time with its answers.
-    sheets: HashMap<(String, Vec<Option<Choice>>), u64>,
+    sheets: HashMap<String, u64>,
 }
 
 impl People {
@@ -72,7 +72,7 @@ impl People {
         &mut self,
         record: &Record<'_>,
         layout: &Layout,
-        choices: Vec<Option<Choice>>,
+        choices: &[Option<Choice>],
         report: &mut Report,
     ) {
         /// Fewer answers are the same by chance.
@@ -82,8 +82,10 @@ impl People {
         if time.is_empty() || given < FEWEST {
             return;
         }
+        let codes = choices.iter().map(|choice| choice.map_or('-', |choice| char::from(choice as u8 + b'0')));
+        let sheet: String = codes.chain(time.chars()).collect();
         let row = record.row;
-        let first = *self.sheets.entry((time.to_owned(), choices)).or_insert(row);
+        let first = *self.sheets.entry(sheet).or_insert(row);
         if first != row {
             let action = format!(
                 "the same time and the same {} as row {first}: perhaps a copy; both are counted",

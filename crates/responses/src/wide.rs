@@ -183,7 +183,7 @@ impl Rows<'_> {
             );
             self.collector.report.row(Kind::Noted, row, action);
         }
-        self.people.sheet(record, self.layout, choices, self.collector.report);
+        self.people.sheet(record, self.layout, &choices, self.collector.report);
         Ok(())
     }
 

@@ -128,7 +128,11 @@ fn run(cases: u64, seed: u64) -> u64 {
     let plan = crate::study::plan();
     let lenient = Mapping { unknown: Unknown::LeaveOut, duplicates: Duplicates::Last, ..Mapping::default() };
     // Exports with codes say nothing without.
-    let coded = Mapping { duplicates: Duplicates::First, ..crate::study::synonyms("1", "2", "3") };
+    let coded = Mapping {
+        unknown: Unknown::LeaveOut,
+        duplicates: Duplicates::First,
+        ..crate::study::synonyms("1", "2", "3")
+    };
     let mut random = Pcg64::seed_from_u64(seed);
     let mut read = 0;
     for case in 0..cases {
