@@ -264,7 +264,7 @@ fn by_position(found: &Answering, count: usize) -> Result<Vec<usize>, Fault> {
         return Ok(candidates[2].clone());
     }
     let reason = format!(
-        "the study has {}, and of the columns known answers alone are in {}; other words may be declared as `synonyms`",
+        "the study has {}; known answers and nothing else are in {}; other words may be declared as `synonyms`",
         number_of(count, "question"),
         listed(&found.answers)
     );

@@ -21,7 +21,8 @@ pub(crate) struct People {
 }
 
 impl People {
-    /// The id of a row's participant: an earlier one's, where the row has that one's e-mail address.
+    /// The id of a row's participant: an earlier one's, where the row has that one's e-mail address. Also whether it is
+    /// an earlier one's.
     ///
     /// # Errors
     /// A known id or address, unless it is declared which row counts.
@@ -32,7 +33,7 @@ impl People {
         own: String,
         mapping: &Mapping,
         report: &mut Report,
-    ) -> Result<String, Fault> {
+    ) -> Result<(String, bool), Fault> {
         let (row, refuse) = (record.row, mapping.duplicates == Duplicates::Refuse);
         let first = match layout.participant {
             Some(_) => *self.ids.entry(own.clone()).or_insert(row),
@@ -43,12 +44,12 @@ impl People {
         }
         // A declared column says who is who; colleagues may share an address.
         if mapping.participant_column.is_some() {
-            return Ok(own);
+            return Ok((own, first != row));
         }
         let cells = layout.addresses.iter().map(|&column| record.cell(column));
         let addresses: Vec<String> = cells.filter_map(address::folded).collect();
         let known = addresses.iter().find_map(|address| self.addresses.get(address)).cloned();
-        let id = match known {
+        let (id, again) = match known {
             Some((first, _)) if refuse => return Err(Fault::DuplicateAddress { row, first }),
             // Somebody known by the id already is not somebody else by the address.
             Some((of, id)) if first == row => {
@@ -57,14 +58,14 @@ impl People {
                     row,
                     format!("the e-mail address of row {of}: taken for the same person"),
                 );
-                id
+                (id, true)
             }
-            _ => own,
+            _ => (own, first != row),
         };
         for address in addresses {
             self.addresses.entry(address).or_insert_with(|| (row, id.clone()));
         }
-        Ok(id)
+        Ok((id, again))
     }
 
     /// Notes a row that was started at the same time as another and has all the same answers.

@@ -1,6 +1,7 @@
 //! Files with one row a participant and one column a question.
 
 use crate::address;
+use crate::choice::Choice;
 use crate::collect::{Collector, Place, Reply};
 use crate::columns::{Assigned, assign};
 use crate::error::{Fault, number_of, shorten};
@@ -122,12 +123,16 @@ impl Rows<'_> {
             None => self.number.to_string(),
         };
         let Collector { mapping, report, .. } = &mut self.collector;
-        let id = self.people.id(record, self.layout, id, mapping, report)?;
+        let (id, again) = self.people.id(record, self.layout, id, mapping, report)?;
         if let Some(sign) = self.layout.unfinished.iter().find(|sign| (sign.says)(record.cell(sign.column))) {
             let action = format!("{} ({}): answers kept as far as they go", sign.what, shorten(&id));
             self.collector.report.cell(Kind::Noted, row, sign.column, record.cell(sign.column), action);
         }
-        self.answers(record, &id)
+        let choices = self.answers(record, &id)?;
+        if !again {
+            self.people.sheet(record, self.layout, &choices, self.collector.report);
+        }
+        Ok(())
     }
 
     fn check_width(&mut self, record: &Record<'_>, counted: bool) -> Result<(), Fault> {
@@ -144,7 +149,8 @@ impl Rows<'_> {
         Ok(())
     }
 
-    fn answers(&mut self, record: &Record<'_>, id: &str) -> Result<(), Fault> {
+    /// Takes a row's answers; returns them, one a question.
+    fn answers(&mut self, record: &Record<'_>, id: &str) -> Result<Vec<Option<Choice>>, Fault> {
         let row = record.row;
         let form = self.layout.form.map(|column| label(record.cell(column))).filter(|form| !form.is_empty());
         if form.is_some_and(name::is_too_long) {
@@ -183,8 +189,7 @@ impl Rows<'_> {
             );
             self.collector.report.row(Kind::Noted, row, action);
         }
-        self.people.sheet(record, self.layout, &choices, self.collector.report);
-        Ok(())
+        Ok(choices)
     }
 
     fn too_long(&self, record: &Record<'_>, column: Option<usize>) -> Fault {

@@ -113,6 +113,14 @@ fn rows_that_are_there_twice_are_noted() {
         let text = twice.replace("\ny,R,R,R\nx,Left,Right,No preference", &format!("\n{other}"));
         assert!(parse(&text).unwrap().report.remarks.is_empty(), "{other}");
     }
+    // Of one person's copies one is left out already.
+    let ids = format!("{MICROSOFT}1,8:00,,,,L,R,L\n1,8:00,,,,L,R,L\n");
+    let addresses = format!("{MICROSOFT}1,8:00,,a@x.org,,L,R,L\n2,8:00,,a@x.org,,L,R,L\n");
+    for text in [ids, addresses] {
+        let first = parse_with(&text, &keeping(Duplicates::First)).unwrap();
+        assert_eq!(first.responses.answers.len(), 3);
+        assert!(!first.report.to_string().contains("copy"), "{}", first.report);
+    }
     // Two answers, or no time, are the same by chance.
     let few = parse("Timestamp,w,w,w\nx,Left,Right,\nx,Left,Right,\n").unwrap();
     assert!(remarks(&few).iter().all(|remark| remark.contains("unanswered")), "{}", few.report);

@@ -243,6 +243,11 @@ fn two_readings_show_both() {
     assert!(partly.contains("column 2 is Q2 by its name; or it is Q1 by its position"), "{partly}");
     let both = error("record_id,lastpage,submitdate,Q1,Q2,Q3\n1,,,Left,Left,Left\n");
     assert!(both.contains("it may be limesurvey") && both.contains("or redcap"), "{both}");
+    let few = error("Timestamp,x,y\n1,Left,why\n");
+    assert!(
+        few.contains("the study has 3 questions; known answers and nothing else are in column 2;"),
+        "{few}"
+    );
     assert!(error("Q1,Q2;Q3\nL,R;L\n").contains("',' and ';' both split every row into 2 cells"));
 }
 
