@@ -57,9 +57,14 @@ pub(crate) fn announce(report: &Report) {
     said.lines().take(1 + SHOWN).for_each(|line| eprintln!("{line}"));
     let (repaired, rejected) = (report.count(Kind::Repaired), report.count(Kind::Rejected));
     if !report.remarks.is_empty() {
-        let all = report.remarks.len();
-        eprintln!("{}: {all} remarks: {repaired} repaired, {rejected} rejected", report.file.display());
+        let all = number_of(report.remarks.len() as u64, "remark");
+        eprintln!("{}: {all}: {repaired} repaired, {rejected} rejected", report.file.display());
     }
+}
+
+/// `1 row`, `2 rows`.
+fn number_of(count: u64, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
 /// Writes answers in another format.
@@ -97,7 +102,8 @@ pub(crate) fn convert(arguments: &Convert) -> Result<()> {
     let written = written.with_context(|| arguments.out.display().to_string())?;
     crate::store::write_whole(&arguments.out, &text)?;
     let out = arguments.out.display();
-    eprintln!("{out}: {} rows; {} answers without preference", written.rows, written.ties);
+    let (rows, ties_read) = (number_of(written.rows, "row"), number_of(written.ties, "answer"));
+    eprintln!("{out}: {rows}; {ties_read} without preference");
     if written.ties > 0 && arguments.to == Target::Pwcmp {
         match ties {
             Ties::Split => {
@@ -108,7 +114,7 @@ pub(crate) fn convert(arguments: &Convert) -> Result<()> {
         }
     }
     if written.controls > 0 {
-        eprintln!("{out}: {} answers to controls are left out", written.controls);
+        eprintln!("{out}: left out: {} to controls", number_of(written.controls, "answer"));
     }
     if !answers.sides_recorded {
         eprintln!("{out}: sides were not recorded: which item comes first means nothing");

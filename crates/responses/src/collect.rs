@@ -1,8 +1,10 @@
 //! Gathers answers from any reader and checks what holds for all of them.
 
+use crate::address;
 use crate::choice::Choice;
 use crate::error::{Fault, UnknownCell, shorten};
 use crate::mapping::{Duplicates, Mapping, Unknown};
+use crate::name;
 use crate::plan::Plan;
 use crate::report::{Kind, Report};
 use crate::value::{Answer, Participant, Question, Responses};
@@ -48,6 +50,10 @@ pub(crate) struct Collector<'a> {
     pub(crate) report: &'a mut Report,
     participants: Vec<Participant>,
     by_id: HashMap<String, u32>,
+    /// Participants whose id is an e-mail address, and named by a row instead.
+    unnamed: Vec<u32>,
+    /// Whether a place in the order makes a second answer one to a second showing.
+    pub(crate) shown_again: bool,
     questions: Vec<Question>,
     by_pair: HashMap<[u32; 5], u32>,
     ids: Index,
@@ -72,6 +78,8 @@ impl<'a> Collector<'a> {
             report,
             participants: Vec::new(),
             by_id: HashMap::new(),
+            unnamed: Vec::new(),
+            shown_again: true,
             questions: plan.map_or(Vec::new(), |plan| plan.questions().to_vec()),
             by_pair: HashMap::new(),
             ids: Index::default(),
@@ -130,14 +138,18 @@ impl<'a> Collector<'a> {
         }
     }
 
-    /// The participant with this id, new or known.
+    /// The participant with this id, new or known. E-mail addresses are not kept: they lead to people.
     ///
     /// # Errors
     /// If a known one had another form.
     pub(crate) fn participant(&mut self, id: &str, form: Option<&str>, row: u64) -> Result<u32, Fault> {
         // Files go participant by participant.
-        let last = self.participants.len().checked_sub(1).filter(|&last| self.participants[last].id == id);
-        let known = last.map(|last| last as u32).or_else(|| self.by_id.get(id).copied());
+        let last =
+            self.participants.last().filter(|last| last.id == id).map(|_| self.participants.len() as u32 - 1);
+        let last = last.filter(|last| self.unnamed.last() != Some(last));
+        let address = address::folded(id);
+        let key = address.as_deref().unwrap_or(id);
+        let known = last.or_else(|| self.by_id.get(key).copied());
         if let Some(known) = known {
             let first = &self.participants[known as usize].form;
             if first.as_deref() != form {
@@ -151,8 +163,17 @@ impl<'a> Collector<'a> {
             return Ok(known);
         }
         let number = self.participants.len() as u32;
-        self.participants.push(Participant { id: id.to_owned(), form: form.map(str::to_owned) });
-        self.by_id.insert(id.to_owned(), number);
+        let name = if address.is_some() { format!("row {row}") } else { id.to_owned() };
+        if address.is_some() {
+            if self.unnamed.is_empty() {
+                let action =
+                    "e-mail addresses are not kept as ids: participants are named by their first row";
+                self.report.row(Kind::Noted, row, action);
+            }
+            self.unnamed.push(number);
+        }
+        self.participants.push(Participant { id: name, form: form.map(str::to_owned) });
+        self.by_id.insert(key.to_owned(), number);
         Ok(number)
     }
 
@@ -183,6 +204,12 @@ impl<'a> Collector<'a> {
         if !self.unknown.is_empty() {
             return Err(Fault::UnknownAnswers { cells: self.unknown, known: self.mapping.words.summary() });
         }
+        for &number in &self.unnamed {
+            let name = &mut self.participants[number as usize].id;
+            while self.by_id.contains_key(name) {
+                name.push('\'');
+            }
+        }
         self.check_repeats()?;
         if self.answers.is_empty() {
             return Err(Fault::NoAnswers { row: end });
@@ -212,7 +239,7 @@ impl<'a> Collector<'a> {
             let mut orders: Vec<Option<u32>> = same.iter().map(|&i| self.answers[i as usize].order).collect();
             orders.sort_unstable();
             orders.dedup();
-            if orders.len() == same.len() && orders[0].is_some() {
+            if self.shown_again && orders.len() == same.len() && orders[0].is_some() {
                 continue;
             }
             let kept = match self.mapping.duplicates {
@@ -265,13 +292,19 @@ impl<'a> Collector<'a> {
 
     /// Tells questions apart that share an id.
     fn name_pairs(&mut self) {
+        /// Leaves room for a number.
+        const CUT: usize = name::LONGEST_NAME - 20;
         let mut of_id: HashMap<String, u32> = HashMap::new();
         self.questions.iter().for_each(|q| *of_id.entry(q.id.clone()).or_default() += 1);
-        for question in self.questions.iter_mut().filter(|q| of_id[&q.id] > 1) {
+        for (i, question) in self.questions.iter_mut().enumerate().filter(|(_, q)| of_id[&q.id] > 1) {
             let [left, right] = [question.left, question.right].map(|item| &self.items.names[item as usize]);
             let parts = [&question.id, &question.group, &question.object].map(String::as_str);
             let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
-            question.id = format!("{}: {left}-{right}", parts.join(" "));
+            let full = format!("{}: {left}-{right}", parts.join(" "));
+            question.id = match name::is_too_long(&full) {
+                false => full,
+                true => format!("{}... {}", question.id.chars().take(CUT).collect::<String>(), i + 1),
+            };
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Which column answers which question.
 
-use crate::error::{Fault, shorten};
+use crate::error::{Fault, number_of, shorten};
 use crate::format::Format;
 use crate::layout::Layout;
 use crate::mapping::Mapping;
@@ -42,8 +42,7 @@ pub(crate) fn assign(
             let columns: Vec<usize> = named.iter().map(|(column, _)| *column).collect();
             let outside = columns.iter().find(|column| answers.other.contains(column));
             match (outside, by_position) {
-                (None, _) => Ok((named, "questions by their names in the header".into())),
-                (Some(&outside), Ok(positions)) => Err(Fault::Columns {
+                (Some(&outside), Ok(positions)) if !positions.contains(&outside) => Err(Fault::Columns {
                     first: format!(
                         "by names: {}, of which column {} (\"{}\") holds something else than answers",
                         listed(&columns),
@@ -52,7 +51,8 @@ pub(crate) fn assign(
                     ),
                     second: format!("by position: {}, which hold answers alone", listed(&positions)),
                 }),
-                (Some(_), Err(_)) => Ok((named, "questions by their names in the header".into())),
+                // Whatever else a column holds is refused or listed cell by cell.
+                _ => Ok((named, "questions by their names in the header".into())),
             }
         }
         (None, by_position) => {
@@ -60,9 +60,9 @@ pub(crate) fn assign(
             let assigned: Assigned = positions.iter().copied().zip(wanted).collect();
             contradiction(layout, plan, &assigned)?;
             let rule = format!(
-                "questions by position in the study's order: {} are the only columns that can hold its {} questions",
+                "questions by position in the study's order: {} alone can hold its {}",
                 listed(&positions),
-                positions.len()
+                number_of(positions.len(), "question")
             );
             Ok((assigned, rule))
         }
@@ -117,10 +117,18 @@ fn declared(layout: &Layout, mapping: &Mapping, count: usize) -> Result<Option<V
     if let Some(columns) = &mapping.question_columns {
         let value = || format!("{columns:?}");
         if columns.len() != count {
-            return refuse("question_columns", value(), format!("there are {count} questions"));
+            return refuse(
+                "question_columns",
+                value(),
+                format!("the study has {}", number_of(count, "question")),
+            );
         }
         if let Some(beyond) = columns.iter().find(|&&column| column == 0 || column > width) {
-            return refuse("question_columns", beyond.to_string(), format!("there are {width} columns"));
+            return refuse(
+                "question_columns",
+                beyond.to_string(),
+                format!("the file has {}", number_of(width, "column")),
+            );
         }
         if (1..columns.len()).any(|i| columns[..i].contains(&columns[i])) {
             return refuse("question_columns", value(), "a column is named twice".into());
@@ -129,12 +137,20 @@ fn declared(layout: &Layout, mapping: &Mapping, count: usize) -> Result<Option<V
     }
     let Some(first) = mapping.first_question_column else { return Ok(None) };
     if first == 0 || first > width {
-        return refuse("first_question_column", first.to_string(), format!("there are {width} columns"));
+        return refuse(
+            "first_question_column",
+            first.to_string(),
+            format!("the file has {}", number_of(width, "column")),
+        );
     }
     let following = (first - 1..width).filter(|column| !layout.aside.contains(column));
     let columns: Vec<usize> = following.take(count).collect();
     if columns.len() < count {
-        let limit = format!("only {} columns follow, and there are {count} questions", columns.len());
+        let limit = format!(
+            "{} from there on, and the study has {}",
+            number_of(columns.len(), "column"),
+            number_of(count, "question")
+        );
         return refuse("first_question_column", first.to_string(), limit);
     }
     Ok(Some(columns))
@@ -240,7 +256,7 @@ fn by_position(found: &Answering, count: usize) -> Result<Vec<usize>, Fault> {
     if let Some(many) = candidates[..2].iter().find(|columns| columns.len() > count) {
         let (first, second) = (&many[..count], &many[many.len() - count..]);
         return Err(Fault::Columns {
-            first: format!("{} for the study's {count} questions", listed(first)),
+            first: format!("{} for the study's {}", listed(first), number_of(count, "question")),
             second: listed(second),
         });
     }
@@ -248,8 +264,8 @@ fn by_position(found: &Answering, count: usize) -> Result<Vec<usize>, Fault> {
         return Ok(candidates[2].clone());
     }
     let reason = format!(
-        "the study has {count} questions, and the columns that hold known answers alone are {}; other words may be declared \
-         as `synonyms`",
+        "the study has {}; known answers and nothing else are in {}; other words may be declared as `synonyms`",
+        number_of(count, "question"),
         listed(&found.answers)
     );
     Err(Fault::NoColumns { reason })

@@ -1,5 +1,6 @@
 //! What may be wrong with a file of answers.
 
+use crate::address;
 use crate::format::Format;
 use std::fmt;
 use std::path::PathBuf;
@@ -73,7 +74,7 @@ pub enum Fault {
         column: usize,
     },
     /// A row with too few or too many cells.
-    #[error("row {row}: {found} cells; the header has {expected}")]
+    #[error("row {row}: {}; the header has {expected}", number_of(*found, "cell"))]
     CellCount {
         /// The row.
         row: u64,
@@ -113,6 +114,14 @@ pub enum Fault {
     NoPlan {
         /// The format.
         format: Format,
+    },
+    /// A question or item of the study or of the declared pairs whose name is too long.
+    #[error("the study's name \"{name}\" {limit}")]
+    PlannedName {
+        /// The name, shortened.
+        name: String,
+        /// What it may be.
+        limit: String,
     },
     /// A column is named as a question's and is none.
     #[error("row 1, column {column}: \"{name}\" is not a question of this study")]
@@ -210,6 +219,17 @@ pub enum Fault {
         /// The participant.
         participant: String,
     },
+    /// One e-mail address twice; it is not shown.
+    #[error(
+        "row {row}: the e-mail address of row {first} again, so one person twice; declare `duplicates` to keep the first or the \
+         last, or `participant_column` if several people share an address"
+    )]
+    DuplicateAddress {
+        /// The second row.
+        row: u64,
+        /// The first row.
+        first: u64,
+    },
     /// One answer twice.
     #[error(
         "row {row}: {participant} has already answered {question} with the same sides in row {first}; give `order` if it was shown \
@@ -284,20 +304,37 @@ impl fmt::Display for UnknownCells<'_> {
             write!(f, "{and}row {row}, column {column} ({question}): \"{raw}\" is not an answer")?;
         }
         if self.0.len() > SHOWN {
-            write!(f, "; and {} cells more", self.0.len() - SHOWN)?;
+            write!(f, "; and {} more", number_of(self.0.len() - SHOWN, "cell"))?;
         }
+        let mut words: Vec<&str> = Vec::new();
+        for UnknownCell { raw, .. } in self.0 {
+            if words.len() < SHOWN && !words.contains(&raw.as_str()) {
+                words.push(raw);
+            }
+        }
+        let words: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
         write!(
             f,
-            ". Known: {}; declare other words as `synonyms`, or `unknown = \"leave-out\"` to leave such cells out",
-            self.1
+            ". Known: {}; declare what {} mean{} as `synonyms`, or `unknown = \"leave-out\"` to leave such cells out",
+            self.1,
+            words.join(", "),
+            if words.len() == 1 { "s" } else { "" }
         )
     }
 }
 
-/// A cell as messages quote it: one line, at most 60 characters.
+/// `1 row`, `2 rows`.
+pub(crate) fn number_of(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// A cell as messages quote it: one line, at most 60 characters, and no e-mail address.
 pub(crate) fn shorten(cell: &str) -> String {
     const MOST: usize = 60;
     let one_line = |c: char| if c.is_control() { ' ' } else { c };
+    if address::is_address(cell) {
+        return "(an e-mail address)".into();
+    }
     let length = cell.chars().count();
     if length <= MOST {
         return cell.chars().map(one_line).collect();

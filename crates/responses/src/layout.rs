@@ -15,6 +15,10 @@ pub(crate) struct Layout {
     pub(crate) participant: Option<usize>,
     /// The form of the questionnaire.
     pub(crate) form: Option<usize>,
+    /// The e-mail address of whoever answered.
+    pub(crate) addresses: Vec<usize>,
+    /// When the row's answers were begun or sent in.
+    pub(crate) time: Option<usize>,
     /// Columns whose cell tells previews and tests, which are no answers.
     pub(crate) preview: Vec<Sign>,
     /// Columns whose cell tells that somebody did not finish; their answers count as far as they go.

@@ -11,6 +11,7 @@
 //! - Nothing is dropped silently and nothing is guessed: every cell that is not taken as it stands is in the report, and where two
 //!   readings fit, the error shows both.
 
+mod address;
 mod archive;
 mod choice;
 mod collect;
@@ -22,6 +23,8 @@ mod format;
 mod layout;
 mod long;
 mod mapping;
+mod name;
+mod people;
 mod plan;
 mod read;
 mod records;
@@ -43,6 +46,7 @@ pub use error::{Fault, ReadError, UnknownCell};
 pub use escape::{escape, unescape};
 pub use format::Format;
 pub use mapping::{Duplicates, Mapping, MappingError, Unknown};
+pub use name::LONGEST_NAME;
 pub use plan::{Plan, PlannedPair};
 pub use read::{LARGEST_FILE, Reading, parse, read};
 pub use report::{Kind, Remark, Report};

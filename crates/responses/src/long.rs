@@ -5,6 +5,7 @@ use crate::error::{Fault, shorten};
 use crate::escape::unescape;
 use crate::format::Format;
 use crate::mapping::Mapping;
+use crate::name;
 use crate::plan::Plan;
 use crate::records::{Record, is_blank, trim};
 use crate::report::{Kind, Report};
@@ -135,7 +136,10 @@ pub(crate) fn read_columns(
         rows.row(record, source.is_text())
     })?;
     if rows.passed_over > 0 {
-        let action = format!("{} rows without a question are no answers: not read", rows.passed_over);
+        let action = match rows.passed_over {
+            1 => "1 row without a question is no answer: not read".into(),
+            rows => format!("{rows} rows without a question are no answers: not read"),
+        };
         rows.collector.report.row(Kind::Noted, header_row, action);
     }
     rows.collector.finish(rule.sides_recorded, end)
@@ -171,7 +175,7 @@ impl Rows<'_> {
             None => self.needed(record, self.columns.participant, "participant")?,
         };
         let asked = self.needed(record, self.columns.question, "question")?;
-        let form = self.columns.form.map(|column| self.text(record, column)).filter(|form| !form.is_empty());
+        let form = Some(self.name(record, self.columns.form, "form")?).filter(|form| !form.is_empty());
         let participant = self.collector.participant(id, form, row)?;
         let Some((question, left, right)) = self.pair(record, asked)? else { return Ok(()) };
         let place = Place { row, column: self.columns.choice };
@@ -213,6 +217,16 @@ impl Rows<'_> {
         if cell.is_empty() {
             return Err(self.refuse(record, column, name, "must not be empty"));
         }
+        self.name(record, Some(column), name)
+    }
+
+    /// The name in a cell, empty where there is no such column.
+    fn name<'r>(&self, record: &'r Record<'_>, column: Option<usize>, name: &str) -> Result<&'r str, Fault> {
+        let Some(column) = column else { return Ok("") };
+        let cell = self.text(record, column);
+        if name::is_too_long(cell) {
+            return Err(self.refuse(record, column, name, name::limit()));
+        }
         Ok(cell)
     }
 
@@ -223,14 +237,14 @@ impl Rows<'_> {
 
     /// The question and the items on its sides. A control that a study does not list is a question of its own.
     fn pair(&mut self, record: &Record<'_>, asked: &str) -> Result<Option<(u32, u32, u32)>, Fault> {
-        let label = |column: Option<usize>| column.map_or("", |column| self.text(record, column));
         let sides = match self.columns.sides {
             None => None,
             Some((left, right)) => {
                 Some((self.needed(record, left, "left")?, self.needed(record, right, "right")?))
             }
         };
-        let (object, group) = (label(self.columns.object), label(self.columns.group));
+        let object = self.name(record, self.columns.object, "object")?;
+        let group = self.name(record, self.columns.group, "group")?;
         let Some(plan) = self.plan else {
             let (left, right) = sides.expect("needed without a plan");
             let (left, right) = (self.collector.items.number(left), self.collector.items.number(right));

@@ -1,6 +1,8 @@
 //! What a study declares about its files of answers.
 
+use crate::error::shorten;
 use crate::format::Format;
+use crate::name;
 use crate::plan::PlannedPair;
 use crate::words::Words;
 use design::config::ResponsesSection;
@@ -24,7 +26,7 @@ pub struct Mapping {
     pub words: Words,
     /// What to do with cells that are no answers.
     pub unknown: Unknown,
-    /// What to do with answers given twice.
+    /// What to do with answers given twice, and with rows of one participant or e-mail address.
     pub duplicates: Duplicates,
     /// The questions, where there is no study.
     pub pairs: Vec<PlannedPair>,
@@ -123,6 +125,12 @@ impl Mapping {
                 );
             }
         };
+        for pair in &section.pairs {
+            let names = [&pair.question, &pair.left, &pair.right, &pair.object, &pair.group];
+            if let Some(long) = names.into_iter().find(|name| name::is_too_long(name)) {
+                return refuse("pairs", format!("\"{}\"", shorten(long)), &name::limit());
+            }
+        }
         let pair = |pair: &design::config::PairSection| PlannedPair {
             question: pair.question.clone(),
             left: pair.left.clone(),

@@ -105,6 +105,12 @@ impl Plan {
         &self.questions
     }
 
+    /// Every name that answers are stored and shown with.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
+        let questions = self.questions.iter().flat_map(|q| [&q.id, &q.object, &q.group]);
+        questions.chain(&self.items).chain(&self.short_names).map(String::as_str)
+    }
+
     /// The question with this id; case and space do not matter where they tell no two questions apart.
     pub(crate) fn question(&self, id: &str) -> Option<u32> {
         let exact = self.by_id.get(id).copied();

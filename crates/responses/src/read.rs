@@ -7,6 +7,7 @@ use crate::format::Format;
 use crate::layout::Detected;
 use crate::long;
 use crate::mapping::Mapping;
+use crate::name;
 use crate::plan::Plan;
 use crate::report::Report;
 use crate::source::Source;
@@ -78,6 +79,9 @@ fn content(
     mapping: &Mapping,
     report: &mut Report,
 ) -> Result<Responses, Fault> {
+    if let Some(name) = plan.into_iter().flat_map(Plan::names).find(|name| name::is_too_long(name)) {
+        return Err(Fault::PlannedName { name: shorten(name), limit: name::limit() });
+    }
     if archive::is_zip(bytes) {
         let mut archive = Archive::open(bytes)?;
         if workbook::is_workbook(&archive) {
@@ -125,10 +129,12 @@ fn text(
     }
     if let Some(format) = trials::json_format(&text, mapping.format) {
         (report.format, report.text_rule) = (format, encoding.into());
-        report.format_rule = match mapping.format {
-            Some(_) => "declared".into(),
-            None => "JSON; several lines, each a participant, are JATOS".into(),
-        };
+        report.format_rule = match (mapping.format, format) {
+            (Some(_), _) => "declared",
+            (None, Format::Jatos) => "several JSON values, each a run of its own",
+            (None, _) => "one JSON value: a list of trials",
+        }
+        .into();
         return trials::read_json(&text, plan, mapping, report);
     }
     let (separator, rest, separator_rule) = text::separator(&text, mapping.separator)?;

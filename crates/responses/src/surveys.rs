@@ -1,5 +1,6 @@
 //! Exports of survey tools with one row a participant: how each is known, and what of its header is the tool's own.
 
+use crate::address;
 use crate::detect::Head;
 use crate::error::Fault;
 use crate::format::Format;
@@ -183,15 +184,18 @@ pub(crate) fn mark(format: Format, head: &Head) -> Option<String> {
 /// # Errors
 /// If a declared format lacks the header rows that it must have.
 pub(crate) fn layout(format: Format, head: &Head) -> Result<Layout, Fault> {
-    Ok(match format {
+    let mut layout = match format {
         Format::GoogleForms => google(head),
         Format::MicrosoftForms => microsoft(head),
         Format::Qualtrics => qualtrics(head)?,
         Format::LimeSurvey => lime_survey(head),
         Format::SurveyMonkey => survey_monkey(head),
         Format::RedCap => red_cap(head),
-        _ => crate::detect::own_table(head),
-    })
+        _ => return Ok(crate::detect::own_table(head)),
+    };
+    let address = |column: &usize| layout.titles[*column].iter().any(|title| address::is_title(title));
+    layout.addresses = (0..layout.titles.len()).filter(address).collect();
+    Ok(layout)
 }
 
 fn one_header(head: &Head, own: impl Fn(usize, &str) -> bool) -> Layout {
@@ -203,10 +207,12 @@ fn one_header(head: &Head, own: impl Fn(usize, &str) -> bool) -> Layout {
 }
 
 fn google(head: &Head) -> Layout {
-    one_header(head, |column, title| {
+    let mut layout = one_header(head, |column, title| {
         let scored = title.ends_with(" [score]") || title.ends_with(" [feedback]");
         column == 0 || GOOGLE.contains(&title) || scored
-    })
+    });
+    layout.time = Some(0);
+    layout
 }
 
 fn microsoft(head: &Head) -> Layout {
@@ -215,6 +221,7 @@ fn microsoft(head: &Head) -> Layout {
         MICROSOFT.contains(&title) || STARTED.contains(&title) || quiz
     });
     layout.participant = (normalise(layout.title(0)) == "id").then_some(0);
+    layout.time = head[0].1.iter().position(|title| STARTED.contains(&normalise(title).as_str()));
     layout
 }
 
@@ -249,6 +256,7 @@ fn qualtrics(head: &Head) -> Result<Layout, Fault> {
     let is = |column: usize, name: &str| layout.titles[column].iter().any(|title| plain(title) == name);
     let find = |name: &str| (0..layout.titles.len()).find(|&column| is(column, name));
     let (participant, status, finished) = (find("responseid"), find("status"), find("finished"));
+    let time = find("startdate");
     let imported = last == 2;
     let mut orders = Vec::new();
     let mut aside = Vec::new();
@@ -276,7 +284,7 @@ fn qualtrics(head: &Head) -> Result<Layout, Fault> {
         status.map(|column| Sign { column, says: preview, what: "a preview or test" }).into_iter().collect();
     layout.unfinished =
         finished.map(|column| Sign { column, says: open, what: "not finished" }).into_iter().collect();
-    (layout.participant, layout.aside, layout.orders) = (participant, aside, orders);
+    (layout.participant, layout.time, layout.aside, layout.orders) = (participant, time, aside, orders);
     Ok(layout)
 }
 
@@ -302,6 +310,9 @@ fn lime_survey(head: &Head) -> Layout {
     let mut layout =
         one_header(head, |_, title| LIME.iter().any(|(code, _)| lime(title, code)) || timing(title));
     layout.participant = header.iter().position(|title| lime(title, "id"));
+    // Not submitdate, which is one and the same day in 1980 where no dates are kept.
+    let at = |code: &str| header.iter().position(|title| lime(title, code));
+    layout.time = at("startdate").or_else(|| at("datestamp"));
     let submitted = header.iter().position(|title| lime(title, "submitdate"));
     let sign = |column| Sign { column, says: is_blank, what: "not submitted" };
     layout.unfinished = submitted.map(sign).into_iter().collect();
@@ -313,7 +324,8 @@ fn survey_monkey(head: &Head) -> Layout {
         MONKEY.iter().any(|name| title == *name || (*name == "custom data" && title.starts_with(name)))
     };
     let mut layout = one_header(head, |_, title| own(title));
-    layout.participant = head[0].1.iter().position(|title| normalise(title) == "respondent id");
+    let at = |name: &str| head[0].1.iter().position(|title| normalise(title) == name);
+    (layout.participant, layout.time) = (at("respondent id"), at("start date"));
     // Under the tool's own columns the second header row is empty.
     if let Some((row, second)) = head.get(1).filter(|(_, row)| row.first().is_none_or(|cell| is_blank(cell)))
     {

@@ -1,7 +1,7 @@
 //! jsPsych's data, one row or JSON object a trial, and JATOS result text, which is one such array a participant.
 
 use crate::detect::Head;
-use crate::error::Fault;
+use crate::error::{Fault, shorten};
 use crate::format::Format;
 use crate::long::{self, Columns};
 use crate::mapping::Mapping;
@@ -139,7 +139,7 @@ pub(crate) fn read_table(
         (None, None) => return Err(missing("no field says who answered; declare `participant_column`")),
     };
     report.column_rule = match restarts {
-        false => format!("participants by \"{}\"", header[participant]),
+        false => format!("participants by \"{}\"", shorten(&header[participant])),
         true => "participants by trial_index, which starts again with each".into(),
     };
     let columns = Columns {

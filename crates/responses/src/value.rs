@@ -25,7 +25,8 @@ pub struct Responses {
 /// Somebody who answered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Participant {
-    /// Id in the file; where it has none, the number of the row among rows with answers.
+    /// Id in the file; where it has none, the number of the row among rows with answers; where it is an e-mail address, the
+    /// first row with it, such as `row 2`.
     pub id: String,
     /// Which form of the questionnaire it was, if there are several.
     pub form: Option<String>,

@@ -4,7 +4,7 @@
 //! `correct` for the reference, `incorrect` for the other, `undecided`, or `unknown` if there was none.
 
 use crate::detect::Head;
-use crate::error::Fault;
+use crate::error::{Fault, number_of, shorten};
 use crate::format::Format;
 use crate::long::{self, Columns};
 use crate::mapping::Mapping;
@@ -38,7 +38,8 @@ pub(crate) fn read(
     let participant = match mapping.participant_column {
         Some(column) if (1..=header.len()).contains(&column) => column - 1,
         Some(column) => {
-            let (value, limit) = (column.to_string(), format!("there are {} columns", header.len()));
+            let (value, limit) =
+                (column.to_string(), format!("the file has {}", number_of(header.len(), "column")));
             return Err(Fault::Declaration { key: "participant_column", value, limit });
         }
         None if question > 1 => 1,
@@ -47,7 +48,8 @@ pub(crate) fn read(
             return Err(Fault::NotThatFormat { format: Format::WebMushra, row: *row, missing });
         }
     };
-    report.column_rule = format!("participants by column {} (\"{}\")", participant + 1, header[participant]);
+    report.column_rule =
+        format!("participants by column {} (\"{}\")", participant + 1, shorten(&header[participant]));
     let columns = Columns {
         sides: Some((find("choice_reference")?, find("choice_non_reference")?)),
         rt_ms: find("choice_time").ok(),

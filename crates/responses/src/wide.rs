@@ -1,12 +1,16 @@
 //! Files with one row a participant and one column a question.
 
+use crate::address;
+use crate::choice::Choice;
 use crate::collect::{Collector, Place, Reply};
 use crate::columns::{Assigned, assign};
-use crate::error::{Fault, shorten};
+use crate::error::{Fault, number_of, shorten};
 use crate::escape::unescape;
 use crate::format::Format;
 use crate::layout::Layout;
-use crate::mapping::{Duplicates, Mapping};
+use crate::mapping::Mapping;
+use crate::name;
+use crate::people::People;
 use crate::plan::Plan;
 use crate::records::{Record, is_blank, trim};
 use crate::report::{Kind, Report};
@@ -32,7 +36,7 @@ pub(crate) fn read(
     let width = layout.titles.len();
     if let Some(column) = mapping.participant_column {
         if column > width {
-            let (value, limit) = (column.to_string(), format!("there are {width} columns"));
+            let (value, limit) = (column.to_string(), format!("the file has {}", number_of(width, "column")));
             return Err(Fault::Declaration { key: "participant_column", value, limit });
         }
         layout.participant = Some(column - 1);
@@ -49,7 +53,9 @@ pub(crate) fn read(
         report.cell(Kind::Noted, layout.last_header_row, column, &title, "not a question: column not read");
     }
     let orders = Orders::of(&layout, &assigned);
-    let collector = Collector::new(Some(plan), mapping, report);
+    let mut collector = Collector::new(Some(plan), mapping, report);
+    // Who is there twice has filled in two questionnaires, whose places say nothing about one another.
+    collector.shown_again = false;
     let mut rows = Rows {
         layout: &layout,
         plan,
@@ -57,7 +63,7 @@ pub(crate) fn read(
         orders,
         collector,
         number: 0,
-        ids: HashMap::new(),
+        people: People::default(),
         blank: None,
     };
     let mut end = layout.last_header_row + 1;
@@ -80,8 +86,7 @@ struct Rows<'a> {
     collector: Collector<'a>,
     /// Rows with answers so far.
     number: usize,
-    /// The row of each participant whose id is in the file.
-    ids: HashMap<String, u64>,
+    people: People,
     /// First and last of the blank rows that may be at the end.
     blank: Option<(u64, u64)>,
 }
@@ -113,20 +118,21 @@ impl Rows<'_> {
         self.number += 1;
         let id = self.layout.participant.map(|column| label(record.cell(column))).filter(|id| !id.is_empty());
         let id = match id {
-            Some(id) => id.to_owned(),
+            Some(id) if name::is_too_long(id) => return Err(self.too_long(record, self.layout.participant)),
+            Some(id) => address::folded(id).unwrap_or_else(|| id.to_owned()),
             None => self.number.to_string(),
         };
+        let Collector { mapping, report, .. } = &mut self.collector;
+        let (id, again) = self.people.id(record, self.layout, id, mapping, report)?;
         if let Some(sign) = self.layout.unfinished.iter().find(|sign| (sign.says)(record.cell(sign.column))) {
             let action = format!("{} ({}): answers kept as far as they go", sign.what, shorten(&id));
             self.collector.report.cell(Kind::Noted, row, sign.column, record.cell(sign.column), action);
         }
-        if self.layout.participant.is_some() {
-            let first = *self.ids.entry(id.clone()).or_insert(row);
-            if first != row && self.collector.mapping.duplicates == Duplicates::Refuse {
-                return Err(Fault::DuplicateParticipant { row, first, participant: shorten(&id) });
-            }
+        let choices = self.answers(record, &id)?;
+        if !again {
+            self.people.sheet(record, self.layout, &choices, self.collector.report);
         }
-        self.answers(record, &id)
+        Ok(())
     }
 
     fn check_width(&mut self, record: &Record<'_>, counted: bool) -> Result<(), Fault> {
@@ -138,23 +144,28 @@ impl Rows<'_> {
         if found < expected || !beyond {
             return Err(Fault::CellCount { row: record.row, expected, found });
         }
-        let action = format!("{found} cells under {expected} headers; those beyond are empty");
+        let action = format!("{found} cells under {}; those beyond are empty", number_of(expected, "header"));
         self.collector.report.row(Kind::Noted, record.row, action);
         Ok(())
     }
 
-    fn answers(&mut self, record: &Record<'_>, id: &str) -> Result<(), Fault> {
+    /// Takes a row's answers; returns them, one a question.
+    fn answers(&mut self, record: &Record<'_>, id: &str) -> Result<Vec<Option<Choice>>, Fault> {
         let row = record.row;
         let form = self.layout.form.map(|column| label(record.cell(column))).filter(|form| !form.is_empty());
+        if form.is_some_and(name::is_too_long) {
+            return Err(self.too_long(record, self.layout.form));
+        }
         let participant = self.collector.participant(id, form, row)?;
         let orders = self.orders.of_row(record);
         let mut unanswered: Vec<&str> = Vec::new();
-        let mut answered = 0;
-        for &(column, question) in &self.assigned {
+        let (mut answered, mut choices) = (0, vec![None; self.assigned.len()]);
+        for (&(column, question), kept) in self.assigned.iter().zip(&mut choices) {
             let asked = &self.plan.questions()[question as usize];
             match self.collector.reply(record.cell(column), Place { row, column }, &asked.id) {
                 Reply::Choice(choice) => {
                     answered += 1;
+                    *kept = Some(choice);
                     let (left, right) = (asked.left, asked.right);
                     let order = orders.get(&question).copied();
                     let answer = Answer { participant, question, left, right, choice, order, rt_ms: None };
@@ -178,7 +189,13 @@ impl Rows<'_> {
             );
             self.collector.report.row(Kind::Noted, row, action);
         }
-        Ok(())
+        Ok(choices)
+    }
+
+    fn too_long(&self, record: &Record<'_>, column: Option<usize>) -> Fault {
+        let column = column.expect("the column whose name it is");
+        let (name, cell) = (shorten(self.layout.title(column)), shorten(record.cell(column)));
+        Fault::Cell { row: record.row, column: column + 1, name, cell, limit: name::limit() }
     }
 }
 

@@ -66,6 +66,8 @@ fn the_rules_that_fired_are_said() {
                 "by position",
             ],
         ),
+        ("jspsych.json", ["one JSON value: a list of trials", "UTF-8", "participants by"]),
+        ("jatos.txt", ["several JSON values, each a run", "UTF-8", "participants by"]),
         ("limesurvey.csv", ["submitdate", "byte-order mark; separator \";\"", "by their names"]),
     ] {
         let report = read(name, &Mapping::default()).report.to_string();
@@ -151,10 +153,7 @@ fn trials_are_read_by_their_question() {
     assert_eq!(csv.report.format, Format::JsPsych);
     assert_eq!(said(&csv), ["p1 Q1 a<b", "p1 Q2 c=a", "p1 Q3 b>c", "p2 Q1 a>b"]);
     assert_eq!(csv.responses.answers[0].rt_ms, Some(812.4));
-    assert_eq!(
-        remarks(&csv),
-        ["1:2 noted: x"].map(|_| "1 noted: 1 rows without a question are no answers: not read")
-    );
+    assert_eq!(remarks(&csv), ["1 noted: 1 row without a question is no answer: not read"]);
     let json = read("jspsych.json", &Mapping::default());
     assert_eq!(said(&json), ["1 Q1 a<b", "1 Q2 c=a", "1 Q3 b>c"]);
     let jatos = read("jatos.txt", &Mapping::default());
@@ -178,10 +177,12 @@ fn webmushra_does_not_say_which_side_was_which() {
     let reading = read("webmushra.csv", &Mapping::default());
     assert_eq!(reading.report.format, Format::WebMushra);
     assert!(!reading.responses.sides_recorded);
-    let want =
-        ["a@example.org Q1 a<b", "a@example.org Q2 a=c", "a@example.org Q3 b>c", "b@example.org Q1 a>b"];
-    assert_eq!(said(&reading), want);
-    assert_eq!(remarks(&reading), ["6 noted: b@example.org left Q2 unanswered"]);
+    assert_eq!(said(&reading), ["row 2 Q1 a<b", "row 2 Q2 a=c", "row 2 Q3 b>c", "row 5 Q1 a>b"]);
+    let want = [
+        "2 noted: e-mail addresses are not kept as ids: participants are named by their first row",
+        "6 noted: (an e-mail address) left Q2 unanswered",
+    ];
+    assert_eq!(remarks(&reading), want);
 }
 
 #[test]
@@ -189,5 +190,11 @@ fn redcap_codes_are_declared() {
     let reading = read("redcap.csv", &synonyms("1", "2", "3"));
     assert_eq!(reading.report.format, Format::RedCap);
     assert_eq!(said(&reading), ["1 Q1 a<b", "1 Q2 a=c", "1 Q3 b>c", "2 Q1 a>b", "2 Q2 a>c"]);
+    // Headers and positions agree on the columns; what is missing is what the codes mean.
+    let path = crate::study::export("redcap.csv");
+    let refused = responses::read(&path, Some(&crate::study::plan()), &Mapping::default()).unwrap_err();
+    let refused = refused.to_string();
+    assert!(refused.contains("row 2, column 5 (Q1): \"1\" is not an answer"), "{refused}");
+    assert!(refused.contains("declare what \"1\", \"2\", \"3\" mean as `synonyms`"), "{refused}");
     assert_eq!(remarks(&reading)[0], "3:8 noted: not complete (2): answers kept as far as they go");
 }

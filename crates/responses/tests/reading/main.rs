@@ -2,6 +2,7 @@
 
 mod exports;
 mod mutated;
+mod people;
 mod refusals;
 mod study;
 mod written;

@@ -127,6 +127,12 @@ fn run(cases: u64, seed: u64) -> u64 {
     let exports = exports();
     let plan = crate::study::plan();
     let lenient = Mapping { unknown: Unknown::LeaveOut, duplicates: Duplicates::Last, ..Mapping::default() };
+    // Exports with codes say nothing without.
+    let coded = Mapping {
+        unknown: Unknown::LeaveOut,
+        duplicates: Duplicates::First,
+        ..crate::study::synonyms("1", "2", "3")
+    };
     let mut random = Pcg64::seed_from_u64(seed);
     let mut read = 0;
     for case in 0..cases {
@@ -136,8 +142,12 @@ fn run(cases: u64, seed: u64) -> u64 {
             Some(changed) => bytes = changed,
             None => mutate(&mut bytes, &exports, &mut random),
         }
-        let (plan, mapping) =
-            ((case % 8 != 0).then_some(&plan), if case % 2 == 0 { &lenient } else { &Mapping::default() });
+        let plan = (case % 8 != 0).then_some(&plan);
+        let mapping = match case % 4 {
+            0 | 2 => &lenient,
+            1 => &coded,
+            _ => &Mapping::default(),
+        };
         let parsed = std::panic::catch_unwind(|| {
             let reading = responses::parse(&bytes, Path::new("x"), plan, mapping);
             reading.as_ref().map(check).map_err(|error| assert!(!error.to_string().is_empty())).is_ok()

@@ -80,7 +80,10 @@ fn answers_in_an_unknown_language() {
         said_of.starts_with("x.csv: row 2, column 2 (Q1): \"Vlevo\" is not an answer; row 2, column 3"),
         "{said_of}"
     );
-    assert!(said_of.contains("and 1 cells more") && said_of.contains("words in en, de, fr"), "{said_of}");
+    assert!(
+        said_of.contains("; and 1 cell more. Known") && said_of.contains("words in en, de, fr"),
+        "{said_of}"
+    );
     let read = parse_with(czech, &crate::study::synonyms("Vlevo", "Nic", "Vpravo")).unwrap();
     assert_eq!(said(&read)[..3], ["1 Q1 a<b", "1 Q2 a=c", "1 Q3 b>c"]);
 }
@@ -104,8 +107,85 @@ fn ten_megabytes_in_a_cell() {
     assert!(refused.contains("... (10485760 characters)\" is not an answer") && refused.len() < 500);
     let header = error(&format!("Q1,Q2,{cell}\nL,R,R\n"));
     assert!(header.contains("(10485760 characters)") && header.len() < 500);
-    let id = parse(&format!("participant,Q1,Q2,Q3\n{cell},L,R,\n")).unwrap();
-    assert!(id.report.to_string().len() < 500);
+}
+
+#[test]
+fn names_longer_than_a_name_is() {
+    let (longest, beyond) = ("ü".repeat(responses::LONGEST_NAME), "ü".repeat(responses::LONGEST_NAME + 1));
+    let header = "participant,question,left,right,object,group,form,choice";
+    for (column, name) in header.split(',').enumerate().take(7) {
+        let table = |cell: &str| {
+            let mut cells = ["p", "q", "a", "b", "o", "g", "A", "left"];
+            cells[column] = cell;
+            format!("{header}\n{}\n", cells.join(","))
+        };
+        let read = |cell: &str| {
+            let table = table(cell);
+            responses::parse(table.as_bytes(), Path::new("x.csv"), None, &Mapping::default())
+        };
+        assert!(read(&longest).is_ok(), "{name}");
+        let refused = read(&beyond).unwrap_err().to_string();
+        let start = format!("x.csv: row 2, column {} ({name}): \"üüü", column + 1);
+        assert!(refused.starts_with(&start), "{refused}");
+        assert!(refused.ends_with("... (201 characters)\" must have at most 200 characters"), "{refused}");
+        let huge = read(&"x".repeat(10 << 20)).unwrap_err().to_string();
+        assert!(huge.contains("(10485760 characters)") && huge.len() < 300, "{huge}");
+    }
+    for table in ["participant,Q1,Q2,Q3\nNAME,L,R,\n", "form,Q1,Q2,Q3\nNAME,L,R,\n"] {
+        assert!(parse(&table.replace("NAME", &longest)).is_ok());
+        let refused = error(&table.replace("NAME", &beyond));
+        assert!(
+            refused.starts_with("x.csv: row 2, column 1 (") && refused.contains("at most 200"),
+            "{refused}"
+        );
+    }
+}
+
+#[test]
+fn declared_names_longer_than_a_name_is() {
+    let beyond = "x".repeat(10_000);
+    let pair = design::config::PairSection {
+        question: "Q1".into(),
+        left: beyond.clone(),
+        right: "b".into(),
+        object: String::new(),
+        group: String::new(),
+    };
+    let section = design::config::ResponsesSection { pairs: vec![pair], ..Default::default() };
+    let refused = Mapping::of(&section).unwrap_err().to_string();
+    assert!(refused.starts_with("responses.pairs = \"xxx"), "{refused}");
+    assert!(refused.ends_with("(10000 characters)\": must have at most 200 characters"), "{refused}");
+    let pair = responses::PlannedPair {
+        question: beyond,
+        left: "a".into(),
+        right: "b".into(),
+        object: String::new(),
+        group: String::new(),
+    };
+    let plan = responses::Plan::of_pairs(&[pair]).unwrap();
+    let refused = responses::parse(b"Q1\nL\n", Path::new("x"), Some(&plan), &Mapping::default());
+    let refused = refused.unwrap_err().to_string();
+    assert!(refused.starts_with("x: the study's name \"xxx") && refused.len() < 200, "{refused}");
+}
+
+#[test]
+fn names_made_up_for_pairs_are_names() {
+    // Two pairs of one question, all of whose names are as long as a name may be.
+    let name = |c: &str| c.repeat(responses::LONGEST_NAME);
+    let row =
+        |right: &str| format!("p,{},{},{},{},{},left\n", name("q"), name("a"), right, name("o"), name("g"));
+    let text =
+        format!("participant,question,left,right,object,group,choice\n{}{}", row(&name("b")), row("c"));
+    let read = |text: &[u8]| responses::parse(text, Path::new("x"), None, &Mapping::default()).unwrap();
+    let reading = read(text.as_bytes());
+    let ids: Vec<&str> = reading.responses.questions.iter().map(|q| q.id.as_str()).collect();
+    assert!(
+        ids[0] != ids[1] && ids.iter().all(|id| id.chars().count() <= responses::LONGEST_NAME),
+        "{ids:?}"
+    );
+    let mut long = Vec::new();
+    responses::write_long(&reading.responses, &mut long).unwrap();
+    assert_eq!(said(&read(&long)), said(&reading));
 }
 
 #[test]
@@ -163,6 +243,11 @@ fn two_readings_show_both() {
     assert!(partly.contains("column 2 is Q2 by its name; or it is Q1 by its position"), "{partly}");
     let both = error("record_id,lastpage,submitdate,Q1,Q2,Q3\n1,,,Left,Left,Left\n");
     assert!(both.contains("it may be limesurvey") && both.contains("or redcap"), "{both}");
+    let few = error("Timestamp,x,y\n1,Left,why\n");
+    assert!(
+        few.contains("the study has 3 questions; known answers and nothing else are in column 2;"),
+        "{few}"
+    );
     assert!(error("Q1,Q2;Q3\nL,R;L\n").contains("',' and ';' both split every row into 2 cells"));
 }
 
@@ -178,7 +263,7 @@ fn declared_positions_settle_it() {
     let some = Mapping { questions, question_columns: Some(vec![5, 2]), ..Mapping::default() };
     assert_eq!(said(&read(some).unwrap()), ["1 Q3 b>c", "1 Q1 a<b"]);
     let beyond = Mapping { first_question_column: Some(4), ..Mapping::default() };
-    assert!(read(beyond).unwrap_err().contains("first_question_column = 4: only 2 columns follow"));
+    assert!(read(beyond).unwrap_err().contains("first_question_column = 4: 2 columns from there on, and"));
     let twice = Mapping { question_columns: Some(vec![2, 2, 3]), ..Mapping::default() };
     assert!(read(twice).unwrap_err().contains("a column is named twice"));
     let alien = Mapping { questions: Some(vec!["Q9".into()]), ..Mapping::default() };
