@@ -105,11 +105,13 @@ impl Finding {
                 Self::new(Standing::Holds, text)
             }
             Conclusion::Equal => {
+                // Names stand in the order of the contrast, and so do counts and score.
                 let text = format!(
-                    "{} and {second}{scope} are liked alike, within the declared margin of {MARGIN}: {}. {score}; {}; \
+                    "{} and {second}{scope} are liked alike, within the declared margin of {MARGIN}: {}. {}; {}; \
                      {tested}.",
                     capital(first),
-                    against(turned),
+                    against(counts),
+                    self::score(test, true),
                     equivalence(hypothesis)
                 );
                 Self::new(Standing::Equal, text)
