@@ -4,6 +4,8 @@ mod html;
 mod latex;
 pub(crate) mod markdown;
 
+use crate::digits::{number, signed};
+
 /// One cell.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
@@ -86,10 +88,11 @@ impl Cell {
         }
     }
 
-    /// For people: numbers to the column's decimals.
+    /// For people: numbers to the column's decimals, with a true minus sign.
     pub fn shown(&self) -> String {
         match self {
-            Self::Number(value, decimals) => format!("{value:.decimals$}"),
+            Self::Number(value, decimals) => number(*value, *decimals),
+            Self::Count(count) => signed(&count.to_string()),
             Self::P(value, decimals) => {
                 let least = 10.0_f64.powi(-i32::try_from(*decimals).expect("a few decimals"));
                 let shown = format!("{value:.decimals$}");
@@ -210,7 +213,7 @@ mod tests {
 
 | The id | \\|x\\| | mean |
 |:---|---:|---:|
-| ss\\_bi, \"q\" | -3 | 0.33 |
+X 0.33 |
 | a\\|b\\\\c \\*d\\* &lt;e> ~^{} |  | 2.00 |
 
 100 % &amp; more
@@ -222,7 +225,7 @@ mod tests {
     fn latex_escapes() {
         let latex = awkward().to_latex();
         assert!(latex.contains("\\caption{50 \\% of a\\_b \\& c}"), "{latex}");
-        assert!(latex.contains("ss\\_bi, \"q\" & -3 & 0.33 \\\\"), "{latex}");
+        assert!(latex.contains("ss\\_bi, \"q\" & $-$3 & 0.33 \\\\"), "{latex}");
         let row = "a\\textbar{}b\\textbackslash{}c *d* \\textless{}e\\textgreater{} \\textasciitilde{}\\textasciicircum{}\\{\\}";
         assert!(latex.contains(row), "{latex}");
         assert!(latex.contains("\\begin{tabular}{lrr}"), "{latex}");
@@ -254,7 +257,7 @@ mod tests {
     fn html_escapes() {
         let html = awkward().to_html();
         assert!(html.contains("<caption>50 % of a_b &amp; c</caption>"), "{html}");
-        assert!(html.contains("<td>ss_bi, &quot;q&quot;</td><td class=\"number\">-3</td>"), "{html}");
+        assert!(html.contains("<td>ss_bi, &quot;q&quot;</td><td class=\"number\">\u{2212}3</td>"), "{html}");
         assert!(html.contains("&lt;e&gt;"), "{html}");
     }
 

@@ -41,9 +41,9 @@ fn unanimity(evidence: &Evidence<'_>) -> Finding {
         false => "That people agree more than chance would have it is not shown",
     };
     text.push_str(&format!(
-        " {verdict}: Kendall's u = {}, chi-square {:.1} on {:.1} degrees of freedom, {}.",
+        " {verdict}: Kendall's u = {}, chi-square {} on {:.1} degrees of freedom, {}.",
         number(u, 2),
-        test.statistic,
+        number(test.statistic, 1),
         test.degrees,
         p(test.p)
     ));

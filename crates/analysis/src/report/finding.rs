@@ -1,7 +1,7 @@
 //! A statement with its verdict, and the sentences of tests of preference.
 
 use super::words::{against, capital, counted, interval, number, p};
-use crate::hypotheses::{ALPHA, Conclusion, Hypothesis};
+use crate::hypotheses::{ALPHA, Conclusion, Hypothesis, Subject};
 use crate::interval::{Interval, unanimous};
 use crate::statistics::MARGIN;
 use crate::statistics::contrast::ContrastTest;
@@ -58,11 +58,16 @@ impl Finding {
     pub(super) fn of_preference(hypothesis: &Hypothesis, first: &str, second: &str, scope: &str) -> Self {
         let test = &hypothesis.test;
         let counts = test.counts.unwrap_or_default();
+        // A name that somebody gave stays as it is, at the head of a sentence too.
+        let opening = |name: &str| match hypothesis.subject {
+            Subject::Items { .. } => name.to_owned(),
+            _ => capital(name),
+        };
         let leaning = test.differences.iter().filter(|d| **d != 0).count();
         if leaning == 0 {
             let text = format!(
                 "{} against {second}{scope}: nobody leans either way ({}), so no test has anything to work on.",
-                capital(first),
+                opening(first),
                 against(counts)
             );
             return Self::new(Standing::TooFew, text);
@@ -73,7 +78,7 @@ impl Finding {
             let text = format!(
                 "{} against {second}{scope} is not decided: {}. {} {lean} one way or the other, and no outcome of so \
                  few is significant (exact sign-flip test, smallest possible {}).",
-                capital(first),
+                opening(first),
                 against(counts),
                 capital(&counted(leaning, "participant")),
                 p(least)
@@ -89,7 +94,7 @@ impl Finding {
             Conclusion::Differs => {
                 let text = format!(
                     "{} was preferred to {loser}{scope}: {}. {score}; {tested}.",
-                    capital(winner),
+                    opening(winner),
                     against(turned)
                 );
                 Self::new(Standing::Holds, text)
@@ -98,7 +103,7 @@ impl Finding {
                 let text = format!(
                     "{} was preferred to {loser}{scope}, but by little: {}. {score}; {tested}. The mean lies within \
                      {MARGIN} of none ({}).",
-                    capital(winner),
+                    opening(winner),
                     against(turned),
                     equivalence(hypothesis)
                 );
@@ -109,7 +114,7 @@ impl Finding {
                 let text = format!(
                     "{} and {second}{scope} are liked alike, within the declared margin of {MARGIN}: {}. {}; {}; \
                      {tested}.",
-                    capital(first),
+                    opening(first),
                     against(counts),
                     self::score(test, true),
                     equivalence(hypothesis)
@@ -123,7 +128,7 @@ impl Finding {
                 };
                 let text = format!(
                     "{} and {second}{scope} cannot be told apart here: {}. {}; {tested}.{alone}{}",
-                    capital(first),
+                    opening(first),
                     against(counts),
                     self::score(test, true),
                     not_equal(test)

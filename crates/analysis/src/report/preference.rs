@@ -1,7 +1,7 @@
 //! What was preferred to what: sorted by what holds, what depends on something else, and what is open.
 
 use super::finding::{Finding, Standing, score, tested};
-use super::words::{against, capital, counted, list, p};
+use super::words::{against, capital, counted, list, number, p};
 use super::{Block, Evidence, names};
 use crate::hypotheses::{ALPHA, Hypothesis, Subject};
 use crate::statistics::contrast::{ContrastTest, Level, Over, contrasts};
@@ -158,7 +158,7 @@ fn dependence(
             "{}: {}, mean score {}",
             capital(place.trim_start()),
             against(test.counts.unwrap_or_default()),
-            { super::words::number(test.mean, 2) }
+            number(test.mean, 2)
         )
     };
     let text = format!(

@@ -249,13 +249,24 @@ fn answers_without_a_study() {
     assert_eq!(report.lead[0], "10 participants gave 30 answers to 3 questions.");
     assert_eq!(
         texts(&report, "holds")[0],
-        "Oak was preferred to elm: 9 answers against 0, 1 without preference. Mean score 0.90 (95 % t interval 0.67 to 1.00, 10 \
+        "oak was preferred to elm: 9 answers against 0, 1 without preference. Mean score 0.90 (95 % t interval 0.67 to 1.00, 10 \
          participants); exact sign-flip test, p = 0.0039, p = 0.012 after Holm's correction for 3 tests."
     );
     // Pairs in both orders: the side can be asked about; but the answers separate the items, so nothing is estimated.
     let side = texts(&report, "unanswerable");
     assert_eq!(side, ["Over all questions 15 answers went left, 12 right and 3 to neither."]);
     assert!(report.to_markdown().starts_with("# Trees\n\n10 participants gave 30 answers to 3 questions.\n"));
+}
+
+#[test]
+fn names_of_items_stay_as_they_are() {
+    // Two items that differ in their first letter's case alone.
+    let answers: Vec<_> = (0..8).map(|person| (person, 0, 1, Left)).collect();
+    let mut groups = groups(&answers);
+    groups[0].items = ["\u{e9}clair", "\u{c9}clair"].map(String::from).into();
+    let report = report_of_groups("Cakes", &groups, &[], &[]);
+    let text = &texts(&report, "holds")[0];
+    assert!(text.starts_with("\u{e9}clair was preferred to \u{c9}clair: 8 answers against 0"), "{text}");
 }
 
 #[test]

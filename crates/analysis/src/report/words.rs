@@ -1,5 +1,6 @@
 //! Numbers in words: p values, intervals, counts, lists.
 
+pub(super) use crate::digits::number;
 use crate::interval::Interval;
 
 /// Below this a p value is not printed in digits.
@@ -14,16 +15,6 @@ pub(super) fn p(p: f64) -> String {
             let decimals = (1.0 - p.log10().floor()).clamp(2.0, 7.0) as usize;
             format!("p = {p:.decimals$}")
         }
-    }
-}
-
-/// A number with a true minus sign; never minus zero.
-pub(super) fn number(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
-    match text.strip_prefix('-') {
-        Some(rest) if rest.chars().all(|c| c == '0' || c == '.') => rest.into(),
-        Some(rest) => format!("\u{2212}{rest}"),
-        None => text,
     }
 }
 
@@ -105,7 +96,6 @@ mod tests {
             "p = 0.049",
         ];
         assert_eq!(ps, want);
-        assert_eq!((number(-0.25, 2), number(-0.001, 2)), ("\u{2212}0.25".into(), "0.00".into()));
         assert_eq!(list(&["a", "b", "c"]), "a, b and c");
         assert_eq!((list::<&str>(&[]), list(&["a"])), (String::new(), "a".into()));
         assert_eq!((counted(1, "answer"), counted(0, "answer")), ("1 answer".into(), "0 answers".into()));

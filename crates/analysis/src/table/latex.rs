@@ -1,6 +1,7 @@
 //! LaTeX for the `article` class or anything wider: the first layout, from plain to small to turned, that a table fits.
 
 use super::Table;
+use crate::digits::MINUS;
 
 /// Rows beyond which a table is broken across pages.
 const PAGE: usize = 35;
@@ -88,7 +89,7 @@ fn em(text: &str) -> f64 {
     let letter = |c: char| match c {
         'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | '|' => 0.28,
         ' ' | '-' | '(' | ')' | '_' | 'f' | 't' | 'r' | 's' | 'I' => 0.4,
-        'm' | 'w' | 'M' | 'W' | '%' | '<' | '>' | '=' | '+' => 0.84,
+        'm' | 'w' | 'M' | 'W' | '%' | '<' | '>' | '=' | '+' | MINUS => 0.84,
         c if c.is_ascii_uppercase() => 0.76,
         c if c.is_ascii_digit() => 0.5,
         'a' | 'c' | 'e' | 'g' | 'o' | 'z' => 0.5,
@@ -222,6 +223,7 @@ fn escape(text: &str) -> String {
             '|' => out.push_str("\\textbar{}"),
             '<' => out.push_str("\\textless{}"),
             '>' => out.push_str("\\textgreater{}"),
+            MINUS => out.push_str("$-$"),
             '\n' | '\r' => out.push(' '),
             _ => out.push(letter),
         }

@@ -102,7 +102,7 @@ pub(crate) fn respondents(ballots: &[Ballot], protocol: &Protocol<'_>) -> Table 
             ("left", "Left"),
             ("no_preference", "None"),
             ("right", "Right"),
-            ("one_sidedness", "(L - R) / (L + R)"),
+            ("one_sidedness", "(L \u{2212} R) / (L + R)"),
             ("longest_run", "Longest run"),
             ("comparable", "Comparable"),
             ("agreeing", "Agreeing"),

@@ -57,7 +57,7 @@ fn table(rows: &[Hypothesis]) -> Table {
     table.notes.push(
         "p: exact sign-flip test over participants, two-sided; net is answers for the first minus answers for the second. \
          Adjusted within the family: Holm, for single questions Benjamini and Hochberg. Mean score: a participant's net over \
-         the questions answered, -1 to 1; from and to: t interval at 95 % over participants, or, where all have one \
+         the questions answered, \u{2212}1 to 1; from and to: t interval at 95 % over participants, or, where all have one \
          score, the means that make this at least 2.5 % probable; BCa and studentised: 2000 resamples of participants. Equivalence: two one-sided t tests of a mean score within 0.2 of zero, which is 60 \
          answers to 40, adjusted in the same way. Conclusion: at 5 % of both adjusted p; a large p alone is open, not equal. \
          p without one: range when each participant in turn is left out. Interactions are differences of two \

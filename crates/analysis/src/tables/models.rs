@@ -51,8 +51,8 @@ fn empty_worths() -> Table {
     );
     table.notes.push(
         "SE, answers independent: from the exact information, for comparison with other programs; too small, because one \
-         person's answers hang together. SE, participants: sandwich with m/(m-1); from and to: its t interval at 95 % on \
-         m - 1 degrees of freedom. BCa: 2000 resamples of participants, Davidson's model only; resamples in which some \
+         person's answers hang together. SE, participants: sandwich with m/(m \u{2212} 1); from and to: its t interval at 95 % on \
+         m \u{2212} 1 degrees of freedom. BCa: 2000 resamples of participants, Davidson's model only; resamples in which some \
          item never lost or never won have no estimate and are counted. Rao and Kupper's worths are on another scale: \
          compare orders."
             .into(),
