@@ -18,6 +18,13 @@ pub struct Interval {
     pub high: f64,
 }
 
+impl Interval {
+    /// Both ends cut to what is possible: a t interval knows of no range.
+    pub(crate) fn cut(self, low: f64, high: f64) -> Self {
+        Self { low: self.low.clamp(low, high), high: self.high.clamp(low, high) }
+    }
+}
+
 /// Mean of one score a person, plus and minus t(n - 1) standard errors (sample standard deviation, divisor n - 1).
 ///
 /// `None` for fewer than two people, and where all scores are the same, which tells no spread. The ends are not cut to the

@@ -151,7 +151,7 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Repo
     press.add_tables(&["benchmark_beside"]);
     press.section("published", "Published and recomputed", published::findings(inputs));
     press.add_tables(&["claims"]);
-    let (title, lead) = (study.file.study.title.clone(), lead(&evidence));
+    let (title, lead) = (study.file.study.title.clone(), lead(&evidence, tables));
     press.finish(title, lead)
 }
 
@@ -162,14 +162,21 @@ pub fn report_of_groups(title: &str, groups: &[BallotGroup], tables: &[Table], f
     let evidence = Evidence { study: None, ballots: &ballots, groups, hypotheses };
     let mut press = Press::new(tables, figures);
     press.preferences(&evidence);
-    press.finish(title.into(), lead(&evidence))
+    press.finish(title.into(), lead(&evidence, tables))
 }
 
-fn lead(evidence: &Evidence<'_>) -> Vec<String> {
+fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
     let (people, questions) = (evidence.participants(), evidence.questions());
     let answers = evidence.ballots.len();
     if answers == 0 {
-        return vec!["No answers were given, so nothing is said about preference.".into()];
+        let controls = tables.iter().find(|table| table.name == "respondents").map_or(0, checks::controls);
+        return vec![match controls {
+            0 => "No answers were given, so nothing is said about preference.".into(),
+            _ => format!(
+                "Only controls were answered, which show an item beside itself: {}. So nothing is said about preference.",
+                counted(controls as usize, "answer")
+            ),
+        }];
     }
     let about = evidence.study.map_or(String::new(), |study| {
         let names: Vec<&str> = study.file.objects.iter().map(|o| o.name.as_str()).collect();

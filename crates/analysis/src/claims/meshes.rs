@@ -65,7 +65,7 @@ fn discarded(numbers: &Numbers<'_>, value: f64, clustering: Clustering) -> Optio
     let ours = percent(Side::Ours, DISCARD)?;
     let as_published = percent(Side::Ours, DISCARD_AS_PUBLISHED)?;
     let far = match as_published > ours {
-        true => double_count(format!("{} points", crate::digits::number(as_published - ours, 2))),
+        true => double_count(format!("{:.2} points", as_published - ours)),
         false => crate::verdict::UNEXPLAINED.into(),
     };
     Some(Finding {

@@ -36,7 +36,8 @@ fn block(group: &BallotGroup) -> Option<Block> {
     let covariance = clustered_covariance(&fitted, &participants);
     let row = |(item, name): (usize, &String)| {
         let interval = covariance.as_ref().filter(|_| item > 0);
-        let interval = interval.map(|c| fitted.clustered_interval(c, participants.number(), item, 0));
+        let interval = interval.and_then(|c| fitted.clustered_error(c, participants.number(), item));
+        let interval = interval.map(|(_, interval)| interval);
         let worth = number(fitted.log_worths[item], 2);
         let remark = match (item, fitted.penalised, interval) {
             (0, ..) => "reference".into(),

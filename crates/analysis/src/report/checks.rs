@@ -31,6 +31,11 @@ fn sum(table: &Table, name: &str) -> u64 {
     column(table, name).filter_map(|cell| cell.in_full().parse::<u64>().ok()).sum()
 }
 
+/// Answers to controls.
+pub(super) fn controls(respondents: &Table) -> u64 {
+    sum(respondents, "controls")
+}
+
 /// How many broke which rule, and what was there to judge.
 fn screened(respondents: &Table) -> Finding {
     let people = respondents.rows.len();

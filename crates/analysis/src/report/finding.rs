@@ -143,11 +143,9 @@ impl Finding {
 pub(super) fn score(test: &ContrastTest, towards_first: bool) -> String {
     let sign = if towards_first { 1.0 } else { -1.0 };
     let people = counted(test.scores.len(), "participant");
-    // A score lies between -1 and 1; its t interval does not know that.
-    let cut = |low: f64, high: f64| Interval { low: low.max(-1.0), high: high.min(1.0) };
-    let turned = test.interval.map(|i| match towards_first {
-        true => cut(i.low, i.high),
-        false => cut(-i.high, -i.low),
+    let turned = test.interval.map(|i| i.cut(-1.0, 1.0)).map(|i| match towards_first {
+        true => i,
+        false => Interval { low: -i.high, high: -i.low },
     });
     let kind = if unanimous(&test.scores).is_some() { "interval" } else { "t interval" };
     let within = turned.map_or(people.clone(), |i| format!("95 % {kind} {}, {people}", interval(i, 2)));

@@ -5,8 +5,8 @@ use super::words::{capital, counted, interval, list, number};
 use super::{Block, Evidence, names};
 use crate::statistics::contrast::{Level, contrasts};
 use crate::statistics::{
-    Ballot, Model, Pairs, Participants, Separation, SideDesign, clustered_covariance, fit, separation,
-    side_design,
+    Ballot, Model, Pairs, Participants, Separation, SideDesign, clustered_covariance, fit, has_spread,
+    separation, side_design,
 };
 use std::collections::BTreeMap;
 
@@ -103,6 +103,12 @@ fn estimate(name: &str, ballots: &[Ballot], items: usize) -> Option<String> {
     let side = fitted.side?;
     let (people, se) = (participants.number() as f64, covariance[place][place].sqrt());
     let t = crate::interval::t_half_width(people - 1.0)?;
+    if !has_spread(se, fitted.covariance[place][place].sqrt()) {
+        return Some(format!(
+            "{name} {} (no interval: the answers tell no spread between participants)",
+            number(side, 2)
+        ));
+    }
     let found = crate::interval::Interval { low: side - t * se, high: side + t * se };
     Some(format!("{name} {} ({})", number(side, 2), interval(found, 2)))
 }

@@ -15,7 +15,7 @@ fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'stati
     let evidence = Evidence { study: Some(&study), ballots: &ballots, groups: &groups, hypotheses };
     let mut press = Press::new(&[], &[]);
     press.preferences(&evidence);
-    let report = press.finish("A test".into(), lead(&evidence));
+    let report = press.finish("A test".into(), lead(&evidence, &[]));
     let findings = |s: &Section| {
         let of =
             s.blocks.iter().filter_map(|b| if let Block::Finding(f) = b { Some(f.clone()) } else { None });
@@ -274,6 +274,16 @@ fn no_answers_at_all() {
     let report = report_of_groups("Nothing", &[], &[], &[]);
     assert_eq!(report.lead, ["No answers were given, so nothing is said about preference."]);
     assert!(report.sections.is_empty());
+    let control = |participant| Ballot::new(participant, 0, [0, 0], Left);
+    let protocol = crate::statistics::Protocol::default();
+    let respondents = crate::tables::agreement::respondents(&[control(0), control(1)], &protocol);
+    let report = report_of_groups("Controls", &[], &[respondents], &[]);
+    assert_eq!(
+        report.lead,
+        [
+            "Only controls were answered, which show an item beside itself: 2 answers. So nothing is said about preference."
+        ]
+    );
     let small = fixture::small_study();
     let inputs = Inputs { study: &small, meshes: &[], bench: None, answers: None };
     let tables = crate::tables(&inputs);
