@@ -215,14 +215,14 @@ fn separated(groups: &[BallotGroup]) -> Report {
     let mut evidence = Vec::new();
     if !separated.is_empty() {
         let items = "some items never won against the others: worths are penalised";
-        evidence.push(format!("in {} {items}", list(&separated)));
+        evidence.push(format!("{} {items}", within(&separated)));
     }
     if !apart.is_empty() {
         let items = "some items were never compared with the others: there are no worths";
-        evidence.push(format!("in {} {items}", list(&apart)));
+        evidence.push(format!("{} {items}", within(&apart)));
     }
     if !held.is_empty() {
-        evidence.push(format!("in {} ties alone keep the worths finite", list(&held)));
+        evidence.push(format!("{} ties alone keep the worths finite", within(&held)));
     }
     match judged.len() {
         _ if !evidence.is_empty() => {}
@@ -236,6 +236,11 @@ fn separated(groups: &[BallotGroup]) -> Report {
     }
     let finding = if separated.is_empty() { Finding::NotFound } else { Finding::Found };
     Report { probe: Probe::Separation, finding, p: None, evidence: evidence.join("; ") }
+}
+
+/// `in group trees`, `in groups trees, cakes`.
+fn within(groups: &[String]) -> String {
+    format!("in {} {}", if groups.len() == 1 { "group" } else { "groups" }, list(groups))
 }
 
 /// How a group's answers leave its worths; `None` if none of them decides anything.

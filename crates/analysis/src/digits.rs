@@ -17,6 +17,11 @@ pub(crate) fn signed(digits: &str) -> String {
     }
 }
 
+/// `1 answer`, `2 answers`.
+pub(crate) fn counted(count: usize, noun: &str) -> String {
+    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -27,6 +32,7 @@ mod tests {
             [(-0.25, 2), (-0.001, 2), (-0.0, 0), (3.0, 1), (-12.5, 0)].map(|(x, d)| number(x, d)),
             ["\u{2212}0.25", "0.00", "0", "3.0", "\u{2212}12"]
         );
+        assert_eq!((counted(1, "answer"), counted(0, "answer")), ("1 answer".into(), "0 answers".into()));
         assert_eq!((signed("-7"), signed("7")), ("\u{2212}7".into(), "7".into()));
     }
 }

@@ -191,9 +191,9 @@ fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
     let missing = (people * questions).saturating_sub(answers);
     if missing > 0 {
         lead[0].push_str(&format!(
-            " {} of the {} possible answers were not given; people count as far as they answered.",
-            missing,
-            people * questions
+            " {missing} of the {} possible answers {} not given; people count as far as they answered.",
+            people * questions,
+            if missing == 1 { "was" } else { "were" }
         ));
     }
     lead.push(
@@ -258,15 +258,17 @@ impl Press {
         }
         let sorted = preference::findings(evidence);
         self.section("holds", "What holds", sorted.holds);
-        self.add_figures(&["worths"]);
         self.section("depends", "What depends on what", sorted.depends);
         self.add_figures(&["object_interaction"]);
         self.section("open", "What does not hold", sorted.open);
+        self.section("worths", "Worths on one scale", Vec::new());
+        self.add_figures(&["worths"]);
+        self.add_tables(&["worths", "models"]);
         self.section("unanswerable", "What cannot be answered here", sides::findings(evidence));
         self.section("bearing", "How much the answers can bear", bearing::findings(evidence));
         self.add_figures(&["respondents"]);
-        self.add_tables(&["tests", "omnibus", "worths", "models", "agreement", "answer_counts"]);
-        let checks = checks::findings(|name| self.tables.iter().find(|table| table.name == name));
+        self.add_tables(&["tests", "omnibus", "agreement", "answer_counts"]);
+        let checks = checks::findings(evidence, |name| self.tables.iter().find(|table| table.name == name));
         self.section("checks", "Checks of the answers", checks);
         self.add_tables(&["audit", "screened", "respondents"]);
     }

@@ -58,7 +58,8 @@ pub(crate) fn announce(report: &Report) {
     let (repaired, rejected) = (report.count(Kind::Repaired), report.count(Kind::Rejected));
     if !report.remarks.is_empty() {
         let all = report.remarks.len();
-        eprintln!("{}: {all} remarks: {repaired} repaired, {rejected} rejected", report.file.display());
+        let noun = if all == 1 { "remark" } else { "remarks" };
+        eprintln!("{}: {all} {noun}: {repaired} repaired, {rejected} rejected", report.file.display());
     }
 }
 

@@ -135,7 +135,10 @@ pub(crate) fn read_columns(
         rows.row(record, source.is_text())
     })?;
     if rows.passed_over > 0 {
-        let action = format!("{} rows without a question are no answers: not read", rows.passed_over);
+        let action = match rows.passed_over {
+            1 => "1 row without a question is no answer: not read".into(),
+            more => format!("{more} rows without a question are no answers: not read"),
+        };
         rows.collector.report.row(Kind::Noted, header_row, action);
     }
     rows.collector.finish(rule.sides_recorded, end)

@@ -2,7 +2,7 @@
 
 use super::{ALARM, Audited, Probe, Report, list};
 use crate::ballots::BallotGroup;
-use crate::digits::number;
+use crate::digits::{counted, number};
 use crate::statistics::{Split, exchange, holm};
 use std::collections::BTreeSet;
 
@@ -38,7 +38,9 @@ pub(super) fn probe(audited: &Audited<'_>, suspects: &BTreeSet<usize>) -> Report
     };
     let found: Vec<String> = order.iter().filter(|&&i| adjusted[i] < ALARM).map(name).collect();
     let evidence = match found.is_empty() {
-        true => format!("{} comparisons; the largest difference is {}", all.len(), name(&order[0])),
+        true => {
+            format!("{}; the largest difference is {}", counted(all.len(), "comparison"), name(&order[0]))
+        }
         false => list(&found),
     };
     Report::tested(Probe::ObjectInteraction, adjusted[order[0]], evidence)

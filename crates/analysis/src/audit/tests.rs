@@ -109,6 +109,6 @@ fn without_a_decision_there_are_no_worths_to_be_penalised() {
     assert_eq!(found.finding, Finding::Found);
     assert_eq!(
         found.evidence,
-        "in one some items never won against the others: worths are penalised; in 1 group nobody ever decided"
+        "in group one some items never won against the others: worths are penalised; in 1 group nobody ever decided"
     );
 }

@@ -58,6 +58,7 @@ fn the_papers_answers() {
         "holds",
         "depends",
         "open",
+        "worths",
         "unanswerable",
         "bearing",
         "checks",

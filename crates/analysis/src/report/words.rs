@@ -1,6 +1,6 @@
 //! Numbers in words: p values, intervals, counts, lists.
 
-pub(super) use crate::digits::number;
+pub(super) use crate::digits::{counted, number};
 use crate::interval::Interval;
 
 /// Below this a p value is not printed in digits.
@@ -48,11 +48,6 @@ pub(super) fn percents(interval: Interval) -> String {
     format!("{} to {} %", end(interval.low), end(interval.high))
 }
 
-/// `1 answer`, `2 answers`.
-pub(super) fn counted(count: usize, noun: &str) -> String {
-    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
-}
-
 /// `a, b and c`.
 pub(super) fn list<T: AsRef<str>>(items: &[T]) -> String {
     match items {
@@ -98,7 +93,6 @@ mod tests {
         assert_eq!(ps, want);
         assert_eq!(list(&["a", "b", "c"]), "a, b and c");
         assert_eq!((list::<&str>(&[]), list(&["a"])), (String::new(), "a".into()));
-        assert_eq!((counted(1, "answer"), counted(0, "answer")), ("1 answer".into(), "0 answers".into()));
         assert_eq!(against([1, 0, 5]), "1 answer against 5, none without preference");
         assert_eq!(percents(Interval { low: 0.661, high: 1.2 }), "66 to 100 %");
         assert_eq!(capital("über"), "Über");

@@ -55,6 +55,54 @@ fn table(rows: &[Hypothesis]) -> Table {
     );
     let cells: Vec<Vec<Cell>> = rows.par_iter().map(cells).collect();
     cells.into_iter().for_each(|cells| table.push(cells));
+    let blocks: [(&str, &[&str]); 3] = [
+        (
+            "Answers, and tests of no preference",
+            &[
+                "family",
+                "contrast",
+                "scope",
+                "first",
+                "no_preference",
+                "second",
+                "net",
+                "participants",
+                "p_sign_flip",
+                "p_adjusted",
+                "adjustment",
+                "conclusion",
+            ],
+        ),
+        (
+            "Mean scores, and tests of equivalence",
+            &[
+                "family",
+                "contrast",
+                "scope",
+                "mean",
+                "low",
+                "high",
+                "bca_low",
+                "bca_high",
+                "studentised_low",
+                "studentised_high",
+                "p_equivalence",
+            ],
+        ),
+        (
+            "With one participant left out, and as if answers were independent",
+            &[
+                "family",
+                "contrast",
+                "scope",
+                "p_without_one_low",
+                "p_without_one_high",
+                "p_binomial",
+                "p_trinomial",
+            ],
+        ),
+    ];
+    table.print_in_blocks(&blocks);
     table.notes.push(
         "p: exact sign-flip test over participants, two-sided; net is answers for the first minus answers for the second. \
          Adjusted within the family: Holm, for single questions Benjamini and Hochberg. Mean score: a participant's net over \

@@ -44,7 +44,7 @@ fn screened(recorded: &Recorded<'_>, tested: impl Fn(&dyn Fn(&Ballot) -> bool) -
             ("mean", "Mean score"),
             ("p_adjusted", "p adjusted"),
             ("conclusion", "Conclusion"),
-            ("mean_without", "without: mean"),
+            ("mean_without", "Mean score"),
             ("p_without", "p"),
             ("p_adjusted_without", "p adjusted"),
             ("conclusion_without", "Conclusion"),
@@ -89,6 +89,36 @@ fn screened(recorded: &Recorded<'_>, tested: impl Fn(&dyn Fn(&Ballot) -> bool) -
             ]);
         }
     }
+    let blocks: [(&str, &[&str]); 2] = [
+        (
+            "With everybody",
+            &[
+                "rule",
+                "left_out",
+                "respondents",
+                "family",
+                "contrast",
+                "scope",
+                "mean",
+                "p_adjusted",
+                "conclusion",
+            ],
+        ),
+        (
+            "Without them",
+            &[
+                "rule",
+                "family",
+                "contrast",
+                "scope",
+                "mean_without",
+                "p_without",
+                "p_adjusted_without",
+                "conclusion_without",
+            ],
+        ),
+    ];
+    table.print_in_blocks(&blocks);
     table.notes.push(
         "For each rule that somebody broke, the same tests without them; the rules are under the table of respondents. Every \
          other table is with everybody."

@@ -153,7 +153,7 @@ fn trials_are_read_by_their_question() {
     assert_eq!(csv.responses.answers[0].rt_ms, Some(812.4));
     assert_eq!(
         remarks(&csv),
-        ["1:2 noted: x"].map(|_| "1 noted: 1 rows without a question are no answers: not read")
+        ["1:2 noted: x"].map(|_| "1 noted: 1 row without a question is no answer: not read")
     );
     let json = read("jspsych.json", &Mapping::default());
     assert_eq!(said(&json), ["1 Q1 a<b", "1 Q2 c=a", "1 Q3 b>c"]);
