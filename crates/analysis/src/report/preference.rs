@@ -56,17 +56,20 @@ impl Sorted {
         let mut named: Vec<String> = too_few.iter().take(APART).map(|of| of.name.clone()).collect();
         named.push(format!("{} more", too_few.len() - APART));
         let text = format!(
-            "{} of {} are not decided, because {} and no outcome of so few is significant (exact sign-flip test; {} have to \
-             lean): {}. The table of tests has their counts.",
+            "{} of {} are not decided: {}. {} The table of tests has their counts.",
             too_few.len(),
             counted(all, "comparison"),
+            list(&named),
             match most {
-                0 => "nobody leans one way or the other".into(),
-                1 => "one participant at most leans one way or the other".into(),
-                most => format!("{most} participants at most lean one way or the other"),
-            },
-            fewest_leaning(),
-            list(&named)
+                0 => "Nobody leans one way or the other on any of them.".into(),
+                most => format!(
+                    "At most {} {} one way or the other, and no outcome of so few is significant (exact sign-flip test; {} \
+                     would have to).",
+                    counted(most, "participant"),
+                    if most == 1 { "leans" } else { "lean" },
+                    fewest_leaning()
+                ),
+            }
         );
         self.open.push(Block::Finding(Finding::new(Standing::TooFew, text)));
         self

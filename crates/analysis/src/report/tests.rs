@@ -136,7 +136,7 @@ fn the_papers_answers() {
     );
     assert!(
         checks[1]
-            .starts_with("Rule odd, broken by participant 16: without them, 1 of 25 declared tests comes"),
+            .starts_with("Participant 16 broke a rule by answering against the others: without them, 1 of 25 declared tests comes"),
         "{checks:#?}"
     );
     assert!(checks.iter().any(|text| text
@@ -162,19 +162,29 @@ fn a_planted_effect_holds_whoever_stands_left() {
          Mean score 1.00 (95 % interval 0.63 to 1.00, 18 participants); exact sign-flip test, p = 0.0000076, p = 0.000031 \
          after Holm's correction for 4 tests."
     );
-    let found = of(&said, "open", "No clustering against edge collapse: nobody");
+    let found = of(&said, "open", "9 of 13 comparisons");
     assert_eq!(found.standing, Standing::TooFew);
+    assert_eq!(
+        found.text,
+        "9 of 13 comparisons are not decided: no clustering against integrated clustering, no clustering against edge \
+         collapse, edge collapse against integrated clustering and 6 more. Nobody leans one way or the other on any of them. \
+         The table of tests has their counts."
+    );
 }
 
 #[test]
 fn nobody_leaning_is_said_so() {
     let said = said(18, |_, _| Tie);
     assert!(said.iter().all(|(id, _)| *id != "holds"), "{said:#?}");
-    let found = of(&said, "open", "The body-centred lattice against the simple cubic lattice:");
+    of(&said, "open", "13 of 13 comparisons are not decided: ");
+    let answers: Vec<_> = (0..18).map(|person| (person, 0, 1, Tie)).collect();
+    let report = report_of_groups("Trees", &groups(&answers), &[], &[]);
     assert_eq!(
-        found.text,
-        "The body-centred lattice against the simple cubic lattice: nobody leans either way (0 answers against 0, 162 without \
-         preference), so no test has anything to work on."
+        texts(&report, "open"),
+        [
+            "oak against elm: nobody leans either way (0 answers against 0, 18 without preference), so no test has anything to \
+          work on."
+        ]
     );
 }
 
@@ -223,13 +233,25 @@ fn equal_counts_stand_in_the_order_of_the_names() {
 #[test]
 fn too_few_people_are_told_what_they_could_have_shown() {
     let said = said(3, |_, _| Left);
-    let found = of(&said, "open", "The body-centred lattice against the simple cubic lattice is");
+    let found = of(&said, "open", "13 of 13 comparisons are not decided: ");
     assert_eq!(found.standing, Standing::TooFew);
+    assert!(
+        found.text.ends_with(
+            "edge collapse against integrated clustering and 10 more. At most 3 participants lean one way or the other, and no \
+             outcome of so few is significant (exact sign-flip test; 6 would have to). The table of tests has their counts."
+        ),
+        "{}",
+        found.text
+    );
+    // A few are told one by one.
+    let answers: Vec<_> = (0..3).map(|person| (person, 0, 1, Left)).collect();
+    let report = report_of_groups("Trees", &groups(&answers), &[], &[]);
     assert_eq!(
-        found.text,
-        "The body-centred lattice against the simple cubic lattice is not decided: 27 answers against 0, none without \
-         preference. 3 participants lean one way or the other, and no outcome of so few is significant (exact sign-flip test, \
-         smallest possible p = 0.25)."
+        texts(&report, "open"),
+        [
+            "oak against elm is not decided: 3 answers against 0, none without preference. 3 participants lean one way or the \
+          other, and no outcome of so few is significant (exact sign-flip test, smallest possible p = 0.25)."
+        ]
     );
 }
 

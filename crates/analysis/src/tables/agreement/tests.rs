@@ -58,5 +58,5 @@ fn of_many_participants_those_who_break_a_rule_are_printed() {
     assert_eq!((table.rows.len(), table.printed()[0].rows.len()), (201, 1));
     assert_eq!(table.printed()[0].shown_rows()[0][0], "8");
     assert!(table.rows[7].last().unwrap().in_full().contains("one-sided"));
-    assert!(table.to_markdown().contains("Of 201 participants, the 1 who break a rule"));
+    assert!(table.to_markdown().contains("Of 201 participants those who break a rule are printed, 1;"));
 }
