@@ -267,6 +267,21 @@ mod tests {
     }
 
     #[test]
+    fn what_fits_no_page_keeps_its_numbers_flush_right() {
+        let columns: Vec<String> = (0..60).map(|i| format!("n{i}")).collect();
+        let mut headings = vec![("id", "Id"), ("why", "Why")];
+        headings.extend(columns.iter().map(|name| (name.as_str(), name.as_str())));
+        let mut table = Table::new("wide", "", &headings);
+        let mut row = vec![Cell::text("a"), Cell::text("words that may be broken into lines")];
+        row.extend((0..60).map(|_| Cell::Number(-1234.5, 2)));
+        table.push(row);
+        let latex = table.to_latex();
+        assert!(latex.contains("{l>{\\raggedright\\arraybackslash}p{0."), "{latex}");
+        assert!(latex.contains(&format!("\\linewidth}}{}}}\n", "r".repeat(60))), "{latex}");
+        assert!(latex.contains("& $-$1234.50 &"), "{latex}");
+    }
+
+    #[test]
     fn html_escapes() {
         let html = awkward().to_html();
         assert!(html.contains("<caption>50 % of a_b &amp; c</caption>"), "{html}");
