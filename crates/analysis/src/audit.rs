@@ -192,24 +192,61 @@ fn odd_respondent(ballots: &[Ballot]) -> Report {
 
 /// See [`separation`].
 fn separated(groups: &[BallotGroup]) -> Report {
-    let judged = |group: &BallotGroup| separation(&Pairs::of(group.items.len(), &group.ballots));
+    let shows_two = |group: &&BallotGroup| group.ballots.iter().any(|b| b.left() != b.right());
+    let compared: Vec<&BallotGroup> = groups.iter().filter(shows_two).collect();
+    if compared.is_empty() {
+        return Report::not_answerable(Probe::Separation, "nothing was compared");
+    }
+    let judged: Vec<(Separation, &str)> =
+        compared.iter().filter_map(|group| Some((worths(group)?, group.name.as_str()))).collect();
+    if judged.is_empty() {
+        let reason = "nobody ever decided between two items, so that there are no worths";
+        return Report::not_answerable(Probe::Separation, reason);
+    }
     let names = |of: Separation| -> Vec<String> {
-        groups.iter().filter(|group| judged(group) == of).map(|group| group.name.clone()).collect()
+        judged
+            .iter()
+            .filter(|(separation, _)| *separation == of)
+            .map(|(_, name)| (*name).to_owned())
+            .collect()
     };
-    let (separated, held) = (names(Separation::Separated), names(Separation::HeldByTies));
-    let finding = match (groups.is_empty(), separated.is_empty()) {
-        (true, _) => return Report::not_answerable(Probe::Separation, "nothing was compared"),
-        (false, true) => Finding::NotFound,
-        (false, false) => Finding::Found,
-    };
-    let evidence = match (separated.is_empty(), held.is_empty()) {
-        (false, _) => {
-            format!("in {} some items never won against the others: worths are penalised", list(&separated))
-        }
-        (true, false) => format!("in {} ties alone keep the worths finite", list(&held)),
-        (true, true) => format!("every item won against the others in all {} groups", groups.len()),
-    };
-    Report { probe: Probe::Separation, finding, p: None, evidence }
+    let (separated, apart) = (names(Separation::Separated), names(Separation::Disconnected));
+    let held = names(Separation::HeldByTies);
+    let mut evidence = Vec::new();
+    if !separated.is_empty() {
+        let items = "some items never won against the others: worths are penalised";
+        evidence.push(format!("{} {items}", within(&separated)));
+    }
+    if !apart.is_empty() {
+        let items = "some items were never compared with the others: there are no worths";
+        evidence.push(format!("{} {items}", within(&apart)));
+    }
+    if !held.is_empty() {
+        evidence.push(format!("{} ties alone keep the worths finite", within(&held)));
+    }
+    match judged.len() {
+        _ if !evidence.is_empty() => {}
+        1 => evidence.push("every item won against the others".into()),
+        all => evidence.push(format!("every item won against the others in all {all} groups")),
+    }
+    match compared.len() - judged.len() {
+        0 => {}
+        1 => evidence.push("in 1 group nobody ever decided".into()),
+        none => evidence.push(format!("in {none} groups nobody ever decided")),
+    }
+    let finding = if separated.is_empty() { Finding::NotFound } else { Finding::Found };
+    Report { probe: Probe::Separation, finding, p: None, evidence: evidence.join("; ") }
+}
+
+/// `in group trees`, `in groups trees, cakes`.
+fn within(groups: &[String]) -> String {
+    format!("in {} {}", if groups.len() == 1 { "group" } else { "groups" }, list(groups))
+}
+
+/// How a group's answers leave its worths; `None` if none of them decides anything.
+fn worths(group: &BallotGroup) -> Option<Separation> {
+    let pairs = Pairs::of(group.items.len(), &group.ballots);
+    (pairs.ties() < pairs.answers()).then(|| separation(&pairs))
 }
 
 #[cfg(test)]

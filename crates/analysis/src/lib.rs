@@ -18,6 +18,7 @@ pub mod audit;
 mod ballots;
 mod claims;
 mod comparison;
+mod digits;
 mod figures;
 mod fraction;
 mod hypotheses;

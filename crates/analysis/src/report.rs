@@ -155,7 +155,7 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Repo
     press.add_tables(&["benchmark_beside"]);
     press.section("published", "Published and recomputed", published::findings(inputs));
     press.add_tables(&["claims"]);
-    let (title, lead) = (study.file.study.title.clone(), lead(&evidence));
+    let (title, lead) = (study.file.study.title.clone(), lead(&evidence, tables));
     press.finish(title, lead)
 }
 
@@ -166,14 +166,21 @@ pub fn report_of_groups(title: &str, groups: &[BallotGroup], tables: &[Table], f
     let evidence = Evidence { study: None, ballots: &ballots, groups, hypotheses: &hypotheses };
     let mut press = Press::new(tables, figures);
     press.preferences(&evidence);
-    press.finish(title.into(), lead(&evidence))
+    press.finish(title.into(), lead(&evidence, tables))
 }
 
-fn lead(evidence: &Evidence<'_>) -> Vec<String> {
+fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
     let (people, questions) = (evidence.participants(), evidence.questions());
     let answers = evidence.ballots.len();
     if answers == 0 {
-        return vec!["No answers were given, so nothing is said about preference.".into()];
+        let controls = tables.iter().find(|table| table.name == "respondents").map_or(0, checks::controls);
+        return vec![match controls {
+            0 => "No answers were given, so nothing is said about preference.".into(),
+            _ => format!(
+                "Only controls were answered, which show an item beside itself: {}. So nothing is said about preference.",
+                counted(controls as usize, "answer")
+            ),
+        }];
     }
     let about = evidence.study.map_or(String::new(), |study| {
         let names: Vec<&str> = study.file.objects.iter().map(|o| o.name.as_str()).collect();
@@ -188,9 +195,9 @@ fn lead(evidence: &Evidence<'_>) -> Vec<String> {
     let missing = (people * questions).saturating_sub(answers);
     if missing > 0 {
         lead[0].push_str(&format!(
-            " {} of the {} possible answers were not given; people count as far as they answered.",
-            missing,
-            people * questions
+            " {missing} of the {} possible answers {} not given; people count as far as they answered.",
+            people * questions,
+            if missing == 1 { "was" } else { "were" }
         ));
     }
     lead.push(
@@ -255,15 +262,17 @@ impl Press {
         }
         let sorted = preference::findings(evidence);
         self.section("holds", "What holds", sorted.holds);
-        self.add_figures(&["worths"]);
         self.section("depends", "What depends on what", sorted.depends);
         self.add_figures(&["object_interaction"]);
         self.section("open", "What does not hold", sorted.open);
+        self.section("worths", "Worths on one scale", Vec::new());
+        self.add_figures(&["worths"]);
+        self.add_tables(&["worths", "models"]);
         self.section("unanswerable", "What cannot be answered here", sides::findings(evidence));
         self.section("bearing", "How much the answers can bear", bearing::findings(evidence));
         self.add_figures(&["respondents"]);
-        self.add_tables(&["tests", "omnibus", "worths", "models", "agreement", "answer_counts"]);
-        let checks = checks::findings(|name| self.tables.iter().find(|table| table.name == name));
+        self.add_tables(&["tests", "omnibus", "agreement", "answer_counts"]);
+        let checks = checks::findings(evidence, |name| self.tables.iter().find(|table| table.name == name));
         self.section("checks", "Checks of the answers", checks);
         self.add_tables(&["audit", "screened", "respondents"]);
     }

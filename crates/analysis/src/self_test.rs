@@ -14,9 +14,9 @@ use crate::audit::{Finding, Probe};
 use crate::table::{Cell, Table};
 use rayon::prelude::*;
 
-/// How often a probe has to speak up on its own defect.
+/// How often a probe has to speak up on its own defect, chance in counting apart.
 pub const OWN_AT_LEAST: f64 = 0.95;
-/// How often it may on any other: its level, and a margin for chance in counting.
+/// How often it may on any other, chance in counting apart: twice its level.
 pub const OTHERS_AT_MOST: f64 = 0.02;
 
 /// How often each probe spoke up on studies with one defect.
@@ -37,13 +37,25 @@ impl Hits {
         self.found[place] as f64 / self.studies as f64
     }
 
-    /// Whether a probe did on these studies what it has to.
+    /// Whether a probe did on these studies what it has to, with [`allowance`] for their number.
     pub fn sound(&self, probe: Probe) -> bool {
+        let (own, others) = probe_limits(self.studies);
         match self.defect.probe() == Some(probe) {
-            true => self.share(probe) >= OWN_AT_LEAST,
-            false => self.share(probe) <= OTHERS_AT_MOST,
+            true => self.share(probe) >= own,
+            false => self.share(probe) <= others,
         }
     }
+}
+
+/// Three standard errors of a share counted in so many studies: by so much every limit here gives way to chance.
+pub fn allowance(share: f64, studies: u64) -> f64 {
+    3.0 * (share * (1.0 - share) / studies as f64).sqrt()
+}
+
+/// How often a probe has to speak up on its own defect, and how often it may elsewhere, in so many studies.
+fn probe_limits(studies: u64) -> (f64, f64) {
+    let own = OWN_AT_LEAST - allowance(OWN_AT_LEAST, studies);
+    (own.max(0.0), (OTHERS_AT_MOST + allowance(OTHERS_AT_MOST, studies)).min(1.0))
 }
 
 /// Plants every defect in so many studies each.
@@ -87,9 +99,11 @@ fn probe_table(hits: &[Hits], studies: u64, seed: u64) -> Table {
         row.push(Cell::text(verdict(Probe::ALL.iter().all(|&probe| of.sound(probe)))));
         table.push(row);
     }
+    let (own, others) = probe_limits(studies);
     table.notes.push(format!(
         "{studies} simulated studies a row, seed {seed}; {}. Passed: at least {OWN_AT_LEAST} on the probe's own defect, at most \
-         {OTHERS_AT_MOST} elsewhere.",
+         {OTHERS_AT_MOST} elsewhere, and three standard errors of counting beyond that: with so many studies {own:.4} and \
+         {others:.4}.",
         defects::DESCRIPTION
     ));
     table
@@ -124,7 +138,7 @@ fn rate_table(rates: &[Rate], seed: u64) -> Table {
     }
     table.notes.push(format!(
         "{} Seed {seed}. Tests at 5 % may exceed it by three standard errors of counting; intervals at 95 % have to cover \
-         between 94 and 96 %. Rows for comparison show what methods do that take answers as independent, or that are known to \
+         between 94 and 96 %, or within three standard errors of counting of 95 % if there are so few studies that these are more. Rows for comparison show what methods do that take answers as independent, or that are known to \
          fall short in small studies.",
         rates::DESCRIPTION
     ));

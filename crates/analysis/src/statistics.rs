@@ -48,6 +48,7 @@ mod golden;
 pub use ballot::{Ballot, Outcome};
 pub use equivalence::{Equivalence, MARGIN, equivalence};
 pub use exchange::{Split, exchange};
+pub(crate) use fit::has_spread;
 pub use fit::{FitError, WorthFit, clustered_covariance, fit};
 pub use friedman::{ChiSquareTest, friedman};
 pub use kendall::{Agreement, Triads, agreement, outcome_counts, triads, zeta, zetas};

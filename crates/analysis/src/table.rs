@@ -4,6 +4,8 @@ mod html;
 mod latex;
 pub(crate) mod markdown;
 
+use crate::digits::{number, signed};
+
 /// One cell.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
@@ -65,16 +67,20 @@ impl Cell {
         value.map_or(Self::Missing, |value| Self::P(value, decimals))
     }
 
-    /// In full, as in CSV: the shortest text that reads back as the same number.
+    /// A sum of terms about as large as 1, or their mean: what is left of them below 1e-12 is their rounding, and zero.
+    pub(crate) fn of_sum(value: Option<f64>, decimals: usize) -> Self {
+        Self::number(value.map(|value| if value.abs() < 1e-12 { 0.0 } else { value }), decimals)
+    }
+
+    /// In full, as in CSV: the shortest text that reads back as the same number. A p too small for a double is no zero
+    /// either: it is the least double that there is, 5e-324.
     pub fn in_full(&self) -> String {
         match self {
             Self::Missing => String::new(),
             Self::Text(text) => text.clone(),
             Self::Count(count) => count.to_string(),
-            Self::Number(value, _) => value.to_string(),
-            // A p of 1e-300 has no need of three hundred zeros.
-            Self::P(value, _) if *value < 1e-5 => format!("{value:e}"),
-            Self::P(value, _) => value.to_string(),
+            Self::Number(value, _) => shortest(*value),
+            Self::P(value, _) => shortest(value.max(f64::from_bits(1))),
         }
     }
 
@@ -86,10 +92,11 @@ impl Cell {
         }
     }
 
-    /// For people: numbers to the column's decimals.
+    /// For people: numbers to the column's decimals, with a true minus sign.
     pub fn shown(&self) -> String {
         match self {
-            Self::Number(value, decimals) => format!("{value:.decimals$}"),
+            Self::Number(value, decimals) => number(*value, *decimals),
+            Self::Count(count) => signed(&count.to_string()),
             Self::P(value, decimals) => {
                 let least = 10.0_f64.powi(-i32::try_from(*decimals).expect("a few decimals"));
                 let shown = format!("{value:.decimals$}");
@@ -101,6 +108,15 @@ impl Cell {
 
     fn is_text(&self) -> bool {
         matches!(self, Self::Text(_))
+    }
+}
+
+/// The shortest text that reads back as the same number; 1e-300 has no need of three hundred zeros, nor zero of a sign.
+fn shortest(value: f64) -> String {
+    match value {
+        0.0 => "0".into(),
+        value if value.abs() < 1e-5 => format!("{value:e}"),
+        value => value.to_string(),
     }
 }
 
@@ -210,7 +226,7 @@ mod tests {
 
 | The id | \\|x\\| | mean |
 |:---|---:|---:|
-| ss\\_bi, \"q\" | -3 | 0.33 |
+| ss\\_bi, \"q\" | \u{2212}3 | 0.33 |
 | a\\|b\\\\c \\*d\\* &lt;e> ~^{} |  | 2.00 |
 
 100 % &amp; more
@@ -222,7 +238,7 @@ mod tests {
     fn latex_escapes() {
         let latex = awkward().to_latex();
         assert!(latex.contains("\\caption{50 \\% of a\\_b \\& c}"), "{latex}");
-        assert!(latex.contains("ss\\_bi, \"q\" & -3 & 0.33 \\\\"), "{latex}");
+        assert!(latex.contains("ss\\_bi, \"q\" & $-$3 & 0.33 \\\\"), "{latex}");
         let row = "a\\textbar{}b\\textbackslash{}c *d* \\textless{}e\\textgreater{} \\textasciitilde{}\\textasciicircum{}\\{\\}";
         assert!(latex.contains(row), "{latex}");
         assert!(latex.contains("\\begin{tabular}{lrr}"), "{latex}");
@@ -251,10 +267,25 @@ mod tests {
     }
 
     #[test]
+    fn what_fits_no_page_keeps_its_numbers_flush_right() {
+        let columns: Vec<String> = (0..60).map(|i| format!("n{i}")).collect();
+        let mut headings = vec![("id", "Id"), ("why", "Why")];
+        headings.extend(columns.iter().map(|name| (name.as_str(), name.as_str())));
+        let mut table = Table::new("wide", "", &headings);
+        let mut row = vec![Cell::text("a"), Cell::text("words that may be broken into lines")];
+        row.extend((0..60).map(|_| Cell::Number(-1234.5, 2)));
+        table.push(row);
+        let latex = table.to_latex();
+        assert!(latex.contains("{l>{\\raggedright\\arraybackslash}p{0."), "{latex}");
+        assert!(latex.contains(&format!("\\linewidth}}{}}}\n", "r".repeat(60))), "{latex}");
+        assert!(latex.contains("& $-$1234.50 &"), "{latex}");
+    }
+
+    #[test]
     fn html_escapes() {
         let html = awkward().to_html();
         assert!(html.contains("<caption>50 % of a_b &amp; c</caption>"), "{html}");
-        assert!(html.contains("<td>ss_bi, &quot;q&quot;</td><td class=\"number\">-3</td>"), "{html}");
+        assert!(html.contains("<td>ss_bi, &quot;q&quot;</td><td class=\"number\">\u{2212}3</td>"), "{html}");
         assert!(html.contains("&lt;e&gt;"), "{html}");
     }
 
@@ -267,12 +298,21 @@ mod tests {
             ("< 0.00001".into(), "0.00001".into(), "1.0000".into())
         );
         let full = [0.04, 2e-5, 7.17e-6, 1e-300, 0.0].map(|p| Cell::P(p, 4).in_full());
-        assert_eq!(full, ["0.04", "0.00002", "7.17e-6", "1e-300", "0e0"]);
+        assert_eq!(full, ["0.04", "0.00002", "7.17e-6", "1e-300", "5e-324"]);
         let mut table = Table::new("p", "", &[("p", "p")]);
         table.push(vec![Cell::P(1e-9, 4)]);
         assert!(table.to_markdown().contains("| &lt; 0.0001 |"), "{}", table.to_markdown());
         assert!(table.to_latex().contains("\\textless{} 0.0001"), "{}", table.to_latex());
         assert!(table.to_html().contains("<td class=\"number\">&lt; 0.0001</td>"), "{}", table.to_html());
+    }
+
+    #[test]
+    fn what_sums_leave_of_zero_is_zero() {
+        // In doubles 0.1 + 0.2 - 0.3 is 5.6e-17.
+        let full = |x: f64| Cell::of_sum(Some(x), 3).in_full();
+        assert_eq!([0.1 + 0.2 - 0.3, -0.0, 1.0 / 27.0 - 0.5].map(full), ["0", "0", "-0.46296296296296297"]);
+        let full = [-2.5e-7, 0.0, 1e5].map(|x| Cell::Number(x, 3).in_full());
+        assert_eq!(full, ["-2.5e-7", "0", "100000"]);
     }
 
     #[test]

@@ -3,10 +3,14 @@
 //! These types mirror the file and nothing else: paths are as written (relative to the file's own folder), numbers
 //! are unchecked. [`crate::Study::load`] turns them into something to work from.
 
-use crate::check::{Checker, ConfigError};
+mod forms;
+mod responses;
+
+pub use forms::{FormsSection, OrderRule, ShownNames, SideRule, TrainingSection};
+pub use responses::{PairSection, ResponsesSection, SynonymsSection};
+
 use crate::method::{Arrangement, Clustering, ConfigurationId, Method};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 
 /// The whole study file.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -371,186 +375,6 @@ pub struct GroupSection {
     pub label: String,
     /// Methods whose comparisons among each other make up the group.
     pub members: Vec<Method>,
-}
-
-/// Which configuration of a comparison is on the left.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SideRule {
-    /// Balanced within a form and over participants.
-    Balanced,
-    /// As the comparisons are listed, for everybody.
-    AsListed,
-}
-
-/// In which order a participant is asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum OrderRule {
-    /// Every question at every place equally often.
-    LatinSquare,
-    /// At random for each participant.
-    Shuffled,
-    /// As listed, for everybody.
-    AsListed,
-}
-
-/// What participants can read off a stimulus.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ShownNames {
-    /// Code names that say nothing.
-    CodeNames,
-    /// The ids of the configurations.
-    ConfigurationIds,
-}
-
-/// How the questions are put to people.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FormsSection {
-    /// What is asked about each pair.
-    pub prompt: String,
-    /// The answers: left, no preference, right.
-    pub choices: [String; 3],
-    /// How many participants are planned.
-    #[serde(deserialize_with = "whole")]
-    pub participants: u32,
-    /// Which configuration of a comparison is on the left.
-    pub sides: SideRule,
-    /// In which order a participant is asked.
-    pub order: OrderRule,
-    /// What participants can read off a stimulus.
-    pub names: ShownNames,
-    /// Pairs of one configuration with itself in a form.
-    #[serde(deserialize_with = "whole")]
-    pub controls: u32,
-    /// Comparisons asked twice in a form, the second time with the sides swapped.
-    #[serde(deserialize_with = "whole")]
-    pub repeats: u32,
-    /// Most questions that one participant is asked, training left out.
-    #[serde(deserialize_with = "whole")]
-    pub max_questions: u32,
-    /// Pairs shown first, to learn how it works.
-    #[serde(default)]
-    pub training: Vec<TrainingSection>,
-    /// What participants agree to before they begin.
-    #[serde(default = "consent")]
-    pub consent: String,
-    /// What they are told to do.
-    #[serde(default = "instructions")]
-    pub instructions: String,
-    /// Whole-number enlargement of the pairs by the page, nearest neighbour.
-    #[serde(default = "once", deserialize_with = "whole")]
-    pub page_scale: u32,
-    /// A code or an `https://` address that participants get from the server when their last answer is saved.
-    pub completion: Option<String>,
-}
-
-fn consent() -> String {
-    "You will see pairs of moving pictures of computer-generated surfaces and say which of the two you like better. Your answers and the time they took are kept. Your name \
-     is not asked. Taking part is voluntary, and you can stop at any time by closing this page."
-        .into()
-}
-
-fn instructions() -> String {
-    "Look at both surfaces while they turn, then say which of the two you like better. There are no right or wrong answers."
-        .into()
-}
-
-fn once() -> u32 {
-    1
-}
-
-/// A pair to learn with.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TrainingSection {
-    /// Shown on the left.
-    pub left: ConfigurationId,
-    /// Shown on the right.
-    pub right: ConfigurationId,
-}
-
-/// The answers to analyse, and what their file does not say itself.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ResponsesSection {
-    /// The file: the study's own table (one row a respondent, one column a question, cells `L`, `NP` or `R`), the long
-    /// format, or an export of a questionnaire.
-    pub file: Option<String>,
-    /// Its format; otherwise it is detected.
-    pub format: Option<String>,
-    /// `,`, `;`, `|` or `tab`; otherwise it is detected.
-    pub separator: Option<String>,
-    /// Ids of the questions in the order of their columns; otherwise the study's order.
-    pub questions: Option<Vec<String>>,
-    /// Columns of the questions, from 1.
-    pub question_columns: Option<Vec<usize>>,
-    /// Column of the first question, from 1; the others follow it.
-    pub first_question_column: Option<usize>,
-    /// Column of the participant's id, from 1.
-    pub participant_column: Option<usize>,
-    /// What the file calls the three answers, beside the built-in words.
-    pub synonyms: Option<SynonymsSection>,
-    /// `refuse` (default) or `leave-out`: what to do with cells that are no answers.
-    pub unknown: Option<String>,
-    /// `refuse` (default), `first` or `last`: which of several answers to the same counts.
-    pub duplicates: Option<String>,
-    /// How long what a question shows lasts, in seconds, above 0: nobody has seen it in less. A study's turntables say it too.
-    pub shown_s: Option<f64>,
-    /// The questions of answers without a study; a study has its comparisons.
-    #[serde(default)]
-    pub pairs: Vec<PairSection>,
-}
-
-impl ResponsesSection {
-    /// Reads a file with the keys of this section alone, for answers whose study does not declare them or that have none.
-    ///
-    /// # Errors
-    /// If it cannot be read, is not TOML, or has a key that is not one of these; `file` is not.
-    pub fn load(path: &Path) -> Result<Self, ConfigError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| ConfigError::Read { file: path.into(), source })?;
-        let section: Self = crate::study::parse_toml(&text, path)?;
-        match &section.file {
-            None => Ok(section),
-            Some(file) => {
-                let limit = "a mapping says how to read, not what: name the answers on the command line";
-                Checker { file: path }.refuse("file", file, limit)
-            }
-        }
-    }
-}
-
-/// Words for the three answers.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct SynonymsSection {
-    /// Left.
-    pub left: Vec<String>,
-    /// No preference.
-    pub none: Vec<String>,
-    /// Right.
-    pub right: Vec<String>,
-}
-
-/// A question without a study: what is shown on which side.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PairSection {
-    /// The question's id, unique.
-    pub question: String,
-    /// Shown on the left.
-    pub left: String,
-    /// Shown on the right.
-    pub right: String,
-    /// What both are of.
-    #[serde(default)]
-    pub object: String,
-    /// The group of things that are compared with one another.
-    #[serde(default)]
-    pub group: String,
 }
 
 /// Published numbers to compare with.

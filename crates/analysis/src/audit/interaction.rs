@@ -2,6 +2,7 @@
 
 use super::{ALARM, Audited, Probe, Report, list};
 use crate::ballots::BallotGroup;
+use crate::digits::{counted, number};
 use crate::statistics::{Split, exchange, holm};
 use std::collections::BTreeSet;
 
@@ -33,11 +34,13 @@ pub(super) fn probe(audited: &Audited<'_>, suspects: &BTreeSet<usize>) -> Report
     order.sort_by(|&a, &b| adjusted[a].total_cmp(&adjusted[b]));
     let name = |&i: &usize| {
         let Comparison { name, means: [own, others], .. } = &all[i];
-        format!("{name}: mean {own:.2} against {others:.2}")
+        format!("{name}: mean {} against {}", number(*own, 2), number(*others, 2))
     };
     let found: Vec<String> = order.iter().filter(|&&i| adjusted[i] < ALARM).map(name).collect();
     let evidence = match found.is_empty() {
-        true => format!("{} comparisons; the largest difference is {}", all.len(), name(&order[0])),
+        true => {
+            format!("{}; the largest difference is {}", counted(all.len(), "comparison"), name(&order[0]))
+        }
         false => list(&found),
     };
     Report::tested(Probe::ObjectInteraction, adjusted[order[0]], evidence)

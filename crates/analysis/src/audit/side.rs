@@ -2,6 +2,7 @@
 
 use super::stimuli::{Stimuli, for_lower};
 use super::{Audited, Probe, Report};
+use crate::digits::counted;
 use crate::statistics::contrast::ContrastTest;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::{BTreeMap, BTreeSet};
@@ -20,7 +21,12 @@ pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSe
     let mut p = Vec::new();
     if let Some((pairs, mean, of)) = of_pairs {
         let towards = if mean >= 0.0 { "left" } else { "right" };
-        evidence.push(format!("{pairs} pairs seen in both orders pull {:.3} to the {towards}", mean.abs()));
+        evidence.push(format!(
+            "{} seen in both orders {} {:.3} to the {towards}",
+            counted(pairs, "pair"),
+            if pairs == 1 { "pulls" } else { "pull" },
+            mean.abs()
+        ));
         p.push(of);
     }
     if let (Some([left, none, right]), false) = (controls.counts, controls.participants() == 0) {

@@ -5,6 +5,7 @@
 
 use super::stimuli::{Stimuli, Stimulus};
 use super::{ALARM, Audited, Probe, Report, list};
+use crate::digits::number;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::BTreeSet;
 
@@ -45,11 +46,8 @@ pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli) -> (Report, BTreeS
     let found: Vec<&Stimulus> = all.iter().filter(|(p, _)| *p < ALARM).map(|(_, s)| *s).collect();
     let name = |s: &&Stimulus| {
         let questions: Vec<String> = s.questions.iter().map(|&q| audited.questions[q].clone()).collect();
-        let [one, other] = s.orders.map(|order| order.mean());
-        format!(
-            "{}: mean {one:.2} for an item on the left, {other:.2} for it on the right",
-            questions.join("/")
-        )
+        let [one, other] = s.orders.map(|order| number(order.mean(), 2));
+        format!("{}: mean {one} for an item on the left, {other} for it on the right", questions.join("/"))
     };
     let evidence = match found.is_empty() {
         true => format!("the two orders of {} pairs agree", judged.len()),

@@ -90,3 +90,25 @@ fn nothing_was_answered() {
     };
     assert!(audit(&audited).iter().all(|r| r.finding == Finding::NotAnswerable));
 }
+
+#[test]
+fn without_a_decision_there_are_no_worths_to_be_penalised() {
+    let group = |name: &str, outcomes: &[Outcome]| BallotGroup {
+        name: name.into(),
+        items: ["a", "b"].map(String::from).into(),
+        ballots: outcomes.iter().enumerate().map(|(i, &o)| Ballot::new(i, 0, [0, 1], o)).collect(),
+    };
+    let (none, both) = (group("none", &[Outcome::Tie; 3]), group("both", &[Outcome::Left, Outcome::Right]));
+    let found = separated(std::slice::from_ref(&none));
+    assert_eq!(found.finding, Finding::NotAnswerable);
+    assert!(found.evidence.contains("nobody ever decided between two items"), "{found:?}");
+    let found = separated(std::slice::from_ref(&both));
+    let found = (found.finding, found.evidence);
+    assert_eq!(found, (Finding::NotFound, "every item won against the others".into()));
+    let found = separated(&[none, both, group("one", &[Outcome::Left])]);
+    assert_eq!(found.finding, Finding::Found);
+    assert_eq!(
+        found.evidence,
+        "in group one some items never won against the others: worths are penalised; in 1 group nobody ever decided"
+    );
+}

@@ -44,9 +44,9 @@ pub(super) fn per_question(study: &Study, tally: &Tally) -> Draft {
         }
     }
     let caption = format!(
-        "Answers of {} respondents to each question, centred on no preference; the configurations stand on the side \
+        "Answers of {} to each question, centred on no preference; the configurations stand on the side \
          where they were shown.",
-        tally.respondents
+        crate::digits::counted(tally.respondents, "respondent")
     );
     Draft { name: "answers", caption, canvas }
 }

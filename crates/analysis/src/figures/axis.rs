@@ -1,5 +1,7 @@
 //! Value axes: where a value falls, and which values are marked.
 
+use crate::digits::MINUS;
+
 /// Steps that an axis is cut into, at most; a last one begun counts as a whole.
 const MOST_STEPS: f64 = 7.0;
 
@@ -115,12 +117,12 @@ fn round(value: f64, decimals: usize) -> f64 {
     (value * unit).round() / unit
 }
 
-/// A number with so many decimals, thousands set apart by commas.
+/// A number with so many decimals and a true minus sign, thousands set apart by commas.
 pub(super) fn number(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
+    let text = crate::digits::number(value, decimals);
     let (whole, rest) =
         text.split_once('.').map_or((text.as_str(), String::new()), |(w, r)| (w, format!(".{r}")));
-    let digits = whole.trim_start_matches('-');
+    let digits = whole.trim_start_matches(MINUS);
     let mut out = String::new();
     for (i, digit) in digits.chars().enumerate() {
         if i > 0 && (digits.len() - i) % 3 == 0 {
@@ -128,7 +130,7 @@ pub(super) fn number(value: f64, decimals: usize) -> String {
         }
         out.push(digit);
     }
-    let sign = if whole.starts_with('-') { "-" } else { "" };
+    let sign = &whole[..whole.len() - digits.len()];
     format!("{sign}{out}{rest}")
 }
 
@@ -157,7 +159,7 @@ mod tests {
         assert_eq!(Axis::up_to(10.0).ticks, [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
         assert_eq!(Axis::logarithmic(4.0).labels(), ["1", "1.5", "2", "3", "5"]);
         assert_eq!(Axis::logarithmic(2000.0).labels(), ["1", "10", "100", "1,000", "10,000"]);
-        assert_eq!(Axis::spanning(-0.42, 1.02).labels(), ["-0.5", "0.0", "0.5", "1.0", "1.5"]);
+        assert_eq!(Axis::spanning(-0.42, 1.02).labels(), ["\u{2212}0.5", "0.0", "0.5", "1.0", "1.5"]);
         assert_eq!(Axis::spanning(0.0, 0.0).ticks.len(), 2);
         assert_eq!(Axis::decades(0.03, 450.0).labels(), ["0.01", "0.1", "1", "10", "100", "1,000"]);
         assert_eq!(Axis::decades(0.7, 4.1).labels(), ["0.5", "1", "2", "5"]);

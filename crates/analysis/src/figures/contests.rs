@@ -5,7 +5,6 @@ use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::{Draft, canvas_with_legend};
-use crate::interval::Interval;
 use crate::statistics::Ballot;
 use crate::statistics::contrast::{Contrast, ContrastTest, Level, Over, contrasts};
 use design::Study;
@@ -43,11 +42,10 @@ fn block(study: &Study, ballots: &[Ballot], contrast: &Contrast) -> Option<Block
             own.filter_map(|b| Some((b.participant(), *contrast.weights.get(&b.question())?, b.outcome())));
         let test = ContrastTest::of(weighted);
         let [first, ties, second] = test.counts?;
-        let cut = |i: Interval| Interval { low: i.low.max(-1.0), high: i.high.min(1.0) };
         (test.participants() > 0).then(|| Row {
             label: object.map_or("all objects".into(), |o| study.file.objects[o].name.clone()),
             value: Some(test.mean),
-            interval: test.interval.map(cut),
+            interval: test.interval.map(|i| i.cut(-1.0, 1.0)),
             mark: object.map_or(Mark::nth(0, false), |o| Mark::nth(o, true)),
             remark: format!("{first} : {ties} : {second}"),
         })

@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::canvas::BLACK;
 use super::legend::Swatch;
 use super::marks::Mark;
-use super::scatter::{Corner, Scatter};
+use super::scatter::Scatter;
 use super::{Draft, WIDTH, canvas_with_legend};
 use crate::fraction::Fraction;
 use crate::preference::group_factors;
@@ -53,11 +53,9 @@ pub(super) fn draft(study: &Study, tally: &Tally) -> Option<Draft> {
             })
             .collect();
         own.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (n, (factor, share, name)) in own.into_iter().enumerate() {
+        for (factor, share, name) in own {
             marks.push(((factor, share), Mark::nth(i, true)));
-            // Neighbours on a line are named on its two sides.
-            let corner = if n % 2 == 0 { Corner::LowerRight } else { Corner::UpperLeft };
-            names.push(((factor, share), name, corner));
+            names.push(((factor, share), name));
         }
     }
     let panel = Scatter {

@@ -12,11 +12,41 @@ const TOP: f64 = 34.0;
 const BOTTOM: f64 = 44.0;
 const EM: f64 = 11.0;
 
-/// Where a name stands.
+/// A rectangle in canvas units.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Corner {
-    LowerRight,
-    UpperLeft,
+struct Room {
+    left: f64,
+    right: f64,
+    top: f64,
+    bottom: f64,
+}
+
+impl Room {
+    fn around((x, y): (f64, f64), half: f64) -> Self {
+        Self { left: x - half, right: x + half, top: y - half, bottom: y + half }
+    }
+
+    fn overlaps(self, other: Self) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
+    }
+
+    /// Whether the segment passes through: the share of it that lies between both pairs of sides is not empty.
+    fn is_crossed(self, from: (f64, f64), to: (f64, f64)) -> bool {
+        let between = |from: f64, to: f64, low: f64, high: f64| match to - from {
+            0.0 if low < from && from < high => (0.0, 1.0),
+            0.0 => (1.0, 0.0),
+            run => {
+                let (a, b) = ((low - from) / run, (high - from) / run);
+                (a.min(b).max(0.0), a.max(b).min(1.0))
+            }
+        };
+        let across = between(from.0, to.0, self.left, self.right);
+        let down = between(from.1, to.1, self.top, self.bottom);
+        across.0.max(down.0) < across.1.min(down.1)
+    }
 }
 
 /// A panel.
@@ -30,8 +60,8 @@ pub(super) struct Scatter {
     /// A dashed line at this height.
     pub(super) dashed: Option<f64>,
     pub(super) marks: Vec<((f64, f64), Mark)>,
-    /// Names of points: below on the right, or above on the left.
-    pub(super) names: Vec<((f64, f64), String, Corner)>,
+    /// Names of points, each where it is clear of lines, marks and the names before it.
+    pub(super) names: Vec<((f64, f64), String)>,
 }
 
 impl Scatter {
@@ -58,12 +88,57 @@ impl Scatter {
         for (at, mark) in &self.marks {
             mark.draw(canvas, place(*at));
         }
-        for (at, name, corner) in &self.names {
+        self.write_names(canvas, &place);
+    }
+
+    fn write_names(&self, canvas: &mut Canvas, place: &dyn Fn((f64, f64)) -> (f64, f64)) {
+        let lines: Vec<Vec<(f64, f64)>> =
+            self.lines.iter().map(|(_, line)| line.iter().map(|&at| place(at)).collect()).collect();
+        let mut taken: Vec<Room> =
+            self.marks.iter().map(|(at, _)| Room::around(place(*at), 0.45 * EM)).collect();
+        for (at, name) in &self.names {
             let (x, y) = place(*at);
-            match corner {
-                Corner::LowerRight => canvas.text(name, (x + 8.0, y + 1.1 * EM), EM, Align::Start),
-                Corner::UpperLeft => canvas.text(name, (x - 8.0, y - 0.4 * EM), EM, Align::End),
-            }
+            let width = 0.62 * EM * name.chars().count() as f64;
+            let room = |(start, baseline): (f64, f64)| Room {
+                left: start,
+                right: start + width,
+                top: baseline - 0.8 * EM,
+                bottom: baseline + 0.25 * EM,
+            };
+            let clear = |of: &Room| {
+                let crossed = |line: &Vec<(f64, f64)>| line.windows(2).any(|s| of.is_crossed(s[0], s[1]));
+                !taken.iter().any(|other| of.overlaps(*other)) && !lines.iter().any(crossed)
+            };
+            // Below on the right, above on the left, then the same farther off.
+            let places = [1.1, 2.3].into_iter().flat_map(|down| {
+                [
+                    ((x + 8.0, y + down * EM), Align::Start),
+                    ((x - 8.0 - width, y + (0.7 - down) * EM), Align::End),
+                ]
+            });
+            let places: Vec<((f64, f64), Align)> = places.collect();
+            let (start, align) = *places.iter().find(|(at, _)| clear(&room(*at))).unwrap_or(&places[0]);
+            taken.push(room(start));
+            let x = if align == Align::End { start.0 + width } else { start.0 };
+            canvas.text(name, (x, start.1), EM, align);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_room_knows_what_passes_through() {
+        let room = Room { left: 10.0, right: 20.0, top: 10.0, bottom: 20.0 };
+        assert!(room.is_crossed((0.0, 0.0), (30.0, 30.0)) && room.is_crossed((15.0, 0.0), (15.0, 12.0)));
+        assert!(
+            !room.is_crossed((0.0, 15.0), (30.0, 30.0 + 15.0)) && !room.is_crossed((15.0, 0.0), (15.0, 9.0))
+        );
+        assert!(!room.is_crossed((0.0, 25.0), (30.0, 25.0)) && room.is_crossed((0.0, 15.0), (30.0, 15.0)));
+        assert!(
+            room.overlaps(Room::around((21.0, 15.0), 2.0)) && !room.overlaps(Room::around((23.0, 15.0), 2.0))
+        );
     }
 }

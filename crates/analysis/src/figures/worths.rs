@@ -6,6 +6,7 @@ use super::legend::Swatch;
 use super::marks::Mark;
 use super::{Draft, canvas_with_legend};
 use crate::ballots::BallotGroup;
+use crate::digits::number;
 use crate::statistics::{Model, Pairs, Participants, clustered_covariance, fit};
 
 pub(super) fn draft(groups: &[BallotGroup]) -> Option<Draft> {
@@ -35,12 +36,14 @@ fn block(group: &BallotGroup) -> Option<Block> {
     let covariance = clustered_covariance(&fitted, &participants);
     let row = |(item, name): (usize, &String)| {
         let interval = covariance.as_ref().filter(|_| item > 0);
-        let interval = interval.map(|c| fitted.clustered_interval(c, participants.number(), item, 0));
+        let interval = interval.and_then(|c| fitted.clustered_error(c, participants.number(), item));
+        let interval = interval.map(|(_, interval)| interval);
+        let worth = number(fitted.log_worths[item], 2);
         let remark = match (item, fitted.penalised, interval) {
             (0, ..) => "reference".into(),
-            (_, true, _) => format!("{:.2}, penalised", fitted.log_worths[item]),
-            (_, _, Some(i)) => format!("{:.2} [{:.2}, {:.2}]", fitted.log_worths[item], i.low, i.high),
-            _ => format!("{:.2}", fitted.log_worths[item]),
+            (_, true, _) => format!("{worth}, penalised"),
+            (_, _, Some(i)) => format!("{worth} [{}, {}]", number(i.low, 2), number(i.high, 2)),
+            _ => worth,
         };
         Row {
             label: name.clone(),

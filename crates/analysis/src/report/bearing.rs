@@ -1,8 +1,8 @@
 //! How much the answers can bear: agreement, consistency, odd respondents, single questions.
 
 use super::finding::{Finding, Standing};
-use super::words::{capital, counted, list, number, p, percent};
-use super::{Block, Evidence};
+use super::words::{counted, list, number, p, percent};
+use super::{Block, Evidence, names};
 use crate::hypotheses::{ALPHA, Conclusion, Hypothesis, Subject};
 use crate::statistics::{
     Ballot, Metric, Screening, Triads, agreement, alpha, outcome_counts, screening, sign_test, triads,
@@ -26,14 +26,17 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
 fn unanimity(evidence: &Evidence<'_>) -> Finding {
     let counts: Vec<[u64; 3]> =
         outcome_counts(evidence.ballots).into_iter().filter(|c| c.iter().sum::<u64>() > 0).collect();
-    let of = |metric| alpha(&counts, metric).map_or("no value".into(), |a| number(a, 2));
-    let mut text = format!(
-        "Krippendorff's alpha over {} is {} (nominal) and {} (left, none, right in order); 1 is full agreement, 0 what \
-         chance gives.",
-        counted(counts.len(), "question"),
-        of(Metric::Nominal),
-        of(Metric::Ordinal)
-    );
+    let of = |metric| alpha(&counts, metric).map(|a| number(a, 2));
+    let over = counted(counts.len(), "question");
+    let mut text = match (of(Metric::Nominal), of(Metric::Ordinal)) {
+        (Some(nominal), Some(ordinal)) => format!(
+            "Krippendorff's alpha over {over} is {nominal} (nominal) and {ordinal} (left, none, right in order); 1 is full \
+             agreement, 0 what chance gives.",
+        ),
+        _ => format!(
+            "Krippendorff's alpha over {over} has no value: nobody answered what another did, or all answers are the same.",
+        ),
+    };
     let kendall = agreement(&counts).and_then(|found| found.test.map(|test| (found.u, test)));
     let Some((u, test)) = kendall else { return Finding::new(Standing::Noted, text) };
     let verdict = match test.p <= ALPHA {
@@ -41,9 +44,9 @@ fn unanimity(evidence: &Evidence<'_>) -> Finding {
         false => "That people agree more than chance would have it is not shown",
     };
     text.push_str(&format!(
-        " {verdict}: Kendall's u = {}, chi-square {:.1} on {:.1} degrees of freedom, {}.",
+        " {verdict}: Kendall's u = {}, chi-square {} on {:.1} degrees of freedom, {}.",
         number(u, 2),
-        test.statistic,
+        number(test.statistic, 1),
         test.degrees,
         p(test.p)
     ));
@@ -80,13 +83,13 @@ fn consistency(evidence: &Evidence<'_>) -> Option<Finding> {
         weak => format!("{weak} more are"),
     };
     let cycles = if sum.strict_cycles == 1 { "1 goes".into() } else { format!("{} go", sum.strict_cycles) };
+    let decided = if sum.decided == 1 { "1 was".into() } else { format!("{} were", sum.decided) };
     let text = format!(
-        "{verdict}: of {} of three items, {} were decided throughout, and {cycles} in a circle; answers by chance would \
+        "{verdict}: of {} of three items, {decided} decided throughout, and {cycles} in a circle; answers by chance would \
          give {} (a quarter; one-sided binomial test, {}). {weak} two wins closed by no preference, which need not be a \
          contradiction.",
         counted(sum.all as usize, "triad"),
-        sum.decided,
-        number(sum.decided as f64 / 4.0, 1),
+        number(sum.cycles_by_chance(), 1),
         p(chance)
     );
     Some(Finding::new(standing, text))
@@ -95,13 +98,6 @@ fn consistency(evidence: &Evidence<'_>) -> Option<Finding> {
 /// What is tested of a study or its groups; single questions are exploratory.
 fn declared(hypotheses: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
     hypotheses.iter().filter(|h| !matches!(h.subject, Subject::Question(_)))
-}
-
-fn named(h: &Hypothesis) -> String {
-    match &h.subject {
-        Subject::Items { group, .. } => format!("{} in {group}", h.contrast),
-        _ => format!("{} {}", h.contrast, h.scope),
-    }
 }
 
 fn differs(h: &Hypothesis) -> bool {
@@ -114,21 +110,27 @@ fn one_by_one(evidence: &Evidence<'_>) -> Option<Finding> {
     let worst: Vec<(&Hypothesis, f64)> =
         holding.iter().filter_map(|h| h.test.leave_one_out().map(|(_, worst)| (*h, worst))).collect();
     let largest = worst.iter().map(|(_, p)| *p).max_by(f64::total_cmp)?;
-    let fragile: Vec<String> = worst.iter().filter(|(_, p)| *p > ALPHA).map(|(h, _)| named(h)).collect();
+    let fragile: Vec<String> =
+        worst.iter().filter(|(_, p)| *p > ALPHA).map(|(h, _)| names::hypothesis(evidence, h)).collect();
     let tests = counted(worst.len(), "result");
     Some(match fragile.is_empty() {
         true => Finding::new(
             Standing::Holds,
             format!(
-                "No result hangs on one person: with any one participant left out, each of the {tests} that hold keeps \
-                 p at or below 0.05 in its own sign-flip test (largest {}).",
+                "No result hangs on one person: with any one participant left out, {} p at or below 0.05 in its own \
+                 sign-flip test (largest {}).",
+                match worst.len() {
+                    1 => "the one result that holds keeps".into(),
+                    _ => format!("each of the {tests} that hold keeps"),
+                },
                 p(largest)
             ),
         ),
         false => Finding::new(
             Standing::Open,
             format!(
-                "{} of the {tests} that hold would not without some one participant (sign-flip test, largest {}): {}.",
+                "Of the {tests} that {}, {} would not without some one participant (sign-flip test, largest {}): {}.",
+                if worst.len() == 1 { "holds" } else { "hold" },
                 fragile.len(),
                 p(largest),
                 list(&fragile)
@@ -204,10 +206,10 @@ fn without(evidence: &Evidence<'_>, left_out: &[usize]) -> Finding {
         .iter()
         .filter(|(with, without)| differs(with) != differs(without))
         .map(|(with, without)| {
-            let becomes = if differs(without) { "holds then" } else { "holds no longer" };
+            let becomes = if differs(without) { "then holds" } else { "no longer holds" };
             format!(
                 "{} {becomes} (corrected {}, before {})",
-                named(with),
+                names::hypothesis(evidence, with),
                 p(without.adjusted),
                 p(with.adjusted)
             )
@@ -243,11 +245,14 @@ fn single_questions(evidence: &Evidence<'_>) -> Option<Finding> {
     };
     (asked > 0).then(|| {
         let text = format!(
-            "Of {}, {} show a preference by Benjamini and Hochberg's correction of the sign tests{names}. {} would without \
+            "Of {}, {} a preference by Benjamini and Hochberg's correction of the sign tests{names}. {} would without \
              correction. These are exploratory.",
             counted(asked, "single question"),
-            holding.len(),
-            capital(&all.iter().filter(bare).count().to_string())
+            match holding.len() {
+                1 => "1 shows".into(),
+                n => format!("{n} show"),
+            },
+            all.iter().filter(bare).count()
         );
         Finding::new(Standing::Noted, text)
     })

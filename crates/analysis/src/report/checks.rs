@@ -1,22 +1,23 @@
 //! Checks of the answers: who broke a rule of screening and what the tests are without them, and what probes found. Said from
 //! the tables, which hold both.
 
-use super::Block;
 use super::finding::{Finding, Standing};
 use super::words::{counted, list, p as p_value};
+use super::{Block, Evidence, names};
 use crate::audit::Finding as Probed;
 use crate::statistics::Flag;
 use crate::table::{Cell, Table};
+use std::collections::BTreeMap;
 
 /// Tests named at most.
 const NAMED: usize = 6;
 
-pub(super) fn findings<'t>(table: impl Fn(&str) -> Option<&'t Table>) -> Vec<Block> {
+pub(super) fn findings<'t>(evidence: &Evidence<'_>, table: impl Fn(&str) -> Option<&'t Table>) -> Vec<Block> {
     let mut found = Vec::new();
     if let Some(respondents) = table("respondents") {
         found.push(screened(respondents));
     }
-    found.extend(table("screened").map(without).unwrap_or_default());
+    found.extend(table("screened").map(|screened| without(evidence, screened)).unwrap_or_default());
     found.extend(table("audit").map(probed).unwrap_or_default());
     found.into_iter().map(Block::Finding).collect()
 }
@@ -31,6 +32,11 @@ fn sum(table: &Table, name: &str) -> u64 {
     column(table, name).filter_map(|cell| cell.in_full().parse::<u64>().ok()).sum()
 }
 
+/// Answers to controls.
+pub(super) fn controls(respondents: &Table) -> u64 {
+    sum(respondents, "controls")
+}
+
 /// How many broke which rule, and what was there to judge.
 fn screened(respondents: &Table) -> Finding {
     let people = respondents.rows.len();
@@ -38,7 +44,7 @@ fn screened(respondents: &Table) -> Finding {
     let broken = flags.iter().filter(|flags| !flags.is_empty()).count();
     let rule = |flag: &Flag| {
         let own = flags.iter().filter(|flags| flags.split(' ').any(|code| code == flag.code())).count();
-        (own > 0).then(|| format!("{} by {own}", flag.code()))
+        (own > 0).then(|| format!("{own} by {}", broken_by(*flag)))
     };
     let rules: Vec<String> = Flag::ALL.iter().filter_map(rule).collect();
     let kinds = [("controls", "control"), ("repeats", "repeat"), ("timed", "timed answer")];
@@ -68,22 +74,48 @@ fn screened(respondents: &Table) -> Finding {
     Finding::new(Standing::Noted, text)
 }
 
+/// How a rule is broken.
+fn broken_by(flag: Flag) -> &'static str {
+    match flag {
+        Flag::OneSided => "choosing one side throughout",
+        Flag::Controls => "deciding between equals",
+        Flag::Repeats => "choosing otherwise when asked again",
+        Flag::Time => "answering faster than anybody can look",
+        Flag::Odd => "answering against the others",
+    }
+}
+
 /// Rule by rule, the tests that come out otherwise without those who broke it.
-fn without(screened: &Table) -> Vec<Finding> {
-    let names = ["rule", "left_out", "respondents", "contrast", "scope", "conclusion", "conclusion_without"];
+fn without(evidence: &Evidence<'_>, screened: &Table) -> Vec<Finding> {
+    let in_words: BTreeMap<[&str; 3], String> = evidence
+        .hypotheses
+        .iter()
+        .map(|h| ([&*h.family, &*h.contrast, &*h.scope], names::hypothesis(evidence, h)))
+        .collect();
+    let keys = [
+        "rule",
+        "left_out",
+        "respondents",
+        "family",
+        "contrast",
+        "scope",
+        "conclusion",
+        "conclusion_without",
+    ];
     let columns: Vec<Vec<String>> =
-        names.iter().map(|name| column(screened, name).map(Cell::in_full).collect()).collect();
+        keys.iter().map(|name| column(screened, name).map(Cell::in_full).collect()).collect();
     let rows: Vec<usize> = (0..screened.rows.len()).collect();
     let of_rule = |rows: &[usize]| {
         let [rule, left_out, people] = [0, 1, 2].map(|c| columns[c][rows[0]].as_str());
-        let changed: Vec<usize> = rows.iter().copied().filter(|&r| columns[5][r] != columns[6][r]).collect();
+        let changed: Vec<usize> = rows.iter().copied().filter(|&r| columns[6][r] != columns[7][r]).collect();
         let tests = counted(rows.len(), "declared test");
         let outcome = match changed.len() {
             0 => format!("none of {tests} comes out otherwise"),
             n => {
                 let name = |&r: &usize| {
-                    let [contrast, scope, with, without] = [3, 4, 5, 6].map(|c| &columns[c][r]);
-                    format!("{contrast} {scope} ({with}, then {without})")
+                    let [family, contrast, scope, with, without] = [3, 4, 5, 6, 7].map(|c| &*columns[c][r]);
+                    let tested = in_words.get(&[family, contrast, scope]).map_or(contrast, String::as_str);
+                    format!("{tested} ({with}, then {without})")
                 };
                 let mut named: Vec<String> = changed.iter().take(NAMED).map(name).collect();
                 if n > NAMED {
@@ -93,10 +125,11 @@ fn without(screened: &Table) -> Vec<Finding> {
                 format!("{n} of {tests} {comes} out otherwise: {}", list(&named))
             }
         };
-        let noun = if left_out == "1" { "participant" } else { "participants" };
+        let noun = if left_out == "1" { "Participant" } else { "Participants" };
         let people = people.replace(' ', ", ").replace(", and, ", " and ").replace(", more", " more");
-        let rule = if rule == "any" { "Any rule".into() } else { format!("Rule {rule}") };
-        Finding::new(Standing::Noted, format!("{rule}, broken by {noun} {people}: without them, {outcome}."))
+        let own = Flag::ALL.into_iter().find(|flag| flag.code() == rule);
+        let rule = own.map_or("some rule".into(), |flag| format!("a rule by {}", broken_by(flag)));
+        Finding::new(Standing::Noted, format!("{noun} {people} broke {rule}: without them, {outcome}."))
     };
     rows.chunk_by(|&a, &b| columns[0][a] == columns[0][b]).map(of_rule).collect()
 }

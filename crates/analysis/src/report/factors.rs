@@ -1,7 +1,7 @@
 //! What the published sums of preference factors hide.
 
 use super::finding::{Finding, Standing};
-use super::words::{against, capital, list, number};
+use super::words::{against, capital, counted, list, number};
 use super::{Block, Evidence, names};
 use crate::fraction::Fraction;
 use crate::hypotheses::Subject;
@@ -68,10 +68,10 @@ fn ties_alone(study: &Study, factors: &[GroupFactor]) -> Option<String> {
         let (Some(arrangement), Some(first)) = (shared(study, g), own.first()) else { continue };
         let wins: u64 = own.iter().map(|f| f.share.wins).sum();
         parts.push(format!(
-            "{wins}/{} on {} ({} ties)",
+            "{wins}/{} on {} ({})",
             first.share.answers,
             names::level(Level::Arrangement(arrangement)),
-            first.share.ties
+            counted(first.share.ties as usize, "tie")
         ));
     }
     (parts.len() > 1).then(|| {

@@ -1,7 +1,7 @@
 //! A statement with its verdict, and the sentences of tests of preference.
 
 use super::words::{against, capital, counted, interval, number, p};
-use crate::hypotheses::{ALPHA, Conclusion, Hypothesis};
+use crate::hypotheses::{ALPHA, Conclusion, Hypothesis, Subject};
 use crate::interval::{Interval, unanimous};
 use crate::statistics::MARGIN;
 use crate::statistics::contrast::ContrastTest;
@@ -58,11 +58,16 @@ impl Finding {
     pub(super) fn of_preference(hypothesis: &Hypothesis, first: &str, second: &str, scope: &str) -> Self {
         let test = &hypothesis.test;
         let counts = test.counts.unwrap_or_default();
+        // A name that somebody gave stays as it is, at the head of a sentence too.
+        let opening = |name: &str| match hypothesis.subject {
+            Subject::Items { .. } => name.to_owned(),
+            _ => capital(name),
+        };
         let leaning = test.leaning();
         if leaning == 0 {
             let text = format!(
                 "{} against {second}{scope}: nobody leans either way ({}), so no test has anything to work on.",
-                capital(first),
+                opening(first),
                 against(counts)
             );
             return Self::new(Standing::TooFew, text);
@@ -73,7 +78,7 @@ impl Finding {
             let text = format!(
                 "{} against {second}{scope} is not decided: {}. {} {lean} one way or the other, and no outcome of so \
                  few is significant (exact sign-flip test, smallest possible {}).",
-                capital(first),
+                opening(first),
                 against(counts),
                 capital(&counted(leaning, "participant")),
                 p(least)
@@ -89,7 +94,7 @@ impl Finding {
             Conclusion::Differs => {
                 let text = format!(
                     "{} was preferred to {loser}{scope}: {}. {score}; {tested}.",
-                    capital(winner),
+                    opening(winner),
                     against(turned)
                 );
                 Self::new(Standing::Holds, text)
@@ -98,18 +103,20 @@ impl Finding {
                 let text = format!(
                     "{} was preferred to {loser}{scope}, but by little: {}. {score}; {tested}. The mean lies within \
                      {MARGIN} of none ({}).",
-                    capital(winner),
+                    opening(winner),
                     against(turned),
                     equivalence(hypothesis)
                 );
                 Self::new(Standing::Holds, text)
             }
             Conclusion::Equal => {
+                // Names stand in the order of the contrast, and so do counts and score.
                 let text = format!(
-                    "{} and {second}{scope} are liked alike, within the declared margin of {MARGIN}: {}. {score}; {}; \
+                    "{} and {second}{scope} are liked alike, within the declared margin of {MARGIN}: {}. {}; {}; \
                      {tested}.",
-                    capital(first),
-                    against(turned),
+                    opening(first),
+                    against(counts),
+                    self::score(test, true),
                     equivalence(hypothesis)
                 );
                 Self::new(Standing::Equal, text)
@@ -121,7 +128,7 @@ impl Finding {
                 };
                 let text = format!(
                     "{} and {second}{scope} cannot be told apart here: {}. {}; {tested}.{alone}{}",
-                    capital(first),
+                    opening(first),
                     against(counts),
                     self::score(test, true),
                     not_equal(test)
@@ -136,11 +143,9 @@ impl Finding {
 pub(super) fn score(test: &ContrastTest, towards_first: bool) -> String {
     let sign = if towards_first { 1.0 } else { -1.0 };
     let people = counted(test.participants(), "participant");
-    // A score lies between -1 and 1, a difference of two between -2 and 2; the t interval does not know that.
-    let cut = |low: f64, high: f64| Interval { low: low.max(-test.reach), high: high.min(test.reach) };
-    let turned = test.interval.map(|i| match towards_first {
-        true => cut(i.low, i.high),
-        false => cut(-i.high, -i.low),
+    let turned = test.interval.map(|i| i.cut(-test.reach, test.reach)).map(|i| match towards_first {
+        true => i,
+        false => Interval { low: -i.high, high: -i.low },
     });
     let kind = if unanimous(&test.scores()).is_some() { "interval" } else { "t interval" };
     let within = turned.map_or(people.clone(), |i| format!("95 % {kind} {}, {people}", interval(i, 2)));

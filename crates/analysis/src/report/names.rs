@@ -1,5 +1,7 @@
 //! What things are called in a sentence.
 
+use super::Evidence;
+use crate::hypotheses::{Hypothesis, Subject};
 use crate::statistics::contrast::{Level, Over};
 use design::{Arrangement, Clustering, Study};
 
@@ -30,9 +32,28 @@ pub(super) fn over(study: &Study, over: Over) -> String {
         Over::All => String::new(),
         Over::Within(level) => within(level),
         Over::Object(object) => format!(" on the {}", study.file.objects[object].name),
-        Over::Difference(a, b) => format!(",{} rather than{}", within(a), within(b)),
+        Over::Difference(a, b) => format!("{} rather than{}", within(a), within(b)),
         Over::AgainstOthers(object) => {
-            format!(", on the {} rather than elsewhere", study.file.objects[object].name)
+            format!(" on the {} rather than elsewhere", study.file.objects[object].name)
         }
+    }
+}
+
+/// The group, with a space before it; nothing if there is but one.
+pub(super) fn in_group(evidence: &Evidence<'_>, group: &str) -> String {
+    if evidence.groups.len() > 1 { format!(" in group {group}") } else { String::new() }
+}
+
+/// What is compared with what, and where: `edge collapse against no clustering on the simple cubic lattice`.
+pub(super) fn hypothesis(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> String {
+    match (&hypothesis.subject, evidence.study) {
+        (Subject::Contrast { levels, over }, Some(study)) => {
+            let [first, second] = levels.map(level);
+            format!("{first} against {second}{}", self::over(study, *over))
+        }
+        (Subject::Items { first, second, group }, _) => {
+            format!("{first} against {second}{}", in_group(evidence, group))
+        }
+        _ => format!("question {}", hypothesis.scope),
     }
 }

@@ -1,7 +1,7 @@
 //! What was preferred to what: sorted by what holds, what depends on something else, and what is open.
 
 use super::finding::{Finding, Standing, score, tested};
-use super::words::{against, capital, counted, list, p};
+use super::words::{against, capital, counted, list, number, p};
 use super::{Block, Evidence, names};
 use crate::hypotheses::{ALPHA, Hypothesis, Subject};
 use crate::statistics::contrast::{ContrastTest, Level, Over, contrasts};
@@ -9,20 +9,70 @@ use crate::statistics::friedman;
 use crate::tables::contrasts::study_scores;
 use design::Study;
 
+/// So many comparisons that too few people lean on are told one by one, more of them together.
+const APART: usize = 3;
+
 /// Blocks of three sections.
 #[derive(Default)]
 pub(super) struct Sorted {
     pub(super) holds: Vec<Block>,
     pub(super) depends: Vec<Block>,
     pub(super) open: Vec<Block>,
+    too_few: Vec<TooFew>,
+}
+
+/// A comparison on which too few people lean one way or the other.
+struct TooFew {
+    place: usize,
+    finding: Finding,
+    name: String,
+    leaning: usize,
 }
 
 impl Sorted {
-    fn add(&mut self, finding: Finding) {
+    fn add(&mut self, evidence: &Evidence<'_>, hypothesis: &Hypothesis, finding: Finding) {
         match finding.standing {
             Standing::Holds | Standing::Equal => self.holds.push(Block::Finding(finding)),
+            Standing::TooFew => self.too_few.push(TooFew {
+                place: self.open.len() + self.too_few.len(),
+                finding,
+                name: names::hypothesis(evidence, hypothesis),
+                leaning: hypothesis.test.differences.iter().filter(|d| **d != 0).count(),
+            }),
             _ => self.open.push(Block::Finding(finding)),
         }
+    }
+
+    /// Puts the comparisons that too few lean on among the open ones: in their place while they are few, else as one.
+    fn fold(mut self, all: usize) -> Self {
+        let too_few = std::mem::take(&mut self.too_few);
+        if too_few.len() <= APART {
+            for TooFew { place, finding, .. } in too_few {
+                self.open.insert(place, Block::Finding(finding));
+            }
+            return self;
+        }
+        let most = too_few.iter().map(|of| of.leaning).max().unwrap_or(0);
+        let mut named: Vec<String> = too_few.iter().take(APART).map(|of| of.name.clone()).collect();
+        named.push(format!("{} more", too_few.len() - APART));
+        let text = format!(
+            "{} of {} are not decided: {}. {} The table of tests has their counts.",
+            too_few.len(),
+            counted(all, "comparison"),
+            list(&named),
+            match most {
+                0 => "Nobody leans one way or the other on any of them.".into(),
+                most => format!(
+                    "At most {} {} one way or the other, and no outcome of so few is significant (exact sign-flip test; {} \
+                     would have to).",
+                    counted(most, "participant"),
+                    if most == 1 { "leans" } else { "lean" },
+                    fewest_leaning()
+                ),
+            }
+        );
+        self.open.push(Block::Finding(Finding::new(Standing::TooFew, text)));
+        self
     }
 }
 
@@ -31,12 +81,12 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
     let Some(study) = evidence.study else {
         for hypothesis in evidence.hypotheses {
             if let Subject::Items { group, first, second } = &hypothesis.subject {
-                let scope =
-                    if evidence.groups.len() > 1 { format!(" in group {group}") } else { String::new() };
-                sorted.add(Finding::of_preference(hypothesis, first, second, &scope));
+                let scope = names::in_group(evidence, group);
+                let finding = Finding::of_preference(hypothesis, first, second, &scope);
+                sorted.add(evidence, hypothesis, finding);
             }
         }
-        return sorted;
+        return sorted.fold(evidence.hypotheses.len());
     };
     sorted.holds.extend(omnibus(study, evidence));
     for (hypothesis, levels, over) in contrasts_of(evidence) {
@@ -57,7 +107,7 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
                         .text
                         .push_str(&format!(" It depends on the object, the {name} above all: see below."));
                 }
-                sorted.add(finding);
+                sorted.add(evidence, hypothesis, finding);
             }
         }
     }
@@ -65,6 +115,7 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
     sorted.depends.extend(dependences(study, evidence));
     sorted.depends.append(&mut by_object);
     sorted
+        .fold(contrasts_of(evidence).filter(|(.., over)| matches!(over, Over::All | Over::Within(_))).count())
 }
 
 fn contrasts_of<'a>(evidence: &'a Evidence<'_>) -> impl Iterator<Item = (&'a Hypothesis, [Level; 2], Over)> {
@@ -95,6 +146,11 @@ fn omnibus(study: &Study, evidence: &Evidence<'_>) -> Vec<Block> {
         p(test.p)
     );
     vec![Block::Finding(Finding::new(Standing::Holds, text))]
+}
+
+/// The fewest people whose unanimity is significant at 5 %.
+fn fewest_leaning() -> usize {
+    (1..).find(|&people| 2.0_f64.powi(1 - people) <= ALPHA).expect("a power of a half") as usize
 }
 
 /// Interactions: one that holds is told with its parts, those that do not in one sentence.
@@ -130,7 +186,7 @@ fn dependences(study: &Study, evidence: &Evidence<'_>) -> Vec<Block> {
         }
     }
     if let Some(smallest) = open.iter().map(|h| h.adjusted).min_by(f64::total_cmp) {
-        let names: Vec<String> = open.iter().map(|h| format!("{} {}", h.contrast, h.scope)).collect();
+        let names: Vec<String> = open.iter().map(|h| names::hypothesis(evidence, h)).collect();
         let text = format!(
             "For {} no difference was shown: {} (exact sign-flip tests, smallest corrected {}). That is not to say that there is \
              none.",
@@ -158,7 +214,7 @@ fn dependence(
             "{}: {}, mean score {}",
             capital(place.trim_start()),
             against(test.counts.unwrap_or_default()),
-            { super::words::number(test.mean, 2) }
+            number(test.mean, 2)
         )
     };
     let text = format!(

@@ -2,7 +2,7 @@
 
 use super::Block;
 use super::finding::{Finding, Standing};
-use super::words::{counted, list};
+use super::words::{counted, list, number};
 use crate::claims;
 use crate::comparison;
 use crate::inputs::Inputs;
@@ -27,7 +27,7 @@ pub(super) fn findings(inputs: &Inputs<'_>) -> Vec<Block> {
             let numbers = match (claim.value, finding.ours) {
                 (Some(published), Some(ours)) => {
                     let d = finding.decimals;
-                    format!(", published as {published:.d$}, is {ours:.d$} here")
+                    format!(", published as {}, is {} here", number(published, d), number(ours, d))
                 }
                 _ => " does not hold".into(),
             };

@@ -5,8 +5,8 @@ use super::words::{capital, counted, interval, list, number};
 use super::{Block, Evidence, names};
 use crate::statistics::contrast::{Level, contrasts};
 use crate::statistics::{
-    Ballot, Model, Pairs, Participants, Separation, SideDesign, clustered_covariance, fit, separation,
-    side_design,
+    Ballot, Model, Pairs, Participants, Separation, SideDesign, clustered_covariance, fit, has_spread,
+    separation, side_design,
 };
 use std::collections::BTreeMap;
 
@@ -31,7 +31,8 @@ fn side(evidence: &Evidence<'_>) -> Vec<Finding> {
     let mut counts = [0_u64; 3];
     evidence.ballots.iter().for_each(|b| counts[b.outcome().index()] += 1);
     let [left, none, right] = counts;
-    let totals = format!("{left} answers went left, {right} right and {none} to neither");
+    let totals =
+        format!("{} went left, {right} right and {none} to neither", counted(left as usize, "answer"));
     let items = evidence.ballots.iter().map(|b| b.left().max(b.right()) + 1).max().unwrap_or(0);
     let mut designs: BTreeMap<&str, (SideDesign, &[Ballot], usize)> = BTreeMap::new();
     for group in evidence.groups {
@@ -81,8 +82,9 @@ fn side(evidence: &Evidence<'_>) -> Vec<Finding> {
     let confounded = of(SideDesign::Confounded);
     if !everywhere && !confounded.is_empty() {
         let text = format!(
-            "In {} side and item cannot be separated: no pair was shown in both orders, and each item's side goes with its \
-             worth.",
+            "In {} {} side and item cannot be separated: no pair was shown in both orders, and each item's side goes with \
+             its worth.",
+            if confounded.len() == 1 { "group" } else { "groups" },
             list(&confounded)
         );
         found.push(Finding::new(Standing::NotAnswerable, text));
@@ -103,8 +105,14 @@ fn estimate(name: &str, ballots: &[Ballot], items: usize) -> Option<String> {
     let side = fitted.side?;
     let (people, se) = (participants.number() as f64, covariance[place][place].sqrt());
     let t = crate::interval::t_half_width(people - 1.0)?;
+    if !has_spread(se, fitted.covariance[place][place].sqrt()) {
+        return Some(format!(
+            "{} (no interval: the answers tell no spread between participants) in group {name}",
+            number(side, 2)
+        ));
+    }
     let found = crate::interval::Interval { low: side - t * se, high: side + t * se };
-    Some(format!("{name} {} ({})", number(side, 2), interval(found, 2)))
+    Some(format!("{} ({}) in group {name}", number(side, 2), interval(found, 2)))
 }
 
 /// The levels of a study that always stood on one side of the questions that compare them.

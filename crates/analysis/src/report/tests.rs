@@ -16,7 +16,7 @@ fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'stati
         Evidence { study: Some(&study), ballots: &ballots, groups: &groups, hypotheses: &hypotheses };
     let mut press = Press::new(&[], &[]);
     press.preferences(&evidence);
-    let report = press.finish("A test".into(), lead(&evidence));
+    let report = press.finish("A test".into(), lead(&evidence, &[]));
     let findings = |s: &Section| {
         let of =
             s.blocks.iter().filter_map(|b| if let Block::Finding(f) = b { Some(f.clone()) } else { None });
@@ -59,6 +59,7 @@ fn the_papers_answers() {
         "holds",
         "depends",
         "open",
+        "worths",
         "unanswerable",
         "bearing",
         "checks",
@@ -136,7 +137,7 @@ fn the_papers_answers() {
     );
     assert!(
         checks[1]
-            .starts_with("Rule odd, broken by participant 16: without them, 1 of 25 declared tests comes"),
+            .starts_with("Participant 16 broke a rule by answering against the others: without them, 1 of 25 declared tests comes"),
         "{checks:#?}"
     );
     assert!(checks.iter().any(|text| text
@@ -162,19 +163,29 @@ fn a_planted_effect_holds_whoever_stands_left() {
          Mean score 1.00 (95 % interval 0.63 to 1.00, 18 participants); exact sign-flip test, p = 0.0000076, p = 0.000031 \
          after Holm's correction for 4 tests."
     );
-    let found = of(&said, "open", "No clustering against edge collapse: nobody");
+    let found = of(&said, "open", "9 of 13 comparisons");
     assert_eq!(found.standing, Standing::TooFew);
+    assert_eq!(
+        found.text,
+        "9 of 13 comparisons are not decided: no clustering against integrated clustering, no clustering against edge \
+         collapse, edge collapse against integrated clustering and 6 more. Nobody leans one way or the other on any of them. \
+         The table of tests has their counts."
+    );
 }
 
 #[test]
 fn nobody_leaning_is_said_so() {
     let said = said(18, |_, _| Tie);
     assert!(said.iter().all(|(id, _)| *id != "holds"), "{said:#?}");
-    let found = of(&said, "open", "The body-centred lattice against the simple cubic lattice:");
+    of(&said, "open", "13 of 13 comparisons are not decided: ");
+    let answers: Vec<_> = (0..18).map(|person| (person, 0, 1, Tie)).collect();
+    let report = report_of_groups("Trees", &groups(&answers), &[], &[]);
     assert_eq!(
-        found.text,
-        "The body-centred lattice against the simple cubic lattice: nobody leans either way (0 answers against 0, 162 without \
-         preference), so no test has anything to work on."
+        texts(&report, "open"),
+        [
+            "oak against elm: nobody leans either way (0 answers against 0, 18 without preference), so no test has anything to \
+          work on."
+        ]
     );
 }
 
@@ -206,15 +217,42 @@ fn small_differences_are_equal_within_the_margin() {
 }
 
 #[test]
+fn equal_counts_stand_in_the_order_of_the_names() {
+    // Elm, the second, is ahead by a little: of forty answers, twelve people give 18 for oak, eight 22.
+    let one = |p: usize| {
+        (0..40).map(move |q| (p, 0, 1, if q < if p < 12 { 18 } else { 22 } { Left } else { Right }))
+    };
+    let report = report_of_groups("Trees", &groups(&(0..20).flat_map(one).collect::<Vec<_>>()), &[], &[]);
+    let text = &texts(&report, "holds")[0];
+    assert!(
+        text.contains("liked alike, within the declared margin of 0.2: 392 answers against 408, none without preference.")
+            && text.contains("Mean score \u{2212}0.02 (95 % t interval \u{2212}0.07 to 0.03, 20 participants)"),
+        "{text}"
+    );
+}
+
+#[test]
 fn too_few_people_are_told_what_they_could_have_shown() {
     let said = said(3, |_, _| Left);
-    let found = of(&said, "open", "The body-centred lattice against the simple cubic lattice is");
+    let found = of(&said, "open", "13 of 13 comparisons are not decided: ");
     assert_eq!(found.standing, Standing::TooFew);
+    assert!(
+        found.text.ends_with(
+            "edge collapse against integrated clustering and 10 more. At most 3 participants lean one way or the other, and no \
+             outcome of so few is significant (exact sign-flip test; 6 would have to). The table of tests has their counts."
+        ),
+        "{}",
+        found.text
+    );
+    // A few are told one by one.
+    let answers: Vec<_> = (0..3).map(|person| (person, 0, 1, Left)).collect();
+    let report = report_of_groups("Trees", &groups(&answers), &[], &[]);
     assert_eq!(
-        found.text,
-        "The body-centred lattice against the simple cubic lattice is not decided: 27 answers against 0, none without \
-         preference. 3 participants lean one way or the other, and no outcome of so few is significant (exact sign-flip test, \
-         smallest possible p = 0.25)."
+        texts(&report, "open"),
+        [
+            "oak against elm is not decided: 3 answers against 0, none without preference. 3 participants lean one way or the \
+          other, and no outcome of so few is significant (exact sign-flip test, smallest possible p = 0.25)."
+        ]
     );
 }
 
@@ -235,7 +273,7 @@ fn answers_without_a_study() {
     assert_eq!(report.lead[0], "10 participants gave 30 answers to 3 questions.");
     assert_eq!(
         texts(&report, "holds")[0],
-        "Oak was preferred to elm: 9 answers against 0, 1 without preference. Mean score 0.90 (95 % t interval 0.67 to 1.00, 10 \
+        "oak was preferred to elm: 9 answers against 0, 1 without preference. Mean score 0.90 (95 % t interval 0.67 to 1.00, 10 \
          participants); exact sign-flip test, p = 0.0039, p = 0.012 after Holm's correction for 3 tests."
     );
     // Pairs in both orders: the side can be asked about; but the answers separate the items, so nothing is estimated.
@@ -245,10 +283,31 @@ fn answers_without_a_study() {
 }
 
 #[test]
+fn names_of_items_stay_as_they_are() {
+    // Two items that differ in their first letter's case alone.
+    let answers: Vec<_> = (0..8).map(|person| (person, 0, 1, Left)).collect();
+    let mut groups = groups(&answers);
+    groups[0].items = ["\u{e9}clair", "\u{c9}clair"].map(String::from).into();
+    let report = report_of_groups("Cakes", &groups, &[], &[]);
+    let text = &texts(&report, "holds")[0];
+    assert!(text.starts_with("\u{e9}clair was preferred to \u{c9}clair: 8 answers against 0"), "{text}");
+}
+
+#[test]
 fn no_answers_at_all() {
     let report = report_of_groups("Nothing", &[], &[], &[]);
     assert_eq!(report.lead, ["No answers were given, so nothing is said about preference."]);
     assert!(report.sections.is_empty());
+    let control = |participant| Ballot::new(participant, 0, [0, 0], Left);
+    let protocol = crate::statistics::Protocol::default();
+    let respondents = crate::tables::agreement::respondents(&[control(0), control(1)], &protocol);
+    let report = report_of_groups("Controls", &[], &[respondents], &[]);
+    assert_eq!(
+        report.lead,
+        [
+            "Only controls were answered, which show an item beside itself: 2 answers. So nothing is said about preference."
+        ]
+    );
     let small = fixture::small_study();
     let inputs = Inputs { study: &small, meshes: &[], bench: None, answers: None };
     let tables = crate::tables(&inputs);

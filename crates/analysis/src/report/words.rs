@@ -1,5 +1,6 @@
 //! Numbers in words: p values, intervals, counts, lists.
 
+pub(super) use crate::digits::{counted, number};
 use crate::interval::Interval;
 
 /// Below this a p value is not printed in digits.
@@ -14,16 +15,6 @@ pub(super) fn p(p: f64) -> String {
             let decimals = (1.0 - p.log10().floor()).clamp(2.0, 7.0) as usize;
             format!("p = {p:.decimals$}")
         }
-    }
-}
-
-/// A number with a true minus sign; never minus zero.
-pub(super) fn number(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
-    match text.strip_prefix('-') {
-        Some(rest) if rest.chars().all(|c| c == '0' || c == '.') => rest.into(),
-        Some(rest) => format!("\u{2212}{rest}"),
-        None => text,
     }
 }
 
@@ -55,11 +46,6 @@ pub(super) fn percent(share: f64) -> String {
 pub(super) fn percents(interval: Interval) -> String {
     let end = |x: f64| number(100.0 * x.clamp(0.0, 1.0), 0);
     format!("{} to {} %", end(interval.low), end(interval.high))
-}
-
-/// `1 answer`, `2 answers`.
-pub(super) fn counted(count: usize, noun: &str) -> String {
-    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 
 /// `a, b and c`.
@@ -105,10 +91,8 @@ mod tests {
             "p = 0.049",
         ];
         assert_eq!(ps, want);
-        assert_eq!((number(-0.25, 2), number(-0.001, 2)), ("\u{2212}0.25".into(), "0.00".into()));
         assert_eq!(list(&["a", "b", "c"]), "a, b and c");
         assert_eq!((list::<&str>(&[]), list(&["a"])), (String::new(), "a".into()));
-        assert_eq!((counted(1, "answer"), counted(0, "answer")), ("1 answer".into(), "0 answers".into()));
         assert_eq!(against([1, 0, 5]), "1 answer against 5, none without preference");
         assert_eq!(percents(Interval { low: 0.661, high: 1.2 }), "66 to 100 %");
         assert_eq!(capital("über"), "Über");

@@ -1,5 +1,6 @@
 //! How often tests reject what is true, and intervals cover it.
 
+use super::allowance;
 use crate::interval::Interval;
 use crate::simulation::{Plan, Population, simulate, stream};
 use crate::statistics::bootstrap::{Resampling, bca_each};
@@ -66,12 +67,13 @@ impl Rate {
     /// errors of counting; coverage may differ from 95 % by 1 %, or by three standard errors if there are so few studies
     /// that they are more.
     pub fn limits(&self) -> Option<(f64, f64)> {
-        let error = 3.0 * (LEVEL * (1.0 - LEVEL) / self.studies as f64).sqrt();
-        match self.counted {
-            Counted::Rejections => Some((0.0, LEVEL + error)),
-            Counted::Coverage => Some((0.95 - error.max(0.01), 0.95 + error.max(0.01))),
-            _ => None,
-        }
+        let error = allowance(LEVEL, self.studies);
+        let (low, high) = match self.counted {
+            Counted::Rejections => (0.0, LEVEL + error),
+            Counted::Coverage => (0.95 - error.max(0.01), 0.95 + error.max(0.01)),
+            _ => return None,
+        };
+        Some((low.max(0.0), high.min(1.0)))
     }
 
     /// Whether the share lies there.

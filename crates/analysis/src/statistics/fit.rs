@@ -140,6 +140,28 @@ impl WorthFit {
         let half = t.inverse_cdf(0.5 + LEVEL / 2.0) * self.standard_error(sandwich, item, other);
         Interval { low: middle - half, high: middle + half }
     }
+
+    /// Clustered standard error of an item's log worth (the first's is 0 by definition), and its t interval. `None` where
+    /// every participant's gradient is zero, as for a worth that one tie decides: that is no spread to judge an error by.
+    ///
+    /// # Panics
+    /// If there is no such item, or with fewer than two participants.
+    pub fn clustered_error(
+        &self,
+        sandwich: &Matrix,
+        participants: u64,
+        item: usize,
+    ) -> Option<(f64, Interval)> {
+        let [clustered, independent] =
+            [sandwich, &self.covariance].map(|of| self.standard_error(of, item, 0));
+        let known = has_spread(clustered, independent);
+        known.then(|| (clustered, self.clustered_interval(sandwich, participants, item, 0)))
+    }
+}
+
+/// Whether a clustered standard error is more than the rounding of zero, beside the one that takes answers as independent.
+pub(crate) fn has_spread(clustered: f64, independent: f64) -> bool {
+    clustered > 1e-6 * independent
 }
 
 /// The sandwich covariance with participants as clusters: m/(m-1) H^-1 (sum of s s') H^-1, where s is one participant's

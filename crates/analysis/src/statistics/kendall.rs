@@ -149,6 +149,11 @@ impl Triads {
         self.weak_cycles += u64::from(ties == 1 && sum.abs() == 2);
     }
 
+    /// Strict cycles to be expected if the decided triads had been decided by chance: a quarter of them.
+    pub fn cycles_by_chance(self) -> f64 {
+        self.decided as f64 / 4.0
+    }
+
     /// Adds another scope's triads.
     pub fn and(self, other: Self) -> Self {
         Self {

@@ -1,6 +1,7 @@
 //! LaTeX for the `article` class or anything wider: the first layout, from plain to small to turned, that a table fits.
 
 use super::Table;
+use crate::digits::MINUS;
 
 /// Rows beyond which a table is broken across pages.
 const PAGE: usize = 35;
@@ -27,7 +28,7 @@ const LAYOUTS: [Layout; 6] = [
     Layout { set: "\\footnotesize\\setlength{\\tabcolsep}{3pt}", em: 8.5, gap: 3.0, turned: false },
     Layout { set: "\\small\\setlength{\\tabcolsep}{3pt}", em: 9.25, gap: 3.0, turned: true },
     Layout { set: "\\footnotesize\\setlength{\\tabcolsep}{3pt}", em: 8.5, gap: 3.0, turned: true },
-    Layout { set: "\\scriptsize\\setlength{\\tabcolsep}{2pt}", em: 7.9, gap: 2.0, turned: true },
+    Layout { set: "\\scriptsize\\setlength{\\tabcolsep}{2pt}", em: 8.0, gap: 2.0, turned: true },
 ];
 /// Columns beyond which the plain layout is not tried.
 const MANY: usize = 7;
@@ -37,8 +38,9 @@ impl Layout {
         if self.turned { 550.0 } else { 345.0 }
     }
 
-    /// What a column may take of the line, gaps left out: its whole text, or as much as there is.
-    fn columns(self, part: &Table) -> Option<String> {
+    /// What a column may take of the line, gaps left out: its whole text, or as much as there is. `None` if there is not
+    /// enough, unless it must do: broken text is then as narrow as it may be.
+    fn columns(self, part: &Table, must: bool) -> Option<String> {
         let gaps = 2.0 * self.gap * part.columns.len() as f64;
         let columns: Vec<Column> = (0..part.columns.len()).map(|i| Column::of(part, i)).collect();
         let rigid: f64 = columns.iter().filter(|c| !c.breaks).map(|c| c.em).sum();
@@ -46,13 +48,16 @@ impl Layout {
         let wanted: f64 = broken.clone().map(|c| c.em).sum();
         // Broken text shares what is left as it needs it, and asks for no more than would print it whole.
         let left = (self.width() - gaps) / self.em - rigid;
+        let least = |c: &Column| NARROWEST.min(c.em);
         let share = |c: &Column| (left * c.em / wanted).min(c.em);
-        if left < 0.0 || broken.clone().any(|c| share(c) < NARROWEST.min(c.em)) {
+        let fits = left >= 0.0 && broken.clone().all(|c| share(c) >= least(c));
+        if !fits && !must {
             return None;
         }
         let letter = |c: &Column| match (c.breaks, c.text) {
             (true, _) => {
-                let of_line = share(c) * self.em / self.width();
+                let em = if fits { share(c) } else { least(c) };
+                let of_line = em * self.em / self.width();
                 format!(">{{\\raggedright\\arraybackslash}}p{{{of_line:.3}\\linewidth}}")
             }
             (false, true) => "l".into(),
@@ -86,13 +91,15 @@ impl Column {
 /// Width in em in Computer Modern Roman, rounded up by kind of letter.
 fn em(text: &str) -> f64 {
     let letter = |c: char| match c {
-        'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | '|' => 0.28,
-        ' ' | '-' | '(' | ')' | '_' | 'f' | 't' | 'r' | 's' | 'I' => 0.4,
-        'm' | 'w' | 'M' | 'W' | '%' | '<' | '>' | '=' | '+' => 0.84,
-        c if c.is_ascii_uppercase() => 0.76,
-        c if c.is_ascii_digit() => 0.5,
-        'a' | 'c' | 'e' | 'g' | 'o' | 'z' => 0.5,
-        _ => 0.56,
+        'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | '|' => 0.31,
+        ' ' | '-' | 'f' | 'I' => 0.37,
+        '(' | ')' | 't' | 'r' | 's' => 0.4,
+        'a' | 'c' | 'e' | 'g' | 'o' | 'q' | 'v' | 'z' | '/' | '_' => 0.53,
+        c if c.is_ascii_digit() => 0.51,
+        'm' | 'w' | 'K' | 'O' | 'Q' | '%' | '<' | '>' | '=' | '+' | MINUS => 0.84,
+        'M' | 'W' => 1.03,
+        c if c.is_ascii_uppercase() => 0.79,
+        _ => 0.57,
     };
     text.chars().map(letter).sum()
 }
@@ -106,10 +113,10 @@ impl Table {
     pub fn to_latex(&self) -> String {
         let parts = self.printed();
         let many = parts.iter().any(|part| part.columns.len() > MANY);
-        let fits = |layout: &&Layout| parts.iter().all(|part| layout.columns(part).is_some());
+        let fits = |layout: &&Layout| parts.iter().all(|part| layout.columns(part, false).is_some());
         let layout = LAYOUTS[usize::from(many)..].iter().find(fits).unwrap_or(&LAYOUTS[LAYOUTS.len() - 1]);
         let long = layout.turned || parts.iter().map(|part| part.rows.len()).sum::<usize>() > PAGE;
-        let columns = |part: &Self| layout.columns(part).unwrap_or_else(|| "l".repeat(part.columns.len()));
+        let columns = |part: &Self| layout.columns(part, true).expect("it must do");
         let body = if long { self.pages(&columns) } else { self.float(layout, &columns) };
         let body = match (long, layout.set) {
             (true, set) if !set.is_empty() => format!("{{{set}\n{body}}}\n"),
@@ -222,6 +229,7 @@ fn escape(text: &str) -> String {
             '|' => out.push_str("\\textbar{}"),
             '<' => out.push_str("\\textless{}"),
             '>' => out.push_str("\\textgreater{}"),
+            MINUS => out.push_str("$-$"),
             '\n' | '\r' => out.push(' '),
             _ => out.push(letter),
         }

@@ -43,9 +43,6 @@ pub(super) fn agreement(study: &Study, ballots: &[Ballot]) -> Table {
         let found = kendall(&counts);
         let test = found.and_then(|found| found.test);
         let (circles, (tournaments, zetas)) = consistency(study, &own);
-        let all: u64 = counts.iter().flatten().sum();
-        let ties: u64 = counts.iter().map(|counts| counts[1]).sum();
-        let decided = 1.0 - ties as f64 / all as f64;
         let circle = |count: u64| if circles.all > 0 { Cell::count(count) } else { Cell::Missing };
         table.push(vec![
             Cell::text(group.map_or("all", |g| &study.groups[g].id)),
@@ -60,7 +57,7 @@ pub(super) fn agreement(study: &Study, ballots: &[Ballot]) -> Table {
             circle(circles.decided),
             circle(circles.strict_cycles),
             circle(circles.weak_cycles),
-            Cell::number((circles.all > 0).then(|| circles.all as f64 * decided.powi(3) / 4.0), 1),
+            Cell::number((circles.all > 0).then(|| circles.cycles_by_chance()), 1),
             circle(tournaments),
             Cell::number((tournaments > 0).then(|| zetas / tournaments as f64), 3),
         ]);
@@ -68,7 +65,7 @@ pub(super) fn agreement(study: &Study, ballots: &[Ballot]) -> Table {
     table.notes.push(
         "Alpha: Krippendorff's, over the sides left, none, right; 1 is full agreement, 0 chance. Kendall's u: a tie is half \
          an answer for each side; its test is without continuity correction. Triads: three items that one person compared \
-         pairwise on one object; by chance, with this share of ties, so many would be circular. A weak cycle is two wins closed by a tie, \
+         pairwise on one object; strict by chance: a quarter of those decided throughout, as answers by chance would have it. A weak cycle is two wins closed by a tie, \
          which need not be an error. Zeta: Kendall's, of whoever decided every pair of an object and group; 1 is no circle."
             .into(),
     );
@@ -102,7 +99,7 @@ pub(crate) fn respondents(ballots: &[Ballot], protocol: &Protocol<'_>) -> Table 
             ("left", "Left"),
             ("no_preference", "None"),
             ("right", "Right"),
-            ("one_sidedness", "(L - R) / (L + R)"),
+            ("one_sidedness", "(L \u{2212} R) / (L + R)"),
             ("longest_run", "Longest run"),
             ("comparable", "Comparable"),
             ("agreeing", "Agreeing"),
@@ -147,7 +144,7 @@ pub(crate) fn respondents(ballots: &[Ballot], protocol: &Protocol<'_>) -> Table 
     }
     if table.rows.len() > MANY {
         table.notes.push(format!(
-            "Of {} participants, the {} who break a rule are printed; the CSV has all.",
+            "Of {} participants those who break a rule are printed, {}; the CSV has all.",
             table.rows.len(),
             flagged.rows.len()
         ));

@@ -2,6 +2,7 @@
 
 use crate::ballots::BallotGroup;
 use crate::hypotheses::{self, Hypothesis, Subject};
+use crate::interval::Interval;
 use crate::statistics::bootstrap::Resampling;
 use crate::statistics::{Ballot, ChiSquareTest, friedman, sign_test};
 use crate::table::{Cell, Table};
@@ -53,15 +54,64 @@ fn table(rows: &[Hypothesis]) -> Table {
     );
     let cells: Vec<Vec<Cell>> = rows.par_iter().map(cells).collect();
     cells.into_iter().for_each(|cells| table.push(cells));
+    let blocks: [(&str, &[&str]); 3] = [
+        (
+            "Answers, and tests of no preference",
+            &[
+                "family",
+                "contrast",
+                "scope",
+                "first",
+                "no_preference",
+                "second",
+                "net",
+                "participants",
+                "p_sign_flip",
+                "p_adjusted",
+                "adjustment",
+                "conclusion",
+            ],
+        ),
+        (
+            "Mean scores, and tests of equivalence",
+            &[
+                "family",
+                "contrast",
+                "scope",
+                "mean",
+                "low",
+                "high",
+                "bca_low",
+                "bca_high",
+                "studentised_low",
+                "studentised_high",
+                "p_equivalence",
+            ],
+        ),
+        (
+            "With one participant left out, and as if answers were independent",
+            &[
+                "family",
+                "contrast",
+                "scope",
+                "p_without_one_low",
+                "p_without_one_high",
+                "p_binomial",
+                "p_trinomial",
+            ],
+        ),
+    ];
+    table.print_in_blocks(&blocks);
     table.notes.push(
         "p: exact sign-flip test over participants, two-sided; net is answers for the first minus answers for the second. \
          Adjusted within the family: Holm, for single questions Benjamini and Hochberg. Mean score: a participant's net over \
-         the questions answered, -1 to 1; from and to: t interval at 95 % over participants, or, where all have one \
-         score, the means that make this at least 2.5 % probable; BCa and studentised: 2000 resamples of participants. Equivalence: two one-sided t tests of a mean score within 0.2 of zero, which is 60 \
-         answers to 40, adjusted in the same way. Conclusion: at 5 % of both adjusted p; a large p alone is open, not equal. \
-         p without one: range when each participant in turn is left out. Interactions are differences of two \
-         mean scores, -2 to 2, of those who answered all of their questions. Binomial and trinomial treat all answers as independent and are there for \
-         comparison; they hold for single questions only."
+         the questions answered, \u{2212}1 to 1; interactions are differences of two mean scores, \u{2212}2 to 2, of those who \
+         answered all of their questions. From and to: t interval at 95 % over participants, or, where all have one score, the \
+         means that make this at least 2.5 % probable; BCa and studentised: 2000 resamples of participants; all are cut at what \
+         scores can be. Equivalence: two one-sided t tests of a mean score within 0.2 of zero, which is 60 answers to 40, \
+         adjusted in the same way. Conclusion: at 5 % of both adjusted p; a large p alone is open, not equal. p without one: \
+         range when each participant in turn is left out. Binomial and trinomial treat all answers as independent and are \
+         there for comparison; they hold for single questions only."
             .into(),
     );
     table
@@ -69,9 +119,12 @@ fn table(rows: &[Hypothesis]) -> Table {
 
 fn cells(row: &Hypothesis) -> Vec<Cell> {
     let (test, question) = (&row.test, matches!(row.subject, Subject::Question(_)));
+    let cut = |i: Interval| i.cut(-test.reach, test.reach);
     let resampling = Resampling::default();
     let of_bca = if question { None } else { test.bca(resampling) };
     let of_studentised = if question { None } else { test.studentised(resampling) };
+    let interval = test.interval.map(cut);
+    let [bca, studentised] = [of_bca, of_studentised].map(|of| of.map(|of| cut(of.interval)));
     let without = test.leave_one_out();
     let count = |o: usize| test.counts.map_or(Cell::Missing, |counts| Cell::count(counts[o]));
     let binomial = test.counts.map(|[first, _, second]| sign_test::binomial(first, second));
@@ -88,13 +141,13 @@ fn cells(row: &Hypothesis) -> Vec<Cell> {
         Cell::P(test.sign_flip.p(), 5),
         Cell::P(row.adjusted, 4),
         Cell::text(row.adjustment.label()),
-        Cell::Number(test.mean, 3),
-        Cell::number(test.interval.map(|i| i.low), 3),
-        Cell::number(test.interval.map(|i| i.high), 3),
-        Cell::number(of_bca.map(|r| r.interval.low), 3),
-        Cell::number(of_bca.map(|r| r.interval.high), 3),
-        Cell::number(of_studentised.map(|r| r.interval.low), 3),
-        Cell::number(of_studentised.map(|r| r.interval.high), 3),
+        Cell::of_sum(Some(test.mean), 3),
+        Cell::of_sum(interval.map(|i| i.low), 3),
+        Cell::of_sum(interval.map(|i| i.high), 3),
+        Cell::of_sum(bca.map(|i| i.low), 3),
+        Cell::of_sum(bca.map(|i| i.high), 3),
+        Cell::of_sum(studentised.map(|i| i.low), 3),
+        Cell::of_sum(studentised.map(|i| i.high), 3),
         Cell::p(row.equivalence, 4),
         Cell::text(row.conclusion().label()),
         Cell::p(without.map(|(low, _)| low), 4),

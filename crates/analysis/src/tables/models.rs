@@ -51,8 +51,8 @@ fn empty_worths() -> Table {
     );
     table.notes.push(
         "SE, answers independent: from the exact information, for comparison with other programs; too small, because one \
-         person's answers hang together. SE, participants: sandwich with m/(m-1); from and to: its t interval at 95 % on \
-         m - 1 degrees of freedom. BCa: 2000 resamples of participants, Davidson's model only; resamples in which some \
+         person's answers hang together. SE, participants: sandwich with m/(m \u{2212} 1); from and to: its t interval at 95 % on \
+         m \u{2212} 1 degrees of freedom; none where the answers tell no spread between participants. BCa: 2000 resamples of participants, Davidson's model only; resamples in which some \
          item never lost or never won have no estimate and are counted. Rao and Kupper's worths are on another scale: \
          compare orders."
             .into(),
@@ -65,21 +65,21 @@ fn add_worths(table: &mut Table, group: &BallotGroup, fitted: &WorthFit, partici
     let resampled = resampled(fitted, participants);
     for (item, name) in group.items.iter().enumerate() {
         let estimated = item > 0;
-        let error = |covariance| fitted.standard_error(covariance, item, 0);
         let sandwich = clustered.as_ref().filter(|_| estimated);
-        let interval = sandwich.map(|s| fitted.clustered_interval(s, participants.number(), item, 0));
+        let found = sandwich.and_then(|s| fitted.clustered_error(s, participants.number(), item));
+        let error = if estimated { found.map(|(error, _)| error) } else { Some(0.0) };
         let resampled = if estimated { resampled.get(item - 1).copied().flatten() } else { None };
         table.push(vec![
             Cell::text(&group.name),
             Cell::text(name),
             Cell::text(fitted.model.code()),
-            Cell::Number(fitted.log_worths[item], 3),
-            Cell::Number(error(&fitted.covariance), 3),
-            Cell::number(clustered.as_ref().map(error), 3),
-            Cell::number(interval.map(|i| i.low), 3),
-            Cell::number(interval.map(|i| i.high), 3),
-            Cell::number(resampled.map(|r| r.interval.low), 3),
-            Cell::number(resampled.map(|r| r.interval.high), 3),
+            Cell::of_sum(Some(fitted.log_worths[item]), 3),
+            Cell::Number(fitted.standard_error(&fitted.covariance, item, 0), 3),
+            Cell::number(clustered.as_ref().and(error), 3),
+            Cell::of_sum(found.map(|(_, i)| i.low), 3),
+            Cell::of_sum(found.map(|(_, i)| i.high), 3),
+            Cell::of_sum(resampled.map(|r| r.interval.low), 3),
+            Cell::of_sum(resampled.map(|r| r.interval.high), 3),
             resampled.map_or(Cell::Missing, |r| Cell::count(r.without_estimate as u64)),
         ]);
     }

@@ -51,7 +51,7 @@ fn metrics(prediction: &Prediction) -> Table {
         let [chosen, none, not_chosen] = better.test.counts.unwrap_or_default();
         let decided = better.pairs.better + better.pairs.worse;
         let coefficient = found.coefficient.ok();
-        let share_interval = better.share.and_then(|s| s.interval);
+        let share_interval = better.share.and_then(|s| s.interval).map(|i| i.cut(0.0, 1.0));
         let mut row = vec![
             Cell::text(found.metric.label),
             Cell::text(found.metric.better),
@@ -87,7 +87,7 @@ fn metrics(prediction: &Prediction) -> Table {
          Davidson's model with the metric's difference for the worths, in units of the root mean square of the differences \
          (differences of ratios and angles, logarithms of quotients for the rest); standard error, t interval and p clustered \
          on participants. Left-out: each object predicted from a fit to the others; the constant knows the share of ties and \
-         no more; the gain is the mean fall in log loss, with its t interval over participants."
+         no more; the gain is the mean fall in log loss, with its t interval over participants. Intervals of shares are cut at 0 and 1."
             .into(),
     );
     let blocks: [(&str, &[&str]); 3] = [
@@ -144,7 +144,7 @@ fn metrics(prediction: &Prediction) -> Table {
 
 /// Accuracy with its interval, log losses, and the interval of the gain.
 fn judged(held_out: Option<&HeldOut>) -> [Cell; 7] {
-    let accuracy = held_out.and_then(|h| h.accuracy.interval);
+    let accuracy = held_out.and_then(|h| h.accuracy.interval).map(|i| i.cut(0.0, 1.0));
     let gain = held_out.and_then(|h| h.gain);
     [
         Cell::number(held_out.map(|h| h.accuracy.share), 3),

@@ -54,7 +54,7 @@ fn screened(
             ("mean", "Mean score"),
             ("p_adjusted", "p adjusted"),
             ("conclusion", "Conclusion"),
-            ("mean_without", "without: mean"),
+            ("mean_without", "Mean score"),
             ("p_without", "p"),
             ("p_adjusted_without", "p adjusted"),
             ("conclusion_without", "Conclusion"),
@@ -88,16 +88,46 @@ fn screened(
                 Cell::text(&with.family),
                 Cell::text(&with.contrast),
                 Cell::text(&with.scope),
-                Cell::Number(with.test.mean, 3),
+                Cell::of_sum(Some(with.test.mean), 3),
                 Cell::P(with.adjusted, 4),
                 Cell::text(with.conclusion().label()),
-                Cell::number(answered.map(|other| other.test.mean), 3),
+                Cell::of_sum(answered.map(|other| other.test.mean), 3),
                 Cell::p(answered.map(|other| other.test.sign_flip.p()), 5),
                 Cell::p(answered.map(|other| other.adjusted), 4),
                 Cell::text(answered.map_or("nobody left", |other| other.conclusion().label())),
             ]);
         }
     }
+    let blocks: [(&str, &[&str]); 2] = [
+        (
+            "With everybody",
+            &[
+                "rule",
+                "left_out",
+                "respondents",
+                "family",
+                "contrast",
+                "scope",
+                "mean",
+                "p_adjusted",
+                "conclusion",
+            ],
+        ),
+        (
+            "Without them",
+            &[
+                "rule",
+                "family",
+                "contrast",
+                "scope",
+                "mean_without",
+                "p_without",
+                "p_adjusted_without",
+                "conclusion_without",
+            ],
+        ),
+    ];
+    table.print_in_blocks(&blocks);
     table.notes.push(
         "For each rule that somebody broke, the same tests without them; the rules are under the table of respondents. Every \
          other table is with everybody."

@@ -63,3 +63,18 @@ fn degenerate_groups_are_stated_results() {
     assert_eq!(cell(&one_person[0], &b, "clustered_se"), Cell::Missing);
     assert!(model_tables(&[]).iter().all(|table| table.rows.is_empty()));
 }
+
+#[test]
+fn a_worth_that_rests_on_one_tie_has_no_error_of_clusters() {
+    let mut group = two_items(&["L", "R", "", "L"]);
+    group.items.push("c".into());
+    group.ballots.push(Ballot::new(2, 1, [0, 2], Outcome::Tie));
+    let [worths, _] = model_tables(&[group]);
+    let of = |item: &str, column: &str| cell(&worths, &[("item", item), ("model", "davidson")], column);
+    for column in ["clustered_se", "low", "high"] {
+        assert_eq!(of("c", column), Cell::Missing, "{column}");
+        assert_ne!(of("b", column), Cell::Missing, "{column}");
+    }
+    assert_eq!(of("c", "log_worth"), Cell::Number(0.0, 3));
+    assert_eq!(of("a", "clustered_se"), Cell::Number(0.0, 3));
+}

@@ -1,0 +1,104 @@
+//! How the questions are put to people.
+
+use super::whole;
+use crate::method::ConfigurationId;
+use serde::{Deserialize, Serialize};
+
+/// Which configuration of a comparison is on the left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SideRule {
+    /// Balanced within a form and over participants.
+    Balanced,
+    /// As the comparisons are listed, for everybody.
+    AsListed,
+}
+
+/// In which order a participant is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OrderRule {
+    /// Every question at every place equally often.
+    LatinSquare,
+    /// At random for each participant.
+    Shuffled,
+    /// As listed, for everybody.
+    AsListed,
+}
+
+/// What participants can read off a stimulus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ShownNames {
+    /// Code names that say nothing.
+    CodeNames,
+    /// The ids of the configurations.
+    ConfigurationIds,
+}
+
+/// How the questions are put to people.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FormsSection {
+    /// What is asked about each pair.
+    pub prompt: String,
+    /// The answers: left, no preference, right.
+    pub choices: [String; 3],
+    /// How many participants are planned.
+    #[serde(deserialize_with = "whole")]
+    pub participants: u32,
+    /// Which configuration of a comparison is on the left.
+    pub sides: SideRule,
+    /// In which order a participant is asked.
+    pub order: OrderRule,
+    /// What participants can read off a stimulus.
+    pub names: ShownNames,
+    /// Pairs of one configuration with itself in a form.
+    #[serde(deserialize_with = "whole")]
+    pub controls: u32,
+    /// Comparisons asked twice in a form, the second time with the sides swapped.
+    #[serde(deserialize_with = "whole")]
+    pub repeats: u32,
+    /// Most questions that one participant is asked, training left out.
+    #[serde(deserialize_with = "whole")]
+    pub max_questions: u32,
+    /// Pairs shown first, to learn how it works.
+    #[serde(default)]
+    pub training: Vec<TrainingSection>,
+    /// What participants agree to before they begin.
+    #[serde(default = "consent")]
+    pub consent: String,
+    /// What they are told to do.
+    #[serde(default = "instructions")]
+    pub instructions: String,
+    /// Whole-number enlargement of the pairs by the page, nearest neighbour.
+    #[serde(default = "once", deserialize_with = "whole")]
+    pub page_scale: u32,
+    /// A code or an `https://` address that participants get from the server when their last answer is saved.
+    pub completion: Option<String>,
+}
+
+fn consent() -> String {
+    "You will see pairs of moving pictures of computer-generated surfaces and say which of the two you like better. Your answers and the time they took are kept. Your name \
+     is not asked. Taking part is voluntary, and you can stop at any time by closing this page."
+        .into()
+}
+
+fn instructions() -> String {
+    "Look at both surfaces while they turn, then say which of the two you like better. There are no right or wrong answers."
+        .into()
+}
+
+fn once() -> u32 {
+    1
+}
+
+/// A pair to learn with.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainingSection {
+    /// Shown on the left.
+    pub left: ConfigurationId,
+    /// Shown on the right.
+    pub right: ConfigurationId,
+}
