@@ -1,14 +1,12 @@
 //! The signed distance to a closed triangle mesh.
 
-mod nearest;
 mod winding;
 
 use glam::Vec3;
 use mesh::topology::topology;
-use mesh::{Bounds, TriangleMesh};
+use mesh::{Bounds, NearestTriangles, TriangleMesh};
 use thiserror::Error;
 
-use self::nearest::NearestTriangles;
 use self::winding::WindingColumns;
 use super::{SAFE, ScalarField};
 
