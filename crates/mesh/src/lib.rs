@@ -1,13 +1,15 @@
 //! Triangle meshes: what a mesh is, what every triangle is worth, and what is wrong with the topology.
 //!
 //! A [`TriangleMesh`] is plain data. [`quality`] measures its triangles, [`topology`] its connections, [`repair`]
-//! closes holes, [`normals`] gives it vertex normals, and [`read_obj`], [`read_ply`] and their writers move it in
-//! and out of files. Everything is deterministic and single-threaded.
+//! closes holes, [`normals`] gives it vertex normals, [`metro`] says how far it is from another, and [`read_obj`],
+//! [`read_ply`] and their writers move it in and out of files. [`NearestTriangles`] finds the nearest triangle to a point.
+//! Everything is deterministic; only [`metro`] uses threads.
 
 mod closest_point;
 mod connectivity;
 mod corner_fans;
 pub mod distribution;
+pub mod metro;
 mod nearest;
 pub mod normals;
 mod obj;

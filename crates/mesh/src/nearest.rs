@@ -327,9 +327,9 @@ impl NearestTriangles {
             if child & LEAF != 0 {
                 let leaf = child & !LEAF;
                 let squared = self.leaves[leaf as usize].squared_distance(lanes);
-                if squared < best {
-                    (best, nearest) = (squared, leaf);
-                }
+                // Which way it goes is hard to foretell: without a branch.
+                nearest = if squared < best { leaf } else { nearest };
+                best = best.min(squared);
                 continue;
             }
             let node = &self.nodes[child as usize];
