@@ -120,7 +120,10 @@ mod vertices;
 
 pub use accuracy::{Accuracy, accuracy};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
-pub use field::{Asteroid, Gyroid, Kept, MeshDistance, MeshFieldError, ScalarField, Sphere};
+pub use field::{
+    Asteroid, Beyond, Gyroid, Kept, MeshDistance, MeshFieldError, Negated, ScalarField, Sphere, VolumeField,
+    VolumeFieldError,
+};
 pub use lattice::{Arrangement, Lattice, LatticeError};
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use sweep::{Extractor, Source};

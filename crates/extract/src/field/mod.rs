@@ -4,13 +4,17 @@ mod asteroid;
 mod asteroid_table;
 mod gyroid;
 mod mesh_distance;
+mod negated;
 mod sine;
 mod sphere;
+mod volume;
 
 pub use asteroid::Asteroid;
 pub use gyroid::Gyroid;
 pub use mesh_distance::{MeshDistance, MeshFieldError};
+pub use negated::Negated;
 pub use sphere::Sphere;
+pub use volume::{Beyond, VolumeField, VolumeFieldError};
 
 use std::any::Any;
 
@@ -77,6 +81,39 @@ pub trait ScalarField: Sync {
     /// takes lies in `kept`, which may hold what another field, or this one before, left there.
     fn prepared<'a>(&self, _kept: &'a mut Kept) -> Option<&'a dyn ScalarField> {
         None
+    }
+}
+
+impl<F: ScalarField + ?Sized> ScalarField for Box<F>
+where
+    Box<F>: Sync,
+{
+    fn sample(&self, p: Vec3) -> f32 {
+        (**self).sample(p)
+    }
+
+    fn sample_row(&self, x: &[f32], y: f32, z: f32, values: &mut [f32]) {
+        (**self).sample_row(x, y, z, values);
+    }
+
+    fn sample_after(&self, p: Vec3, before: Option<(Vec3, f32)>) -> f32 {
+        (**self).sample_after(p, before)
+    }
+
+    fn sample_row_after(&self, x: &[f32], y: f32, z: f32, values: &mut [f32], before: Option<(Vec3, f32)>) {
+        (**self).sample_row_after(x, y, z, values, before);
+    }
+
+    fn slope(&self, bounds: Bounds) -> Option<f32> {
+        (**self).slope(bounds)
+    }
+
+    fn range(&self, bounds: Bounds, value: f32) -> Option<(f32, f32)> {
+        (**self).range(bounds, value)
+    }
+
+    fn prepared<'a>(&self, kept: &'a mut Kept) -> Option<&'a dyn ScalarField> {
+        (**self).prepared(kept)
     }
 }
 
