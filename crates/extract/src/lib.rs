@@ -121,8 +121,8 @@ mod vertices;
 pub use accuracy::{Accuracy, accuracy};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
 pub use field::{
-    Asteroid, Beyond, Gyroid, Kept, MeshDistance, MeshFieldError, Negated, ScalarField, Sphere, VolumeField,
-    VolumeFieldError,
+    Asteroid, Beyond, Gyroid, Holes, Kept, MeshDistance, MeshFieldError, Negated, ScalarField, Sphere,
+    VolumeField, VolumeFieldError,
 };
 pub use lattice::{Arrangement, Lattice, LatticeError};
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};

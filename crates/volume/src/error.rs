@@ -13,7 +13,7 @@ pub struct VolumeError {
     pub file: PathBuf,
     /// What is wrong with it.
     #[source]
-    pub problem: Problem,
+    pub problem: Box<Problem>,
 }
 
 /// What is wrong. Lines count from 1.
@@ -118,7 +118,7 @@ pub enum Problem {
 
 impl Problem {
     pub(crate) fn in_file(self, file: &Path) -> VolumeError {
-        VolumeError { file: file.to_owned(), problem: self }
+        VolumeError { file: file.to_owned(), problem: Box::new(self) }
     }
 
     pub(crate) fn line(line: usize, reason: impl Into<String>) -> Self {

@@ -239,7 +239,7 @@ fn errors_name_the_file_the_line_and_the_value() {
     }
     folder.write("a.toml", "size = [1, 2, 3]\ntype = 'u8'\nspaces = 3\n");
     assert!(folder.refusal("a.toml").contains("unknown field `spaces`"), "{}", folder.refusal("a.toml"));
-    assert!(matches!(volume::read(folder.as_path(), 1).unwrap_err().problem, Problem::Ending));
+    assert!(matches!(*volume::read(folder.as_path(), 1).unwrap_err().problem, Problem::Ending));
 }
 
 #[test]
@@ -252,7 +252,7 @@ fn sizes_that_overflow_or_lie_take_no_memory() {
             folder.write("a.nrrd", [header.as_bytes(), &encoded(b"abcdefgh", encoding, "u8")].concat());
             let problem = folder.read("a.nrrd").unwrap_err().problem;
             assert!(
-                matches!(problem, Problem::TooManySamples { .. } | Problem::Truncated { .. }),
+                matches!(*problem, Problem::TooManySamples { .. } | Problem::Truncated { .. }),
                 "{problem}"
             );
         }
@@ -260,10 +260,10 @@ fn sizes_that_overflow_or_lie_take_no_memory() {
     // And a limit is a limit, before anything is read.
     folder.write("a.nrrd", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 10 10 10\nencoding: raw\n\n");
     let problem = volume::read(&folder.path("a.nrrd"), 3999).unwrap_err().problem;
-    assert!(matches!(problem, Problem::TooManySamples { limit: 999, .. }), "{problem}");
+    assert!(matches!(*problem, Problem::TooManySamples { limit: 999, .. }), "{problem}");
     let endless = format!("NRRD0004\n#{}", "-".repeat(2 << 20));
     folder.write("a.nrrd", endless);
-    assert!(matches!(folder.read("a.nrrd").unwrap_err().problem, Problem::HeaderTooLong { .. }));
+    assert!(matches!(*folder.read("a.nrrd").unwrap_err().problem, Problem::HeaderTooLong { .. }));
 }
 
 /// Every cut of a file is an error, but for the white space at the end of text.

@@ -103,9 +103,9 @@ impl VolumeField {
         if low > high {
             return Err(VolumeFieldError::NoNumbers);
         }
-        let ranges = Ranges::new(counts, &values)
-            .map_err(|_: TryReserveError| VolumeFieldError::OutOfMemory)?;
-        let fall = if high > low { high - low } else { 1.0 };
+        let ranges =
+            Ranges::new(counts, &values).map_err(|_: TryReserveError| VolumeFieldError::OutOfMemory)?;
+        let fall = if high > low { (high - low).min(f32::MAX) } else { 1.0 };
         Ok(Self { counts, values, origin: start, steps: matrix, to_index, beyond, fall, ranges })
     }
 
@@ -113,7 +113,8 @@ impl VolumeField {
     pub fn bounds(&self) -> Bounds {
         let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for corner in 0..8 {
-            let index = std::array::from_fn(|k| if corner >> k & 1 == 1 { self.counts[k] - 1 } else { 0 } as f64);
+            let index =
+                std::array::from_fn(|k| if corner >> k & 1 == 1 { self.counts[k] - 1 } else { 0 } as f64);
             let p = self.origin + self.steps * DVec3::from_array(index);
             (min, max) = (min.min(p), max.max(p));
         }
@@ -191,7 +192,8 @@ impl ScalarField for VolumeField {
             return None;
         }
         let last = DVec3::from_array(self.counts.map(|n| (n - 1) as f64));
-        let (low, high) = ((centre - half).clamp(DVec3::ZERO, last), (centre + half).clamp(DVec3::ZERO, last));
+        let (low, high) =
+            ((centre - half).clamp(DVec3::ZERO, last), (centre + half).clamp(DVec3::ZERO, last));
         let first = low.to_array().map(|v| v as usize);
         let end = high.to_array().map(|v| v.ceil() as usize);
         let (mut least, mut most) = self.ranges.of(first, end)?;
