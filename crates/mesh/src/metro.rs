@@ -222,6 +222,14 @@ impl Surface {
         Foot { position: found.position, distance: found.distance }
     }
 
+    /// Points spread over the surface by area.
+    ///
+    /// # Errors
+    /// Where `sampling` asks for what cannot be.
+    pub fn samples(&self, sampling: &Sampling) -> Result<AreaSamples<'_>, MetroError> {
+        Ok(AreaSamples::new(&self.triangles, sampling.amount.on(self.area)?, sampling.seed))
+    }
+
     /// How far this surface is from whatever `nearest` gives the distance to: from a point of this surface, and from
     /// the one that was asked for before it in the same share of the work, with its answer. The answer must not depend
     /// on the latter. `None` says that it cannot be known.
@@ -233,7 +241,7 @@ impl Surface {
         sampling: &Sampling,
         nearest: impl Fn(DVec3, Option<(DVec3, f64)>) -> Option<Foot> + Sync,
     ) -> Result<Deviation, MetroError> {
-        let samples = AreaSamples::new(&self.triangles, sampling.amount.on(self.area)?, sampling.seed);
+        let samples = self.samples(sampling)?;
         let count = samples.count();
         let faces = in_shares(count, |range| Sums::over(samples.points(range), &nearest));
         let vertices = in_shares(self.vertices.len() as u64, |range| {

@@ -3,7 +3,8 @@
 mod caps;
 mod winding;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
+use mesh::metro::Foot;
 use mesh::topology::topology;
 use mesh::{Bounds, NearestTriangles, TriangleMesh};
 use thiserror::Error;
@@ -240,6 +241,17 @@ impl ScalarField for MeshDistance {
     fn slope(&self, bounds: Bounds) -> Option<f32> {
         let is_far = || self.caps.cannot_tell_in(bounds);
         (is_sound(bounds.min) && is_sound(bounds.max) && is_far()).then_some(1.0)
+    }
+
+    /// Known for the isovalue 0 and a mesh without holes: the nearest point of its triangles.
+    fn nearest_on_isosurface(&self, p: DVec3, isovalue: f32) -> Option<Foot> {
+        let triangles = self.isosurface_triangles(isovalue).filter(|_| is_sound(p.as_vec3()))?;
+        let found = self.nearest.nearest(p, f64::INFINITY, |t| triangles[t]);
+        Some(Foot { position: found.position, distance: found.distance })
+    }
+
+    fn isosurface_triangles(&self, isovalue: f32) -> Option<&[[Vec3; 3]]> {
+        (isovalue == 0.0 && self.caps.is_empty()).then(|| self.winding.triangles())
     }
 }
 

@@ -18,8 +18,9 @@ pub use volume::{Beyond, VolumeField, VolumeFieldError};
 
 use std::any::Any;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use mesh::Bounds;
+use mesh::metro::Foot;
 
 /// A real function of space. A point is inside the solid where the value is above the isovalue.
 ///
@@ -77,6 +78,18 @@ pub trait ScalarField: Sync {
         Some((value - change, value + change))
     }
 
+    /// The nearest point to `p` of the isosurface, where the field knows it to the rounding of its coordinates. `None`
+    /// where it does not; then it has to be searched for, and what is found may be farther.
+    fn nearest_on_isosurface(&self, _p: DVec3, _isovalue: f32) -> Option<Foot> {
+        None
+    }
+
+    /// The triangles that the isosurface consists of, where it does. Some may lie inside it, where a solid overlaps
+    /// itself.
+    fn isosurface_triangles(&self, _isovalue: f32) -> Option<&[[Vec3; 3]]> {
+        None
+    }
+
     /// The same field, value by value to the bit, made ready for very many samples, where that is worth while. What it
     /// takes lies in `kept`, which may hold what another field, or this one before, left there.
     fn prepared<'a>(&self, _kept: &'a mut Kept) -> Option<&'a dyn ScalarField> {
@@ -110,6 +123,14 @@ where
 
     fn range(&self, bounds: Bounds, value: f32) -> Option<(f32, f32)> {
         (**self).range(bounds, value)
+    }
+
+    fn nearest_on_isosurface(&self, p: DVec3, isovalue: f32) -> Option<Foot> {
+        (**self).nearest_on_isosurface(p, isovalue)
+    }
+
+    fn isosurface_triangles(&self, isovalue: f32) -> Option<&[[Vec3; 3]]> {
+        (**self).isosurface_triangles(isovalue)
     }
 
     fn prepared<'a>(&self, kept: &'a mut Kept) -> Option<&'a dyn ScalarField> {

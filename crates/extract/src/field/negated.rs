@@ -1,7 +1,8 @@
 //! A field with inside and outside exchanged.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use mesh::Bounds;
+use mesh::metro::Foot;
 
 use super::ScalarField;
 
@@ -35,5 +36,13 @@ impl<F: ScalarField> ScalarField for Negated<F> {
 
     fn range(&self, bounds: Bounds, value: f32) -> Option<(f32, f32)> {
         self.0.range(bounds, -value).map(|(low, high)| (-high, -low))
+    }
+
+    fn nearest_on_isosurface(&self, p: DVec3, isovalue: f32) -> Option<Foot> {
+        self.0.nearest_on_isosurface(p, -isovalue)
+    }
+
+    fn isosurface_triangles(&self, isovalue: f32) -> Option<&[[Vec3; 3]]> {
+        self.0.isosurface_triangles(-isovalue)
     }
 }
