@@ -212,11 +212,11 @@ mod tests {
         has("  tetrahedra evaluated                     160,992  10.52 % of all");
         has("timing, ms: medians on 2 sampling threads");
         has("  vertex                                     3.000  30.0 %");
-        has("  mesh to isosurface, mean                0.000200  SD 0.000100, 0.000000 to 0.000800");
+        has("  mesh to isosurface, mean                0.000200  SD 0.000100, 0.000000 to 0.001400");
         has("    RMS                                   0.000224");
-        has("  isosurface to mesh, mean                0.000300  SD 0.000200, 0.000000 to 0.001200");
+        has("  isosurface to mesh, mean                0.000300  SD 0.000200, 0.000000 to 0.002700");
         has(
-            "  Hausdorff distance                      0.001200  0.0346 % of the volume's diagonal, 0.030 spacings",
+            "  Hausdorff distance                      0.002700  0.0779 % of the volume's diagonal, 0.068 spacings",
         );
         assert_eq!(panel.times.len(), 7);
         assert!((panel.times[2].seconds.median - 0.003).abs() < 1e-12);

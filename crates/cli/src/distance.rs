@@ -1,8 +1,11 @@
 //! How far two surfaces are from each other: `isostudy distance`.
 
 use crate::args::Distance;
-use crate::say;
+use crate::subject::Fields;
+use crate::{say, subject};
 use anyhow::{Context, Result, bail};
+use design::{Arrangement, Study};
+use extract::Execution;
 use mesh::metro::{Amount, Deviation, Metro, Sampling, Surface};
 use mesh::{MeshFormat, TriangleMesh};
 use serde::Serialize;
@@ -14,32 +17,57 @@ use std::path::Path;
 const SCHEMA: u32 = 1;
 
 /// Measures both ways and prints.
+///
+/// # Errors
+/// If a surface cannot be had or not be sampled.
 pub(crate) fn distance(arguments: &Distance) -> Result<()> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads as usize).build()?;
-    let surfaces = [&arguments.a, &arguments.b].map(|path| surface(path));
-    let [a, b] = surfaces;
-    let (a, b) = (a?, b?);
     let amount = match arguments.density {
         Some(density) => Amount::Density(density),
         None => Amount::Samples(arguments.samples),
     };
     let sampling = Sampling { amount, seed: arguments.seed };
-    let metro = pool.install(|| -> Result<Metro> {
-        let way = |from: &Surface, to: &Surface, path: &Path| {
-            from.deviation_from(to, &sampling).with_context(|| path.display().to_string())
-        };
-        Ok(Metro {
-            forward: way(&a, &b, &arguments.a)?,
-            backward: way(&b, &a, &arguments.b)?,
-            diagonal: b.diagonal(),
-        })
-    })?;
-    let names = [&arguments.a, &arguments.b].map(|path| path.display().to_string());
+    let a = surface(&arguments.a)?;
+    let (name, metro) = match (&arguments.b, &arguments.object) {
+        (Some(path), _) => (path.display().to_string(), to_mesh(arguments, &a, path, &sampling)?),
+        (None, Some(id)) => (id.clone(), to_object(arguments, &a, id, &sampling)?),
+        (None, None) => bail!("a second mesh or --object is needed"),
+    };
     if arguments.json {
-        let report = Report::new(&names, &metro, arguments.seed);
+        let report = Report::new([arguments.a.display().to_string(), name], &metro, arguments.seed);
         return say(&serde_json::to_string_pretty(&report)?);
     }
     say(text(&metro, arguments.seed).trim_end())
+}
+
+fn to_mesh(arguments: &Distance, a: &Surface, path: &Path, sampling: &Sampling) -> Result<Metro> {
+    let b = surface(path)?;
+    let way = |from: &Surface, to: &Surface, path: &Path| {
+        from.deviation_from(to, sampling).with_context(|| path.display().to_string())
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads as usize).build()?;
+    pool.install(|| {
+        let forward = way(a, &b, &arguments.a)?;
+        Ok(Metro { forward, backward: way(&b, a, path)?, diagonal: b.diagonal() })
+    })
+}
+
+/// Against the isosurface of a study's object, in the object's volume.
+fn to_object(arguments: &Distance, a: &Surface, id: &str, sampling: &Sampling) -> Result<Metro> {
+    let study = Study::load(&arguments.study)?;
+    let objects = &study.file.objects;
+    let Some(index) = objects.iter().position(|object| object.id == id) else {
+        let known: Vec<&str> = objects.iter().map(|object| object.id.as_str()).collect();
+        bail!("--object {id}: {} has {}", study.path.display(), known.join(", "));
+    };
+    let object = &objects[index];
+    let spacing = arguments.spacing.unwrap_or(object.benchmark_spacing);
+    let lattice = subject::lattice(object, Arrangement::BodyCentred, spacing)
+        .with_context(|| format!("--spacing {spacing}"))?;
+    let fields = Fields::new(&study);
+    let (field, isovalue) = (fields.get(index)?, object.isovalue as f32);
+    let execution = Execution { threads: arguments.threads as usize };
+    extract::distances(a, field, isovalue, &lattice, sampling, &execution)
+        .with_context(|| format!("{} and {id}", arguments.a.display()))
 }
 
 fn surface(path: &Path) -> Result<Surface> {
@@ -85,10 +113,14 @@ fn text(metro: &Metro, seed: u64) -> String {
 
 /// How a direction was sampled, and where its maximum is.
 fn places(way: &Deviation) -> String {
-    let sampled = format!(
+    let mut sampled = format!(
         "{} samples, {:.6} per unit of area, and {} vertices",
         way.samples, way.density, way.vertices
     );
+    if way.lost_samples + way.lost_vertices > 0 {
+        let (samples, vertices) = (way.lost_samples, way.lost_vertices);
+        sampled += &format!(" ({samples} and {vertices} without a distance)");
+    }
     way.farthest.map_or(sampled.clone(), |farthest| {
         let [from, to] =
             [farthest.from, farthest.to].map(|p| format!("({:.7}, {:.7}, {:.7})", p.x, p.y, p.z));
@@ -117,6 +149,8 @@ struct Way {
     samples: u64,
     samples_per_area: f64,
     vertices: u64,
+    lost_samples: u64,
+    lost_vertices: u64,
     mean: f64,
     rms: f64,
     max: f64,
@@ -134,11 +168,13 @@ struct Farthest {
 }
 
 impl Report {
-    fn new([a, b]: &[String; 2], metro: &Metro, seed: u64) -> Self {
+    fn new([a, b]: [String; 2], metro: &Metro, seed: u64) -> Self {
         let way = |way: &Deviation| Way {
             samples: way.samples,
             samples_per_area: way.density,
             vertices: way.vertices,
+            lost_samples: way.lost_samples,
+            lost_vertices: way.lost_vertices,
             mean: way.mean,
             rms: way.rms,
             max: way.max,
@@ -153,8 +189,8 @@ impl Report {
         };
         Self {
             schema: SCHEMA,
-            a: a.clone(),
-            b: b.clone(),
+            a,
+            b,
             seed,
             diagonal: metro.diagonal,
             hausdorff: metro.hausdorff(),

@@ -1,17 +1,18 @@
 //! How far a mesh is from the isosurface it stands for, and how far its normals are from the field's.
 
 use glam::{DVec3, Vec3};
+use mesh::TriangleMesh;
 use mesh::distribution::{Bins, Distribution};
-use mesh::metro::{AreaSamples, Foot, Surface};
-use mesh::{Bounds, TriangleMesh};
+use mesh::metro::{AreaSamples, Surface};
 use rayon::prelude::*;
 
-use crate::extraction::{ExtractError, extract};
+use crate::extraction::ExtractError;
 use crate::field::{Kept, ScalarField};
-use crate::lattice::{Arrangement, Lattice};
+use crate::isosurface::{Isosurface, REACH};
+use crate::lattice::Lattice;
 use crate::level::Level;
 use crate::sampling::{SHARE, on_threads};
-use crate::settings::{Execution, ExtractSettings};
+use crate::settings::Execution;
 
 /// Points on a mesh, and on the isosurface.
 const POINTS: u64 = 8_192;
@@ -19,10 +20,6 @@ const POINTS: u64 = 8_192;
 const SEED: u64 = 1;
 /// Most vertices that are looked at; of more, every second, third and so on.
 const VERTICES: usize = 8_192;
-/// How far a surface is looked for, in spacings.
-const REACH: f32 = 3.0;
-/// The spacing, in spacings, of the lattice on which the isosurface is looked for: finer, and with other points.
-const FINER: f32 = 0.75;
 /// The histogram of distances, in spacings.
 const FAR: f64 = 0.1;
 
@@ -72,7 +69,7 @@ impl Accuracy {
 /// The result does not depend on `execution`.
 ///
 /// # Errors
-/// As [`extract`].
+/// As [`crate::extract`].
 ///
 /// # Panics
 /// If a triangle's index is out of range, or there are more normals than vertices.
@@ -86,22 +83,26 @@ pub fn accuracy(
     let spacing = lattice.spacing();
     let triangles: Vec<[Vec3; 3]> = (0..mesh.triangles.len()).map(|t| mesh.corners(t)).collect();
     let points: Vec<DVec3> = points_on(&triangles);
-    let of_isosurface = isosurface_points(field, isovalue, lattice, execution)?;
     // Without an area there is nothing to be far from.
     let surface = Surface::try_new(mesh).ok();
 
     let mut kept = Kept::default();
     let level = Level { field: field.prepared(&mut kept).unwrap_or(field), isovalue, spacing };
+    let isosurface = Isosurface::new(field, level, lattice, execution)?;
+    let beyond = points_on(&isosurface.triangles);
     let every = mesh.normals.len().div_ceil(VERTICES).max(1);
     let vertices: Vec<usize> = (0..mesh.normals.len()).step_by(every).collect();
     let most = (POINTS as usize).max(VERTICES) / SHARE;
     let (there, back, angles): (Vec<_>, Vec<_>, Vec<_>) = on_threads(execution, most, || {
-        let distance = |&p: &DVec3| foot(field, &level, p).map(|foot| foot.distance);
-        let to_mesh = |&p: &DVec3| surface.as_ref().map(|surface| surface.nearest(p, f64::INFINITY).distance);
+        let distance = |&p: &DVec3| isosurface.foot(p).map(|foot| foot.distance);
+        let to_mesh = |&p: &DVec3| {
+            let (surface, p) = (surface.as_ref()?, isosurface.point(p)?);
+            Some(surface.nearest(p, f64::INFINITY).distance)
+        };
         let angle = |&v: &usize| normal_error_deg(&level, mesh.positions[v], mesh.normals[v]);
         (
             points.par_iter().map(distance).collect(),
-            of_isosurface.par_iter().map(to_mesh).collect(),
+            beyond.par_iter().map(to_mesh).collect(),
             vertices.par_iter().map(angle).collect(),
         )
     })?;
@@ -121,45 +122,6 @@ pub fn accuracy(
 fn points_on(triangles: &[[Vec3; 3]]) -> Vec<DVec3> {
     let samples = AreaSamples::new(triangles, POINTS, SEED);
     samples.points(0..samples.count()).collect()
-}
-
-/// The nearest point of the isosurface, or where the gradient leads.
-fn foot(field: &dyn ScalarField, level: &Level, p: DVec3) -> Option<Foot> {
-    field.nearest_on_isosurface(p, level.isovalue).or_else(|| {
-        let foot = level.foot(p.as_vec3(), REACH * level.spacing)?;
-        Some(Foot { position: foot.position.as_dvec3(), distance: foot.distance })
-    })
-}
-
-/// Points of the isosurface in the lattice's box, evenly over its area.
-fn isosurface_points(
-    field: &dyn ScalarField,
-    isovalue: f32,
-    lattice: &Lattice,
-    execution: &Execution,
-) -> Result<Vec<DVec3>, ExtractError> {
-    let bounds = lattice.bounds();
-    let mut points = match field.isosurface_triangles(isovalue) {
-        Some(triangles) => points_on(triangles),
-        None => {
-            let finer = Lattice::try_new(Arrangement::BodyCentred, bounds, FINER * lattice.spacing());
-            let finer = finer.unwrap_or_else(|_| lattice.clone());
-            let settings = ExtractSettings { isovalue, ..ExtractSettings::default() };
-            let found = extract(field, &finer, &settings, execution)?.mesh;
-            let triangles: Vec<[Vec3; 3]> = (0..found.triangles.len()).map(|t| found.corners(t)).collect();
-            let level = Level { field, isovalue, spacing: lattice.spacing() };
-            let moved = |p: DVec3| Some(foot(field, &level, p)?.position);
-            points_on(&triangles).into_iter().filter_map(moved).collect()
-        }
-    };
-    points.retain(|&p| holds(bounds, p));
-    Ok(points)
-}
-
-/// Whether a point is in a box, up to rounding.
-fn holds(bounds: Bounds, p: DVec3) -> bool {
-    let slack = 1e-6 * bounds.size().as_dvec3();
-    p.cmpge(bounds.min.as_dvec3() - slack).all() && p.cmple(bounds.max.as_dvec3() + slack).all()
 }
 
 /// The angle between `normal` and the outward direction at the foot of `p`.

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use extract::{
-    Accuracy, Arrangement, Asteroid, Execution, ExtractSettings, Lattice, MeshDistance, ScalarField, Sphere,
-    accuracy, extract,
+    Accuracy, Arrangement, Asteroid, DistanceError, Execution, ExtractSettings, Lattice, MeshDistance,
+    ScalarField, Sphere, accuracy, distances, extract,
 };
 use glam::{Vec3, vec3};
-use mesh::metro::{Amount, Sampling, metro};
+use mesh::metro::{Amount, MetroError, Sampling, Surface, metro};
 use mesh::{Bounds, TriangleMesh};
 
 const THREADS: Execution = Execution { threads: 2 };
@@ -245,6 +245,38 @@ fn a_mesh_as_field_is_measured_both_ways_as_two_meshes_are() {
         assert!((found.rms() / want.rms - 1.0).abs() < 0.02, "{} is not {}", found.rms(), want.rms);
         assert!(found.max <= want.max + 1e-6, "{} is above {}", found.max, want.max);
     }
+}
+
+#[test]
+fn distances_name_the_places() {
+    // The sphere without what is beyond x = 0.6: from the missing pole to the rim at x = 0.6.
+    let whole = sphere_mesh(5).transformed(|p| p * 0.8);
+    let is_kept = |t: &&[u32; 3]| t.iter().all(|&v| whole.positions[v as usize].x <= 0.6);
+    let cut = TriangleMesh {
+        triangles: whole.triangles.iter().filter(is_kept).copied().collect(),
+        ..whole.clone()
+    };
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    let lattice = Lattice::try_new(Arrangement::SimpleCubic, bounds, 0.05).unwrap();
+    let sampling = Sampling { amount: Amount::Samples(20_000), seed: 3 };
+    let surface = Surface::try_new(&cut).unwrap();
+    for field in [&Sphere { radius: 0.8 } as &dyn ScalarField, &Ball { radius: 0.8 }] {
+        let run =
+            |threads| distances(&surface, field, 0.0, &lattice, &sampling, &Execution { threads }).unwrap();
+        let found = run(1);
+        assert!(found.forward.max < 3e-4 && found.forward.lost_samples == 0);
+        // The rim is where the chord has the height 0.6; triangles end up to an edge, 0.03, before it.
+        let want = f64::sqrt(2.0 * 0.8 * (0.8 - 0.6));
+        assert!((0.0..0.04).contains(&(found.backward.max - want)), "{}", found.backward.max);
+        let farthest = found.backward.farthest.unwrap();
+        assert!(farthest.from.distance(glam::dvec3(0.8, 0.0, 0.0)) < 0.05, "{}", farthest.from);
+        assert!((farthest.from.length() - 0.8).abs() < 1e-6, "moved to the isosurface");
+        assert!((farthest.to.x - 0.59).abs() < 0.03, "{}", farthest.to);
+        assert!((found.diagonal - 1.6 * f64::sqrt(3.0)).abs() < 0.01);
+        assert_eq!(run(2), found);
+    }
+    let nothing = distances(&surface, &Sphere { radius: 0.8 }, 0.9, &lattice, &sampling, &THREADS);
+    assert_eq!(nothing, Err(DistanceError::Isosurface(MetroError::Empty)));
 }
 
 #[test]
