@@ -265,9 +265,9 @@ fn distances_name_the_places() {
             |threads| distances(&surface, field, 0.0, &lattice, &sampling, &Execution { threads }).unwrap();
         let found = run(1);
         assert!(found.forward.max < 3e-4 && found.forward.lost_samples == 0);
-        // The rim is where the chord has the height 0.6; triangles end up to an edge, 0.03, before it.
+        // To the rim at x = 0.6. Triangles end up to an edge, 0.03, before it; the next sample to the pole may be 0.02 off.
         let want = f64::sqrt(2.0 * 0.8 * (0.8 - 0.6));
-        assert!((0.0..0.04).contains(&(found.backward.max - want)), "{}", found.backward.max);
+        assert!((-0.02..0.03).contains(&(found.backward.max - want)), "{}", found.backward.max);
         let farthest = found.backward.farthest.unwrap();
         assert!(farthest.from.distance(glam::dvec3(0.8, 0.0, 0.0)) < 0.05, "{}", farthest.from);
         assert!((farthest.from.length() - 0.8).abs() < 1e-6, "moved to the isosurface");
