@@ -101,10 +101,12 @@ mod accuracy;
 mod bracket;
 mod clusters;
 mod collapse;
+mod distances;
 mod edges;
 mod extraction;
 mod field;
 mod guard;
+mod isosurface;
 mod lattice;
 mod level;
 mod memory;
@@ -119,8 +121,12 @@ mod triangles;
 mod vertices;
 
 pub use accuracy::{Accuracy, accuracy};
+pub use distances::{DistanceError, distances};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
-pub use field::{Asteroid, Gyroid, Kept, MeshDistance, MeshFieldError, ScalarField, Sphere};
+pub use field::{
+    Asteroid, Beyond, Gyroid, Holes, Kept, MeshDistance, MeshFieldError, Negated, ScalarField, Sphere,
+    VolumeField, VolumeFieldError,
+};
 pub use lattice::{Arrangement, Lattice, LatticeError};
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use sweep::{Extractor, Source};
