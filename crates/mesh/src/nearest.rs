@@ -282,9 +282,19 @@ impl NearestTriangles {
         self.search(p, f32::INFINITY).0.sqrt()
     }
 
-    /// The same to the bit, and quicker where it is thought to be below `limit`.
-    pub fn distance_within(&self, p: Vec3, limit: f32) -> f32 {
-        self.search_within(p, limit).0.sqrt()
+    /// The same to the bit, and quicker where it is thought to be below `limit` and where the nearest triangle is near that of
+    /// another search: `from` is where that ended, any number at first, and then where this one did.
+    pub fn distance_from(&self, p: Vec3, limit: f32, from: &mut u32) -> f32 {
+        let begin = (*from).min(self.leaves.len() as u32 - 1);
+        let known = self.leaves[begin as usize].squared_distance(Lanes::splat(p));
+        let limit = known.min(limit * limit);
+        let mut found = self.search(p, limit);
+        if found.0 >= limit {
+            // Nothing was nearer than the limit: it was too tight, or the nearest is where the search began.
+            found = if known <= limit { (known, begin) } else { self.search(p, f32::INFINITY) };
+        }
+        *from = found.1;
+        found.0.sqrt()
     }
 
     /// The nearest point to `p` of the triangles that the tree was built from, which `corners` gives by number; quicker
@@ -388,9 +398,15 @@ mod tests {
             let triangles: Vec<_> = triangles.into_iter().map(|(a, u, v)| [a, a + u, a + v]).collect();
             let tree = NearestTriangles::new(&triangles);
             let near = on_triangles.iter().map(|(i, shift)| i.get(&triangles).iter().sum::<Vec3>() / 3.0 + *shift);
+            let mut from = u32::MAX;
             for p in points.into_iter().chain(near) {
                 let all = tree.leaves.iter().map(|leaf| leaf.squared_distance(Lanes::splat(p)));
-                prop_assert_eq!(tree.distance(p).to_bits(), all.fold(f32::INFINITY, f32::min).sqrt().to_bits());
+                let want = all.fold(f32::INFINITY, f32::min).sqrt();
+                prop_assert_eq!(tree.distance(p).to_bits(), want.to_bits());
+                // Whatever is thought of the distance, and wherever the search before ended.
+                for limit in [f32::INFINITY, 1.1 * want, want, 0.9 * want, 0.0] {
+                    prop_assert_eq!(tree.distance_from(p, limit, &mut from).to_bits(), want.to_bits());
+                }
             }
         }
 

@@ -193,6 +193,27 @@ impl MeshDistance {
     }
 }
 
+impl MeshDistance {
+    /// The value at `p`. The search starts where another ended, from the distance that the nearby value leaves possible,
+    /// and the side is known where no surface can be between.
+    fn sample_from(&self, p: Vec3, before: Option<(Vec3, f32)>, from: &mut u32) -> f32 {
+        // Near a hole a value is less than a distance.
+        if !is_sound(p) || !self.caps.is_empty() {
+            return self.sample(p);
+        }
+        let before = before.filter(|(_, value)| value.is_finite());
+        let limit = before.map_or(f32::INFINITY, |(q, value)| {
+            (value.abs() + p.distance(q)) * SAFE + 1e-6 * p.abs().max_element()
+        });
+        let distance = self.nearest.distance_from(p, limit, from);
+        let is_inside = match before {
+            Some((q, value)) if p.distance(q) * SAFE < value.abs() => value > 0.0,
+            _ => self.winding.at(p) > 0,
+        };
+        if is_inside { distance } else { -distance }
+    }
+}
+
 impl ScalarField for MeshDistance {
     /// `NaN`, which counts as outside, where `p` is beyond the limit for coordinates or no point at all.
     fn sample(&self, p: Vec3) -> f32 {
@@ -206,7 +227,7 @@ impl ScalarField for MeshDistance {
         self.sample_row_after(x, y, z, values, None);
     }
 
-    /// Each search starts from the distance before.
+    /// Each search starts where the one before ended.
     fn sample_row_after(
         &self,
         x: &[f32],
@@ -215,26 +236,16 @@ impl ScalarField for MeshDistance {
         values: &mut [f32],
         mut before: Option<(Vec3, f32)>,
     ) {
+        let mut from = 0;
         for (value, &x) in values.iter_mut().zip(x) {
             let p = Vec3::new(x, y, z);
-            *value = self.sample_after(p, before);
+            *value = self.sample_from(p, before, &mut from);
             before = Some((p, *value));
         }
     }
 
-    /// The search starts from the distance that the nearby value leaves possible, and the side is known where no
-    /// surface can be between.
     fn sample_after(&self, p: Vec3, before: Option<(Vec3, f32)>) -> f32 {
-        // Near a hole a value is less than a distance.
-        let is_distance = |value: f32| value.is_finite() && self.caps.is_empty();
-        let Some((q, value)) = before.filter(|&(_, value)| is_sound(p) && is_distance(value)) else {
-            return self.sample(p);
-        };
-        let step = p.distance(q);
-        let distance =
-            self.nearest.distance_within(p, (value.abs() + step) * SAFE + 1e-6 * p.abs().max_element());
-        let is_inside = if step * SAFE < value.abs() { value > 0.0 } else { self.winding.at(p) > 0 };
-        if is_inside { distance } else { -distance }
+        self.sample_from(p, before, &mut 0)
     }
 
     /// A distance changes no faster than one goes; nothing is known near a hole.
