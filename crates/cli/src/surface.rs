@@ -274,9 +274,7 @@ fn from_mesh(path: &Path, allow_open: bool) -> Result<(MeshDistance, TriangleMes
                 eprintln!("{}: {open}", path.display());
                 holes = Holes::Span;
             }
-            Err(open @ MeshFieldError::Open { .. }) => {
-                return Err(open).context("--allow-open takes it nevertheless");
-            }
+            Err(open @ MeshFieldError::Open { .. }) => bail!("{open}; --allow-open takes it nevertheless"),
             Err(MeshFieldError::InsideOut { volume }) if volume < 0.0 => {
                 eprintln!("{}: its triangles face inward: turned round", path.display());
                 mesh = repair::flip(&mesh);
