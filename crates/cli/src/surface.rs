@@ -66,10 +66,10 @@ pub(crate) struct Extract {
     #[arg(long, value_name = "NAME", default_value = "integrated", value_parser = named::<Clustering>, conflicts_with = "study")]
     clustering: Clustering,
     /// Close the surface where it leaves the volume
-    #[arg(long, requires = "volume")]
+    #[arg(long, conflicts_with_all = ["study", "field", "mesh"])]
     close: bool,
     /// Take a mesh with holes: inside is what is seen from behind in most directions
-    #[arg(long, requires = "mesh")]
+    #[arg(long, conflicts_with_all = ["study", "field", "volume"])]
     allow_open: bool,
     /// Mesh to write, .obj, .ply, .stl or .glb; of a study, the folder for results [default: results/<study id>]
     #[arg(long, short, value_name = "FILE", required_unless_present = "study")]
@@ -87,10 +87,10 @@ pub(crate) struct Extract {
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1024))]
     threads: u32,
     /// Of a study, redo what is up to date as well
-    #[arg(long, requires = "study")]
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh"])]
     force: bool,
     /// Of a study, only these configurations, such as ss_bi [default: all]
-    #[arg(long, value_name = "ID", value_delimiter = ',', requires = "study")]
+    #[arg(long, value_name = "ID", value_delimiter = ',', conflicts_with_all = ["field", "volume", "mesh"])]
     only: Vec<String>,
 }
 
