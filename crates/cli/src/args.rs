@@ -16,8 +16,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Do everything: meshes, animations, short benchmark, tables, figures, index.html
     Study(Run),
-    /// Extract the meshes and measure them
-    Extract(Selection),
+    /// Extract a surface from a formula, a volume or a mesh; or, given a study, the study's meshes, and measure them
+    Extract(crate::surface::Extract),
     /// Render the turntable animations
     Turntable(Selection),
     /// Compose the side-by-side pairs and write the key
@@ -187,6 +187,7 @@ pub(crate) struct Run {
     pub(crate) threads: u32,
 }
 
+/// Some of a study's configurations.
 #[derive(Debug, Args)]
 pub(crate) struct Selection {
     #[command(flatten)]

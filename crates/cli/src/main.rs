@@ -15,6 +15,7 @@ mod records;
 mod rooms;
 mod store;
 mod subject;
+mod surface;
 mod video;
 
 use anyhow::{Context, Result};
@@ -54,10 +55,13 @@ fn run(command: Command) -> Result<Outcome> {
     match command {
         Command::Study(run) => return with_page(&run, |pipeline| pipeline.study()),
         Command::Report(run) => return with_page(&run, |pipeline| pipeline.report()),
-        Command::Extract(selection) => with_selection(&selection, |pipeline, only, out| {
-            pipeline.all_meshes(only)?;
-            say(&out.join("meshes").display().to_string())
-        }),
+        Command::Extract(arguments) => match arguments.of_study() {
+            Some(selection) => with_selection(&selection, |pipeline, only, out| {
+                pipeline.all_meshes(only)?;
+                say(&out.join("meshes").display().to_string())
+            }),
+            None => surface::extract(&arguments),
+        },
         Command::Turntable(selection) => with_selection(&selection, |pipeline, only, out| {
             let meshes = pipeline.stimulus_meshes(only)?;
             pipeline.turntables(&meshes, only)?;

@@ -109,6 +109,11 @@ impl VolumeField {
         Ok(Self { counts, values, origin: start, steps: matrix, to_index, beyond, fall, ranges })
     }
 
+    /// The same with something else beyond the outermost samples.
+    pub fn with_beyond(self, beyond: Beyond) -> Self {
+        Self { beyond, ..self }
+    }
+
     /// The smallest box round all samples; none wider than `f32` can tell from a point.
     pub fn bounds(&self) -> Bounds {
         let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);

@@ -34,17 +34,17 @@ impl Ranges {
     /// The range of the samples from `first` to `last`, both included, or of some more.
     pub(super) fn of(&self, first: [usize; 3], last: [usize; 3]) -> Option<(f32, f32)> {
         // A brick holds the samples at both of its ends.
-        let mut low = first.map(|i| i / BRICK);
-        let mut high: [usize; 3] = std::array::from_fn(|k| (last[k].max(first[k] + 1) - 1) / BRICK);
+        let mut low: [usize; 3] = std::array::from_fn(|k| (first[k] / BRICK).min(self.0[0].counts[k] - 1));
+        let mut high: [usize; 3] = std::array::from_fn(|k| low[k].max(last[k].saturating_sub(1) / BRICK));
         let mut level = 0;
-        while (0..3).any(|k| high[k] - low[k] > 2) {
+        while (0..3).any(|k| high[k] > low[k] + 2) {
             (low, high, level) = (low.map(|i| i / 2), high.map(|i| i / 2), level + 1);
         }
         let Level { counts, bricks } = &self.0[level];
         let mut range = [f32::INFINITY, f32::NEG_INFINITY];
-        for z in low[2]..=high[2].min(counts[2] - 1) {
-            for y in low[1]..=high[1].min(counts[1] - 1) {
-                for x in low[0]..=high[0].min(counts[0] - 1) {
+        for z in low[2]..=high[2] {
+            for y in low[1]..=high[1] {
+                for x in low[0]..=high[0] {
                     range = union(range, bricks[x + counts[0] * (y + counts[1] * z)]);
                 }
             }
