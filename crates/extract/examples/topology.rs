@@ -57,7 +57,7 @@ fn row(
         "{name:9} {:8} {:19} {:10} {:6} {:6} {:.4} {slivers:5} {:.4} {:8} {:9} {:4} {:5.1}",
         match arrangement {
             Arrangement::BodyCentred => "body",
-            Arrangement::SimpleCubic => "simple",
+            _ => "simple",
         },
         format!("{clustering:?}"),
         format!("{guard:?}"),

@@ -99,6 +99,7 @@ mod survey;
 
 mod accuracy;
 mod bracket;
+mod chunks;
 mod clusters;
 mod collapse;
 mod edges;
@@ -112,15 +113,19 @@ mod normals;
 mod placement;
 mod sampling;
 mod settings;
+mod split;
 mod stored;
 mod sweep;
 mod tetrahedra;
+mod trace;
 mod triangles;
 mod vertices;
 
 pub use accuracy::{Accuracy, accuracy};
+pub use chunks::{Chunk, ChunkError, ChunkExtractor, WeldError, weld};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
 pub use field::{Asteroid, Gyroid, Kept, MeshDistance, MeshFieldError, ScalarField, Sphere};
-pub use lattice::{Arrangement, Lattice, LatticeError};
+pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use sweep::{Extractor, Source};
+pub use trace::VertexKey;
