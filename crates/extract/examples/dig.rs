@@ -16,6 +16,8 @@ use mesh::Bounds;
 struct Dug<'a> {
     solid: &'a dyn ScalarField,
     holes: Vec<Ball>,
+    /// No value is above this one.
+    deepest: f32,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -37,22 +39,22 @@ impl Ball {
     }
 }
 
-/// Values farther inside than this are cut off: nothing else is known there, so an edit changes the field only near by.
-const DEEPEST: f32 = 0.05;
+/// Values farther inside than this many spacings are cut off, so that an edit changes the field near by and nowhere else.
+const DEEPEST: f32 = 2.0;
 
 impl ScalarField for Dug<'_> {
     fn sample(&self, p: Vec3) -> f32 {
-        self.holes.iter().fold(self.solid.sample(p).min(DEEPEST), |value, hole| value.min(hole.value(p)))
+        self.holes.iter().fold(self.solid.sample(p).min(self.deepest), |value, hole| value.min(hole.value(p)))
     }
 
     /// So that the solid's own way of sampling a row is used, and only holes that can matter to it.
     fn sample_row(&self, x: &[f32], y: f32, z: f32, values: &mut [f32]) {
         self.solid.sample_row(x, y, z, values);
-        values.iter_mut().for_each(|value| *value = value.min(DEEPEST));
+        values.iter_mut().for_each(|value| *value = value.min(self.deepest));
         let (Some(&first), Some(&last)) = (x.first(), x.last()) else { return };
         for hole in &self.holes {
             let near = hole.centre.clamp(Vec3::new(first, y, z), Vec3::new(last, y, z));
-            if hole.value(near) < DEEPEST {
+            if hole.value(near) < self.deepest {
                 for (value, &x) in values.iter_mut().zip(x) {
                     *value = value.min(hole.value(Vec3::new(x, y, z)));
                 }
@@ -73,7 +75,7 @@ impl ScalarField for Dug<'_> {
                 // The solid's own value there: the one that is known is after digging.
                 self.solid.range(bounds, if value.is_nan() { value } else { self.solid.sample(centre) })
             })?;
-        let cut = (low.min(DEEPEST), high.min(DEEPEST));
+        let cut = (low.min(self.deepest), high.min(self.deepest));
         Some(self.holes.iter().fold(cut, |(low, high), hole| {
             let near = hole.centre.clamp(bounds.min, bounds.max);
             let far = (hole.centre - bounds.min).abs().max((hole.centre - bounds.max).abs());
@@ -101,7 +103,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let (asteroid, mut kept) = (Asteroid::default(), Kept::default());
     let solid = asteroid.prepared(&mut kept).unwrap_or(&asteroid);
-    let mut field = Dug { solid, holes: Vec::new() };
+    let mut field = Dug { solid, holes: Vec::new(), deepest: DEEPEST * lattice.spacing() };
     let mut extractor = ChunkExtractor::try_new(&lattice, &settings)?;
     let boxes: Vec<_> = extractor.grid(chunk_cells).collect();
     let start = Instant::now();
@@ -120,7 +122,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for edit in 0..edits {
         let hole = Ball { centre: on_surface(solid, edit), radius: 0.06 };
         field.holes.push(hole);
-        let changed = hole.reach(DEEPEST);
+        let changed = hole.reach(field.deepest);
         let start = Instant::now();
         for chunk in chunks.iter_mut().filter(|chunk| chunk.is_touched_by(changed)) {
             let start = Instant::now();

@@ -140,6 +140,9 @@ impl ChunkExtractor {
         let unmerged = match self.settings.clustering {
             Clustering::None | Clustering::Integrated => {
                 let window = cells.grown(self.halo(), &whole);
+                if self.is_on_one_side(source, window) {
+                    return Ok(self.empty(cells, window));
+                }
                 self.extract_window(source, window, self.settings.clustering, execution)?;
                 return Ok(self.part(cells, window)?);
             }
@@ -155,6 +158,22 @@ impl ChunkExtractor {
             }
             margin = margin.saturating_mul(2);
         }
+    }
+
+    /// Whether the field says that no surface is in a window. What the sweep would find out, without its preparations.
+    fn is_on_one_side(&self, source: Source, window: CellBox) -> bool {
+        let Source::Field(field) = source else { return false };
+        let bounds = self.lattice.window(window).sampled_bounds();
+        // Some fields can tell without a value.
+        let range = field.range(bounds, f32::NAN).and_then(|(low, high)| {
+            let needs_value = low.is_nan() || high.is_nan();
+            if needs_value {
+                field.range(bounds, field.sample((bounds.min + bounds.max) * 0.5))
+            } else {
+                Some((low, high))
+            }
+        });
+        range.is_some_and(|(low, high)| low > self.settings.isovalue || high <= self.settings.isovalue)
     }
 
     /// How many cells beyond a triangle's own its vertices and their normals depend on: a vertex of a cell is one of its
