@@ -150,6 +150,8 @@ pub(crate) fn lattice(object: &ObjectSection, arrangement: Arrangement, spacing:
     let arrangement = match arrangement {
         Arrangement::BodyCentred => extract::Arrangement::BodyCentred,
         Arrangement::SimpleCubic => extract::Arrangement::SimpleCubic,
+        Arrangement::FiveTetrahedra => extract::Arrangement::FiveTetrahedra,
+        Arrangement::FaceCentred => extract::Arrangement::FaceCentred,
     };
     Ok(Lattice::try_new(arrangement, bounds, spacing as f32)?)
 }
@@ -265,6 +267,8 @@ pub(crate) fn check_memory(
         let arrangement = match lattice.arrangement() {
             extract::Arrangement::BodyCentred => Arrangement::BodyCentred,
             extract::Arrangement::SimpleCubic => Arrangement::SimpleCubic,
+            extract::Arrangement::FiveTetrahedra => Arrangement::FiveTetrahedra,
+            extract::Arrangement::FaceCentred => Arrangement::FaceCentred,
         };
         bail!("the {} lattice needs {needed}, {limit_name} {limit}", arrangement.label());
     }

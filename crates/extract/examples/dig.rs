@@ -32,9 +32,9 @@ impl Ball {
         p.distance(self.centre) - self.radius
     }
 
-    /// Beyond this box, digging the ball out of a distance-like field below `deepest` changes nothing.
+    /// Beyond this box, digging the ball out of a field below `deepest` changes nothing, rounding included.
     fn reach(&self, deepest: f32) -> Bounds {
-        let reach = Vec3::splat(self.radius + deepest);
+        let reach = Vec3::splat((self.radius + deepest) * 1.001);
         Bounds { min: self.centre - reach, max: self.centre + reach }
     }
 }
@@ -126,7 +126,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let start = Instant::now();
         for chunk in chunks.iter_mut().filter(|chunk| chunk.is_touched_by(changed)) {
             let start = Instant::now();
-            *chunk = extractor.extract(Source::Field(&field), chunk.cells, &execution)?;
+            // Of all holes only those near by, so that old edits cost nothing.
+            let near = |hole: &&Ball| chunk.is_touched_by(hole.reach(field.deepest));
+            let holes = field.holes.iter().filter(near).copied().collect();
+            let local = Dug { holes, ..field };
+            *chunk = extractor.extract(Source::Field(&local), chunk.cells, &execution)?;
             of_chunk.push(start.elapsed().as_secs_f64() * 1e3);
             touched += 1;
         }
