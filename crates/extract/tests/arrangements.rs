@@ -104,10 +104,11 @@ fn area_and_volume_converge_at_second_order() {
             let mesh = run(&Sphere { radius: radius as f32 }, &lattice, Clustering::None).mesh;
             [exact[0] - mesh.area(), exact[1] - mesh.volume()]
         });
-        for of in 0..2 {
-            assert!(shortfall[2][of] > 0.0, "{arrangement:?}: inside a convex surface");
-            for level in 0..2 {
-                let ratio = shortfall[level][of] / shortfall[level + 1][of];
+        for of in [0, 1] {
+            let shortfall = shortfall.map(|both| both[of]);
+            assert!(shortfall[2] > 0.0, "{arrangement:?}: inside a convex surface");
+            for pair in shortfall.windows(2) {
+                let ratio = pair[0] / pair[1];
                 assert!((3.7..4.3).contains(&ratio), "{arrangement:?}: {ratio}");
             }
         }

@@ -12,6 +12,7 @@ use std::time::Instant;
 
 use glam::Vec3;
 use mesh::TriangleMesh;
+use rayon::prelude::*;
 
 use self::cut::Cut;
 use self::points::Points;
@@ -66,10 +67,12 @@ pub(crate) fn extract(
                     field.sample_row(&coordinates.x, coordinates.y[y], coordinates.z[z], row);
                 }
             };
-            on_threads(execution, nz, || {
-                use rayon::prelude::*;
-                called.par_chunks_exact_mut(nx * ny).enumerate().for_each(layer);
-            })?;
+            match execution.threads {
+                1 => called.chunks_exact_mut(nx * ny).enumerate().for_each(layer),
+                _ => on_threads(execution, nz, || {
+                    called.par_chunks_exact_mut(nx * ny).enumerate().for_each(layer);
+                })?,
+            }
             called.as_slice()
         }
         Source::Samples(samples) => samples,
