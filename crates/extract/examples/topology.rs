@@ -18,13 +18,16 @@ fn main() {
     let objects: [(&str, &dyn ScalarField); 2] =
         [("sphere", &Sphere { radius: 1.0 }), ("asteroid", &Asteroid::default())];
     for (name, field) in objects {
-        for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
+        for arrangement in Arrangement::ALL {
             for clustering in [
                 Clustering::None,
                 Clustering::Integrated,
                 Clustering::EdgeCollapse,
                 Clustering::IntegratedCollapse,
-            ] {
+            ]
+            .into_iter()
+            .filter(|&clustering| arrangement.supports(clustering))
+            {
                 for guard in [Topology::Published, Topology::Guarded] {
                     row(name, field, arrangement, clustering, guard);
                 }
@@ -57,7 +60,9 @@ fn row(
         "{name:9} {:8} {:19} {:10} {:6} {:6} {:.4} {slivers:5} {:.4} {:8} {:9} {:4} {:5.1}",
         match arrangement {
             Arrangement::BodyCentred => "body",
-            _ => "simple",
+            Arrangement::SimpleCubic => "simple",
+            Arrangement::FiveTetrahedra => "five",
+            Arrangement::FaceCentred => "face",
         },
         format!("{clustering:?}"),
         format!("{guard:?}"),

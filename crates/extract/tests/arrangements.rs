@@ -151,26 +151,30 @@ fn a_symmetric_field_has_a_symmetric_mesh() {
 
 #[test]
 fn vertices_stand_on_the_surface_where_the_field_is_called() {
-    let (field, spacing) = (Gyroid::default(), 0.09);
+    let (field, spacing) = (Gyroid::default(), 0.03);
     for arrangement in BY_CUBES {
         let lattice = Lattice::try_new(arrangement, CUBE, spacing).unwrap();
-        let mean_off = |settings: ExtractSettings| {
+        // Of the vertex in the middle: some of the others stay, lest a sliver turn over.
+        let median_off = |settings: ExtractSettings| {
             let extraction = extract(&field, &lattice, &settings, &ONE).unwrap();
-            let values = extraction.mesh.positions.iter().map(|&p| field.sample(p).abs());
-            (extraction.mesh.triangles, values.sum::<f32>() / extraction.mesh.positions.len() as f32)
+            let positions = &extraction.mesh.positions;
+            let mut values: Vec<f32> = positions.iter().map(|&p| field.sample(p).abs()).collect();
+            values.sort_unstable_by(f32::total_cmp);
+            let median = values[values.len() / 2];
+            (extraction.mesh.triangles, median)
         };
         let plain = settings(Clustering::None);
-        let (triangles, interpolated) = mean_off(plain);
+        let (triangles, interpolated) = median_off(plain);
         let projected = ExtractSettings { placement: Placement::Projected, ..plain };
         let refined = ExtractSettings { refine_crossings: true, ..plain };
         for better in [projected, refined] {
-            let (same, off) = mean_off(better);
+            let (same, off) = median_off(better);
             assert_eq!(same, triangles, "{arrangement:?}: vertices move, triangles stay");
-            assert!(off < 0.75 * interpolated, "{arrangement:?}: {off} of {interpolated}");
+            assert!(off < 0.1 * interpolated, "{arrangement:?}: {off} of {interpolated}");
         }
         // The weighted mean of one crossing is the crossing.
         let weighted = ExtractSettings { placement: Placement::CurvatureWeighted, ..plain };
-        assert!((mean_off(weighted).1 - interpolated).abs() < 1e-5);
+        assert!((median_off(weighted).1 - interpolated).abs() < 1e-5);
     }
 }
 
