@@ -29,7 +29,8 @@ const NOWHERE: u32 = u32::MAX;
 ///
 /// ```
 /// use extract::{Arrangement, ChunkExtractor, Execution, ExtractSettings, Lattice, ScalarField, Sphere, extract, weld};
-/// # /// # use mesh::Bounds;
+/// # use glam::Vec3;
+/// # use mesh::Bounds;
 /// # let bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) };
 /// let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.05)?;
 /// let (settings, execution) = (ExtractSettings::default(), Execution::default());
