@@ -42,6 +42,8 @@ pub(crate) enum Command {
     Validate(Validate),
     /// Extract one configuration and print what there is to know of it
     Inspect(Inspect),
+    /// Measure how far two meshes are from each other: Hausdorff, mean and RMS, both ways
+    Distance(Distance),
     /// Judge a questionnaire before anyone answers, and deal its forms
     #[command(subcommand)]
     Design(Design),
@@ -401,6 +403,29 @@ pub(crate) struct Inspect {
     #[arg(long, value_name = "N", default_value_t = 11, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) iterations: u32,
     /// Threads in the sampling stage; 0 takes every core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..=1024))]
+    pub(crate) threads: u32,
+    /// Print JSON instead
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Distance {
+    /// Mesh: .obj, .ply or .stl
+    pub(crate) a: PathBuf,
+    /// Mesh to compare it with; its bounding box is the yardstick
+    pub(crate) b: PathBuf,
+    /// Samples on each mesh, spread over its area; its vertices come on top
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..=mesh::metro::MOST_SAMPLES))]
+    pub(crate) samples: u64,
+    /// Samples per unit of area, instead of a number for each mesh
+    #[arg(long, value_name = "N", conflicts_with = "samples")]
+    pub(crate) density: Option<f64>,
+    /// Seed of the samples' places; the same seed gives the same numbers on any number of threads
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Threads to work with; 0 takes every core
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..=1024))]
     pub(crate) threads: u32,
     /// Print JSON instead

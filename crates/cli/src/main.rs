@@ -4,6 +4,7 @@ mod answers;
 mod args;
 mod asking;
 mod comparing;
+mod distance;
 mod inspect;
 mod manifest;
 mod picture;
@@ -85,6 +86,7 @@ fn run(command: Command) -> Result<Outcome> {
         Command::Analyse(arguments) => analyse(&arguments),
         Command::Convert(arguments) => answers::convert(&arguments),
         Command::Inspect(arguments) => inspect::inspect(&arguments),
+        Command::Distance(arguments) => distance::distance(&arguments),
         Command::Validate(arguments) => validate(&arguments.study),
         Command::Design(Design::Check(arguments)) => return questionnaire::check(&arguments),
         Command::Design(Design::Rules) => questionnaire::rules(),

@@ -24,6 +24,7 @@ pub(crate) fn mesh_record(
         topology: topology(&mesh::topology::topology(&extraction.mesh)),
         accuracy: Accuracy {
             distance: distribution(&accuracy.distance),
+            distance_to_mesh: Some(distribution(&accuracy.distance_to_mesh)),
             normal_error_deg: distribution(&accuracy.normal_error_deg),
             lost_points: accuracy.lost_points,
             lost_vertices: accuracy.lost_vertices,

@@ -155,7 +155,10 @@ mod vertices;
 pub use accuracy::{Accuracy, accuracy};
 pub use chunks::{Chunk, ChunkError, ChunkExtractor, WeldError, weld};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
-pub use field::{Asteroid, Gyroid, Kept, MeshDistance, MeshFieldError, ScalarField, Sphere};
+pub use field::{
+    Asteroid, Beyond, Gyroid, Holes, Kept, MeshDistance, MeshFieldError, Negated, ScalarField, Sphere,
+    VolumeField, VolumeFieldError,
+};
 pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use sweep::{Extractor, Source};
