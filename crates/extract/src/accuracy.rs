@@ -11,7 +11,7 @@ use crate::field::{Kept, ScalarField};
 use crate::lattice::{Arrangement, Lattice};
 use crate::level::Level;
 use crate::sampling::{SHARE, on_threads};
-use crate::settings::{Execution, ExtractSettings};
+use crate::settings::{Clustering, Execution, ExtractSettings};
 
 /// Points on a mesh, and on the isosurface.
 const POINTS: u64 = 8_192;
@@ -144,7 +144,10 @@ fn isosurface_points(
         None => {
             let finer = Lattice::try_new(Arrangement::BodyCentred, bounds, FINER * lattice.spacing());
             let finer = finer.unwrap_or_else(|_| lattice.clone());
-            let settings = ExtractSettings { isovalue, ..ExtractSettings::default() };
+            let clusterings = [Clustering::Integrated, Clustering::None];
+            let clustering = clusterings.into_iter().find(|&c| finer.arrangement().supports(c));
+            let clustering = clustering.unwrap_or_default();
+            let settings = ExtractSettings { isovalue, clustering, ..ExtractSettings::default() };
             let found = extract(field, &finer, &settings, execution)?.mesh;
             let triangles: Vec<[Vec3; 3]> = (0..found.triangles.len()).map(|t| found.corners(t)).collect();
             let level = Level { field, isovalue, spacing: lattice.spacing() };

@@ -116,7 +116,7 @@ fn area_and_volume_converge_at_second_order() {
         let lattice = Lattice::try_new(arrangement, CUBE, 0.05).unwrap();
         let sphere = Sphere { radius: radius as f32 };
         let mesh = run(&sphere, &lattice, Clustering::None).mesh;
-        let distance = accuracy(&mesh, &sphere, 0.0, 0.05, &ONE).unwrap().distance;
+        let distance = accuracy(&mesh, &sphere, 0.0, &lattice, &ONE).unwrap().distance;
         assert!(distance.max < 2.0 * 0.05f64.powi(2) / (4.0 * radius), "{arrangement:?} {distance:?}");
     }
 }
