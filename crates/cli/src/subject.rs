@@ -158,6 +158,8 @@ pub(crate) fn lattice_over(bounds: Bounds, arrangement: Arrangement, spacing: f3
     let arrangement = match arrangement {
         Arrangement::BodyCentred => extract::Arrangement::BodyCentred,
         Arrangement::SimpleCubic => extract::Arrangement::SimpleCubic,
+        Arrangement::FiveTetrahedra => extract::Arrangement::FiveTetrahedra,
+        Arrangement::FaceCentred => extract::Arrangement::FaceCentred,
     };
     Ok(Lattice::try_new(arrangement, bounds, spacing)?)
 }
@@ -292,6 +294,8 @@ pub(crate) fn check_limit(
         let arrangement = match lattice.arrangement() {
             extract::Arrangement::BodyCentred => Arrangement::BodyCentred,
             extract::Arrangement::SimpleCubic => Arrangement::SimpleCubic,
+            extract::Arrangement::FiveTetrahedra => Arrangement::FiveTetrahedra,
+            extract::Arrangement::FaceCentred => Arrangement::FaceCentred,
         };
         bail!("the {} lattice needs {needed}, {limit_name} {limit}", arrangement.label());
     }

@@ -8,7 +8,7 @@ use crate::extraction::{ExtractError, extract};
 use crate::field::ScalarField;
 use crate::lattice::{Arrangement, Lattice};
 use crate::level::Level;
-use crate::settings::{Execution, ExtractSettings};
+use crate::settings::{Clustering, Execution, ExtractSettings};
 
 /// How far a surface is looked for, in spacings.
 pub(crate) const REACH: f32 = 3.0;
@@ -41,7 +41,9 @@ impl<'a> Isosurface<'a> {
         }
         let finer = Lattice::try_new(Arrangement::BodyCentred, bounds, FINER * lattice.spacing());
         let finer = finer.unwrap_or_else(|_| lattice.clone());
-        let settings = ExtractSettings { isovalue, ..ExtractSettings::default() };
+        let merged = finer.arrangement().supports(Clustering::Integrated);
+        let clustering = if merged { Clustering::Integrated } else { Clustering::None };
+        let settings = ExtractSettings { isovalue, clustering, ..ExtractSettings::default() };
         let found = extract(field, &finer, &settings, execution)?.mesh;
         let triangles = (0..found.triangles.len()).map(|t| found.corners(t)).collect();
         Ok(Self { field, level, bounds, triangles, is_exact: false })
