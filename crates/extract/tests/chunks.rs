@@ -310,3 +310,36 @@ fn what_cannot_be_cut_into_chunks_is_an_error() {
     assert_eq!(extractor.grid(0).count(), 0);
     assert_eq!(extractor.grid(u32::MAX).collect::<Vec<_>>(), [whole_box(&lattice)]);
 }
+
+/// Balls far from each other.
+struct Balls;
+
+impl ScalarField for Balls {
+    fn sample(&self, p: Vec3) -> f32 {
+        0.1 - (p - (p * 2.0).round() * 0.5).length()
+    }
+}
+
+/// With edge collapse a chunk's window holds every piece of surface that enters the chunk, and need not hold more.
+#[test]
+fn collapses_look_as_far_as_a_piece_of_surface_goes() {
+    let bounds = Bounds { min: Vec3::splat(-0.98), max: Vec3::splat(1.02) };
+    for arrangement in Arrangement::ALL {
+        let lattice = Lattice::try_new(arrangement, bounds, 0.04).unwrap();
+        for settings in all_settings(arrangement).filter(|settings| !is_local(settings)) {
+            let mut extractor = ChunkExtractor::try_new(&lattice, &settings).unwrap();
+            let boxes: Vec<CellBox> = extractor.grid(25).collect();
+            check(&Asteroid::default(), &lattice, &settings, &boxes, "one piece");
+            let corner = CellBox { start: [6; 3], end: [14; 3] };
+            let mut window = |field: &dyn ScalarField, cells: CellBox| {
+                extractor.extract(Source::Field(field), cells, &ONE).unwrap().window
+            };
+            let seen = window(&Asteroid::default(), boxes[0]);
+            for p in extract(&Asteroid::default(), &lattice, &settings, &ONE).unwrap().mesh.positions {
+                let cell = ((p - bounds.min) / lattice.spacing()).to_array().map(|c| c as u32);
+                assert!(seen.contains(cell), "{arrangement:?}: {cell:?} is not in {seen:?}");
+            }
+            assert_ne!(window(&Balls, corner), whole_box(&lattice), "{arrangement:?}");
+        }
+    }
+}
