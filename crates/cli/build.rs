@@ -25,9 +25,17 @@ fn main() {
         {
             collect(&path, &mut files);
         }
-        // Arguments, progress and pages change no other result; the pages' digest is a room of its own.
-        let aside =
-            ["args.rs", "main.rs", "progress.rs", "page.rs", "index.html", "report.rs", "report.html"];
+        // Arguments, progress, pages and surfaces without a study change no other result; the pages' digest is a room of its own.
+        let aside = [
+            "args.rs",
+            "main.rs",
+            "surface.rs",
+            "progress.rs",
+            "page.rs",
+            "index.html",
+            "report.rs",
+            "report.html",
+        ];
         files.retain(|file| room != "cli" || !aside.iter().any(|name| file.ends_with(name)));
         files.sort();
         let mut parts = Vec::new();

@@ -8,7 +8,9 @@ use serde::Serialize;
 use std::fmt::Write;
 
 /// The version of [`Panel`] as JSON.
-pub const PANEL_SCHEMA: u32 = 1;
+///
+/// 2 has the distance from the isosurface to the mesh (`mesh.accuracy.distance_to_mesh`).
+pub const PANEL_SCHEMA: u32 = 2;
 
 /// What is known of one configuration.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -101,7 +103,26 @@ impl Panel {
         text.spread("radius ratio", &m.quality.radius_ratio, 3);
         text.spread("smallest angle, degrees", &m.quality.min_angle_deg, 1);
         text.count("degenerate triangles", m.quality.degenerate);
-        text.spread("distance to the isosurface", &m.accuracy.distance, 6);
+        text.heading("distance");
+        let back = m.accuracy.distance_to_mesh.as_ref();
+        for (name, of) in [("mesh to isosurface", Some(&m.accuracy.distance)), ("isosurface to mesh", back)] {
+            let Some(of) = of else { continue };
+            text.spread(&format!("{name}, mean"), of, 6);
+            if of.count > 0 {
+                text.line("  RMS", &format!("{:.6}", of.rms()), "");
+            }
+        }
+        text.count("points without one", m.accuracy.lost_points);
+        if let Some(hausdorff) = m.accuracy.hausdorff() {
+            let size = m.cells.map(|cells| f64::from(cells) * m.spacing);
+            let diagonal = size.iter().map(|side| side * side).sum::<f64>().sqrt();
+            let share = format!(
+                "{:.4} % of the volume's diagonal, {:.3} spacings",
+                100.0 * hausdorff / diagonal,
+                hausdorff / m.spacing
+            );
+            text.line("Hausdorff distance", &format!("{hausdorff:.6}"), &share);
+        }
         text.0
     }
 
@@ -191,6 +212,12 @@ mod tests {
         has("  tetrahedra evaluated                     160,992  10.52 % of all");
         has("timing, ms: medians on 2 sampling threads");
         has("  vertex                                     3.000  30.0 %");
+        has("  mesh to isosurface, mean                0.000200  SD 0.000100, 0.000000 to 0.001400");
+        has("    RMS                                   0.000224");
+        has("  isosurface to mesh, mean                0.000300  SD 0.000200, 0.000000 to 0.002700");
+        has(
+            "  Hausdorff distance                      0.002700  0.0779 % of the volume's diagonal, 0.068 spacings",
+        );
         assert_eq!(panel.times.len(), 7);
         assert!((panel.times[2].seconds.median - 0.003).abs() < 1e-12);
     }

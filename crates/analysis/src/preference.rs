@@ -161,7 +161,11 @@ pub fn arrangement_contests(study: &Study, tally: &Tally) -> Vec<ArrangementCont
             let comparisons = &study.groups[g].comparisons;
             let one_property = |&c: &usize| {
                 let (left, right) = (study.comparisons[c].left.method, study.comparisons[c].right.method);
-                left.clustering == right.clustering && left.arrangement != right.arrangement
+                let papers = |a| matches!(a, Arrangement::BodyCentred | Arrangement::SimpleCubic);
+                left.clustering == right.clustering
+                    && left.arrangement != right.arrangement
+                    && papers(left.arrangement)
+                    && papers(right.arrangement)
             };
             !comparisons.is_empty() && comparisons.iter().all(one_property)
         })

@@ -16,8 +16,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Do everything: meshes, animations, short benchmark, tables, figures, index.html
     Study(Run),
-    /// Extract the meshes and measure them
-    Extract(Selection),
+    /// Extract a surface from a formula, a volume or a mesh; or, given a study, the study's meshes, and measure them
+    Extract(crate::surface::Extract),
     /// Render the turntable animations
     Turntable(Selection),
     /// Compose the side-by-side pairs and write the key
@@ -42,6 +42,8 @@ pub(crate) enum Command {
     Validate(Validate),
     /// Extract one configuration and print what there is to know of it
     Inspect(Inspect),
+    /// Measure how far two surfaces are from each other: Hausdorff, mean and RMS, both ways
+    Distance(Distance),
     /// Judge a questionnaire before anyone answers, and deal its forms
     #[command(subcommand)]
     Design(Design),
@@ -185,6 +187,7 @@ pub(crate) struct Run {
     pub(crate) threads: u32,
 }
 
+/// Some of a study's configurations.
 #[derive(Debug, Args)]
 pub(crate) struct Selection {
     #[command(flatten)]
@@ -401,6 +404,40 @@ pub(crate) struct Inspect {
     #[arg(long, value_name = "N", default_value_t = 11, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) iterations: u32,
     /// Threads in the sampling stage; 0 takes every core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..=1024))]
+    pub(crate) threads: u32,
+    /// Print JSON instead
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Distance {
+    /// Mesh: .obj, .ply or .stl
+    pub(crate) a: PathBuf,
+    /// Mesh to compare it with; its bounding box is the yardstick
+    #[arg(required_unless_present = "object")]
+    pub(crate) b: Option<PathBuf>,
+    /// Compare it with the isosurface of this object of the study instead
+    #[arg(long, value_name = "ID", conflicts_with = "b")]
+    pub(crate) object: Option<String>,
+    /// Study that has the object
+    #[arg(long, value_name = "TOML", default_value = "configs/paper.toml", requires = "object")]
+    pub(crate) study: PathBuf,
+    /// Spacing that A was extracted with: sets how closely the isosurface is looked at [default: the study's for its
+    /// benchmark]
+    #[arg(long, value_name = "LENGTH", requires = "object")]
+    pub(crate) spacing: Option<f64>,
+    /// Samples on each surface, spread over its area; its vertices come on top
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..=mesh::metro::MOST_SAMPLES))]
+    pub(crate) samples: u64,
+    /// Samples per unit of area, instead of a number for each surface
+    #[arg(long, value_name = "N", conflicts_with = "samples")]
+    pub(crate) density: Option<f64>,
+    /// Seed of the samples' places; the same seed gives the same numbers on any number of threads
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Threads to work with; 0 takes every core
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..=1024))]
     pub(crate) threads: u32,
     /// Print JSON instead

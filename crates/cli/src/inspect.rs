@@ -40,7 +40,7 @@ pub(crate) fn inspect(arguments: &Inspect) -> Result<()> {
             object.isovalue
         );
     }
-    let accuracy = extract::accuracy(&extraction.mesh, field, settings.isovalue, spacing as f32, &execution)?;
+    let accuracy = extract::accuracy(&extraction.mesh, field, settings.isovalue, &lattice, &execution)?;
     let record = mesh_record(&id, Purpose::Benchmark, spacing, &lattice, &extraction, &accuracy);
     // The extraction above was the warm-up.
     let mut samples = Vec::new();

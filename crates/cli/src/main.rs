@@ -4,6 +4,7 @@ mod answers;
 mod args;
 mod asking;
 mod comparing;
+mod distance;
 mod inspect;
 mod manifest;
 mod picture;
@@ -14,6 +15,7 @@ mod records;
 mod rooms;
 mod store;
 mod subject;
+mod surface;
 mod video;
 
 use anyhow::{Context, Result};
@@ -53,10 +55,13 @@ fn run(command: Command) -> Result<Outcome> {
     match command {
         Command::Study(run) => return with_page(&run, |pipeline| pipeline.study()),
         Command::Report(run) => return with_page(&run, |pipeline| pipeline.report()),
-        Command::Extract(selection) => with_selection(&selection, |pipeline, only, out| {
-            pipeline.all_meshes(only)?;
-            say(&out.join("meshes").display().to_string())
-        }),
+        Command::Extract(arguments) => match arguments.of_study() {
+            Some(selection) => with_selection(&selection, |pipeline, only, out| {
+                pipeline.all_meshes(only)?;
+                say(&out.join("meshes").display().to_string())
+            }),
+            None => surface::extract(&arguments),
+        },
         Command::Turntable(selection) => with_selection(&selection, |pipeline, only, out| {
             let meshes = pipeline.stimulus_meshes(only)?;
             pipeline.turntables(&meshes, only)?;
@@ -85,6 +90,7 @@ fn run(command: Command) -> Result<Outcome> {
         Command::Analyse(arguments) => analyse(&arguments),
         Command::Convert(arguments) => answers::convert(&arguments),
         Command::Inspect(arguments) => inspect::inspect(&arguments),
+        Command::Distance(arguments) => distance::distance(&arguments),
         Command::Validate(arguments) => validate(&arguments.study),
         Command::Design(Design::Check(arguments)) => return questionnaire::check(&arguments),
         Command::Design(Design::Rules) => questionnaire::rules(),

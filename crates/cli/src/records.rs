@@ -22,16 +22,21 @@ pub(crate) fn mesh_record(
         counts: counts(&extraction.counts),
         quality: quality(&mesh::quality::quality(&extraction.mesh)),
         topology: topology(&mesh::topology::topology(&extraction.mesh)),
-        accuracy: Accuracy {
-            distance: distribution(&accuracy.distance),
-            normal_error_deg: distribution(&accuracy.normal_error_deg),
-            lost_points: accuracy.lost_points,
-            lost_vertices: accuracy.lost_vertices,
-        },
+        accuracy: self::accuracy(accuracy),
     }
 }
 
-fn counts(c: &extract::Counts) -> Counts {
+pub(crate) fn accuracy(accuracy: &extract::Accuracy) -> Accuracy {
+    Accuracy {
+        distance: distribution(&accuracy.distance),
+        distance_to_mesh: Some(distribution(&accuracy.distance_to_mesh)),
+        normal_error_deg: distribution(&accuracy.normal_error_deg),
+        lost_points: accuracy.lost_points,
+        lost_vertices: accuracy.lost_vertices,
+    }
+}
+
+pub(crate) fn counts(c: &extract::Counts) -> Counts {
     Counts {
         stored_samples: c.stored_samples,
         needed_samples: c.needed_samples,
@@ -51,7 +56,7 @@ fn counts(c: &extract::Counts) -> Counts {
     }
 }
 
-fn quality(q: &mesh::quality::QualityReport) -> Quality {
+pub(crate) fn quality(q: &mesh::quality::QualityReport) -> Quality {
     Quality {
         triangles: q.triangles,
         degenerate: q.degenerate,
@@ -86,7 +91,7 @@ fn distribution(d: &mesh::distribution::Distribution) -> Distribution {
     }
 }
 
-fn topology(t: &mesh::topology::TopologyReport) -> Topology {
+pub(crate) fn topology(t: &mesh::topology::TopologyReport) -> Topology {
     Topology {
         vertices: t.vertices,
         edges: t.edges,

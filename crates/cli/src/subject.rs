@@ -147,11 +147,21 @@ pub(crate) fn spacing_of_cells(object: &ObjectSection, cells: u32) -> f64 {
 pub(crate) fn lattice(object: &ObjectSection, arrangement: Arrangement, spacing: f64) -> Result<Lattice> {
     let corner = |p: [f64; 3]| Vec3::from_array(p.map(|x| x as f32));
     let bounds = Bounds { min: corner(object.min), max: corner(object.max) };
+    lattice_over(bounds, arrangement, spacing as f32)
+}
+
+/// The lattice of an arrangement over a box.
+///
+/// # Errors
+/// If the extractor refuses it.
+pub(crate) fn lattice_over(bounds: Bounds, arrangement: Arrangement, spacing: f32) -> Result<Lattice> {
     let arrangement = match arrangement {
         Arrangement::BodyCentred => extract::Arrangement::BodyCentred,
         Arrangement::SimpleCubic => extract::Arrangement::SimpleCubic,
+        Arrangement::FiveTetrahedra => extract::Arrangement::FiveTetrahedra,
+        Arrangement::FaceCentred => extract::Arrangement::FaceCentred,
     };
-    Ok(Lattice::try_new(arrangement, bounds, spacing as f32)?)
+    Ok(Lattice::try_new(arrangement, bounds, spacing)?)
 }
 
 fn positions(study: &Study, purpose: Purpose) -> extract::Positions {
@@ -164,17 +174,22 @@ fn positions(study: &Study, purpose: Purpose) -> extract::Positions {
     }
 }
 
+/// The extractor's word for a clustering.
+pub(crate) fn clustering(clustering: Clustering) -> extract::Clustering {
+    match clustering {
+        Clustering::None => extract::Clustering::None,
+        Clustering::Integrated => extract::Clustering::Integrated,
+        Clustering::EdgeCollapse => extract::Clustering::EdgeCollapse,
+        Clustering::IntegratedCollapse => extract::Clustering::IntegratedCollapse,
+    }
+}
+
 /// The extractor's settings for a configuration. Meshes made for [`Purpose::Indexed`] have indexed positions whatever the
 /// study says.
 pub(crate) fn settings(study: &Study, configuration: &Configuration, purpose: Purpose) -> ExtractSettings {
     let section = &study.file.extraction;
     let positions = positions(study, purpose);
-    let clustering = match configuration.id.method.clustering {
-        Clustering::None => extract::Clustering::None,
-        Clustering::Integrated => extract::Clustering::Integrated,
-        Clustering::EdgeCollapse => extract::Clustering::EdgeCollapse,
-        Clustering::IntegratedCollapse => extract::Clustering::IntegratedCollapse,
-    };
+    let clustering = clustering(configuration.id.method.clustering);
     let topology = match section.topology {
         Topology::Guarded => extract::Topology::Guarded,
         Topology::Published => extract::Topology::Published,
@@ -259,12 +274,28 @@ pub(crate) fn check_memory(
         Some(machine) if machine < allowed => (machine, "this machine has"),
         _ => (allowed, "limits.memory_gib allows"),
     };
+    check_limit(lattice, settings, execution, limit, limit_name)
+}
+
+/// Checks that what the extractor holds of a lattice is not more than a limit.
+///
+/// # Errors
+/// If it is, naming the limit.
+pub(crate) fn check_limit(
+    lattice: &Lattice,
+    settings: &ExtractSettings,
+    execution: &Execution,
+    limit: u64,
+    limit_name: &str,
+) -> Result<()> {
     let needed = lattice.memory_bytes_for(settings, execution);
     if needed > limit {
         let (needed, limit) = (gibibytes(needed), gibibytes(limit));
         let arrangement = match lattice.arrangement() {
             extract::Arrangement::BodyCentred => Arrangement::BodyCentred,
             extract::Arrangement::SimpleCubic => Arrangement::SimpleCubic,
+            extract::Arrangement::FiveTetrahedra => Arrangement::FiveTetrahedra,
+            extract::Arrangement::FaceCentred => Arrangement::FaceCentred,
         };
         bail!("the {} lattice needs {needed}, {limit_name} {limit}", arrangement.label());
     }

@@ -12,6 +12,10 @@ pub enum Arrangement {
     BodyCentred,
     /// Simple cubic: one cubic grid. Code `s`.
     SimpleCubic,
+    /// One cubic grid with five tetrahedra a cube, neighbours mirrored. Code `m`; not in the paper.
+    FiveTetrahedra,
+    /// Cube corners, face centres and cube centres, 24 tetrahedra a cube. Code `f`; not in the paper.
+    FaceCentred,
 }
 
 /// How the vertices round a sample point are merged.
@@ -29,11 +33,25 @@ pub enum Clustering {
 }
 
 impl Arrangement {
-    /// The paper's one-letter code.
+    /// The paper's one-letter code, and two more.
     pub fn code(self) -> char {
         match self {
             Self::BodyCentred => 'b',
             Self::SimpleCubic => 's',
+            Self::FiveTetrahedra => 'm',
+            Self::FaceCentred => 'f',
+        }
+    }
+
+    /// Whether there is such a clustering for it: integrated clustering is for the paper's two.
+    pub fn supports(self, clustering: Clustering) -> bool {
+        match (self, clustering) {
+            (Self::BodyCentred | Self::SimpleCubic, _) => true,
+            (Self::FiveTetrahedra | Self::FaceCentred, Clustering::None | Clustering::EdgeCollapse) => true,
+            (
+                Self::FiveTetrahedra | Self::FaceCentred,
+                Clustering::Integrated | Clustering::IntegratedCollapse,
+            ) => false,
         }
     }
 
@@ -42,6 +60,8 @@ impl Arrangement {
         match self {
             Self::BodyCentred => "body-centred",
             Self::SimpleCubic => "simple cubic",
+            Self::FiveTetrahedra => "five tetrahedra",
+            Self::FaceCentred => "face-centred",
         }
     }
 }
@@ -95,7 +115,7 @@ impl fmt::Display for Method {
 pub enum ParseIdError {
     /// Not a two-letter method code.
     #[error(
-        "\"{0}\" is not a method: write an arrangement (b, s) and a clustering (u, i, p, c), as in \"bi\""
+        "\"{0}\" is not a method: write an arrangement (b, s, m, f) and a clustering (u, i, p, c), as in \"bi\""
     )]
     Method(String),
     /// Not of the form object, underscore, method.
@@ -111,6 +131,8 @@ impl FromStr for Method {
         let arrangement = match letters.next() {
             Some('b') => Arrangement::BodyCentred,
             Some('s') => Arrangement::SimpleCubic,
+            Some('m') => Arrangement::FiveTetrahedra,
+            Some('f') => Arrangement::FaceCentred,
             _ => return Err(ParseIdError::Method(text.into())),
         };
         let clustering = match letters.next() {

@@ -85,6 +85,9 @@ pub struct Quality {
 pub struct Accuracy {
     /// Distance from points of the mesh to the isosurface, in scene units; over the area.
     pub distance: Distribution,
+    /// Distance from points of the isosurface to the mesh. Records of before this was measured have none.
+    #[serde(default)]
+    pub distance_to_mesh: Option<Distribution>,
     /// Angle between a vertex's normal and the field's, degrees; over vertices.
     pub normal_error_deg: Distribution,
     /// Points without a distance.
@@ -108,6 +111,22 @@ pub struct Distribution {
     pub q95: f64,
     pub max: f64,
     pub histogram: Histogram,
+}
+
+impl Accuracy {
+    /// The Hausdorff distance, as far as the points tell: the larger of both maxima. `None` if one is not known.
+    pub fn hausdorff(&self) -> Option<f64> {
+        let there = (self.distance.count > 0).then_some(self.distance.max)?;
+        let back = self.distance_to_mesh.as_ref().filter(|back| back.count > 0)?;
+        Some(there.max(back.max))
+    }
+}
+
+impl Distribution {
+    /// Root of the mean square.
+    pub fn rms(&self) -> f64 {
+        self.mean.hypot(self.sd)
+    }
 }
 
 /// Equal-width bins from `low` to `high`, and what lies outside.

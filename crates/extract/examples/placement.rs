@@ -71,7 +71,7 @@ fn row(id: &str, field: &dyn ScalarField, lattice: &Lattice, settings: &ExtractS
     }
     let h = f64::from(lattice.spacing());
     let shape = quality(&extraction.mesh);
-    let found = accuracy(&extraction.mesh, field, 0.0, lattice.spacing(), &ONE).expect("one thread");
+    let found = accuracy(&extraction.mesh, field, 0.0, lattice, &ONE).expect("one thread");
     println!(
         "| {id} | {:?}{} | {:.4} | {:.1} | {:.5} | {:.3} | {:.2} | {:.2} | {:.1} |",
         settings.placement,

@@ -18,13 +18,16 @@ fn main() {
     let objects: [(&str, &dyn ScalarField); 2] =
         [("sphere", &Sphere { radius: 1.0 }), ("asteroid", &Asteroid::default())];
     for (name, field) in objects {
-        for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
+        for arrangement in Arrangement::ALL {
             for clustering in [
                 Clustering::None,
                 Clustering::Integrated,
                 Clustering::EdgeCollapse,
                 Clustering::IntegratedCollapse,
-            ] {
+            ]
+            .into_iter()
+            .filter(|&clustering| arrangement.supports(clustering))
+            {
                 for guard in [Topology::Published, Topology::Guarded] {
                     row(name, field, arrangement, clustering, guard);
                 }
@@ -58,6 +61,8 @@ fn row(
         match arrangement {
             Arrangement::BodyCentred => "body",
             Arrangement::SimpleCubic => "simple",
+            Arrangement::FiveTetrahedra => "five",
+            Arrangement::FaceCentred => "face",
         },
         format!("{clustering:?}"),
         format!("{guard:?}"),

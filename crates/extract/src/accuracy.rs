@@ -1,87 +1,127 @@
 //! How far a mesh is from the isosurface it stands for, and how far its normals are from the field's.
 
-use std::collections::TryReserveError;
-
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use mesh::TriangleMesh;
 use mesh::distribution::{Bins, Distribution};
+use mesh::metro::{AreaSamples, Surface};
 use rayon::prelude::*;
 
-use crate::ExtractError;
+use crate::extraction::ExtractError;
 use crate::field::{Kept, ScalarField};
+use crate::isosurface::{Isosurface, REACH};
+use crate::lattice::Lattice;
 use crate::level::Level;
-use crate::memory::collected;
 use crate::sampling::{SHARE, on_threads};
 use crate::settings::Execution;
 
-/// Points on a mesh.
-const POINTS: usize = 8_192;
+/// Points on a mesh, and on the isosurface.
+const POINTS: u64 = 8_192;
+/// Where they lie.
+const SEED: u64 = 1;
 /// Most vertices that are looked at; of more, every second, third and so on.
 const VERTICES: usize = 8_192;
-/// How far a surface is looked for, in spacings.
-const REACH: f32 = 3.0;
 /// The histogram of distances, in spacings.
 const FAR: f64 = 0.1;
 
-/// The accuracy of a mesh.
+/// The accuracy of a mesh. Lengths are in the unit of the coordinates.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Accuracy {
-    /// Distance from the mesh to the isosurface, in the unit of the coordinates, never negative. Over the area: each
-    /// point stands for the same share of it.
+    /// Distance from the mesh to the isosurface, never negative. Over the mesh's area: each point stands for the same
+    /// share of it. Root mean square and maximum are [`Distribution::rms`] and `max`.
     pub distance: Distribution,
+    /// Distance from the isosurface to the mesh: what the mesh leaves out is far from it. Over the isosurface's area.
+    pub distance_to_mesh: Distribution,
     /// Angle between a vertex's normal and the field's outward direction at the vertex's foot on the isosurface, in
     /// degrees, 0..=180. Over vertices.
     pub normal_error_deg: Distribution,
-    /// Points with no surface along the gradient within three spacings, or no gradient; they are in no distribution.
+    /// Points of the mesh with no surface along the gradient within three spacings, or no gradient; they are in no
+    /// distribution. None where the field knows its isosurface.
     pub lost_points: u64,
     /// Vertices of that kind, or without a normal.
     pub lost_vertices: u64,
 }
 
-/// Measures `mesh` against the isosurface of `field`. `spacing` is that of the lattice it was extracted on: it sets the
-/// width of differences (1/32) and how far a surface is looked for (3).
+impl Accuracy {
+    /// The larger of both maxima: the Hausdorff distance, as far as the points tell. 0 if there were none.
+    pub fn hausdorff(&self) -> f64 {
+        self.distance.max.max(self.distance_to_mesh.max)
+    }
+}
+
+/// Measures `mesh` against the isosurface of `field` in the box of the `lattice` it was extracted on. The lattice's
+/// spacing sets the width of differences (1/32) and how far a surface is looked for (3).
 ///
-/// Distances are taken at 8,192 points that share the area evenly: point `i` lies `(i + 1/2) / 8192` of the way
-/// through the area, triangle after triangle, at a place in its triangle that follows a low-discrepancy sequence
-/// (Roberts 2018). The distance is that along the gradient at the point. It is never less than the distance to the
-/// nearest point of the isosurface; for a distance field they are equal, otherwise they differ by the cube of the
-/// distance. Vertices are taken as they come, or evenly from more than 8,192 of them.
+/// Distances are taken at 8,192 points that share the area evenly, as [`AreaSamples`] places them. The density is that
+/// number over the area.
+///
+/// To the isosurface, the distance is exact where the field knows it ([`ScalarField::nearest_on_isosurface`]: a
+/// sphere, a mesh). Otherwise it is that along the gradient at the point, to a root that is known to 1e-5 spacings. This
+/// is never less than the distance to the nearest point; for a field with parallel isosurfaces they are equal, otherwise
+/// they differ by the cube of the distance.
+///
+/// From the isosurface, points are those of its triangles, if it has any ([`ScalarField::isosurface_triangles`]: a
+/// mesh). Otherwise it is extracted on a body-centred lattice with three quarters of the spacing, and the points of that
+/// mesh are moved to the isosurface; what is too small for both lattices is not seen. Points outside the box are left
+/// out. The distance is that to the nearest triangle of `mesh`.
+///
+/// Vertices are taken as they come, or evenly from more than 8,192 of them.
 ///
 /// The result does not depend on `execution`.
 ///
 /// # Errors
-/// [`ExtractError::Threads`] if threads cannot be started, [`ExtractError::NoMemoryForMesh`].
+/// As [`crate::extract`].
 ///
 /// # Panics
-/// If a triangle's index is out of range.
+/// If a triangle's index is out of range, or there are more normals than vertices.
 pub fn accuracy(
     mesh: &TriangleMesh,
     field: &dyn ScalarField,
     isovalue: f32,
-    spacing: f32,
+    lattice: &Lattice,
     execution: &Execution,
 ) -> Result<Accuracy, ExtractError> {
+    let spacing = lattice.spacing();
+    let triangles: Vec<[Vec3; 3]> = (0..mesh.triangles.len()).map(|t| mesh.corners(t)).collect();
+    let points: Vec<DVec3> = points_on(&triangles);
+    // Without an area there is nothing to be far from.
+    let surface = Surface::try_new(mesh).ok();
+
     let mut kept = Kept::default();
     let level = Level { field: field.prepared(&mut kept).unwrap_or(field), isovalue, spacing };
-    let points = points_by_area(mesh, POINTS)?;
+    let isosurface = Isosurface::new(field, level, lattice, execution)?;
+    let beyond = points_on(&isosurface.triangles);
     let every = mesh.normals.len().div_ceil(VERTICES).max(1);
     let vertices: Vec<usize> = (0..mesh.normals.len()).step_by(every).collect();
-    let (distances, angles): (Vec<Option<f64>>, Vec<Option<f64>>) =
-        on_threads(execution, POINTS.max(VERTICES) / SHARE, || {
-            let distance = |&p: &Vec3| level.foot(p, REACH * spacing).map(|foot| foot.distance);
-            let angle = |&v: &usize| normal_error_deg(&level, mesh.positions[v], mesh.normals[v]);
-            (points.par_iter().map(distance).collect(), vertices.par_iter().map(angle).collect())
-        })?;
+    let most = (POINTS as usize).max(VERTICES) / SHARE;
+    let (there, back, angles): (Vec<_>, Vec<_>, Vec<_>) = on_threads(execution, most, || {
+        let distance = |&p: &DVec3| isosurface.foot(p).map(|foot| foot.distance);
+        let to_mesh = |&p: &DVec3| {
+            let (surface, p) = (surface.as_ref()?, isosurface.point(p)?);
+            Some(surface.nearest(p, f64::INFINITY).distance)
+        };
+        let angle = |&v: &usize| normal_error_deg(&level, mesh.positions[v], mesh.normals[v]);
+        (
+            points.par_iter().map(distance).collect(),
+            beyond.par_iter().map(to_mesh).collect(),
+            vertices.par_iter().map(angle).collect(),
+        )
+    })?;
     let lost = |of: &[Option<f64>]| of.iter().filter(|value| value.is_none()).count() as u64;
-    let (lost_points, lost_vertices) = (lost(&distances), lost(&angles));
-    let distances = distances.into_iter().flatten().collect();
-    let angles = angles.into_iter().flatten().collect();
+    let (lost_points, lost_vertices) = (lost(&there), lost(&angles));
+    let known = |of: Vec<Option<f64>>, bins| Distribution::of(of.into_iter().flatten().collect(), bins);
+    let near = Bins { low: 0.0, high: FAR * f64::from(spacing), count: 50 };
     Ok(Accuracy {
-        distance: Distribution::of(distances, Bins { low: 0.0, high: FAR * f64::from(spacing), count: 50 }),
-        normal_error_deg: Distribution::of(angles, Bins { low: 0.0, high: 30.0, count: 60 }),
+        distance: known(there, near),
+        distance_to_mesh: known(back, near),
+        normal_error_deg: known(angles, Bins { low: 0.0, high: 30.0, count: 60 }),
         lost_points,
         lost_vertices,
     })
+}
+
+fn points_on(triangles: &[[Vec3; 3]]) -> Vec<DVec3> {
+    let samples = AreaSamples::new(triangles, POINTS, SEED);
+    samples.points(0..samples.count()).collect()
 }
 
 /// The angle between `normal` and the outward direction at the foot of `p`.
@@ -90,38 +130,4 @@ fn normal_error_deg(level: &Level, p: Vec3, normal: Vec3) -> Option<f64> {
     let outward = level.outward(level.foot(p, REACH * level.spacing)?.position)?;
     // Accurate near 0 and 180 degrees.
     Some(normal.cross(outward).length().atan2(normal.dot(outward)).to_degrees())
-}
-
-/// `count` points on the triangles, evenly over the area; none on a mesh without area.
-fn points_by_area(mesh: &TriangleMesh, count: usize) -> Result<Vec<Vec3>, TryReserveError> {
-    let corners = |t: usize| mesh.corners(t).map(|p| p.as_dvec3());
-    let area = |t: usize| {
-        let [a, b, c] = corners(t);
-        0.5 * (b - a).cross(c - a).length()
-    };
-    // The end of each triangle's share.
-    let mut sum = 0.0;
-    let ends = collected((0..mesh.triangles.len()).map(|t| {
-        sum += area(t);
-        sum
-    }))?;
-    let Some(&total) = ends.last().filter(|total| total.is_finite() && **total > 0.0) else {
-        return Ok(Vec::new());
-    };
-    // The fractional parts of multiples of 1/g and 1/g^2, where g^3 = g + 1.
-    const SEQUENCE: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
-    let points = (0..count)
-        .map(|i| {
-            let place = (i as f64 + 0.5) / count as f64 * total;
-            let t = ends.partition_point(|&end| end <= place).min(ends.len() - 1);
-            let [a, b, c] = corners(t);
-            let [mut u, mut v] = SEQUENCE.map(|step| (0.5 + i as f64 * step).fract());
-            // The far half of the parallelogram is the triangle mirrored.
-            if u + v > 1.0 {
-                (u, v) = (1.0 - u, 1.0 - v);
-            }
-            (a + (b - a) * u + (c - a) * v).as_vec3()
-        })
-        .collect();
-    Ok(points)
 }

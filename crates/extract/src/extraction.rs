@@ -6,8 +6,8 @@ use std::time::Duration;
 use mesh::TriangleMesh;
 
 use crate::field::ScalarField;
-use crate::lattice::Lattice;
-use crate::settings::{Execution, ExtractSettings, Placement, Positions};
+use crate::lattice::{Arrangement, Lattice};
+use crate::settings::{Clustering, Execution, ExtractSettings, Placement, Positions};
 use crate::sweep::{Extractor, Source};
 use crate::triangles::Triangulation;
 
@@ -115,6 +115,24 @@ pub enum ExtractError {
         /// [`Lattice::stored_samples`].
         wanted: u64,
     },
+    /// Integrated clustering where points differ in their lattice edges ([`Arrangement::supports`]).
+    #[error(
+        "{arrangement:?} has no {clustering:?} clustering: None and EdgeCollapse go with it, all four with BodyCentred and SimpleCubic"
+    )]
+    ArrangementClustering {
+        /// What was given.
+        arrangement: Arrangement,
+        /// What was given.
+        clustering: Clustering,
+    },
+    /// [`Positions::Accumulated`] where no original program is repeated.
+    #[error(
+        "{arrangement:?} has indexed positions only: accumulated ones go with BodyCentred and SimpleCubic"
+    )]
+    ArrangementAccumulated {
+        /// What was given.
+        arrangement: Arrangement,
+    },
     /// Given samples and [`Positions::Accumulated`], which says where a field is sampled.
     #[error("given samples have no accumulated positions")]
     SamplesAccumulated,
@@ -166,14 +184,21 @@ pub fn extract(
     Extractor::new().extract(Source::Field(field), lattice, settings, execution)
 }
 
-pub(crate) fn check(settings: &ExtractSettings) -> Result<(), ExtractError> {
+pub(crate) fn check(settings: &ExtractSettings, arrangement: Arrangement) -> Result<(), ExtractError> {
     if !settings.isovalue.is_finite() {
         return Err(ExtractError::Isovalue { value: settings.isovalue });
     }
     match settings.positions {
-        Positions::Accumulated { chunks: 0 } => Err(ExtractError::NoChunks),
-        _ => Ok(()),
+        Positions::Accumulated { chunks: 0 } => return Err(ExtractError::NoChunks),
+        Positions::Accumulated { .. } if arrangement.uniform().is_none() => {
+            return Err(ExtractError::ArrangementAccumulated { arrangement });
+        }
+        _ => {}
     }
+    if !arrangement.supports(settings.clustering) {
+        return Err(ExtractError::ArrangementClustering { arrangement, clustering: settings.clustering });
+    }
+    Ok(())
 }
 
 impl Counts {

@@ -1,6 +1,6 @@
 //! Isosurfaces from scalar fields by regularised marching tetrahedra.
 //!
-//! A [`ScalarField`] is sampled on a [`Lattice`], body-centred or simple cubic. Lattice edges whose ends lie on
+//! A [`ScalarField`] is sampled on a [`Lattice`], in one of four [`Arrangement`]s. Lattice edges whose ends lie on
 //! different sides of the isovalue cross the surface; crossings become vertices, merged or not
 //! ([`Clustering`]), and every tetrahedron that is crossed adds one or two triangles.
 //!
@@ -33,6 +33,8 @@
 //! - Unless edges are collapsed, vertices stand in storage order of the sample points they are nearest to (x fastest,
 //!   then y, then z), triangles in that of their cells. Leaving samples out changes nothing, as long as a field keeps
 //!   what it promises.
+//! - Any boxes of cells that fill the lattice, extracted one by one, [`weld`] to the mesh of the whole, to the byte
+//!   ([`ChunkExtractor`]), on every arrangement and with every clustering and topology.
 //! - No input panics; what cannot be done is an error.
 //!
 //! # Not guaranteed
@@ -45,12 +47,33 @@
 //!   guarded, it belongs to the inside end.
 //! - Nothing is said about triangles that intersect, and a feature thinner than the spacing can be missed.
 //!
-//! # Two ways
+//! # Where to start
+//!
+//! | to have | take |
+//! |---|---|
+//! | one mesh | [`extract`] |
+//! | meshes, one after the other | an [`Extractor`], which keeps its buffers |
+//! | terrain that is edited | a [`ChunkExtractor`], and [`Chunk::is_touched_by`]; `examples/dig.rs` digs into an asteroid |
+//! | regular triangles | [`Arrangement::BodyCentred`], [`Clustering::Integrated`], [`Placement::Relaxed`] |
+//! | few samples | [`Arrangement::SimpleCubic`], [`Clustering::Integrated`] |
+//! | published numbers | [`Topology::Published`], [`Positions::Accumulated`] |
+//! | how near the mesh is to the surface | [`accuracy`] |
+//!
+//! # Chunks
+//!
+//! A cell belongs to one [`Chunk`], and with it the triangles in its tetrahedra. Every vertex has a [`VertexKey`], the
+//! same in all chunks that have it, so that seams weld without comparing coordinates; its position and its normal are
+//! those of the whole, so that a seam does not show even where chunks are drawn side by side. A chunk looks at samples up
+//! to two cells beyond its own; what they decide is all that can change its triangles, and `is_touched_by` says of an edit
+//! whether it reaches them. With edge collapse the way is farther: see [`ChunkExtractor`].
+//!
+//! # Three ways
 //!
 //! With [`Positions::Indexed`] the lattice is streamed: a few layers in memory, then the mesh; slabs of layers on
 //! several threads; samples taken only where the field does not rule the surface out ([`ScalarField::slope`]), or
 //! given ([`Source::Samples`]). An [`Extractor`] keeps its buffers from one volume to the next. With
-//! [`Positions::Accumulated`], for comparison with the published evaluation, all samples and edges are stored.
+//! [`Positions::Accumulated`], for comparison with the published evaluation, all samples and edges are stored. So are
+//! the samples of the arrangements that are cut cube by cube, of which every point is sampled.
 //!
 //! # Odd input
 //!
@@ -64,6 +87,11 @@
 //! | spacing beyond the box | one cell, which reaches past it |
 //! | box empty, inverted, infinite, `NaN` | [`LatticeError::Bounds`] |
 //! | samples of another number than the lattice has | [`ExtractError::SampleCount`] |
+//! | a clustering that the arrangement does not have | [`ExtractError::ArrangementClustering`] |
+//! | accumulated positions on one that the original did not have | [`ExtractError::ArrangementAccumulated`] |
+//! | a chunk beyond the lattice, or without a cell | [`ChunkError::Cells`] |
+//! | chunks with a placement that moves vertices | [`ChunkError::Placement`] |
+//! | chunks of different fields, or one twice | [`WeldError::Mismatch`], [`WeldError::Overlap`] |
 //! | memory that is not there | [`ExtractError::OutOfMemory`], [`ExtractError::NoMemoryForMesh`] |
 //! | more than 2^32 - 1 vertices | [`ExtractError::TooManyVertices`] |
 //!
@@ -80,7 +108,10 @@
 //! - G. M. Treece, R. W. Prager, A. H. Gee: Regularised marching tetrahedra: improved iso-surface extraction.
 //!   Computers & Graphics 23 (1999). The clustering.
 //! - S. L. Chan, E. O. Purisima: A new tetrahedral tesselation scheme for isosurface generation. Computers & Graphics
-//!   22 (1998). The body-centred tetrahedra.
+//!   22 (1998). The body-centred tetrahedra. The mirrored five and the face-centred 24 stand beside them in the
+//!   literature; which 24 are meant here, and why, is with [`Arrangement::FaceCentred`].
+//! - T. K. Dey, H. Edelsbrunner, S. Guha, D. V. Nekhayev: Topology preserving edge contraction. Publications de l'Institut
+//!   Mathématique 66 (1999). The link condition of the guarded collapse.
 //! - Costen: dissertation and program (2026). The evaluation this repeats: rules, fields, sizes and
 //!   the numbers that the tests compare with.
 
@@ -99,12 +130,15 @@ mod survey;
 
 mod accuracy;
 mod bracket;
+mod chunks;
 mod clusters;
 mod collapse;
+mod distances;
 mod edges;
 mod extraction;
 mod field;
 mod guard;
+mod isosurface;
 mod lattice;
 mod level;
 mod memory;
@@ -112,15 +146,23 @@ mod normals;
 mod placement;
 mod sampling;
 mod settings;
+mod split;
 mod stored;
 mod sweep;
 mod tetrahedra;
+mod trace;
 mod triangles;
 mod vertices;
 
 pub use accuracy::{Accuracy, accuracy};
+pub use chunks::{Chunk, ChunkError, ChunkExtractor, WeldError, weld};
+pub use distances::{DistanceError, distances};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
-pub use field::{Asteroid, Gyroid, Kept, MeshDistance, MeshFieldError, ScalarField, Sphere};
-pub use lattice::{Arrangement, Lattice, LatticeError};
+pub use field::{
+    Asteroid, Beyond, Gyroid, Holes, Kept, MeshDistance, MeshFieldError, Negated, ScalarField, Sphere,
+    VolumeField, VolumeFieldError,
+};
+pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use sweep::{Extractor, Source};
+pub use trace::VertexKey;

@@ -26,7 +26,7 @@ pub(crate) fn extract(
     execution: &Execution,
     most_vertices: u32,
 ) -> Result<Extraction, ExtractError> {
-    check(settings)?;
+    check(settings, lattice.arrangement())?;
     let mut clock = Clock::start();
 
     let layout = Layout::new(lattice);

@@ -5,7 +5,7 @@
 //! spoke's two ends and two consecutive points of its ring, always turning the same way. So corners have roles: base,
 //! far end, then the two ring points. The roles fix which edge comes first in a triangle.
 
-use crate::lattice::{Arrangement, Directions, members};
+use crate::lattice::{Arrangement, Directions, Uniform, members};
 
 /// The tetrahedra round one lattice edge.
 #[derive(Debug, Clone)]
@@ -79,9 +79,9 @@ pub(crate) fn spokes(arrangement: Arrangement) -> Vec<Spoke> {
     (0..directions.offsets.len() as u8)
         .filter(|&d| {
             let offset = directions.offsets[d as usize];
-            match arrangement {
-                Arrangement::BodyCentred => offset.contains(&0),
-                Arrangement::SimpleCubic => offset == [2, 2, 2],
+            match arrangement.expect_uniform() {
+                Uniform::BodyCentred => offset.contains(&0),
+                Uniform::SimpleCubic => offset == [2, 2, 2],
             }
         })
         .map(|d| Spoke::new(directions, d))
@@ -203,7 +203,7 @@ mod tests {
             let at = |d: u8| Vec3::from_array(directions.offsets[d as usize].map(f32::from));
             let spokes = match arrangement {
                 Arrangement::BodyCentred => 0..6,
-                Arrangement::SimpleCubic => 12..13,
+                _ => 12..13,
             };
             for tetrahedron in spokes.flat_map(|d| Spoke::new(directions, d).ring) {
                 let [a, b, c] = tetrahedron.corners.map(at);

@@ -5,6 +5,7 @@ use std::collections::TryReserveError;
 use crate::edges::EdgeTable;
 use crate::lattice::{Arrangement, DirectionSet, Lattice, Layout};
 use crate::tetrahedra::{CASES, Case, Tetrahedron, belongs_to_an_earlier_cell, spokes};
+use crate::trace::Trace;
 use crate::vertices::Sides;
 
 /// The most triangles of a cell: two in each tetrahedron, of which a cell in a lowest corner of the box has 24.
@@ -21,6 +22,8 @@ pub(crate) struct Triangulation {
     /// The same as the original counts them: two whenever the second and third corner coincide, even in a
     /// tetrahedron that has one triangle only (Costen 2026).
     pub(crate) discarded_as_published: u64,
+    /// The cell of each triangle, where that is asked for.
+    pub(crate) trace: Option<Trace>,
 }
 
 /// Walks the cells in storage order and skips those that no lattice edge of theirs crosses.

@@ -230,7 +230,7 @@ pub(crate) enum Ties {
 }
 
 impl Ties {
-    fn of(topology: Topology) -> Self {
+    pub(crate) fn of(topology: Topology) -> Self {
         match topology {
             Topology::Guarded => Self::InsideEnd,
             Topology::Published => Self::BothEnds,

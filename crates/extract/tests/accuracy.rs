@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use extract::{
-    Accuracy, Arrangement, Asteroid, Execution, ExtractSettings, Lattice, MeshDistance, ScalarField, Sphere,
-    accuracy, extract,
+    Accuracy, Arrangement, Asteroid, DistanceError, Execution, ExtractSettings, Lattice, MeshDistance,
+    ScalarField, Sphere, accuracy, distances, extract,
 };
 use glam::{Vec3, vec3};
+use mesh::metro::{Amount, MetroError, Sampling, Surface, metro};
 use mesh::{Bounds, TriangleMesh};
 
 const THREADS: Execution = Execution { threads: 2 };
@@ -70,8 +71,11 @@ fn sphere_mesh(times: u32) -> TriangleMesh {
     TriangleMesh { normals: positions.clone(), positions, triangles }
 }
 
+/// In the box from -1 to 1.
 fn measure(mesh: &TriangleMesh, field: &dyn ScalarField, isovalue: f32, spacing: f32) -> Accuracy {
-    accuracy(mesh, field, isovalue, spacing, &THREADS).unwrap()
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    let lattice = Lattice::try_new(Arrangement::SimpleCubic, bounds, spacing).unwrap();
+    accuracy(mesh, field, isovalue, &lattice, &THREADS).unwrap()
 }
 
 #[test]
@@ -148,9 +152,131 @@ fn distance_fields_and_noise_lose_no_point() {
             let found = measure(&mesh, field, 0.0, 0.1);
             assert_eq!((found.lost_points, found.lost_vertices), (0, 0));
             assert!(found.distance.mean < within * 0.1, "{}", found.distance.mean);
-            assert_eq!(found, accuracy(&mesh, field, 0.0, 0.1, &Execution { threads: 1 }).unwrap());
+            assert_eq!(found, accuracy(&mesh, field, 0.0, &lattice, &Execution { threads: 1 }).unwrap());
         }
     }
+}
+
+#[test]
+fn the_way_back_is_that_from_the_isosurface() {
+    // The plane z = 0.04 fills the box as the square at 0.1 does.
+    let field = HalfSpace { normal: Vec3::Z, steepness: 0.5 };
+    let found = measure(&square(Vec3::Z, 0.1, 0.0), &field, -0.02, 0.08);
+    assert_eq!(found.distance_to_mesh.count, 8_192);
+    for distance in [found.distance_to_mesh.min, found.distance_to_mesh.max, found.hausdorff()] {
+        assert!((distance - 0.06).abs() < 1e-6, "{distance}");
+    }
+    // Of a sphere of radius 0.8 without its lower half, the way to the surface is short and the way back is not: from
+    // the pole to the rim.
+    let whole = sphere_mesh(5);
+    let is_above = |t: &&[u32; 3]| t.iter().any(|&v| whole.positions[v as usize].z > 0.0);
+    let above: Vec<[u32; 3]> = whole.triangles.iter().filter(is_above).copied().collect();
+    let half = whole.transformed(|p| vec3(p.x, p.y, p.z.max(0.0)).normalize_or(Vec3::X) * 0.8);
+    let half = TriangleMesh { triangles: above, ..half };
+    for field in [&Sphere { radius: 0.8 } as &dyn ScalarField, &Ball { radius: 0.8 }] {
+        let found = measure(&half, field, 0.0, 0.05);
+        assert!(found.distance.max < 3e-4, "{}", found.distance.max);
+        assert!((found.distance_to_mesh.max - 0.8 * 2f64.sqrt()).abs() < 0.03);
+        assert_eq!(found.hausdorff(), found.distance_to_mesh.max);
+        // Half the area is covered. On the rest, heights are uniform by Archimedes, and a point at height -z of the
+        // unit sphere is the chord of the angle asin(z) from the rim.
+        let steps = 100_000;
+        let chord = |z: f64| (2.0 - 2.0 * (1.0 - z * z).sqrt()).sqrt();
+        let mean = (0..steps).map(|i| 0.8 * chord((f64::from(i) + 0.5) / f64::from(steps))).sum::<f64>();
+        let want = 0.5 * mean / f64::from(steps);
+        assert!(
+            (found.distance_to_mesh.mean / want - 1.0).abs() < 0.02,
+            "{} is not {want}",
+            found.distance_to_mesh.mean
+        );
+    }
+}
+
+/// The same function as a sphere's field that knows nothing of spheres.
+struct Ball {
+    radius: f32,
+}
+
+impl ScalarField for Ball {
+    fn sample(&self, p: Vec3) -> f32 {
+        self.radius - p.length()
+    }
+}
+
+#[test]
+fn a_field_that_knows_its_surface_gives_what_a_search_gives_and_more() {
+    let lattice =
+        Lattice::try_new(Arrangement::BodyCentred, Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE }, 0.1)
+            .unwrap();
+    let (known, searched) = (Sphere { radius: 0.8 }, Ball { radius: 0.8 });
+    let mesh = extract(&known, &lattice, &ExtractSettings::default(), &THREADS).unwrap().mesh;
+    let [a, b] =
+        [&known as &dyn ScalarField, &searched].map(|f| accuracy(&mesh, f, 0.0, &lattice, &THREADS).unwrap());
+    for (a, b) in [
+        (a.distance.mean, b.distance.mean),
+        (a.distance.max, b.distance.max),
+        (a.distance_to_mesh.max, b.distance_to_mesh.max),
+    ] {
+        assert!((a - b).abs() < 2e-6, "{a} is not {b}");
+    }
+    // Beyond three spacings: Negated stands for fields that pass on what another knows.
+    let small = sphere_mesh(4).transformed(|p| p * 0.4);
+    let far = measure(&small, &extract::Negated(known), 0.0, 0.1);
+    assert_eq!((far.lost_points, measure(&small, &searched, 0.0, 0.1).lost_points), (0, 8_192));
+    assert!((far.distance.min - 0.4).abs() < 1e-3 && (far.distance.max - 0.4).abs() < 1e-3);
+}
+
+#[test]
+fn a_mesh_as_field_is_measured_both_ways_as_two_meshes_are() {
+    let source = sphere_mesh(2).transformed(|p| p * vec3(0.9, 0.6, 0.8));
+    let field = MeshDistance::try_new(&source).unwrap();
+    let same = measure(&source, &field, 0.0, 0.1);
+    assert!(same.hausdorff() < 1e-7, "{}", same.hausdorff());
+    let lattice =
+        Lattice::try_new(Arrangement::BodyCentred, Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE }, 0.1)
+            .unwrap();
+    let mesh = extract(&field, &lattice, &ExtractSettings::default(), &THREADS).unwrap().mesh;
+    let found = accuracy(&mesh, &field, 0.0, &lattice, &THREADS).unwrap();
+    let sampling = Sampling { amount: Amount::Samples(200_000), seed: 5 };
+    let want = metro(&mesh, &source, &sampling).unwrap();
+    for (found, want) in [(found.distance, want.forward), (found.distance_to_mesh, want.backward)] {
+        assert_eq!(found.count, 8_192);
+        assert!((found.mean / want.mean - 1.0).abs() < 0.02, "{} is not {}", found.mean, want.mean);
+        assert!((found.rms() / want.rms - 1.0).abs() < 0.02, "{} is not {}", found.rms(), want.rms);
+        assert!(found.max <= want.max + 1e-6, "{} is above {}", found.max, want.max);
+    }
+}
+
+#[test]
+fn distances_name_the_places() {
+    // The sphere without what is beyond x = 0.6: from the missing pole to the rim at x = 0.6.
+    let whole = sphere_mesh(5).transformed(|p| p * 0.8);
+    let is_kept = |t: &&[u32; 3]| t.iter().all(|&v| whole.positions[v as usize].x <= 0.6);
+    let cut = TriangleMesh {
+        triangles: whole.triangles.iter().filter(is_kept).copied().collect(),
+        ..whole.clone()
+    };
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    let lattice = Lattice::try_new(Arrangement::SimpleCubic, bounds, 0.05).unwrap();
+    let sampling = Sampling { amount: Amount::Samples(20_000), seed: 3 };
+    let surface = Surface::try_new(&cut).unwrap();
+    for field in [&Sphere { radius: 0.8 } as &dyn ScalarField, &Ball { radius: 0.8 }] {
+        let run =
+            |threads| distances(&surface, field, 0.0, &lattice, &sampling, &Execution { threads }).unwrap();
+        let found = run(1);
+        assert!(found.forward.max < 3e-4 && found.forward.lost_samples == 0);
+        // To the rim at x = 0.6. Triangles end up to an edge, 0.03, before it; the next sample to the pole may be 0.02 off.
+        let want = f64::sqrt(2.0 * 0.8 * (0.8 - 0.6));
+        assert!((-0.02..0.03).contains(&(found.backward.max - want)), "{}", found.backward.max);
+        let farthest = found.backward.farthest.unwrap();
+        assert!(farthest.from.distance(glam::dvec3(0.8, 0.0, 0.0)) < 0.05, "{}", farthest.from);
+        assert!((farthest.from.length() - 0.8).abs() < 1e-6, "moved to the isosurface");
+        assert!((farthest.to.x - 0.59).abs() < 0.03, "{}", farthest.to);
+        assert!((found.diagonal - 1.6 * f64::sqrt(3.0)).abs() < 0.01);
+        assert_eq!(run(2), found);
+    }
+    let nothing = distances(&surface, &Sphere { radius: 0.8 }, 0.9, &lattice, &sampling, &THREADS);
+    assert_eq!(nothing, Err(DistanceError::Isosurface(MetroError::Empty)));
 }
 
 #[test]
@@ -170,5 +296,6 @@ fn what_cannot_be_measured_is_counted() {
     let mut flat = square(Vec3::Z, 0.01, 0.0);
     flat.normals[1] = Vec3::ZERO;
     assert_eq!(measure(&flat, &field, 0.0, 0.1).lost_vertices, 1, "no normal");
-    assert_eq!(measure(&TriangleMesh::default(), &field, 0.0, 0.1).distance.count, 0);
+    let none = measure(&TriangleMesh::default(), &field, 0.0, 0.1);
+    assert_eq!((none.distance.count, none.distance_to_mesh.count, none.lost_points), (0, 0, 0), "no mesh");
 }

@@ -141,7 +141,7 @@ fn rays_along_edges_and_through_vertices_are_counted_once() {
         let p = Vec3::new(i as f32, j as f32, k as f32) / 4.0;
         let most = p.abs().max_element();
         if most != 1.0 {
-            assert_eq!(field.winding_number(p), i32::from(most < 1.0), "{p}");
+            assert_eq!(field.winding_number(p), f64::from(most < 1.0), "{p}");
             assert_eq!(field.sample(p) > 0.0, most < 1.0, "{p}");
         } else {
             assert_eq!(field.sample(p).abs(), 0.0, "{p} is on the surface");
@@ -153,7 +153,7 @@ fn rays_along_edges_and_through_vertices_are_counted_once() {
 fn the_overlap_of_two_solids_is_inside() {
     let both = joined(&cube(Vec3::splat(-1.0), 3), &cube(Vec3::new(-0.3, -0.35, -0.4), 3));
     let field = MeshDistance::try_new(&both).unwrap();
-    assert_eq!(field.winding_number(Vec3::splat(0.5)), 2);
+    assert_eq!(field.winding_number(Vec3::splat(0.5)), 2.0);
     assert!(field.sample(Vec3::splat(0.5)) > 0.0);
     let mut numbers = Numbers(2);
     let points: Vec<_> = (0..20_000).map(|_| numbers.point(2.0)).collect();

@@ -121,14 +121,14 @@ fn collapsed_meshes_stay_manifold() {
 #[test]
 fn projected_vertices_lie_on_the_surface_and_relaxed_ones_make_better_triangles() {
     let sphere = Sphere { radius: 0.8 };
+    let lattice = |arrangement| Lattice::try_new(arrangement, cube(1.0), 0.05).unwrap();
     let with = |placement, arrangement| {
-        let lattice = Lattice::try_new(arrangement, cube(1.0), 0.05).unwrap();
         let settings = ExtractSettings { placement, ..ExtractSettings::default() };
-        extract(&sphere, &lattice, &settings, &ONE).unwrap().mesh
+        extract(&sphere, &lattice(arrangement), &settings, &ONE).unwrap().mesh
     };
     for (arrangement, published_quality) in [(BOTH[0], 0.92), (BOTH[1], 0.845)] {
         let of = |mesh: &TriangleMesh| {
-            let found = accuracy(mesh, &sphere, 0.0, 0.05, &ONE).unwrap();
+            let found = accuracy(mesh, &sphere, 0.0, &lattice(arrangement), &ONE).unwrap();
             (quality(mesh).radius_ratio.mean, found.distance.mean, found.normal_error_deg.mean)
         };
         let off =
@@ -190,7 +190,7 @@ fn curvature_draws_vertices_to_creases() {
         let distances = [Placement::MeanOfCrossings, Placement::CurvatureWeighted].map(|placement| {
             let settings = ExtractSettings { placement, ..ExtractSettings::default() };
             let mesh = extract(&Block, &lattice, &settings, &ONE).unwrap().mesh;
-            accuracy(&mesh, &Block, 0.0, 0.08, &ONE).unwrap().distance.mean
+            accuracy(&mesh, &Block, 0.0, &lattice, &ONE).unwrap().distance.mean
         });
         assert!(distances[1] < 0.9 * distances[0], "{distances:?}");
     }

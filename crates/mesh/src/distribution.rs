@@ -91,6 +91,13 @@ impl Distribution {
     }
 }
 
+impl Distribution {
+    /// Root of the mean square.
+    pub fn rms(&self) -> f64 {
+        self.mean.hypot(self.sd)
+    }
+}
+
 impl Histogram {
     fn of(values: &[f64], bins: Bins) -> Self {
         let Bins { low, high, count } = bins;
@@ -135,6 +142,7 @@ mod tests {
             assert!((g - w).abs() < 1e-11, "{got:?}");
         }
         assert_eq!(d.histogram.counts, [4, 3, 1, 2]); // .25 and 1 are borders
+        assert!((d.rms() - 0.253_33f64.sqrt()).abs() < 1e-12);
     }
 
     #[test]

@@ -1,21 +1,67 @@
 //! Triangle meshes: what a mesh is, what every triangle is worth, and what is wrong with the topology.
 //!
 //! A [`TriangleMesh`] is plain data. [`quality`] measures its triangles, [`topology`] its connections, [`repair`]
-//! closes holes, [`normals`] gives it vertex normals, and [`read_obj`], [`read_ply`] and their writers move it in
-//! and out of files. Everything is deterministic and single-threaded.
+//! closes holes, [`normals`] gives it vertex normals, [`metro`] says how far it is from another, and a [`MeshFormat`]
+//! moves it in and out of files: OBJ, PLY and STL both ways, binary glTF out. [`NearestTriangles`] finds the nearest
+//! triangle to a point. Everything is deterministic; only [`metro`] uses threads.
+//!
+//! ```
+//! use mesh::glam::Vec3;
+//! use mesh::{TriangleMesh, quality, read_ply, topology, write_ply};
+//!
+//! // A tetrahedron, counter-clockwise seen from outside.
+//! let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+//! let triangles = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+//! let mesh = TriangleMesh { positions, triangles, ..TriangleMesh::default() };
+//! assert!(topology::topology(&mesh).is_closed_manifold());
+//! assert!((mesh.volume() - 1.0 / 6.0).abs() < 1e-6);
+//! assert!(quality::quality(&mesh).radius_ratio.mean > 0.8);
+//! let mut file = Vec::new();
+//! write_ply(&mesh, &mut file)?;
+//! assert_eq!(read_ply(file.as_slice())?.triangles, mesh.triangles);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Guaranteed
+//!
+//! - Indices decide what is joined, coordinates do not, unless a function says so.
+//! - The same mesh gives the same numbers, on any number of threads.
+//! - Readers return an error that says where, whatever the bytes; they ask for no more memory than the file's size
+//!   warrants, and an index that they let through has a vertex.
+//!
+//! # Not guaranteed
+//!
+//! - A [`TriangleMesh`] is plain data: an index out of range, a number that is not one, a triangle without area are the
+//!   caller's affair. Functions that panic on the first of them say so.
+//! - Self-intersections go unseen.
+//!
+//! # Sources
+//!
+//! Each measure names its own: [`quality`] for the shapes of triangles, [`topology`] for the counts, [`repair`] for closed
+//! loops.
 
+mod closest_point;
 mod connectivity;
 mod corner_fans;
 pub mod distribution;
+mod format;
+mod glb;
+pub mod metro;
+mod nearest;
 pub mod normals;
 mod obj;
 mod ply;
 pub mod quality;
 pub mod repair;
+mod stl;
 pub mod topology;
 mod triangle_mesh;
 
+pub use format::{MeshFormat, ReadError};
 pub use glam;
+pub use glb::write_glb;
+pub use nearest::{NearestPoint, NearestTriangles};
 pub use obj::{ObjError, read_obj, write_obj};
 pub use ply::{PlyError, read_ply, write_ply};
+pub use stl::{StlError, read_stl, weld, write_stl};
 pub use triangle_mesh::{Bounds, TriangleMesh};

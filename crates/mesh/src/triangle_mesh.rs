@@ -31,6 +31,16 @@ impl Bounds {
     pub fn size(&self) -> Vec3 {
         self.max - self.min
     }
+
+    /// The box with every face moved outward.
+    pub fn grown(&self, by: f32) -> Self {
+        Self { min: self.min - by, max: self.max + by }
+    }
+
+    /// The edge of the cubes of which so many fit along the longest side.
+    pub fn spacing_of_cells(&self, cells: u32) -> f32 {
+        self.size().max_element() / cells as f32
+    }
 }
 
 impl TriangleMesh {

@@ -35,6 +35,23 @@ pub struct Viewport {
 const MOST_SAMPLES: f64 = (1u64 << 28) as f64;
 
 impl Camera {
+    /// A camera that has all of a box in its picture, from the side of +x and -y and somewhat above. The box needs an
+    /// extent along one axis at least.
+    pub fn around(bounds: &mesh::Bounds) -> Self {
+        let (target, radius) = ((bounds.min + bounds.max) * 0.5, bounds.size().length() * 0.5);
+        let vertical_fov_rad = 0.6;
+        // A ball of that radius touches the picture's border.
+        let distance = radius / libm::sinf(0.5 * vertical_fov_rad);
+        Camera {
+            eye: target + Vec3::new(0.66, -0.66, 0.36).normalize() * distance,
+            target,
+            up: Vec3::Z,
+            vertical_fov_rad,
+            near: (distance - radius) * 0.5,
+            far: distance + 2.0 * radius,
+        }
+    }
+
     /// Where `point` falls, in pixels from the upper left corner (pixel centres at .5), and its distance along the
     /// line of sight; `None` nearer than `near` or beyond `far`. The position may lie outside the picture.
     pub fn project(&self, point: Vec3, viewport: &Viewport) -> Option<([f32; 2], f32)> {

@@ -142,6 +142,8 @@ fn arrangement_on(
     let (own, other) = match arrangement {
         Arrangement::BodyCentred => (sum.body_centred, sum.simple_cubic),
         Arrangement::SimpleCubic => (sum.simple_cubic, sum.body_centred),
+        // The paper claims nothing about others.
+        Arrangement::FiveTetrahedra | Arrangement::FaceCentred => return None,
     };
     let all = sum.body_centred + sum.none + sum.simple_cubic;
     let direction = if own > other { "in this direction" } else { "not in this direction" };

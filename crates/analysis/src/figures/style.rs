@@ -84,6 +84,8 @@ pub(super) fn method(method: Method) -> Fill {
     match method.arrangement {
         Arrangement::BodyCentred => Fill::plain(colour),
         Arrangement::SimpleCubic => Fill { colour: tint(colour), outline: colour, stripes: false },
+        Arrangement::FiveTetrahedra => Fill { colour: tint(colour), outline: colour, stripes: true },
+        Arrangement::FaceCentred => Fill::plain(colour).striped(),
     }
 }
 

@@ -10,6 +10,8 @@ pub(super) fn level(level: Level) -> &'static str {
     match level {
         Level::Arrangement(Arrangement::BodyCentred) => "the body-centred lattice",
         Level::Arrangement(Arrangement::SimpleCubic) => "the simple cubic lattice",
+        Level::Arrangement(Arrangement::FiveTetrahedra) => "the lattice of five tetrahedra a cube",
+        Level::Arrangement(Arrangement::FaceCentred) => "the face-centred lattice",
         Level::Clustering(Clustering::None) => "no clustering",
         Level::Clustering(Clustering::Integrated) => "integrated clustering",
         Level::Clustering(Clustering::EdgeCollapse) => "edge collapse",

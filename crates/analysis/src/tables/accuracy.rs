@@ -18,6 +18,10 @@ pub(super) fn accuracy(inputs: &Inputs<'_>) -> Option<Table> {
             ("distance_mean", "Distance, mean"),
             ("distance_q95", "95 %"),
             ("distance_max", "max"),
+            ("distance_to_mesh_mean", "From the isosurface, mean"),
+            ("distance_to_mesh_q95", "95 %"),
+            ("distance_to_mesh_max", "max"),
+            ("hausdorff", "Hausdorff"),
             ("normal_error_mean_deg", "Normal error, deg, mean"),
             ("normal_error_q95_deg", "95 %"),
             ("normal_error_max_deg", "max"),
@@ -31,18 +35,20 @@ pub(super) fn accuracy(inputs: &Inputs<'_>) -> Option<Table> {
             let mut row =
                 vec![Cell::text(&mesh.id), Cell::text(purpose_label(purpose)), Cell::Number(mesh.spacing, 3)];
             let statistics: [fn(&Distribution) -> f64; 3] = [|d| d.mean, |d| d.q95, |d| d.max];
-            row.extend(statistics.map(|of| {
-                let distance = known(&accuracy.distance, of);
-                Cell::number(distance.map(|distance| distance / mesh.spacing), 4)
-            }));
+            let in_spacings = |distance: Option<f64>| Cell::number(distance.map(|d| d / mesh.spacing), 4);
+            let back = accuracy.distance_to_mesh.as_ref();
+            row.extend(statistics.map(|of| in_spacings(known(&accuracy.distance, of))));
+            row.extend(statistics.map(|of| in_spacings(back.and_then(|back| known(back, of)))));
+            row.push(in_spacings(accuracy.hausdorff()));
             row.extend(statistics.map(|of| Cell::number(known(&accuracy.normal_error_deg, of), 2)));
             row.extend([accuracy.lost_points, accuracy.lost_vertices].map(Cell::count));
             table.push(row);
         }
     }
     table.notes.push(
-        "Distance: from points spread evenly over the mesh to the isosurface along the field's gradient, in units of \
-         the spacing. Normal error: angle between a vertex's normal and the field's outward direction at its foot on \
+        "Distance: from 8,192 points spread evenly over the mesh to the isosurface (exact for sphere and mesh, along the \
+         gradient for other fields), and from as many of the isosurface (of a mesh: of its triangles) to the mesh, in units of \
+         the spacing. Hausdorff: the larger of both maxima. Normal error: angle between a vertex's normal and the field's outward direction at its foot on \
          the isosurface. Lost: no surface within three spacings, or no normal; left out of the rest."
             .into(),
     );

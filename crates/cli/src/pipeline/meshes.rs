@@ -9,7 +9,7 @@ use anyhow::{Context, Result, bail};
 use design::config::Positions;
 use design::record::{MeshRecord, Purpose};
 use design::{Configuration, ConfigurationId};
-use extract::{Execution, Extraction, Extractor};
+use extract::{Execution, Extraction, Extractor, Lattice};
 use mesh::TriangleMesh;
 
 /// How far a mesh moves the bar, which moves while one is extracted: a large volume takes minutes.
@@ -78,7 +78,7 @@ impl Pipeline<'_> {
         self.stage(&format!("mesh/{name}/{}", configuration.id), inputs, |writer| {
             let lattice = subject::lattice(object, configuration.id.method.arrangement, spacing)?;
             let extraction = self.extract(configuration, purpose, spacing, step)?;
-            let accuracy = self.accuracy(configuration, spacing, &extraction.mesh)?;
+            let accuracy = self.accuracy(configuration, &lattice, &extraction.mesh)?;
             let record = mesh_record(&configuration.id, purpose, spacing, &lattice, &extraction, &accuracy);
             // The indexed variant is only measured: nothing is rendered from it.
             if purpose != Purpose::Indexed {
@@ -140,13 +140,13 @@ impl Pipeline<'_> {
     fn accuracy(
         &self,
         configuration: &Configuration,
-        spacing: f64,
+        lattice: &Lattice,
         mesh: &TriangleMesh,
     ) -> Result<extract::Accuracy> {
         let isovalue = self.study.object(configuration).isovalue as f32;
         let field = self.fields.get(configuration.object)?;
         let execution = Execution { threads: self.threads };
-        Ok(extract::accuracy(mesh, field, isovalue, spacing as f32, &execution)?)
+        Ok(extract::accuracy(mesh, field, isovalue, lattice, &execution)?)
     }
 
     /// The records of finished meshes.

@@ -1,8 +1,9 @@
 //! What may stand in each section of a study file.
 
 use super::Configuration;
+use crate::Arrangement;
 use crate::check::{Checker, ConfigError, short};
-use crate::config::{FieldSection, ObjectSection, StudyFile, SweepSection};
+use crate::config::{FieldSection, ObjectSection, Positions, StudyFile, SweepSection};
 
 const FETCH_HINT: &str = "; `make bunny` (scripts/fetch-bunny.sh) fetches the mesh";
 
@@ -17,6 +18,7 @@ pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), Co
         return c.refuse("study.id", id, "must be 1 to 64 lower-case letters, digits or hyphens");
     }
     c.positive("limits.memory_gib", file.limits.memory_gib, 1024.0)?;
+    check_arrangements(c, file)?;
     c.count("extraction.accumulation_chunks", file.extraction.accumulation_chunks, 1, 4096)?;
 
     let t = &file.turntable;
@@ -60,6 +62,25 @@ pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), Co
     c.count("benchmark.aa_iterations", b.aa_iterations, 0, 100_000)?;
     c.count("benchmark.threads", b.threads, 0, 1024)?;
     b.sweep.as_ref().map_or(Ok(()), |sweep| check_sweep(c, file, sweep))
+}
+
+/// What not every arrangement has.
+fn check_arrangements(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigError> {
+    for (i, &arrangement) in file.arrangements.iter().enumerate() {
+        let key = format!("arrangements[{i}]");
+        if let Some(&clustering) = file.clusterings.iter().find(|&&c| !arrangement.supports(c)) {
+            let limit = format!(
+                "has no clustering \"{}\", which clusterings lists; it goes with none and edge-collapse",
+                clustering.label()
+            );
+            return c.refuse(key, arrangement.label(), limit);
+        }
+        let is_published = matches!(arrangement, Arrangement::BodyCentred | Arrangement::SimpleCubic);
+        if !is_published && file.extraction.positions == Positions::Accumulated {
+            return c.refuse(key, arrangement.label(), "needs extraction.positions = \"indexed\"");
+        }
+    }
+    Ok(())
 }
 
 fn check_sweep(c: &Checker<'_>, file: &StudyFile, sweep: &SweepSection) -> Result<(), ConfigError> {

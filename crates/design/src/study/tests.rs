@@ -49,6 +49,37 @@ fn an_error_names_file_key_and_limit() {
 }
 
 #[test]
+fn arrangements_beside_the_papers_have_what_they_have() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/two-methods.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let with = |changes: &[(&str, &str)]| {
+        let change = |text: String, (from, to): &(&str, &str)| {
+            assert!(text.contains(from), "{from}");
+            text.replace(from, to)
+        };
+        Study::parse(&changes.iter().fold(text.clone(), change), &path)
+    };
+    let others = (r#"["body-centred"]"#, r#"["five-tetrahedra", "face-centred"]"#);
+    let error = with(&[others]).map(|_| ()).unwrap_err().to_string();
+    let expected = "two-methods.toml: arrangements[0] = five tetrahedra: has no clustering \"integrated\"";
+    assert!(error.contains(expected), "{error}");
+    let fitting = [
+        others,
+        (r#"["none", "integrated"]"#, r#"["none", "edge-collapse"]"#),
+        ("_bu", "_mu"),
+        ("_bi", "_fu"),
+        (r#""bu""#, r#""mu""#),
+        (r#""bi""#, r#""fu""#),
+    ];
+    let study = with(&fitting).unwrap();
+    let ids: Vec<String> = study.configurations.iter().map(|c| c.id.to_string()).collect();
+    assert_eq!(ids[..4], ["ss_mu", "ss_mp", "ss_fu", "ss_fp"]);
+    let accumulated = (r#"positions = "indexed""#, r#"positions = "accumulated""#);
+    let error = with(&[fitting.as_slice(), &[accumulated]].concat()).map(|_| ()).unwrap_err().to_string();
+    assert!(error.contains("arrangements[0] = five tetrahedra: needs extraction.positions"), "{error}");
+}
+
+#[test]
 fn extreme_numbers_are_told_in_few_letters() {
     let key = "benchmark_spacing = 0.04";
     let error = error_with(key, "benchmark_spacing = 1e300");

@@ -37,6 +37,16 @@ pub(crate) fn guarded(
     triangles: &[[u32; 3]],
     spacing: f32,
 ) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), TryReserveError> {
+    let (positions, mut merged) = merge(positions, triangles, spacing)?;
+    rebuild(&positions, triangles, &mut merged)
+}
+
+/// The collapses alone: where vertices are now, and which are one.
+pub(super) fn merge(
+    positions: Vec<Vec3>,
+    triangles: &[[u32; 3]],
+    spacing: f32,
+) -> Result<(Vec<Vec3>, Merged), TryReserveError> {
     let mut surface = Surface::new(positions, triangles)?;
     let limit = spacing * spacing / 4.0;
     for _ in 0..PASSES {
@@ -44,7 +54,7 @@ pub(crate) fn guarded(
             break;
         }
     }
-    rebuild(&surface.positions, triangles, &mut surface.merged)
+    Ok((surface.positions, surface.merged))
 }
 
 /// An edge as it was when queued. Ordered by length, then by vertex numbers.

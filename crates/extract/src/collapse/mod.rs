@@ -34,6 +34,31 @@ pub(crate) fn collapse(
     Ok(true)
 }
 
+/// A mesh whose short edges were collapsed, and what it was before.
+#[derive(Debug, Default)]
+pub(crate) struct Collapsed {
+    pub(crate) positions: Vec<Vec3>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    /// The number of each vertex before: of those that became one, the one that the others went into.
+    pub(crate) vertices_before: Vec<u32>,
+    pub(crate) triangles_before: Vec<u32>,
+}
+
+/// Collapses short edges by the rule of a topology, and says what has become of what.
+pub(crate) fn collapse_traced(
+    topology: Topology,
+    spacing: f32,
+    positions: Vec<Vec3>,
+    triangles: &[[u32; 3]],
+) -> Result<Collapsed, TryReserveError> {
+    let merge = match topology {
+        Topology::Guarded => guarded::merge,
+        Topology::Published => published::merge,
+    };
+    let (positions, mut merged) = merge(positions, triangles, spacing)?;
+    rebuild_traced(&positions, triangles, &mut merged)
+}
+
 /// Which vertex each vertex was merged into, directly or through others.
 struct Merged {
     into: Vec<u32>,
@@ -79,11 +104,20 @@ fn rebuild(
     triangles: &[[u32; 3]],
     merged: &mut Merged,
 ) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), TryReserveError> {
+    let after = rebuild_traced(positions, triangles, merged)?;
+    Ok((after.positions, after.triangles))
+}
+
+/// The same, and says what is left of what.
+fn rebuild_traced(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    merged: &mut Merged,
+) -> Result<Collapsed, TryReserveError> {
     const UNSEEN: u32 = u32::MAX;
     let mut numbers = filled(positions.len(), UNSEEN)?;
-    let mut kept_positions = Vec::new();
-    let mut kept_triangles = Vec::new();
-    for triangle in triangles {
+    let mut after = Collapsed::default();
+    for (t, triangle) in triangles.iter().enumerate() {
         let triangle = triangle.map(|vertex| merged.survivor(vertex));
         if !is_proper(triangle) {
             continue;
@@ -91,11 +125,13 @@ fn rebuild(
         for vertex in triangle {
             let number = &mut numbers[vertex as usize];
             if *number == UNSEEN {
-                *number = kept_positions.len() as u32;
-                push(&mut kept_positions, positions[vertex as usize])?;
+                *number = after.positions.len() as u32;
+                push(&mut after.positions, positions[vertex as usize])?;
+                push(&mut after.vertices_before, vertex)?;
             }
         }
-        push(&mut kept_triangles, triangle.map(|vertex| numbers[vertex as usize]))?;
+        push(&mut after.triangles, triangle.map(|vertex| numbers[vertex as usize]))?;
+        push(&mut after.triangles_before, t as u32)?;
     }
-    Ok((kept_positions, kept_triangles))
+    Ok(after)
 }

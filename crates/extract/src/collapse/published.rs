@@ -17,10 +17,20 @@ use super::{Merged, rebuild, unique_edges};
 ///
 /// Source: Costen (2026), "post-processed" clustering.
 pub(crate) fn published(
-    mut positions: Vec<Vec3>,
+    positions: Vec<Vec3>,
     triangles: &[[u32; 3]],
     spacing: f32,
 ) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), TryReserveError> {
+    let (positions, mut merged) = merge(positions, triangles, spacing)?;
+    rebuild(&positions, triangles, &mut merged)
+}
+
+/// The collapses alone: where vertices are now, and which are one.
+pub(super) fn merge(
+    mut positions: Vec<Vec3>,
+    triangles: &[[u32; 3]],
+    spacing: f32,
+) -> Result<(Vec<Vec3>, Merged), TryReserveError> {
     let limit = spacing * spacing / 4.0;
     let mut merged = Merged::none(positions.len())?;
     for (a, b) in unique_edges(triangles)? {
@@ -31,7 +41,7 @@ pub(crate) fn published(
             merged.into[b as usize] = a;
         }
     }
-    rebuild(&positions, triangles, &mut merged)
+    Ok((positions, merged))
 }
 
 #[cfg(test)]

@@ -4,18 +4,23 @@ mod asteroid;
 mod asteroid_table;
 mod gyroid;
 mod mesh_distance;
+mod negated;
 mod sine;
 mod sphere;
+mod volume;
 
 pub use asteroid::Asteroid;
 pub use gyroid::Gyroid;
-pub use mesh_distance::{MeshDistance, MeshFieldError};
+pub use mesh_distance::{Holes, MeshDistance, MeshFieldError};
+pub use negated::Negated;
 pub use sphere::Sphere;
+pub use volume::{Beyond, VolumeField, VolumeFieldError};
 
 use std::any::Any;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use mesh::Bounds;
+use mesh::metro::Foot;
 
 /// A real function of space. A point is inside the solid where the value is above the isovalue.
 ///
@@ -73,10 +78,63 @@ pub trait ScalarField: Sync {
         Some((value - change, value + change))
     }
 
+    /// The nearest point to `p` of the isosurface, where the field knows it to the rounding of its coordinates. `None`
+    /// where it does not; then it has to be searched for, and what is found may be farther.
+    fn nearest_on_isosurface(&self, _p: DVec3, _isovalue: f32) -> Option<Foot> {
+        None
+    }
+
+    /// The triangles that the isosurface consists of, where it does. Some may lie inside it, where a solid overlaps
+    /// itself.
+    fn isosurface_triangles(&self, _isovalue: f32) -> Option<&[[Vec3; 3]]> {
+        None
+    }
+
     /// The same field, value by value to the bit, made ready for very many samples, where that is worth while. What it
     /// takes lies in `kept`, which may hold what another field, or this one before, left there.
     fn prepared<'a>(&self, _kept: &'a mut Kept) -> Option<&'a dyn ScalarField> {
         None
+    }
+}
+
+impl<F: ScalarField + ?Sized> ScalarField for Box<F>
+where
+    Box<F>: Sync,
+{
+    fn sample(&self, p: Vec3) -> f32 {
+        (**self).sample(p)
+    }
+
+    fn sample_row(&self, x: &[f32], y: f32, z: f32, values: &mut [f32]) {
+        (**self).sample_row(x, y, z, values);
+    }
+
+    fn sample_after(&self, p: Vec3, before: Option<(Vec3, f32)>) -> f32 {
+        (**self).sample_after(p, before)
+    }
+
+    fn sample_row_after(&self, x: &[f32], y: f32, z: f32, values: &mut [f32], before: Option<(Vec3, f32)>) {
+        (**self).sample_row_after(x, y, z, values, before);
+    }
+
+    fn slope(&self, bounds: Bounds) -> Option<f32> {
+        (**self).slope(bounds)
+    }
+
+    fn range(&self, bounds: Bounds, value: f32) -> Option<(f32, f32)> {
+        (**self).range(bounds, value)
+    }
+
+    fn nearest_on_isosurface(&self, p: DVec3, isovalue: f32) -> Option<Foot> {
+        (**self).nearest_on_isosurface(p, isovalue)
+    }
+
+    fn isosurface_triangles(&self, isovalue: f32) -> Option<&[[Vec3; 3]]> {
+        (**self).isosurface_triangles(isovalue)
+    }
+
+    fn prepared<'a>(&self, kept: &'a mut Kept) -> Option<&'a dyn ScalarField> {
+        (**self).prepared(kept)
     }
 }
 

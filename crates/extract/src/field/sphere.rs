@@ -1,7 +1,8 @@
 //! The sphere of the evaluation.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use mesh::Bounds;
+use mesh::metro::Foot;
 
 use super::{ScalarField, has_sound_lengths};
 
@@ -30,6 +31,14 @@ impl ScalarField for Sphere {
     fn slope(&self, bounds: Bounds) -> Option<f32> {
         has_sound_lengths(bounds).then_some(1.0)
     }
+
+    /// Known while the isosurface is a sphere: where `isovalue` is below the radius.
+    fn nearest_on_isosurface(&self, p: DVec3, isovalue: f32) -> Option<Foot> {
+        let radius = f64::from(self.radius) - f64::from(isovalue);
+        let position = p.normalize_or(DVec3::X) * radius;
+        let distance = (p.length() - radius).abs();
+        (radius > 0.0 && distance.is_finite()).then_some(Foot { position, distance })
+    }
 }
 
 #[cfg(test)]
@@ -42,5 +51,16 @@ mod tests {
         assert_eq!(sphere.sample(Vec3::ZERO), 2.0);
         assert_eq!(sphere.sample(Vec3::new(0.0, -2.0, 0.0)), 0.0);
         assert_eq!(sphere.sample(Vec3::new(3.0, 0.0, 4.0)), -3.0);
+    }
+
+    #[test]
+    fn the_isosurface_is_a_sphere_with_the_isovalue_less() {
+        let near = |p, isovalue| Sphere { radius: 2.0 }.nearest_on_isosurface(p, isovalue);
+        let p = DVec3::new(3.0, 0.0, 4.0);
+        let foot = near(p, 0.5).unwrap();
+        assert!((foot.distance - 3.5).abs() < 1e-15);
+        assert!(foot.position.distance(p * 0.3) < 1e-15);
+        assert_eq!(near(DVec3::ZERO, 0.0).unwrap().distance, 2.0);
+        assert!(near(p, 2.0).is_none() && near(DVec3::splat(f64::NAN), 0.0).is_none());
     }
 }

@@ -82,9 +82,7 @@ fn class_and_thread_tables_follow_the_written_rule_on_all_masks() {
             Arrangement::SimpleCubic => {
                 [[2, 0, 0], [0, 2, 0], [0, 0, 2], [2, 2, 0], [2, 0, 2], [0, 2, 2], [2, 2, 2]]
             }
-            Arrangement::BodyCentred => {
-                [[-1, 1, 1], [1, -1, 1], [1, 1, -1], [0, 0, 2], [0, 2, 0], [2, 0, 0], [1, 1, 1]]
-            }
+            _ => [[-1, 1, 1], [1, -1, 1], [1, 1, -1], [0, 0, 2], [0, 2, 0], [2, 0, 0], [1, 1, 1]],
         };
         let mut strict_by_size = [0; 15];
         for mask in 0..=ALL_DIRECTIONS {

@@ -19,7 +19,7 @@ mod lemmas;
 
 use std::sync::OnceLock;
 
-use crate::lattice::{ALL_DIRECTIONS, Arrangement, DIRECTIONS, DirectionSet, members};
+use crate::lattice::{ALL_DIRECTIONS, Arrangement, DIRECTIONS, DirectionSet, Uniform, members};
 use link::Link;
 
 /// The tables of one arrangement. Sets of directions are in the order of its `Directions`.
@@ -68,9 +68,9 @@ impl Guard {
     pub(crate) fn get(arrangement: Arrangement) -> &'static Self {
         static BODY_CENTRED: OnceLock<Guard> = OnceLock::new();
         static SIMPLE_CUBIC: OnceLock<Guard> = OnceLock::new();
-        let guard = match arrangement {
-            Arrangement::BodyCentred => &BODY_CENTRED,
-            Arrangement::SimpleCubic => &SIMPLE_CUBIC,
+        let guard = match arrangement.expect_uniform() {
+            Uniform::BodyCentred => &BODY_CENTRED,
+            Uniform::SimpleCubic => &SIMPLE_CUBIC,
         };
         guard.get_or_init(|| Self::new(arrangement))
     }
@@ -78,9 +78,9 @@ impl Guard {
     fn new(arrangement: Arrangement) -> Self {
         let directions = arrangement.directions();
         let simple = Arrangement::SimpleCubic.directions();
-        let canonical = match arrangement {
-            Arrangement::BodyCentred => std::array::from_fn(|d| d as u8),
-            Arrangement::SimpleCubic => simple.in_body_centred(),
+        let canonical = match arrangement.expect_uniform() {
+            Uniform::BodyCentred => std::array::from_fn(|d| d as u8),
+            Uniform::SimpleCubic => simple.in_body_centred(),
         };
         let positive_simple = (0..DIRECTIONS).filter(|&d| simple.is_forward(d as u8));
         let positive = positive_simple.fold(0, |set, d| {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::link::Link;
-use crate::lattice::{Arrangement, DIRECTIONS, Directions, Offset};
+use crate::lattice::{Arrangement, DIRECTIONS, Directions, Offset, Uniform};
 use crate::tetrahedra::{Spoke, belongs_to_an_earlier_cell, spokes};
 
 /// Two cells along each axis have a point in every place: low end, high end and between.
@@ -27,9 +27,9 @@ pub(super) fn triangles_at_points(arrangement: Arrangement) -> BTreeMap<Offset, 
     let spokes = spokes(arrangement);
     let mut at_points: BTreeMap<Offset, Vec<[u8; 3]>> = BTreeMap::new();
     for cell in (0..CELLS.pow(3)).map(|i| [i % CELLS, i / CELLS % CELLS, i / CELLS.pow(2)]) {
-        let base = cell.map(|i| match arrangement {
-            Arrangement::BodyCentred => 2 * i as i8 + 1,
-            Arrangement::SimpleCubic => 2 * i as i8,
+        let base = cell.map(|i| match arrangement.expect_uniform() {
+            Uniform::BodyCentred => 2 * i as i8 + 1,
+            Uniform::SimpleCubic => 2 * i as i8,
         });
         let own = |spoke: &&Spoke| !belongs_to_an_earlier_cell(arrangement, spoke, cell);
         for tetrahedron in spokes.iter().filter(own).flat_map(|spoke| &spoke.ring) {

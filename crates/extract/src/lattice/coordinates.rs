@@ -66,6 +66,7 @@ impl Coordinates {
     /// and nothing carried along.
     fn indexed(lattice: &Lattice, layout: &Layout) -> Result<Self, TryReserveError> {
         Self::per_axis(lattice, layout, |axis, kind, i| {
+            let i = axis.origin + i;
             let cells = match kind {
                 PointKind::Centre => i as f32 - 0.5,
                 PointKind::Corner => i as f32,
@@ -128,6 +129,8 @@ fn both_kinds<T, E>(of: impl Fn(PointKind) -> Result<T, E>) -> Result<[T; 2], E>
 struct Axis {
     min: f32,
     spacing: f32,
+    /// The first cell of a window; positions by addition have none.
+    origin: usize,
     /// Of layer 0, were this axis z.
     first_layer: f32,
     layer_step: f32,
@@ -146,12 +149,14 @@ impl Axis {
 fn axes(lattice: &Lattice, layout: &Layout) -> [Axis; 3] {
     let spacing = lattice.spacing();
     let half_layers = layout.kind(0) == PointKind::Centre;
-    lattice.bounds().min.to_array().map(|min| {
+    let min = lattice.bounds().min.to_array();
+    [0, 1, 2].map(|axis| {
+        let (min, origin) = (min[axis], lattice.origin()[axis] as usize);
         if half_layers {
             let half = spacing / 2.0;
-            Axis { min, spacing, first_layer: min - half, layer_step: half, layers_a_cell: 2 }
+            Axis { min, spacing, origin, first_layer: min - half, layer_step: half, layers_a_cell: 2 }
         } else {
-            Axis { min, spacing, first_layer: min, layer_step: spacing, layers_a_cell: 1 }
+            Axis { min, spacing, origin, first_layer: min, layer_step: spacing, layers_a_cell: 1 }
         }
     })
 }

@@ -15,21 +15,25 @@ const BYTES_PER_COLUMN: u64 = 8 + 4 + 4;
 const BYTES_PER_COORDINATE: u64 = 4;
 /// Scratch of the vertex stage: inside or outside.
 const BYTES_PER_SIDE: u64 = 1;
+/// Where points differ in their edges: the number of a point's record.
+const BYTES_PER_RECORD_NUMBER: u64 = size_of::<u32>() as u64;
 
 /// Counts of the whole lattice. `x`, `y`, `z` are the cells along each axis.
 impl Lattice {
-    /// Sample points of a stored lattice: `(x+2)(y+2)(2z+3)` body-centred, which includes unused fillers, and
-    /// `(x+1)(y+1)(z+1)` simple cubic. Accumulated positions sample all of them; streaming leaves out what it can.
+    /// Sample points of a stored lattice: `(x+2)(y+2)(2z+3)` body-centred, which includes unused fillers,
+    /// `(x+1)(y+1)(z+1)` simple cubic and with five tetrahedra, `(2x+1)(2y+1)(2z+1)` face-centred, where the middles of
+    /// cube edges are fillers. Accumulated positions sample all of them; streaming leaves out what it can.
     pub fn stored_samples(&self) -> u64 {
         self.stored_grid().iter().map(|&n| u64::from(n)).product()
     }
 
     /// Sample points that belong to a tetrahedron: `2xyz + 3(xy+xz+yz) + (x+y+z) + 1` body-centred,
-    /// `(x+1)(y+1)(z+1)` simple cubic.
+    /// `(x+1)(y+1)(z+1)` simple cubic and with five tetrahedra, `5xyz + 2(xy+xz+yz) + (x+y+z) + 1` face-centred.
     pub fn needed_samples(&self) -> u64 {
         self.polynomial(match self.arrangement {
             Arrangement::BodyCentred => [2, 3, 1, 1],
-            Arrangement::SimpleCubic => [1, 1, 1, 1],
+            Arrangement::SimpleCubic | Arrangement::FiveTetrahedra => [1, 1, 1, 1],
+            Arrangement::FaceCentred => [5, 2, 1, 1],
         })
     }
 
@@ -37,45 +41,59 @@ impl Lattice {
     /// sign that makes the published allocation ratio 112.75 % where it is 100 %.
     pub fn needed_samples_as_published(&self) -> u64 {
         match self.arrangement {
-            Arrangement::BodyCentred => self.needed_samples(),
             Arrangement::SimpleCubic => self.polynomial([1, -1, 1, -1]),
+            _ => self.needed_samples(),
         }
     }
 
-    /// Places for an edge's vertex that are stored: fourteen a stored sample point.
+    /// Places for an edge's vertex that are stored: fourteen a stored sample point. Where points differ in their edges,
+    /// those that belong to a tetrahedron.
     pub fn stored_edges(&self) -> u64 {
-        DIRECTIONS as u64 * self.stored_samples()
+        match self.arrangement.uniform() {
+            Some(_) => DIRECTIONS as u64 * self.stored_samples(),
+            None => self.needed_edges(),
+        }
     }
 
     /// Edges that belong to a tetrahedron: `14xyz + 11(xy+xz+yz) + (x+y+z)` body-centred,
-    /// `7xyz + 3(xy+xz+yz) + (x+y+z)` simple cubic.
+    /// `7xyz + 3(xy+xz+yz) + (x+y+z)` simple cubic, `6xyz + 3(xy+xz+yz) + (x+y+z)` with five tetrahedra,
+    /// `29xyz + 6(xy+xz+yz) + (x+y+z)` face-centred.
     pub fn needed_edges(&self) -> u64 {
         self.polynomial(match self.arrangement {
             Arrangement::BodyCentred => [14, 11, 1, 0],
             Arrangement::SimpleCubic => [7, 3, 1, 0],
+            Arrangement::FiveTetrahedra => [6, 3, 1, 0],
+            Arrangement::FaceCentred => [29, 6, 1, 0],
         })
     }
 
     /// [`needed_edges`](Self::needed_edges) as Costen (2026) has it: simple cubic with `-3(xy+xz+yz)`, a wrong sign.
     pub fn needed_edges_as_published(&self) -> u64 {
         match self.arrangement {
-            Arrangement::BodyCentred => self.needed_edges(),
             Arrangement::SimpleCubic => self.polynomial([7, -3, 1, 0]),
+            _ => self.needed_edges(),
         }
     }
 
-    /// Tetrahedra: `12xyz + 4(xy+xz+yz)` body-centred, `6xyz` simple cubic.
+    /// Tetrahedra: `12xyz + 4(xy+xz+yz)` body-centred, `6xyz` simple cubic, `5xyz` and `24xyz`.
     pub fn tetrahedra(&self) -> u64 {
         self.polynomial(match self.arrangement {
             Arrangement::BodyCentred => [12, 4, 0, 0],
             Arrangement::SimpleCubic => [6, 0, 0, 0],
+            Arrangement::FiveTetrahedra => [5, 0, 0, 0],
+            Arrangement::FaceCentred => [24, 0, 0, 0],
         })
     }
 
     /// What [`extract`](crate::extract) allocates with accumulated positions before it knows the surface: samples, edge
     /// records and scratch. With indexed positions it is [`sweep_bytes`](Self::sweep_bytes), far less;
     /// [`memory_bytes_for`](Self::memory_bytes_for) chooses. The mesh comes on top.
+    ///
+    /// Arrangements whose points differ in their edges are never streamed: samples, sides and one number a point.
     pub fn memory_bytes(&self) -> u64 {
+        if self.arrangement.uniform().is_none() {
+            return self.stored_samples() * (BYTES_PER_SAMPLE + BYTES_PER_SIDE + BYTES_PER_RECORD_NUMBER);
+        }
         let layer: u64 = self.stored_grid()[..2].iter().map(|&n| u64::from(n)).product();
         let padding = 2 * PADDING_LAYERS as u64 * layer * BYTES_PER_SIDE;
         self.stored_samples() * (BYTES_PER_SAMPLE + BYTES_PER_EDGE_RECORD + BYTES_PER_SIDE) + padding
@@ -83,13 +101,17 @@ impl Lattice {
 
     /// What streaming extraction (indexed positions) of a field holds of the lattice at a time on `threads` threads: a
     /// few layers of samples, sign bits and point records each, and what is known of tiles of two by two columns; and
-    /// the coordinates along each axis, once. The mesh comes on top.
+    /// the coordinates along each axis, once. The mesh comes on top. Arrangements that cannot be streamed hold
+    /// [`memory_bytes`](Self::memory_bytes).
     pub fn sweep_bytes(&self, threads: u64) -> u64 {
         let [x, y, z] = self.stored_grid().map(u64::from);
+        if self.arrangement.uniform().is_none() {
+            return self.memory_bytes();
+        }
         // Layers that a lattice edge can reach.
         let reach = match self.arrangement {
             Arrangement::BodyCentred => 2,
-            Arrangement::SimpleCubic => 1,
+            _ => 1,
         };
         let words = x.div_ceil(64);
         let samples_and_signs = x * BYTES_PER_SAMPLE + 8 * words + 8 * (words + 2) + 1;
@@ -106,15 +128,24 @@ impl Lattice {
 
     /// Bytes of the stored edge records.
     pub(crate) fn edge_bytes(&self) -> u64 {
-        self.stored_samples() * BYTES_PER_EDGE_RECORD
+        let bytes_a_point = match self.arrangement.uniform() {
+            Some(_) => BYTES_PER_EDGE_RECORD,
+            None => BYTES_PER_RECORD_NUMBER,
+        };
+        self.stored_samples() * bytes_a_point
     }
 
     /// Stored sample points along x, y and z.
     pub(crate) fn stored_grid(&self) -> [u32; 3] {
-        let [x, y, z] = self.cells;
+        self.grid_of(self.cells)
+    }
+
+    /// The same of a lattice with so many cells.
+    pub(crate) fn grid_of(&self, [x, y, z]: [u32; 3]) -> [u32; 3] {
         match self.arrangement {
             Arrangement::BodyCentred => [x + 2, y + 2, 2 * z + 3],
-            Arrangement::SimpleCubic => [x + 1, y + 1, z + 1],
+            Arrangement::SimpleCubic | Arrangement::FiveTetrahedra => [x + 1, y + 1, z + 1],
+            Arrangement::FaceCentred => [2 * x + 1, 2 * y + 1, 2 * z + 1],
         }
     }
 

@@ -4,7 +4,7 @@
 //! (0,0,1) -> (1,1,-1)/2 takes the six tetrahedra of a cube to those of the body-centred lattice. So everything
 //! here follows from the offsets; only their order, which fixes vertex numbering, is each arrangement's own.
 
-use super::Arrangement;
+use super::{Arrangement, Uniform};
 
 /// How many lattice edges meet at an interior point.
 pub(crate) const DIRECTIONS: usize = 14;
@@ -31,11 +31,11 @@ pub(crate) struct Directions {
 }
 
 impl Arrangement {
-    /// The directions of this arrangement.
+    /// The directions of this arrangement, which is a uniform one.
     pub(crate) fn directions(self) -> &'static Directions {
-        match self {
-            Arrangement::BodyCentred => &BODY_CENTRED,
-            Arrangement::SimpleCubic => &SIMPLE_CUBIC,
+        match self.expect_uniform() {
+            Uniform::BodyCentred => &BODY_CENTRED,
+            Uniform::SimpleCubic => &SIMPLE_CUBIC,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Where sample points are stored and which neighbours each one has.
 
 use super::directions::Offset;
-use super::{Arrangement, DIRECTIONS, DirectionSet, Lattice};
+use super::{DIRECTIONS, DirectionSet, Lattice, Uniform};
 
 /// No step to a neighbour is longer than this many layers.
 pub(crate) const PADDING_LAYERS: usize = 3;
@@ -17,7 +17,7 @@ pub(crate) enum PointKind {
 /// corners on odd ones, all with the row length of the centres; the corners' last row and column are fillers.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
-    arrangement: Arrangement,
+    arrangement: Uniform,
     /// Stored points along each axis.
     grid: [usize; 3],
     /// Step to the neighbour in storage, by kind of point.
@@ -38,10 +38,10 @@ const PLACES: [Place; 3] = [Place::Low, Place::Inner, Place::High];
 
 impl Layout {
     pub(crate) fn new(lattice: &Lattice) -> Self {
-        let arrangement = lattice.arrangement();
+        let arrangement = lattice.arrangement().expect_uniform();
         let grid = lattice.stored_grid().map(|n| n as usize);
         let mut layout = Self { arrangement, grid, steps: [[0; DIRECTIONS]; 2], incident: [[0; 27]; 2] };
-        for (direction, &offset) in arrangement.directions().offsets.iter().enumerate() {
+        for (direction, &offset) in lattice.arrangement().directions().offsets.iter().enumerate() {
             for kind in [PointKind::Centre, PointKind::Corner] {
                 layout.steps[kind as usize][direction] = layout.step(kind, offset);
                 for (code, set) in layout.incident[kind as usize].iter_mut().enumerate() {
@@ -73,14 +73,14 @@ impl Layout {
     /// What the points of a layer are.
     pub(crate) fn kind(&self, layer: usize) -> PointKind {
         match self.arrangement {
-            Arrangement::BodyCentred if layer.is_multiple_of(2) => PointKind::Centre,
+            Uniform::BodyCentred if layer.is_multiple_of(2) => PointKind::Centre,
             _ => PointKind::Corner,
         }
     }
 
     /// Points a row and rows a layer that are not fillers.
     pub(crate) fn used(&self, kind: PointKind) -> [usize; 2] {
-        let filler = usize::from(self.arrangement == Arrangement::BodyCentred && kind == PointKind::Corner);
+        let filler = usize::from(self.arrangement == Uniform::BodyCentred && kind == PointKind::Corner);
         [self.grid[0] - filler, self.grid[1] - filler]
     }
 
@@ -94,10 +94,8 @@ impl Layout {
     pub(crate) fn incident(&self, kind: PointKind, [x, y, z]: [usize; 3]) -> DirectionSet {
         let [nx, ny] = self.used(kind);
         let (z, nz) = match self.arrangement {
-            Arrangement::SimpleCubic => (z, self.grid[2]),
-            Arrangement::BodyCentred => {
-                (z / 2, (self.grid[2] - 1) / 2 + usize::from(kind == PointKind::Centre))
-            }
+            Uniform::SimpleCubic => (z, self.grid[2]),
+            Uniform::BodyCentred => (z / 2, (self.grid[2] - 1) / 2 + usize::from(kind == PointKind::Centre)),
         };
         let code = place(x, nx) as usize + 3 * place(y, ny) as usize + 9 * place(z, nz) as usize;
         self.incident[kind as usize][code]
@@ -106,16 +104,16 @@ impl Layout {
     /// The point that all tetrahedra of a cell share: its centre, or its lowest corner.
     pub(crate) fn base(&self, [x, y, z]: [usize; 3]) -> usize {
         match self.arrangement {
-            Arrangement::BodyCentred => self.index([x + 1, y + 1, 2 * z + 2]),
-            Arrangement::SimpleCubic => self.index([x, y, z]),
+            Uniform::BodyCentred => self.index([x + 1, y + 1, 2 * z + 2]),
+            Uniform::SimpleCubic => self.index([x, y, z]),
         }
     }
 
     /// The kind of [`base`](Self::base).
     pub(crate) fn base_kind(&self) -> PointKind {
         match self.arrangement {
-            Arrangement::BodyCentred => PointKind::Centre,
-            Arrangement::SimpleCubic => PointKind::Corner,
+            Uniform::BodyCentred => PointKind::Centre,
+            Uniform::SimpleCubic => PointKind::Corner,
         }
     }
 
@@ -129,8 +127,8 @@ impl Layout {
             PointKind::Corner => (isize::from(offset) + 1).div_euclid(2),
         };
         let layers = match self.arrangement {
-            Arrangement::BodyCentred => isize::from(z),
-            Arrangement::SimpleCubic => isize::from(z / 2),
+            Uniform::BodyCentred => isize::from(z),
+            Uniform::SimpleCubic => isize::from(z / 2),
         };
         [halve(x), halve(y), layers]
     }
@@ -156,7 +154,7 @@ fn place(i: usize, n: usize) -> Place {
     }
 }
 
-fn has_edge(arrangement: Arrangement, kind: PointKind, place: [Place; 3], offset: Offset) -> bool {
+fn has_edge(arrangement: Uniform, kind: PointKind, place: [Place; 3], offset: Offset) -> bool {
     let outward = |axis: usize| match place[axis] {
         Place::Low => offset[axis] < 0,
         Place::Inner => false,
@@ -164,13 +162,13 @@ fn has_edge(arrangement: Arrangement, kind: PointKind, place: [Place; 3], offset
     };
     let leaves = (0..3).filter(|&axis| outward(axis)).count();
     match (arrangement, kind) {
-        (Arrangement::SimpleCubic, _) => leaves == 0,
-        (Arrangement::BodyCentred, PointKind::Corner) => {
+        (Uniform::SimpleCubic, _) => leaves == 0,
+        (Uniform::BodyCentred, PointKind::Corner) => {
             // A diagonal may leave through one face, to the layer of centres outside it.
             let diagonal = offset.iter().all(|&o| o != 0);
             leaves <= usize::from(diagonal)
         }
-        (Arrangement::BodyCentred, PointKind::Centre) => {
+        (Uniform::BodyCentred, PointKind::Centre) => {
             let outside: Vec<usize> = (0..3).filter(|&axis| place[axis] != Place::Inner).collect();
             match outside[..] {
                 [] => true,
@@ -185,7 +183,7 @@ fn has_edge(arrangement: Arrangement, kind: PointKind, place: [Place; 3], offset
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lattice::members;
+    use crate::lattice::{Arrangement, members};
     use glam::Vec3;
     use mesh::Bounds;
 

@@ -1,23 +1,80 @@
 //! Sampling lattices: which points are sampled and which edges and tetrahedra join them.
 
+mod cell_box;
 mod coordinates;
 mod counts;
 mod directions;
 mod layout;
 
+pub use cell_box::CellBox;
 pub(crate) use coordinates::Coordinates;
 pub(crate) use directions::{ALL_DIRECTIONS, DIRECTIONS, DirectionSet, Directions, Offset, members};
 pub(crate) use layout::{Layout, PADDING_LAYERS, PointKind};
 
+use glam::Vec3;
 use mesh::Bounds;
 
-/// How sample points fill space.
+use crate::settings::Clustering;
+
+/// How sample points fill space, and which tetrahedra they make.
+///
+/// The first two have fourteen lattice edges at every point and every [`Clustering`](crate::Clustering). At the points
+/// of the others, 18 or 6, and 26, 14 or 6 meet; the rules of integrated clustering say nothing about them, so they
+/// are unclustered or collapsed afterwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Arrangement {
     /// Cube corners and cube centres: congruent tetrahedra, twelve a cube, after Chan & Purisima (1998). One layer
     /// of centres lies outside each face of the box, half a cube away.
     BodyCentred,
     /// Cube corners only: six tetrahedra a cube round its main diagonal (Kuhn's split).
+    SimpleCubic,
+    /// Cube corners only: five tetrahedra a cube, a regular one on every second corner and one at each of the other
+    /// four. Neighbouring cubes are mirror images, so that the diagonals of their common face agree: every diagonal
+    /// joins corners with an even sum of indices.
+    FiveTetrahedra,
+    /// Cube corners, face centres and cube centres: congruent tetrahedra, twenty-four a cube, each on the cube's centre,
+    /// a face's centre and a side of that face. All mirror planes of the cube are planes of it.
+    ///
+    /// The sources name a face-centred cube of 24 tetrahedra without drawing it; this is the reading under which all
+    /// points of a cube are used and neighbours agree without a choice of diagonals. The face-centred cubic lattice
+    /// proper has no cube centres: it fills a cube with 20 tetrahedra and an octahedron, whose cut into the last four
+    /// prefers an axis.
+    FaceCentred,
+}
+
+impl Arrangement {
+    /// Every arrangement.
+    pub const ALL: [Self; 4] =
+        [Self::BodyCentred, Self::SimpleCubic, Self::FiveTetrahedra, Self::FaceCentred];
+
+    /// Whether the clustering's rules say something about the points of this arrangement: integrated clustering is for
+    /// body-centred and simple cubic only.
+    pub fn supports(self, clustering: Clustering) -> bool {
+        match clustering {
+            Clustering::None | Clustering::EdgeCollapse => true,
+            Clustering::Integrated | Clustering::IntegratedCollapse => self.uniform().is_some(),
+        }
+    }
+
+    /// `None` where points differ in their lattice edges.
+    pub(crate) fn uniform(self) -> Option<Uniform> {
+        match self {
+            Self::BodyCentred => Some(Uniform::BodyCentred),
+            Self::SimpleCubic => Some(Uniform::SimpleCubic),
+            Self::FiveTetrahedra | Self::FaceCentred => None,
+        }
+    }
+
+    /// The same where it is known that there is one: what depends on it is never asked about other arrangements.
+    pub(crate) fn expect_uniform(self) -> Uniform {
+        self.uniform().expect("an arrangement with fourteen lattice edges at every point")
+    }
+}
+
+/// The arrangements with fourteen lattice edges at every point, in which tetrahedra stand round edges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Uniform {
+    BodyCentred,
     SimpleCubic,
 }
 
@@ -32,6 +89,9 @@ pub struct Lattice {
     bounds: Bounds,
     spacing: f32,
     cells: [u32; 3],
+    /// Of a window, its first cell in the whole lattice, and that lattice's cells.
+    origin: [u32; 3],
+    whole: [u32; 3],
 }
 
 /// Why a lattice cannot be built.
@@ -123,7 +183,7 @@ impl Lattice {
             }
             cells[i] = wanted as u32;
         }
-        let lattice = Self { arrangement, bounds, spacing, cells };
+        let lattice = Self { arrangement, bounds, spacing, cells, origin: [0; 3], whole: cells };
         let samples = lattice.stored_grid().iter().map(|&n| u128::from(n)).product();
         if samples > u128::from(Self::MAX_SAMPLES) {
             return Err(LatticeError::TooManySamples { samples, limit: Self::MAX_SAMPLES });
@@ -149,5 +209,79 @@ impl Lattice {
     /// Cubes along x, y and z.
     pub fn cells(&self) -> [u32; 3] {
         self.cells
+    }
+
+    /// The same lattice, of which only the cells of a box are there. Points are where they are in the whole, and
+    /// vertices are clamped to the whole's box.
+    pub(crate) fn window(&self, cells: CellBox) -> Self {
+        let size = [0, 1, 2].map(|axis| cells.end[axis] - cells.start[axis]);
+        Self { cells: size, origin: cells.start, ..self.clone() }
+    }
+
+    /// The cells that are there, in the whole lattice.
+    pub(crate) fn cell_box(&self) -> CellBox {
+        CellBox { start: self.origin, end: [0, 1, 2].map(|axis| self.origin[axis] + self.cells[axis]) }
+    }
+
+    /// Of a window, its first cell in the whole lattice.
+    pub(crate) fn origin(&self) -> [u32; 3] {
+        self.origin
+    }
+
+    /// The number of a cell in the whole lattice, x fastest.
+    pub(crate) fn cell_number(&self, [x, y, z]: [usize; 3]) -> u32 {
+        let [ox, oy, oz] = self.origin;
+        let [nx, ny, _] = self.whole;
+        ((z as u32 + oz) * ny + y as u32 + oy) * nx + x as u32 + ox
+    }
+
+    /// Where a stored point of this window is stored in the whole lattice.
+    pub(crate) fn point_number(&self, [x, y, z]: [usize; 3]) -> u32 {
+        let [nx, ny, _] = self.grid_of(self.whole);
+        let [ox, oy, oz] = self.first_stored();
+        ((z as u32 + oz) * ny + y as u32 + oy) * nx + x as u32 + ox
+    }
+
+    /// The cell with a number.
+    pub(crate) fn cell_of_number(&self, number: u32) -> [u32; 3] {
+        let [nx, ny, _] = self.whole;
+        [number % nx, number / nx % ny, number / nx / ny]
+    }
+
+    /// The cell of the whole lattice that a stored point counts as its own: the one it is the centre, the lowest corner
+    /// or a lower face's centre of, or the nearest.
+    pub(crate) fn cell_of_point(&self, number: u32) -> [u32; 3] {
+        let [nx, ny, _] = self.grid_of(self.whole);
+        let [x, y, z] = [number % nx, number / nx % ny, number / nx / ny];
+        let cell = match self.arrangement {
+            Arrangement::BodyCentred if z % 2 == 0 => {
+                [x.saturating_sub(1), y.saturating_sub(1), (z / 2).saturating_sub(1)]
+            }
+            Arrangement::BodyCentred => [x, y, z / 2],
+            Arrangement::SimpleCubic | Arrangement::FiveTetrahedra => [x, y, z],
+            Arrangement::FaceCentred => [x / 2, y / 2, z / 2],
+        };
+        [0, 1, 2].map(|axis| cell[axis].min(self.whole[axis] - 1))
+    }
+
+    /// The box of all stored points.
+    pub(crate) fn sampled_bounds(&self) -> Bounds {
+        let beyond = if self.arrangement == Arrangement::BodyCentred { 0.5 } else { 0.0 };
+        let at = |cell: [u32; 3], beyond: f32| {
+            let cell = Vec3::from_array(cell.map(|i| i as f32)) + Vec3::splat(beyond);
+            self.bounds.min + cell * self.spacing
+        };
+        let CellBox { start, end } = self.cell_box();
+        Bounds { min: at(start, -beyond), max: at(end, beyond) }
+    }
+
+    /// The first stored point of this window along each axis of the whole lattice.
+    pub(crate) fn first_stored(&self) -> [u32; 3] {
+        let [x, y, z] = self.origin;
+        match self.arrangement {
+            Arrangement::BodyCentred => [x, y, 2 * z],
+            Arrangement::SimpleCubic | Arrangement::FiveTetrahedra => [x, y, z],
+            Arrangement::FaceCentred => [2 * x, 2 * y, 2 * z],
+        }
     }
 }

@@ -76,29 +76,35 @@ impl<'a> CrossingPlacer<'a> {
         place.clamp(self.bounds.min, self.bounds.max)
     }
 
-    /// How far along its edge a crossing is: by linear interpolation, and then by regula falsi.
-    /// Strictly between the ends if it was there to begin with.
+    /// How far along its edge a crossing is.
     fn ratio(&self, around: &Surroundings, direction: usize) -> f64 {
-        let ends = [around.difference, around.neighbours[direction]].map(f64::from);
-        let linear = ends[0] / (ends[0] - ends[1]);
-        if !linear.is_finite() {
-            return 0.5;
-        }
-        let Some(level) = self.level.filter(|_| linear > 0.0 && linear < 1.0) else { return linear };
-        let from = around.position.as_dvec3();
-        let mut bracket = Bracket::new((0.0, ends[0]), (1.0, ends[1]));
-        let mut ratio = linear;
-        for _ in 0..MOST_CALLS {
-            let there = f64::from(level.difference((from + self.edges[direction] * ratio).as_vec3()));
-            if !there.is_finite() {
-                return linear;
-            }
-            bracket.narrow(ratio, there);
-            let before = std::mem::replace(&mut ratio, bracket.guess());
-            if (ratio - before).abs() <= TOLERANCE {
-                break;
-            }
-        }
-        ratio
+        let ends = [around.difference, around.neighbours[direction]];
+        crossing_ratio(self.level, around.position, self.edges[direction], ends)
     }
+}
+
+/// How far along its lattice edge a crossing is: by linear interpolation, and with a `level` then by regula falsi.
+/// Strictly between the ends if it was there to begin with. `ends` are the differences from the isovalue.
+pub(crate) fn crossing_ratio(level: Option<Level>, from: Vec3, edge: DVec3, ends: [f32; 2]) -> f64 {
+    let ends = ends.map(f64::from);
+    let linear = ends[0] / (ends[0] - ends[1]);
+    if !linear.is_finite() {
+        return 0.5;
+    }
+    let Some(level) = level.filter(|_| linear > 0.0 && linear < 1.0) else { return linear };
+    let from = from.as_dvec3();
+    let mut bracket = Bracket::new((0.0, ends[0]), (1.0, ends[1]));
+    let mut ratio = linear;
+    for _ in 0..MOST_CALLS {
+        let there = f64::from(level.difference((from + edge * ratio).as_vec3()));
+        if !there.is_finite() {
+            return linear;
+        }
+        bracket.narrow(ratio, there);
+        let before = std::mem::replace(&mut ratio, bracket.guess());
+        if (ratio - before).abs() <= TOLERANCE {
+            break;
+        }
+    }
+    ratio
 }

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use glam::Vec3;
 use mesh::Bounds;
 
-pub(crate) use self::crossings::{CrossingPlacer, Surroundings};
+pub(crate) use self::crossings::{CrossingPlacer, Surroundings, crossing_ratio};
 use self::moves::Moves;
 use self::relaxation::relaxed;
 use crate::ExtractError;

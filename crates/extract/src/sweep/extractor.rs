@@ -18,7 +18,9 @@ use crate::lattice::Lattice;
 use crate::level::Level;
 use crate::placement::{self, CrossingPlacer};
 use crate::settings::{Clustering, Execution, ExtractSettings, Positions, Topology};
+use crate::split;
 use crate::stored;
+use crate::trace::Trace;
 
 /// Slabs a thread, so that an uneven surface still keeps all threads busy.
 const SLABS_PER_THREAD: usize = 2;
@@ -58,6 +60,9 @@ pub struct Extractor {
     pieces: Vec<Piece>,
     kept: Kept,
     progress: Option<Progress>,
+    /// Where the last mesh came from, if `traced`.
+    pub(crate) trace: Trace,
+    pub(crate) traced: bool,
     pub(super) most_vertices: MostVertices,
 }
 
@@ -72,17 +77,26 @@ impl Default for MostVertices {
     }
 }
 
-/// What depends on the lattice alone.
+/// What depends on the lattice alone; the tables on its arrangement only.
 struct Plan {
     grid: Grid,
     tables: FaceTables,
 }
 
 impl Plan {
-    fn new(lattice: &Lattice) -> Result<Self, TryReserveError> {
-        let grid = Grid::new(lattice)?;
-        let tables = FaceTables::new(&grid);
-        Ok(Self { grid, tables })
+    /// The one there is, if it fits.
+    fn new(lattice: &Lattice, before: Option<Self>) -> Result<Self, TryReserveError> {
+        match before {
+            Some(plan) if plan.grid.lattice == *lattice => Ok(plan),
+            Some(plan) if plan.grid.lattice.arrangement() == lattice.arrangement() => {
+                Ok(Self { grid: Grid::new(lattice)?, tables: plan.tables })
+            }
+            _ => {
+                let grid = Grid::new(lattice)?;
+                let tables = FaceTables::new(&grid);
+                Ok(Self { grid, tables })
+            }
+        }
     }
 }
 
@@ -148,7 +162,7 @@ impl Extractor {
         execution: &Execution,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
-        check(settings)?;
+        check(settings, lattice.arrangement())?;
         placement::check(settings, matches!(source, Source::Field(_)))?;
         if let Source::Samples(samples) = source {
             let (given, wanted) = (samples.len() as u64, lattice.stored_samples());
@@ -168,12 +182,16 @@ impl Extractor {
             Source::Samples(_) => None,
         };
         let source = prepared.map_or(source, Source::Field);
-        let plan = match self.plan.take() {
-            Some(plan) if plan.grid.lattice == *lattice => plan,
-            _ => Plan::new(lattice).map_err(|_| ExtractError::OutOfMemory {
-                bytes: lattice.memory_bytes_for(settings, execution),
-            })?,
-        };
+        if lattice.arrangement().uniform().is_none() {
+            let trace = self.traced.then_some(&mut self.trace);
+            let most = self.most_vertices.0;
+            let result = split::extract(source, lattice, settings, execution, most, trace, extraction);
+            self.kept = kept;
+            return result;
+        }
+        let plan = Plan::new(lattice, self.plan.take()).map_err(|_| ExtractError::OutOfMemory {
+            bytes: lattice.memory_bytes_for(settings, execution),
+        })?;
         let arrangement = lattice.arrangement();
         let merges = match settings.clustering {
             Clustering::None | Clustering::EdgeCollapse => false,
@@ -246,6 +264,7 @@ impl Extractor {
             isovalue: settings.isovalue,
             most_vertices: self.most_vertices.0,
             placer: placer.as_ref(),
+            traced: self.traced,
             progress: &progress,
         };
         sweep_all(&job, &mut self.workspaces, &mut self.pieces)?;
@@ -257,6 +276,9 @@ impl Extractor {
         let (first, rest) = self.pieces.split_first_mut().expect("there is a slab");
         let crossing_ends: u64 =
             first.crossing_ends + rest.iter().map(|piece| piece.crossing_ends).sum::<u64>();
+        if let Some(trace) = &mut first.surface.trace {
+            std::mem::swap(&mut self.trace, trace);
+        }
         let mesh = &mut extraction.mesh;
         mesh.positions = std::mem::take(&mut first.positions);
         let surface = &mut first.surface;
@@ -392,6 +414,10 @@ fn join(pieces: &mut [Piece], most_vertices: u32) -> Result<Vec<Seam>, ExtractEr
         first.surface.triangles.extend(piece.surface.triangles.iter().map(global));
         first.positions.extend_from_slice(&piece.positions);
         first.targets.append(&mut piece.targets);
+        if let (Some(whole), Some(trace)) = (&mut first.surface.trace, &mut piece.surface.trace) {
+            whole.keys.append(&mut trace.keys);
+            whole.cells.append(&mut trace.cells);
+        }
         first.surface.tetrahedra_evaluated += piece.surface.tetrahedra_evaluated;
         first.surface.discarded += piece.surface.discarded;
         first.surface.discarded_as_published += piece.surface.discarded_as_published;

@@ -5,7 +5,7 @@ use std::collections::TryReserveError;
 use glam::Vec3A;
 
 use crate::lattice::{
-    Arrangement, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout, PointKind, members,
+    Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout, PointKind, Uniform, members,
 };
 use crate::settings::Positions;
 use crate::tetrahedra::{Spoke, spokes};
@@ -61,9 +61,9 @@ impl Grid {
         let directions = lattice.arrangement().directions();
         let half = lattice.spacing() / 2.0;
         let neighbourhood = |kind| Neighbourhood::new(&layout, kind, directions);
-        let (reach, base_offset) = match lattice.arrangement() {
-            Arrangement::BodyCentred => (2, 1),
-            Arrangement::SimpleCubic => (1, 0),
+        let (reach, base_offset) = match lattice.arrangement().expect_uniform() {
+            Uniform::BodyCentred => (2, 1),
+            Uniform::SimpleCubic => (1, 0),
         };
         Ok(Self {
             coordinates: Coordinates::sampled(lattice, &layout, Positions::Indexed)?,
@@ -100,9 +100,9 @@ impl Grid {
 
     /// The layer of cells whose base points lie in `layer`, if any.
     pub(super) fn cells_of(&self, layer: usize) -> Option<usize> {
-        let z = match self.lattice.arrangement() {
-            Arrangement::BodyCentred => (layer / 2).checked_sub(1).filter(|_| layer.is_multiple_of(2))?,
-            Arrangement::SimpleCubic => layer,
+        let z = match self.lattice.arrangement().expect_uniform() {
+            Uniform::BodyCentred => (layer / 2).checked_sub(1).filter(|_| layer.is_multiple_of(2))?,
+            Uniform::SimpleCubic => layer,
         };
         (z < self.lattice.cells()[2] as usize).then_some(z)
     }

@@ -14,6 +14,7 @@ use super::rule::ClusterRule;
 use super::signs::Signs;
 use crate::lattice::{DIRECTIONS, DirectionSet, members};
 use crate::placement::{CrossingPlacer, Surroundings};
+use crate::trace::VertexKey;
 
 /// Samples, by row.
 #[derive(Clone, Copy)]
@@ -32,6 +33,8 @@ pub(super) struct PointPass<'a, R> {
     pub(super) isovalue: f32,
     /// Places the vertices of the slab's own layers once more.
     pub(super) placer: Option<&'a CrossingPlacer<'a>>,
+    /// Whether vertices have more than a position.
+    pub(super) has_more: bool,
 }
 
 /// What the pass counts and writes.
@@ -43,11 +46,14 @@ pub(super) struct Placed {
     pub(super) crossing_ends: u64,
     /// Where the placer wants the vertices.
     pub(super) targets: Vec<Vec3>,
+    /// Their keys, where they are asked for.
+    pub(super) keys: Option<Vec<VertexKey>>,
 }
 
 /// A point with a crossing.
 struct Point {
     column: usize,
+    row: usize,
     position: Vec3,
     inside: bool,
     crossing: DirectionSet,
@@ -109,6 +115,9 @@ impl<R: ClusterRule> PointPass<'_, R> {
                 if self.placer.is_some() {
                     placed.targets.try_reserve(points * DIRECTIONS)?;
                 }
+                if let Some(keys) = &mut placed.keys {
+                    keys.try_reserve(points * DIRECTIONS)?;
+                }
             }
             records.reserve_lists(layer, points)?;
             let mut left = active;
@@ -128,7 +137,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
                 }
                 let position = Vec3::new(x[column], y, z);
                 let inside = sides >> bit & 1 != 0;
-                let point = Point { column, position, inside, crossing, present };
+                let point = Point { column, row, position, inside, crossing, present };
                 let record = self.point(
                     &point,
                     samples[0],
@@ -183,7 +192,9 @@ impl<R: ClusterRule> PointPass<'_, R> {
             placed.numbered += 1;
             if let Some(positions) = positions {
                 positions.push(place(near));
-                self.place_again(point, &[near], row_start, neighbours, &mut placed.targets);
+                if self.has_more {
+                    self.add_more(point, layer, &[near], row_start, neighbours, placed);
+                }
             }
             return Record::new(first, near, crossing, inside, Numbering::One);
         }
@@ -192,7 +203,9 @@ impl<R: ClusterRule> PointPass<'_, R> {
         placed.numbered += count as u64;
         if let Some(positions) = &mut positions {
             positions.extend(clusters.sets().iter().map(|&cluster| place(cluster)));
-            self.place_again(point, clusters.sets(), row_start, neighbours, &mut placed.targets);
+            if self.has_more {
+                self.add_more(point, layer, clusters.sets(), row_start, neighbours, placed);
+            }
         }
         if count == 1 {
             Record::new(first, near, crossing, inside, Numbering::One)
@@ -204,16 +217,22 @@ impl<R: ClusterRule> PointPass<'_, R> {
         }
     }
 
-    /// Where the placer wants the clusters' vertices, if there is one.
-    #[inline(always)]
-    fn place_again(
+    /// The keys of the clusters' vertices, and where the placer wants them, if there is one.
+    #[cold]
+    #[inline(never)]
+    fn add_more(
         &self,
         point: &Point,
+        layer: usize,
         clusters: &[DirectionSet],
         row_start: usize,
         neighbours: &[usize; 16],
-        targets: &mut Vec<Vec3>,
+        placed: &mut Placed,
     ) {
+        if let Some(keys) = &mut placed.keys {
+            let number = self.grid.lattice.point_number([point.column, point.row, layer]);
+            keys.extend(clusters.iter().map(|set| VertexKey::new(number, set.trailing_zeros() as usize)));
+        }
         let Some(placer) = self.placer else { return };
         let values = self.samples.values;
         let difference = |place: usize| values[place] - self.isovalue;
@@ -225,7 +244,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
         for d in members(point.present) {
             around.neighbours[d] = difference(neighbours[d].wrapping_add(point.column));
         }
-        targets.extend(clusters.iter().map(|&cluster| placer.place(&around, cluster)));
+        placed.targets.extend(clusters.iter().map(|&cluster| placer.place(&around, cluster)));
     }
 
     /// The unweighted mean of the cluster's crossings, clamped to the box.

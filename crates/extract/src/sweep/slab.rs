@@ -27,6 +27,8 @@ pub(super) struct Job<'a, R> {
     pub(super) isovalue: f32,
     pub(super) most_vertices: u32,
     pub(super) placer: Option<&'a CrossingPlacer<'a>>,
+    /// Whether vertices get keys and triangles the numbers of their cells.
+    pub(super) traced: bool,
     /// Called with the number of layers sampled since the last call.
     pub(super) progress: &'a (dyn Fn(usize) + Sync),
 }
@@ -85,12 +87,17 @@ impl Workspace {
 }
 
 impl Piece {
-    fn clear(&mut self) {
+    /// Empty, to be traced or not.
+    fn clear(&mut self, traced: bool) {
         self.positions.clear();
         self.targets.clear();
         self.surface.triangles.clear();
         let triangles = std::mem::take(&mut self.surface.triangles);
-        self.surface = Triangulation { triangles, ..Triangulation::default() };
+        let mut trace = traced.then(|| self.surface.trace.take().unwrap_or_default());
+        if let Some(trace) = &mut trace {
+            trace.clear();
+        }
+        self.surface = Triangulation { triangles, trace, ..Triangulation::default() };
         (self.below, self.crossing_ends, self.head, self.tail) = (0, 0, 0, 0);
         self.times = SlabTimes::default();
     }
@@ -122,8 +129,8 @@ pub(super) fn sweep<R: ClusterRule>(
     let everywhere = job.placer.is_some_and(CrossingPlacer::reads_neighbours);
     let field_pass = |field| FieldPass { field, grid, isovalue, everywhere };
 
-    piece.clear();
-    let mut placed = Placed::default();
+    piece.clear(job.traced);
+    let mut placed = Placed { keys: job.traced.then(Vec::new), ..Placed::default() };
     let mut last = Instant::now();
     let mut lap = || {
         let now = Instant::now();
@@ -155,7 +162,8 @@ pub(super) fn sweep<R: ClusterRule>(
                 Source::Field(_) => workspace.samples.samples(),
             };
             let (signs, placer) = (&workspace.signs, job.placer);
-            let pass = PointPass { grid, rule: job.rule, samples, signs, isovalue, placer };
+            let has_more = placer.is_some() || job.traced;
+            let pass = PointPass { grid, rule: job.rule, samples, signs, isovalue, placer, has_more };
             if layer == own.start {
                 piece.below = placed.numbered;
             }
@@ -186,5 +194,8 @@ pub(super) fn sweep<R: ClusterRule>(
         piece.times.geometry += lap();
     }
     piece.targets = placed.targets;
+    if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, placed.keys) {
+        trace.keys = keys;
+    }
     Ok(())
 }

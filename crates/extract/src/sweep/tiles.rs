@@ -13,7 +13,7 @@ use mesh::Bounds;
 use super::grid::Grid;
 use crate::ScalarField;
 use crate::field::SAFE;
-use crate::lattice::{Arrangement, PointKind};
+use crate::lattice::{PointKind, Uniform};
 
 /// Columns and rows of a tile, and cells in the height of a brick.
 pub(super) const TILE: usize = 2;
@@ -101,9 +101,9 @@ impl Tiles {
 
     /// Makes the tiles those of the brick that `layer` is in.
     pub(super) fn turn_to(&mut self, layer: usize, grid: &Grid, field: &dyn ScalarField, isovalue: f32) {
-        let depth = match grid.lattice.arrangement() {
-            Arrangement::BodyCentred => 2 * TILE,
-            Arrangement::SimpleCubic => TILE,
+        let depth = match grid.lattice.arrangement().expect_uniform() {
+            Uniform::BodyCentred => 2 * TILE,
+            Uniform::SimpleCubic => TILE,
         };
         let brick = layer / depth;
         if self.brick == Some(brick) {
@@ -186,9 +186,9 @@ impl Search<'_> {
     fn bounds(&self, columns: &Range<usize>, rows: &Range<usize>) -> Bounds {
         let (size, coordinates) = (self.grid.size, &self.grid.coordinates);
         // Centres are half a cell lower than corners.
-        let lowest = match self.grid.lattice.arrangement() {
-            Arrangement::BodyCentred => PointKind::Centre,
-            Arrangement::SimpleCubic => PointKind::Corner,
+        let lowest = match self.grid.lattice.arrangement().expect_uniform() {
+            Uniform::BodyCentred => PointKind::Centre,
+            Uniform::SimpleCubic => PointKind::Corner,
         };
         let highest = PointKind::Corner;
         let last = |range: &Range<usize>, size: usize| range.end.min(size) - 1;

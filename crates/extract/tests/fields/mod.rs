@@ -59,10 +59,8 @@ pub(crate) const FAMILIES: [Family; 15] = [
 /// Steps to the seven neighbours in positive directions, in half cells.
 pub(crate) fn positive_steps(arrangement: Arrangement) -> [[i32; 3]; 7] {
     match arrangement {
-        Arrangement::SimpleCubic => {
-            [[2, 0, 0], [0, 2, 0], [0, 0, 2], [2, 2, 0], [2, 0, 2], [0, 2, 2], [2, 2, 2]]
-        }
         Arrangement::BodyCentred => SIMPLE_STEPS.map(|step| image(arrangement, step)),
+        _ => [[2, 0, 0], [0, 2, 0], [0, 0, 2], [2, 2, 0], [2, 0, 2], [0, 2, 2], [2, 2, 2]],
     }
 }
 
@@ -73,8 +71,8 @@ const SIMPLE_STEPS: [[i32; 3]; 7] =
 /// that makes the two one.
 pub(crate) fn image(arrangement: Arrangement, [i, j, k]: [i32; 3]) -> [i32; 3] {
     match arrangement {
-        Arrangement::SimpleCubic => [2 * i, 2 * j, 2 * k],
         Arrangement::BodyCentred => [j + k - i, i + k - j, i + j - k],
+        _ => [2 * i, 2 * j, 2 * k],
     }
 }
 
@@ -115,7 +113,8 @@ impl Volume {
         all.filter(|place| {
             let odd = place.iter().filter(|&c| c % 2 != 0).count();
             odd == 0 && self.index(*place).is_some()
-                || odd == 3 && self.arrangement == Arrangement::BodyCentred
+                || odd == 3 && matches!(self.arrangement, Arrangement::BodyCentred | Arrangement::FaceCentred)
+                || odd == 2 && self.arrangement == Arrangement::FaceCentred
         })
         .collect()
     }

@@ -114,13 +114,14 @@ pub(super) fn parse(bytes: &[u8]) -> Result<(Header, usize), PlyError> {
                     "ascii" => Encoding::Ascii,
                     "binary_little_endian" => Encoding::LittleEndian,
                     "binary_big_endian" => Encoding::BigEndian,
-                    _ => return Err(wrong(format!("unknown format `{name}`"))),
+                    _ => return Err(wrong(format!("unknown format `{}`", shortened(name)))),
                 });
             }
             ["element", name, count] => {
-                let count = count.parse().map_err(|_| wrong(format!("`{count}` is not a count")))?;
+                let count =
+                    count.parse().map_err(|_| wrong(format!("`{}` is not a count", shortened(count))))?;
                 if elements.iter().any(|element| element.name == name) {
-                    return Err(wrong(format!("a second element `{name}`")));
+                    return Err(wrong(format!("a second element `{}`", shortened(name))));
                 }
                 elements.push(Element { name: name.to_owned(), count, properties: Vec::new() });
             }
@@ -129,7 +130,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<(Header, usize), PlyError> {
                 let element =
                     elements.last_mut().ok_or_else(|| wrong("a property before any element".into()))?;
                 if element.properties.iter().any(|other| other.name == property.name) {
-                    return Err(wrong(format!("a second property `{}`", property.name)));
+                    return Err(wrong(format!("a second property `{}`", shortened(&property.name))));
                 }
                 element.properties.push(property);
             }
@@ -137,7 +138,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<(Header, usize), PlyError> {
                 let encoding = encoding.ok_or_else(|| wrong("no format line".into()))?;
                 return Ok((Header { encoding, elements }, start));
             }
-            _ => return Err(wrong(format!("cannot read `{}`", text.trim()))),
+            _ => return Err(wrong(format!("cannot read `{}`", shortened(text.trim())))),
         }
     }
     unreachable!("the loop ends at `end_header` or at the end of the input")
@@ -154,16 +155,22 @@ fn header_line(bytes: &[u8], start: usize) -> Option<(String, usize)> {
 }
 
 fn property(spec: &[&str]) -> Result<Property, String> {
-    let scalar = |name: &str| Scalar::named(name).ok_or_else(|| format!("unknown type `{name}`"));
+    let scalar =
+        |name: &str| Scalar::named(name).ok_or_else(|| format!("unknown type `{}`", shortened(name)));
     match *spec {
         ["list", length, value, name] => {
             let (length, value) = (scalar(length)?, scalar(value)?);
             if !length.is_integer() {
-                return Err(format!("list `{name}` counts in {}s", length.name()));
+                return Err(format!("list `{}` counts in {}s", shortened(name), length.name()));
             }
             Ok(Property { name: name.to_owned(), length: Some(length), value })
         }
         [value, name] => Ok(Property { name: name.to_owned(), length: None, value: scalar(value)? }),
         _ => Err("a property is `property TYPE NAME` or `property list TYPE TYPE NAME`".into()),
     }
+}
+
+/// A line may hold anything, and be long.
+fn shortened(token: &str) -> String {
+    token.chars().take(40).collect()
 }

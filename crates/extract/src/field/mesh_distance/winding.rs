@@ -60,6 +60,10 @@ impl WindingColumns {
         columns
     }
 
+    pub(super) fn triangles(&self) -> &[[Vec3; 3]] {
+        &self.triangles
+    }
+
     /// A counting sort: sizes, then starts, then members in triangle order.
     fn fill(&mut self) {
         let touched: Vec<_> = self.triangles.iter().map(|t| self.cells_of(t)).collect();

@@ -1,0 +1,202 @@
+//! How far two surfaces are from each other: `isostudy distance`.
+
+use crate::args::Distance;
+use crate::subject::Fields;
+use crate::{say, subject};
+use anyhow::{Context, Result, bail};
+use design::{Arrangement, Study};
+use extract::Execution;
+use mesh::metro::{Amount, Deviation, Metro, Sampling, Surface};
+use mesh::{MeshFormat, TriangleMesh};
+use serde::Serialize;
+use std::fmt::Write;
+use std::fs::File;
+use std::path::Path;
+
+/// The version of the JSON.
+const SCHEMA: u32 = 1;
+
+/// Measures both ways and prints.
+///
+/// # Errors
+/// If a surface cannot be had or not be sampled.
+pub(crate) fn distance(arguments: &Distance) -> Result<()> {
+    let amount = match arguments.density {
+        Some(density) => Amount::Density(density),
+        None => Amount::Samples(arguments.samples),
+    };
+    let sampling = Sampling { amount, seed: arguments.seed };
+    let a = surface(&arguments.a)?;
+    let (name, metro) = match (&arguments.b, &arguments.object) {
+        (Some(path), _) => (path.display().to_string(), to_mesh(arguments, &a, path, &sampling)?),
+        (None, Some(id)) => (id.clone(), to_object(arguments, &a, id, &sampling)?),
+        (None, None) => bail!("a second mesh or --object is needed"),
+    };
+    if arguments.json {
+        let report = Report::new([arguments.a.display().to_string(), name], &metro, arguments.seed);
+        return say(&serde_json::to_string_pretty(&report)?);
+    }
+    say(text(&metro, arguments.seed).trim_end())
+}
+
+fn to_mesh(arguments: &Distance, a: &Surface, path: &Path, sampling: &Sampling) -> Result<Metro> {
+    let b = surface(path)?;
+    let way = |from: &Surface, to: &Surface, path: &Path| {
+        from.deviation_from(to, sampling).with_context(|| path.display().to_string())
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads as usize).build()?;
+    pool.install(|| {
+        let forward = way(a, &b, &arguments.a)?;
+        Ok(Metro { forward, backward: way(&b, a, path)?, diagonal: b.diagonal() })
+    })
+}
+
+/// Against the isosurface of a study's object, in the object's volume.
+fn to_object(arguments: &Distance, a: &Surface, id: &str, sampling: &Sampling) -> Result<Metro> {
+    let study = Study::load(&arguments.study)?;
+    let objects = &study.file.objects;
+    let Some(index) = objects.iter().position(|object| object.id == id) else {
+        let known: Vec<&str> = objects.iter().map(|object| object.id.as_str()).collect();
+        bail!("--object {id}: {} has {}", study.path.display(), known.join(", "));
+    };
+    let object = &objects[index];
+    let spacing = arguments.spacing.unwrap_or(object.benchmark_spacing);
+    let lattice = subject::lattice(object, Arrangement::BodyCentred, spacing)
+        .with_context(|| format!("--spacing {spacing}"))?;
+    let fields = Fields::new(&study);
+    let (field, isovalue) = (fields.get(index)?, object.isovalue as f32);
+    let execution = Execution { threads: arguments.threads as usize };
+    extract::distances(a, field, isovalue, &lattice, sampling, &execution)
+        .with_context(|| format!("{} and {id}", arguments.a.display()))
+}
+
+fn surface(path: &Path) -> Result<Surface> {
+    let name = || path.display().to_string();
+    Surface::try_new(&read_mesh(path)?).with_context(name)
+}
+
+/// A mesh in the format that its file's name ends with.
+fn read_mesh(path: &Path) -> Result<TriangleMesh> {
+    let name = || path.display().to_string();
+    let ending = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    let Some(format) = MeshFormat::from_extension(ending) else {
+        bail!("{}: ends neither in .obj nor in .ply nor in .stl", name());
+    };
+    let file = File::open(path).with_context(name)?;
+    format.read(file).with_context(name)
+}
+
+fn text(metro: &Metro, seed: u64) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: f64| {
+        let share = 100.0 * value / metro.diagonal;
+        writeln!(text, "  {name:<22}{value:>14.8}  {share:>11.6} %").expect("a string takes everything");
+    };
+    line("Hausdorff distance", metro.hausdorff());
+    for (heading, way) in [("A to B", &metro.forward), ("B to A", &metro.backward)] {
+        line(&format!("{heading}, mean"), way.mean);
+        line("  RMS", way.rms);
+        line("  max", way.max);
+    }
+    let mut text =
+        format!("distance                          units  of B's diagonal, {:.8}\n{text}\n", metro.diagonal);
+    for (heading, way) in [("A to B", &metro.forward), ("B to A", &metro.backward)] {
+        writeln!(text, "{heading}: {}", places(way)).expect("a string takes everything");
+    }
+    writeln!(
+        text,
+        "seed {seed}; the maxima are over samples and vertices, and occur; mean and RMS are over the area"
+    )
+    .expect("a string takes everything");
+    text
+}
+
+/// How a direction was sampled, and where its maximum is.
+fn places(way: &Deviation) -> String {
+    let mut sampled = format!(
+        "{} samples, {:.6} per unit of area, and {} vertices",
+        way.samples, way.density, way.vertices
+    );
+    if way.lost_samples + way.lost_vertices > 0 {
+        let (samples, vertices) = (way.lost_samples, way.lost_vertices);
+        sampled += &format!(" ({samples} and {vertices} without a distance)");
+    }
+    way.farthest.map_or(sampled.clone(), |farthest| {
+        let [from, to] =
+            [farthest.from, farthest.to].map(|p| format!("({:.7}, {:.7}, {:.7})", p.x, p.y, p.z));
+        let kind = if farthest.at_vertex { "vertex" } else { "sample" };
+        format!("{sampled}; farthest {kind} {from}, nearest point {to}")
+    })
+}
+
+/// What is printed as JSON.
+#[derive(Serialize)]
+struct Report {
+    schema: u32,
+    a: String,
+    b: String,
+    seed: u64,
+    /// Length of the diagonal of B's bounding box.
+    diagonal: f64,
+    hausdorff: f64,
+    hausdorff_of_diagonal: f64,
+    a_to_b: Way,
+    b_to_a: Way,
+}
+
+#[derive(Serialize)]
+struct Way {
+    samples: u64,
+    samples_per_area: f64,
+    vertices: u64,
+    lost_samples: u64,
+    lost_vertices: u64,
+    mean: f64,
+    rms: f64,
+    max: f64,
+    mean_of_diagonal: f64,
+    rms_of_diagonal: f64,
+    max_of_diagonal: f64,
+    farthest: Option<Farthest>,
+}
+
+#[derive(Serialize)]
+struct Farthest {
+    from: [f64; 3],
+    to: [f64; 3],
+    at_vertex: bool,
+}
+
+impl Report {
+    fn new([a, b]: [String; 2], metro: &Metro, seed: u64) -> Self {
+        let way = |way: &Deviation| Way {
+            samples: way.samples,
+            samples_per_area: way.density,
+            vertices: way.vertices,
+            lost_samples: way.lost_samples,
+            lost_vertices: way.lost_vertices,
+            mean: way.mean,
+            rms: way.rms,
+            max: way.max,
+            mean_of_diagonal: way.mean / metro.diagonal,
+            rms_of_diagonal: way.rms / metro.diagonal,
+            max_of_diagonal: way.max / metro.diagonal,
+            farthest: way.farthest.map(|farthest| Farthest {
+                from: farthest.from.to_array(),
+                to: farthest.to.to_array(),
+                at_vertex: farthest.at_vertex,
+            }),
+        };
+        Self {
+            schema: SCHEMA,
+            a,
+            b,
+            seed,
+            diagonal: metro.diagonal,
+            hausdorff: metro.hausdorff(),
+            hausdorff_of_diagonal: metro.hausdorff() / metro.diagonal,
+            a_to_b: way(&metro.forward),
+            b_to_a: way(&metro.backward),
+        }
+    }
+}

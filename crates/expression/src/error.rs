@@ -1,0 +1,80 @@
+//! What can be wrong with a formula.
+
+use thiserror::Error;
+
+/// Why text is no formula. Columns count characters from 1.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ExpressionError {
+    /// A character that belongs to nothing.
+    #[error("column {column}: `{character}` is not part of any formula")]
+    Character {
+        /// Where.
+        column: usize,
+        /// Which.
+        character: char,
+    },
+    /// Digits that are no number.
+    #[error("column {column}: `{text}` is not a finite number")]
+    Number {
+        /// Where.
+        column: usize,
+        /// What stands there, cut after 40 characters.
+        text: String,
+    },
+    /// A name without a meaning.
+    #[error("column {column}: `{name}` is not known; x, y, z, pi, tau, e and functions are")]
+    Name {
+        /// Where.
+        column: usize,
+        /// What stands there, cut after 40 characters.
+        name: String,
+    },
+    /// A function with the wrong number of arguments.
+    #[error("column {column}: `{name}` takes {wanted}, not {given}")]
+    Arguments {
+        /// Where the function stands.
+        column: usize,
+        /// The function.
+        name: String,
+        /// How many there are.
+        given: usize,
+        /// How many there have to be.
+        wanted: &'static str,
+    },
+    /// Something else than what has to follow.
+    #[error("column {column}: {found} where {wanted} belongs")]
+    Unexpected {
+        /// Where.
+        column: usize,
+        /// What stands there.
+        found: String,
+        /// What belongs there.
+        wanted: &'static str,
+    },
+    /// More nesting than the limit.
+    #[error("column {column}: nested deeper than {limit} levels")]
+    TooDeep {
+        /// Where it gets too deep.
+        column: usize,
+        /// The limit.
+        limit: usize,
+    },
+    /// More text than the limit.
+    #[error("{bytes} bytes exceed the limit of {limit}")]
+    TooLong {
+        /// How much there is.
+        bytes: usize,
+        /// The limit.
+        limit: usize,
+    },
+    /// The evaluator refuses it.
+    #[error("the formula is too complex for the evaluator")]
+    TooComplex,
+    /// The same everywhere, so that there is no surface.
+    #[error("the formula is {value} everywhere; x, y or z must matter")]
+    Constant {
+        /// The value.
+        value: f32,
+    },
+}

@@ -1,0 +1,175 @@
+//! Digs holes into the asteroid, chunk by chunk, as a game would: after each edit only the chunks that it touches are
+//! extracted again. Prints the time of an edit, then checks that the chunks are still the mesh of the whole.
+//!
+//! `cargo run --release -p extract --example dig -- [cells along an axis] [cells of a chunk] [edits] [arrangement]`
+
+use std::time::Instant;
+
+use extract::{
+    Arrangement, Asteroid, Chunk, ChunkExtractor, Clustering, Execution, ExtractSettings, Kept, Lattice,
+    ScalarField, Source, extract, weld,
+};
+use glam::Vec3;
+use mesh::Bounds;
+
+/// A solid less the balls that were dug out of it.
+struct Dug<'a> {
+    solid: &'a dyn ScalarField,
+    holes: Vec<Ball>,
+    /// No value is above this one.
+    deepest: f32,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Ball {
+    centre: Vec3,
+    radius: f32,
+}
+
+impl Ball {
+    /// Positive outside: what is left when the ball is taken away.
+    fn value(&self, p: Vec3) -> f32 {
+        p.distance(self.centre) - self.radius
+    }
+
+    /// Beyond this box, digging the ball out of a field below `deepest` changes nothing, rounding included.
+    fn reach(&self, deepest: f32) -> Bounds {
+        let reach = Vec3::splat((self.radius + deepest) * 1.001);
+        Bounds { min: self.centre - reach, max: self.centre + reach }
+    }
+}
+
+/// Values farther inside than this many spacings are cut off, so that an edit changes the field near by and nowhere else.
+const DEEPEST: f32 = 2.0;
+
+impl ScalarField for Dug<'_> {
+    fn sample(&self, p: Vec3) -> f32 {
+        self.holes.iter().fold(self.solid.sample(p).min(self.deepest), |value, hole| value.min(hole.value(p)))
+    }
+
+    /// So that the solid's own way of sampling a row is used, and only holes that can matter to it.
+    fn sample_row(&self, x: &[f32], y: f32, z: f32, values: &mut [f32]) {
+        self.solid.sample_row(x, y, z, values);
+        values.iter_mut().for_each(|value| *value = value.min(self.deepest));
+        let (Some(&first), Some(&last)) = (x.first(), x.last()) else { return };
+        for hole in &self.holes {
+            let near = hole.centre.clamp(Vec3::new(first, y, z), Vec3::new(last, y, z));
+            if hole.value(near) < self.deepest {
+                for (value, &x) in values.iter_mut().zip(x) {
+                    *value = value.min(hole.value(Vec3::new(x, y, z)));
+                }
+            }
+        }
+    }
+
+    /// A distance changes as fast as one walks.
+    fn slope(&self, bounds: Bounds) -> Option<f32> {
+        self.solid.slope(bounds).map(|slope| slope.max(1.0))
+    }
+
+    /// The least of all, so that chunks in the air or deep inside take no samples.
+    fn range(&self, bounds: Bounds, value: f32) -> Option<(f32, f32)> {
+        let (low, high) =
+            self.solid.range(bounds, f32::NAN).filter(|range| !range.0.is_nan()).or_else(|| {
+                let centre = (bounds.min + bounds.max) * 0.5;
+                // The solid's own value there: the one that is known is after digging.
+                self.solid.range(bounds, if value.is_nan() { value } else { self.solid.sample(centre) })
+            })?;
+        let cut = (low.min(self.deepest), high.min(self.deepest));
+        Some(self.holes.iter().fold(cut, |(low, high), hole| {
+            let near = hole.centre.clamp(bounds.min, bounds.max);
+            let far = (hole.centre - bounds.min).abs().max((hole.centre - bounds.max).abs());
+            let rounding = 1e-5;
+            (low.min(hole.value(near) - rounding), high.min(far.length() - hole.radius + rounding))
+        }))
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let mut number = |default: u32| arguments.next().map_or(Ok(default), |text| text.parse());
+    let (cells, chunk_cells, edits) = (number(128)?, number(16)?, number(100)?);
+    let (arrangement, clustering) = match arguments.next().as_deref() {
+        None | Some("body-centred") => (Arrangement::BodyCentred, Clustering::Integrated),
+        Some("simple-cubic") => (Arrangement::SimpleCubic, Clustering::Integrated),
+        Some("five-tetrahedra") => (Arrangement::FiveTetrahedra, Clustering::None),
+        Some("face-centred") => (Arrangement::FaceCentred, Clustering::None),
+        Some(other) => return Err(format!("no arrangement {other}").into()),
+    };
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    let lattice = Lattice::try_new(arrangement, bounds, 2.0 / cells as f32)?;
+    let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
+    let execution = Execution { threads: 1 };
+
+    let (asteroid, mut kept) = (Asteroid::default(), Kept::default());
+    let solid = asteroid.prepared(&mut kept).unwrap_or(&asteroid);
+    let mut field = Dug { solid, holes: Vec::new(), deepest: DEEPEST * lattice.spacing() };
+    let mut extractor = ChunkExtractor::try_new(&lattice, &settings)?;
+    let boxes: Vec<_> = extractor.grid(chunk_cells).collect();
+    let start = Instant::now();
+    let mut chunks: Vec<Chunk> = Vec::new();
+    for &cells in &boxes {
+        chunks.push(extractor.extract(Source::Field(&field), cells, &execution)?);
+    }
+    let with_surface = chunks.iter().filter(|chunk| !chunk.mesh.triangles.is_empty()).count();
+    println!(
+        "{cells}^3 cells, {arrangement:?} {clustering:?}: {} chunks of {chunk_cells}^3 cells, {with_surface} with surface, in {:.0} ms",
+        chunks.len(),
+        start.elapsed().as_secs_f64() * 1e3
+    );
+
+    let (mut of_edit, mut of_chunk, mut touched) = (Vec::new(), Vec::new(), 0);
+    for edit in 0..edits {
+        let hole = Ball { centre: on_surface(solid, edit), radius: 0.06 };
+        field.holes.push(hole);
+        let changed = hole.reach(field.deepest);
+        let start = Instant::now();
+        for chunk in chunks.iter_mut().filter(|chunk| chunk.is_touched_by(changed)) {
+            let start = Instant::now();
+            // Of all holes only those near by, so that old edits cost nothing.
+            let near = |hole: &&Ball| chunk.is_touched_by(hole.reach(field.deepest));
+            let holes = field.holes.iter().filter(near).copied().collect();
+            let local = Dug { holes, ..field };
+            *chunk = extractor.extract(Source::Field(&local), chunk.cells, &execution)?;
+            of_chunk.push(start.elapsed().as_secs_f64() * 1e3);
+            touched += 1;
+        }
+        of_edit.push(start.elapsed().as_secs_f64() * 1e3);
+    }
+    for (what, times) in [("edit", &mut of_edit), ("chunk", &mut of_chunk)] {
+        times.sort_unstable_by(f64::total_cmp);
+        if let (Some(median), Some(longest)) = (times.get(times.len() / 2), times.last()) {
+            println!("time per {what}: median {median:.2} ms, longest {longest:.2} ms");
+        }
+    }
+    println!("chunks per edit: {:.1}", f64::from(touched) / f64::from(edits.max(1)));
+
+    let start = Instant::now();
+    let whole = extract(&field, &lattice, &settings, &execution)?.mesh;
+    println!(
+        "the whole anew: {:.0} ms, {} triangles",
+        start.elapsed().as_secs_f64() * 1e3,
+        whole.triangles.len()
+    );
+    let start = Instant::now();
+    let welded = weld(&chunks)?;
+    println!("welding all chunks: {:.0} ms", start.elapsed().as_secs_f64() * 1e3);
+    if welded != whole {
+        return Err("the welded chunks are not the mesh of the whole".into());
+    }
+    println!("the welded chunks are the mesh of the whole");
+    Ok(())
+}
+
+/// A place on the solid's surface, by bisection in one of many directions (Fibonacci's spiral).
+fn on_surface(solid: &dyn ScalarField, edit: u32) -> Vec3 {
+    let z = 1.0 - 2.0 * ((edit as f32 + 0.5) * 0.618_034).fract();
+    let (sin, cos) = (edit as f32 * 2.399_963).sin_cos();
+    let direction = Vec3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt() + Vec3::Z * z;
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..20 {
+        let middle = (low + high) * 0.5;
+        if solid.sample(direction * middle) > 0.0 { low = middle } else { high = middle }
+    }
+    direction * low
+}

@@ -1,0 +1,33 @@
+//! A volume becomes a binary glTF file, which browsers and game engines show.
+//!
+//! cargo run --release -p extract --example volume_to_gltf -- head.nrrd 300 head.glb
+
+use std::env::args;
+use std::error::Error;
+use std::fs::File;
+
+use extract::{Arrangement, Beyond, Execution, ExtractSettings, Lattice, VolumeField, extract};
+use mesh::write_glb;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let [Some(input), Some(isovalue), Some(output)] = [1, 2, 3].map(|n| args().nth(n)) else {
+        return Err("usage: volume_to_gltf VOLUME ISOVALUE OUTPUT.glb".into());
+    };
+    let volume = volume::read(input.as_ref(), volume::NO_LIMIT)?;
+    println!("{:?} samples", volume.counts);
+    let field =
+        VolumeField::try_new(volume.counts, volume.values, volume.origin, volume.steps, Beyond::Continued)?;
+
+    // One cube a sample, over all samples. Inside is what is brighter than the isovalue.
+    let lattice = Lattice::try_new(Arrangement::BodyCentred, field.bounds(), field.spacing())?;
+    let settings = ExtractSettings { isovalue: isovalue.parse()?, ..ExtractSettings::default() };
+    let mut surface = extract(&field, &lattice, &settings, &Execution::default())?.mesh;
+
+    // glTF has y up; most scans have z. Turning keeps normals normals.
+    for v in surface.positions.iter_mut().chain(&mut surface.normals) {
+        *v = [v.x, v.z, -v.y].into();
+    }
+    write_glb(&surface, File::create(&output)?)?;
+    println!("{output}: {} triangles", surface.triangles.len());
+    Ok(())
+}

@@ -1,0 +1,69 @@
+//! Metro distances between a mesh and the isosurface of a field.
+
+use glam::DVec3;
+use mesh::TriangleMesh;
+use mesh::metro::{Metro, MetroError, Sampling, Surface};
+use thiserror::Error;
+
+use crate::extraction::ExtractError;
+use crate::field::{Kept, ScalarField};
+use crate::isosurface::Isosurface;
+use crate::lattice::Lattice;
+use crate::level::Level;
+use crate::sampling::on_threads;
+use crate::settings::Execution;
+
+/// Why a mesh and an isosurface cannot be measured against each other.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum DistanceError {
+    /// The isosurface cannot be extracted.
+    #[error(transparent)]
+    Extract(#[from] ExtractError),
+    /// There is no isosurface in the box, or it cannot be sampled so.
+    #[error("the isosurface: {0}")]
+    Isosurface(MetroError),
+    /// The mesh cannot be sampled so.
+    #[error(transparent)]
+    Mesh(#[from] MetroError),
+}
+
+/// The distances from `mesh` to the isosurface of `field` in the box of `lattice`, and back; `diagonal` is that of the
+/// isosurface's bounding box.
+///
+/// Distances, their errors and what is not seen are as in [`crate::accuracy`], with as many points as `sampling` asks for:
+/// exact where the field knows its isosurface, else along the gradient up to three spacings. Points without a distance
+/// and, on the way back, points outside the box are counted as lost. The result does not depend on `execution`.
+///
+/// # Errors
+/// [`DistanceError`].
+pub fn distances(
+    mesh: &Surface,
+    field: &dyn ScalarField,
+    isovalue: f32,
+    lattice: &Lattice,
+    sampling: &Sampling,
+    execution: &Execution,
+) -> Result<Metro, DistanceError> {
+    let mut kept = Kept::default();
+    let prepared = field.prepared(&mut kept).unwrap_or(field);
+    let level = Level { field: prepared, isovalue, spacing: lattice.spacing() };
+    let isosurface = Isosurface::new(field, level, lattice, execution)?;
+    let reference = joined(&isosurface.triangles).map_err(DistanceError::Isosurface)?;
+    on_threads(execution, usize::MAX, || {
+        let forward = mesh.deviation_by(sampling, |p, _| isosurface.foot(p))?;
+        let to_mesh = |p: DVec3, _| Some(mesh.nearest(isosurface.point(p)?, f64::INFINITY));
+        let mut backward = reference.deviation_by(sampling, to_mesh).map_err(DistanceError::Isosurface)?;
+        if let Some(farthest) = &mut backward.farthest {
+            farthest.from = isosurface.point(farthest.from).unwrap_or(farthest.from);
+        }
+        Ok(Metro { forward, backward, diagonal: reference.diagonal() })
+    })?
+}
+
+/// Triangles as a surface whose vertices are there once.
+fn joined(triangles: &[[glam::Vec3; 3]]) -> Result<Surface, MetroError> {
+    let corners = triangles.iter().flatten().copied().collect();
+    let numbers = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    let soup = TriangleMesh { positions: corners, normals: Vec::new(), triangles: numbers };
+    Surface::try_new(&mesh::weld(&soup))
+}

@@ -1,0 +1,219 @@
+//! Samples on a regular grid, interpolated.
+
+mod ranges;
+
+use std::collections::TryReserveError;
+
+use glam::{DMat3, DVec3, Vec3};
+use mesh::Bounds;
+use thiserror::Error;
+
+use self::ranges::Ranges;
+use super::{SAFE, ScalarField};
+
+/// What a volume's value is beyond its outermost samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Beyond {
+    /// That of the nearest point of the volume: a surface that reaches the volume's end goes on, and is cut off by the
+    /// lattice's box.
+    #[default]
+    Continued,
+    /// The same, less the difference between the largest and the smallest sample for each step from sample to sample:
+    /// what is inside ends, and its surface closes, less than a step beyond the volume's end.
+    Falling,
+    /// The same, but more: for a field that is turned round ([`Negated`](crate::Negated)).
+    Rising,
+}
+
+/// Why samples make no field.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum VolumeFieldError {
+    /// An axis has no samples, or the counts do not make the number of samples.
+    #[error("{samples} samples, and {counts:?} along the axes")]
+    Counts {
+        /// As given.
+        counts: [usize; 3],
+        /// How many samples there are.
+        samples: usize,
+    },
+    /// The steps from sample to sample are not finite or span no space.
+    #[error("the steps {steps:?} from sample to sample, from {origin:?}, span no space")]
+    Steps {
+        /// As given.
+        steps: [[f64; 3]; 3],
+        /// As given.
+        origin: [f64; 3],
+    },
+    /// No sample is a finite number.
+    #[error("none of the samples is a finite number")]
+    NoNumbers,
+    /// Memory that is not to be had.
+    #[error("no memory for the bounds of the samples")]
+    OutOfMemory,
+}
+
+/// Samples on a regular grid with an interpolated value between them: trilinear, in single precision, continuous, and
+/// at a sample the sample. Inside is what is brighter than the isovalue.
+///
+/// The grid may be turned, mirrored and sheared; it is sampled in the space its steps are in, so that triangles
+/// always face outward there. [`Beyond`] says what is outside the volume. Next to a sample that is `NaN` or infinite
+/// the value is `NaN`, which counts as outside.
+///
+/// Blocks whose samples are all on one side are never sampled: a tree keeps the range of the samples.
+#[derive(Debug, Clone)]
+pub struct VolumeField {
+    counts: [usize; 3],
+    values: Vec<f32>,
+    origin: DVec3,
+    steps: DMat3,
+    to_index: DMat3,
+    beyond: Beyond,
+    /// Change of the value for each step beyond the volume; positive.
+    fall: f32,
+    ranges: Ranges,
+}
+
+impl VolumeField {
+    /// A field of `counts[0] * counts[1] * counts[2]` samples, the first axis fastest. Sample `(i, j, k)` lies at
+    /// `origin + i * steps[0] + j * steps[1] + k * steps[2]`.
+    ///
+    /// # Errors
+    /// [`VolumeFieldError`].
+    pub fn try_new(
+        counts: [usize; 3],
+        values: Vec<f32>,
+        origin: [f64; 3],
+        steps: [[f64; 3]; 3],
+        beyond: Beyond,
+    ) -> Result<Self, VolumeFieldError> {
+        let product = counts.iter().try_fold(1usize, |product, &n| product.checked_mul(n));
+        if product != Some(values.len()) || values.is_empty() {
+            return Err(VolumeFieldError::Counts { counts, samples: values.len() });
+        }
+        let matrix = DMat3::from_cols_array_2d(&steps);
+        let lengths = matrix.x_axis.length() * matrix.y_axis.length() * matrix.z_axis.length();
+        let start = DVec3::from_array(origin);
+        let to_index = matrix.inverse();
+        let is_sound = start.is_finite() && to_index.is_finite() && lengths.is_finite();
+        if !is_sound || matrix.determinant().abs() <= 1e-6 * lengths {
+            return Err(VolumeFieldError::Steps { steps, origin });
+        }
+        let finite = values.iter().copied().filter(|v| v.is_finite());
+        let (low, high) = finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        if low > high {
+            return Err(VolumeFieldError::NoNumbers);
+        }
+        let ranges =
+            Ranges::new(counts, &values).map_err(|_: TryReserveError| VolumeFieldError::OutOfMemory)?;
+        let fall = if high > low { (high - low).min(f32::MAX) } else { 1.0 };
+        Ok(Self { counts, values, origin: start, steps: matrix, to_index, beyond, fall, ranges })
+    }
+
+    /// The same with something else beyond the outermost samples.
+    pub fn with_beyond(self, beyond: Beyond) -> Self {
+        Self { beyond, ..self }
+    }
+
+    /// The smallest box round all samples; none wider than `f32` can tell from a point.
+    pub fn bounds(&self) -> Bounds {
+        let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for corner in 0..8 {
+            let index =
+                std::array::from_fn(|k| if corner >> k & 1 == 1 { self.counts[k] - 1 } else { 0 } as f64);
+            let p = self.origin + self.steps * DVec3::from_array(index);
+            (min, max) = (min.min(p), max.max(p));
+        }
+        Bounds { min: min.as_vec3(), max: max.as_vec3() }
+    }
+
+    /// The shortest distance from sample to sample.
+    pub fn spacing(&self) -> f32 {
+        let steps = [self.steps.x_axis, self.steps.y_axis, self.steps.z_axis];
+        steps.iter().map(|step| step.length()).fold(f64::INFINITY, f64::min) as f32
+    }
+
+    /// Whether the grid's axes are those of space, in any order and direction.
+    pub fn is_axis_aligned(&self) -> bool {
+        let axes = [self.steps.x_axis, self.steps.y_axis, self.steps.z_axis];
+        axes.iter().all(|step| step.abs().max_element() >= (1.0 - 1e-9) * step.length())
+    }
+
+    /// The smallest and the largest sample; those that are not finite aside.
+    pub fn value_range(&self) -> (f32, f32) {
+        let finite = self.values.iter().copied().filter(|v| v.is_finite());
+        finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)))
+    }
+
+    fn interpolated(&self, index: DVec3) -> f32 {
+        let (mut first, mut part, mut next) = ([0; 3], [0.0f32; 3], [0; 3]);
+        let strides = [1, self.counts[0], self.counts[0] * self.counts[1]];
+        for k in 0..3 {
+            let last = self.counts[k] - 1;
+            first[k] = (index[k] as usize).min(last.saturating_sub(1));
+            part[k] = (index[k] - first[k] as f64) as f32;
+            // An axis with one sample goes nowhere.
+            next[k] = if last == 0 { 0 } else { strides[k] };
+        }
+        let at = first[0] + first[1] * strides[1] + first[2] * strides[2];
+        let along_x = |at: usize| between(self.values[at], self.values[at + next[0]], part[0]);
+        let along_y = |at: usize| between(along_x(at), along_x(at + next[1]), part[1]);
+        between(along_y(at), along_y(at + next[2]), part[2])
+    }
+}
+
+fn between(a: f32, b: f32, part: f32) -> f32 {
+    a + (b - a) * part
+}
+
+impl ScalarField for VolumeField {
+    fn sample(&self, p: Vec3) -> f32 {
+        let index = self.to_index * (p.as_dvec3() - self.origin);
+        if !index.is_finite() {
+            return f32::NAN;
+        }
+        let last = DVec3::from_array(self.counts.map(|n| (n - 1) as f64));
+        let nearest = index.clamp(DVec3::ZERO, last);
+        let value = self.interpolated(nearest);
+        let away = self.fall * (index - nearest).abs().max_element() as f32;
+        match self.beyond {
+            Beyond::Continued => value,
+            Beyond::Falling => value - away,
+            Beyond::Rising => value + away,
+        }
+    }
+
+    /// That of the samples round the box.
+    fn range(&self, bounds: Bounds, _value: f32) -> Option<(f32, f32)> {
+        let (min, max) = (bounds.min.as_dvec3() - self.origin, bounds.max.as_dvec3() - self.origin);
+        let centre = self.to_index * ((min + max) * 0.5);
+        let size = (max - min) * 0.5;
+        let turned = DMat3::from_cols(
+            self.to_index.x_axis.abs(),
+            self.to_index.y_axis.abs(),
+            self.to_index.z_axis.abs(),
+        );
+        let half = turned * size + DVec3::splat(1e-9) + centre.abs() * 1e-12;
+        if !centre.is_finite() || !half.is_finite() {
+            return None;
+        }
+        let last = DVec3::from_array(self.counts.map(|n| (n - 1) as f64));
+        let (low, high) =
+            ((centre - half).clamp(DVec3::ZERO, last), (centre + half).clamp(DVec3::ZERO, last));
+        let first = low.to_array().map(|v| v as usize);
+        let end = high.to_array().map(|v| v.ceil() as usize);
+        let (mut least, mut most) = self.ranges.of(first, end)?;
+        // Equal samples interpolate to themselves; others with rounding.
+        if least < most {
+            let rounding = least.abs().max(most.abs()) * (SAFE - 1.0);
+            (least, most) = (least - rounding, most + rounding);
+        }
+        let outside = (low - (centre - half)).max(centre + half - high).max_element();
+        let away = self.fall * outside as f32 * SAFE;
+        match self.beyond {
+            Beyond::Continued => {}
+            Beyond::Falling => least -= away,
+            Beyond::Rising => most += away,
+        }
+        Some((least, most))
+    }
+}

@@ -1,0 +1,69 @@
+//! The isosurface that a mesh is measured against.
+
+use glam::{DVec3, Vec3};
+use mesh::Bounds;
+use mesh::metro::Foot;
+
+use crate::extraction::{ExtractError, extract};
+use crate::field::ScalarField;
+use crate::lattice::{Arrangement, Lattice};
+use crate::level::Level;
+use crate::settings::{Clustering, Execution, ExtractSettings};
+
+/// How far a surface is looked for, in spacings.
+pub(crate) const REACH: f32 = 3.0;
+/// The spacing, in spacings, of the lattice on which the isosurface is looked for: finer, and with other points.
+const FINER: f32 = 0.75;
+
+/// Where a field has an isovalue in the box of a lattice, as triangles that lie on it or close to it.
+pub(crate) struct Isosurface<'a> {
+    /// The field as it is, which may know its isosurface.
+    field: &'a dyn ScalarField,
+    /// The field as it is sampled.
+    level: Level<'a>,
+    bounds: Bounds,
+    pub(crate) triangles: Vec<[Vec3; 3]>,
+    is_exact: bool,
+}
+
+impl<'a> Isosurface<'a> {
+    /// The field's own triangles, or else those of an extraction on a body-centred lattice with three quarters of the
+    /// spacing. `level` is the field's.
+    pub(crate) fn new(
+        field: &'a dyn ScalarField,
+        level: Level<'a>,
+        lattice: &Lattice,
+        execution: &Execution,
+    ) -> Result<Self, ExtractError> {
+        let (bounds, isovalue) = (lattice.bounds(), level.isovalue);
+        if let Some(triangles) = field.isosurface_triangles(isovalue) {
+            return Ok(Self { field, level, bounds, triangles: triangles.to_vec(), is_exact: true });
+        }
+        let finer = Lattice::try_new(Arrangement::BodyCentred, bounds, FINER * lattice.spacing());
+        let finer = finer.unwrap_or_else(|_| lattice.clone());
+        let merged = finer.arrangement().supports(Clustering::Integrated);
+        let clustering = if merged { Clustering::Integrated } else { Clustering::None };
+        let settings = ExtractSettings { isovalue, clustering, ..ExtractSettings::default() };
+        let found = extract(field, &finer, &settings, execution)?.mesh;
+        let triangles = (0..found.triangles.len()).map(|t| found.corners(t)).collect();
+        Ok(Self { field, level, bounds, triangles, is_exact: false })
+    }
+
+    /// The nearest point of the isosurface, if the field knows it, or where the gradient leads within [`REACH`].
+    pub(crate) fn foot(&self, p: DVec3) -> Option<Foot> {
+        self.field.nearest_on_isosurface(p, self.level.isovalue).or_else(|| {
+            let foot = self.level.foot(p.as_vec3(), REACH * self.level.spacing)?;
+            Some(Foot { position: foot.position.as_dvec3(), distance: foot.distance })
+        })
+    }
+
+    /// The point of the isosurface that a point of the triangles stands for; `None` if it is outside the box.
+    pub(crate) fn point(&self, p: DVec3) -> Option<DVec3> {
+        let on_surface = if self.is_exact { p } else { self.foot(p)?.position };
+        let (min, max) = (self.bounds.min.as_dvec3(), self.bounds.max.as_dvec3());
+        // Up to rounding.
+        let slack = 1e-6 * (max - min);
+        let is_inside = on_surface.cmpge(min - slack).all() && on_surface.cmple(max + slack).all();
+        is_inside.then_some(on_surface)
+    }
+}

@@ -1,0 +1,270 @@
+//! Samples from bytes: types, byte orders, encodings.
+
+use std::collections::TryReserveError;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::Path;
+
+use flate2::bufread::{MultiGzDecoder, ZlibDecoder};
+
+use crate::error::{Problem, shortened};
+
+/// The type of a sample in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Kind {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::I8 => "i8",
+            Self::U8 => "u8",
+            Self::I16 => "i16",
+            Self::U16 => "u16",
+            Self::I32 => "i32",
+            Self::U32 => "u32",
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+
+    pub(crate) fn bytes(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    /// From as many bytes as the type has, the lowest first.
+    fn value(self, b: &[u8]) -> f32 {
+        match self {
+            Self::I8 => f32::from(b[0] as i8),
+            Self::U8 => f32::from(b[0]),
+            Self::I16 => f32::from(i16::from_le_bytes([b[0], b[1]])),
+            Self::U16 => f32::from(u16::from_le_bytes([b[0], b[1]])),
+            Self::I32 => i32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32,
+            Self::U32 => u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32,
+            Self::F32 => f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+            Self::F64 => f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]]) as f32,
+        }
+    }
+
+    fn parse(self, token: &str) -> Option<f32> {
+        match self {
+            Self::I8 => token.parse::<i8>().ok().map(f32::from),
+            Self::U8 => token.parse::<u8>().ok().map(f32::from),
+            Self::I16 => token.parse::<i16>().ok().map(f32::from),
+            Self::U16 => token.parse::<u16>().ok().map(f32::from),
+            Self::I32 => token.parse::<i32>().ok().map(|v| v as f32),
+            Self::U32 => token.parse::<u32>().ok().map(|v| v as f32),
+            Self::F32 | Self::F64 => token.parse::<f32>().ok(),
+        }
+    }
+}
+
+/// How samples are written down.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Encoding {
+    Raw,
+    Gzip,
+    Zlib,
+    Text,
+    Hex,
+}
+
+/// What stands before the samples.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Skip {
+    /// Lines, before anything is decoded.
+    pub(crate) lines: u64,
+    /// Bytes after that and after decompression; `None`: all but the samples.
+    pub(crate) bytes: Option<u64>,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Layout {
+    pub(crate) kind: Kind,
+    pub(crate) big_endian: bool,
+    pub(crate) encoding: Encoding,
+    pub(crate) skip: Skip,
+    pub(crate) samples: u64,
+}
+
+/// Opens a regular file. A pipe could be waited for, and a device read, for ever.
+pub(crate) fn open(path: &Path) -> Result<BufReader<File>, Problem> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(Problem::NotAFile);
+    }
+    Ok(BufReader::with_capacity(1 << 16, File::open(path)?))
+}
+
+/// Reads the samples, from the data's first byte.
+pub(crate) fn read(mut input: impl BufRead, layout: &Layout) -> Result<Vec<f32>, Problem> {
+    for _ in 0..layout.skip.lines {
+        if input.skip_until(b'\n')? == 0 {
+            return Err(Problem::Truncated { got: 0, wanted: layout.samples });
+        }
+    }
+    match layout.encoding {
+        Encoding::Raw => binary(input, layout),
+        Encoding::Gzip => binary(MultiGzDecoder::new(input), layout),
+        Encoding::Zlib => binary(ZlibDecoder::new(input), layout),
+        Encoding::Hex => binary(HexDecoder(input), layout),
+        Encoding::Text => text(input, layout),
+    }
+}
+
+/// How many bytes are decoded at a time; a multiple of every sample's size.
+const BLOCK: usize = 1 << 16;
+
+fn binary(mut input: impl Read, layout: &Layout) -> Result<Vec<f32>, Problem> {
+    let width = layout.kind.bytes();
+    // Sizes were checked against the limit, hence no overflow.
+    let wanted = layout.samples * width as u64;
+    let input: &mut dyn Read = match layout.skip.bytes {
+        Some(bytes) => {
+            io::copy(&mut (&mut input).take(bytes), &mut io::sink())?;
+            &mut input
+        }
+        None => &mut Tail::of(input, wanted)?,
+    };
+    let mut values = Vec::new();
+    let mut block = vec![0; BLOCK];
+    let mut left = wanted;
+    while left > 0 {
+        let asked = left.min(BLOCK as u64) as usize;
+        let got = fill(input, &mut block[..asked])?;
+        reserve(&mut values, got / width, layout.samples)?;
+        for sample in block[..got].chunks_exact_mut(width) {
+            if layout.big_endian {
+                sample.reverse();
+            }
+            values.push(layout.kind.value(sample));
+        }
+        if got < asked {
+            return Err(Problem::Truncated { got: values.len() as u64, wanted: layout.samples });
+        }
+        left -= got as u64;
+    }
+    if fill(input, &mut block[..1])? > 0 {
+        return Err(Problem::Excess { wanted: layout.samples });
+    }
+    Ok(values)
+}
+
+/// Grows with what is there: what a header claims may be a lie.
+fn reserve(values: &mut Vec<f32>, more: usize, samples: u64) -> Result<(), Problem> {
+    values.try_reserve(more).map_err(|_: TryReserveError| Problem::OutOfMemory { samples })
+}
+
+/// Reads until the buffer is full or the input ends.
+fn fill(input: &mut dyn Read, buffer: &mut [u8]) -> io::Result<usize> {
+    let mut got = 0;
+    while got < buffer.len() {
+        match input.read(&mut buffer[got..]) {
+            Ok(0) => break,
+            Ok(n) => got += n,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(got)
+}
+
+/// The last bytes of an input whose length is not known.
+struct Tail {
+    bytes: io::Cursor<Vec<u8>>,
+}
+
+impl Tail {
+    fn of(mut input: impl Read, wanted: u64) -> io::Result<Self> {
+        let mut bytes = Vec::new();
+        input.read_to_end(&mut bytes)?;
+        let start = bytes.len().saturating_sub(usize::try_from(wanted).unwrap_or(usize::MAX));
+        let mut bytes = io::Cursor::new(bytes);
+        bytes.set_position(start as u64);
+        Ok(Self { bytes })
+    }
+}
+
+impl Read for Tail {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.bytes.read(buffer)
+    }
+}
+
+/// Bytes as two digits each, with white space anywhere.
+struct HexDecoder<R>(R);
+
+impl<R: BufRead> HexDecoder<R> {
+    fn digit(&mut self) -> io::Result<Option<u8>> {
+        loop {
+            let Some(&byte) = self.0.fill_buf()?.first() else { return Ok(None) };
+            self.0.consume(1);
+            if byte.is_ascii_whitespace() {
+                continue;
+            }
+            let wrong = || io::Error::new(io::ErrorKind::InvalidData, format!("byte {byte} is no hex digit"));
+            return Ok(Some(char::from(byte).to_digit(16).ok_or_else(wrong)? as u8));
+        }
+    }
+}
+
+impl<R: BufRead> Read for HexDecoder<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        for (i, byte) in buffer.iter_mut().enumerate() {
+            let (Some(high), Some(low)) = (self.digit()?, self.digit()?) else { return Ok(i) };
+            *byte = high << 4 | low;
+        }
+        Ok(buffer.len())
+    }
+}
+
+/// A number is never longer; what is, is not a number.
+const TOKEN_LIMIT: usize = 400;
+
+fn text(mut input: impl BufRead, layout: &Layout) -> Result<Vec<f32>, Problem> {
+    let mut values = Vec::new();
+    let mut token = Vec::new();
+    loop {
+        let byte = input.fill_buf()?.first().copied();
+        input.consume(usize::from(byte.is_some()));
+        let is_separator = byte.is_none_or(|b| b.is_ascii_whitespace() || b == b',');
+        if !is_separator && token.len() < TOKEN_LIMIT {
+            token.extend(byte);
+            continue;
+        }
+        if !token.is_empty() {
+            if values.len() as u64 == layout.samples {
+                return Err(Problem::Excess { wanted: layout.samples });
+            }
+            let word = String::from_utf8_lossy(&token);
+            let value = layout.kind.parse(&word).filter(|_| is_separator).ok_or_else(|| {
+                let sample = values.len() as u64;
+                Problem::NotANumber { sample, token: shortened(&word), kind: layout.kind.name() }
+            })?;
+            reserve(&mut values, 1, layout.samples)?;
+            values.push(value);
+            token.clear();
+        }
+        if byte.is_none() {
+            let got = values.len() as u64;
+            let is_whole = got == layout.samples;
+            return if is_whole {
+                Ok(values)
+            } else {
+                Err(Problem::Truncated { got, wanted: layout.samples })
+            };
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! What can be wrong with a volume's files.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+/// What is wrong, and with which file.
+#[derive(Debug, Error)]
+#[error("{}: {problem}", .file.display())]
+pub struct VolumeError {
+    /// The header or the data file.
+    pub file: PathBuf,
+    /// What is wrong with it.
+    #[source]
+    pub problem: Box<Problem>,
+}
+
+/// What is wrong. Lines count from 1.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Problem {
+    /// The file cannot be opened or read. Compressed data that is damaged ends up here as well.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// Not a regular file: a folder, a pipe, a device.
+    #[error("not a file")]
+    NotAFile,
+    /// The name's ending tells no format.
+    #[error("known endings are .nrrd, .nhdr, .mha, .mhd, .toml and .raw (with a .toml beside it)")]
+    Ending,
+    /// The header breaks its format.
+    #[error("line {line}: {reason}")]
+    Line {
+        /// Where.
+        line: usize,
+        /// What is wrong there.
+        reason: String,
+    },
+    /// The header lacks something that it must have.
+    #[error("the header has no `{key}`")]
+    Lacks {
+        /// What it lacks.
+        key: &'static str,
+    },
+    /// The header asks for something that is not supported.
+    #[error("{key} `{value}` is not supported; {supported}")]
+    Unsupported {
+        /// The key.
+        key: &'static str,
+        /// Its value, cut after 40 characters.
+        value: String,
+        /// What is.
+        supported: &'static str,
+    },
+    /// The header has no end.
+    #[error("the header does not end within {limit} bytes")]
+    HeaderTooLong {
+        /// How much was searched.
+        limit: usize,
+    },
+    /// An axis without samples.
+    #[error("sizes {sizes:?}: every axis needs at least one sample")]
+    NoSamples {
+        /// The sizes as written.
+        sizes: Vec<u64>,
+    },
+    /// More samples than the limit, or than can be counted.
+    #[error("sizes {sizes:?} make more than the {limit} samples there is room for")]
+    TooManySamples {
+        /// The sizes as written.
+        sizes: Vec<u64>,
+        /// The most there may be.
+        limit: u64,
+    },
+    /// The steps from sample to sample span no space, or are not finite numbers.
+    #[error("the steps {steps:?} from sample to sample, from {origin:?}, span no space")]
+    Steps {
+        /// Along each axis.
+        steps: [[f64; 3]; 3],
+        /// Where the first sample lies.
+        origin: [f64; 3],
+    },
+    /// The data ends early.
+    #[error("the data ends after {got} of {wanted} samples")]
+    Truncated {
+        /// Whole samples that are there.
+        got: u64,
+        /// What the header claims.
+        wanted: u64,
+    },
+    /// There is data beyond the last sample.
+    #[error("there is more data than the {wanted} samples that the header claims")]
+    Excess {
+        /// What the header claims.
+        wanted: u64,
+    },
+    /// Text that is not a number.
+    #[error("sample {sample}: `{token}` is not a number of the type {kind}")]
+    NotANumber {
+        /// Which sample, from 0.
+        sample: u64,
+        /// What stands there, cut after 40 characters.
+        token: String,
+        /// The type.
+        kind: &'static str,
+    },
+    /// Memory that is not to be had.
+    #[error("no memory for {samples} samples")]
+    OutOfMemory {
+        /// How many there were to be.
+        samples: u64,
+    },
+    /// A TOML header that is none.
+    #[error("{0}")]
+    Toml(#[from] toml::de::Error),
+}
+
+impl Problem {
+    pub(crate) fn in_file(self, file: &Path) -> VolumeError {
+        VolumeError { file: file.to_owned(), problem: Box::new(self) }
+    }
+
+    pub(crate) fn line(line: usize, reason: impl Into<String>) -> Self {
+        Self::Line { line, reason: reason.into() }
+    }
+
+    pub(crate) fn unsupported(key: &'static str, value: &str, supported: &'static str) -> Self {
+        Self::Unsupported { key, value: shortened(value), supported }
+    }
+}
+
+/// A value may be anything, and long.
+pub(crate) fn shortened(text: &str) -> String {
+    text.chars().take(40).collect()
+}

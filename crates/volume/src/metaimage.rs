@@ -1,0 +1,174 @@
+//! MetaImage (Kitware's MetaIO): `.mha`, or `.mhd` with the data in a file of its own.
+
+use std::path::Path;
+
+use crate::Volume;
+use crate::data::{self, Encoding, Kind, Layout, Skip};
+use crate::error::{Problem, VolumeError, shortened};
+use crate::header::{Frame, Lines, numbers, sample_count, three};
+
+pub(crate) fn read(path: &Path, limit_bytes: u64) -> Result<Volume, VolumeError> {
+    let here = |problem: Problem| problem.in_file(path);
+    let mut lines = Lines::new(data::open(path).map_err(here)?);
+    let fields = Fields::read(&mut lines).map_err(here)?;
+    let (frame, layout) = fields.meaning(limit_bytes).map_err(here)?;
+    match fields.data_file.as_str() {
+        "LOCAL" => data::read(lines.into_data(), &layout).map(|values| frame.with(values)).map_err(here),
+        name => frame.with_file(path, name, &layout),
+    }
+}
+
+struct Fields {
+    dimensions: Option<usize>,
+    sizes: Option<Vec<u64>>,
+    kind: Option<Kind>,
+    spacing: Option<[f64; 3]>,
+    size: Option<[f64; 3]>,
+    origin: [f64; 3],
+    /// Row after row, each the direction of an axis.
+    turn: [[f64; 3]; 3],
+    is_text: bool,
+    big_endian: bool,
+    is_compressed: bool,
+    header_bytes: i64,
+    data_file: String,
+}
+
+impl Fields {
+    /// Reads up to `ElementDataFile`, which is the last.
+    fn read<R: std::io::BufRead>(lines: &mut Lines<R>) -> Result<Self, Problem> {
+        let identity = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let mut fields = Self {
+            dimensions: None,
+            sizes: None,
+            kind: None,
+            spacing: None,
+            size: None,
+            origin: [0.0; 3],
+            turn: identity,
+            is_text: false,
+            big_endian: false,
+            is_compressed: false,
+            header_bytes: 0,
+            data_file: String::new(),
+        };
+        while let Some((line, text)) = lines.next()? {
+            if text.trim().is_empty() {
+                continue;
+            }
+            let Some((key, value)) = text.split_once('=') else {
+                return Err(Problem::line(line, format!("`{}` is not `Key = value`", shortened(&text))));
+            };
+            fields.field(line, key.trim(), value.trim())?;
+            if key.trim() == "ElementDataFile" {
+                return Ok(fields);
+            }
+        }
+        Err(Problem::Lacks { key: "ElementDataFile" })
+    }
+
+    /// Keys that say nothing of what a sample is or where it lies are passed over.
+    fn field(&mut self, line: usize, key: &str, value: &str) -> Result<(), Problem> {
+        let whole = |what: &str| Problem::line(line, format!("`{}` is not {what}", shortened(value)));
+        let truth = || match value.to_ascii_lowercase().as_str() {
+            "true" | "t" | "1" => Ok(true),
+            "false" | "f" | "0" => Ok(false),
+            _ => Err(whole("True or False")),
+        };
+        match key {
+            "ObjectType" if value != "Image" => {
+                return Err(Problem::unsupported("ObjectType", value, "Image is"));
+            }
+            "NDims" => self.dimensions = Some(value.parse().map_err(|_| whole("a number of dimensions"))?),
+            "DimSize" => self.sizes = Some(numbers(line, value)?),
+            "ElementType" => self.kind = Some(kind(value)?),
+            "ElementNumberOfChannels" if value != "1" => {
+                return Err(Problem::unsupported("ElementNumberOfChannels", value, "1 is"));
+            }
+            "ElementSpacing" => self.spacing = Some(three(line, value)?),
+            "ElementSize" => self.size = Some(three(line, value)?),
+            "Offset" | "Position" | "Origin" => self.origin = three(line, value)?,
+            "TransformMatrix" | "Rotation" | "Orientation" => {
+                let values: Vec<f64> = numbers(line, value)?;
+                if values.len() != 9 {
+                    return Err(Problem::line(line, format!("{} numbers where 9 belong", values.len())));
+                }
+                self.turn = [0, 3, 6].map(|k| [values[k], values[k + 1], values[k + 2]]);
+            }
+            "BinaryData" => self.is_text = !truth()?,
+            "BinaryDataByteOrderMSB" | "ElementByteOrderMSB" => self.big_endian = truth()?,
+            "CompressedData" => self.is_compressed = truth()?,
+            "HeaderSize" => {
+                self.header_bytes = value.parse().map_err(|_| whole("a number of bytes"))?;
+                if self.header_bytes < -1 {
+                    return Err(whole("a number of bytes, or -1"));
+                }
+            }
+            "ElementDataFile" => {
+                if value.is_empty() || value.starts_with("LIST") || value.contains('%') {
+                    return Err(Problem::unsupported("ElementDataFile", value, "LOCAL or one file is"));
+                }
+                // Some programs write it in capitals, some not.
+                let is_local = value.eq_ignore_ascii_case("local");
+                self.data_file = if is_local { "LOCAL".to_owned() } else { value.to_owned() };
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// What it all means together.
+    fn meaning(&self, limit_bytes: u64) -> Result<(Frame, Layout), Problem> {
+        if let Some(dimensions) = self.dimensions.filter(|&n| n != 3) {
+            return Err(Problem::unsupported("NDims", &dimensions.to_string(), "3 is"));
+        }
+        let sizes = self.sizes.as_ref().ok_or(Problem::Lacks { key: "DimSize" })?;
+        let kind = self.kind.ok_or(Problem::Lacks { key: "ElementType" })?;
+        let &[x, y, z] = &sizes[..] else {
+            return Err(Problem::unsupported("DimSize", &format!("{sizes:?}"), "three sizes are"));
+        };
+        let samples = sample_count(sizes, limit_bytes)?;
+        let counts = [x as usize, y as usize, z as usize];
+        let spacing = self.spacing.or(self.size).unwrap_or([1.0; 3]);
+        let mut steps = self.turn;
+        for (step, spacing) in steps.iter_mut().zip(spacing) {
+            *step = step.map(|v| v * spacing);
+        }
+        let frame = Frame { counts, origin: self.origin, steps };
+        frame.check()?;
+        let encoding = match (self.is_text, self.is_compressed) {
+            (true, true) => {
+                return Err(Problem::unsupported("CompressedData", "of text", "of binary data it is"));
+            }
+            (true, false) => Encoding::Text,
+            (false, true) => Encoding::Zlib,
+            (false, false) => Encoding::Raw,
+        };
+        let bytes = match self.header_bytes {
+            -1 if encoding == Encoding::Raw => None,
+            bytes if bytes == 0 || encoding == Encoding::Raw => Some(bytes.unsigned_abs()),
+            bytes => {
+                return Err(Problem::unsupported("HeaderSize", &bytes.to_string(), "with raw data it is"));
+            }
+        };
+        let skip = Skip { lines: 0, bytes };
+        Ok((frame, Layout { kind, big_endian: self.big_endian, encoding, skip, samples }))
+    }
+}
+
+fn kind(name: &str) -> Result<Kind, Problem> {
+    Ok(match name {
+        "MET_CHAR" => Kind::I8,
+        "MET_UCHAR" => Kind::U8,
+        "MET_SHORT" => Kind::I16,
+        "MET_USHORT" => Kind::U16,
+        "MET_INT" => Kind::I32,
+        "MET_UINT" => Kind::U32,
+        "MET_FLOAT" => Kind::F32,
+        "MET_DOUBLE" => Kind::F64,
+        _ => {
+            let supported = "MET_CHAR to MET_UINT, MET_FLOAT and MET_DOUBLE are";
+            return Err(Problem::unsupported("ElementType", name, supported));
+        }
+    })
+}

@@ -1,0 +1,247 @@
+//! `isostudy extract` without a study, as a user runs it: formulas, volumes, meshes; what is written and what is refused.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use mesh::topology::topology;
+use mesh::{MeshFormat, TriangleMesh};
+
+struct Folder(tempfile::TempDir);
+
+struct Said {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
+        std::fs::write(self.path(name), bytes).unwrap();
+    }
+
+    fn run(&self, arguments: &[&str]) -> Said {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
+        let output = command.arg("extract").args(arguments).current_dir(self.0.path()).output().unwrap();
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        Said { code: output.status.code().unwrap(), out: text(&output.stdout), err: text(&output.stderr) }
+    }
+
+    fn succeed(&self, arguments: &[&str]) -> Said {
+        let said = self.run(arguments);
+        assert_eq!(said.code, 0, "{arguments:?}: {}", said.err);
+        said
+    }
+
+    fn mesh(&self, name: &str) -> TriangleMesh {
+        let extension = Path::new(name).extension().unwrap().to_str().unwrap();
+        MeshFormat::from_extension(extension)
+            .unwrap()
+            .read(&*std::fs::read(self.path(name)).unwrap())
+            .unwrap()
+    }
+}
+
+const BALL: [&str; 6] = [
+    "--field",
+    "sqrt(x^2+y^2+z^2) - 1",
+    "--bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2",
+    "--spacing",
+    "0.05",
+    "--isovalue=0",
+];
+const BALL_VOLUME: f64 = 4.0 / 3.0 * std::f64::consts::PI;
+
+fn ball(more: &[&'static str]) -> Vec<&'static str> {
+    [&BALL, more].concat()
+}
+
+#[test]
+fn a_formula_becomes_a_mesh_in_every_format_and_on_any_number_of_threads() {
+    let folder = Folder::new();
+    let arrangement = ["--arrangement", "body-centred", "--clustering", "integrated", "-o"];
+    for name in ["ball.ply", "ball.obj", "ball.stl", "ball.glb"] {
+        let said = folder.succeed(&[&ball(&arrangement)[..], &[name]].concat());
+        assert_eq!(said.out, format!("{name}\n"));
+    }
+    let ply = folder.mesh("ball.ply");
+    assert!(topology(&ply).is_closed_manifold());
+    // Triangles face outward, though the formula is negative inside.
+    assert!((ply.volume() - BALL_VOLUME).abs() < 0.02, "{}", ply.volume());
+    assert_eq!(folder.mesh("ball.obj"), ply);
+    let stl = folder.mesh("ball.stl");
+    assert_eq!(stl.triangles.len(), ply.triangles.len());
+    assert!(topology(&stl).is_closed_manifold() && (stl.volume() - ply.volume()).abs() < 1e-6);
+    assert!(std::fs::read(folder.path("ball.glb")).unwrap().starts_with(b"glTF\x02\0\0\0"));
+    let bytes = |name: &str| std::fs::read(folder.path(name)).unwrap();
+    for threads in ["1", "2", "5"] {
+        folder.succeed(&ball(&["-o", "again.ply", "--threads", threads]));
+        assert_eq!(bytes("again.ply"), bytes("ball.ply"), "{threads} threads");
+    }
+}
+
+#[test]
+fn inside_is_the_side_that_is_asked_for() {
+    let folder = Folder::new();
+    for (formula, side, isovalue) in [
+        ("1 - length(x,y,z)", "above", "0"),
+        ("length(x,y,z)", "below", "1"),
+        ("-length(x,y,z)", "above", "-1"),
+    ] {
+        let arguments =
+            ["--field", formula, BALL[2], "--cells", "40", "--inside", side, "--isovalue", isovalue];
+        folder.succeed(&[&arguments[..], &["-o", "a.ply"]].concat());
+        let volume = folder.mesh("a.ply").volume();
+        assert!((volume - BALL_VOLUME).abs() < 0.05, "{formula} {side}: {volume}");
+    }
+}
+
+#[test]
+fn the_report_is_text_or_json() {
+    let folder = Folder::new();
+    let said = folder.succeed(&ball(&["-o", "ball.ply", "--quality", "--picture", "ball.png"]));
+    assert!(
+        said.out.contains("closed manifold; 1 components, Euler characteristic 2, 0 boundary loops"),
+        "{}",
+        said.out
+    );
+    assert!(said.out.ends_with("ball.ply\n"));
+    assert!(std::fs::read(folder.path("ball.png")).unwrap().starts_with(b"\x89PNG"));
+    let said = folder.succeed(&ball(&["-o", "ball.ply", "--json"]));
+    let report: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    assert_eq!(report["topology"]["euler_characteristic"], 2);
+    assert_eq!(report["inside"], "below");
+    assert_eq!(report["cells"], serde_json::json!([48, 48, 48]));
+    let (farthest, area) =
+        (report["accuracy"]["distance"]["max"].as_f64().unwrap(), report["area"].as_f64().unwrap());
+    assert!(farthest < 0.005 && (area - 3.0 * BALL_VOLUME).abs() < 0.05, "{farthest} {area}");
+}
+
+/// 32 samples a side, a ball of radius 10 round the middle, brighter inside.
+fn ball_volume(folder: &Folder, name: &str) {
+    let at = |i: usize| (0..3).map(|k| ((i / 32usize.pow(k) % 32) as f32 - 15.5).powi(2)).sum::<f32>().sqrt();
+    let values: Vec<u8> = (0..32768).map(|i| (100.0 - 5.0 * at(i)).max(0.0).round() as u8).collect();
+    let header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 32 32 32\nencoding: raw\nspace dimension: 3\n\
+                  space directions: (-0.1,0,0) (0,0.1,0) (0,0,0.1)\nspace origin: (1.55,-1.55,-1.55)\n\n";
+    folder.write(name, [header.as_bytes(), &values].concat());
+}
+
+#[test]
+fn a_volume_becomes_a_mesh() {
+    let folder = Folder::new();
+    ball_volume(&folder, "ball.nrrd");
+    folder.succeed(&["--volume", "ball.nrrd", "--isovalue", "50", "-o", "ball.ply"]);
+    let mesh = folder.mesh("ball.ply");
+    assert!(topology(&mesh).is_closed_manifold());
+    assert!((mesh.volume() - BALL_VOLUME).abs() < 0.1, "{}", mesh.volume());
+    // Outside of the ball is solid as well, and ends where the volume ends, or is closed there.
+    let around = ["--volume", "ball.nrrd", "--isovalue", "50", "--inside", "below"];
+    folder.succeed(&[&around[..], &["-o", "open.ply"]].concat());
+    let open = topology(&folder.mesh("open.ply"));
+    folder.succeed(&[&around[..], &["-o", "closed.ply", "--close"]].concat());
+    let closed = folder.mesh("closed.ply");
+    assert!(topology(&closed).is_closed_manifold() && open.components == 1);
+    // It ends less than a step of 0.1 beyond the last sample on each side.
+    let whole = closed.volume() + BALL_VOLUME;
+    assert!((3.1f64.powi(3)..3.3f64.powi(3)).contains(&whole), "{whole}");
+
+    let said = folder.run(&["--volume", "ball.nrrd", "-o", "a.ply"]);
+    assert!(said.code == 2 && said.err.contains("--isovalue"), "{}", said.err);
+    let said = folder.run(&["--volume", "ball.nrrd", "--isovalue", "500", "-o", "a.ply"]);
+    assert!(
+        said.code == 2
+            && said.err.contains("every sample lies on one side; the volume's samples run from 0 to 95"),
+        "{}",
+        said.err
+    );
+    folder.write("short.nrrd", &std::fs::read(folder.path("ball.nrrd")).unwrap()[..20_000]);
+    let said = folder.run(&["--volume", "short.nrrd", "--isovalue", "50", "-o", "a.ply"]);
+    assert!(said.code == 2 && said.err.contains("short.nrrd: the data ends after 19"), "{}", said.err);
+}
+
+#[test]
+fn a_mesh_becomes_another() {
+    let folder = Folder::new();
+    folder.succeed(&ball(&["-o", "ball.stl"]));
+    folder.succeed(&["--mesh", "ball.stl", "--cells", "40", "-o", "again.ply"]);
+    let again = folder.mesh("again.ply");
+    assert!(topology(&again).is_closed_manifold());
+    assert!((again.volume() - BALL_VOLUME).abs() < 0.06, "{}", again.volume());
+    // Half a unit thicker.
+    folder.succeed(&["--mesh", "ball.stl", "--cells", "40", "--isovalue", "-0.5", "-o", "thick.ply"]);
+    let thick = folder.mesh("thick.ply").volume() / BALL_VOLUME;
+    assert!((thick - 1.5f64.powi(3)).abs() < 0.1, "{thick}");
+
+    let mut open = mesh::weld(&folder.mesh("ball.stl"));
+    let top = |t: &[u32; 3]| t.iter().any(|&v| open.positions[v as usize].z > 0.8);
+    let kept = open.triangles.iter().copied().filter(|t| !top(t)).collect();
+    open.triangles = kept;
+    let write = |name: &str, mesh: &TriangleMesh| {
+        let mut bytes = Vec::new();
+        mesh::write_ply(mesh, &mut bytes).unwrap();
+        folder.write(name, bytes);
+    };
+    write("open.ply", &open);
+    let said = folder.run(&["--mesh", "open.ply", "-o", "a.ply"]);
+    assert_eq!(said.code, 2);
+    assert!(said.err.contains("open edges in 1 holes") && said.err.contains("--allow-open"), "{}", said.err);
+    folder.succeed(&["--mesh", "open.ply", "--allow-open", "--cells", "40", "-o", "a.ply"]);
+    let spanned = folder.mesh("a.ply");
+    assert!(topology(&spanned).is_closed_manifold() && spanned.volume() > 0.85 * BALL_VOLUME);
+
+    write("inward.ply", &mesh::repair::flip(&again));
+    let said = folder.succeed(&["--mesh", "inward.ply", "--cells", "40", "-o", "a.ply"]);
+    assert!(said.err.contains("inward.ply: its triangles face inward: turned round"), "{}", said.err);
+    assert!(folder.mesh("a.ply").volume() > 4.0);
+    folder.write("nan.obj", "v 0 0 0\nv 1 nan 0\n");
+    let said = folder.run(&["--mesh", "nan.obj", "-o", "a.ply"]);
+    assert!(said.code == 2 && said.err.contains("nan.obj: line 2: `nan` is not a finite"), "{}", said.err);
+}
+
+#[test]
+fn what_cannot_be_done_is_said_in_one_line() {
+    let folder = Folder::new();
+    for (arguments, want) in [
+        (vec!["-o", "a.ply"], "<STUDY|--field <FORMULA>|--volume <FILE>|--mesh <FILE>>"),
+        (vec!["--field", "x", "-o", "a.ply"], "--bounds"),
+        (ball(&[]), "--out"),
+        (ball(&["-o", "a.xyz"]), "a.xyz: known endings are .obj, .ply, .stl, .glb"),
+        (ball(&["-o", "a.ply", "--mesh", "b.ply"]), "cannot be used with"),
+        (ball(&["-o", "a.ply", "--force"]), "cannot be used with"),
+        (ball(&["-o", "a.ply", "--close"]), "cannot be used with"),
+        (ball(&["-o", "a.ply", "--allow-open"]), "cannot be used with"),
+        (ball(&["-o", "a.ply", "--arrangement", "hexagonal"]), "unknown variant `hexagonal`"),
+        (vec!["--field", "x +", BALL[2], "-o", "a.ply"], "--field 'x +': column 4: the end where a number"),
+        (
+            vec!["--field", "x^2 - 9", BALL[2], "-o", "a.ply"],
+            "no surface at isovalue 0 from [-1.2, -1.2, -1.2]",
+        ),
+        (vec!["--field", "x", "--bounds=1,2,3", "-o", "a.ply"], "six numbers"),
+        (
+            vec!["--field", "x", "--bounds=0,0,0,1,1,0", "-o", "a.ply"],
+            "bounds along z must be finite with min below max",
+        ),
+        (vec!["--field", "x", BALL[2], "--spacing", "1e-9", "-o", "a.ply"], "exceed the limit"),
+        (vec!["--field", "x", BALL[2], "--spacing", "nan", "-o", "a.ply"], "spacing must be positive"),
+        (vec!["--field", "x", BALL[2], "--isovalue", "inf", "-o", "a.ply"], "isovalue must be finite"),
+        (vec!["--mesh", "nowhere.ply", "-o", "a.ply"], "nowhere.ply: No such file"),
+        (vec!["--mesh", "a.glb", "-o", "a.ply"], "a.glb"),
+    ] {
+        let said = folder.run(&arguments);
+        assert_eq!(said.code, 2, "{arguments:?}: {}", said.err);
+        assert!(said.err.contains(want), "{arguments:?}: {}", said.err);
+        assert!(!said.err.contains("panicked") && said.out.is_empty(), "{}", said.err);
+    }
+    // Deep or endless input ends, and nothing is left behind.
+    let deep = format!("{}x{}", "(".repeat(5000), ")".repeat(5000));
+    let said = folder.run(&["--field", &deep, BALL[2], "-o", "a.ply"]);
+    assert!(said.code == 2 && said.err.contains("nested deeper than 200 levels"));
+    assert_eq!(std::fs::read_dir(folder.0.path()).unwrap().count(), 0);
+}
