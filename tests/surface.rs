@@ -157,7 +157,7 @@ fn a_volume_becomes_a_mesh() {
     let said = folder.run(&["--volume", "ball.nrrd", "--isovalue", "500", "-o", "a.ply"]);
     assert!(
         said.code == 2
-            && said.err.contains("every sample lies on one side; the volume's samples run from 0 to 95"),
+            && said.err.contains("every sample lies on one side; the volume's samples run from 0 to 96"),
         "{}",
         said.err
     );
