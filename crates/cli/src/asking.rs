@@ -78,10 +78,13 @@ fn make_bundle(run: &Run, videos: Videos, with_faults: bool) -> Result<Option<Pa
             }
         };
         // All or none: participants would see some pairs in another quality.
-        let kept = if before == 0 && videos == Videos::Kept || kept.len() < pairs.len() { Vec::new() } else { kept };
+        let kept =
+            if before == 0 && videos == Videos::Kept || kept.len() < pairs.len() { Vec::new() } else { kept };
         if kept.is_empty() && before > 0 {
             let why = if videos == Videos::Kept { "they show other pairs" } else { "not asked for" };
-            eprintln!("{before} videos are removed from the bundle, {why}; `isostudy bundle --mp4` makes them");
+            eprintln!(
+                "{before} videos are removed from the bundle, {why}; `isostudy bundle --mp4` makes them"
+            );
         }
         pipeline.bundle(&forms, &pairs, &kept)?;
         made = Some(out.to_owned());
@@ -138,7 +141,7 @@ pub(crate) fn serve(arguments: &Serve) -> Result<Outcome> {
 /// # Errors
 /// If a file cannot be read or contradicts another, or the study is not the one that was answered.
 pub(crate) fn collect(arguments: &Collect) -> Result<()> {
-    let study = load(&arguments.study)?;
+    let study = Study::load(&arguments.study)?;
     let (file, key, _) = forms(&study)?;
     let mut all: BTreeMap<(String, u32), Given> = BTreeMap::new();
     let mut again = 0;
@@ -162,7 +165,7 @@ pub(crate) fn collect(arguments: &Collect) -> Result<()> {
 /// # Errors
 /// If the answers cannot be read, or the files not be written.
 pub(crate) fn deidentify(arguments: &Deidentify) -> Result<()> {
-    let study = load(&arguments.study)?;
+    let study = Study::load(&arguments.study)?;
     let (file, key, digest) = forms(&study)?;
     let folder = answers_folder(&study, arguments.answers.as_ref());
     if !folder.join("answers.sqlite").is_file() {

@@ -180,8 +180,13 @@ fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Vec<Fault>>> 
         let facts = fact(file, made.map(|made| made.camera)).with_context(|| file.display().to_string())?;
         Ok((facts, current))
     };
-    let (facts, current): (Vec<StimulusFacts>, Vec<bool>) =
-        files.par_iter().zip(&study.configurations).map(read).collect::<Result<Vec<_>>>()?.into_iter().unzip();
+    let (facts, current): (Vec<StimulusFacts>, Vec<bool>) = files
+        .par_iter()
+        .zip(&study.configurations)
+        .map(read)
+        .collect::<Result<Vec<_>>>()?
+        .into_iter()
+        .unzip();
     let outdated = current.iter().filter(|&&current| !current).count();
     if outdated > 0 {
         eprintln!(

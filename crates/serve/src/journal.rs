@@ -260,6 +260,11 @@ impl Journal {
         }
     }
 
+    /// Somebody who waits; whoever is written down is found without looking through them.
+    fn newcomer(&self, token: &str) -> Option<&Newcomer> {
+        if self.by_token.contains_key(token) { None } else { self.waiting.by_token(token) }
+    }
+
     fn welcome(&self, newcomer: &Newcomer) -> Dealt {
         let Newcomer { name, token, form, .. } = newcomer;
         let form = self.forms[form - 1].clone();
@@ -312,7 +317,7 @@ impl Journal {
         answer: &Answer,
         now_ms: i64,
     ) -> rusqlite::Result<Result<(), Refusal>> {
-        if let Some(newcomer) = self.waiting.by_token(token) {
+        if let Some(newcomer) = self.newcomer(token) {
             if let Err(refusal) = check(answer, &self.forms[newcomer.form - 1], 0) {
                 return Ok(Err(refusal));
             }
@@ -348,7 +353,7 @@ impl Journal {
     /// # Errors
     /// If SQLite fails.
     pub(crate) fn finish(&mut self, token: &str, now_ms: i64) -> rusqlite::Result<Result<(), Refusal>> {
-        if let Some(newcomer) = self.waiting.by_token(token) {
+        if let Some(newcomer) = self.newcomer(token) {
             return Ok(Err(Refusal::Unfinished(self.forms[newcomer.form - 1].questions.len() as u32)));
         }
         let Some(&person) = self.by_token.get(token) else { return Ok(Err(Refusal::UnknownToken)) };

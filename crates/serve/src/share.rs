@@ -26,7 +26,9 @@ pub fn codebook(file: &FormFile, (then, now): (&str, &str), participants: usize,
     let changed = if then == now {
         String::new()
     } else {
-        format!("The study file was changed after the first answer (forms {then}): texts below are those of forms {now}.\n\n")
+        format!(
+            "The study file was changed after the first answer (forms {then}): texts below are those of forms {now}.\n\n"
+        )
     };
     let count = |number: usize, word: &str| format!("{number} {word}{}", if number == 1 { "" } else { "s" });
     format!(
