@@ -139,6 +139,48 @@ fn finished_files_are_judged() {
     );
 }
 
+/// Animations of an older study file are judged, and said to be that.
+#[test]
+fn outdated_animations_are_said_to_be() {
+    let fixture = balanced();
+    fixture.succeed("pairs", &[]);
+    let check = || {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
+        let words = [fixture.config(), "--results".into(), fixture.out().into()];
+        let output = command.args(["design", "check"]).args(words).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert_eq!(check(), (Some(0), String::new()));
+    fixture.edit("frames = 12", "frames = 10");
+    let (code, said) = check();
+    assert!(
+        code == Some(0) && said.starts_with("18 of 18 animations in ") && said.contains("other settings"),
+        "{said}"
+    );
+    // Colours that one side was made with alone.
+    fixture.edit("frames = 10", "frames = 12");
+    fixture.edit("lit = [0.949, 0.553, 0.027]", "lit = [0.573, 0.659, 0.027]");
+    fixture.succeed("turntable", &["--only", "ss_bu"]);
+    let (code, said) = check();
+    assert!(code == Some(1) && said.starts_with("17 of 18 animations in "), "{said}");
+}
+
+/// The published designs need no mesh to be judged, which a fresh clone has not got.
+#[test]
+fn a_design_is_judged_without_meshes() {
+    let fixture = balanced();
+    fixture.edit("solid.obj", "nothing.obj");
+    let run = |verb: &str, words: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
+        command.args(["design", verb]).arg(fixture.config()).args(words).output().unwrap()
+    };
+    let out = fixture.out().to_str().unwrap();
+    assert_eq!(run("check", &["--results", out]).status.code(), Some(0));
+    assert!(run("power", &["--studies", "100", "--participants", "6", "--out", out]).status.success());
+    let Run { code, stderr, .. } = fixture.run("bundle", &[]);
+    assert!(code == Some(2) && stderr.contains("nothing.obj: no such file; `make bunny`"), "{stderr}");
+}
+
 /// Faults are said and nothing is bundled, unless they are accepted; a study without forms is named.
 #[test]
 fn a_faulty_design_is_not_bundled() {
@@ -225,7 +267,7 @@ fn a_bundle_tells_nothing_of_the_key() {
     fixture.succeed("bundle", &[]);
     let bundle = fixture.out().join("bundle");
     let made = files(&bundle);
-    assert_eq!(made.len(), 5 + 2 * 27 + 2, "{:?}", made.keys());
+    assert_eq!(made.len(), 6 + 2 * 27 + 2, "{:?}", made.keys());
     let key = std::fs::read_to_string(fixture.out().join("key/stimuli.csv")).unwrap();
     let shown: BTreeMap<&str, &str> =
         key.lines().filter_map(|line| line.strip_prefix("stimuli/pairs/")?.split_once(',')).collect();
@@ -294,7 +336,7 @@ fn videos_are_ffmpegs_and_said_to_be_missing_where_it_is() {
     #[cfg(unix)]
     {
         let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\nwc -c > \"$last\"\n";
-        let path = with_ffmpeg(&fixture, script);
+        let path = fixture.with_ffmpeg(script);
         let output = fixture.command("pairs").arg("--mp4").env("PATH", path).output().unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let made = files(fixture.out());
@@ -320,7 +362,7 @@ fn a_video_has_twice_the_size_of_its_turntables_and_says_its_colours() {
         let fixture = Fixture::new();
         fixture.edit("pair_scale = 1", &format!("pair_scale = {scale}"));
         let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncat > /dev/null\necho \"$@\" > \"$last\"\n";
-        let path = with_ffmpeg(&fixture, script);
+        let path = fixture.with_ffmpeg(script);
         let output = fixture.command("pairs").arg("--mp4").env("PATH", path).output().unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let made = files(fixture.out());
@@ -346,7 +388,7 @@ fn a_bundles_videos_tell_nothing_either() {
     let fixture = balanced();
     let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncksum > \"$last\"\n\
         head -c $(($$ % 50)) /dev/zero >> \"$last\"\n";
-    let path = with_ffmpeg(&fixture, script);
+    let path = fixture.with_ffmpeg(script);
     let output = fixture.command("bundle").arg("--mp4").env("PATH", path).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let made = files(&fixture.out().join("stimuli/pairs"));
@@ -365,19 +407,29 @@ fn a_bundles_videos_tell_nothing_either() {
     let mut by_age: Vec<&String> = given.keys().collect();
     by_age.sort_by_key(|name| std::fs::metadata(folder.join(name)).unwrap().modified().unwrap());
     assert!(by_age.is_sorted());
-    // Not asked for, they go.
-    fixture.succeed("bundle", &[]);
+    // Not asked for, they go, which is said.
+    let said = fixture.succeed("bundle", &[]).stderr;
+    assert!(said.contains("56 videos are removed from the bundle"), "{said}");
     assert!(files(&folder).keys().all(|name| name.ends_with(".gif")));
+    // With another seed, names are those of other pairs: no video of before is left beside them.
+    assert!(files(&fixture.out().join("stimuli/pairs")).keys().any(|name| name.ends_with(".mp4")));
+    fixture.edit("seed = 2026", "seed = 2027");
+    fixture.succeed("pairs", &[]);
+    assert!(files(&fixture.out().join("stimuli/pairs")).keys().all(|name| name.ends_with(".gif")));
 }
 
-/// Puts a shell script in ffmpeg's place; returns the PATH that finds it first.
-#[cfg(unix)]
-fn with_ffmpeg(fixture: &Fixture, script: &str) -> String {
-    use std::os::unix::fs::PermissionsExt;
-    let program = fixture.folder().join("ffmpeg");
-    std::fs::write(&program, script).unwrap();
-    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
-    format!("{}:{}", fixture.folder().display(), std::env::var("PATH").unwrap())
+/// An encoder with as many threads as there are cores makes other bytes on other machines.
+#[test]
+fn a_videos_encoder_has_one_thread() {
+    let fixture = Fixture::new();
+    let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncat > /dev/null\necho \"$@\" > \"$last\"\n";
+    let path = fixture.with_ffmpeg(script);
+    let output = fixture.command("pairs").arg("--mp4").env("PATH", path).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let made = files(fixture.out());
+    let asked = made.iter().find(|(path, _)| path.ends_with(".mp4")).unwrap().1;
+    let asked = String::from_utf8_lossy(asked);
+    assert!(asked.contains(" -c:v libx264 ") && asked.contains(" -threads 1 "), "{asked}");
 }
 
 /// The text extensions of a GIF: comments, plain texts, and the names of application extensions.

@@ -205,32 +205,36 @@ fn nothing_acknowledged_is_lost_when_the_server_is_killed() {
     let address = SocketAddr::from(([127, 0, 0, 1], port));
     let server = Mutex::new(Server::start(&fixture, port));
     let acknowledged: Mutex<BTreeMap<(String, String), String>> = Mutex::default();
-    let dealt: Mutex<Vec<u64>> = Mutex::default();
     let enough = AtomicBool::new(false);
     std::thread::scope(|scope| {
         for person in 0..PEOPLE {
-            let (acknowledged, dealt, enough) = (&acknowledged, &dealt, &enough);
+            let (acknowledged, enough) = (&acknowledged, &enough);
             scope.spawn(move || {
                 let pause = || std::thread::sleep(Duration::from_millis(20));
-                let session: Value = loop {
-                    match post(address, "/api/sessions", "{}") {
-                        Ok((200, body)) => break serde_json::from_str(&body).unwrap(),
-                        _ => pause(),
+                let begun = || -> Value {
+                    loop {
+                        match post(address, "/api/sessions", "{}") {
+                            Ok((200, body)) => break serde_json::from_str(&body).unwrap(),
+                            _ => pause(),
+                        }
                     }
                 };
-                dealt.lock().unwrap().push(session["form"]["form"].as_u64().unwrap());
+                let mut session = begun();
                 let count = session["form"]["questions"].as_array().unwrap().len();
                 for question in 0..count {
                     let choice = ["L", "NP", "R"][(person + question) % 3];
-                    let sent = answer(&session, question, choice);
-                    let order = serde_json::from_str::<Value>(&sent).unwrap()["order"].to_string();
-                    loop {
+                    let order = loop {
+                        let sent = answer(&session, question, choice);
                         match post(address, "/api/answers", &sent) {
-                            Ok((200, _)) => break,
+                            Ok((200, _)) => {
+                                break serde_json::from_str::<Value>(&sent).unwrap()["order"].to_string();
+                            }
+                            // Nobody is written down before the first answer.
+                            Ok((404, _)) if question == 0 => session = begun(),
                             Ok((status, body)) => panic!("{status} {body}"),
                             Err(_) => pause(),
                         }
-                    }
+                    };
                     let key = (session["participant"].as_str().unwrap().to_owned(), order);
                     acknowledged.lock().unwrap().insert(key, choice.to_owned());
                     if !enough.load(Ordering::Relaxed) {
@@ -250,11 +254,73 @@ fn nothing_acknowledged_is_lost_when_the_server_is_killed() {
     let (kept, acknowledged) = (kept(address), acknowledged.into_inner().unwrap());
     assert_eq!(acknowledged.len(), PEOPLE * 32);
     assert!(kept == acknowledged, "{} kept, {} acknowledged", kept.len(), acknowledged.len());
-    // Somebody whose first request died with the server was dealt a form that nobody knows of.
     let (_, summary) = get(address, "/api/admin/summary", TOKEN).unwrap();
     let summary: Value = serde_json::from_str(&summary).unwrap();
     let live: Vec<u64> =
         summary["forms"].as_array().unwrap().iter().map(|form| form[1].as_u64().unwrap()).collect();
     assert!(live.iter().max().unwrap() - live.iter().min().unwrap() <= 1, "{live:?}");
-    assert_eq!(dealt.into_inner().unwrap().len(), PEOPLE);
+}
+
+/// While a server has the answers they can be given away; the study file may be changed in its texts for that, and in the number of
+/// its participants for the server too.
+#[test]
+fn answers_outlive_changes_of_the_study_file() {
+    let fixture = bundled();
+    let server = Server::start(&fixture, 0);
+    let session = begin(server.address);
+    assert_eq!(post(server.address, "/api/answers", &answer(&session, 0, "R")).unwrap().0, 200);
+    let shared = fixture.folder().join("shared");
+    let deidentify = || {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
+        let answers = fixture.folder().join("answers");
+        let words = [fixture.config(), "--answers".into(), answers, "--out".into(), shared.clone()];
+        let output = command.arg("deidentify").args(words).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{said}");
+        assert_eq!(std::fs::read_to_string(shared.join("answers.csv")).unwrap().lines().count(), 2);
+        (said, std::fs::read_to_string(shared.join("codebook.md")).unwrap())
+    };
+    let (said, codebook) = deidentify();
+    assert!(
+        said.is_empty()
+            && codebook.contains("1 answer of 1 participant, in")
+            && !codebook.contains("changed"),
+        "{said}"
+    );
+    let prompt = "prompt = \"Which of the two do you like better?\"";
+    fixture.edit(prompt, "prompt = \"Which one?\"");
+    let (said, codebook) = deidentify();
+    assert!(
+        said.contains("was changed since") && codebook.contains("was changed after the first answer"),
+        "{said}"
+    );
+    fixture.edit("prompt = \"Which one?\"", prompt);
+    drop(server);
+
+    fixture.edit("participants = 36", "participants = 40");
+    let server = Server::start(&fixture, 0);
+    assert_eq!(post(server.address, "/api/answers", &answer(&session, 1, "L")).unwrap().0, 200);
+    let state =
+        post(server.address, "/api/state", &json!({ "token": session["token"] }).to_string()).unwrap();
+    let state: Value = serde_json::from_str(&state.1).unwrap();
+    assert!(state["answered"] == 2 && state["form"] == session["form"], "{state}");
+    let unknown = post(server.address, "/api/state", &json!({ "token": "00" }).to_string()).unwrap();
+    assert_eq!(unknown.0, 404);
+}
+
+#[cfg(unix)]
+#[test]
+fn serving_keeps_the_bundles_videos() {
+    let fixture = bundled();
+    let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncksum > \"$last\"\n";
+    let path = fixture.with_ffmpeg(script);
+    let output = fixture.command("bundle").arg("--mp4").env("PATH", path).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let videos = || {
+        let made = fixture::files(&fixture.out().join("bundle/stimuli"));
+        made.keys().filter(|name| name.ends_with(".mp4")).count()
+    };
+    assert_eq!(videos(), 56);
+    drop(Server::start(&fixture, 0));
+    assert_eq!(videos(), 56);
 }

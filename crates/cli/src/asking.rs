@@ -2,13 +2,13 @@
 
 use crate::args::{Bundle, Collect, Deidentify, Run, Serve};
 use crate::pipeline::forms_digest;
-use crate::questionnaire::fit_to_show;
-use crate::{Outcome, load, no_forms, say, store, video, with_pipeline};
+use crate::questionnaire::{files_of, fit_to_show};
+use crate::{Outcome, counted, load, no_forms, say, store, video, with_pipeline};
 use anyhow::{Context, Result, bail};
 use design::Study;
 use design::forms::{FormFile, KeyEntry, Questionnaire};
 use serve::export::{self, Given, HEADER};
-use serve::journal::Journal;
+use serve::journal;
 use serve::{Settings, download, share};
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -35,14 +35,24 @@ pub(crate) fn bundle(arguments: &Bundle) -> Result<Outcome> {
     if arguments.mp4 {
         video::check()?;
     }
-    let made = make_bundle(&arguments.run, arguments.mp4, arguments.with_faults)?;
+    let videos = if arguments.mp4 { Videos::Made } else { Videos::Removed };
+    let made = make_bundle(&arguments.run, videos, arguments.with_faults)?;
     made.map_or(Ok(Outcome::CheckFailed), |out| {
         say(&out.join("bundle").display().to_string()).map(|()| Outcome::Sound)
     })
 }
 
+/// What becomes of a bundle's videos.
+#[derive(Clone, Copy, PartialEq)]
+enum Videos {
+    Made,
+    /// Those that show what the pairs do; others are removed.
+    Kept,
+    Removed,
+}
+
 /// Returns the folder of results; `None` where faults forbid a bundle.
-fn make_bundle(run: &Run, mp4: bool, with_faults: bool) -> Result<Option<PathBuf>> {
+fn make_bundle(run: &Run, videos: Videos, with_faults: bool) -> Result<Option<PathBuf>> {
     let study = load(&run.study)?;
     forms(&study)?;
     if !fit_to_show(&study, None, with_faults)? {
@@ -58,12 +68,34 @@ fn make_bundle(run: &Run, mp4: bool, with_faults: bool) -> Result<Option<PathBuf
         if !fit_to_show(&study, Some(out), with_faults)? {
             return Ok(());
         }
-        let videos = if mp4 { pipeline.videos(&pairs)? } else { Vec::new() };
-        pipeline.bundle(&forms, &pairs, &videos)?;
+        let before = mp4_files(out)?;
+        let kept = match videos {
+            Videos::Made => pipeline.videos(&pairs)?,
+            Videos::Kept => pipeline.finished_videos(&pairs)?,
+            Videos::Removed => {
+                pipeline.finished_videos(&pairs)?;
+                Vec::new()
+            }
+        };
+        // All or none: participants would see some pairs in another quality.
+        let kept =
+            if before == 0 && videos == Videos::Kept || kept.len() < pairs.len() { Vec::new() } else { kept };
+        if kept.is_empty() && before > 0 {
+            let why = if videos == Videos::Kept { "they show other pairs" } else { "not asked for" };
+            eprintln!(
+                "{before} videos are removed from the bundle, {why}; `isostudy bundle --mp4` makes them"
+            );
+        }
+        pipeline.bundle(&forms, &pairs, &kept)?;
         made = Some(out.to_owned());
         Ok(())
     })?;
     Ok(made)
+}
+
+/// How many videos the bundle has.
+fn mp4_files(out: &Path) -> Result<usize> {
+    Ok(files_of(&out.join("bundle/stimuli"), "mp4")?.len())
 }
 
 /// Makes the bundle and serves it until told to stop.
@@ -73,7 +105,7 @@ fn make_bundle(run: &Run, mp4: bool, with_faults: bool) -> Result<Option<PathBuf
 pub(crate) fn serve(arguments: &Serve) -> Result<Outcome> {
     let study = load(&arguments.run.study)?;
     let (file, key, digest) = forms(&study)?;
-    let Some(out) = make_bundle(&arguments.run, false, arguments.with_faults)? else {
+    let Some(out) = make_bundle(&arguments.run, Videos::Kept, arguments.with_faults)? else {
         return Ok(Outcome::CheckFailed);
     };
     let admin_token = match &arguments.admin_token {
@@ -109,7 +141,7 @@ pub(crate) fn serve(arguments: &Serve) -> Result<Outcome> {
 /// # Errors
 /// If a file cannot be read or contradicts another, or the study is not the one that was answered.
 pub(crate) fn collect(arguments: &Collect) -> Result<()> {
-    let study = load(&arguments.study)?;
+    let study = Study::load(&arguments.study)?;
     let (file, key, _) = forms(&study)?;
     let mut all: BTreeMap<(String, u32), Given> = BTreeMap::new();
     let mut again = 0;
@@ -123,7 +155,8 @@ pub(crate) fn collect(arguments: &Collect) -> Result<()> {
     let given: Vec<Given> = all.into_values().collect();
     store::write_whole(&arguments.out, lines(&given, &key)?.as_bytes())?;
     let repeated = if again > 0 { format!("; {again} came twice") } else { String::new() };
-    eprintln!("{} answers of {} participants{repeated}", given.len(), participants(&given));
+    let people = counted(participants(&given), "participant");
+    eprintln!("{} of {people}{repeated}", counted(given.len(), "answer"));
     say(&arguments.out.display().to_string())
 }
 
@@ -132,16 +165,19 @@ pub(crate) fn collect(arguments: &Collect) -> Result<()> {
 /// # Errors
 /// If the answers cannot be read, or the files not be written.
 pub(crate) fn deidentify(arguments: &Deidentify) -> Result<()> {
-    let study = load(&arguments.study)?;
+    let study = Study::load(&arguments.study)?;
     let (file, key, digest) = forms(&study)?;
     let folder = answers_folder(&study, arguments.answers.as_ref());
     if !folder.join("answers.sqlite").is_file() {
         bail!("{}: no answers.sqlite there", folder.display());
     }
-    let journal = Journal::open(&folder, &file, &digest)?;
-    let given = share::deidentified(&journal.given().with_context(|| folder.display().to_string())?);
+    let kept = journal::kept(&folder, &file.study)?;
+    if kept.digest != digest {
+        eprintln!("the study file was changed since the first answer; the codebook says what it says now");
+    }
+    let given = share::deidentified(&kept.given);
     std::fs::create_dir_all(&arguments.out).with_context(|| arguments.out.display().to_string())?;
-    let codebook = share::codebook(&file, &digest, participants(&given), given.len());
+    let codebook = share::codebook(&file, (&kept.digest, &digest), participants(&given), given.len());
     for (name, text) in [("answers.csv", lines(&given, &key)?), ("codebook.md", codebook)] {
         let path = arguments.out.join(name);
         store::write_whole(&path, text.as_bytes())?;

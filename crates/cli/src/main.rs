@@ -77,6 +77,8 @@ fn run(command: Command) -> Result<Outcome> {
                 let stamps = pipeline.pairs(&turntables)?;
                 if pairs.mp4 {
                     pipeline.videos(&stamps)?;
+                } else {
+                    pipeline.finished_videos(&stamps)?;
                 }
                 say(&out.join("stimuli/pairs").display().to_string())
             })
@@ -284,6 +286,11 @@ fn load(path: &Path) -> Result<Study> {
 
 fn no_forms(study: &Path) -> String {
     format!("{}: no [forms] section, or no comparisons; configs/balanced.toml has both", study.display())
+}
+
+/// `1 answer`, `2 answers`.
+fn counted(number: usize, word: &str) -> String {
+    format!("{number} {word}{}", if number == 1 { "" } else { "s" })
 }
 
 fn default_folder(study: &Study) -> PathBuf {

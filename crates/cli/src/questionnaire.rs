@@ -2,9 +2,9 @@
 //! `analysis::power`.
 
 use crate::args::{Check, Power};
-use crate::pipeline::camera_file;
+use crate::pipeline::MadeWith;
 use crate::progress::Step;
-use crate::{Outcome, default_folder, say, store};
+use crate::{Outcome, counted, default_folder, say, store};
 use analysis::power::{Assumptions, power as simulated};
 use anyhow::{Context, Result, ensure};
 use design::lint::{Fault, Rule, StimulusFacts, lint, lint_stimuli};
@@ -83,15 +83,18 @@ fn faults_text(study: &Study, faults: &[Fault]) -> String {
     for of_rule in faults.chunk_by(|a, b| a.rule == b.rule) {
         let rule = of_rule[0].rule;
         text += &format!("{}: {}\n", rule.id(), rule.meaning());
-        for fault in of_rule {
-            text += &format!("  {}: {}\n", fault.place, fault.evidence);
+        for alike in of_rule.chunk_by(|a, b| a.remedy() == b.remedy()) {
+            for fault in alike {
+                text += &format!("  {}: {}\n", fault.place, fault.evidence);
+            }
+            text += &format!("  remedy: {}\n", alike[0].remedy());
         }
-        text += &format!("  remedy: {}\n\n", rule.remedy());
+        text += "\n";
     }
     let file = study.path.display();
     text + &match faults.len() {
         0 => format!("{file}: no faults"),
-        count => format!("{file}: {count} faults"),
+        count => format!("{file}: {}", counted(count, "fault")),
     }
 }
 
@@ -172,11 +175,27 @@ fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Vec<Fault>>> 
         return Ok(None);
     }
     let read = |(file, configuration): (&PathBuf, &Configuration)| {
-        let camera = camera(&results.join(camera_file(&configuration.id)))?;
-        fact(file, camera).with_context(|| file.display().to_string())
+        let made = made_with(&results.join(MadeWith::file(&configuration.id)))?;
+        let current = made.as_ref() == Some(&MadeWith::of(study, configuration));
+        let facts = fact(file, made.map(|made| made.camera)).with_context(|| file.display().to_string())?;
+        Ok((facts, current))
     };
-    let facts: Vec<StimulusFacts> =
-        files.par_iter().zip(&study.configurations).map(read).collect::<Result<_>>()?;
+    let (facts, current): (Vec<StimulusFacts>, Vec<bool>) = files
+        .par_iter()
+        .zip(&study.configurations)
+        .map(read)
+        .collect::<Result<Vec<_>>>()?
+        .into_iter()
+        .unzip();
+    let outdated = current.iter().filter(|&&current| !current).count();
+    if outdated > 0 {
+        eprintln!(
+            "{outdated} of {} in {} were made with other settings than the study file has now and are judged as \
+             they are; `isostudy pairs` makes them anew",
+            counted(files.len(), "animation"),
+            results.display()
+        );
+    }
     let by_id: HashMap<_, _> = study.configurations.iter().map(|c| &c.id).zip(&facts).collect();
     let mut pairs = Vec::new();
     for stimulus in study.stimuli() {
@@ -225,7 +244,7 @@ fn said_by_files(study: &Study, folder: &Path) -> Result<Vec<Fault>> {
 }
 
 /// The files of a folder with an extension, in the order of names; none where there is no folder.
-fn files_of(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
+pub(crate) fn files_of(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     if folder.is_dir() {
         for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
@@ -237,14 +256,13 @@ fn files_of(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// What a turntable's camera was; `None` where that was not written down.
-fn camera(path: &Path) -> Result<Option<[f64; 3]>> {
+/// What a turntable was made with; `None` where that was not written down, or by another version.
+fn made_with(path: &Path) -> Result<Option<MadeWith>> {
     if !path.is_file() {
         return Ok(None);
     }
-    let place = || path.display().to_string();
-    let text = std::fs::read(path).with_context(place)?;
-    serde_json::from_slice(&text).map(Some).with_context(place)
+    let text = std::fs::read(path).with_context(|| path.display().to_string())?;
+    Ok(serde_json::from_slice(&text).ok())
 }
 
 fn file_name(path: &Path) -> String {
@@ -270,6 +288,7 @@ fn fact(path: &Path, camera: Option<[f64; 3]>) -> Result<StimulusFacts> {
         size: [animation.width, animation.height],
         background: colours[usize::from(corner)],
         camera,
+        palette: colours.to_vec(),
         exposure: if total == 0 { 0.0 } else { sum / total as f64 },
         text: raster::gif_texts(&bytes),
     })

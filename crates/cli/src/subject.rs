@@ -59,7 +59,20 @@ fn present_source<'s>(
 ) -> Result<(&'s MeshSourceSection, PathBuf)> {
     let resolved = sources.iter().map(|source| (source, study.resolve(&source.file)));
     let mut present = resolved.filter(|(_, path)| path.is_file());
-    present.next().context("none of the mesh files is there any more")
+    let missing = || {
+        let files =
+            |sources: &[MeshSourceSection]| sources.iter().map(|s| s.file.clone()).collect::<Vec<_>>();
+        let this = |object: &ObjectSection| matches!(&object.field, FieldSection::Mesh { sources: of } if files(of) == files(sources));
+        let object = study.file.objects.iter().position(this).unwrap_or_default();
+        let path = sources.first().map_or_else(PathBuf::new, |first| study.resolve(&first.file));
+        format!(
+            "{}: objects[{object}].field.sources[0].file names {}: no such file; `make bunny` (scripts/fetch-bunny.sh) \
+             fetches the mesh",
+            study.path.display(),
+            path.display()
+        )
+    };
+    present.next().with_context(missing)
 }
 
 /// What a field is made from, for the digest of a stage's inputs: the section, and which mesh file is used.

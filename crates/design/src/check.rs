@@ -34,7 +34,7 @@ pub enum ConfigError {
         limit: String,
     },
     /// A file that the study names is not there.
-    #[error("{}: {key} names {}: no such file{hint}", file.display(), path.display())]
+    #[error("{}: {key} names {}: no such file", file.display(), path.display())]
     MissingFile {
         /// The study file.
         file: PathBuf,
@@ -42,8 +42,6 @@ pub enum ConfigError {
         key: String,
         /// The path, resolved against the study file's folder.
         path: PathBuf,
-        /// What to do, or empty.
-        hint: String,
     },
     /// A table of published numbers does not parse.
     #[error("{}: {message}", file.display())]
@@ -148,12 +146,12 @@ impl Checker<'_> {
     }
 
     /// A path as written, resolved against the study file's folder; the file must be there.
-    pub(crate) fn existing(&self, key: &str, written: &str, hint: &str) -> Result<PathBuf, ConfigError> {
+    pub(crate) fn existing(&self, key: &str, written: &str) -> Result<PathBuf, ConfigError> {
         let path = self.resolve(written);
         if path.is_file() {
             Ok(path)
         } else {
-            Err(ConfigError::MissingFile { file: self.file.into(), key: key.into(), path, hint: hint.into() })
+            Err(ConfigError::MissingFile { file: self.file.into(), key: key.into(), path })
         }
     }
 

@@ -4,11 +4,12 @@
 //! [`Fault`] says where it was found, with the numbers. A design without faults can still be a bad one: nothing is said of
 //! the question's wording, of who answers, or of whether the stimuli show what they should.
 
+mod names;
 mod stimuli;
 
-use crate::config::{OrderRule, ShownNames, SideRule};
+use crate::config::{OrderRule, SideRule};
 use crate::forms::{Form, Questionnaire, Role, Trial};
-use crate::method::{ConfigurationId, Method};
+use crate::method::Method;
 use crate::study::{Comparison, Study};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -101,16 +102,16 @@ impl Rule {
                  5 %."
             }
             Self::NamesReveal => {
-                "Ids, file names, sizes or metadata tell participants which configuration they see."
+                "Ids, texts, file names, sizes or metadata tell participants which configuration they see."
             }
             Self::StimuliDiffer => {
                 "The stimuli of one comparison differ in something besides the method: frames, duration, camera, \
-                 background, size or exposure."
+                 background, colours, size or exposure."
             }
         }
     }
 
-    /// What to change.
+    /// What to change, as a rule; see [`Fault::remedy`].
     pub fn remedy(self) -> &'static str {
         match self {
             Self::SideConfounded | Self::SidesUnbalanced => {
@@ -125,7 +126,9 @@ impl Rule {
             Self::OrderFixed => "forms.order = \"latin-square\"",
             Self::UntestableComparison => "compare methods that differ in one of the two",
             Self::NotEnoughParticipants => "plan more participants, or fewer contrasts",
-            Self::NamesReveal => "forms.names = \"code-names\"",
+            Self::NamesReveal => {
+                "take the name out of what tells it: forms.names = \"code-names\", another question id or text, files made anew"
+            }
             Self::StimuliDiffer => "render both with the same turntable, shading and camera",
         }
     }
@@ -140,6 +143,23 @@ pub struct Fault {
     pub place: String,
     /// The numbers.
     pub evidence: String,
+}
+
+impl Fault {
+    /// What to change here.
+    pub fn remedy(&self) -> &'static str {
+        match (self.rule, self.place.as_str()) {
+            (Rule::NamesReveal, "forms.names") => "forms.names = \"code-names\"",
+            (Rule::NamesReveal, place) if place.starts_with("question ") => "give the question another id",
+            (Rule::NamesReveal, place) if place.starts_with("forms.") || place.starts_with("study.") => {
+                "say it without the names of methods and configurations"
+            }
+            (Rule::NamesReveal, _) => {
+                "make the files anew with `isostudy bundle`, and change nothing in them"
+            }
+            (rule, _) => rule.remedy(),
+        }
+    }
 }
 
 /// Level that [`Rule::NotEnoughParticipants`] asks for.
@@ -170,7 +190,7 @@ pub fn lint(study: &Study) -> Vec<Fault> {
     }
     faults.extend(showings.untestable(study));
     faults.extend(showings.participants());
-    faults.extend(names(study, section.names));
+    faults.extend(names::names(study, section));
     faults
 }
 
@@ -337,33 +357,15 @@ impl Showings {
             let count = i32::try_from(asked.len()).unwrap_or(i32::MAX);
             let best = (2f64.powi(1 - count) * contrasts as f64).min(1.0);
             if best > LEVEL {
-                let evidence =
-                    format!("{count} participants, {contrasts} contrasts: p is at least {best:.4}");
+                let [people, tests] = [(asked.len(), "participant"), (contrasts, "contrast")]
+                    .map(|(number, word)| format!("{number} {word}{}", if number == 1 { "" } else { "s" }));
+                let evidence = format!("{people}, {tests}: p is at least {best:.4}");
                 let place = self.name(contrast);
                 faults.push(Fault { rule: Rule::NotEnoughParticipants, place, evidence });
             }
         }
         faults
     }
-}
-
-fn names(study: &Study, shown: ShownNames) -> Vec<Fault> {
-    let mut faults = Vec::new();
-    let mut fault = |place: String, evidence: String| {
-        faults.push(Fault { rule: Rule::NamesReveal, place, evidence });
-    };
-    if shown == ShownNames::ConfigurationIds {
-        let ids: Vec<String> = study.configurations.iter().map(|c| c.id.to_string()).collect();
-        let evidence = format!("{} ids can be read, such as {}", ids.len(), ids[ids.len() - 1]);
-        fault("forms.names".into(), evidence);
-    }
-    for comparison in &study.comparisons {
-        let tells = |id: &&ConfigurationId| comparison.question.contains(&id.to_string());
-        if let Some(id) = [&comparison.left, &comparison.right].into_iter().find(tells) {
-            fault(format!("question {}", comparison.question), format!("its id names {id}"));
-        }
-    }
-    faults
 }
 
 #[cfg(test)]

@@ -112,11 +112,11 @@ impl Study {
         check_stills(&checker, &file, &configurations)?;
         check_forms(&checker, &file, &configurations)?;
 
-        let target_path = checker.existing("benchmark.target", &file.benchmark.target, "")?;
+        let target_path = checker.existing("benchmark.target", &file.benchmark.target)?;
         let target = CpuProfile::load(&target_path)?;
         let responses = match &file.responses {
             Some(ResponsesSection { file: Some(written), .. }) => {
-                Some(checker.existing("responses.file", written, "")?)
+                Some(checker.existing("responses.file", written)?)
             }
             _ => None,
         };
@@ -187,7 +187,7 @@ fn published_table<T: DeserializeOwned>(
     key: &str,
     written: &Option<String>,
 ) -> Result<Vec<T>, ConfigError> {
-    written.as_ref().map_or(Ok(Vec::new()), |written| read_table(&c.existing(key, written, "")?))
+    written.as_ref().map_or(Ok(Vec::new()), |written| read_table(&c.existing(key, written)?))
 }
 
 pub(crate) fn read_table<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ConfigError> {

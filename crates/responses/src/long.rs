@@ -17,6 +17,9 @@ use crate::words::normalise;
 const NAMES: [&str; 10] =
     ["participant", "question", "left", "right", "choice", "object", "group", "form", "order", "rt_ms"];
 
+/// Columns of `isostudy`'s own export that say nothing of an answer which the study does not say itself.
+const KNOWN: [&str; 2] = ["role", "stimulus"];
+
 /// Where the columns of a file with one row an answer are.
 pub(crate) struct Columns {
     pub(crate) participant: usize,
@@ -70,7 +73,7 @@ impl Columns {
                         return Err(Fault::DuplicateColumn { column: column + 1, first: first + 1, name });
                     }
                 }
-                None if is_blank(title) => {}
+                None if is_blank(title) || KNOWN.contains(&normalise(title).as_str()) => {}
                 None => report.cell(Kind::Noted, row, column, title, "not a column of this format: not read"),
             }
         }

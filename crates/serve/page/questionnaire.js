@@ -1,15 +1,22 @@
 // The questionnaire. One participant, one form: consent, training, questions, end.
 //
-// Everything that must survive a reload is in `session`, kept in localStorage after each change. Answers are only ever added.
-// Without a server they stay there until they are downloaded; with one they are sent until each is acknowledged.
+// Everything that must survive a reload is in `session`, kept in localStorage after each change. Tabs of one participant share it,
+// and whichever answered first counts. Without a server answers stay there until they are downloaded; with one they are sent
+// until each is acknowledged.
 'use strict';
 
 (() => {
   const study = window.ISOSTUDY;
-  const KEY = `isostudy:${study.study}:${study.digest}`;
+  // Who somebody is, as far as the address says: others in the same browser have a session of their own.
+  const address = new URLSearchParams(location.search);
+  const given = (name) => address.get(name) ?? undefined;
+  const WHO = study.server ? ['PROLIFIC_PID', 'STUDY_ID', 'SESSION_ID'] : ['form'];
+  const KEY = `isostudy:${JSON.stringify([study.study, study.digest, ...WHO.map((name) => given(name) ?? null)])}`;
   const CHOICES = ['L', 'NP', 'R'];
   // The three keys of each answer: by number, and by the arrow that points to it.
   const KEYS = [['1', 'ArrowLeft'], ['2', 'ArrowDown'], ['3', 'ArrowRight']];
+  // The server takes no longer time for an answer than a day.
+  const LONGEST_MS = 86400000;
   const STILL = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
 
   const $ = (id) => document.getElementById(id);
@@ -25,8 +32,14 @@
     return element;
   }
 
+  // Ends what the view on the screen has begun: clocks, keys.
+  let leave = () => {};
+
   /** Shows a view and moves the focus to its heading, so that a screen reader begins there. */
   function show(...children) {
+    leave();
+    leave = () => {};
+    document.body.className = '';
     $('view').replaceChildren(...children);
     const heading = $('view').querySelector('h2');
     (heading || $('title')).focus();
@@ -46,13 +59,51 @@
     }
   }
 
-  function keep() {
+  function store() {
     try {
       localStorage.setItem(KEY, JSON.stringify(session));
     } catch {
       say('This browser does not let the page store your answers: do not close or reload it before the end.');
     }
   }
+
+  /** Takes over what another tab has stored of the same form. */
+  function merge() {
+    const stored = load();
+    if (!session || stored?.participant !== session.participant) return;
+    stored.answers.forEach((theirs, i) => {
+      const mine = session.answers[i];
+      if (mine && mine.choice === theirs.choice) mine.saved ||= theirs.saved; else session.answers[i] = theirs;
+    });
+    session.trained = Math.max(session.trained, stored.trained);
+    session.instructed ||= stored.instructed;
+  }
+
+  function keep() {
+    merge();
+    store();
+  }
+
+  /** How much of the form is done, training included. */
+  function done() {
+    const { form, trained, answers } = session;
+    return trained < form.training.length && answers.length === 0 ? trained : form.training.length + answers.length;
+  }
+
+  // The place on the screen.
+  let place = null;
+
+  window.addEventListener('storage', (event) => {
+    if (event.key !== KEY && event.key !== null) return;
+    const stored = load();
+    if (stored?.participant === session?.participant) {
+      merge();
+      if (session && place !== null && place !== done()) next();
+    } else {
+      session = stored;
+      if (session) next(); else consent();
+    }
+  });
 
   function randomId() {
     const bytes = crypto.getRandomValues(new Uint8Array(8));
@@ -69,59 +120,125 @@
     });
     if (!response.ok) {
       const error = new Error((await response.text()) || response.statusText);
-      error.final = response.status >= 400 && response.status < 500 && response.status !== 429;
+      error.refusal = response.headers.get('isostudy-refusal');
+      // Whatever else goes wrong between here and the server may pass.
+      error.final = error.refusal !== null || [400, 413, 415, 422].includes(response.status);
+      error.conflict = error.final && response.status === 409;
       throw error;
     }
     return response.json();
   }
 
+  /** Asks until there is a reply. `null` where there will be none, which has then been said; a conflict is the caller's. */
+  async function insist(path, body) {
+    for (let wait = 500; ; wait = Math.min(wait * 2, 15000)) {
+      try {
+        return await post(path, body);
+      } catch (error) {
+        if (body.token !== session?.token) return null;
+        if (error.conflict) throw error;
+        if (error.refusal === 'unknown-token') return forget();
+        if (error.final) return refused(error);
+        say('No connection. Your answers are kept here and sent as soon as there is one.');
+        await new Promise((resolve) => { setTimeout(resolve, wait); });
+      }
+    }
+  }
+
   let sending = null;
 
-  /** Sends what is not acknowledged, in order, until all is; one at a time however often it is called. */
+  /** Sends what is not acknowledged, in order; one at a time however often it is called. Returns whether all is. */
   function send() {
     sending ??= sendAll().finally(() => { sending = null; });
     return sending;
   }
 
   async function sendAll() {
-    for (let wait = 500; ;) {
+    for (let conflict = null; session;) {
       const next = session.answers.find((answer) => !answer.saved);
-      if (!next) return;
+      if (!next) return true;
+      const { saved, answered, ...answer } = next;
+      const { token } = session;
       try {
-        const { saved, answered, ...answer } = next;
-        await post('api/answers', { token: session.token, ...answer });
+        if (!await insist('api/answers', { token, ...answer })) {
+          if (session && session.token !== token) continue;
+          return false;
+        }
         next.saved = true;
         keep();
-        wait = 500;
         if (!session.answers.some((a) => !a.saved)) say('');
       } catch (error) {
-        if (error.final) {
-          say(`The server refused an answer: ${error.message}. Please tell the people who run the study.`);
-          throw error;
+        if (!error.conflict) throw error;
+        if (conflict === next.order) {
+          refused(error);
+          return false;
         }
-        say('No connection. Your answers are kept here and sent as soon as there is one.');
-        await new Promise((resolve) => { setTimeout(resolve, wait); });
-        wait = Math.min(wait * 2, 15000);
+        conflict = next.order;
+        if (!await catchUp()) return false;
       }
     }
+    return false;
+  }
+
+  /** Goes on from the answers that the server has: more of them from elsewhere, or fewer than it once had. */
+  async function catchUp() {
+    const state = await insist('api/state', { token: session.token });
+    if (!state) return false;
+    const theirs = Array.from({ length: state.answered }, (_, i) => (session.answers[i]?.saved ? session.answers[i] : { saved: true }));
+    const mine = session.answers.slice(state.answered);
+    const lost = mine.findIndex((answer) => !answer.choice);
+    session.answers = [...theirs, ...(lost < 0 ? mine : mine.slice(0, lost)).map((answer) => ({ ...answer, saved: false }))];
+    store();
+    if (place !== null && place !== done()) next();
+    return true;
+  }
+
+  /** The server has nothing of this session: whatever is answered here would be lost. */
+  function forget() {
+    const lost = session;
+    localStorage.removeItem(KEY);
+    session = null;
+    consent(lost);
+    say('The study does not know this session any more. Please begin again.');
+    return null;
+  }
+
+  /** The server will never take an answer: nobody is to give more of them. */
+  function refused(error) {
+    const again = make('button', { type: 'button' }, 'Try again');
+    again.addEventListener('click', () => location.reload());
+    place = null;
+    $('progress-row').hidden = true;
+    show(heading('Your answers could not be saved'), make('p', { className: 'text' }, `The server says: ${error.message}. Please download your answers and tell the people who run the study.`),
+      make('div', { className: 'row' }, ...downloads(session), again));
+    say('');
+    return null;
   }
 
   // ---- begin ------------------------------------------------------------------------------------------------------
 
-  function consent() {
+  // Whether somebody has taken part before in this page, so that the number in its address is not of the next one.
+  let follows = false;
+
+  /** `lost` is a session of which the server knows nothing. */
+  function consent(lost = null) {
+    place = null;
     $('progress-row').hidden = true;
     const begin = make('button', { type: 'button', className: 'main' }, 'I agree, begin');
     const parts = [heading('Before you begin'), make('p', { className: 'text' }, study.consent)];
+    if (study.server && WHO.some(given)) {
+      parts.push(make('p', { className: 'text' }, 'The address of this page names you by an identifier of the panel that sent you. It is kept apart from your answers, to tell the panel that you took part.'));
+    }
     let number = null;
     if (!study.server) {
-      const asked = Number(new URLSearchParams(location.search).get('form'));
-      if (Number.isInteger(asked) && asked >= 1 && asked <= study.forms.length) {
-        number = () => asked;
-      } else {
-        const input = make('input', { type: 'number', id: 'form', min: 1, max: study.forms.length, required: true });
-        parts.push(make('div', { className: 'row' }, make('label', { htmlFor: 'form' }, `Your number, 1 to ${study.forms.length}`), input));
-        number = () => (input.reportValidity() ? Number(input.value) : null);
-      }
+      const input = make('input', { type: 'number', id: 'form', min: 1, max: study.forms.length, required: true, value: follows ? '' : given('form') ?? '' });
+      const asked = make('div', { className: 'row' }, make('label', { htmlFor: 'form' }, `Your number, 1 to ${study.forms.length}`), input);
+      asked.hidden = input.value !== '' && input.validity.valid;
+      parts.push(asked);
+      number = () => (input.reportValidity() ? Number(input.value) : null);
+    }
+    if (lost?.answers.some((answer) => answer.choice)) {
+      parts.push(make('p', { className: 'text' }, 'Your earlier answers can be downloaded for the people who run the study.'), make('div', { className: 'row' }, ...downloads(lost)));
     }
     begin.addEventListener('click', async () => {
       const form = number ? number() : 0;
@@ -140,8 +257,6 @@
   async function start(number) {
     const at = new Date().toISOString();
     if (study.server) {
-      const query = new URLSearchParams(location.search);
-      const given = (name) => query.get(name) ?? undefined;
       const dealt = await post('api/sessions', {
         prolific_pid: given('PROLIFIC_PID'), study_id: given('STUDY_ID'), session_id: given('SESSION_ID'),
       });
@@ -160,26 +275,28 @@
   // ---- the form ---------------------------------------------------------------------------------------------------
 
   function next() {
-    const { form, trained, answers } = session;
+    const { form } = session;
     const all = form.training.length + form.questions.length;
-    const done = trained < form.training.length && answers.length === 0 ? trained : form.training.length + answers.length;
+    place = null;
     if (!session.instructed) return instructions();
-    if (done === all) return end();
+    place = done();
+    if (place === all) return end();
     $('progress-row').hidden = false;
     $('progress').max = all;
-    $('progress').value = done;
-    $('progress-text').textContent = `${done + 1} of ${all}`;
-    if (done < form.training.length) {
-      trial(form.training[done], `Practice ${done + 1}: this answer does not count`, () => {
+    $('progress').value = place;
+    $('progress-text').textContent = `${place + 1} of ${all}`;
+    if (place < form.training.length) {
+      trial(form.training[place], `Practice ${place + 1}: this answer does not count`, () => {
         session.trained += 1;
       });
     } else {
-      const place = done - form.training.length;
-      trial(form.questions[place], `Question ${place + 1}`, (choice, times) => {
-        session.answers.push({ order: done + 1, stimulus: form.questions[place], choice, ...times });
+      const question = place - form.training.length;
+      const order = place + 1;
+      trial(form.questions[question], `Question ${question + 1}`, (choice, times) => {
+        session.answers.push({ order, stimulus: form.questions[question], choice, ...times });
       });
     }
-    preload(done + 1);
+    preload(place + 1);
     return undefined;
   }
 
@@ -198,9 +315,9 @@
 
   const source = (code) => `stimuli/${encodeURIComponent(code)}.gif`;
 
-  function preload(place) {
+  function preload(coming) {
     const codes = [...session.form.training, ...session.form.questions];
-    if (place < codes.length) new Image().src = source(codes[place]);
+    if (coming < codes.length) new Image().src = source(codes[coming]);
   }
 
   /** One pair. `answer` is called once, with the choice and its times in milliseconds since the pair was on the screen. */
@@ -252,19 +369,30 @@
         say(moving === null ? 'Please play one whole turn first.' : 'Please watch one whole turn first.');
         return;
       }
-      over = true;
-      document.removeEventListener('keydown', key);
-      document.removeEventListener('visibilitychange', seen);
-      say('');
-      answer(CHOICES[i], { rt_ms: Math.round(performance.now() - shown), answered: new Date().toISOString() });
-      keep();
-      if (study.server) send().catch(() => {});
+      merge();
+      if (place !== done()) {
+        say('This question has been answered in another tab.');
+      } else {
+        say('');
+        const rt_ms = Math.min(Math.round(performance.now() - shown), LONGEST_MS);
+        answer(CHOICES[i], { rt_ms, answered: new Date().toISOString() });
+        keep();
+      }
+      if (study.server) send();
       next();
+    }
+
+    /** Whether all of the answers is on the screen. */
+    function visible() {
+      const { top, bottom } = question.getBoundingClientRect();
+      return top >= 0 && bottom <= window.innerHeight + 1;
     }
 
     function key(event) {
       if (event.altKey || event.ctrlKey || event.metaKey || event.repeat) return;
       const i = KEYS.findIndex((keys) => keys.includes(event.key));
+      // Whoever still has to scroll to the answers does so by this key.
+      if (event.key === 'ArrowDown' && !visible()) return;
       if (i >= 0) {
         event.preventDefault();
         choose(i);
@@ -277,6 +405,7 @@
     }
 
     image.addEventListener('load', () => {
+      if (over) return;
       const scale = study.page_scale;
       still.width = image.naturalWidth;
       still.height = image.naturalHeight;
@@ -296,7 +425,14 @@
     buttons.forEach((button, i) => button.addEventListener('click', () => choose(i)));
     document.addEventListener('keydown', key);
     document.addEventListener('visibilitychange', seen);
-    show(heading(title), pair, make('div', { className: 'row' }, pause), question);
+    show(make('div', { className: 'row top' }, heading(title), pause), pair, question);
+    document.body.className = 'asking';
+    leave = () => {
+      over = true;
+      clearTimeout(timer);
+      document.removeEventListener('keydown', key);
+      document.removeEventListener('visibilitychange', seen);
+    };
     image.src = source(code);
   }
 
@@ -312,53 +448,43 @@
         if (!session.downloaded && !window.confirm('The answers have not been downloaded. Delete them here?')) return;
         localStorage.removeItem(KEY);
         session = null;
+        follows = true;
         consent();
       });
       show(heading('Thank you'), make('p', { className: 'text' }, 'That was the last question. Please download the answers and give them to the people who run the study.'),
-        make('div', { className: 'row' }, download('CSV', 'text/csv', csv()), download('JSON', 'application/json', JSON.stringify(json(), null, 1)), again));
+        make('div', { className: 'row' }, ...downloads(session), again));
       return;
     }
     show(heading('Almost done'), make('p', {}, 'Your last answers are being saved.'));
     try {
-      await send();
-      const { completion } = await post('api/finish', { token: session.token });
+      if (!await send()) return;
+      const reply = await insist('api/finish', { token: session.token });
+      if (!reply) return;
       const parts = [heading('Thank you'), make('p', { className: 'text' }, 'All your answers are saved. You can close this page.')];
-      if (completion && /^https:\/\//.test(completion)) {
-        parts.push(make('div', { className: 'row' }, make('a', { href: completion, className: 'button main', rel: 'noreferrer' }, 'Finish')));
-      } else if (completion) {
-        parts.push(make('p', {}, 'Your completion code: ', make('span', { className: 'code' }, completion)));
+      if (reply.completion && /^https:\/\//.test(reply.completion)) {
+        parts.push(make('div', { className: 'row' }, make('a', { href: reply.completion, className: 'button main', rel: 'noreferrer' }, 'Finish')));
+      } else if (reply.completion) {
+        parts.push(make('p', {}, 'Your completion code: ', make('span', { className: 'code' }, reply.completion)));
       }
       show(...parts);
       say('');
     } catch (error) {
-      if (!error.final) setTimeout(end, 2000);
+      if (!error.conflict) throw error;
+      // The server lacks answers; those that are here are sent again, the others asked again.
+      if (await catchUp() && place === session.form.training.length + session.form.questions.length) end();
     }
   }
 
-  function rows() {
-    return session.answers.map(({ order, stimulus, choice, rt_ms, answered }) => ({
-      participant: session.participant, form: session.form.form, order, stimulus, choice, rt_ms, answered,
-    }));
-  }
-
-  function csv() {
-    const all = rows();
-    const names = ['participant', 'form', 'order', 'stimulus', 'choice', 'rt_ms', 'answered'];
-    return `${[names, ...all.map((row) => names.map((name) => row[name]))].map((cells) => cells.join(',')).join('\r\n')}\r\n`;
-  }
-
-  function json() {
-    return { schema: 1, study: study.study, participant: session.participant, form: session.form.form, started: session.started, finished: session.finished, answers: rows() };
-  }
-
-  function download(kind, type, text) {
-    const link = make('a', { className: kind === 'CSV' ? 'button main' : 'button', download: `${study.study}-${session.participant}.${kind.toLowerCase()}`,
-      href: URL.createObjectURL(new Blob([text], { type })) }, `Download ${kind}`);
-    link.addEventListener('click', () => {
-      session.downloaded = true;
-      keep();
+  /** Links to a session's answers as files. */
+  function downloads(of) {
+    return window.isostudyFiles(study, of).map(({ kind, type, name, text }) => {
+      const link = make('a', { className: kind === 'CSV' ? 'button main' : 'button', download: name, href: URL.createObjectURL(new Blob([text], { type })) }, `Download ${kind}`);
+      link.addEventListener('click', () => {
+        of.downloaded = true;
+        keep();
+      });
+      return link;
     });
-    return link;
   }
 
   // ---- go ---------------------------------------------------------------------------------------------------------
@@ -366,7 +492,7 @@
   document.title = study.title;
   $('title').textContent = study.title;
   if (session) {
-    if (study.server) send().catch(() => {});
+    if (study.server) send();
     next();
   } else {
     consent();

@@ -26,16 +26,28 @@
     $(id).replaceChildren(line('th', headings), ...rows.map((cells) => line('td', cells)));
   }
 
+  function drawn(name, attributes, text = '') {
+    const element = document.createElementNS('http://www.w3.org/2000/svg', name);
+    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+    element.textContent = text;
+    return element;
+  }
+
+  /** One bar a minute over a line of time; the scale begins at 0 and ends at the largest count. */
   function bars(counts) {
     const most = Math.max(1, ...counts);
-    $('minutes').replaceChildren(...counts.map((count, i) => {
-      const bar = document.createElementNS('http://www.w3.org/2000/svg', 'rect');
-      const height = (78 * count) / most;
-      for (const [name, value] of Object.entries({ x: i * 10 + 1, y: 80 - height, width: 8, height, fill: 'currentColor' })) {
-        bar.setAttribute(name, value);
-      }
-      return bar;
-    }));
+    const [left, top, bottom] = [50, 10, 90];
+    const text = (x, y, anchor, words) => drawn('text', { x, y, 'text-anchor': anchor, 'font-size': 13, fill: 'currentColor' }, words);
+    const line = (y) => drawn('line', { x1: left, x2: left + 600, y1: y, y2: y, stroke: 'currentColor', 'stroke-width': 0.5 });
+    const bar = (count, i) => {
+      const height = ((bottom - top) * count) / most;
+      return drawn('rect', { x: left + i * 10 + 1, y: bottom - height, width: 8, height, fill: 'currentColor' });
+    };
+    $('minutes').replaceChildren(
+      line(top), line(bottom), text(left - 6, top + 4, 'end', most), text(left - 6, bottom + 4, 'end', 0), ...counts.map(bar),
+      text(left, bottom + 18, 'start', '60 minutes ago'), text(left + 300, bottom + 18, 'middle', '30'), text(left + 600, bottom + 18, 'end', 'now'),
+    );
+    $('minutes').setAttribute('aria-label', `Answers in each of the last 60 minutes: ${most} at most, ${counts.at(-1)} in the last`);
   }
 
   async function show() {
@@ -59,7 +71,7 @@
       }));
       bars(stand.per_minute);
       table('forms', ['Form', 'Participants', 'Finished'], stand.forms);
-      table('places', ['Place', 'Answers', 'Median, s'], stand.places.map(([place, answers, median]) => [place, answers, (median / 1000).toFixed(1)]));
+      table('questions', ['Question', 'Answers', 'Median, s'], stand.questions.map(([question, answers, median]) => [question, answers, (median / 1000).toFixed(1)]));
       $('status').textContent = `As of ${new Date().toLocaleTimeString()}`;
       timer = setTimeout(show, 5000);
     } catch (error) {

@@ -2,12 +2,20 @@
 //!
 //! Changes are made in batches: what arrives while one is being synced goes into the next, and each is answered after its
 //! batch was committed (write-ahead log, `synchronous = FULL`). A process that is killed loses nothing that was answered.
+//!
+//! Somebody is written down with the first answer; until then a form dealt is known in memory alone. Both files, and the folder
+//! if it is made here, are their owner's alone. One process changes them at a time (`lock`); others may read meanwhile.
 
+mod files;
+mod summary;
 mod thread;
+mod waiting;
 
 #[cfg(test)]
 mod tests;
 
+pub use files::{Kept, kept};
+pub use summary::Summary;
 pub use thread::{Handle, Unsaved, start};
 
 use crate::export::Given;
@@ -16,27 +24,14 @@ use design::forms::{FormEntry, FormFile};
 use rusqlite::{Connection, params};
 use serde::Serialize;
 use std::collections::HashMap;
+use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use waiting::{Newcomer, Waiting};
 
 /// Whoever has sent nothing for so long is taken to have given up; the form is dealt again.
 const GIVEN_UP_MS: i64 = 2 * 3_600_000;
 /// Most participants of a study.
 const MOST: usize = 100_000;
-
-const SCHEMA: &str = "
-    CREATE TABLE IF NOT EXISTS study (name TEXT NOT NULL, digest TEXT NOT NULL);
-    CREATE TABLE IF NOT EXISTS participants (
-        number INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, token TEXT NOT NULL UNIQUE, form INTEGER NOT NULL,
-        started_ms INTEGER NOT NULL, last_ms INTEGER NOT NULL, finished_ms INTEGER);
-    CREATE TABLE IF NOT EXISTS answers (
-        participant INTEGER NOT NULL REFERENCES participants, place INTEGER NOT NULL, stimulus TEXT NOT NULL,
-        choice TEXT NOT NULL, rt_ms INTEGER NOT NULL, received_ms INTEGER NOT NULL, PRIMARY KEY (participant, place))
-        WITHOUT ROWID;";
-
-const IDENTITIES: &str = "
-    CREATE TABLE IF NOT EXISTS identities (
-        participant TEXT PRIMARY KEY, prolific_pid TEXT, study_id TEXT, session_id TEXT) WITHOUT ROWID;";
 
 /// Why the journal cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -69,6 +64,18 @@ pub enum JournalError {
         /// Digest of its forms.
         version: String,
     },
+    /// Somebody was dealt a form that there no longer is.
+    #[error(
+        "{path}: holds answers to form {form}, and the study plans {planned} participants; plan no fewer than before"
+    )]
+    FewerForms {
+        /// The folder.
+        path: PathBuf,
+        /// Which.
+        form: usize,
+        /// How many there are now.
+        planned: usize,
+    },
     /// Another server has it.
     #[error("{path}: in use by another process, such as a running server")]
     InUse {
@@ -90,25 +97,6 @@ pub struct Dealt {
     pub answered: u32,
 }
 
-/// How a study stands, without a word on what was chosen.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Summary {
-    /// Participants who began.
-    pub started: usize,
-    /// Who answered all questions.
-    pub finished: usize,
-    /// Who have neither finished nor been silent for two hours.
-    pub answering: usize,
-    /// By form: number, who began and did not give up, who finished.
-    pub forms: Vec<[usize; 3]>,
-    /// Answers.
-    pub answers: u64,
-    /// Answers in each of the last 60 minutes, the newest last.
-    pub per_minute: Vec<u64>,
-    /// By place in the form: place, answers, median time in milliseconds.
-    pub places: Vec<(u32, u64, f64)>,
-}
-
 struct Person {
     number: i64,
     name: String,
@@ -127,6 +115,9 @@ pub struct Journal {
     people: Vec<Person>,
     by_token: HashMap<String, usize>,
     by_identifiers: HashMap<Identifiers, usize>,
+    waiting: Waiting,
+    /// Held as long as the journal is.
+    _lock: File,
 }
 
 impl std::hash::Hash for Identifiers {
@@ -136,15 +127,23 @@ impl std::hash::Hash for Identifiers {
 }
 
 impl Journal {
-    /// Opens the journal in a folder, which is made if it is not there. `digest` is that of the forms.
+    /// Opens the journal in a folder, which is made if it is not there. `digest` tells one version of the forms from another,
+    /// whatever their number.
     ///
     /// # Errors
     /// [`JournalError`].
     pub fn open(folder: &Path, file: &FormFile, digest: &str) -> Result<Self, JournalError> {
-        std::fs::create_dir_all(folder)
-            .map_err(|source| JournalError::Folder { path: folder.into(), source })?;
-        let answers = open(folder, "answers.sqlite", SCHEMA)?;
-        let identities = open(folder, "identities.sqlite", IDENTITIES)?;
+        let files::Opened { answers, identities, lock } = files::open(folder)?;
+        match files::study(&answers).map_err(|e| files::error(folder, e))? {
+            None => {
+                let add = "INSERT INTO study VALUES (?1, ?2)";
+                answers.execute(add, params![file.study, digest]).map_err(|e| files::error(folder, e))?;
+            }
+            Some((found, version)) if found != file.study || version != digest => {
+                return Err(JournalError::OtherStudy { path: folder.into(), found, version });
+            }
+            Some(_) => {}
+        }
         let mut journal = Self {
             folder: folder.into(),
             answers,
@@ -153,28 +152,23 @@ impl Journal {
             people: Vec::new(),
             by_token: HashMap::new(),
             by_identifiers: HashMap::new(),
+            waiting: Waiting::default(),
+            _lock: lock,
         };
-        let known = journal.answers.query_row("SELECT name, digest FROM study", [], |row| {
-            Ok((row.get::<_, String>(0)?, row.get::<_, String>(1)?))
-        });
-        match known {
-            Err(rusqlite::Error::QueryReturnedNoRows) => {
-                let add = "INSERT INTO study VALUES (?1, ?2)";
-                journal.answers.execute(add, params![file.study, digest]).map_err(|e| error(folder, e))?;
-            }
-            Err(source) => return Err(error(folder, source)),
-            Ok((found, version)) if found != file.study || version != digest => {
-                return Err(JournalError::OtherStudy { path: folder.into(), found, version });
-            }
-            Ok(_) => {}
-        }
         journal.load()?;
-        Ok(journal)
+        let planned = journal.forms.len();
+        match journal.people.iter().map(|person| person.form).max() {
+            Some(form) if form > planned => {
+                Err(JournalError::FewerForms { path: folder.into(), form, planned })
+            }
+            _ => Ok(journal),
+        }
     }
 
-    /// Reads what is on disk, and nothing else, into memory.
+    /// Reads what is on disk into memory; whoever is not there still waits.
     fn load(&mut self) -> Result<(), JournalError> {
-        self.read().map_err(|e| error(&self.folder, e))
+        self.waiting.turned_back();
+        self.read().map_err(|e| files::error(&self.folder, e))
     }
 
     fn read(&mut self) -> rusqlite::Result<()> {
@@ -213,7 +207,7 @@ impl Journal {
         let by_name: HashMap<&str, usize> =
             self.people.iter().enumerate().map(|(i, person)| (person.name.as_str(), i)).collect();
         let mut found = HashMap::new();
-        for (name, identifiers) in identities(&self.identities)? {
+        for (name, identifiers) in files::identities(&self.identities)? {
             if let Some(&person) = by_name.get(name.as_str()) {
                 found.insert(identifiers, person);
             }
@@ -222,61 +216,89 @@ impl Journal {
         Ok(())
     }
 
-    /// Deals a form to somebody new; whom a panel has sent before gets the same form again. Not yet on disk when this
-    /// returns: see [`Handle::change`].
-    ///
-    /// # Errors
-    /// If SQLite fails.
-    pub(crate) fn begin(
-        &mut self,
-        given: Identifiers,
-        now_ms: i64,
-    ) -> rusqlite::Result<Result<Dealt, Refusal>> {
-        if let Err(refusal) = given.check() {
-            return Ok(Err(refusal));
-        }
+    /// Deals one of the forms with the fewest participants to somebody new, which one by chance, so that forms do not tell
+    /// who came when; whom a panel has sent before gets the same form again.
+    pub(crate) fn begin(&mut self, given: Identifiers, now_ms: i64) -> Result<Dealt, Refusal> {
+        given.check()?;
         // Without a session of the panel's own, two people could be taken for one.
         let known = given.prolific_pid.is_some() && given.session_id.is_some();
         if let Some(&person) = self.by_identifiers.get(&given).filter(|_| known) {
             let token = self.by_token.iter().find(|(_, of)| **of == person).map(|(token, _)| token.clone());
-            return Ok(Ok(self.dealt(person, token.expect("everybody has one"))));
+            return Ok(self.dealt(person, token.expect("everybody has one")));
         }
-        if self.people.len() == MOST {
-            return Ok(Err(Refusal::Full));
+        if let Some(newcomer) = self.waiting.iter().find(|one| known && one.identifiers == given) {
+            return Ok(self.welcome(newcomer));
+        }
+        if self.people.len() >= MOST {
+            return Err(Refusal::Full);
         }
         let mut load = vec![0_usize; self.forms.len()];
-        for person in &self.people {
-            if person.finished || now_ms - person.last_ms < GIVEN_UP_MS {
-                load[person.form - 1] += 1;
-            }
+        let mut count = |form: usize, last_ms: i64, finished: bool| {
+            load[form - 1] += usize::from(finished || now_ms - last_ms < GIVEN_UP_MS);
+        };
+        self.people.iter().for_each(|person| count(person.form, person.last_ms, person.finished));
+        self.waiting.iter().for_each(|newcomer| count(newcomer.form, newcomer.since_ms, false));
+        let least = load.iter().min().copied().unwrap_or_default();
+        let free: Vec<usize> = (1..=load.len()).filter(|form| load[form - 1] == least).collect();
+        let newcomer = Newcomer {
+            name: random_hex(8),
+            token: random_hex(16),
+            form: free[random_index(free.len())],
+            identifiers: given,
+            since_ms: now_ms,
+        };
+        let dealt = self.welcome(&newcomer);
+        self.waiting.add(newcomer);
+        Ok(dealt)
+    }
+
+    /// Where somebody stands.
+    pub(crate) fn state(&self, token: &str) -> Result<Dealt, Refusal> {
+        match self.by_token.get(token) {
+            Some(&person) => Ok(self.dealt(person, token.into())),
+            None => self.waiting.by_token(token).map(|one| self.welcome(one)).ok_or(Refusal::UnknownToken),
         }
-        // The first of those with the fewest.
-        let form = load.iter().enumerate().min_by_key(|&(_, load)| load).map_or(1, |(form, _)| form + 1);
-        let (name, token) = (random_hex(8), random_hex(16));
-        if !given.is_empty() {
-            let add = "INSERT INTO identities VALUES (?1, ?2, ?3, ?4)";
-            let values = params![name, given.prolific_pid, given.study_id, given.session_id];
-            self.identities.execute(add, values)?;
+    }
+
+    /// Somebody who waits; whoever is written down is found without looking through them.
+    fn newcomer(&self, token: &str) -> Option<&Newcomer> {
+        if self.by_token.contains_key(token) { None } else { self.waiting.by_token(token) }
+    }
+
+    fn welcome(&self, newcomer: &Newcomer) -> Dealt {
+        let Newcomer { name, token, form, .. } = newcomer;
+        let form = self.forms[form - 1].clone();
+        Dealt { participant: name.clone(), token: token.clone(), form, answered: 0 }
+    }
+
+    /// Writes down somebody who waits: a first answer has come.
+    fn write_down(&mut self, token: &str) -> rusqlite::Result<()> {
+        let Some(newcomer) = self.waiting.take(token) else { return Ok(()) };
+        let Newcomer { name, token, form, identifiers, since_ms } = newcomer;
+        if !identifiers.is_empty() {
+            // There already if the batch was not written the first time.
+            let add = "INSERT OR REPLACE INTO identities VALUES (?1, ?2, ?3, ?4)";
+            let Identifiers { prolific_pid, study_id, session_id } = identifiers;
+            self.identities.execute(add, params![name, prolific_pid, study_id, session_id])?;
         }
         self.answers.execute(
             "INSERT INTO participants (name, token, form, started_ms, last_ms) VALUES (?1, ?2, ?3, ?4, ?4)",
-            params![name, token, form as i64, now_ms],
+            params![name, token, *form as i64, since_ms],
         )?;
-        let person = Person {
-            number: self.answers.last_insert_rowid(),
-            name,
-            form,
-            choices: Vec::new(),
-            last_ms: now_ms,
-            finished: false,
-        };
         let place = self.people.len();
-        self.people.push(person);
+        self.people.push(Person {
+            number: self.answers.last_insert_rowid(),
+            name: name.clone(),
+            form: *form,
+            choices: Vec::new(),
+            last_ms: *since_ms,
+            finished: false,
+        });
         self.by_token.insert(token.clone(), place);
-        if known {
-            self.by_identifiers.insert(given, place);
+        if !identifiers.is_empty() {
+            self.by_identifiers.insert(identifiers.clone(), place);
         }
-        Ok(Ok(self.dealt(place, token)))
+        Ok(())
     }
 
     fn dealt(&self, person: usize, token: String) -> Dealt {
@@ -295,6 +317,15 @@ impl Journal {
         answer: &Answer,
         now_ms: i64,
     ) -> rusqlite::Result<Result<(), Refusal>> {
+        if let Some(newcomer) = self.newcomer(token) {
+            if let Err(refusal) = check(answer, &self.forms[newcomer.form - 1], 0) {
+                return Ok(Err(refusal));
+            }
+            if self.people.len() >= MOST {
+                return Ok(Err(Refusal::Full));
+            }
+            self.write_down(token)?;
+        }
         let Some(&person) = self.by_token.get(token) else { return Ok(Err(Refusal::UnknownToken)) };
         let person = &mut self.people[person];
         let form = &self.forms[person.form - 1];
@@ -322,6 +353,9 @@ impl Journal {
     /// # Errors
     /// If SQLite fails.
     pub(crate) fn finish(&mut self, token: &str, now_ms: i64) -> rusqlite::Result<Result<(), Refusal>> {
+        if let Some(newcomer) = self.newcomer(token) {
+            return Ok(Err(Refusal::Unfinished(self.forms[newcomer.form - 1].questions.len() as u32)));
+        }
         let Some(&person) = self.by_token.get(token) else { return Ok(Err(Refusal::UnknownToken)) };
         let person = &mut self.people[person];
         let left = self.forms[person.form - 1].questions.len() - person.choices.len();
@@ -336,29 +370,12 @@ impl Journal {
         Ok(Ok(()))
     }
 
-    /// Every answer, participant by participant in the order in which they began.
+    /// Every answer, participant by participant in the order in which they began to answer.
     ///
     /// # Errors
     /// If SQLite fails.
     pub fn given(&self) -> rusqlite::Result<Vec<Given>> {
-        let mut statement = self.answers.prepare(
-            "SELECT name, form, place, stimulus, choice, rt_ms FROM answers JOIN participants ON participant = number
-             ORDER BY participant, place",
-        )?;
-        let mut rows = statement.query([])?;
-        let mut given = Vec::new();
-        while let Some(row) = rows.next()? {
-            let choice: String = row.get(4)?;
-            let Some(choice) = Choice::of_code(&choice) else { continue };
-            let (order, stimulus, rt_ms) = (row.get(2)?, row.get(3)?, row.get(5)?);
-            let form = row.get::<_, i64>(1)? as usize;
-            given.push(Given {
-                participant: row.get(0)?,
-                form,
-                answer: Answer { order, stimulus, choice, rt_ms },
-            });
-        }
-        Ok(given)
+        files::given(&self.answers)
     }
 
     /// Names of participants and what a panel says of them, in the order of names.
@@ -366,84 +383,7 @@ impl Journal {
     /// # Errors
     /// If SQLite fails.
     pub fn identities(&self) -> rusqlite::Result<Vec<(String, Identifiers)>> {
-        identities(&self.identities)
-    }
-
-    /// How the study stands.
-    ///
-    /// # Errors
-    /// If SQLite fails.
-    pub fn summary(&self, now_ms: i64) -> rusqlite::Result<Summary> {
-        let mut forms: Vec<[usize; 3]> = (1..=self.forms.len()).map(|form| [form, 0, 0]).collect();
-        let mut answering = 0;
-        for person in &self.people {
-            let here = now_ms - person.last_ms < GIVEN_UP_MS;
-            answering += usize::from(here && !person.finished);
-            forms[person.form - 1][1] += usize::from(here || person.finished);
-            forms[person.form - 1][2] += usize::from(person.finished);
-        }
-        let mut per_minute = vec![0; 60];
-        let mut times: HashMap<u32, Vec<u32>> = HashMap::new();
-        let mut statement = self.answers.prepare("SELECT place, rt_ms, received_ms FROM answers")?;
-        let mut rows = statement.query([])?;
-        let mut answers = 0;
-        while let Some(row) = rows.next()? {
-            answers += 1;
-            times.entry(row.get(0)?).or_default().push(row.get(1)?);
-            let ago = (now_ms - row.get::<_, i64>(2)?).max(0) / 60_000;
-            if ago < 60 {
-                per_minute[59 - ago as usize] += 1;
-            }
-        }
-        let mut places: Vec<(u32, u64, f64)> =
-            times.into_iter().map(|(place, times)| (place, times.len() as u64, median(times))).collect();
-        places.sort_by_key(|&(place, ..)| place);
-        let finished = self.people.iter().filter(|person| person.finished).count();
-        Ok(Summary { started: self.people.len(), finished, answering, forms, answers, per_minute, places })
-    }
-}
-
-fn median(mut times: Vec<u32>) -> f64 {
-    times.sort_unstable();
-    let half = times.len() / 2;
-    if times.len() % 2 == 1 {
-        f64::from(times[half])
-    } else {
-        (f64::from(times[half - 1]) + f64::from(times[half])) / 2.0
-    }
-}
-
-fn identities(connection: &Connection) -> rusqlite::Result<Vec<(String, Identifiers)>> {
-    let all = "SELECT participant, prolific_pid, study_id, session_id FROM identities ORDER BY participant";
-    let mut statement = connection.prepare(all)?;
-    let rows = statement.query_map([], |row| {
-        let of = Identifiers { prolific_pid: row.get(1)?, study_id: row.get(2)?, session_id: row.get(3)? };
-        Ok((row.get(0)?, of))
-    })?;
-    rows.collect()
-}
-
-fn open(folder: &Path, name: &str, schema: &str) -> Result<Connection, JournalError> {
-    let begin = || -> rusqlite::Result<Connection> {
-        let connection = Connection::open(folder.join(name))?;
-        connection.busy_timeout(Duration::from_millis(500))?;
-        // One process: two servers on one file would each know half of the participants.
-        connection.pragma_update(None, "locking_mode", "EXCLUSIVE")?;
-        connection.pragma_update(None, "journal_mode", "WAL")?;
-        connection.pragma_update(None, "synchronous", "FULL")?;
-        connection.execute_batch(schema)?;
-        Ok(connection)
-    };
-    begin().map_err(|e| error(folder, e))
-}
-
-fn error(folder: &Path, source: rusqlite::Error) -> JournalError {
-    let path = folder.into();
-    match source.sqlite_error_code() {
-        Some(rusqlite::ErrorCode::DatabaseBusy | rusqlite::ErrorCode::DatabaseLocked) => {
-            JournalError::InUse { path }
-        }
-        _ => JournalError::Database { path, source },
+        files::identities(&self.identities)
     }
 }
 
@@ -455,4 +395,11 @@ pub fn random_hex(bytes: usize) -> String {
     let mut buffer = [0; 16];
     getrandom::fill(&mut buffer[..bytes]).expect("the system gives random numbers");
     buffer[..bytes].iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// One of so many, by chance.
+fn random_index(count: usize) -> usize {
+    let number = getrandom::u64().expect("the system gives random numbers");
+    // Some are likelier than others by less than one in 10^14.
+    (number % count as u64) as usize
 }

@@ -8,7 +8,8 @@
 //! # Guaranteed
 //!
 //! - An answer is acknowledged after it was committed and synced to disk, never before. Sent again, it changes nothing.
-//! - Whoever begins gets one of the forms with the fewest participants, not counting those who gave up.
+//! - Whoever begins gets one of the forms with the fewest participants, by chance, not counting those who gave up.
+//! - Nothing is written down of those who have answered nothing.
 //! - No address, agent or other trace of a participant is kept but the identifiers of a panel, which are in a file of their own.
 
 pub mod download;

@@ -4,9 +4,10 @@ use design::forms::{FormEntry, FormFile};
 use serde::Serialize;
 
 /// The files of the page but `forms.js` and the stimuli: name, MIME type, content.
-pub const FILES: [(&str, &str, &str); 3] = [
+pub const FILES: [(&str, &str, &str); 4] = [
     ("index.html", "text/html; charset=utf-8", include_str!("../page/index.html")),
     ("questionnaire.css", "text/css; charset=utf-8", include_str!("../page/questionnaire.css")),
+    ("files.js", "text/javascript; charset=utf-8", include_str!("../page/files.js")),
     ("questionnaire.js", "text/javascript; charset=utf-8", include_str!("../page/questionnaire.js")),
 ];
 

@@ -86,6 +86,23 @@ pub enum Refusal {
     Full,
 }
 
+impl Refusal {
+    /// Its name, for the page.
+    pub fn id(&self) -> &'static str {
+        match self {
+            Self::UnknownToken => "unknown-token",
+            Self::UnknownPlace(_) => "unknown-place",
+            Self::OtherStimulus(_) => "other-stimulus",
+            Self::OutOfOrder { .. } => "out-of-order",
+            Self::Answered(_) => "answered",
+            Self::Unfinished(_) => "unfinished",
+            Self::TooLong => "too-long",
+            Self::BadIdentifier(_) => "bad-identifier",
+            Self::Full => "full",
+        }
+    }
+}
+
 /// The first place of a form that is a question, from 1.
 pub fn first_place(form: &FormEntry) -> u32 {
     form.training.len() as u32 + 1

@@ -114,6 +114,7 @@ fn site(shared: Arc<Shared>) -> Router {
     };
     let asked = Router::new()
         .route("/api/sessions", post(api::begin))
+        .route("/api/state", post(api::state))
         .route("/api/answers", post(api::answer))
         .route("/api/finish", post(api::finish))
         .route("/api/admin/summary", get(admin::summary))

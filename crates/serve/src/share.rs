@@ -20,12 +20,20 @@ pub fn deidentified(given: &[Given]) -> Vec<Given> {
     shared
 }
 
-/// What the columns of the shared answers mean, in Markdown.
-pub fn codebook(file: &FormFile, digest: &str, participants: usize, answers: usize) -> String {
+/// What the columns of the shared answers mean, in Markdown. The digests are of the forms when the first answer came, and now.
+pub fn codebook(file: &FormFile, (then, now): (&str, &str), participants: usize, answers: usize) -> String {
     let [left, none, right] = &file.choices;
+    let changed = if then == now {
+        String::new()
+    } else {
+        format!(
+            "The study file was changed after the first answer (forms {then}): texts below are those of forms {now}.\n\n"
+        )
+    };
+    let count = |number: usize, word: &str| format!("{number} {word}{}", if number == 1 { "" } else { "s" });
     format!(
         "# Codebook\n\n\
-         Answers to \"{title}\" (study `{study}`, forms {digest}): {answers} answers of {participants} participants, in `answers.csv`.\n\n\
+         Answers to \"{title}\" (study `{study}`, forms {now}): {answers} of {participants}, in `answers.csv`.\n\n{changed}\
          Participants are numbered at random. No name, address, panel identifier or date is in this set.\n\n\
          | column | meaning | values |\n|---|---|---|\n\
          | `participant` | who answered | `p1`, `p2`, ... |\n\
@@ -39,6 +47,8 @@ pub fn codebook(file: &FormFile, digest: &str, participants: usize, answers: usi
          | `rt_ms` | time from the pair on the screen to the answer | milliseconds; a turn takes {loop_ms} |\n\
          | `role` | why it was asked | `comparison`; `control`: the same on both sides; `repeat`: asked again, sides swapped |\n\
          | `stimulus` | code name of the animation | |\n",
+        answers = count(answers, "answer"),
+        participants = count(participants, "participant"),
         title = file.title,
         study = file.study,
         forms = file.forms.len(),

@@ -19,7 +19,7 @@ mod timings;
 
 pub(crate) use bundle::forms_digest;
 pub(crate) use meshes::Meshes;
-pub(crate) use stimuli::camera_file;
+pub(crate) use stimuli::MadeWith;
 pub(crate) use tables::{write_answers_only, write_without_study};
 pub(crate) use timings::{PlanLength, measure};
 
@@ -52,6 +52,7 @@ impl<'a> Pipeline<'a> {
         let meshes = self.all_meshes(&[])?;
         let turntables = self.turntables(&meshes, &[])?;
         let pairs = self.pairs(&turntables)?;
+        self.finished_videos(&pairs)?;
         let forms: Vec<Stamp> = self.forms()?.into_iter().collect();
         let stills = self.stills()?;
         let timings = self.timings(PlanLength::Short)?;

@@ -7,25 +7,46 @@ use crate::progress::Step;
 use crate::store::{Inputs, Stamp};
 use crate::{rooms, video};
 use anyhow::{Context, Result};
-use design::config::{CameraSection, StillSection, TurntableSection};
+use design::config::StillSection;
 use design::forms::Stimulus;
 use design::record::Purpose;
-use design::{Comparison, Configuration, ConfigurationId};
+use design::{Comparison, Configuration, ConfigurationId, Study};
 use raster::{Animation, Look};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
 const TURNTABLES: &str = "stimuli/turntables";
 const PAIRS: &str = "stimuli/pairs";
 
-/// Distance, vertical field of view and elevation of a turntable's camera.
-fn camera(camera: &CameraSection, turntable: &TurntableSection) -> [f64; 3] {
-    [camera.distance, camera.vertical_fov_rad, turntable.elevation_rad]
+/// What a turntable was made with: beside the key, since it is of a configuration.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct MadeWith {
+    /// Distance, vertical field of view and elevation of the camera.
+    pub(crate) camera: [f64; 3],
+    /// Digest of everything in the study file that the animation depends on.
+    settings: String,
 }
 
-/// Where it is written which camera a turntable was made with: with the key, since it is of a configuration.
-pub(crate) fn camera_file(id: &ConfigurationId) -> String {
-    format!("key/cameras/{id}.json")
+impl MadeWith {
+    /// What the study asks for.
+    pub(crate) fn of(study: &Study, configuration: &Configuration) -> Self {
+        let (object, file) = (study.object(configuration), &study.file);
+        let camera = [object.camera.distance, object.camera.vertical_fov_rad, file.turntable.elevation_rad];
+        let mut settings = Inputs::default()
+            .value("object", object)
+            .value("extraction", &file.extraction)
+            .value("turntable", &file.turntable)
+            .value("shading", &file.shading)
+            .finish();
+        settings.truncate(16);
+        Self { camera, settings }
+    }
+
+    /// Where it is written down.
+    pub(crate) fn file(id: &ConfigurationId) -> String {
+        format!("key/cameras/{id}.json")
+    }
 }
 
 impl Pipeline<'_> {
@@ -61,9 +82,7 @@ impl Pipeline<'_> {
         let inputs = Inputs::of_rooms(rooms::PICTURES)
             .stamp(mesh)
             .text("code", code)
-            .value("camera", &object.camera)
-            .value("turntable", &self.study.file.turntable)
-            .value("shading", &self.study.file.shading);
+            .value("settings", &MadeWith::of(self.study, configuration));
         let stamp = self.stage(&format!("turntable/{}", configuration.id), inputs, |writer| {
             let settings = picture::turntable(&self.study.file.turntable, &object.camera);
             let shading = picture::shading(&self.study.file.shading);
@@ -72,8 +91,7 @@ impl Pipeline<'_> {
             let mut gif = Vec::new();
             animation.write_gif(&mut gif)?;
             writer.write(&format!("{TURNTABLES}/{code}.gif"), &gif)?;
-            let seen = camera(&object.camera, &self.study.file.turntable);
-            writer.write_json(&camera_file(&configuration.id), &seen)
+            writer.write_json(&MadeWith::file(&configuration.id), &MadeWith::of(self.study, configuration))
         })?;
         Ok(stamp)
     }
@@ -111,24 +129,40 @@ impl Pipeline<'_> {
         })
     }
 
-    /// Every pair as a video beside it, one after the other: ffmpeg takes all cores by itself.
+    /// Every pair as a video beside it.
     pub(crate) fn videos(&self, pairs: &[Stamp]) -> Result<Vec<Stamp>> {
         let step = Step::begin("videos", pairs.len(), pairs.len());
-        let mut stamps = Vec::new();
-        for pair in pairs {
-            let name = format!("video/{}", pair.stage.trim_start_matches("pair/"));
-            let path = pair.file(".gif").replace(".gif", ".mp4");
-            let inputs = Inputs::of_rooms(rooms::PICTURES).stamp(pair);
+        let one = |pair: &Stamp| {
+            let (name, path, inputs) = Self::video(pair);
             let stamp = self.stage(&name, inputs, |writer| {
                 let scale = self.study.file.stimuli.pair_scale;
                 writer.write(&path, &video::mp4(&self.read_animation(pair)?, scale)?)
             })?;
             step.tick(1);
             step.count(stamp.redone);
-            stamps.push(stamp);
-        }
+            Ok(stamp)
+        };
+        let stamps = pairs.par_iter().map(one).collect::<Result<_>>()?;
         step.end();
         Ok(stamps)
+    }
+
+    /// The videos that are there and show what the pairs do; nothing is made. Others go: their names may be those of other
+    /// pairs by now.
+    pub(crate) fn finished_videos(&self, pairs: &[Stamp]) -> Result<Vec<Stamp>> {
+        let found = |pair: &Stamp| {
+            let (name, _, inputs) = Self::video(pair);
+            self.store.peek(&name, inputs)
+        };
+        let finished = pairs.iter().filter_map(found).collect();
+        self.store.retire_untouched(|stage| !stage.starts_with("video/"))?;
+        Ok(finished)
+    }
+
+    /// Name, path and inputs of a pair's video.
+    fn video(pair: &Stamp) -> (String, String, Inputs) {
+        let name = format!("video/{}", pair.stage.trim_start_matches("pair/"));
+        (name, pair.file(".gif").replace(".gif", ".mp4"), Inputs::of_rooms(rooms::PICTURES).stamp(pair))
     }
 
     fn read_animation(&self, stamp: &Stamp) -> Result<Animation> {

@@ -1,7 +1,8 @@
 //! Each rule fires on a defect planted for it, and no other rule does.
 
 use super::*;
-use crate::config::FormsSection;
+use crate::config::{FormsSection, ShownNames};
+use crate::method::ConfigurationId;
 use crate::study::tests::{load, paper_with};
 
 fn balanced() -> Study {
@@ -237,7 +238,42 @@ fn names_that_tell() {
     study.comparisons[4].question = "ss_su or not".into();
     let faults = lint(&study);
     assert_eq!(rules(&faults), [Rule::NamesReveal]);
-    assert_eq!(faults[0].evidence, "its id names ss_su");
+    assert_eq!(
+        (faults[0].evidence.as_str(), faults[0].remedy()),
+        ("its id names ss_su", "give the question another id")
+    );
+}
+
+/// Whatever participants read, in whole words: an arrangement with a space for its hyphen and a capital too.
+#[test]
+fn texts_that_tell() {
+    type Plant = fn(&mut Study);
+    let planted: [(&str, &str, Plant); 8] = [
+        ("study.title", "integrated", |s| s.file.study.title = "Integrated, or not?".into()),
+        ("study.title", "ss_bu", |s| s.file.study.title = "Is ss_bu better?".into()),
+        ("forms.prompt", "body-centred", |s| forms(s).prompt = "Do you like Body centred surfaces?".into()),
+        ("forms.prompt", "bi", |s| forms(s).prompt = "Is bi better?".into()),
+        ("forms.choices[0]", "edge collapse", |s| forms(s).choices[0] = "Edge-collapse".into()),
+        ("forms.choices[2]", "su", |s| forms(s).choices[2] = "su".into()),
+        ("forms.consent", "simple cubic", |s| {
+            forms(s).consent = "You will see\nsimple-cubic lattices.".into()
+        }),
+        ("forms.instructions", "as_si", |s| forms(s).instructions = "Look at AS_SI first.".into()),
+    ];
+    for (place, name, plant) in planted {
+        let mut study = balanced();
+        plant(&mut study);
+        let faults = lint(&study);
+        assert_eq!(rules(&faults), [Rule::NamesReveal], "{place}");
+        assert!(faults.len() == 1 && faults[0].place == place, "{faults:?}");
+        assert!(faults[0].evidence.ends_with(&format!(" names {name}")), "{faults:?}");
+        assert_eq!(faults[0].remedy(), "say it without the names of methods and configurations");
+    }
+    // Parts of words, a method's letters in prose, and the clustering called none.
+    let mut study = balanced();
+    forms(&mut study).prompt = "Which biting, disintegrated one do you like, or none?".into();
+    forms(&mut study).consent = "Si quiere, escriba su respuesta.".into();
+    assert_eq!(lint(&study), []);
 }
 
 fn facts(file: &str) -> StimulusFacts {
@@ -248,7 +284,8 @@ fn facts(file: &str) -> StimulusFacts {
         size: [512, 512],
         background: [1, 130, 129],
         camera: Some([1.2, 1.57, 0.52]),
-        exposure: 0.4,
+        palette: vec![[1, 130, 129], [54, 18, 79], [242, 141, 7]],
+        exposure: 0.22,
         text: Vec::new(),
     }
 }
@@ -259,14 +296,27 @@ fn stimuli_that_differ() {
     let right = facts("lobi.gif");
     let judge = |left: StimulusFacts| lint_stimuli(&study, &[("Q1".into(), left, right.clone())]);
     assert_eq!(judge(facts("vusa.gif")), []);
-    assert_eq!(judge(StimulusFacts { exposure: 0.44, ..facts("vusa.gif") }), []);
+    assert_eq!(judge(StimulusFacts { exposure: 0.24, ..facts("vusa.gif") }), []);
     let planted = [
         (StimulusFacts { frames: 60, ..facts("vusa.gif") }, "frames: 60 on the left, 120 on the right"),
         (StimulusFacts { duration_cs: 800, ..facts("vusa.gif") }, "duration: 800 cs"),
         (StimulusFacts { size: [256, 512], ..facts("vusa.gif") }, "size: [256, 512]"),
         (StimulusFacts { background: [0, 0, 0], ..facts("vusa.gif") }, "background: [0, 0, 0]"),
-        (StimulusFacts { camera: Some([1.3, 1.57, 0.52]), ..facts("vusa.gif") }, "camera: Some([1.3"),
-        (StimulusFacts { exposure: 0.46, ..facts("vusa.gif") }, "exposure: 0.460 on the left"),
+        (
+            StimulusFacts { camera: Some([1.3, 1.57, 0.52]), ..facts("vusa.gif") },
+            "camera: distance 1.3, field of view 1.57 rad",
+        ),
+        (StimulusFacts { camera: None, ..facts("vusa.gif") }, "camera: not known on the left, distance 1.2"),
+        // Olive where the other is orange, as bright.
+        (
+            StimulusFacts { palette: vec![[1, 130, 129], [54, 18, 79], [146, 168, 7]], ..facts("vusa.gif") },
+            "colours: #92a807 on the left, #f28d07 on the right",
+        ),
+        (
+            StimulusFacts { palette: vec![[1, 130, 129], [0, 18, 79]], ..facts("vusa.gif") },
+            "colours: #00124f and 1 more on the left, #36124f and 1 more on the right",
+        ),
+        (StimulusFacts { exposure: 0.245, ..facts("vusa.gif") }, "exposure: 0.245 on the left, 0.220 on"),
     ];
     for (left, evidence) in planted {
         let faults = judge(left);
@@ -279,6 +329,7 @@ fn stimuli_that_differ() {
         let faults = judge(told);
         assert_eq!(rules(&faults), [Rule::NamesReveal]);
         assert!(faults[0].evidence.ends_with("names ss_bi"), "{faults:?}");
+        assert!(faults[0].remedy().contains("isostudy bundle"), "{faults:?}");
     }
 }
 

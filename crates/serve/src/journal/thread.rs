@@ -72,5 +72,6 @@ fn commit(journal: &mut Journal, batch: Vec<Work>) -> rusqlite::Result<Vec<Reply
     journal.answers.execute_batch("BEGIN IMMEDIATE")?;
     let replies = batch.into_iter().map(|work| work(journal)).collect::<rusqlite::Result<Vec<_>>>()?;
     journal.answers.execute_batch("COMMIT")?;
+    journal.waiting.arrived();
     Ok(replies)
 }

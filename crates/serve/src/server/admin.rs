@@ -8,6 +8,7 @@ use crate::journal::Summary;
 use axum::Json;
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
+use std::sync::Arc;
 
 pub(super) const PAGE: &str = include_str!("../../page/researcher.html");
 pub(super) const SCRIPT: &str = include_str!("../../page/researcher.js");
@@ -28,7 +29,8 @@ fn authorised(headers: &HeaderMap, token: &str) -> Result<(), Failure> {
 /// `GET /api/admin/summary`.
 pub(super) async fn summary(site: Site, headers: HeaderMap) -> Result<Json<Summary>, Failure> {
     authorised(&headers, &site.settings.admin_token)?;
-    Ok(Json(site.journal.change(|journal| journal.summary(now_ms())).await?))
+    let of = Arc::clone(&site);
+    Ok(Json(site.journal.change(move |journal| journal.summary(now_ms(), &of.settings.key)).await?))
 }
 
 /// `GET /api/admin/answers.csv`: the long format.

@@ -24,6 +24,7 @@ pub(super) enum Failure {
 impl IntoResponse for Failure {
     fn into_response(self) -> Response {
         let (status, text) = match self {
+            // The page tells by the header what the server will never take from what may pass, such as a proxy's 404.
             Self::Refused(refusal) => {
                 let status = match refusal {
                     Refusal::UnknownToken => StatusCode::NOT_FOUND,
@@ -33,7 +34,7 @@ impl IntoResponse for Failure {
                     Refusal::Full => StatusCode::FORBIDDEN,
                     _ => StatusCode::UNPROCESSABLE_ENTITY,
                 };
-                (status, refusal.to_string())
+                return (status, [("isostudy-refusal", refusal.id())], refusal.to_string()).into_response();
             }
             Self::Unsaved(unsaved) => (StatusCode::SERVICE_UNAVAILABLE, unsaved.to_string()),
             Self::Malformed(rejection) => (rejection.status(), rejection.body_text()),
@@ -71,7 +72,13 @@ pub(super) fn now_ms() -> i64 {
 /// `POST /api/sessions`: a form for somebody.
 pub(super) async fn begin(site: Site, asked: Asked<Identifiers>) -> Result<Json<Dealt>, Failure> {
     let Json(identifiers) = asked?;
-    Ok(Json(site.journal.change(move |journal| journal.begin(identifiers, now_ms())).await??))
+    Ok(Json(site.journal.change(move |journal| Ok(journal.begin(identifiers, now_ms()))).await??))
+}
+
+/// `POST /api/state`: where somebody stands.
+pub(super) async fn state(site: Site, asked: Asked<Token>) -> Result<Json<Dealt>, Failure> {
+    let Json(Token { token }) = asked?;
+    Ok(Json(site.journal.change(move |journal| Ok(journal.state(&token))).await??))
 }
 
 #[derive(Deserialize)]
@@ -99,7 +106,7 @@ pub(super) async fn answer(site: Site, asked: Asked<Answered>) -> Result<Json<Sa
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Finished {
+pub(super) struct Token {
     token: String,
 }
 
@@ -109,8 +116,8 @@ pub(super) struct Completion {
 }
 
 /// `POST /api/finish`: the end, which is told only to those all of whose answers are on disk.
-pub(super) async fn finish(site: Site, asked: Asked<Finished>) -> Result<Json<Completion>, Failure> {
-    let Json(Finished { token }) = asked?;
+pub(super) async fn finish(site: Site, asked: Asked<Token>) -> Result<Json<Completion>, Failure> {
+    let Json(Token { token }) = asked?;
     site.journal.change(move |journal| journal.finish(&token, now_ms())).await??;
     Ok(Json(Completion { completion: site.settings.completion.clone() }))
 }

@@ -1,0 +1,148 @@
+//! The files: `answers.sqlite`, `identities.sqlite`, and `lock`.
+
+use super::JournalError;
+use crate::export::Given;
+use crate::record::{Answer, Choice, Identifiers};
+use rusqlite::{Connection, OpenFlags};
+use std::fs::{DirBuilder, File, OpenOptions, Permissions};
+use std::os::unix::fs::{DirBuilderExt, OpenOptionsExt, PermissionsExt};
+use std::path::Path;
+use std::time::Duration;
+
+const ANSWERS: &str = "answers.sqlite";
+const IDENTITIES: &str = "identities.sqlite";
+
+const ANSWERS_SCHEMA: &str = "
+    CREATE TABLE IF NOT EXISTS study (name TEXT NOT NULL, digest TEXT NOT NULL);
+    CREATE TABLE IF NOT EXISTS participants (
+        number INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, token TEXT NOT NULL UNIQUE, form INTEGER NOT NULL,
+        started_ms INTEGER NOT NULL, last_ms INTEGER NOT NULL, finished_ms INTEGER);
+    CREATE TABLE IF NOT EXISTS answers (
+        participant INTEGER NOT NULL REFERENCES participants, place INTEGER NOT NULL, stimulus TEXT NOT NULL,
+        choice TEXT NOT NULL, rt_ms INTEGER NOT NULL, received_ms INTEGER NOT NULL, PRIMARY KEY (participant, place))
+        WITHOUT ROWID;";
+
+const IDENTITIES_SCHEMA: &str = "
+    CREATE TABLE IF NOT EXISTS identities (
+        participant TEXT PRIMARY KEY, prolific_pid TEXT, study_id TEXT, session_id TEXT) WITHOUT ROWID;";
+
+/// The files of a journal, which this process alone may change.
+pub(super) struct Opened {
+    pub(super) answers: Connection,
+    pub(super) identities: Connection,
+    pub(super) lock: File,
+}
+
+/// Opens the files in a folder, and makes what is not there.
+pub(super) fn open(folder: &Path) -> Result<Opened, JournalError> {
+    let failed = |source| JournalError::Folder { path: folder.into(), source };
+    DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(failed)?;
+    let lock = owned(&folder.join("lock")).map_err(failed)?;
+    // Two servers on one file would each know half of the participants.
+    lock.try_lock().map_err(|_| JournalError::InUse { path: folder.into() })?;
+    let database = |name: &str, schema: &str| {
+        let path = folder.join(name);
+        // What SQLite puts beside it gets the same permissions.
+        owned(&path).map_err(failed)?;
+        let open = || -> rusqlite::Result<Connection> {
+            let connection = Connection::open(&path)?;
+            connection.busy_timeout(Duration::from_millis(500))?;
+            connection.pragma_update(None, "journal_mode", "WAL")?;
+            connection.pragma_update(None, "synchronous", "FULL")?;
+            connection.execute_batch(schema)?;
+            Ok(connection)
+        };
+        open().map_err(|source| error(folder, source))
+    };
+    let answers = database(ANSWERS, ANSWERS_SCHEMA)?;
+    let identities = database(IDENTITIES, IDENTITIES_SCHEMA)?;
+    Ok(Opened { answers, identities, lock })
+}
+
+/// A file that nobody else may read, made if it is not there.
+fn owned(path: &Path) -> std::io::Result<File> {
+    let file = OpenOptions::new().write(true).create(true).truncate(false).mode(0o600).open(path)?;
+    file.set_permissions(Permissions::from_mode(0o600))?;
+    Ok(file)
+}
+
+pub(super) fn error(folder: &Path, source: rusqlite::Error) -> JournalError {
+    let path = folder.into();
+    match source.sqlite_error_code() {
+        Some(rusqlite::ErrorCode::DatabaseBusy | rusqlite::ErrorCode::DatabaseLocked) => {
+            JournalError::InUse { path }
+        }
+        _ => JournalError::Database { path, source },
+    }
+}
+
+/// Id and digest of the study that is there.
+pub(super) fn study(answers: &Connection) -> rusqlite::Result<Option<(String, String)>> {
+    let found = answers.query_row("SELECT name, digest FROM study", [], |row| Ok((row.get(0)?, row.get(1)?)));
+    match found {
+        Err(rusqlite::Error::QueryReturnedNoRows) => Ok(None),
+        found => found.map(Some),
+    }
+}
+
+pub(super) fn given(answers: &Connection) -> rusqlite::Result<Vec<Given>> {
+    let mut statement = answers.prepare(
+        "SELECT name, form, place, stimulus, choice, rt_ms FROM answers JOIN participants ON participant = number
+         ORDER BY participant, place",
+    )?;
+    let mut rows = statement.query([])?;
+    let mut given = Vec::new();
+    while let Some(row) = rows.next()? {
+        let choice: String = row.get(4)?;
+        let Some(choice) = Choice::of_code(&choice) else { continue };
+        let (order, stimulus, rt_ms) = (row.get(2)?, row.get(3)?, row.get(5)?);
+        let form = row.get::<_, i64>(1)? as usize;
+        given.push(Given {
+            participant: row.get(0)?,
+            form,
+            answer: Answer { order, stimulus, choice, rt_ms },
+        });
+    }
+    Ok(given)
+}
+
+pub(super) fn identities(connection: &Connection) -> rusqlite::Result<Vec<(String, Identifiers)>> {
+    let all = "SELECT participant, prolific_pid, study_id, session_id FROM identities ORDER BY participant";
+    let mut statement = connection.prepare(all)?;
+    let rows = statement.query_map([], |row| {
+        let of = Identifiers { prolific_pid: row.get(1)?, study_id: row.get(2)?, session_id: row.get(3)? };
+        Ok((row.get(0)?, of))
+    })?;
+    rows.collect()
+}
+
+/// What a folder holds.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Kept {
+    /// Digest of the forms when the first answer came.
+    pub digest: String,
+    /// Every answer, participant by participant in the order in which they began to answer.
+    pub given: Vec<Given>,
+}
+
+/// The answers to a study in a folder, whether or not a server is at work there. Nothing is changed.
+///
+/// # Errors
+/// [`JournalError`]; [`JournalError::OtherStudy`] only for another study, not for another version of this one.
+pub fn kept(folder: &Path, study: &str) -> Result<Kept, JournalError> {
+    let read = || -> rusqlite::Result<(Option<(String, String)>, Vec<Given>)> {
+        let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+        let mut connection = Connection::open_with_flags(folder.join(ANSWERS), flags)?;
+        connection.busy_timeout(Duration::from_secs(5))?;
+        connection.pragma_update(None, "query_only", true)?;
+        let moment = connection.transaction()?;
+        Ok((self::study(&moment)?, given(&moment)?))
+    };
+    let (found, given) = read().map_err(|source| error(folder, source))?;
+    match found {
+        Some((found, version)) if found != study => {
+            Err(JournalError::OtherStudy { path: folder.into(), found, version })
+        }
+        found => Ok(Kept { digest: found.map(|(_, digest)| digest).unwrap_or_default(), given }),
+    }
+}
