@@ -37,7 +37,7 @@ impl Sorted {
                 place: self.open.len() + self.too_few.len(),
                 finding,
                 name: names::hypothesis(evidence, hypothesis),
-                leaning: hypothesis.test.differences.iter().filter(|d| **d != 0).count(),
+                leaning: hypothesis.test.leaning(),
             }),
             _ => self.open.push(Block::Finding(finding)),
         }
