@@ -144,6 +144,20 @@ fn the_long_format_keeps_sides_order_time_controls_and_repeats() {
     assert_eq!(alone.responses.questions.len(), 4);
 }
 
+/// What the questionnaire's own export has beside the answers is known; another column is noted.
+#[test]
+fn the_questionnaires_own_columns_are_no_surprise() {
+    let remarked = |extra: &str| {
+        let text = format!(
+            "participant,question,left,right,choice,role,stimulus{extra}\np1,Q1,a,b,L,comparison,tani{extra}\n"
+        );
+        let path = std::path::Path::new("answers.csv");
+        remarks(&responses::parse(text.as_bytes(), path, None, &Mapping::default()).unwrap())
+    };
+    assert_eq!(remarked(""), [""; 0]);
+    assert_eq!(remarked(",mood"), ["1:8 noted: not a column of this format: not read"]);
+}
+
 #[test]
 fn trials_are_read_by_their_question() {
     let buttons = synonyms("0", "1", "2");

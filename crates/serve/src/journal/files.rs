@@ -130,11 +130,12 @@ pub struct Kept {
 /// # Errors
 /// [`JournalError`]; [`JournalError::OtherStudy`] only for another study, not for another version of this one.
 pub fn kept(folder: &Path, study: &str) -> Result<Kept, JournalError> {
-    let read = || -> rusqlite::Result<(Option<(String, String)>, Vec<Given>)> {
+    let read = || {
         let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
         let mut connection = Connection::open_with_flags(folder.join(ANSWERS), flags)?;
         connection.busy_timeout(Duration::from_secs(5))?;
         connection.pragma_update(None, "query_only", true)?;
+        // One moment of a file that a server may be writing to.
         let moment = connection.transaction()?;
         Ok((self::study(&moment)?, given(&moment)?))
     };
