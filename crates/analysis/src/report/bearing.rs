@@ -106,7 +106,7 @@ fn differs(h: &Hypothesis) -> bool {
 
 /// Does a result hang on one person?
 fn one_by_one(evidence: &Evidence<'_>) -> Option<Finding> {
-    let holding: Vec<&Hypothesis> = declared(&evidence.hypotheses).filter(|h| differs(h)).collect();
+    let holding: Vec<&Hypothesis> = declared(evidence.hypotheses).filter(|h| differs(h)).collect();
     let worst: Vec<(&Hypothesis, f64)> =
         holding.iter().filter_map(|h| h.test.leave_one_out().map(|(_, worst)| (*h, worst))).collect();
     let largest = worst.iter().map(|(_, p)| *p).max_by(f64::total_cmp)?;
@@ -199,7 +199,7 @@ fn without(evidence: &Evidence<'_>, left_out: &[usize]) -> Finding {
     let same = |a: &&Hypothesis, b: &&Hypothesis| {
         (&a.family, &a.contrast, &a.scope) == (&b.family, &b.contrast, &b.scope)
     };
-    let tests: Vec<&Hypothesis> = declared(&evidence.hypotheses).collect();
+    let tests: Vec<&Hypothesis> = declared(evidence.hypotheses).collect();
     let pairs: Vec<(&Hypothesis, &Hypothesis)> =
         tests.iter().filter_map(|h| declared(&again).find(|b| same(h, b)).map(|b| (*h, b))).collect();
     let changed: Vec<String> = pairs
