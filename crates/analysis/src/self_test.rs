@@ -14,9 +14,9 @@ use crate::audit::{Finding, Probe};
 use crate::table::{Cell, Table};
 use rayon::prelude::*;
 
-/// How often a probe has to speak up on its own defect, chance in counting apart.
+/// How often a probe has to speak up on its own defect.
 pub const OWN_AT_LEAST: f64 = 0.95;
-/// How often it may on any other, chance in counting apart: twice its level.
+/// How often it may on any other: its level, and a margin for chance in counting.
 pub const OTHERS_AT_MOST: f64 = 0.02;
 
 /// How often each probe spoke up on studies with one defect.
@@ -37,7 +37,7 @@ impl Hits {
         self.found[place] as f64 / self.studies as f64
     }
 
-    /// Whether a probe did on these studies what it has to, with [`allowance`] for their number.
+    /// Whether a probe did on these studies what it has to, with [`allowance`] if they are few.
     pub fn sound(&self, probe: Probe) -> bool {
         let (own, others) = probe_limits(self.studies);
         match self.defect.probe() == Some(probe) {
@@ -47,13 +47,19 @@ impl Hits {
     }
 }
 
-/// Three standard errors of a share counted in so many studies: by so much every limit here gives way to chance.
+/// Three standard errors of a share counted in so many studies.
 pub fn allowance(share: f64, studies: u64) -> f64 {
     3.0 * (share * (1.0 - share) / studies as f64).sqrt()
 }
 
+/// From so many studies on the probes' limits are taken as they are; with fewer, chance is allowed for.
+const FULL: u64 = 10_000;
+
 /// How often a probe has to speak up on its own defect, and how often it may elsewhere, in so many studies.
 fn probe_limits(studies: u64) -> (f64, f64) {
+    if studies >= FULL {
+        return (OWN_AT_LEAST, OTHERS_AT_MOST);
+    }
     let own = OWN_AT_LEAST - allowance(OWN_AT_LEAST, studies);
     (own.max(0.0), (OTHERS_AT_MOST + allowance(OTHERS_AT_MOST, studies)).min(1.0))
 }
@@ -100,10 +106,13 @@ fn probe_table(hits: &[Hits], studies: u64, seed: u64) -> Table {
         table.push(row);
     }
     let (own, others) = probe_limits(studies);
+    let few = match studies < FULL {
+        true => format!("; with three standard errors for so few studies, {own:.4} and {others:.4}"),
+        false => String::new(),
+    };
     table.notes.push(format!(
         "{studies} simulated studies a row, seed {seed}; {}. Passed: at least {OWN_AT_LEAST} on the probe's own defect, at most \
-         {OTHERS_AT_MOST} elsewhere, and three standard errors of counting beyond that: with so many studies {own:.4} and \
-         {others:.4}.",
+         {OTHERS_AT_MOST} elsewhere{few}.",
         defects::DESCRIPTION
     ));
     table
