@@ -155,7 +155,7 @@ fn favourite(study: &Study, tally: &Tally, factors: &[GroupFactor]) -> Option<St
         _ => {
             let parts: Vec<String> =
                 objects.iter().map(|(m, names)| format!("{m} on the {}", list(names))).collect();
-            format!("object by object it is not one favourite: the largest sum has {}", list(&parts))
+            format!("object by object there is no one favourite: the largest sum goes to {}", list(&parts))
         }
     };
     Some(format!(

@@ -113,7 +113,7 @@ fn the_papers_answers() {
     );
     assert!(factors[2].contains("Of the difference of 0.150, \u{2212}0.023 comes from ties"), "{factors:#?}");
     assert!(
-        factors[3].ends_with("the largest sum has bi on the sphere and si on the asteroid and bunny."),
+        factors[3].ends_with("the largest sum goes to bi on the sphere and si on the asteroid and bunny."),
         "{factors:#?}"
     );
     let side = &texts(&report, "unanswerable")[0];
