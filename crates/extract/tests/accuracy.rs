@@ -8,7 +8,7 @@ use extract::{
 };
 use glam::{Vec3, vec3};
 use mesh::metro::{Amount, MetroError, Sampling, Surface, metro};
-use mesh::{Bounds, TriangleMesh};
+use mesh::{Bounds, MeshError, TriangleMesh};
 
 const THREADS: Execution = Execution { threads: 2 };
 
@@ -276,7 +276,7 @@ fn distances_name_the_places() {
         assert_eq!(run(2), found);
     }
     let nothing = distances(&surface, &Sphere { radius: 0.8 }, 0.9, &lattice, &sampling, &THREADS);
-    assert_eq!(nothing, Err(DistanceError::Isosurface(MetroError::Empty)));
+    assert_eq!(nothing, Err(DistanceError::Isosurface(MetroError::Mesh(MeshError::Empty))));
 }
 
 #[test]

@@ -12,7 +12,7 @@ use extract::{
 };
 use glam::{DVec3, Vec3};
 use mesh::topology::topology;
-use mesh::{TriangleMesh, repair};
+use mesh::{MeshError, TriangleMesh, repair};
 
 /// A cube from `low` to `low + 2`, each face cut into `n` x `n` squares, each along its diagonal.
 fn cube(low: Vec3, n: u32) -> TriangleMesh {
@@ -185,7 +185,7 @@ fn no_point_is_no_place() {
 #[test]
 fn meshes_without_an_inside_are_refused_by_name_and_number() {
     let refusal = |mesh: &TriangleMesh| MeshDistance::try_new(mesh).unwrap_err();
-    assert_eq!(refusal(&TriangleMesh::default()), MeshFieldError::Empty);
+    assert_eq!(refusal(&TriangleMesh::default()), MeshFieldError::Mesh(MeshError::Empty));
     let sound = cube(Vec3::ZERO, 2);
 
     let mut open = sound.clone();
@@ -205,13 +205,17 @@ fn meshes_without_an_inside_are_refused_by_name_and_number() {
 
     let mut nowhere = sound.clone();
     nowhere.positions[4].y = f32::NAN;
-    assert!(matches!(refusal(&nowhere), MeshFieldError::Coordinate { vertex: 4, .. }));
+    assert!(matches!(refusal(&nowhere), MeshFieldError::Mesh(MeshError::Coordinate { vertex: 4, .. })));
     nowhere.positions[4].y = 2e18;
-    assert!(matches!(refusal(&nowhere), MeshFieldError::Coordinate { vertex: 4, .. }));
+    assert!(matches!(refusal(&nowhere), MeshFieldError::Mesh(MeshError::Coordinate { vertex: 4, .. })));
 
     let mut lost = sound;
     lost.triangles[5][1] = 999;
-    let want = MeshFieldError::IndexOutOfRange { triangle: 5, index: 999, vertices: lost.positions.len() };
+    let want = MeshFieldError::Mesh(MeshError::IndexOutOfRange {
+        triangle: 5,
+        index: 999,
+        vertices: lost.positions.len(),
+    });
     assert_eq!(refusal(&lost), want);
 }
 

@@ -11,7 +11,7 @@ use extract::{
 };
 use glam::{DVec3, Vec3};
 use mesh::topology::topology;
-use mesh::{Bounds, TriangleMesh, repair};
+use mesh::{Bounds, MeshError, TriangleMesh, repair};
 use proptest::prelude::*;
 
 /// A cube from `low` to `low + 2`, each face cut into `n` x `n` squares, each along its diagonal; faces in the order
@@ -108,10 +108,13 @@ fn what_is_wrong_says_where() {
     assert!(matches!(any(&turned, Holes::Refuse), Err(MeshFieldError::Open { edges: 6, rings: 1, .. })));
     let mut not_a_number = cube(Vec3::ZERO, 1);
     not_a_number.positions[5].y = f32::NAN;
-    assert!(matches!(any(&not_a_number, Holes::Span), Err(MeshFieldError::Coordinate { vertex: 5, .. })));
+    assert!(matches!(
+        any(&not_a_number, Holes::Span),
+        Err(MeshFieldError::Mesh(MeshError::Coordinate { vertex: 5, .. }))
+    ));
     let mut beyond = cube(Vec3::ZERO, 1);
     beyond.triangles[7][2] = 8;
-    let want = MeshFieldError::IndexOutOfRange { triangle: 7, index: 8, vertices: 8 };
+    let want = MeshFieldError::Mesh(MeshError::IndexOutOfRange { triangle: 7, index: 8, vertices: 8 });
     assert_eq!(any(&beyond, Holes::Span).unwrap_err(), want);
     let inward = repair::flip(&cube(Vec3::ZERO, 2));
     assert!(
@@ -120,7 +123,7 @@ fn what_is_wrong_says_where() {
     assert!(any(&repair::flip(&inward), Holes::Refuse).is_ok());
     assert!(matches!(any(&repair::flip(&open), Holes::Span), Err(MeshFieldError::InsideOut { .. })));
     let flat = TriangleMesh { triangles: vec![[0, 0, 1]], ..cube(Vec3::ZERO, 1) };
-    assert_eq!(any(&flat, Holes::Span).unwrap_err(), MeshFieldError::Empty);
+    assert_eq!(any(&flat, Holes::Span).unwrap_err(), MeshFieldError::Mesh(MeshError::Empty));
 }
 
 /// Two cubes that share an edge, one that overlaps them, and a triangle without area: every edge is run as often one way as

@@ -58,39 +58,20 @@ use thiserror::Error;
 
 pub use self::samples::AreaSamples;
 use crate::nearest::NearestTriangles;
+use crate::numbers::{MeshError, used_vertices};
 use crate::{Bounds, TriangleMesh};
 
 /// The most samples of a surface: minutes of work.
 pub const MOST_SAMPLES: u64 = 1_000_000_000;
-/// Coordinates up to here have finite squares of differences in single precision.
-const COORDINATE_LIMIT: f32 = 1e18;
 /// Points that one thread takes at a time. Sums are made within and then over these shares, whoever takes them.
 const SHARE: u64 = 4096;
 
 /// Why a surface cannot be measured.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MetroError {
-    /// There are no triangles.
-    #[error("the mesh has no triangles")]
-    Empty,
-    /// A triangle refers to a vertex that does not exist.
-    #[error("triangle {triangle} refers to vertex {index} of {vertices}")]
-    IndexOutOfRange {
-        /// The triangle.
-        triangle: usize,
-        /// The index.
-        index: u32,
-        /// How many vertices there are.
-        vertices: usize,
-    },
-    /// A vertex is NaN, infinite or beyond the limit.
-    #[error("vertex {vertex} is at {position}; coordinates must be numbers up to {COORDINATE_LIMIT:e}")]
-    Coordinate {
-        /// The vertex.
-        vertex: usize,
-        /// Where it is.
-        position: Vec3,
-    },
+    /// The mesh cannot be computed with.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
     /// All triangles are degenerate: there is nothing to take a mean over.
     #[error("the mesh has {triangles} triangles, and none has an area")]
     NoArea {
@@ -169,25 +150,11 @@ impl Surface {
     /// Checks a mesh and builds the search structure, O(n log n) and about 250 bytes a triangle.
     ///
     /// # Errors
-    /// [`MetroError`], the first four.
+    /// [`MetroError::Mesh`], [`MetroError::NoArea`].
     pub fn try_new(mesh: &TriangleMesh) -> Result<Self, MetroError> {
-        if mesh.triangles.is_empty() {
-            return Err(MetroError::Empty);
-        }
-        let mut is_used = vec![false; mesh.positions.len()];
-        for (triangle, corners) in mesh.triangles.iter().enumerate() {
-            for &index in corners {
-                let vertices = mesh.positions.len();
-                let vertex = is_used.get_mut(index as usize);
-                *vertex.ok_or(MetroError::IndexOutOfRange { triangle, index, vertices })? = true;
-            }
-        }
-        let used = || mesh.positions.iter().copied().enumerate().filter(|(v, _)| is_used[*v]);
-        let is_sound = |p: Vec3| !p.is_nan() && p.abs().max_element() <= COORDINATE_LIMIT;
-        if let Some((vertex, position)) = used().find(|(_, p)| !is_sound(*p)) {
-            return Err(MetroError::Coordinate { vertex, position });
-        }
-        let vertices: Vec<Vec3> = used().map(|(_, p)| p).collect();
+        let is_used = used_vertices(mesh)?;
+        let used = mesh.positions.iter().zip(is_used).filter(|(_, used)| *used);
+        let vertices: Vec<Vec3> = used.map(|(p, _)| *p).collect();
         let (min, max) = vertices
             .iter()
             .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), &p| (min.min(p), max.max(p)));

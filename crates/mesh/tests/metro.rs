@@ -2,9 +2,9 @@
 
 mod shapes;
 
-use mesh::TriangleMesh;
 use mesh::glam::{DVec3, Vec3, dvec3, vec3};
 use mesh::metro::{Amount, Deviation, MOST_SAMPLES, MetroError, Sampling, Surface, metro};
+use mesh::{MeshError, TriangleMesh};
 use proptest::prelude::*;
 use shapes::{cube, icosahedron, torus};
 
@@ -177,15 +177,23 @@ fn a_surface_is_on_itself_wherever_it_is() {
 fn odd_meshes_are_errors_or_have_a_meaning() {
     let good = square(1.0, 0.0);
     let refused = |mesh: &TriangleMesh| Surface::try_new(mesh).unwrap_err();
-    assert_eq!(refused(&TriangleMesh::default()), MetroError::Empty);
-    assert_eq!(refused(&TriangleMesh { triangles: Vec::new(), ..good.clone() }), MetroError::Empty);
+    assert_eq!(refused(&TriangleMesh::default()), MetroError::Mesh(MeshError::Empty));
+    assert_eq!(
+        refused(&TriangleMesh { triangles: Vec::new(), ..good.clone() }),
+        MetroError::Mesh(MeshError::Empty)
+    );
     let mut bad = good.clone();
     bad.triangles[1][2] = 4;
-    assert_eq!(refused(&bad), MetroError::IndexOutOfRange { triangle: 1, index: 4, vertices: 4 });
+    assert_eq!(
+        refused(&bad),
+        MetroError::Mesh(MeshError::IndexOutOfRange { triangle: 1, index: 4, vertices: 4 })
+    );
     for odd in [f32::NAN, f32::INFINITY, -2e18] {
         let mut bad = good.clone();
         bad.positions[3].y = odd;
-        let MetroError::Coordinate { vertex: 3, position } = refused(&bad) else { panic!("{odd}") };
+        let MetroError::Mesh(MeshError::Coordinate { vertex: 3, position }) = refused(&bad) else {
+            panic!("{odd}")
+        };
         assert_eq!(position.y.to_bits(), odd.to_bits());
         // No part of the surface as long as no triangle uses it.
         bad.triangles.pop();

@@ -6,40 +6,19 @@ mod winding;
 use glam::{DVec3, Vec3};
 use mesh::metro::Foot;
 use mesh::topology::topology;
-use mesh::{Bounds, NearestTriangles, TriangleMesh};
+use mesh::{Bounds, MeshError, NearestTriangles, TriangleMesh, is_sound, used_vertices};
 use thiserror::Error;
 
 use self::caps::Caps;
 use self::winding::WindingColumns;
 use super::{SAFE, ScalarField};
 
-/// Coordinates up to here have finite squares and cubes of differences in the precisions used.
-const COORDINATE_LIMIT: f32 = 1e18;
-
 /// Why a mesh has no inside to measure from.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MeshFieldError {
-    /// There are no triangles.
-    #[error("the mesh has no triangles")]
-    Empty,
-    /// A triangle refers to a vertex that does not exist.
-    #[error("triangle {triangle} refers to vertex {index} of {vertices}")]
-    IndexOutOfRange {
-        /// The triangle.
-        triangle: usize,
-        /// The index.
-        index: u32,
-        /// How many vertices there are.
-        vertices: usize,
-    },
-    /// A vertex is NaN, infinite or beyond the limit.
-    #[error("vertex {vertex} is at {position}; coordinates must be numbers up to {COORDINATE_LIMIT:e}")]
-    Coordinate {
-        /// The vertex.
-        vertex: usize,
-        /// Where it is.
-        position: Vec3,
-    },
+    /// The mesh cannot be computed with.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
     /// The surface is open, branches, or changes its orientation.
     #[error(
         "the mesh is not a closed manifold: {boundary_edges} boundary, {non_manifold_edges} non-manifold and \
@@ -148,12 +127,12 @@ impl MeshDistance {
     /// If `mesh` has no proper triangle or a bad index or coordinate; [`MeshFieldError::Open`];
     /// [`MeshFieldError::InsideOut`] if all in all it faces inward, its holes closed by cones ([`mesh::repair::flip`] turns it).
     pub fn try_from_any(mesh: &TriangleMesh, holes: Holes) -> Result<Self, MeshFieldError> {
-        check_numbers(mesh)?;
+        used_vertices(mesh)?;
         let is_proper = |&&[a, b, c]: &&[u32; 3]| a != b && b != c && c != a;
         let triangles: Vec<[u32; 3]> = mesh.triangles.iter().filter(is_proper).copied().collect();
         let mesh = TriangleMesh { triangles, normals: Vec::new(), positions: mesh.positions.clone() };
         if mesh.triangles.is_empty() {
-            return Err(MeshFieldError::Empty);
+            return Err(MeshError::Empty.into());
         }
         let caps = Caps::of(&mesh);
         if let (Holes::Refuse, Some(open)) = (holes, caps.open()) {
@@ -266,29 +245,8 @@ impl ScalarField for MeshDistance {
     }
 }
 
-/// A comparison with NaN is false.
-fn is_sound(p: Vec3) -> bool {
-    p.abs().max_element() <= COORDINATE_LIMIT && !p.is_nan()
-}
-
-fn check_numbers(mesh: &TriangleMesh) -> Result<(), MeshFieldError> {
-    if mesh.triangles.is_empty() {
-        return Err(MeshFieldError::Empty);
-    }
-    let vertices = mesh.positions.len();
-    for (triangle, corners) in mesh.triangles.iter().enumerate() {
-        if let Some(&index) = corners.iter().find(|&&v| v as usize >= vertices) {
-            return Err(MeshFieldError::IndexOutOfRange { triangle, index, vertices });
-        }
-    }
-    if let Some(vertex) = mesh.positions.iter().position(|&p| !is_sound(p)) {
-        return Err(MeshFieldError::Coordinate { vertex, position: mesh.positions[vertex] });
-    }
-    Ok(())
-}
-
 fn check(mesh: &TriangleMesh) -> Result<(), MeshFieldError> {
-    check_numbers(mesh)?;
+    used_vertices(mesh)?;
     let report = topology(mesh);
     if !report.is_closed_manifold() {
         return Err(MeshFieldError::NotClosedManifold {
