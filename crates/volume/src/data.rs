@@ -6,23 +6,33 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
 use flate2::bufread::{MultiGzDecoder, ZlibDecoder};
+use serde::Deserialize;
 
 use crate::error::{Problem, shortened};
 
 /// The type of a sample in a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SampleKind {
+    /// Signed, one byte.
     I8,
+    /// Unsigned, one byte.
     U8,
+    /// Signed, two bytes.
     I16,
+    /// Unsigned, two bytes.
     U16,
+    /// Signed, four bytes.
     I32,
+    /// Unsigned, four bytes.
     U32,
+    /// Single precision.
     F32,
+    /// Double precision.
     F64,
 }
 
-impl Kind {
+impl SampleKind {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::I8 => "i8",
@@ -93,7 +103,7 @@ pub(crate) struct Skip {
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Layout {
-    pub(crate) kind: Kind,
+    pub(crate) kind: SampleKind,
     pub(crate) big_endian: bool,
     pub(crate) encoding: Encoding,
     pub(crate) skip: Skip,

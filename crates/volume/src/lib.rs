@@ -43,6 +43,7 @@ mod raw;
 
 use std::path::Path;
 
+pub use data::SampleKind;
 pub use error::{Problem, VolumeError};
 pub use raw::RawHeader;
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::Volume;
-use crate::data::{self, Encoding, Kind, Layout, Skip};
+use crate::data::{self, Encoding, Layout, SampleKind, Skip};
 use crate::error::{Problem, VolumeError, shortened};
 use crate::header::{Frame, Lines, numbers, sample_count, three};
 
@@ -21,7 +21,7 @@ pub(crate) fn read(path: &Path, limit_bytes: u64) -> Result<Volume, VolumeError>
 struct Fields {
     dimensions: Option<usize>,
     sizes: Option<Vec<u64>>,
-    kind: Option<Kind>,
+    kind: Option<SampleKind>,
     spacing: Option<[f64; 3]>,
     size: Option<[f64; 3]>,
     origin: [f64; 3],
@@ -156,16 +156,16 @@ impl Fields {
     }
 }
 
-fn kind(name: &str) -> Result<Kind, Problem> {
+fn kind(name: &str) -> Result<SampleKind, Problem> {
     Ok(match name {
-        "MET_CHAR" => Kind::I8,
-        "MET_UCHAR" => Kind::U8,
-        "MET_SHORT" => Kind::I16,
-        "MET_USHORT" => Kind::U16,
-        "MET_INT" => Kind::I32,
-        "MET_UINT" => Kind::U32,
-        "MET_FLOAT" => Kind::F32,
-        "MET_DOUBLE" => Kind::F64,
+        "MET_CHAR" => SampleKind::I8,
+        "MET_UCHAR" => SampleKind::U8,
+        "MET_SHORT" => SampleKind::I16,
+        "MET_USHORT" => SampleKind::U16,
+        "MET_INT" => SampleKind::I32,
+        "MET_UINT" => SampleKind::U32,
+        "MET_FLOAT" => SampleKind::F32,
+        "MET_DOUBLE" => SampleKind::F64,
         _ => {
             let supported = "MET_CHAR to MET_UINT, MET_FLOAT and MET_DOUBLE are";
             return Err(Problem::unsupported("ElementType", name, supported));

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::Volume;
-use crate::data::{self, Encoding, Kind, Layout, Skip};
+use crate::data::{self, Encoding, Layout, SampleKind, Skip};
 use crate::error::{Problem, VolumeError, shortened};
 use crate::header::{Frame, Lines, numbers, sample_count};
 
@@ -22,7 +22,7 @@ pub(crate) fn read(path: &Path, limit_bytes: u64) -> Result<Volume, VolumeError>
 #[derive(Default)]
 struct Fields {
     dimension: Option<usize>,
-    kind: Option<Kind>,
+    kind: Option<SampleKind>,
     sizes: Option<Vec<u64>>,
     encoding: Option<Encoding>,
     big_endian: Option<bool>,
@@ -233,16 +233,16 @@ fn directions(line: usize, text: &str) -> Result<Vec<Option<[f64; 3]>>, Problem>
     Ok(found)
 }
 
-fn kind(name: &str) -> Result<Kind, Problem> {
+fn kind(name: &str) -> Result<SampleKind, Problem> {
     Ok(match name {
-        "signed char" | "int8" | "int8_t" => Kind::I8,
-        "uchar" | "unsigned char" | "uint8" | "uint8_t" => Kind::U8,
-        "short" | "short int" | "signed short" | "signed short int" | "int16" | "int16_t" => Kind::I16,
-        "ushort" | "unsigned short" | "unsigned short int" | "uint16" | "uint16_t" => Kind::U16,
-        "int" | "signed int" | "int32" | "int32_t" => Kind::I32,
-        "uint" | "unsigned int" | "uint32" | "uint32_t" => Kind::U32,
-        "float" => Kind::F32,
-        "double" => Kind::F64,
+        "signed char" | "int8" | "int8_t" => SampleKind::I8,
+        "uchar" | "unsigned char" | "uint8" | "uint8_t" => SampleKind::U8,
+        "short" | "short int" | "signed short" | "signed short int" | "int16" | "int16_t" => SampleKind::I16,
+        "ushort" | "unsigned short" | "unsigned short int" | "uint16" | "uint16_t" => SampleKind::U16,
+        "int" | "signed int" | "int32" | "int32_t" => SampleKind::I32,
+        "uint" | "unsigned int" | "uint32" | "uint32_t" => SampleKind::U32,
+        "float" => SampleKind::F32,
+        "double" => SampleKind::F64,
         _ => {
             return Err(Problem::unsupported(
                 "type",

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::Volume;
-use crate::data::{self, Encoding, Kind, Layout, Skip};
+use crate::data::{self, Encoding, Layout, SampleKind, Skip};
 use crate::error::{Problem, VolumeError};
 use crate::header::{Frame, sample_count};
 
@@ -34,7 +34,7 @@ pub struct RawHeader {
     pub size: [u64; 3],
     /// The type of a sample.
     #[serde(rename = "type")]
-    pub kind: RawKind,
+    pub kind: SampleKind,
     /// The byte order.
     #[serde(default)]
     pub endian: RawEndian,
@@ -48,20 +48,6 @@ pub struct RawHeader {
     pub spacing: Option<[f64; 3]>,
     /// Where the first sample lies.
     pub origin: Option<[f64; 3]>,
-}
-
-/// The type of a sample.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum RawKind {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
 }
 
 /// The byte order of samples.
@@ -107,21 +93,11 @@ fn meaning(path: &Path, limit_bytes: u64) -> Result<(RawHeader, Frame, Layout), 
     let (origin, spacing) = (header.origin.unwrap_or_default(), header.spacing.unwrap_or([1.0; 3]));
     let frame = Frame::diagonal(counts, origin, spacing);
     frame.check()?;
-    let kind = match header.kind {
-        RawKind::I8 => Kind::I8,
-        RawKind::U8 => Kind::U8,
-        RawKind::I16 => Kind::I16,
-        RawKind::U16 => Kind::U16,
-        RawKind::I32 => Kind::I32,
-        RawKind::U32 => Kind::U32,
-        RawKind::F32 => Kind::F32,
-        RawKind::F64 => Kind::F64,
-    };
     let encoding = match header.encoding {
         RawEncoding::Raw => Encoding::Raw,
         RawEncoding::Gzip => Encoding::Gzip,
     };
     let skip = Skip { lines: 0, bytes: Some(header.skip_bytes) };
-    let big_endian = header.endian == RawEndian::Big;
+    let (kind, big_endian) = (header.kind, header.endian == RawEndian::Big);
     Ok((header, frame, Layout { kind, big_endian, encoding, skip, samples }))
 }
