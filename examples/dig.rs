@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use extract::{
     Arrangement, Asteroid, Chunk, ChunkExtractor, Clustering, Execution, ExtractSettings, Kept, Lattice,
-    ScalarField, Source, extract, weld,
+    ScalarField, Source, extract, weld_chunks,
 };
 use glam::Vec3;
 use mesh::Bounds;
@@ -152,7 +152,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         whole.triangles.len()
     );
     let start = Instant::now();
-    let welded = weld(&chunks)?;
+    let welded = weld_chunks(&chunks)?;
     println!("welding all chunks: {:.0} ms", start.elapsed().as_secs_f64() * 1e3);
     if welded != whole {
         return Err("the welded chunks are not the mesh of the whole".into());
