@@ -33,7 +33,7 @@
 //! - Unless edges are collapsed, vertices stand in storage order of the sample points they are nearest to (x fastest,
 //!   then y, then z), triangles in that of their cells. Leaving samples out changes nothing, as long as a field keeps
 //!   what it promises.
-//! - Any boxes of cells that fill the lattice, extracted one by one, [`weld`] to the mesh of the whole, to the byte
+//! - Any boxes of cells that fill the lattice, extracted one by one, [weld](weld_chunks) to the mesh of the whole, to the byte
 //!   ([`ChunkExtractor`]), on every arrangement and with every clustering and topology.
 //! - No input panics; what cannot be done is an error.
 //!
@@ -155,7 +155,7 @@ mod triangles;
 mod vertices;
 
 pub use accuracy::{Accuracy, accuracy};
-pub use chunks::{Chunk, ChunkError, ChunkExtractor, WeldError, weld};
+pub use chunks::{Chunk, ChunkError, ChunkExtractor, WeldError, weld_chunks};
 pub use distances::{DistanceError, distances};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
 pub use field::{

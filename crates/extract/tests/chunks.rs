@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use extract::{
     Arrangement, Asteroid, CellBox, Chunk, ChunkError, ChunkExtractor, Clustering, Execution, ExtractError,
     ExtractSettings, Lattice, Placement, Positions, ScalarField, Source, Sphere, Topology, WeldError,
-    extract, weld,
+    extract, weld_chunks,
 };
 use fields::{FAMILIES, Family, Numbers, Volume};
 use glam::Vec3;
@@ -80,7 +80,7 @@ fn check(
         assert_eq!(part.triangle_cells.len(), mesh.triangles.len());
         assert!(part.triangle_cells.is_sorted(), "{what}");
     }
-    let welded = weld(&parts).unwrap_or_else(|error| panic!("{what}: {error}"));
+    let welded = weld_chunks(&parts).unwrap_or_else(|error| panic!("{what}: {error}"));
     assert!(bits(&welded) == bits(&whole), "{what}: {settings:?}");
 }
 
@@ -167,7 +167,7 @@ fn samples_threads_and_order_do_not_show() {
             })
             .collect();
         assert!(threads.iter().rev().eq(&called), "{arrangement:?}: threads");
-        assert_eq!(weld(&threads).unwrap(), weld(&called).unwrap());
+        assert_eq!(weld_chunks(&threads).unwrap(), weld_chunks(&called).unwrap());
         // Nothing beyond the box that a chunk names is looked at.
         for &cells in &boxes {
             sampled.lock().unwrap().clear();
@@ -251,7 +251,7 @@ fn only_chunks_that_an_edit_touches_change() {
                     boxes.len()
                 );
                 let whole = extract(&field, &lattice, &settings, &ONE).unwrap().mesh;
-                assert!(bits(&weld(&parts).unwrap()) == bits(&whole), "{arrangement:?} {settings:?}");
+                assert!(bits(&weld_chunks(&parts).unwrap()) == bits(&whole), "{arrangement:?} {settings:?}");
             }
         }
     }
@@ -268,11 +268,11 @@ fn chunks_that_do_not_belong_together_are_refused() {
     let mut parts = chunks(Source::Field(&small), &lattice, &settings, &boxes);
     let old = parts[0].clone();
     parts[0] = extractor.extract(Source::Field(&large), boxes[0], &ONE).unwrap();
-    assert!(matches!(weld(&parts), Err(WeldError::Mismatch { .. })));
+    assert!(matches!(weld_chunks(&parts), Err(WeldError::Mismatch { .. })));
     parts[0] = old.clone();
     parts.push(old);
-    assert!(matches!(weld(&parts), Err(WeldError::Overlap { .. })));
-    assert_eq!(weld(&[]).unwrap(), TriangleMesh::default());
+    assert!(matches!(weld_chunks(&parts), Err(WeldError::Overlap { .. })));
+    assert_eq!(weld_chunks(&[]).unwrap(), TriangleMesh::default());
 }
 
 #[test]

@@ -17,7 +17,7 @@ use crate::sweep::{Extractor, Source};
 const FIRST_MARGIN: u32 = 8;
 const NOWHERE: u32 = u32::MAX;
 
-/// Extracts boxes of cells of a lattice, such that neighbours fit and all of them [`weld`](crate::weld) to the mesh
+/// Extracts boxes of cells of a lattice, such that neighbours fit and all of them [weld](crate::weld_chunks) to the mesh
 /// that [`extract`](crate::extract) makes of the whole, byte for byte. Its buffers are used again.
 ///
 /// To decide as the whole would, more is sampled than the chunk's own cells ([`Chunk::window`]): without edge collapse
@@ -28,7 +28,7 @@ const NOWHERE: u32 = u32::MAX;
 /// [`Clustering::Integrated`], which regularises triangles without looking farther than a neighbour.
 ///
 /// ```
-/// use extract::{Arrangement, ChunkExtractor, Execution, ExtractSettings, Lattice, ScalarField, Sphere, extract, weld};
+/// use extract::{Arrangement, ChunkExtractor, Execution, ExtractSettings, Lattice, ScalarField, Sphere, extract, weld_chunks};
 /// # use glam::Vec3;
 /// # use mesh::Bounds;
 /// # let bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) };
@@ -40,7 +40,7 @@ const NOWHERE: u32 = u32::MAX;
 /// for cells in extractor.grid(16) {
 ///     chunks.push(extractor.extract(sphere.into(), cells, &execution)?);
 /// }
-/// assert_eq!(weld(&chunks)?, extract(sphere, &lattice, &settings, &execution)?.mesh);
+/// assert_eq!(weld_chunks(&chunks)?, extract(sphere, &lattice, &settings, &execution)?.mesh);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct ChunkExtractor {

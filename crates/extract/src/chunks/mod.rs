@@ -6,4 +6,4 @@ mod weld;
 
 pub use chunk::Chunk;
 pub use extractor::{ChunkError, ChunkExtractor};
-pub use weld::{WeldError, weld};
+pub use weld::{WeldError, weld_chunks};

@@ -49,7 +49,7 @@ impl From<TryReserveError> for WeldError {
 ///
 /// # Errors
 /// [`WeldError::Overlap`] and [`WeldError::Mismatch`] if the chunks are not of one extraction.
-pub fn weld<'a>(chunks: impl IntoIterator<Item = &'a Chunk>) -> Result<TriangleMesh, WeldError> {
+pub fn weld_chunks<'a>(chunks: impl IntoIterator<Item = &'a Chunk>) -> Result<TriangleMesh, WeldError> {
     let mut in_order: Vec<&Chunk> = chunks.into_iter().collect();
     in_order.sort_by_key(|chunk| (chunk.cells.start[2], chunk.cells.start[1], chunk.cells.start[0]));
     let mut triangles = with_room(in_order.iter().map(|chunk| chunk.triangle_cells.len()).sum())?;

@@ -7,7 +7,7 @@ use glam::Vec3;
 use mesh::{Bounds, TriangleMesh, read_obj, read_ply, repair};
 
 /// The studies' volume.
-#[allow(dead_code)] // not every test file uses it
+#[allow(dead_code, reason = "not every test file uses it")]
 pub(crate) const BOX: Bounds = Bounds { min: Vec3::new(-0.7, -0.4, -0.5), max: Vec3::new(0.8, 0.4, 0.6) };
 
 /// The bunny as a closed solid in the evaluation's scene, or `None` where going without it was asked for.
