@@ -18,13 +18,7 @@ ARCHIVE=graphics.stanford.edu/pub/3Dscanrep/bunny.tar.gz
 WHEEL=napari-process-points-and-surfaces==0.5.0
 
 say() { printf 'fetch-bunny: %s\n' "$*" >&2; }
-have() { command -v "$1" >/dev/null 2>&1; }
-
-sha256() {
-    if have sha256sum; then sha256sum <"$1" | cut -d' ' -f1
-    elif have shasum; then shasum -a 256 <"$1" | cut -d' ' -f1
-    else openssl dgst -sha256 <"$1" | sed 's/.*= *//'; fi
-}
+. "$(dirname -- "$0")/fetching.sh"
 
 # keep FILE: moves it into the cache under the name its digest earns; fails when the digest is a stranger's.
 keep() {
@@ -79,21 +73,11 @@ from_stanford() {
 }
 
 from_pypi() {
-    python=$(command -v python3 || command -v python) || { say "pypi: python is not installed"; return 1; }
-    "$python" -m pip download --quiet --disable-pip-version-check --timeout 15 --retries 1 --no-deps \
-        --only-binary=:all: --dest "$work/wheel" "$WHEEL" >"$work/log" 2>&1 ||
-        { say "pypi: $(tail -n 1 "$work/log")"; return 1; }
-    "$python" -m zipfile -e "$work"/wheel/*.whl "$work/wheel" || return 1
-    keep "$work/wheel/napari_process_points_and_surfaces/data/bun_zipper.ply"
+    tree=$(unpack pypi "$WHEEL") && keep "$tree/napari_process_points_and_surfaces/data/bun_zipper.ply"
 }
 
 from_debian() {
-    have apt-get && have dpkg-deb || { say "debian: apt-get and dpkg-deb are not installed"; return 1; }
-    mkdir -p "$work/deb"
-    (cd "$work/deb" && apt-get -qq -o Acquire::Retries=1 -o Acquire::http::Timeout=15 download glmark2-data) \
-        >"$work/log" 2>&1 || { say "debian: $(tail -n 1 "$work/log") (apt-get update first?)"; return 1; }
-    dpkg-deb -x "$work"/deb/glmark2-data_*.deb "$work/deb/tree" || return 1
-    keep "$work/deb/tree/usr/share/glmark2/models/bunny.obj"
+    tree=$(unpack debian glmark2-data) && keep "$tree/usr/share/glmark2/models/bunny.obj"
 }
 
 [ $# -le 1 ] || { say "usage: scripts/fetch-bunny.sh [PATH]"; exit 2; }

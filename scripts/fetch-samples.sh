@@ -9,13 +9,7 @@
 set -eu
 
 say() { printf 'fetch-samples: %s\n' "$*" >&2; }
-have() { command -v "$1" >/dev/null 2>&1; }
-
-sha256() {
-    if have sha256sum; then sha256sum <"$1" | cut -d' ' -f1
-    elif have shasum; then shasum -a 256 <"$1" | cut -d' ' -f1
-    else openssl dgst -sha256 <"$1" | sed 's/.*= *//'; fi
-}
+. "$(dirname -- "$0")/fetching.sh"
 
 # SHA-256, name here, source, package, path in it.
 samples() {
@@ -33,27 +27,6 @@ bff773d28c62e80187b2dfa8c6c8cc771a4c7707ddcdcf2e515913d322d1f548 bunny.obj debia
 12593bcba03bbf278cd7d7db3ca79ba753ada3cb58ee93e725603e9b5e29fd0c hand_palm.stl pypi gymnasium-robotics==1.4.2 gymnasium_robotics/envs/assets/adroit_hand/resources/meshes/palm.stl
 bd2c5fb5bc2d73d2225157abacf500f8418361f7cdd3cfe49693ee0df4cd62e9 faucet.stl pypi gymnasium-robotics==1.4.2 gymnasium_robotics/envs/assets/kitchen_franka/kitchen_assets/meshes/faucet.stl
 END
-}
-
-# unpack SOURCE PACKAGE: prints the folder with the package's files, fetched once.
-unpack() {
-    tree=$work/$(printf '%s' "$2" | tr -c 'A-Za-z0-9\n' _)
-    if [ ! -d "$tree" ]; then
-        mkdir -p "$tree.get" "$tree"
-        if [ "$1" = pypi ]; then
-            python=$(command -v python3 || command -v python) || { say "$2: python is not installed"; return 1; }
-            "$python" -m pip download --quiet --disable-pip-version-check --timeout 15 --retries 1 --no-deps \
-                --only-binary=:all: --dest "$tree.get" "$2" >"$work/log" 2>&1 ||
-                { say "$2: $(tail -n 1 "$work/log")"; return 1; }
-            "$python" -m zipfile -e "$tree.get"/*.whl "$tree" || return 1
-        else
-            have apt-get && have dpkg-deb || { say "$2: apt-get and dpkg-deb are not installed"; return 1; }
-            (cd "$tree.get" && apt-get -qq -o Acquire::Retries=1 -o Acquire::http::Timeout=15 download "$2") \
-                >"$work/log" 2>&1 || { say "$2: $(tail -n 1 "$work/log") (apt-get update first?)"; return 1; }
-            dpkg-deb -x "$tree.get"/*.deb "$tree" || return 1
-        fi
-    fi
-    printf '%s\n' "$tree"
 }
 
 is_sound() { [ -f "$1" ] && [ "$(sha256 "$1")" = "$2" ]; }
