@@ -144,7 +144,7 @@ fn damaged_files_are_refused_or_sound() {
 }
 
 #[test]
-#[ignore = "ten seconds"]
+#[ignore = "ten seconds: run by make test-long"]
 fn a_million_damaged_files_are_refused_or_sound() {
     run(1_000_000, 1_000_000);
 }

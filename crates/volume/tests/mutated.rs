@@ -109,7 +109,7 @@ fn damaged_files_are_refused_or_sound() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: run by make test-long"]
 fn many_more_damaged_files_are_refused_or_sound() {
     run(500_000, 1_000_000);
 }

@@ -169,7 +169,7 @@ fn thousands_of_damaged_exports() {
 
 /// A million, in eight parts that differ by their seed.
 #[test]
-#[ignore = "takes minutes: make test-long"]
+#[ignore = "minutes: run by make test-long"]
 fn a_million_damaged_exports() {
     let parts = std::thread::available_parallelism().map_or(1, |n| n.get() as u64).min(8);
     let read: u64 = std::thread::scope(|scope| {

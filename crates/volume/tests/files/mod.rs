@@ -1,5 +1,5 @@
 //! Volumes written by hand, in every way that is read.
-#![allow(dead_code)] // every test file uses some of them
+#![allow(dead_code, reason = "every test file uses some of them")]
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
