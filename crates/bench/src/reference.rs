@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 /// Words of the table: 256 KiB, more than a first-level cache.
 const WORDS: usize = 1 << 16;
 /// Steps taken; about a millisecond.
-const STEPS: u32 = 200_000;
+const STEPS: u32 = 100_000;
 
 /// The work and its memory.
 pub struct Reference {

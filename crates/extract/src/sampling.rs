@@ -31,7 +31,8 @@ pub(crate) fn sample(
         1 => samples.chunks_exact_mut(layer_len).enumerate().for_each(sample_layer),
         // More threads than layers would have nothing to do.
         _ => on_threads(execution, layout.grid()[2], || {
-            samples.par_chunks_exact_mut(layer_len).enumerate().for_each(sample_layer);
+            // A layer of a mesh's distance may cost twice another's: handed out one by one, no thread waits long at the end.
+            samples.par_chunks_exact_mut(layer_len).enumerate().with_max_len(1).for_each(sample_layer);
         })?,
     }
     Ok(())

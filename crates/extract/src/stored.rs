@@ -8,7 +8,7 @@ use mesh::TriangleMesh;
 
 use crate::edges::EdgeTable;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
-use crate::field::ScalarField;
+use crate::field::{Kept, ScalarField};
 use crate::lattice::{Coordinates, Lattice, Layout};
 use crate::level::Level;
 use crate::normals::vertex_normals;
@@ -36,6 +36,8 @@ pub(crate) fn extract(
     let mut edges = EdgeTable::new(layout.len());
     let allocation = clock.lap();
 
+    let mut kept = Kept::default();
+    let field = field.prepared(&mut kept).unwrap_or(field);
     let coordinates = Coordinates::sampled(lattice, &layout, settings.positions)?;
     sample(field, &layout, &coordinates, execution, &mut samples)?;
     let sampling = clock.lap();

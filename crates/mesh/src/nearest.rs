@@ -1,4 +1,4 @@
-//! The nearest of many triangles: a tree of flat cylinders and boxes, four children a node, four triangles a leaf.
+//! The nearest of many triangles: a tree of turned boxes, four children a node, four triangles a leaf.
 //!
 //! Everything is done four at a time in the lanes of a [`Vec4`]. The tree is built once by halving at the median,
 //! so its depth is bounded and the traversal needs no heap. Bounds are kept on the safe side of rounding, so what
@@ -50,21 +50,16 @@ impl Lanes {
     }
 }
 
-/// Four patches of surface and what is in them. Each lies in a flat cylinder (within `thickness` of the plane
-/// through `centre` across `axis`, and within `radius` of the axis) and in a box.
+/// Four patches of surface and what is in them. Each lies in a box turned as the patch is: `half` to both sides of
+/// `centre` along each of `axes`.
 ///
-/// Boxes alone were tried and lost: a patch askew to the axes is as thick in its box as it is wide, and a bunny's
-/// sample saw 45 nodes and 38 leaves; with the cylinders it sees 30 and 14. Cylinders alone are loose around the
-/// large, curved patches near the root: 38 and 17. Absent children have a thickness of minus infinity, which puts
-/// them infinitely far away.
+/// Boxes along the coordinates' axes were tried and lost: a patch askew to them is as thick in its box as it is wide.
+/// Absent children reach minus infinity to both sides, which puts them infinitely far away.
 #[derive(Debug, Clone)]
 struct Node {
     centre: Lanes,
-    axis: Lanes,
-    radius: Vec4,
-    thickness: Vec4,
-    min: Lanes,
-    max: Lanes,
+    axes: [Lanes; 3],
+    half: [Vec4; 3],
     children: [u32; 4],
 }
 
@@ -72,11 +67,8 @@ impl Node {
     fn new(patches: [Patch; 4], children: [u32; 4]) -> Self {
         Self {
             centre: Lanes::of(patches.map(|p| p.centre)),
-            axis: Lanes::of(patches.map(|p| p.axis)),
-            radius: Vec4::from_array(patches.map(|p| p.radius)),
-            thickness: Vec4::from_array(patches.map(|p| p.thickness)),
-            min: Lanes::of(patches.map(|p| p.min)),
-            max: Lanes::of(patches.map(|p| p.max)),
+            axes: std::array::from_fn(|k| Lanes::of(patches.map(|p| p.axes[k]))),
+            half: std::array::from_fn(|k| Vec4::from_array(patches.map(|p| p.half[k]))),
             children,
         }
     }
@@ -85,68 +77,56 @@ impl Node {
     #[inline]
     fn squared_bounds(&self, p: Lanes) -> Vec4 {
         let from_centre = p.minus(self.centre);
-        let height = self.axis.dot(from_centre);
-        let lateral = (from_centre.dot(from_centre) - height * height).max(Vec4::ZERO);
-        let over = (height.abs() - self.thickness).max(Vec4::ZERO);
-        let beside = (lateral.sqrt() - self.radius).max(Vec4::ZERO);
-        let in_cylinder = over * over + beside * beside;
-
-        let gap = |min: Vec4, max: Vec4, p: Vec4| (min - p).max(p - max).max(Vec4::ZERO);
-        let x = gap(self.min.x, self.max.x, p.x);
-        let y = gap(self.min.y, self.max.y, p.y);
-        let z = gap(self.min.z, self.max.z, p.z);
-        in_cylinder.max(x * x + y * y + z * z) * SAFE
+        let beside = |k: usize| {
+            let over = (self.axes[k].dot(from_centre).abs() - self.half[k]).max(Vec4::ZERO);
+            over * over
+        };
+        (beside(0) + beside(1) + beside(2)) * SAFE
     }
 }
 
-/// The flat cylinder and the box around some triangles, the former computed in double precision for the centre and axis as rounded.
+/// The turned box around some triangles, computed in double precision for the centre and axes as rounded.
 #[derive(Clone, Copy)]
 struct Patch {
     centre: Vec3,
-    axis: Vec3,
-    radius: f32,
-    thickness: f32,
-    min: Vec3,
-    max: Vec3,
+    /// Across the patch, along it where it is longest, and along it where it is not.
+    axes: [Vec3; 3],
+    half: [f32; 3],
 }
 
 impl Patch {
-    const ABSENT: Self = Self {
-        centre: Vec3::ZERO,
-        axis: Vec3::Z,
-        radius: f32::NEG_INFINITY,
-        thickness: f32::NEG_INFINITY,
-        min: Vec3::ZERO,
-        max: Vec3::ZERO,
-    };
+    const ABSENT: Self = Self { centre: Vec3::ZERO, axes: [Vec3::Z; 3], half: [f32::NEG_INFINITY; 3] };
 
     fn around(triangles: &[[Vec3; 3]], members: &[u32]) -> Self {
         let corners = || members.iter().map(|&t| triangles[t as usize].map(|p| p.as_dvec3()));
+        let mean = corners().flatten().sum::<DVec3>() / (3 * members.len()) as f64;
         let facing: DVec3 = corners().map(|[a, b, c]| (b - a).cross(c - a)).sum();
-        let axis = facing.normalize_or(DVec3::Z).as_vec3();
-        let (low, high) = corners()
+        let across = facing.normalize_or(DVec3::Z);
+        let (u, v) = across.any_orthonormal_pair();
+        // In the plane of the patch, the direction in which its corners spread most.
+        let (difference, product) = corners()
             .flatten()
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
-        let (unit, middle) = (axis.as_dvec3(), (low + high) * 0.5);
-        let heights = corners().flatten().map(|p| unit.dot(p - middle));
-        let (lowest, highest) =
-            heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-        let centre = (middle + unit * (lowest + highest) * 0.5).as_vec3();
-        let (mut radius, mut thickness) = (0.0f64, 0.0f64);
-        for from_centre in corners().flatten().map(|p| p - centre.as_dvec3()) {
-            let height = unit.dot(from_centre);
-            thickness = thickness.max(height.abs());
-            radius = radius.max((from_centre - unit * height).length());
-        }
-        let slack = (radius + thickness) * f64::from(1.0 - SAFE);
-        Self {
-            centre,
-            axis,
-            radius: (radius + slack) as f32,
-            thickness: (thickness + slack) as f32,
-            min: low.as_vec3(),
-            max: high.as_vec3(),
-        }
+            .map(|p| (u.dot(p - mean), v.dot(p - mean)))
+            .fold((0.0, 0.0), |(d, uv), (x, y)| (d + x * x - y * y, uv + x * y));
+        let (sin, cos) = (0.5 * (2.0 * product).atan2(difference)).sin_cos();
+        let axes = [across, u * cos + v * sin, v * cos - u * sin].map(|axis| axis.as_vec3());
+
+        let range = |axis: DVec3, from: DVec3| {
+            let along = corners().flatten().map(|p| axis.dot(p - from));
+            along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+        };
+        let units = axes.map(|axis| axis.as_dvec3());
+        let to_middle = units.map(|axis| {
+            let (low, high) = range(axis, mean);
+            axis * (low + high) * 0.5
+        });
+        let centre = (mean + to_middle.into_iter().sum::<DVec3>()).as_vec3();
+        let half = units.map(|axis| {
+            let (low, high) = range(axis, centre.as_dvec3());
+            high.max(-low)
+        });
+        let slack = half.iter().sum::<f64>() * f64::from(1.0 - SAFE);
+        Self { centre, axes, half: half.map(|half| (half + slack) as f32) }
     }
 }
 
@@ -279,7 +259,7 @@ impl NearestTriangles {
     /// few 1e-7 of the distance and the size of the nearest triangles. Coordinates must be small enough, at most 1e18,
     /// for their squares to be finite.
     pub fn distance(&self, p: Vec3) -> f32 {
-        self.search(p, f32::INFINITY).0.sqrt()
+        self.search::<true>(p, f32::INFINITY).0.sqrt()
     }
 
     /// The same to the bit, and quicker where it is thought to be below `limit` and where the nearest triangle is near that of
@@ -288,10 +268,10 @@ impl NearestTriangles {
         let begin = (*from).min(self.leaves.len() as u32 - 1);
         let known = self.leaves[begin as usize].squared_distance(Lanes::splat(p));
         let limit = known.min(limit * limit);
-        let mut found = self.search(p, limit);
+        let mut found = self.search::<false>(p, limit);
         if found.0 >= limit {
             // Nothing was nearer than the limit: it was too tight, or the nearest is where the search began.
-            found = if known <= limit { (known, begin) } else { self.search(p, f32::INFINITY) };
+            found = if known <= limit { (known, begin) } else { self.search::<true>(p, f32::INFINITY) };
         }
         *from = found.1;
         found.0.sqrt()
@@ -317,13 +297,16 @@ impl NearestTriangles {
     /// The squared distance to the nearest triangle, and its leaf.
     fn search_within(&self, p: Vec3, limit: f32) -> (f32, u32) {
         let limit = limit * limit;
-        let found = self.search(p, limit);
+        let found = self.search::<true>(p, limit);
         // Nothing was nearer than the limit: it was too tight.
-        if found.0 < limit { found } else { self.search(p, f32::INFINITY) }
+        if found.0 < limit { found } else { self.search::<true>(p, f32::INFINITY) }
     }
 
     /// The squared distance to the nearest triangle and its leaf, or `limit` if that is less.
-    fn search(&self, p: Vec3, limit: f32) -> (f32, u32) {
+    ///
+    /// Going to the nearest child first finds a bound early where there is none. Where `limit` is close already, hardly
+    /// a child is passed over for having waited, and `SORTED` costs more than it saves.
+    fn search<const SORTED: bool>(&self, p: Vec3, limit: f32) -> (f32, u32) {
         let lanes = Lanes::splat(p);
         let (mut best, mut nearest) = (limit, 0);
         let mut waiting = [(0.0f32, 0u32); STACK];
@@ -345,6 +328,12 @@ impl NearestTriangles {
             let node = &self.nodes[child as usize];
             let first = top;
             for (bound, child) in node.squared_bounds(lanes).to_array().into_iter().zip(node.children) {
+                if !SORTED {
+                    // Without a branch here too.
+                    waiting[top] = (bound, child);
+                    top += usize::from(bound < best);
+                    continue;
+                }
                 if bound >= best {
                     continue;
                 }
