@@ -1,23 +1,39 @@
 //! How far two measurements of one and the same program may lie apart.
 
 use super::quiet::busy_share;
-use super::series::{by_configuration, middle, values};
-use design::Stage;
-use design::record::BenchRun;
+use super::series::middle;
+use design::record::{BenchRun, BenchSample};
+use design::{ConfigurationId, Stage};
 use serde::Serialize;
-use std::collections::BTreeMap;
+use statrs::distribution::{ContinuousCDF, Normal};
+use std::collections::{BTreeMap, BTreeSet};
 
-/// What the largest difference within the A/A block is multiplied by. The block sees two processes; two runs are others, and
-/// may lie further apart. Chosen by simulation (`timing/simulation.rs`): where processes differ by fifteen times as much as
-/// samples, 1 gives a false verdict in one comparison of eight, 1.25 in one of a hundred; 1.5 would lose a third of the
-/// 10 % changes at 4 % noise that 1.25 still tells.
-pub const AA_MARGIN: f64 = 1.25;
+/// What the estimate of the noise between processes is multiplied by. It rests on five processes of one run; another run, at
+/// another hour, may have others. Chosen by simulation (`timing/simulation.rs`): where processes differ by fifteen times as
+/// much as samples, 1 gives a false verdict in one comparison of twenty, 1.1 in fewer; elsewhere both give next to none.
+pub const AA_MARGIN: f64 = 1.1;
+/// The chance that noise passes the floor somewhere among a stage's configurations (Bonferroni).
+const MISSES: f64 = 0.05;
+/// The standard error of a median of normal values, in standard errors of their mean.
+const MEDIAN_ERROR: f64 = 1.253_314_137_315_500_1;
+/// The standard deviation of normal values, in median absolute deviations.
+const DEVIATION_OF_MAD: f64 = 1.482_602_218_505_602;
+
+/// What one process can add to Q: three standard deviations. Half of four rounds are outliers now and then.
+const MOST: f64 = 9.0;
 
 /// Log-ratios that are no more than noise.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NoiseFloor {
-    /// Of each stage: [`AA_MARGIN`] times the largest log-ratio, over configurations, between the median of the A/A block
-    /// and that of the measured rounds. Empty without an A/A block.
+    /// Of each stage: how far the medians of two measurements of one program may lie apart because their processes
+    /// differ, beyond what their rounds differ. Empty without an A/A block.
+    ///
+    /// A run is measured by several processes, those of the A/A block among them, and all measure the same programs. The
+    /// standard deviation t between processes is the one with which Cochran's Q over all configurations, with variances
+    /// t² + s², is as large as its degrees of freedom (Paule & Mandel 1982); s is the standard error of a process's median
+    /// that follows from how its rounds differ. The floor is [`AA_MARGIN`] z t sqrt(2 / m) with m the processes of the
+    /// measured rounds, and z the normal quantile for all configurations together. Times are logarithms, in units of the
+    /// reference work's in the same process.
     pub aa: BTreeMap<&'static str, f64>,
     /// What others may have added: -ln(1 - s), where s is the share of the CPU time that three rounds of four stayed below.
     pub load: f64,
@@ -26,20 +42,11 @@ pub struct NoiseFloor {
 impl NoiseFloor {
     /// The floor of a run.
     pub fn of(run: &BenchRun) -> Self {
-        let (measured, again) = (by_configuration(&run.samples), by_configuration(&run.aa_samples));
-        let both: Vec<_> = again.iter().filter_map(|(id, again)| Some((measured.get(id)?, again))).collect();
-        let floor = |stage: Stage| {
-            let apart = both.iter().map(|(measured, again)| {
-                let medians = [measured, again].map(|samples| middle(&values(samples, stage)));
-                // A stage that takes no time at all is the same in both.
-                if medians == [0.0; 2] { 0.0 } else { (medians[1] / medians[0]).ln().abs() }
-            });
-            AA_MARGIN * apart.fold(0.0, f64::max)
-        };
-        let stages = Stage::ALL.into_iter().chain([Stage::GeometryAsPublished]);
-        let aa = match both.is_empty() {
-            true => BTreeMap::new(),
-            false => stages.map(|stage| (stage.label(), floor(stage))).collect(),
+        let aa = if run.aa_samples.is_empty() {
+            BTreeMap::new()
+        } else {
+            let stages = Stage::ALL.into_iter().chain([Stage::GeometryAsPublished]);
+            stages.map(|stage| (stage.label(), floor(run, stage))).collect()
         };
         Self { aa, load: -(1.0 - busy_share(&run.load).min(0.999)).ln() }
     }
@@ -48,6 +55,89 @@ impl NoiseFloor {
     pub fn within(&self, stage: Stage) -> Option<f64> {
         self.aa.get(stage.label()).copied()
     }
+}
+
+/// The median of a configuration's times in one process, and its variance; both on logarithms.
+#[derive(Debug, Clone, Copy)]
+struct ProcessMedian {
+    log: f64,
+    variance: f64,
+}
+
+fn floor(run: &BenchRun, stage: Stage) -> f64 {
+    let speeds = speeds(run);
+    let mut configurations = BTreeMap::<&ConfigurationId, BTreeMap<u32, Vec<f64>>>::new();
+    for sample in all_samples(run) {
+        let time = stage.of(sample);
+        // A stage that takes no time at all is the same in all.
+        if time > 0.0 {
+            let processes = configurations.entry(&sample.id).or_default();
+            processes.entry(sample.sitting).or_default().push(time.ln() - speeds[&sample.sitting]);
+        }
+    }
+    let medians: Vec<Vec<ProcessMedian>> = configurations.values().map(process_medians).collect();
+    let deviation = deviation_between(&medians);
+    let z = Normal::standard().inverse_cdf(1.0 - MISSES / 2.0 / medians.len().max(1) as f64);
+    let measured: BTreeSet<u32> = run.samples.iter().map(|sample| sample.sitting).collect();
+    AA_MARGIN * z * deviation * (2.0 / measured.len().max(1) as f64).sqrt()
+}
+
+fn all_samples(run: &BenchRun) -> impl Iterator<Item = &BenchSample> {
+    run.samples.iter().chain(&run.aa_samples)
+}
+
+/// How long the reference work took in each process, a logarithm; 0 where it was not timed. Between runs that is judged on its
+/// own ([`speed_shift`]).
+fn speeds(run: &BenchRun) -> BTreeMap<u32, f64> {
+    let mut times = BTreeMap::<u32, Vec<f64>>::new();
+    for sample in all_samples(run) {
+        times.entry(sample.sitting).or_default().extend(sample.reference_s.filter(|time| *time > 0.0));
+    }
+    let speed = |times: Vec<f64>| if times.is_empty() { 0.0 } else { middle(&times).ln() };
+    times.into_iter().map(|(sitting, times)| (sitting, speed(times))).collect()
+}
+
+/// How much a sample differs from the median of its process is a matter of the configuration, and taken from all processes.
+fn process_medians(processes: &BTreeMap<u32, Vec<f64>>) -> Vec<ProcessMedian> {
+    let medians: Vec<(f64, usize)> = processes.values().map(|logs| (middle(logs), logs.len())).collect();
+    let apart: Vec<f64> = processes
+        .values()
+        .zip(&medians)
+        .flat_map(|(logs, (median, _))| logs.iter().map(move |log| (log - median).abs()))
+        .collect();
+    let error = MEDIAN_ERROR * DEVIATION_OF_MAD * middle(&apart);
+    medians
+        .iter()
+        .map(|&(log, rounds)| ProcessMedian { log, variance: error * error / rounds as f64 })
+        .collect()
+}
+
+/// The standard deviation between processes: Q falls as it grows, so by bisection.
+fn deviation_between(configurations: &[Vec<ProcessMedian>]) -> f64 {
+    let degrees: usize = configurations.iter().map(|medians| medians.len() - 1).sum();
+    if degrees == 0 {
+        return 0.0;
+    }
+    let expected = degrees as f64;
+    let q =
+        |deviation: f64| -> f64 { configurations.iter().map(|medians| cochran(medians, deviation)).sum() };
+    let (mut low, mut high) = (0.0, 10.0);
+    if q(low) <= expected {
+        return 0.0;
+    }
+    for _ in 0..60 {
+        let between = 0.5 * (low + high);
+        if q(between) > expected { low = between } else { high = between }
+    }
+    high
+}
+
+/// Cochran's Q: squared distances from the weighted mean, in variances. Processes that agree to the last digit add nothing.
+fn cochran(medians: &[ProcessMedian], deviation: f64) -> f64 {
+    let weight = |m: &ProcessMedian| 1.0 / (m.variance + deviation * deviation).max(f64::MIN_POSITIVE);
+    let total: f64 = medians.iter().map(weight).sum();
+    let mean = medians.iter().map(|m| weight(m) * m.log).sum::<f64>() / total;
+    medians.iter().map(|m| (weight(m) * (m.log - mean).powi(2)).min(MOST)).sum()
 }
 
 /// The log-ratio of the machines' speeds: the reference work's median time in `b` over that in `a`. `None` if one has none.

@@ -76,7 +76,8 @@ fn medians(run: &BenchRun, statements: &Statements) -> Table {
     }
     table.notes.push(match statements.floor.aa.get(Stage::Total.label()) {
         Some(floor) => format!(
-            "Noise floor of the total, from {} rounds measured again in other processes: {:.1} %.",
+            "Noise floor of the total, from how far the processes of the run lie apart, with {} rounds measured again in an A/A \
+             block: {:.1} %.",
             run.aa_iterations,
             percent(*floor)
         ),
