@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // Holes are spanned; `Holes::Refuse` would say where the largest is.
     let field = MeshDistance::try_from_any(&mesh, Holes::Span)?;
-    let tight = mesh.bounds().ok_or("the mesh is empty")?;
+    let tight = mesh.surface_bounds().ok_or("the mesh is empty")?;
     // Its buffers serve all three.
     let mut extractor = Extractor::new();
     for cells in [32, 64, 128] {

@@ -1,6 +1,6 @@
 //! A volume becomes a binary glTF file, which browsers and game engines show.
 //!
-//! cargo run --release -p volume --example volume_to_gltf -- head.nrrd 300 head.glb
+//! cargo run --release -p volume --example volume_to_gltf -- head.nrrd 300.5 head.glb
 
 use std::env::args;
 use std::error::Error;
@@ -15,11 +15,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let volume = volume::read(input.as_ref(), volume::NO_LIMIT)?;
     println!("{:?} samples", volume.counts);
+    // Where the surface leaves the volume it is closed; `Beyond::Continued` lets the lattice's box cut it off.
     let field =
-        VolumeField::try_new(volume.counts, volume.values, volume.origin, volume.steps, Beyond::Continued)?;
+        VolumeField::try_new(volume.counts, volume.values, volume.origin, volume.steps, Beyond::Falling)?;
 
-    // One cube a sample, over all samples. Inside is what is brighter than the isovalue.
-    let lattice = Lattice::try_new(Arrangement::BodyCentred, field.bounds(), field.spacing())?;
+    // One cube a sample, over all samples and a little more. Inside is what is brighter than the isovalue.
+    let bounds = field.bounds().grown(1.5 * field.spacing());
+    let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, field.spacing())?;
     let settings = ExtractSettings { isovalue: isovalue.parse()?, ..ExtractSettings::default() };
     let mut surface = extract(&field, &lattice, &settings, &Execution::default())?.mesh;
 

@@ -42,8 +42,13 @@ fn both_ways_in_units_and_of_the_diagonal_with_places() {
 
     let text = run(folder.path(), &["small.obj", "large.obj", "--density", "5000"]);
     let text = String::from_utf8(text.stdout).unwrap();
-    assert!(text.contains("farthest vertex (3.0000000, 3.0000000, 4.0000000), nearest point (1.0000000, 1.0000000, 0.0000000)"), "{text}");
-    assert!(text.contains("Hausdorff distance        4.89897949   115.470054 %"), "{text}");
+    assert!(
+        text.contains(
+            "farthest vertex (3.000000, 3.000000, 4.000000), nearest point (1.000000, 1.000000, 0)"
+        ),
+        "{text}"
+    );
+    assert!(text.contains("Hausdorff distance          4.898979     115.4701 %"), "{text}");
     for threads in ["1", "3"] {
         let again =
             json(folder.path(), &["small.obj", "large.obj", "--density", "5000", "--threads", threads]);
@@ -55,17 +60,12 @@ fn both_ways_in_units_and_of_the_diagonal_with_places() {
 fn a_mesh_against_an_object_of_a_study() {
     let folder = tempfile::tempdir().unwrap();
     let study = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/two-methods.toml");
-    // An octahedron in a sphere of radius 0.9: the middle of a face is 0.9 (1 - 1/sqrt 3) from it.
-    let mut octahedron = String::from("v .9 0 0\nv -.9 0 0\nv 0 .9 0\nv 0 -.9 0\nv 0 0 .9\nv 0 0 -.9\n");
-    for (x, y, z) in [(1, 3, 5), (3, 2, 5), (2, 4, 5), (4, 1, 5), (3, 1, 6), (2, 3, 6), (4, 2, 6), (1, 4, 6)]
-    {
-        octahedron += &format!("f {x} {y} {z}\n");
-    }
-    std::fs::write(folder.path().join("octahedron.obj"), octahedron).unwrap();
+    std::fs::write(folder.path().join("octahedron.obj"), octahedron(0.9)).unwrap();
     let study = study.to_str().unwrap();
     let found =
         json(folder.path(), &["octahedron.obj", "--object", "ss", "--study", study, "--samples", "20000"]);
     let number = |pointer: &str| found.pointer(pointer).and_then(|v| v.as_f64()).unwrap();
+    // The middle of a face.
     let want = 0.9 * (1.0 - 1.0 / f64::sqrt(3.0));
     for way in ["/a_to_b/max", "/b_to_a/max"] {
         assert!((number(way) - want).abs() < 1e-3, "{} is not {want}", number(way));
@@ -74,6 +74,50 @@ fn a_mesh_against_an_object_of_a_study() {
     let unknown = run(folder.path(), &["octahedron.obj", "--object", "cube", "--study", study]);
     assert_eq!(unknown.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&unknown.stderr).contains("--object cube: "));
+}
+
+/// An octahedron in a sphere: the middle of a face is the farthest from it, a corner lies on it.
+fn octahedron(radius: f64) -> String {
+    let r = radius;
+    let mut text = format!("v {r} 0 0\nv -{r} 0 0\nv 0 {r} 0\nv 0 -{r} 0\nv 0 0 {r}\nv 0 0 -{r}\n");
+    for (x, y, z) in [(1, 3, 5), (3, 2, 5), (2, 4, 5), (4, 1, 5), (3, 1, 6), (2, 3, 6), (4, 2, 6), (1, 4, 6)]
+    {
+        text += &format!("f {x} {y} {z}\n");
+    }
+    text
+}
+
+#[test]
+fn a_mesh_against_a_formula_a_volume_and_a_mesh_s_distance() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("octahedron.obj"), octahedron(0.9)).unwrap();
+    let found = |arguments: &[&str]| {
+        let all = [&["octahedron.obj", "--samples", "20000"], arguments].concat();
+        let found = json(folder.path(), &all);
+        ["/a_to_b/max", "/b_to_a/max"].map(|way| found.pointer(way).and_then(|v| v.as_f64()).unwrap())
+    };
+    let to_sphere = 0.9 * (1.0 - 1.0 / f64::sqrt(3.0));
+    let ball = "--bounds=-1,-1,-1,1,1,1";
+    for formula in [&["length(x,y,z) - 0.9"][..], &["0.9 - length(x,y,z)", "--inside", "above"]] {
+        for way in found(&[&["--field"], formula, &[ball, "--cells", "60"]].concat()) {
+            assert!((way - to_sphere).abs() < 1e-3, "{formula:?}: {way} is not {to_sphere}");
+        }
+    }
+    // 41 samples a side, 0.05 apart, of the distance from the origin.
+    let at = |i: usize, k: u32| (i / 41usize.pow(k) % 41) as f32 * 0.05 - 1.0;
+    let values = (0..41usize.pow(3)).map(|i| (0..3).map(|k| at(i, k).powi(2)).sum::<f32>().sqrt());
+    let header = "NRRD0004\ntype: float\nendian: little\ndimension: 3\nsizes: 41 41 41\nencoding: raw\n\
+                  space dimension: 3\nspace directions: (0.05,0,0) (0,0.05,0) (0,0,0.05)\nspace origin: (-1,-1,-1)\n\n";
+    let bytes: Vec<u8> = values.flat_map(f32::to_le_bytes).collect();
+    std::fs::write(path("ball.nrrd"), [header.as_bytes(), &bytes].concat()).unwrap();
+    for way in found(&["--volume", "ball.nrrd", "--isovalue", "0.9", "--inside", "below"]) {
+        assert!((way - to_sphere).abs() < 2e-3, "{way} is not {to_sphere}");
+    }
+    // 0.2 inside an octahedron is an octahedron whose faces are 0.2 farther in; its corners are 0.2 sqrt 3 farther in.
+    let [to_inner, from_inner] = found(&["--mesh", "octahedron.obj", "--isovalue", "0.2", "--cells", "80"]);
+    assert!((from_inner - 0.2).abs() < 1e-3, "{from_inner}");
+    assert!((to_inner - 0.2 * 3f64.sqrt()).abs() < 0.02, "{to_inner}");
 }
 
 #[test]
@@ -90,7 +134,7 @@ fn what_cannot_be_measured_is_said() {
         (&["line.obj", "good.obj"], "line.obj: the mesh has 1 triangles, and none has an area"),
         (&["good.obj", "nan.obj"], "nan.obj: line 1: `nan` is not a finite single-precision number"),
         (&["good.obj", "missing.ply"], "missing.ply"),
-        (&["good.obj", "good.txt"], "good.txt: ends neither in .obj nor in .ply nor in .stl"),
+        (&["good.obj", "good.txt"], "good.txt: known endings are .obj, .ply, .stl"),
         (
             &["good.obj", "good.obj", "--density", "1e12"],
             "good.obj: 1000000000000 samples on an area of 1; allowed are",
@@ -98,6 +142,13 @@ fn what_cannot_be_measured_is_said() {
         (&["good.obj", "good.obj", "--density", "0"], "a density of 0 samples per unit of area"),
         (&["good.obj", "good.obj", "--samples", "0"], "--samples"),
         (&["good.obj"], "required"),
+        (&["good.obj", "good.obj", "--field", "x"], "cannot be used with"),
+        (&["good.obj", "good.obj", "--spacing", "1"], "cannot be used with"),
+        (&["good.obj", "--field", "x"], "--bounds"),
+        (
+            &["good.obj", "--field", "x^2+1", "--bounds=0,0,0,1,1,1"],
+            "good.obj and x^2+1: the isosurface: the mesh has no triangles",
+        ),
     ] {
         let output = run(folder.path(), arguments);
         let stderr = String::from_utf8_lossy(&output.stderr);

@@ -108,7 +108,7 @@ fn the_report_is_text_or_json() {
     let folder = Folder::new();
     let said = folder.succeed(&ball(&["-o", "ball.ply", "--quality", "--picture", "ball.png"]));
     assert!(
-        said.out.contains("closed manifold; 1 components, Euler characteristic 2, 0 boundary loops"),
+        said.out.contains("closed manifold; 1 component, Euler characteristic 2, 0 boundary loops"),
         "{}",
         said.out
     );
@@ -116,7 +116,12 @@ fn the_report_is_text_or_json() {
     assert!(std::fs::read(folder.path("ball.png")).unwrap().starts_with(b"\x89PNG"));
     let said = folder.succeed(&ball(&["-o", "ball.ply", "--json"]));
     let report: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    assert_eq!(report["schema"], 1);
+    assert_eq!(report["source"], "sqrt(x^2+y^2+z^2) - 1");
     assert_eq!(report["topology"]["euler_characteristic"], 2);
+    assert!((report["volume"].as_f64().unwrap() - BALL_VOLUME).abs() < 0.02);
+    // Both ways: how far the mesh is from the sphere, and the sphere from the mesh.
+    assert!(report["accuracy"]["distance_to_mesh"]["max"].as_f64().unwrap() < 0.005);
     assert_eq!(report["inside"], "below");
     assert_eq!(report["cells"], serde_json::json!([48, 48, 48]));
     let (farthest, area) =
@@ -206,8 +211,73 @@ fn a_mesh_becomes_another() {
 }
 
 #[test]
+fn every_arrangement_has_a_clustering_of_its_own() {
+    let folder = Folder::new();
+    for (arrangement, clustering) in [
+        ("body-centred", "integrated"),
+        ("simple-cubic", "integrated"),
+        ("five-tetrahedra", "edge-collapse"),
+        ("face-centred", "edge-collapse"),
+    ] {
+        let said = folder.succeed(&ball(&["-o", "a.ply", "--json", "--arrangement", arrangement]));
+        let report: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+        assert_eq!(report["clustering"], clustering, "{arrangement}");
+        assert!((report["volume"].as_f64().unwrap() - BALL_VOLUME).abs() < 0.02, "{arrangement}");
+    }
+}
+
+/// A vertex that no triangle uses may lie anywhere; scanners leave some.
+#[test]
+fn what_no_triangle_uses_does_not_count() {
+    let folder = Folder::new();
+    folder.succeed(&ball(&["-o", "ball.obj"]));
+    let mut text = std::fs::read_to_string(folder.path("ball.obj")).unwrap();
+    text += "v 0 0 500\n";
+    folder.write("far.obj", text);
+    for (input, output) in [("ball.obj", "a.ply"), ("far.obj", "b.ply")] {
+        folder.succeed(&["--mesh", input, "--cells", "30", "-o", output]);
+    }
+    assert_eq!(folder.mesh("a.ply"), folder.mesh("b.ply"));
+}
+
+#[test]
+fn nothing_is_written_over_that_was_given() {
+    let folder = Folder::new();
+    folder.succeed(&ball(&["-o", "ball.ply"]));
+    let before = std::fs::read(folder.path("ball.ply")).unwrap();
+    std::fs::create_dir(folder.path("below")).unwrap();
+    for out in ["ball.ply", "./ball.ply", "below/../ball.ply"] {
+        let said = folder.run(&["--mesh", "ball.ply", "-o", out]);
+        assert!(said.code == 2 && said.err.contains("is the input"), "{out}: {}", said.err);
+    }
+    for picture in ["ball.ply", "ball.jpg", "ball"] {
+        let said = folder.run(&ball(&["-o", "ball.ply", "--picture", picture]));
+        assert!(said.code == 2 && said.err.contains("pictures are .png"), "{picture}: {}", said.err);
+    }
+    assert_eq!(std::fs::read(folder.path("ball.ply")).unwrap(), before);
+}
+
+/// A slab of four samples a side whose slices lie far apart would take a million cubes for each of them.
+#[test]
+fn a_lattice_far_finer_than_the_samples_is_asked_for_or_not_made() {
+    let folder = Folder::new();
+    let header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 4 4 4\nencoding: raw\nspacings: 1 1 1e6\n\n";
+    let values: Vec<u8> = (0..64).map(|i| if i < 32 { 0 } else { 100 }).collect();
+    folder.write("far.nrrd", [header.as_bytes(), &values].concat());
+    let said = folder.run(&["--volume", "far.nrrd", "--isovalue", "50.5", "-o", "a.ply"]);
+    assert!(
+        said.code == 2 && said.err.contains("far.nrrd: cubes as small as its smallest step, 1.0"),
+        "{}",
+        said.err
+    );
+    folder.succeed(&["--volume", "far.nrrd", "--isovalue", "50.5", "--spacing", "100000", "-o", "a.ply"]);
+}
+
+#[test]
 fn what_cannot_be_done_is_said_in_one_line() {
     let folder = Folder::new();
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("/dev/zero", folder.path("zeros.stl")).unwrap();
     for (arguments, want) in [
         (vec!["-o", "a.ply"], "<STUDY|--field <FORMULA>|--volume <FILE>|--mesh <FILE>>"),
         (vec!["--field", "x", "-o", "a.ply"], "--bounds"),
@@ -231,8 +301,21 @@ fn what_cannot_be_done_is_said_in_one_line() {
         (vec!["--field", "x", BALL[2], "--spacing", "1e-9", "-o", "a.ply"], "exceed the limit"),
         (vec!["--field", "x", BALL[2], "--spacing", "nan", "-o", "a.ply"], "spacing must be positive"),
         (vec!["--field", "x", BALL[2], "--isovalue", "inf", "-o", "a.ply"], "isovalue must be finite"),
+        (vec!["--field", "x", BALL[2], "--spacing", "-1", "-o", "a.ply"], "spacing must be positive"),
+        (
+            vec!["--field", "x", "--bounds=1,1,1,0,0,0", "-o", "a.ply"],
+            "bounds along x must be finite with min below max, not 1.0 to 0.0",
+        ),
+        (vec!["--field", "x", "--bounds=0,0,0,1,inf,1", "-o", "a.ply"], "bounds along y must be finite"),
+        (
+            ball(&["-o", "a.ply", "--arrangement", "face-centred", "--clustering", "integrated"]),
+            "integrated clustering does not go with face-centred: none and edge-collapse do",
+        ),
         (vec!["--mesh", "nowhere.ply", "-o", "a.ply"], "nowhere.ply: No such file"),
-        (vec!["--mesh", "a.glb", "-o", "a.ply"], "a.glb"),
+        (vec!["--mesh", "a.glb", "-o", "a.ply"], "a.glb: known endings are .obj, .ply, .stl"),
+        (vec!["--mesh", ".", "-o", "a.ply"], "known endings are .obj, .ply, .stl"),
+        #[cfg(unix)]
+        (vec!["--mesh", "zeros.stl", "-o", "a.ply"], "zeros.stl: not a file"),
     ] {
         let said = folder.run(&arguments);
         assert_eq!(said.code, 2, "{arguments:?}: {}", said.err);
@@ -243,5 +326,5 @@ fn what_cannot_be_done_is_said_in_one_line() {
     let deep = format!("{}x{}", "(".repeat(5000), ")".repeat(5000));
     let said = folder.run(&["--field", &deep, BALL[2], "-o", "a.ply"]);
     assert!(said.code == 2 && said.err.contains("nested deeper than 200 levels"));
-    assert_eq!(std::fs::read_dir(folder.0.path()).unwrap().count(), 0);
+    assert_eq!(std::fs::read_dir(folder.0.path()).unwrap().count(), usize::from(cfg!(unix)));
 }

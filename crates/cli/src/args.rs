@@ -1,6 +1,7 @@
 //! The command line.
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use crate::source::SourceArguments;
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Isosurface extraction methods in front of a clock, a ruler and people.
@@ -412,22 +413,25 @@ pub(crate) struct Inspect {
 }
 
 #[derive(Debug, Args)]
+#[command(group(ArgGroup::new("second").args(["b", "field", "volume", "mesh", "object"]).required(true)))]
+#[command(after_help = "\
+Examples:
+  isostudy distance coarse.ply fine.ply
+  isostudy distance ball.ply --field 'sqrt(x^2+y^2+z^2) - 1' --bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2
+  isostudy distance head.ply --volume head.nrrd --isovalue 300.5
+  isostudy distance bunny.ply --object bs --study configs/paper.toml")]
 pub(crate) struct Distance {
     /// Mesh: .obj, .ply or .stl
     pub(crate) a: PathBuf,
-    /// Mesh to compare it with; its bounding box is the yardstick
-    #[arg(required_unless_present = "object")]
+    /// Mesh to compare it with; the bounding box of what A is compared with is the yardstick
+    #[arg(conflicts_with_all = ["bounds", "spacing", "cells", "isovalue", "inside", "close", "allow_open"])]
     pub(crate) b: Option<PathBuf>,
-    /// Compare it with the isosurface of this object of the study instead
-    #[arg(long, value_name = "ID", conflicts_with = "b")]
+    /// The isosurface of this object of a study instead; --spacing is the study's for its benchmark if not given
+    #[arg(long, value_name = "ID", conflicts_with_all = ["bounds", "cells", "isovalue", "inside", "close", "allow_open"])]
     pub(crate) object: Option<String>,
     /// Study that has the object
     #[arg(long, value_name = "TOML", default_value = "configs/paper.toml", requires = "object")]
     pub(crate) study: PathBuf,
-    /// Spacing that A was extracted with: sets how closely the isosurface is looked at [default: the study's for its
-    /// benchmark]
-    #[arg(long, value_name = "LENGTH", requires = "object")]
-    pub(crate) spacing: Option<f64>,
     /// Samples on each surface, spread over its area; its vertices come on top
     #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..=mesh::metro::MOST_SAMPLES))]
     pub(crate) samples: u64,
@@ -443,6 +447,11 @@ pub(crate) struct Distance {
     /// Print JSON instead
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(
+        flatten,
+        next_help_heading = "An isosurface to compare it with instead; the spacing sets how closely it is looked at"
+    )]
+    pub(crate) source: SourceArguments,
 }
 
 #[derive(Debug, Args)]

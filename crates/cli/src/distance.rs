@@ -2,15 +2,13 @@
 
 use crate::args::Distance;
 use crate::subject::Fields;
-use crate::{say, subject};
+use crate::{mesh_file, say, significant, subject};
 use anyhow::{Context, Result, bail};
 use design::{Arrangement, Study};
-use extract::Execution;
+use extract::{Execution, ExtractSettings, Lattice, ScalarField};
 use mesh::metro::{Amount, Deviation, Metro, Sampling, Surface};
-use mesh::{MeshFormat, TriangleMesh};
 use serde::Serialize;
 use std::fmt::Write;
-use std::fs::File;
 use std::path::Path;
 
 /// The version of the JSON.
@@ -30,7 +28,7 @@ pub(crate) fn distance(arguments: &Distance) -> Result<()> {
     let (name, metro) = match (&arguments.b, &arguments.object) {
         (Some(path), _) => (path.display().to_string(), to_mesh(arguments, &a, path, &sampling)?),
         (None, Some(id)) => (id.clone(), to_object(arguments, &a, id, &sampling)?),
-        (None, None) => bail!("a second mesh or --object is needed"),
+        (None, None) => to_source(arguments, &a, &sampling)?,
     };
     if arguments.json {
         let report = Report::new([arguments.a.display().to_string(), name], &metro, arguments.seed);
@@ -60,37 +58,48 @@ fn to_object(arguments: &Distance, a: &Surface, id: &str, sampling: &Sampling) -
         bail!("--object {id}: {} has {}", study.path.display(), known.join(", "));
     };
     let object = &objects[index];
-    let spacing = arguments.spacing.unwrap_or(object.benchmark_spacing);
+    let spacing = arguments.source.spacing.map_or(object.benchmark_spacing, f64::from);
     let lattice = subject::lattice(object, Arrangement::BodyCentred, spacing)
         .with_context(|| format!("--spacing {spacing}"))?;
     let fields = Fields::new(&study);
-    let (field, isovalue) = (fields.get(index)?, object.isovalue as f32);
-    let execution = Execution { threads: arguments.threads as usize };
-    extract::distances(a, field, isovalue, &lattice, sampling, &execution)
+    to_isosurface(arguments, a, fields.get(index)?, object.isovalue as f32, &lattice, sampling)
         .with_context(|| format!("{} and {id}", arguments.a.display()))
 }
 
-fn surface(path: &Path) -> Result<Surface> {
-    let name = || path.display().to_string();
-    Surface::try_new(&read_mesh(path)?).with_context(name)
+/// Against the isosurface of a formula, a volume or a mesh's distance, in its box.
+fn to_source(arguments: &Distance, a: &Surface, sampling: &Sampling) -> Result<(String, Metro)> {
+    let source = arguments.source.read()?.context("something to compare with is needed")?;
+    let lattice = source.lattice(Arrangement::BodyCentred)?;
+    let metro = to_isosurface(arguments, a, &*source.field, source.isovalue, &lattice, sampling)
+        .with_context(|| format!("{} and {}", arguments.a.display(), source.name))?;
+    Ok((source.name, metro))
 }
 
-/// A mesh in the format that its file's name ends with.
-fn read_mesh(path: &Path) -> Result<TriangleMesh> {
-    let name = || path.display().to_string();
-    let ending = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    let Some(format) = MeshFormat::from_extension(ending) else {
-        bail!("{}: ends neither in .obj nor in .ply nor in .stl", name());
-    };
-    let file = File::open(path).with_context(name)?;
-    format.read(file).with_context(name)
+fn to_isosurface(
+    arguments: &Distance,
+    a: &Surface,
+    field: &dyn ScalarField,
+    isovalue: f32,
+    lattice: &Lattice,
+    sampling: &Sampling,
+) -> Result<Metro> {
+    let execution = Execution { threads: arguments.threads as usize };
+    if let Some(memory) = bench::read_machine().memory_bytes {
+        subject::check_limit(lattice, &ExtractSettings::default(), &execution, memory, "this machine has")?;
+    }
+    Ok(extract::distances(a, field, isovalue, lattice, sampling, &execution)?)
+}
+
+fn surface(path: &Path) -> Result<Surface> {
+    Surface::try_new(&mesh_file::read(path)?).with_context(|| path.display().to_string())
 }
 
 fn text(metro: &Metro, seed: u64) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: f64| {
         let share = 100.0 * value / metro.diagonal;
-        writeln!(text, "  {name:<22}{value:>14.8}  {share:>11.6} %").expect("a string takes everything");
+        writeln!(text, "  {name:<22}{:>14}  {:>11} %", significant(value), significant(share))
+            .expect("a string takes everything");
     };
     line("Hausdorff distance", metro.hausdorff());
     for (heading, way) in [("A to B", &metro.forward), ("B to A", &metro.backward)] {
@@ -98,8 +107,10 @@ fn text(metro: &Metro, seed: u64) -> String {
         line("  RMS", way.rms);
         line("  max", way.max);
     }
-    let mut text =
-        format!("distance                          units  of B's diagonal, {:.8}\n{text}\n", metro.diagonal);
+    let mut text = format!(
+        "distance                          units  of B's diagonal, {}\n{text}\n",
+        significant(metro.diagonal)
+    );
     for (heading, way) in [("A to B", &metro.forward), ("B to A", &metro.backward)] {
         writeln!(text, "{heading}: {}", places(way)).expect("a string takes everything");
     }
@@ -114,8 +125,10 @@ fn text(metro: &Metro, seed: u64) -> String {
 /// How a direction was sampled, and where its maximum is.
 fn places(way: &Deviation) -> String {
     let mut sampled = format!(
-        "{} samples, {:.6} per unit of area, and {} vertices",
-        way.samples, way.density, way.vertices
+        "{} samples, {} per unit of area, and {} vertices",
+        way.samples,
+        significant(way.density),
+        way.vertices
     );
     if way.lost_samples + way.lost_vertices > 0 {
         let (samples, vertices) = (way.lost_samples, way.lost_vertices);
@@ -123,7 +136,7 @@ fn places(way: &Deviation) -> String {
     }
     way.farthest.map_or(sampled.clone(), |farthest| {
         let [from, to] =
-            [farthest.from, farthest.to].map(|p| format!("({:.7}, {:.7}, {:.7})", p.x, p.y, p.z));
+            [farthest.from, farthest.to].map(|p| format!("({})", p.to_array().map(significant).join(", ")));
         let kind = if farthest.at_vertex { "vertex" } else { "sample" };
         format!("{sampled}; farthest {kind} {from}, nearest point {to}")
     })

@@ -7,12 +7,14 @@ mod comparing;
 mod distance;
 mod inspect;
 mod manifest;
+mod mesh_file;
 mod picture;
 mod pipeline;
 mod progress;
 mod questionnaire;
 mod records;
 mod rooms;
+mod source;
 mod store;
 mod subject;
 mod surface;
@@ -303,4 +305,14 @@ fn say(line: &str) -> Result<()> {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(()),
     }
+}
+
+/// A number with seven significant digits.
+fn significant(value: f64) -> String {
+    let size = value.abs();
+    if value != 0.0 && !(1e-4..1e7).contains(&size) {
+        return format!("{value:.6e}");
+    }
+    let decimals = if value == 0.0 { 0 } else { (6.0 - size.log10().floor()) as usize };
+    format!("{value:.decimals$}")
 }

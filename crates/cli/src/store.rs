@@ -304,15 +304,24 @@ fn hexadecimal(bytes: &[u8]) -> String {
 
 /// Writes a file so that it is there whole or not at all.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_whole_by(path, |file| file.write_all(bytes))
+}
+
+/// The same of what `write` writes, which need not be in memory.
+pub(crate) fn write_whole_by(
+    path: &Path,
+    write: impl FnOnce(&mut File) -> std::io::Result<()>,
+) -> Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    let write = || -> std::io::Result<()> {
-        let mut partial = partial_file().tempfile_in(folder)?;
-        partial.write_all(bytes)?;
+    let all = || -> std::io::Result<()> {
+        // Its errors name the temporary file, which nobody asked for.
+        let mut partial = partial_file().tempfile_in(folder).map_err(|error| error.kind())?;
+        write(partial.as_file_mut())?;
         partial.persist(path)?;
         Ok(())
     };
-    write().with_context(|| format!("cannot write {}", path.display()))
+    all().with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// A temporary file becomes a result, so it gets a result's permissions, not its owner's alone.

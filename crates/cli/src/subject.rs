@@ -1,5 +1,6 @@
 //! From a study's words to the extractor's: fields, lattices, settings. The one place where `design` meets `extract`.
 
+use crate::mesh_file;
 use crate::store::sha256;
 use anyhow::{Context, Result, bail};
 use design::config::{
@@ -110,12 +111,8 @@ fn read_checked(source: &MeshSourceSection, path: &std::path::Path) -> Result<Ve
 }
 
 fn read_placed(source: &MeshSourceSection, path: &std::path::Path) -> Result<TriangleMesh> {
-    let bytes = read_checked(source, path)?;
-    let mesh = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("obj") => mesh::read_obj(bytes.as_slice())?,
-        Some("ply") => mesh::read_ply(bytes.as_slice())?,
-        _ => bail!("is neither .obj nor .ply"),
-    };
+    let format = mesh_file::format_to_read(path)?;
+    let mesh = format.read(read_checked(source, path)?.as_slice())?;
     let solid = mesh::repair::closed_solid(&mesh)?;
     let axes = source.axes.each_ref().map(|axis| axis_vector(axis));
     let offset = DVec3::from_array(source.offset);
@@ -304,13 +301,7 @@ pub(crate) fn check_limit(
     let needed = lattice.memory_bytes_for(settings, execution);
     if needed > limit {
         let (needed, limit) = (gibibytes(needed), gibibytes(limit));
-        let arrangement = match lattice.arrangement() {
-            extract::Arrangement::BodyCentred => Arrangement::BodyCentred,
-            extract::Arrangement::SimpleCubic => Arrangement::SimpleCubic,
-            extract::Arrangement::FiveTetrahedra => Arrangement::FiveTetrahedra,
-            extract::Arrangement::FaceCentred => Arrangement::FaceCentred,
-        };
-        bail!("the {} lattice needs {needed}, {limit_name} {limit}", arrangement.label());
+        bail!("the {} lattice needs {needed}, {limit_name} {limit}", lattice.arrangement());
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use mesh::TriangleMesh;
-use mesh::metro::{Metro, MetroError, Sampling, Surface};
+use mesh::metro::{Foot, Metro, MetroError, Sampling, Surface};
 use thiserror::Error;
 
 use crate::extraction::ExtractError;
@@ -31,8 +31,10 @@ pub enum DistanceError {
 /// isosurface's bounding box.
 ///
 /// Distances, their errors and what is not seen are as in [`crate::accuracy`], with as many points as `sampling` asks for:
-/// exact where the field knows its isosurface, else along the gradient up to three spacings. Points without a distance
-/// and, on the way back, points outside the box are counted as lost. The result does not depend on `execution`.
+/// exact where the field knows its isosurface, else along the gradient up to three spacings. Farther away it is the distance
+/// to the point that the nearest triangle of an extraction stands for: not less than the true one, and more by at most
+/// twice what that extraction is off. Points without a distance and, on the way back, points outside the box are counted
+/// as lost. The result does not depend on `execution`.
 ///
 /// # Errors
 /// [`DistanceError`].
@@ -50,7 +52,12 @@ pub fn distances(
     let isosurface = Isosurface::new(field, level, lattice, execution)?;
     let reference = joined(&isosurface.triangles).map_err(DistanceError::Isosurface)?;
     on_threads(execution, usize::MAX, || {
-        let forward = mesh.deviation_by(sampling, |p, _| isosurface.foot(p))?;
+        // Too far for the gradient, the nearest triangle of the extraction says where to look.
+        let by_triangle = |p: DVec3| {
+            let position = isosurface.point(reference.nearest(p, f64::INFINITY).position)?;
+            Some(Foot { position, distance: p.distance(position) })
+        };
+        let forward = mesh.deviation_by(sampling, |p, _| isosurface.foot(p).or_else(|| by_triangle(p)))?;
         let to_mesh = |p: DVec3, _| Some(mesh.nearest(isosurface.point(p)?, f64::INFINITY));
         let mut backward = reference.deviation_by(sampling, to_mesh).map_err(DistanceError::Isosurface)?;
         if let Some(farthest) = &mut backward.farthest {

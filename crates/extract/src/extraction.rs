@@ -117,7 +117,8 @@ pub enum ExtractError {
     },
     /// Integrated clustering where points differ in their lattice edges ([`Arrangement::supports`]).
     #[error(
-        "{arrangement:?} has no {clustering:?} clustering: None and EdgeCollapse go with it, all four with BodyCentred and SimpleCubic"
+        "{clustering} clustering does not go with {arrangement}: none and edge-collapse do, and all four go with body-centred \
+         and simple-cubic"
     )]
     ArrangementClustering {
         /// What was given.
@@ -127,7 +128,7 @@ pub enum ExtractError {
     },
     /// [`Positions::Accumulated`] where no original program is repeated.
     #[error(
-        "{arrangement:?} has indexed positions only: accumulated ones go with BodyCentred and SimpleCubic"
+        "{arrangement} has indexed positions only: accumulated ones go with body-centred and simple-cubic"
     )]
     ArrangementAccumulated {
         /// What was given.

@@ -1,5 +1,7 @@
 //! What changes the mesh, and what only changes how it is computed.
 
+use std::fmt;
+
 /// Settings that change the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExtractSettings {
@@ -47,6 +49,17 @@ pub enum Clustering {
     EdgeCollapse,
     /// Integrated clustering, then an edge collapse of what it leaves.
     IntegratedCollapse,
+}
+
+impl fmt::Display for Clustering {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::None => "none",
+            Self::Integrated => "integrated",
+            Self::EdgeCollapse => "edge-collapse",
+            Self::IntegratedCollapse => "integrated-collapse",
+        })
+    }
 }
 
 /// What merging may do to the surface.

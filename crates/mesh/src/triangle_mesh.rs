@@ -60,6 +60,18 @@ impl TriangleMesh {
         Some(Bounds { min, max })
     }
 
+    /// The smallest box that holds every triangle, or `None` for a mesh without triangles. Vertices that no triangle uses
+    /// may lie anywhere.
+    ///
+    /// # Panics
+    /// If an index is out of range.
+    pub fn surface_bounds(&self) -> Option<Bounds> {
+        let mut corners = self.triangles.iter().flatten().map(|&v| self.positions[v as usize]);
+        let first = corners.next()?;
+        let (min, max) = corners.fold((first, first), |(min, max), p| (min.min(p), max.max(p)));
+        Some(Bounds { min, max })
+    }
+
     /// Total surface area, summed in double precision.
     pub fn area(&self) -> f64 {
         (0..self.triangles.len()).map(|t| self.double_area_vector(t).length() * 0.5).sum()

@@ -11,6 +11,8 @@ pub(crate) use coordinates::Coordinates;
 pub(crate) use directions::{ALL_DIRECTIONS, DIRECTIONS, DirectionSet, Directions, Offset, members};
 pub(crate) use layout::{Layout, PADDING_LAYERS, PointKind};
 
+use std::fmt;
+
 use glam::Vec3;
 use mesh::Bounds;
 
@@ -40,6 +42,17 @@ pub enum Arrangement {
     /// proper has no cube centres: it fills a cube with 20 tetrahedra and an octahedron, whose cut into the last four
     /// prefers an axis.
     FaceCentred,
+}
+
+impl fmt::Display for Arrangement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::BodyCentred => "body-centred",
+            Self::SimpleCubic => "simple-cubic",
+            Self::FiveTetrahedra => "five-tetrahedra",
+            Self::FaceCentred => "face-centred",
+        })
+    }
 }
 
 impl Arrangement {

@@ -1,0 +1,269 @@
+//! Where a surface comes from without a study: a formula, a volume or a mesh; and the lattice it is looked at on.
+
+use crate::{mesh_file, subject};
+use anyhow::{Context, Result, bail};
+use clap::{Args, ValueEnum};
+use design::Arrangement;
+use expression::Expression;
+use extract::{Beyond, Holes, Lattice, MeshDistance, MeshFieldError, Negated, ScalarField, VolumeField};
+use glam::Vec3;
+use mesh::{Bounds, repair};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Cells along the longest side, where neither spacing nor cells are given.
+const CELLS: u32 = 100;
+/// Cubes for each sample of a volume beyond which nobody can have meant the smallest of its steps.
+const CUBES_A_SAMPLE: f64 = 64.0;
+
+#[derive(Debug, Args)]
+pub(crate) struct SourceArguments {
+    /// Formula in x, y and z, such as 'sqrt(x^2+y^2+z^2) - 1'; needs --bounds
+    #[arg(long, value_name = "FORMULA", requires = "bounds", allow_hyphen_values = true)]
+    field: Option<String>,
+    /// Volume: .nrrd, .nhdr, .mha, .mhd, or the .toml that describes raw data; needs --isovalue
+    #[arg(long, value_name = "FILE", requires = "isovalue")]
+    volume: Option<PathBuf>,
+    /// Triangle mesh, of which the signed distance is taken: .obj, .ply or .stl
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
+    /// Box to look at: smallest corner, then largest [default: that of the volume, or round the mesh]
+    #[arg(long, value_name = "X,Y,Z,X,Y,Z", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Bounds>,
+    /// Edge of the lattice's cubes [default: that of the volume's samples; otherwise 100 cubes along the longest side]
+    #[arg(long, value_name = "LENGTH", value_parser = spacing, allow_hyphen_values = true, conflicts_with = "cells")]
+    pub(crate) spacing: Option<f32>,
+    /// The same, as the number of cubes along the longest side
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16384))]
+    cells: Option<u32>,
+    /// Value of the surface
+    #[arg(long, default_value_t = 0.0, value_parser = finite, allow_hyphen_values = true)]
+    isovalue: f32,
+    /// Side of the isovalue that is inside [default: below for a formula, above for a volume; a mesh's distance is
+    /// positive inside]
+    #[arg(long, value_name = "SIDE", conflicts_with = "mesh")]
+    inside: Option<Inside>,
+    /// Close the surface where it leaves the volume
+    #[arg(long, conflicts_with_all = ["field", "mesh"])]
+    close: bool,
+    /// Take a mesh with holes: inside is what is seen from behind in most directions
+    #[arg(long, conflicts_with_all = ["field", "volume"])]
+    allow_open: bool,
+}
+
+/// Which side of the isovalue is solid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Inside {
+    /// Values above the isovalue, such as densities
+    Above,
+    /// Values below it, such as distances that are negative inside
+    Below,
+}
+
+/// A field and where to look at it.
+pub(crate) struct Source {
+    /// Inside is above [`isovalue`](Self::isovalue), whatever was asked for.
+    pub(crate) field: Box<dyn ScalarField>,
+    pub(crate) isovalue: f32,
+    /// As asked for.
+    pub(crate) inside: Inside,
+    pub(crate) bounds: Bounds,
+    pub(crate) spacing: f32,
+    /// The formula or the file.
+    pub(crate) name: String,
+    /// What is known of its values, for a surface that is not there.
+    values: String,
+}
+
+impl SourceArguments {
+    /// The file that is read, if it is one.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        self.volume.as_deref().or(self.mesh.as_deref())
+    }
+
+    /// What is asked for, if anything is. What had to be done to it is said on standard error.
+    ///
+    /// # Errors
+    /// If it cannot be read or has no inside.
+    pub(crate) fn read(&self) -> Result<Option<Source>> {
+        if let Some(formula) = &self.field {
+            // A long formula's error shows where.
+            let shown = if formula.len() <= 60 { format!("--field '{formula}'") } else { "--field".into() };
+            let field: Expression = formula.parse().context(shown)?;
+            let bounds = self.bounds.context("--bounds is needed")?;
+            return Ok(Some(self.source(Box::new(field), Inside::Below, bounds, formula)));
+        }
+        if let Some(path) = &self.volume {
+            return self.of_volume(path).with_context(|| path.display().to_string()).map(Some);
+        }
+        self.mesh.as_deref().map(|path| self.of_mesh(path)).transpose()
+    }
+
+    /// A source with the defaults that hold for all.
+    fn source(&self, field: Box<dyn ScalarField>, inside: Inside, bounds: Bounds, name: &str) -> Source {
+        let inside = self.inside.unwrap_or(inside);
+        let (field, isovalue): (Box<dyn ScalarField>, f32) = match inside {
+            Inside::Above => (field, self.isovalue),
+            Inside::Below => (Box::new(Negated(field)), -self.isovalue),
+        };
+        let bounds = self.bounds.unwrap_or(bounds);
+        let spacing = self.spacing.unwrap_or_else(|| bounds.spacing_of_cells(self.cells.unwrap_or(CELLS)));
+        Source { field, isovalue, inside, bounds, spacing, name: name.to_owned(), values: String::new() }
+    }
+
+    fn of_volume(&self, path: &Path) -> Result<Source> {
+        let limit = bench::read_machine().memory_bytes.unwrap_or(volume::NO_LIMIT);
+        let volume::Volume { counts, values, origin, steps } = volume::read(path, limit)?;
+        let mut field = VolumeField::try_new(counts, values, origin, steps, Beyond::Continued)?;
+        let beyond = match self.inside {
+            Some(Inside::Below) => Beyond::Rising,
+            _ => Beyond::Falling,
+        };
+        // A box cannot cut off what leaves a turned volume.
+        let is_turned = !field.is_axis_aligned();
+        let mut bounds = field.bounds();
+        if self.close || is_turned {
+            field = field.with_beyond(beyond);
+            bounds = bounds.grown(1.5 * field.spacing());
+        }
+        if is_turned && !self.close {
+            let place = path.display();
+            eprintln!(
+                "{place}: the grid is turned against the axes; the surface is closed where it leaves it"
+            );
+        }
+        let (low, high) = field.value_range();
+        let (step, samples) = (field.spacing(), counts.iter().product::<usize>());
+        let mut source = self.source(Box::new(field), Inside::Above, bounds, &path.display().to_string());
+        source.values = format!("; the volume's samples run from {low} to {high}");
+        if self.spacing.is_none() && self.cells.is_none() {
+            source.spacing = step;
+            let cubes: f64 =
+                source.bounds.size().to_array().map(|side| f64::from(side / step)).iter().product();
+            if cubes > CUBES_A_SAMPLE * samples as f64 {
+                bail!(
+                    "cubes as small as its smallest step, {step:?}, would be {cubes:.1e} for {samples} samples; \
+                     --spacing or --cells says how many are wanted"
+                );
+            }
+        }
+        Ok(source)
+    }
+
+    fn of_mesh(&self, path: &Path) -> Result<Source> {
+        let (field, tight) = mesh_field(path, self.allow_open)?;
+        // Room for a few cubes, and for what is thickened.
+        let room = 0.05 * tight.size().max_element() - self.isovalue.min(0.0);
+        let mut source =
+            self.source(Box::new(field), Inside::Above, tight.grown(room), &path.display().to_string());
+        source.values = format!("; the mesh reaches from {} to {}", place(tight.min), place(tight.max));
+        Ok(source)
+    }
+}
+
+/// The distance field of the mesh in a file, and the box of its triangles.
+fn mesh_field(path: &Path, allow_open: bool) -> Result<(MeshDistance, Bounds)> {
+    let name = path.display();
+    let mut mesh = mesh_file::read(path)?;
+    let mut holes = Holes::Refuse;
+    let mut is_welded = false;
+    loop {
+        let error = match MeshDistance::try_from_any(&mesh, holes) {
+            Ok(field) => {
+                let bounds = mesh.surface_bounds().context("the mesh has no triangles")?;
+                return Ok((field, bounds));
+            }
+            Err(error) => error,
+        };
+        match error {
+            MeshFieldError::Open { .. } if !is_welded => {
+                let before = mesh.positions.len();
+                mesh = mesh::weld(&mesh);
+                is_welded = true;
+                if mesh.positions.len() < before {
+                    eprintln!("{name}: {before} vertices at {} places joined", mesh.positions.len());
+                }
+            }
+            MeshFieldError::Open { .. } if allow_open => {
+                eprintln!("{name}: {error}");
+                holes = Holes::Span;
+            }
+            MeshFieldError::Open { .. } => bail!("{name}: {error}; --allow-open takes it nevertheless"),
+            MeshFieldError::InsideOut { volume } if volume < 0.0 => {
+                eprintln!("{name}: its triangles face inward: turned round");
+                mesh = repair::flip(&mesh);
+            }
+            error => return Err(error).with_context(|| name.to_string()),
+        }
+    }
+}
+
+impl Source {
+    /// The lattice to look at it on.
+    ///
+    /// # Errors
+    /// If box and spacing make none.
+    pub(crate) fn lattice(&self, arrangement: Arrangement) -> Result<Lattice> {
+        let Self { bounds, spacing, .. } = *self;
+        subject::lattice_over(bounds, arrangement, spacing).with_context(|| {
+            format!("from {} to {} with spacing {spacing:?}", place(bounds.min), place(bounds.max))
+        })
+    }
+
+    /// The isovalue as asked for.
+    pub(crate) fn asked_isovalue(&self) -> f32 {
+        match self.inside {
+            Inside::Above => self.isovalue,
+            Inside::Below => -self.isovalue,
+        }
+    }
+
+    /// What to say where no surface is found.
+    pub(crate) fn no_surface(&self) -> String {
+        format!(
+            "no surface at isovalue {} from {} to {} with spacing {:?}: every sample lies on one side{}",
+            self.asked_isovalue(),
+            place(self.bounds.min),
+            place(self.bounds.max),
+            self.spacing,
+            self.values
+        )
+    }
+}
+
+fn place(p: Vec3) -> String {
+    format!("[{:?}, {:?}, {:?}]", p.x, p.y, p.z)
+}
+
+fn number(text: &str) -> Result<f32, String> {
+    text.trim().parse().map_err(|_| format!("`{text}` is not a number"))
+}
+
+fn finite(text: &str) -> Result<f32, String> {
+    let value = number(text)?;
+    if value.is_finite() { Ok(value) } else { Err(format!("isovalue must be finite, not {value}")) }
+}
+
+fn spacing(text: &str) -> Result<f32, String> {
+    let value = number(text)?;
+    let is_sound = value > 0.0 && value.is_finite();
+    if is_sound { Ok(value) } else { Err(format!("spacing must be positive and finite, not {value:?}")) }
+}
+
+fn bounds(text: &str) -> Result<Bounds, String> {
+    let numbers = text.split(',').map(number).collect::<Result<Vec<f32>, _>>()?;
+    let [a, b, c, d, e, f] = numbers[..] else {
+        return Err(
+            "six numbers with commas between them: x,y,z of the smallest corner, then of the largest".into(),
+        );
+    };
+    for (axis, min, max) in [("x", a, d), ("y", b, e), ("z", c, f)] {
+        if !(min.is_finite() && max.is_finite() && min < max) {
+            return Err(format!(
+                "bounds along {axis} must be finite with min below max, not {min:?} to {max:?}"
+            ));
+        }
+    }
+    Ok(Bounds { min: Vec3::new(a, b, c), max: Vec3::new(d, e, f) })
+}
