@@ -98,8 +98,8 @@ pub enum MeshFieldError {
 /// number (Jacobson, Kavan & Sorkine-Hornung 2013), the share of all directions in which the surface is seen from
 /// behind, is above one half. It is computed without a sum over all triangles: a cap on each loop of open edges closes the
 /// surface, the whole number of that is counted along a ray, and the caps' solid angles are taken away again. Those are
-/// exact where the loops have up to 64 edges; where they have more, what is far away is expanded (Barill et al. 2018),
-/// with an error of the winding number below 1e-3. Across a hole there is no triangle, so there the value is not the
+/// exact where the caps have up to 64 triangles; where they have more, what is far away is expanded (Barill et al. 2018),
+/// and the winding number is less than 1e-3 off. Across a hole there is no triangle, so there the value is not the
 /// distance but goes through zero where the winding number is one half: a smooth sheet spans the hole. Where the
 /// winding number is within 1/4 of a whole number, everywhere but near holes, the value is the distance.
 ///
