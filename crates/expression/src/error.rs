@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::parser::function_names;
+
 /// Why text is no formula. Columns count characters from 1.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -23,7 +25,10 @@ pub enum ExpressionError {
         text: String,
     },
     /// A name without a meaning.
-    #[error("column {column}: `{name}` is not known; x, y, z, pi, tau, e and functions are")]
+    #[error(
+        "column {column}: `{name}` is not known; x, y, z, pi, tau and e are, and the functions {}",
+        function_names()
+    )]
     Name {
         /// Where.
         column: usize,
@@ -77,4 +82,33 @@ pub enum ExpressionError {
         /// The value.
         value: f32,
     },
+}
+
+/// How much of a formula is shown on either side of a column.
+const EXCERPT: usize = 30;
+
+impl ExpressionError {
+    /// Where it is wrong, if it is at one place.
+    pub fn column(&self) -> Option<usize> {
+        match *self {
+            Self::Character { column, .. }
+            | Self::Number { column, .. }
+            | Self::Name { column, .. }
+            | Self::Arguments { column, .. }
+            | Self::Unexpected { column, .. }
+            | Self::TooDeep { column, .. } => Some(column),
+            Self::TooLong { .. } | Self::TooComplex | Self::Constant { .. } => None,
+        }
+    }
+
+    /// The formula, for a message: what stands within 30 characters of the column, or else at the start, with `...` for what
+    /// is left out.
+    pub fn excerpt(&self, formula: &str) -> String {
+        let middle = self.column().unwrap_or(1) - 1;
+        let count = formula.chars().count();
+        let (first, end) = (middle.saturating_sub(EXCERPT), (middle + EXCERPT).min(count));
+        let shown: String = formula.chars().take(end).skip(first).collect();
+        let [before, after] = [first > 0, end < count].map(|is_cut| if is_cut { "..." } else { "" });
+        format!("{before}{shown}{after}")
+    }
 }

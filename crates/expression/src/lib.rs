@@ -33,13 +33,15 @@
 //! - Text that cannot be read is an [`ExpressionError`] with its column. Nothing panics, and no nesting overflows the
 //!   stack: 200 levels are the limit.
 //! - Values are computed in single precision by fidget's evaluator. Division by zero, roots and logarithms of negative
-//!   numbers mean what IEEE 754 says: infinity, or `NaN`, which an extraction takes for outside. But fidget simplifies
-//!   first: `0 * (1/x)` is 0 everywhere, and `x/x` is not simplified.
+//!   numbers mean what IEEE 754 says: infinity, or `NaN`, which an extraction takes for outside. So do parts of a formula
+//!   that have no variable: `0/0` is no number, and neither is a sum, difference, product or quotient with it.
 //! - Interval arithmetic bounds the values in a box, rounding included, so that blocks without surface are never sampled.
 //!   Where a formula is not a number in a box, nothing is known there, and all samples are taken.
 //!
 //! # Not guaranteed
 //!
+//! - fidget simplifies what has variables: 0 times anything and 0 divided by anything is 0, `0 * (1/x)` and `0 / x` even
+//!   where x is 0; `0 + v`, `v - 0`, `1 * v` and `v / 1` are `v`. `x/x` and `x - x` are not simplified.
 //! - `sin`, `cos`, `tan`, their inverses, `exp` and `ln` are those of the platform, so the last bit, and with it the
 //!   mesh's, may differ from machine to machine; not from thread to thread.
 

@@ -128,6 +128,9 @@ impl Parser<'_> {
     }
 
     fn binary(&mut self, sign: char, a: Node, b: Node) -> Result<Node, ExpressionError> {
+        if let Some(value) = self.folded(sign, a, b) {
+            return Ok(self.context.constant(value));
+        }
         sound(match sign {
             '+' => self.context.add(a, b),
             '-' => self.context.sub(a, b),
@@ -138,6 +141,24 @@ impl Parser<'_> {
         })
     }
 
+    /// What arithmetic makes of two constants, or of anything and what is no number. fidget would take 0 times whatever
+    /// for 0, and 0 divided by it.
+    fn folded(&self, sign: char, a: Node, b: Node) -> Option<f32> {
+        let (a, b) = (self.context.get_const(a).ok(), self.context.get_const(b).ok());
+        if sign != '^' && [a, b].into_iter().flatten().any(f32::is_nan) {
+            return Some(f32::NAN);
+        }
+        let (a, b) = a.zip(b)?;
+        match sign {
+            '+' => Some(a + b),
+            '-' => Some(a - b),
+            '*' => Some(a * b),
+            '/' => Some(a / b),
+            '%' => Some(a.rem_euclid(b)),
+            _ => None,
+        }
+    }
+
     /// A product where the exponent is a small whole number; a root where it is a half.
     fn power(&mut self, base: Node, exponent: Node) -> Result<Node, ExpressionError> {
         match self.context.get_const(exponent) {
@@ -145,19 +166,20 @@ impl Parser<'_> {
                 let (mut result, mut square, mut left) = (self.context.constant(1.0), base, n.abs() as u32);
                 while left > 0 {
                     if left & 1 == 1 {
-                        result = sound(self.context.mul(result, square))?;
+                        result = self.binary('*', result, square)?;
                     }
                     left >>= 1;
                     if left > 0 {
                         square = sound(self.context.square(square))?;
                     }
                 }
-                if n < 0.0 { sound(self.context.div(1.0, result)) } else { Ok(result) }
+                let one = self.context.constant(1.0);
+                if n < 0.0 { self.binary('/', one, result) } else { Ok(result) }
             }
             Ok(0.5) => sound(self.context.sqrt(base)),
             _ => {
                 let logarithm = sound(self.context.ln(base))?;
-                let product = sound(self.context.mul(logarithm, exponent))?;
+                let product = self.binary('*', logarithm, exponent)?;
                 sound(self.context.exp(product))
             }
         }
@@ -210,19 +232,19 @@ impl Parser<'_> {
                 let third = sound(c.div(logarithm, 3.0))?;
                 let root = sound(c.exp(third))?;
                 let sign = sound(c.compare(a, 0.0))?;
-                c.mul(sign, root)
+                return self.binary('*', sign, root).map(Ok);
             }
             ("atan2", &[y, x]) => c.atan2(y, x),
-            ("mod", &[a, b]) => c.modulo(a, b),
+            ("mod", &[a, b]) => return self.binary('%', a, b).map(Ok),
             ("pow", &[a, b]) => return self.power(a, b).map(Ok),
             ("clamp", &[v, low, high]) => {
                 let raised = sound(c.max(v, low))?;
                 c.min(raised, high)
             }
             ("mix", &[a, b, t]) => {
-                let difference = sound(c.sub(b, a))?;
-                let part = sound(c.mul(difference, t))?;
-                c.add(a, part)
+                let difference = self.binary('-', b, a)?;
+                let part = self.binary('*', difference, t)?;
+                return self.binary('+', a, part).map(Ok);
             }
             ("min" | "max", &[first, ref rest @ ..]) => {
                 let mut node = first;
@@ -232,12 +254,12 @@ impl Parser<'_> {
                 Ok(node)
             }
             ("length", &[_, ..]) => {
-                let mut sum = c.constant(0.0);
+                let mut sum = self.context.constant(0.0);
                 for &part in arguments {
-                    let square = sound(c.square(part))?;
-                    sum = sound(c.add(sum, square))?;
+                    let square = sound(self.context.square(part))?;
+                    sum = self.binary('+', sum, square)?;
                 }
-                c.sqrt(sum)
+                self.context.sqrt(sum)
             }
             _ => return Ok(Err(arity(name))),
         };
@@ -245,16 +267,28 @@ impl Parser<'_> {
     }
 }
 
+/// All functions, by how many arguments they take.
+const FUNCTIONS: [(&str, &[&str]); 4] = [
+    (
+        "one argument",
+        &[
+            "sqrt", "cbrt", "abs", "exp", "ln", "sin", "cos", "tan", "asin", "acos", "atan", "floor", "ceil",
+            "round", "sign", "square",
+        ],
+    ),
+    ("two arguments", &["atan2", "mod", "pow"]),
+    ("three arguments", &["clamp", "mix"]),
+    ("at least one argument", &["min", "max", "length"]),
+];
+
 /// How many arguments a function takes.
 fn arity(name: &str) -> Option<&'static str> {
-    Some(match name {
-        "sqrt" | "abs" | "exp" | "ln" | "sin" | "cos" | "tan" | "asin" | "acos" | "atan" | "floor"
-        | "ceil" | "round" | "square" | "sign" | "cbrt" => "one argument",
-        "atan2" | "mod" | "pow" => "two arguments",
-        "clamp" | "mix" => "three arguments",
-        "min" | "max" | "length" => "at least one argument",
-        _ => return None,
-    })
+    FUNCTIONS.iter().find(|(_, names)| names.contains(&name)).map(|(arity, _)| *arity)
+}
+
+/// For messages.
+pub(crate) fn function_names() -> String {
+    FUNCTIONS.iter().flat_map(|(_, names)| *names).copied().collect::<Vec<_>>().join(", ")
 }
 
 /// Every node is of this context, so the graph takes it.

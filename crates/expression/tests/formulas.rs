@@ -100,6 +100,12 @@ fn what_is_not_defined_is_no_number_and_no_panic() {
 
 #[test]
 fn errors_name_the_column_and_what_stands_there() {
+    let unknown = |what: &str| {
+        format!(
+            "{what} is not known; x, y, z, pi, tau and e are, and the functions sqrt, cbrt, abs, exp, ln, sin, cos, tan, \
+             asin, acos, atan, floor, ceil, round, sign, square, atan2, mod, pow, clamp, mix, min, max, length"
+        )
+    };
     for (text, want) in [
         ("", "column 1: the end where a number, a name or `(` belongs"),
         ("x +", "column 4: the end where a number, a name or `(` belongs"),
@@ -113,9 +119,9 @@ fn errors_name_the_column_and_what_stands_there() {
         ("x + 1.2.3", "column 5: `1.2.3` is not a finite number"),
         ("x + 1e99", "column 5: `1e99` is not a finite number"),
         ("x + .", "column 5: `.` is not a finite number"),
-        ("r - 1", "column 1: `r` is not known; x, y, z, pi, tau, e and functions are"),
-        ("sinh(x)", "column 1: `sinh` is not known; x, y, z, pi, tau, e and functions are"),
-        ("x + sqrt", "column 5: `sqrt` is not known; x, y, z, pi, tau, e and functions are"),
+        ("r - 1", &unknown("column 1: `r`")),
+        ("sinh(x)", &unknown("column 1: `sinh`")),
+        ("x + sqrt", &unknown("column 5: `sqrt`")),
         ("sqrt(x, y)", "column 1: `sqrt` takes one argument, not 2"),
         ("1 + min()", "column 5: `min` takes at least one argument, not 0"),
         ("min(x,)", "column 7: `)` where a number, a name or `(` belongs"),
@@ -125,12 +131,64 @@ fn errors_name_the_column_and_what_stands_there() {
         ("x - x + 0/0", "the formula is NaN everywhere; x, y or z must matter"),
         ("0*x", "the formula is 0 everywhere; x, y or z must matter"),
     ] {
+        assert_eq!(text.parse::<Expression>().unwrap_err().to_string(), want, "{text}");
+    }
+}
+
+#[test]
+fn parts_without_variables_mean_what_ieee_754_says() {
+    for text in [
+        "0/0",
+        "x + 0/0",
+        "0/0 - x",
+        "x * (0/0)",
+        "0 * (0/0)",
+        "(0/0) / x",
+        "0 * (1/0)",
+        "(1/0) - (1/0)",
+        "x % (0/0)",
+        "1 % 0",
+        "mod(0/0, x)",
+        "mix(0, 1/0, 0)",
+        "0/sqrt(-1)",
+        "length(x, y) + 0/0",
+        "(1/0) * 0",
+        "1^(1/0)",
+    ] {
         match text.parse::<Expression>() {
-            Err(error) => assert_eq!(error.to_string(), want, "{text}"),
-            // fidget need not see that x - x is nothing.
-            Ok(_) => assert_eq!(text, "x - x + 0/0"),
+            Err(ExpressionError::Constant { value }) => assert!(value.is_nan(), "{text}: {value}"),
+            other => panic!("{text}: {other:?}"),
         }
     }
+    for text in
+        ["min(x, 0/0)", "max(0/0, x)", "abs(0/0) + x", "length(x, 0/0)", "clamp(x, 0/0, 1)", "atan2(0/0, x)"]
+    {
+        let value = text.parse::<Expression>().map(|field| field.sample(Vec3::ONE));
+        assert!(!matches!(value, Ok(v) if !v.is_nan()), "{text}: {value:?}");
+    }
+    for (text, want) in [
+        ("x + 0*5", 1.0),
+        ("x + 1/(1/0)", 1.0),
+        ("x * (0 - 1)", -1.0),
+        ("x + 2^-1", 1.5),
+        ("x + 0^0", 2.0),
+        ("cbrt(0) + x", 1.0),
+    ] {
+        assert_eq!(at(text, 1.0, 0.0, 0.0), want, "{text}");
+    }
+}
+
+#[test]
+fn an_excerpt_of_a_long_formula_shows_the_place() {
+    let long = format!("{} + $ + {}", vec!["x"; 9000].join("+"), vec!["y"; 900].join("+"));
+    let error = long.parse::<Expression>().unwrap_err();
+    assert_eq!(error.column(), Some(18_003));
+    let excerpt = error.excerpt(&long);
+    assert_eq!(excerpt, "...x+x+x+x+x+x+x+x+x+x+x+x+x+x + $ + y+y+y+y+y+y+y+y+y+y+y+y+y+...");
+    assert_eq!("x + é".parse::<Expression>().unwrap_err().excerpt("x + é"), "x + é");
+    assert_eq!("x +".parse::<Expression>().unwrap_err().excerpt("x +"), "x +");
+    let endless = "x+".repeat(40_000);
+    assert_eq!(endless.parse::<Expression>().unwrap_err().excerpt(&endless).len(), 33);
 }
 
 #[test]

@@ -159,8 +159,8 @@ pub use chunks::{Chunk, ChunkError, ChunkExtractor, WeldError, weld_chunks};
 pub use distances::{DistanceError, distances};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
 pub use field::{
-    Asteroid, Beyond, Gyroid, Holes, Kept, MeshDistance, MeshFieldError, Negated, ScalarField, Sphere,
-    VolumeField, VolumeFieldError,
+    Asteroid, Beyond, Gyroid, Holes, InwardPart, Kept, MeshDistance, MeshFieldError, Negated, ScalarField,
+    Sphere, VolumeField, VolumeFieldError,
 };
 pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};

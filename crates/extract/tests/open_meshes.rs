@@ -54,6 +54,35 @@ fn winding_number(mesh: &TriangleMesh, p: DVec3) -> f64 {
     (0..mesh.triangles.len()).map(angle).sum::<f64>() / (4.0 * PI)
 }
 
+/// The unit ball, of `12 n n` triangles.
+fn ball(n: u32) -> TriangleMesh {
+    cube(Vec3::NEG_ONE, n).transformed(|p| p.normalize())
+}
+
+fn joined(parts: &[TriangleMesh]) -> TriangleMesh {
+    let mut all = TriangleMesh::default();
+    for part in parts {
+        all.triangles.extend(part.triangles.iter().map(|t| t.map(|v| v + all.positions.len() as u32)));
+        all.positions.extend(&part.positions);
+    }
+    all
+}
+
+/// The same numbers in 0..1 for the same `i`.
+fn number(i: u32) -> f32 {
+    (i.wrapping_mul(2_654_435_761).wrapping_add(12_345).wrapping_mul(2_246_822_519) >> 8) as f32
+        / (1u32 << 24) as f32
+}
+
+/// Every triangle for itself, each corner moved by up to `by` along each axis.
+fn shaken(mesh: &TriangleMesh, by: f32) -> TriangleMesh {
+    let corners = (0..mesh.triangles.len()).flat_map(|t| mesh.corners(t));
+    let shake = |i: u32| Vec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2)) * 2.0 - 1.0;
+    let positions: Vec<Vec3> = corners.zip(0..).map(|(p, i)| p + by * shake(i)).collect();
+    let triangles = (0..positions.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    TriangleMesh { positions, triangles, ..TriangleMesh::default() }
+}
+
 fn any(mesh: &TriangleMesh, holes: Holes) -> Result<MeshDistance, MeshFieldError> {
     MeshDistance::try_from_any(mesh, holes)
 }
@@ -92,6 +121,124 @@ fn a_sheet_spans_the_hole() {
         assert!((top - 1.0).abs() < 0.05, "{top}");
         assert!(surface.area() < 24.5, "{}", surface.area());
     }
+}
+
+/// The far parts of long loops are expanded, and there are thousands of loops in a soup.
+#[test]
+fn the_winding_number_is_near_the_sum_where_loops_are_many_or_long() {
+    let mut half = ball(16);
+    for (t, triangle) in half.triangles.iter_mut().enumerate() {
+        if number(t as u32) < 0.5 {
+            triangle.swap(0, 1);
+        }
+    }
+    for mesh in [box_without_lid(40), half, shaken(&ball(12), 1e-3), shaken(&ball(3), 0.2)] {
+        let field = MeshDistance::try_from_any(&mesh, Holes::Span);
+        let (mesh, field) = match field {
+            Ok(field) => (mesh, field),
+            Err(_) => (repair::flip(&mesh), any(&repair::flip(&mesh), Holes::Span).unwrap()),
+        };
+        for i in 0..500 {
+            let p = Vec3::new(number(7 * i), number(7 * i + 1), number(7 * i + 2)) * 3.0 - 1.5;
+            let (got, want) = (field.winding_number(p), winding_number(&mesh, p.as_dvec3()));
+            assert!((got - want).abs() < 1e-3, "{p}: {got}, not {want}");
+        }
+    }
+}
+
+#[test]
+fn a_mesh_with_holes_faces_outward_or_inward() {
+    let mut hemisphere = ball(8);
+    hemisphere.triangles.retain(|t| t.iter().map(|&v| hemisphere.positions[v as usize].z).sum::<f32>() > 0.0);
+    let far_away = |mesh: &TriangleMesh| mesh.transformed(|p| p + Vec3::new(-300.0, 500.0, 40.0));
+    for (mesh, inside) in [
+        (hemisphere.clone(), Vec3::Z * 0.5),
+        (shaken(&ball(6), 1e-6), Vec3::ZERO),
+        (shaken(&ball(6), 1e-2), Vec3::ZERO),
+        (box_without_lid(3), Vec3::ZERO),
+    ] {
+        for (mesh, inside) in
+            [(far_away(&mesh), inside + far_away(&mesh).positions[0] - mesh.positions[0]), (mesh, inside)]
+        {
+            let field = any(&mesh, Holes::Span).unwrap();
+            assert!(field.sample(inside) > 0.1, "{}", field.sample(inside));
+            let inward = any(&repair::flip(&mesh), Holes::Span).unwrap_err();
+            assert!(matches!(inward, MeshFieldError::InsideOut { volume } if volume < -0.1), "{inward}");
+        }
+    }
+    // A sheet has no inside, flat as it is or shaken by little.
+    let mut sheet = cube(Vec3::ZERO, 4);
+    sheet.triangles.truncate(32);
+    for mesh in [sheet.clone(), shaken(&sheet, 1e-7), sheet.transformed(|p| p + 7.0)] {
+        for mesh in [repair::flip(&mesh), mesh] {
+            assert!(matches!(any(&mesh, Holes::Span), Err(MeshFieldError::Flat { volume, area })
+                if volume.abs() < 1e-5 && (area - 4.0).abs() < 1e-3));
+        }
+    }
+    // And so has one with a back.
+    let both = mesh::weld(&joined(&[sheet.clone(), repair::flip(&sheet)]));
+    assert!(matches!(any(&both, Holes::Refuse), Err(MeshFieldError::Flat { .. })));
+}
+
+/// Samples on the walls of either box inside the other, and on a wall that two boxes share.
+#[test]
+fn inner_walls_do_not_tear_the_solid() {
+    let block = |low: Vec3, size: Vec3| cube(Vec3::ZERO, 2).transformed(|p| low + p * 0.5 * size);
+    let overlapping =
+        [block(Vec3::ZERO, Vec3::ONE), block(Vec3::new(0.5, 0.25, 0.25), Vec3::new(1.0, 0.5, 0.5))];
+    let touching = [block(Vec3::ZERO, Vec3::ONE), block(Vec3::X, Vec3::ONE)];
+    let corner = [block(Vec3::ZERO, Vec3::ONE), block(Vec3::splat(0.5), Vec3::ONE)];
+    let box_around = Bounds { min: Vec3::NEG_ONE, max: Vec3::splat(2.0) };
+    for (parts, volume) in [(overlapping, 1.125), (touching, 2.0), (corner, 1.875)] {
+        let field = any(&joined(&parts), Holes::Refuse).unwrap();
+        for arrangement in [Arrangement::SimpleCubic, Arrangement::BodyCentred] {
+            let lattice = Lattice::try_new(arrangement, box_around, 0.125).unwrap();
+            let surface =
+                extract(&field, &lattice, &ExtractSettings::default(), &Execution::default()).unwrap().mesh;
+            let report = topology(&surface);
+            assert!(report.is_closed_manifold(), "{report:?}");
+            assert_eq!((report.components, report.euler_characteristic), (1, 2), "{arrangement:?}");
+            assert!((surface.volume() - volume).abs() < 0.1, "{arrangement:?}: {}", surface.volume());
+        }
+        // The outer surface is at zero, and so is the seam where two outer surfaces meet.
+        assert_eq!(field.sample(Vec3::new(0.25, 0.0, 0.25)), 0.0);
+    }
+    let field =
+        any(&joined(&[block(Vec3::ZERO, Vec3::ONE), block(Vec3::splat(0.5), Vec3::ONE)]), Holes::Refuse)
+            .unwrap();
+    assert_eq!(field.sample(Vec3::new(1.0, 0.5, 0.75)), 0.0);
+    assert_eq!(field.sample(Vec3::new(0.5, 0.75, 0.75)), f32::MIN_POSITIVE);
+    // In a row as alone.
+    let mut row = [0.0; 17];
+    let x: Vec<f32> = (0..17).map(|i| 0.125 * i as f32 - 0.25).collect();
+    field.sample_row(&x, 0.75, 0.75, &mut row);
+    assert!(x.iter().zip(row).all(|(&x, value)| value == field.sample(Vec3::new(x, 0.75, 0.75))));
+}
+
+#[test]
+fn parts_that_face_inward_and_enclose_nothing_are_found() {
+    let at = |mesh: &TriangleMesh, x: f32, scale: f32| mesh.transformed(|p| p * scale + Vec3::X * x);
+    let (out, inward) = (ball(4), repair::flip(&ball(4)));
+    let mut open = at(&inward, 9.0, 1.0);
+    open.triangles.truncate(180);
+    let parts = [
+        at(&out, 0.0, 2.0),
+        // A cavity, an island in it, and a box that overlaps the ball.
+        at(&inward, 0.0, 1.0),
+        at(&out, 0.0, 0.5),
+        at(&out, 2.0, 0.7),
+        at(&inward, 5.0, 0.8),
+        open,
+    ];
+    let mesh = joined(&parts);
+    let found = any(&mesh, Holes::Span).unwrap().inward_parts(&mesh);
+    assert_eq!(
+        found.iter().map(|part| (part.part, part.parts, part.triangles)).collect::<Vec<_>>(),
+        [(4, 6, 192), (5, 6, 180)]
+    );
+    let bounds = found[0].bounds;
+    assert!((bounds.min.x - 4.2).abs() < 1e-5 && (bounds.max.x - 5.8).abs() < 1e-5, "{bounds:?}");
+    assert_eq!(any(&joined(&parts[..4]), Holes::Refuse).unwrap().inward_parts(&joined(&parts[..4])), []);
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::TriangleMesh;
 #[derive(Debug, Error)]
 pub enum ObjError {
     /// The input cannot be read.
-    #[error("cannot read the OBJ input: {0}")]
+    #[error(transparent)]
     Io(#[from] io::Error),
     /// A statement has too few values.
     #[error("line {line}: `{keyword}` has {got} values, needs at least {need}")]

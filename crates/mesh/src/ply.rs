@@ -13,7 +13,7 @@ use crate::TriangleMesh;
 #[derive(Debug, Error)]
 pub enum PlyError {
     /// The input cannot be read.
-    #[error("cannot read the PLY input: {0}")]
+    #[error(transparent)]
     Io(#[from] io::Error),
     /// The header breaks the format, or asks for something that is not supported.
     #[error("header line {line}: {reason}")]

@@ -55,25 +55,45 @@ pub fn drop_unused_vertices(mesh: &TriangleMesh) -> TriangleMesh {
     }
 }
 
+/// The component that each triangle belongs to, numbered from 0 as their first triangles come. Components are connected
+/// through shared vertices.
+///
+/// # Panics
+/// If a triangle's index is out of range.
+pub fn components(mesh: &TriangleMesh) -> Vec<u32> {
+    const NONE: u32 = u32::MAX;
+    let mut joined = DisjointSets::new(mesh.positions.len());
+    for &[a, b, c] in &mesh.triangles {
+        joined.join(a, b);
+        joined.join(a, c);
+    }
+    let mut numbers = vec![NONE; mesh.positions.len()];
+    let mut count = 0;
+    let mut number = |t: &[u32; 3]| {
+        let number = &mut numbers[joined.root(t[0]) as usize];
+        if *number == NONE {
+            *number = count;
+            count += 1;
+        }
+        *number
+    };
+    mesh.triangles.iter().map(&mut number).collect()
+}
+
 /// The component with the most triangles, the earliest of equals, without the vertices of the others. Components
 /// are connected through shared vertices.
 ///
 /// # Panics
 /// If a triangle's index is out of range.
 pub fn largest_component(mesh: &TriangleMesh) -> TriangleMesh {
-    let mut joined = DisjointSets::new(mesh.positions.len());
-    for &[a, b, c] in &mesh.triangles {
-        joined.join(a, b);
-        joined.join(a, c);
-    }
-    let roots: Vec<u32> = mesh.triangles.iter().map(|t| joined.root(t[0])).collect();
-    let mut sizes = vec![0u32; mesh.positions.len()];
-    for &root in &roots {
-        sizes[root as usize] += 1;
+    let numbers = components(mesh);
+    let mut sizes = vec![0u32; numbers.iter().max().map_or(0, |&last| last as usize + 1)];
+    for &number in &numbers {
+        sizes[number as usize] += 1;
     }
     // `max_by_key` keeps the last of equals, hence the reversal.
-    let largest = roots.iter().copied().rev().max_by_key(|&root| sizes[root as usize]);
-    let triangles = mesh.triangles.iter().zip(&roots).filter(|(_, root)| Some(**root) == largest);
+    let largest = numbers.iter().copied().rev().max_by_key(|&number| sizes[number as usize]);
+    let triangles = mesh.triangles.iter().zip(&numbers).filter(|(_, number)| Some(**number) == largest);
     drop_unused_vertices(&TriangleMesh { triangles: triangles.map(|(t, _)| *t).collect(), ..mesh.clone() })
 }
 

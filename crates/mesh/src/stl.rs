@@ -21,7 +21,7 @@ const TRIANGLE_BYTES: usize = 50;
 #[derive(Debug, Error)]
 pub enum StlError {
     /// The input cannot be read.
-    #[error("cannot read the STL input: {0}")]
+    #[error(transparent)]
     Io(#[from] io::Error),
     /// The file is neither text nor as long as its number of triangles says.
     #[error(

@@ -133,3 +133,24 @@ proptest! {
         }
     }
 }
+
+/// What the input reports, once, also for those who walk along the sources.
+#[test]
+fn an_input_that_fails_is_said_once() {
+    struct Broken;
+    impl std::io::Read for Broken {
+        fn read(&mut self, _: &mut [u8]) -> std::io::Result<usize> {
+            Err(std::io::Error::other("the wire is cut"))
+        }
+    }
+    for format in [mesh::MeshFormat::Obj, mesh::MeshFormat::Ply, mesh::MeshFormat::Stl] {
+        let error = format.read(Broken).unwrap_err();
+        let mut chain = error.to_string();
+        let mut source = std::error::Error::source(&error);
+        while let Some(next) = source {
+            chain.push_str(&format!(": {next}"));
+            source = next.source();
+        }
+        assert_eq!(chain, "the wire is cut");
+    }
+}

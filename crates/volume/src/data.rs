@@ -69,6 +69,13 @@ impl SampleKind {
         }
     }
 
+    /// Whether the sample is finite and its value is not.
+    fn is_too_large(self, value: f32, b: &[u8]) -> bool {
+        self == Self::F64
+            && value.is_infinite()
+            && f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]]).is_finite()
+    }
+
     fn parse(self, token: &str) -> Option<f32> {
         match self {
             Self::I8 => token.parse::<i8>().ok().map(f32::from),
@@ -150,6 +157,7 @@ fn binary(mut input: impl Read, layout: &Layout) -> Result<Vec<f32>, Problem> {
     };
     let mut values = Vec::new();
     let mut block = vec![0; BLOCK];
+    let mut too_large = 0;
     let mut left = wanted;
     while left > 0 {
         let asked = left.min(BLOCK as u64) as usize;
@@ -159,7 +167,9 @@ fn binary(mut input: impl Read, layout: &Layout) -> Result<Vec<f32>, Problem> {
             if layout.big_endian {
                 sample.reverse();
             }
-            values.push(layout.kind.value(sample));
+            let value = layout.kind.value(sample);
+            too_large += u64::from(layout.kind.is_too_large(value, sample));
+            values.push(value);
         }
         if got < asked {
             return Err(Problem::Truncated { got: values.len() as u64, wanted: layout.samples });
@@ -169,7 +179,12 @@ fn binary(mut input: impl Read, layout: &Layout) -> Result<Vec<f32>, Problem> {
     if fill(input, &mut block[..1])? > 0 {
         return Err(Problem::Excess { wanted: layout.samples });
     }
-    Ok(values)
+    none_too_large(too_large, values)
+}
+
+/// The values, if none was finite in the file only.
+fn none_too_large(count: u64, values: Vec<f32>) -> Result<Vec<f32>, Problem> {
+    if count == 0 { Ok(values) } else { Err(Problem::TooLarge { count, samples: values.len() as u64 }) }
 }
 
 /// Grows with what is there: what a header claims may be a lie.
@@ -245,6 +260,7 @@ const TOKEN_LIMIT: usize = 400;
 
 fn text(mut input: impl BufRead, layout: &Layout) -> Result<Vec<f32>, Problem> {
     let mut values = Vec::new();
+    let mut too_large = 0;
     let mut token = Vec::new();
     loop {
         let byte = input.fill_buf()?.first().copied();
@@ -263,6 +279,8 @@ fn text(mut input: impl BufRead, layout: &Layout) -> Result<Vec<f32>, Problem> {
                 let sample = values.len() as u64;
                 Problem::NotANumber { sample, token: shortened(&word), kind: layout.kind.name() }
             })?;
+            // Infinity is written in letters.
+            too_large += u64::from(value.is_infinite() && word.contains(|c: char| c.is_ascii_digit()));
             reserve(&mut values, 1, layout.samples)?;
             values.push(value);
             token.clear();
@@ -271,7 +289,7 @@ fn text(mut input: impl BufRead, layout: &Layout) -> Result<Vec<f32>, Problem> {
             let got = values.len() as u64;
             let is_whole = got == layout.samples;
             return if is_whole {
-                Ok(values)
+                none_too_large(too_large, values)
             } else {
                 Err(Problem::Truncated { got, wanted: layout.samples })
             };

@@ -11,8 +11,7 @@ use thiserror::Error;
 pub struct VolumeError {
     /// The header or the data file.
     pub file: PathBuf,
-    /// What is wrong with it.
-    #[source]
+    /// What is wrong with it. It is in the message, hence not a source of its own.
     pub problem: Box<Problem>,
 }
 
@@ -21,7 +20,7 @@ pub struct VolumeError {
 #[non_exhaustive]
 pub enum Problem {
     /// The file cannot be opened or read. Compressed data that is damaged ends up here as well.
-    #[error("{0}")]
+    #[error(transparent)]
     Io(#[from] io::Error),
     /// Not a regular file: a folder, a pipe, a device.
     #[error("not a file")]
@@ -105,6 +104,14 @@ pub enum Problem {
         /// The type.
         kind: &'static str,
     },
+    /// Finite numbers that are infinite in single precision.
+    #[error("{count} of {samples} samples are beyond {:e}, the largest number of single precision", f32::MAX)]
+    TooLarge {
+        /// How many.
+        count: u64,
+        /// Of how many.
+        samples: u64,
+    },
     /// Memory that is not to be had.
     #[error("no memory for {samples} samples")]
     OutOfMemory {
@@ -112,7 +119,7 @@ pub enum Problem {
         samples: u64,
     },
     /// A TOML header that is none.
-    #[error("{0}")]
+    #[error(transparent)]
     Toml(#[from] toml::de::Error),
 }
 

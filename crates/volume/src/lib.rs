@@ -8,12 +8,20 @@
 //! | `.toml`, `.raw` | raw data with a [TOML header](RawHeader) | raw, gzip |
 //!
 //! Samples may be `i8`, `u8`, `i16`, `u16`, `i32`, `u32`, `f32` or `f64`, in either byte order; in memory they are `f32`
-//! (32-bit whole numbers beyond 2^24 and doubles are rounded to the nearest).
+//! (32-bit whole numbers beyond 2^24 and doubles are rounded to the nearest; doubles that would be infinite are an error).
 //!
-//! ```no_run
-//! let volume = volume::read("head.nrrd".as_ref(), volume::NO_LIMIT)?;
-//! println!("{:?} samples from {:?}, steps {:?}", volume.counts, volume.origin, volume.steps);
-//! # Ok::<(), volume::VolumeError>(())
+//! ```
+//! # let folder = tempfile::tempdir()?;
+//! # let path = folder.path().join("block.nrrd");
+//! let header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 3 2 2\nspacings: 1 1 2.5\nencoding: text\n";
+//! std::fs::write(&path, format!("{header}\n0 10 20  1 11 21\n2 12 22  3 13 23\n"))?;
+//!
+//! let volume = volume::read(&path, volume::NO_LIMIT)?;
+//! assert_eq!(volume.counts, [3, 2, 2]);
+//! assert_eq!(volume.steps[2], [0.0, 0.0, 2.5]);
+//! // The sample (2, 0, 1).
+//! assert_eq!(volume.values[2 + 3 * (0 + 2 * 1)], 22.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # Guaranteed
@@ -24,6 +32,8 @@
 //! - Bad input is a [`VolumeError`] that names the file and the line. Nothing panics. Memory grows with the data that is
 //!   there, not with what a header claims, and never beyond the limit that is given.
 //! - Data beyond what the header claims is an error, like data that is missing.
+//! - A MetaImage key that would change values or places and is not supported is an error: a slope or an offset from
+//!   elements to intensities other than 1 and 0, and a centre of rotation away from the origin where the axes are turned.
 //!
 //! # Not guaranteed
 //!

@@ -18,6 +18,8 @@ pub(crate) fn read(path: &Path, limit_bytes: u64) -> Result<Volume, VolumeError>
     }
 }
 
+const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
 struct Fields {
     dimensions: Option<usize>,
     sizes: Option<Vec<u64>>,
@@ -27,6 +29,8 @@ struct Fields {
     origin: [f64; 3],
     /// Row after row, each the direction of an axis.
     turn: [[f64; 3]; 3],
+    /// What it is turned about, as far as the header says.
+    turn_centre: [f64; 3],
     is_text: bool,
     big_endian: bool,
     is_compressed: bool,
@@ -37,7 +41,6 @@ struct Fields {
 impl Fields {
     /// Reads up to `ElementDataFile`, which is the last.
     fn read<R: std::io::BufRead>(lines: &mut Lines<R>) -> Result<Self, Problem> {
-        let identity = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let mut fields = Self {
             dimensions: None,
             sizes: None,
@@ -45,7 +48,8 @@ impl Fields {
             spacing: None,
             size: None,
             origin: [0.0; 3],
-            turn: identity,
+            turn: IDENTITY,
+            turn_centre: [0.0; 3],
             is_text: false,
             big_endian: false,
             is_compressed: false,
@@ -85,6 +89,14 @@ impl Fields {
             "ElementNumberOfChannels" if value != "1" => {
                 return Err(Problem::unsupported("ElementNumberOfChannels", value, "1 is"));
             }
+            // Programs do not agree on whether the samples or what is shown of them are meant.
+            "ElementToIntensityFunctionSlope" if numbers::<f64>(line, value)? != [1.0] => {
+                return Err(Problem::unsupported("ElementToIntensityFunctionSlope", value, "1 is"));
+            }
+            "ElementToIntensityFunctionOffset" if numbers::<f64>(line, value)? != [0.0] => {
+                return Err(Problem::unsupported("ElementToIntensityFunctionOffset", value, "0 is"));
+            }
+            "CenterOfRotation" => self.turn_centre = three(line, value)?,
             "ElementSpacing" => self.spacing = Some(three(line, value)?),
             "ElementSize" => self.size = Some(three(line, value)?),
             "Offset" | "Position" | "Origin" => self.origin = three(line, value)?,
@@ -129,6 +141,11 @@ impl Fields {
         };
         let samples = sample_count(sizes, limit_bytes)?;
         let counts = [x as usize, y as usize, z as usize];
+        // Nor on whether the offset is that of the first sample or of the centre then.
+        if self.turn != IDENTITY && self.turn_centre != [0.0; 3] {
+            let value = format!("{:?}", self.turn_centre);
+            return Err(Problem::unsupported("CenterOfRotation", &value, "0 0 0 with turned axes is"));
+        }
         let spacing = self.spacing.or(self.size).unwrap_or([1.0; 3]);
         let mut steps = self.turn;
         for (step, spacing) in steps.iter_mut().zip(spacing) {

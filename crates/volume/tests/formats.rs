@@ -220,6 +220,23 @@ fn errors_name_the_file_the_line_and_the_value() {
             format!("{meta}ElementNumberOfChannels = 3\n"),
             "a.mha: ElementNumberOfChannels `3` is not supported; 1 is",
         ),
+        (
+            "a.mha",
+            format!("{meta}ElementToIntensityFunctionSlope = 2\n"),
+            "a.mha: ElementToIntensityFunctionSlope `2` is not supported; 1 is",
+        ),
+        (
+            "a.mha",
+            format!("{meta}ElementToIntensityFunctionOffset = -1024\n"),
+            "a.mha: ElementToIntensityFunctionOffset `-1024` is not supported; 0 is",
+        ),
+        (
+            "a.mha",
+            format!(
+                "{meta}TransformMatrix = 0 1 0 -1 0 0 0 0 1\nCenterOfRotation = 0 0 5\nElementDataFile = LOCAL\n"
+            ),
+            "a.mha: CenterOfRotation `[0.0, 0.0, 5.0]` is not supported; 0 0 0 with turned axes is",
+        ),
         ("a.mha", format!("{meta}CompressedData = maybe\n"), "a.mha: line 4: `maybe` is not True or False"),
         ("a.mha", format!("{meta}ElementSpacing = 1 1\n"), "a.mha: line 4: 2 numbers where 3 belong"),
         (
@@ -240,6 +257,69 @@ fn errors_name_the_file_the_line_and_the_value() {
     folder.write("a.toml", "size = [1, 2, 3]\ntype = 'u8'\nspaces = 3\n");
     assert!(folder.refusal("a.toml").contains("unknown field `spaces`"), "{}", folder.refusal("a.toml"));
     assert!(matches!(*volume::read(folder.as_path(), 1).unwrap_err().problem, Problem::Ending));
+}
+
+/// Each fact once, also for those who walk along the sources.
+#[test]
+fn errors_say_nothing_twice() {
+    let folder = Folder::new();
+    folder.write("bad.mha", "NDims = 3\nDimSize = 4 3 2\nElementType = MET_UCHAR\nCompressedData = True\nElementDataFile = LOCAL\nabc");
+    folder.write("bad.toml", "size = [1, 2, 3]\ntype = 'u8'\nspaces = 3\n");
+    for (name, fact) in [
+        ("none.nrrd", "No such file"),
+        ("a.txt", "known endings"),
+        ("bad.mha", "corrupt deflate stream"),
+        ("bad.toml", "unknown field"),
+    ] {
+        let error = folder.read(name).unwrap_err();
+        let mut chain = error.to_string();
+        let mut source = std::error::Error::source(&error);
+        while let Some(next) = source {
+            chain.push_str(&format!(": {next}"));
+            source = next.source();
+        }
+        assert_eq!((chain.matches(fact).count(), chain.matches(name).count()), (1, 1), "{chain}");
+    }
+}
+
+/// As they stand in the headers that ITK writes.
+#[test]
+fn keys_that_change_nothing_are_passed_over() {
+    let folder = Folder::new();
+    let header = meta_header("u8", "raw", false)
+        .replace("Offset", "CenterOfRotation = 0 0 0\nAnatomicalOrientation = RAI\nOffset");
+    let slope = "ElementToIntensityFunctionSlope = 1.0\nElementToIntensityFunctionOffset = 0\n";
+    let all = [format!("{header}{slope}ElementDataFile = LOCAL\n").into_bytes(), bytes("u8", false)].concat();
+    folder.write("a.mha", all);
+    assert_eq!(folder.read("a.mha").unwrap(), wanted("u8"));
+    let straight = "NDims = 3\nDimSize = 1 2 1\nElementType = MET_UCHAR\nCenterOfRotation = 1 2 3\nElementDataFile = LOCAL\nab";
+    folder.write("b.mha", straight);
+    assert_eq!(folder.read("b.mha").unwrap().values, [97.0, 98.0]);
+}
+
+#[test]
+fn doubles_beyond_single_precision_are_counted() {
+    let folder = Folder::new();
+    let header = |kind, encoding| {
+        format!(
+            "NRRD0004\ntype: {kind}\ndimension: 3\nsizes: 2 2 2\nendian: little\nencoding: {encoding}\n\n"
+        )
+    };
+    let numbers = [0.0, 1e300, f64::INFINITY, -1e39, f64::NAN, 3.4e38, f64::NEG_INFINITY, 1e-300];
+    let data = numbers.map(f64::to_le_bytes).concat();
+    folder.write("a.nrrd", [header("double", "raw").as_bytes(), &data].concat());
+    for kind in ["double", "float"] {
+        let name = format!("{kind}.nrrd");
+        folder.write(&name, format!("{}0 1e300 inf -1e39 NaN 3.4e38 -infinity 1e-300", header(kind, "text")));
+    }
+    for name in ["a.nrrd", "double.nrrd", "float.nrrd"] {
+        let want =
+            format!("{name}: 2 of 8 samples are beyond 3.4028235e38, the largest number of single precision");
+        assert_eq!(folder.refusal(name), want);
+    }
+    // Infinity itself is a value.
+    folder.write("b.nrrd", format!("{}0 1 inf 2 NaN 3.4e38 -inf 1", header("double", "text")));
+    assert_eq!(folder.read("b.nrrd").unwrap().values[2], f32::INFINITY);
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! The signed distance to a triangle mesh.
 
 mod caps;
+mod parts;
+mod solid_angles;
 mod winding;
 
 use glam::{DVec3, Vec3};
@@ -9,7 +11,10 @@ use mesh::topology::topology;
 use mesh::{Bounds, MeshError, NearestTriangles, TriangleMesh, is_sound, used_vertices};
 use thiserror::Error;
 
+pub use self::parts::InwardPart;
+
 use self::caps::Caps;
+use self::parts::Enclosed;
 use self::winding::WindingColumns;
 use super::{SAFE, ScalarField};
 
@@ -56,6 +61,16 @@ pub enum MeshFieldError {
         /// How far the ring reaches from there.
         radius: f32,
     },
+    /// The surface is as good as flat, so that neither side is inside.
+    #[error(
+        "the mesh encloses a volume of {volume} with an area of {area}: as good as nothing, so that no side is inside"
+    )]
+    Flat {
+        /// The signed volume.
+        volume: f64,
+        /// The area of all triangles.
+        area: f64,
+    },
     /// The triangles face inward, so that inside and outside would be swapped.
     #[error("the mesh encloses a volume of {volume}; it must be positive, with triangles that face outward")]
     InsideOut {
@@ -71,16 +86,22 @@ pub enum MeshFieldError {
 /// distance and the size of the nearest triangles). The sign comes from a different computation altogether: the
 /// winding number of the surface around the point, a whole number counted along a ray, inside where it is
 /// positive. Normals at the nearest point, the usual shortcut, give a wrong sign where rounding picks the wrong one
-/// of several nearest triangles, and a single wrong sign is a bubble in the isosurface. Where a solid overlaps
-/// itself, the overlap is inside, and the distance there is still that to the nearest triangle.
+/// of several nearest triangles, and a single wrong sign is a bubble in the isosurface.
+///
+/// Where a solid overlaps itself, the overlap is inside, and the distance there is still that to the nearest triangle,
+/// which may be an inner wall. On such a wall, with inside all round, the value is not zero but the smallest normal
+/// number, so that the isovalue 0 gives the union of all parts, walls or not, and so does a negative isovalue, made thicker.
+/// An isovalue `d > 0` takes what lies within `d` of an inner wall away too: it gives each part and each overlap made
+/// thinner, apart from one another.
 ///
 /// A surface with holes has a sign as well, if it is asked for ([`Holes::Span`]): inside is where the generalised winding
 /// number (Jacobson, Kavan & Sorkine-Hornung 2013), the share of all directions in which the surface is seen from
-/// behind, is above one half. It is computed exactly, to rounding, and without a sum over all triangles: a cone over
-/// each ring of open edges closes the surface, the whole number of that is counted along a ray, and the cones' solid
-/// angles are taken away again. Across a hole there is no triangle, so there the value is not the distance
-/// but goes continuously through zero where the winding number is one half: a smooth sheet spans the hole. Where
-/// the winding number is within 1/4 of a whole number, everywhere but near holes, the value is the distance.
+/// behind, is above one half. It is computed without a sum over all triangles: a cap on each loop of open edges closes the
+/// surface, the whole number of that is counted along a ray, and the caps' solid angles are taken away again. Those are
+/// exact where the caps have up to 64 triangles; where they have more, what is far away is expanded (Barill et al. 2018),
+/// and the winding number is less than 1e-3 off. Across a hole there is no triangle, so there the value is not the
+/// distance but goes through zero where the winding number is one half: a smooth sheet spans the hole. Where the
+/// winding number is within 1/4 of a whole number, everywhere but near holes, the value is the distance.
 ///
 /// Every call computes from scratch: the value at a point is the same on any thread and after any other point.
 ///
@@ -91,6 +112,8 @@ pub struct MeshDistance {
     nearest: NearestTriangles,
     winding: WindingColumns,
     caps: Caps,
+    /// How far beside a point on the surface its sides are looked for.
+    aside: f32,
 }
 
 /// What to do with a mesh that is not closed.
@@ -121,11 +144,17 @@ impl MeshDistance {
     /// no harm. Otherwise `holes` says what comes of it. Two triangles side by side that face opposite ways make a hole
     /// too: their common edge is run twice one way. Only the vertices' numbers say which triangles are neighbours;
     /// [`mesh::weld`] first joins those at one place. A part that faces inward is a cavity if another is round it, and
-    /// nothing at all if not.
+    /// nothing at all if not ([`inward_parts`](Self::inward_parts) finds those).
+    ///
+    /// The mesh as a whole has to face outward: the signed volume between its triangles and their common centre, the mean
+    /// of their area, must be positive. That is the enclosed volume if the mesh is closed, wherever the centre is, and still
+    /// has its sign if there are holes, even if no two triangles hang together.
     ///
     /// # Errors
     /// If `mesh` has no proper triangle or a bad index or coordinate; [`MeshFieldError::Open`];
-    /// [`MeshFieldError::InsideOut`] if all in all it faces inward, its holes closed by cones ([`mesh::repair::flip`] turns it).
+    /// [`MeshFieldError::InsideOut`] if that volume is negative ([`mesh::repair::flip`] turns the mesh);
+    /// [`MeshFieldError::Flat`] if it is less, either way, than the area to the power 3/2 times 1e-12, or 1e-6 where there
+    /// are holes.
     pub fn try_from_any(mesh: &TriangleMesh, holes: Holes) -> Result<Self, MeshFieldError> {
         used_vertices(mesh)?;
         let is_proper = |&&[a, b, c]: &&[u32; 3]| a != b && b != c && c != a;
@@ -136,17 +165,24 @@ impl MeshDistance {
         }
         let caps = Caps::of(&mesh);
         if let (Holes::Refuse, Some(open)) = (holes, caps.open()) {
-            return Err(open);
+            return Err(open.clone());
         }
-        let volume = mesh.volume() + caps.volume();
+        let enclosed = Enclosed::by((0..mesh.triangles.len()).map(|t| mesh.corners(t)));
+        let Enclosed { volume, area } = enclosed;
+        if enclosed.is_flat(if caps.is_empty() { 1e-12 } else { 1e-6 }) {
+            return Err(MeshFieldError::Flat { volume, area });
+        }
         if volume > 0.0 { Ok(Self::of(&mesh, caps)) } else { Err(MeshFieldError::InsideOut { volume }) }
     }
 
     fn of(mesh: &TriangleMesh, caps: Caps) -> Self {
         let mut triangles: Vec<[Vec3; 3]> = (0..mesh.triangles.len()).map(|t| mesh.corners(t)).collect();
         let nearest = NearestTriangles::new(&triangles);
+        let farthest = triangles.iter().flatten().map(|p| p.abs().max_element()).fold(0.0, f32::max);
+        // Well beyond what a point is moved by where there are holes.
+        let aside = (1e-6 * farthest).max(if caps.is_empty() { 0.0 } else { 2e-5 * caps.size });
         triangles.extend(caps.triangles());
-        Self { nearest, winding: WindingColumns::new(triangles), caps }
+        Self { nearest, winding: WindingColumns::new(triangles), caps, aside }
     }
 
     /// The winding number of the surface around `p`: 0 outside, 1 inside, 2 where the solid overlaps itself, and
@@ -160,19 +196,38 @@ impl MeshDistance {
         f64::from(self.winding.at(beside)) - self.caps.share(beside)
     }
 
+    /// Whether `p`, which is on the surface, is inside on all sides: on an inner wall. Looks at the eight octants, in which
+    /// walls along the axes meet, and along the axes.
+    fn is_within(&self, p: Vec3) -> bool {
+        let is_inside = |q: Vec3| match self.caps.cannot_tell(q) {
+            true => self.winding.at(q) > 0,
+            false => self.winding_number(q) > 0.5,
+        };
+        let sides = (0..27).map(|i| Vec3::new((i % 3) as f32, (i / 3 % 3) as f32, (i / 9) as f32) - 1.0);
+        sides
+            .filter(|side| [1.0, 3.0].contains(&side.length_squared()))
+            .all(|side| is_inside(p + side * self.aside))
+    }
+
+    /// The value at `p`, on which side of the nearest triangle it is.
+    fn on_side(&self, p: Vec3, distance: f32, is_inside: impl FnOnce() -> bool) -> f32 {
+        if distance == 0.0 {
+            return if self.is_within(p) { f32::MIN_POSITIVE } else { 0.0 };
+        }
+        if is_inside() { distance } else { -distance }
+    }
+
     /// The value at `p`, whose distance is known.
     fn signed(&self, p: Vec3, distance: f32) -> f32 {
-        if self.caps.cannot_tell(p) {
-            return if self.winding.at(p) > 0 { distance } else { -distance };
+        if distance == 0.0 || self.caps.cannot_tell(p) {
+            return self.on_side(p, distance, || self.winding.at(p) > 0);
         }
         let over = (self.winding_number(p) - 0.5) as f32;
         // Zero where the surface spans a hole, and no limit where the winding number is as good as whole.
         let certainty = over.abs() / (0.25 - over.abs()).max(0.0);
         distance.min(certainty * self.caps.size).copysign(over)
     }
-}
 
-impl MeshDistance {
     /// The value at `p`. The search starts where another ended, from the distance that the nearby value leaves possible,
     /// and the side is known where no surface can be between.
     fn sample_from(&self, p: Vec3, before: Option<(Vec3, f32)>, from: &mut u32) -> f32 {
@@ -185,11 +240,10 @@ impl MeshDistance {
             (value.abs() + p.distance(q)) * SAFE + 1e-6 * p.abs().max_element()
         });
         let distance = self.nearest.distance_from(p, limit, from);
-        let is_inside = match before {
+        self.on_side(p, distance, || match before {
             Some((q, value)) if p.distance(q) * SAFE < value.abs() => value > 0.0,
             _ => self.winding.at(p) > 0,
-        };
-        if is_inside { distance } else { -distance }
+        })
     }
 }
 

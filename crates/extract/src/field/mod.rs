@@ -11,7 +11,7 @@ mod volume;
 
 pub use asteroid::Asteroid;
 pub use gyroid::Gyroid;
-pub use mesh_distance::{Holes, MeshDistance, MeshFieldError};
+pub use mesh_distance::{Holes, InwardPart, MeshDistance, MeshFieldError};
 pub use negated::Negated;
 pub use sphere::Sphere;
 pub use volume::{Beyond, VolumeField, VolumeFieldError};

@@ -36,6 +36,12 @@ pub enum VolumeFieldError {
         /// How many samples there are.
         samples: usize,
     },
+    /// An axis has one sample, so that there is nothing between samples and the volume is flat.
+    #[error("{counts:?} samples along the axes; there must be two or more along each, or the volume is flat")]
+    Flat {
+        /// As given.
+        counts: [usize; 3],
+    },
     /// The steps from sample to sample are not finite or span no space.
     #[error("the steps {steps:?} from sample to sample, from {origin:?}, span no space")]
     Steps {
@@ -56,8 +62,9 @@ pub enum VolumeFieldError {
 /// at a sample the sample. Inside is what is brighter than the isovalue.
 ///
 /// The grid may be turned, mirrored and sheared; it is sampled in the space its steps are in, so that triangles
-/// always face outward there. [`Beyond`] says what is outside the volume. Next to a sample that is `NaN` or infinite
-/// the value is `NaN`, which counts as outside.
+/// always face outward there. [`Beyond`] says what is outside the volume. Between a sample that is `NaN` or infinite and
+/// its neighbours the value is `NaN`, which counts as outside; at the neighbours it is theirs, on all sides alike, as far
+/// as single-precision coordinates can tell that they are met.
 ///
 /// Blocks whose samples are all on one side are never sampled: a tree keeps the range of the samples.
 #[derive(Debug, Clone)]
@@ -68,6 +75,8 @@ pub struct VolumeField {
     steps: DMat3,
     to_index: DMat3,
     beyond: Beyond,
+    /// The least and the greatest sample that is finite.
+    value_range: (f32, f32),
     /// Change of the value for each step beyond the volume; positive.
     fall: f32,
     ranges: Ranges,
@@ -90,6 +99,9 @@ impl VolumeField {
         if product != Some(values.len()) || values.is_empty() {
             return Err(VolumeFieldError::Counts { counts, samples: values.len() });
         }
+        if counts.contains(&1) {
+            return Err(VolumeFieldError::Flat { counts });
+        }
         let matrix = DMat3::from_cols_array_2d(&steps);
         let lengths = matrix.x_axis.length() * matrix.y_axis.length() * matrix.z_axis.length();
         let start = DVec3::from_array(origin);
@@ -106,7 +118,8 @@ impl VolumeField {
         let ranges =
             Ranges::new(counts, &values).map_err(|_: TryReserveError| VolumeFieldError::OutOfMemory)?;
         let fall = if high > low { (high - low).min(f32::MAX) } else { 1.0 };
-        Ok(Self { counts, values, origin: start, steps: matrix, to_index, beyond, fall, ranges })
+        let value_range = (low, high);
+        Ok(Self { counts, values, origin: start, steps: matrix, to_index, beyond, value_range, fall, ranges })
     }
 
     /// The same with something else beyond the outermost samples.
@@ -140,46 +153,80 @@ impl VolumeField {
 
     /// The smallest and the largest sample; those that are not finite aside.
     pub fn value_range(&self) -> (f32, f32) {
-        let finite = self.values.iter().copied().filter(|v| v.is_finite());
-        finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)))
+        self.value_range
     }
 
-    fn interpolated(&self, index: DVec3) -> f32 {
-        let (mut first, mut part, mut next) = ([0; 3], [0.0f32; 3], [0; 3]);
-        let strides = [1, self.counts[0], self.counts[0] * self.counts[1]];
-        for k in 0..3 {
-            let last = self.counts[k] - 1;
-            first[k] = (index[k] as usize).min(last.saturating_sub(1));
-            part[k] = (index[k] - first[k] as f64) as f32;
-            // An axis with one sample goes nowhere.
-            next[k] = if last == 0 { 0 } else { strides[k] };
-        }
-        let at = first[0] + first[1] * strides[1] + first[2] * strides[2];
-        let along_x = |at: usize| between(self.values[at], self.values[at + next[0]], part[0]);
-        let along_y = |at: usize| between(along_x(at), along_x(at + next[1]), part[1]);
-        between(along_y(at), along_y(at + next[2]), part[2])
-    }
-}
-
-fn between(a: f32, b: f32, part: f32) -> f32 {
-    a + (b - a) * part
-}
-
-impl ScalarField for VolumeField {
-    fn sample(&self, p: Vec3) -> f32 {
+    /// The value at `p`, with the one at the nearest point of the volume, given in steps.
+    fn value(&self, p: Vec3, interpolated: impl Fn(&Self, DVec3) -> f32) -> f32 {
         let index = self.to_index * (p.as_dvec3() - self.origin);
         if !index.is_finite() {
             return f32::NAN;
         }
         let last = DVec3::from_array(self.counts.map(|n| (n - 1) as f64));
         let nearest = index.clamp(DVec3::ZERO, last);
-        let value = self.interpolated(nearest);
+        let value = interpolated(self, nearest);
         let away = self.fall * (index - nearest).abs().max_element() as f32;
         match self.beyond {
             Beyond::Continued => value,
             Beyond::Falling => value - away,
             Beyond::Rising => value + away,
         }
+    }
+
+    fn interpolated(&self, index: DVec3) -> f32 {
+        let (mut first, mut part) = ([0; 3], [0.0f32; 3]);
+        for k in 0..3 {
+            first[k] = (index[k] as usize).min(self.counts[k] - 2);
+            part[k] = (index[k] - first[k] as f64) as f32;
+        }
+        let [along, up, back] = self.strides();
+        let at = first[0] + first[1] * up + first[2] * back;
+        let between = |a: f32, b: f32, part: f32| a + (b - a) * part;
+        let along_x = |at: usize| between(self.values[at], self.values[at + along], part[0]);
+        let along_y = |at: usize| between(along_x(at), along_x(at + up), part[1]);
+        between(along_y(at), along_y(at + back), part[2])
+    }
+
+    /// The value at `p`, which is next to a sample that is not finite, or to very different ones. On a plane, an edge or a
+    /// corner of a cell only the samples there count.
+    #[cold]
+    fn value_with_care(&self, p: Vec3) -> f32 {
+        // A few units in the last place of the coordinates, in steps.
+        let coordinates = 2.5e-7 * (p.as_dvec3().abs() + self.origin.abs());
+        let slack: [f64; 3] = std::array::from_fn(|k| self.to_index.row(k).abs().dot(coordinates));
+        let strides = self.strides();
+        self.value(p, |_, index| {
+            // Samples, and the weight of each.
+            let (mut corners, mut count) = ([(0, 1.0); 8], 1);
+            for k in 0..3 {
+                let met = index[k].round();
+                if (index[k] - met).abs() <= slack[k] {
+                    corners[..count].iter_mut().for_each(|corner| corner.0 += met as usize * strides[k]);
+                    continue;
+                }
+                let (first, part) = (index[k] as usize * strides[k], index[k].fract());
+                for i in 0..count {
+                    let (at, weight) = corners[i];
+                    corners[i] = (at + first, weight * (1.0 - part));
+                    corners[count + i] = (at + first + strides[k], weight * part);
+                }
+                count *= 2;
+            }
+            let value: f64 =
+                corners[..count].iter().map(|&(at, weight)| f64::from(self.values[at]) * weight).sum();
+            if value.is_finite() { value as f32 } else { f32::NAN }
+        })
+    }
+
+    fn strides(&self) -> [usize; 3] {
+        [1, self.counts[0], self.counts[0] * self.counts[1]]
+    }
+}
+
+impl ScalarField for VolumeField {
+    fn sample(&self, p: Vec3) -> f32 {
+        let value = self.value(p, Self::interpolated);
+        if value.is_finite() { value } else { self.value_with_care(p) }
     }
 
     /// That of the samples round the box.
