@@ -196,7 +196,7 @@ fn a_mesh_becomes_another() {
     write("open.ply", &open);
     let said = folder.run(&["--mesh", "open.ply", "-o", "a.ply"]);
     assert_eq!(said.code, 2);
-    assert!(said.err.contains("open edges in 1 holes") && said.err.contains("--allow-open"), "{}", said.err);
+    assert!(said.err.contains("edges at holes") && said.err.contains("--allow-open"), "{}", said.err);
     folder.succeed(&["--mesh", "open.ply", "--allow-open", "--cells", "40", "-o", "a.ply"]);
     let spanned = folder.mesh("a.ply");
     assert!(topology(&spanned).is_closed_manifold() && spanned.volume() > 0.85 * BALL_VOLUME);
@@ -205,6 +205,20 @@ fn a_mesh_becomes_another() {
     let said = folder.succeed(&["--mesh", "inward.ply", "--cells", "40", "-o", "a.ply"]);
     assert!(said.err.contains("inward.ply: its triangles face inward: turned round"), "{}", said.err);
     assert!(folder.mesh("a.ply").volume() > 4.0);
+    // Of two balls, the second faces inward and is no cavity of the first.
+    let apart = mesh::repair::flip(&again.transformed(|p| p * 0.5 + glam::Vec3::new(3.0, 0.0, 0.0)));
+    let moved = |t: &[u32; 3]| t.map(|v| v + again.positions.len() as u32);
+    write(
+        "two.ply",
+        &TriangleMesh {
+            positions: [&again.positions[..], &apart.positions].concat(),
+            normals: Vec::new(),
+            triangles: again.triangles.iter().copied().chain(apart.triangles.iter().map(moved)).collect(),
+        },
+    );
+    let said = folder.succeed(&["--mesh", "two.ply", "--cells", "60", "-o", "a.ply"]);
+    assert!(said.err.contains("two.ply: part 2 of 2, from ["), "{}", said.err);
+    assert!((folder.mesh("a.ply").volume() - again.volume()).abs() < 0.1);
     folder.write("nan.obj", "v 0 0 0\nv 1 nan 0\n");
     let said = folder.run(&["--mesh", "nan.obj", "-o", "a.ply"]);
     assert!(said.code == 2 && said.err.contains("nan.obj: line 2: `nan` is not a finite"), "{}", said.err);

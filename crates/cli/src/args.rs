@@ -414,6 +414,9 @@ pub(crate) struct Inspect {
 
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("second").args(["b", "field", "volume", "mesh", "object"]).required(true)))]
+#[command(
+    override_usage = "isostudy distance [OPTIONS] <A> <B|--field <FORMULA>|--volume <FILE>|--mesh <FILE>|--object <ID>>"
+)]
 #[command(after_help = "\
 Examples:
   isostudy distance coarse.ply fine.ply
@@ -423,7 +426,7 @@ Examples:
 pub(crate) struct Distance {
     /// Mesh: .obj, .ply or .stl
     pub(crate) a: PathBuf,
-    /// Mesh to compare it with; the bounding box of what A is compared with is the yardstick
+    /// Mesh to compare it with. The diagonal of its bounding box, or of the isosurface's, is the yardstick
     #[arg(conflicts_with_all = ["bounds", "spacing", "cells", "isovalue", "inside", "close", "allow_open"])]
     pub(crate) b: Option<PathBuf>,
     /// The isosurface of this object of a study instead; --spacing is the study's for its benchmark if not given

@@ -95,7 +95,7 @@ impl SourceArguments {
             return Ok(Some(self.source(Box::new(field), Inside::Below, bounds, formula)));
         }
         if let Some(path) = &self.volume {
-            return self.of_volume(path).with_context(|| path.display().to_string()).map(Some);
+            return self.of_volume(path).map(Some);
         }
         self.mesh.as_deref().map(|path| self.of_mesh(path)).transpose()
     }
@@ -115,7 +115,9 @@ impl SourceArguments {
     fn of_volume(&self, path: &Path) -> Result<Source> {
         let limit = bench::read_machine().memory_bytes.unwrap_or(volume::NO_LIMIT);
         let volume::Volume { counts, values, origin, steps } = volume::read(path, limit)?;
-        let mut field = VolumeField::try_new(counts, values, origin, steps, Beyond::Continued)?;
+        let name = path.display();
+        let mut field = VolumeField::try_new(counts, values, origin, steps, Beyond::Continued)
+            .with_context(|| name.to_string())?;
         let beyond = match self.inside {
             Some(Inside::Below) => Beyond::Rising,
             _ => Beyond::Falling,
@@ -128,9 +130,8 @@ impl SourceArguments {
             bounds = bounds.grown(1.5 * field.spacing());
         }
         if is_turned && !self.close {
-            let place = path.display();
             eprintln!(
-                "{place}: the grid is turned against the axes; the surface is closed where it leaves it"
+                "{name}: the grid is turned against the axes; the surface is closed where it leaves it"
             );
         }
         let (low, high) = field.value_range();
@@ -143,7 +144,7 @@ impl SourceArguments {
                 source.bounds.size().to_array().map(|side| f64::from(side / step)).iter().product();
             if cubes > CUBES_A_SAMPLE * samples as f64 {
                 bail!(
-                    "cubes as small as its smallest step, {step:?}, would be {cubes:.1e} for {samples} samples; \
+                    "{name}: cubes as small as its smallest step, {step:?}, would be {cubes:.1e} for {samples} samples; \
                      --spacing or --cells says how many are wanted"
                 );
             }
@@ -171,6 +172,14 @@ fn mesh_field(path: &Path, allow_open: bool) -> Result<(MeshDistance, Bounds)> {
     loop {
         let error = match MeshDistance::try_from_any(&mesh, holes) {
             Ok(field) => {
+                for part in field.inward_parts(&mesh) {
+                    let (min, max) = (place(part.bounds.min), place(part.bounds.max));
+                    eprintln!(
+                        "{name}: part {} of {}, from {min} to {max}, faces inward and lies in no other: it is left out",
+                        part.part + 1,
+                        part.parts
+                    );
+                }
                 let bounds = mesh.surface_bounds().context("the mesh has no triangles")?;
                 return Ok((field, bounds));
             }

@@ -46,8 +46,8 @@ pub enum MeshFieldError {
     },
     /// The surface has holes, edges that triangles run more often one way than the other.
     #[error(
-        "the mesh is open: {edges} open edges in {rings} holes, the longest with {longest} edges round {centre} (within \
-         {radius}); what is inside is not certain there"
+        "the mesh is open: {edges} edges at holes, or between triangles that face opposite ways; in rings of them: {rings}; \
+         the longest has {longest} round {centre} (within {radius})"
     )]
     Open {
         /// Edges that are not run as often one way as the other.
