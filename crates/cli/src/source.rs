@@ -4,7 +4,7 @@ use crate::{mesh_file, subject};
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use design::Arrangement;
-use expression::Expression;
+use expression::{Expression, ExpressionError};
 use extract::{Beyond, Holes, Lattice, MeshDistance, MeshFieldError, Negated, ScalarField, VolumeField};
 use glam::Vec3;
 use mesh::{Bounds, repair};
@@ -88,9 +88,10 @@ impl SourceArguments {
     /// If it cannot be read or has no inside.
     pub(crate) fn read(&self) -> Result<Option<Source>> {
         if let Some(formula) = &self.field {
-            // A long formula's error shows where.
-            let shown = if formula.len() <= 60 { format!("--field '{formula}'") } else { "--field".into() };
-            let field: Expression = formula.parse().context(shown)?;
+            let field: Expression = formula.parse().map_err(|error: ExpressionError| {
+                let shown = error.excerpt(formula);
+                anyhow::Error::new(error).context(format!("--field '{shown}'"))
+            })?;
             let bounds = self.bounds.context("--bounds is needed")?;
             return Ok(Some(self.source(Box::new(field), Inside::Below, bounds, formula)));
         }

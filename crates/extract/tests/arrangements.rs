@@ -230,7 +230,10 @@ fn what_an_arrangement_does_not_have_is_an_error() {
             let error = extract(&Sphere { radius: 0.8 }, &lattice, &settings(clustering), &ONE).unwrap_err();
             assert_eq!(error, ExtractError::ArrangementClustering { arrangement, clustering });
             let text = error.to_string();
-            assert!(text.contains("None") && text.contains("BodyCentred"), "says what there is: {text}");
+            assert!(
+                text.contains("none and edge-collapse") && text.contains("body-centred"),
+                "says what there is: {text}"
+            );
         }
         let positions = Positions::Accumulated { chunks: 16 };
         let accumulated = ExtractSettings { positions, ..settings(Clustering::None) };

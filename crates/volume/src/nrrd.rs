@@ -7,6 +7,30 @@ use crate::data::{self, Encoding, Layout, SampleKind, Skip};
 use crate::error::{Problem, VolumeError, shortened};
 use crate::header::{Frame, Lines, numbers, sample_count};
 
+/// Fields of the format's definition that say nothing of what a sample is or where it lies.
+const PASSED_OVER: [&str; 20] = [
+    "content",
+    "number",
+    "sample units",
+    "sampleunits",
+    "min",
+    "max",
+    "old min",
+    "oldmin",
+    "old max",
+    "oldmax",
+    "block size",
+    "blocksize",
+    "thicknesses",
+    "labels",
+    "units",
+    "kinds",
+    "space",
+    "space units",
+    "space dimension",
+    "measurement frame",
+];
+
 pub(crate) fn read(path: &Path, limit_bytes: u64) -> Result<Volume, VolumeError> {
     let here = |problem: Problem| problem.in_file(path);
     let mut lines = Lines::new(data::open(path).map_err(here)?);
@@ -75,7 +99,7 @@ impl Fields {
         Ok(fields)
     }
 
-    /// Fields that say nothing of what a sample is or where it lies are passed over.
+    /// Fields that say nothing of what a sample is or where it lies are passed over; what is none is refused.
     fn field(&mut self, line: usize, name: &str, value: &str) -> Result<(), Problem> {
         let whole = |what: &str| Problem::line(line, format!("`{}` is not {what}", shortened(value)));
         match name {
@@ -120,6 +144,10 @@ impl Fields {
                     return Err(whole("a number of bytes, or -1"));
                 }
                 self.byte_skip = Some(bytes);
+            }
+            // A misspelt `spacings` would put the volume elsewhere without a word.
+            _ if !PASSED_OVER.contains(&name) => {
+                return Err(Problem::line(line, format!("`{}` is no field of NRRD", shortened(name))));
             }
             _ => {}
         }

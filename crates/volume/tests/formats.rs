@@ -143,6 +143,7 @@ fn errors_name_the_file_the_line_and_the_value() {
             "a.nrrd: encoding `bzip2` is not supported; raw, gzip, text and hex are",
         ),
         ("a.nrrd", format!("{nrrd}sizes: 1 2 3\n"), "a.nrrd: line 6: a second field `sizes`"),
+        ("a.nrrd", format!("{nrrd}spacing: 1 1 2\n"), "a.nrrd: line 6: `spacing` is no field of NRRD"),
         ("a.nrrd", format!("{nrrd}what is this\n"), "a.nrrd: line 6: `what is this` is not `field: value`"),
         ("a.nrrd", nrrd.replace("4 3 2", "4 x 2"), "a.nrrd: line 4: `x` is not a number here"),
         ("a.nrrd", nrrd.into(), "a.nrrd: the header has no `data file`"),
