@@ -206,8 +206,13 @@ fn spread(mean: f64, sd: f64, low: f64, count: u64, bins: (f64, f64, usize)) -> 
 
 /// Five rounds with a little deterministic unrest, on another machine than the paper's.
 pub(crate) fn bench(study: &Study) -> BenchRun {
+    bench_of(study, 5)
+}
+
+/// The same of so many rounds.
+pub(crate) fn bench_of(study: &Study, rounds: u32) -> BenchRun {
     let mut samples = Vec::new();
-    for iteration in 0..5 {
+    for iteration in 0..rounds {
         for (place, row) in study.published.benchmark.iter().enumerate() {
             let unrest = 1.4 + 0.03 * f64::from((iteration * 7 + place as u32 * 3) % 5);
             let [a, s, v, g, n] =
@@ -235,7 +240,7 @@ pub(crate) fn bench(study: &Study) -> BenchRun {
         workload: None,
         imported_from: None,
         warmup: 1,
-        iterations: 5,
+        iterations: rounds,
         aa_iterations: 0,
         seed: 1,
         threads: 2,

@@ -3,8 +3,9 @@
 use crate::args::{Compare, Format, Import};
 use crate::store::write_whole;
 use crate::{Outcome, say};
-use analysis::timing::{self, Limits};
+use analysis::timing::{self, Comparison, Limits};
 use anyhow::{Context, Result, bail};
+use design::ConfigurationId;
 use design::machine::CpuProfile;
 use design::published::read_benchmark;
 use design::record::BenchRun;
@@ -35,6 +36,9 @@ pub(crate) fn compare(arguments: &Compare) -> Result<Outcome> {
         );
     }
     let comparison = timing::compare(&a, &b, across);
+    if comparison.rows.is_empty() {
+        bail!("A and B have no configuration in common: there is nothing to compare");
+    }
     let tables = timing::comparison_tables(&a, &b, &comparison);
     match arguments.format {
         Format::Json => say(&serde_json::to_string_pretty(&comparison)?)?,
@@ -55,7 +59,18 @@ pub(crate) fn compare(arguments: &Compare) -> Result<Outcome> {
         let label = if comparison.across.is_empty() { "" } else { " (across machines)" };
         eprintln!("regression{label}: {id} takes {b:.3} ms, {a:.3} ms before");
     }
-    Ok(if regressions.is_empty() { Outcome::Sound } else { Outcome::CheckFailed })
+    // A build that drops a configuration must not pass for one that is as fast.
+    let missing = missing_in_b(&a, &comparison);
+    for id in &missing {
+        eprintln!("missing: {id} is in A and not in B");
+    }
+    Ok(if regressions.is_empty() && missing.is_empty() { Outcome::Sound } else { Outcome::CheckFailed })
+}
+
+/// What B should have been measured for and was not; an imported table may have fewer rows.
+fn missing_in_b<'a>(a: &BenchRun, comparison: &'a Comparison) -> Vec<&'a ConfigurationId> {
+    let of_a = |id: &&ConfigurationId| a.samples.iter().any(|sample| sample.id == **id);
+    comparison.unmatched.iter().filter(of_a).collect()
 }
 
 /// Writes the run that a table of means makes.

@@ -3,7 +3,8 @@
 use super::Finding;
 use super::numbers::{Measure, Numbers, Ours, Side, mean_change};
 use crate::inputs::Inputs;
-use crate::interval::{Interval, t_over_respondents as over_rounds};
+use crate::interval::{Interval, LEVEL};
+use crate::statistics::median;
 use crate::verdict::Verdict;
 use design::Clustering::{self, EdgeCollapse, Integrated};
 use design::published::Claim;
@@ -29,8 +30,8 @@ pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
         _ => Vec::new(),
     };
     let (value, run) = (claim.value?, inputs.bench?);
-    let ours = mean_change(&ratios(Side::Ours))?;
-    let interval = over_rounds(&by_round(run, ratios, mean_change));
+    let found = median(by_round(run, ratios, mean_change), LEVEL)?;
+    let (ours, interval) = (found.median, found.interval_at(LEVEL));
     let direction = direction(value, interval);
     let verdict = if !run.differences.is_empty() {
         let model = run.machine.model.as_deref().unwrap_or("an unnamed CPU");

@@ -76,7 +76,7 @@ struct Estimate {
     published: Option<f64>,
     /// Median over rounds.
     ours: f64,
-    /// Of the median; `None` of a single round.
+    /// Of the median; `None` of fewer rounds than it takes.
     interval: Option<Interval>,
 }
 
@@ -88,7 +88,7 @@ fn estimate(
 ) -> Option<Estimate> {
     let published = summary(&cases(Side::Published));
     let found = median(by_round(run, cases, summary), LEVEL)?;
-    Some(Estimate { published, ours: found.median, interval: found.interval })
+    Some(Estimate { published, ours: found.median, interval: found.interval_at(LEVEL) })
 }
 
 /// What an estimate is worth beside the published one.

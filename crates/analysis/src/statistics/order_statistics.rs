@@ -16,6 +16,13 @@ pub struct Median {
     pub level: f64,
 }
 
+impl Median {
+    /// The interval if it reaches a level, which few values do not.
+    pub fn interval_at(&self, level: f64) -> Option<Interval> {
+        self.interval.filter(|_| self.level >= level)
+    }
+}
+
 /// The median of independent values, and the narrowest interval between equally far order statistics that holds the
 /// distribution's median at least at `level`: the ranks are those of the binomial distribution with p = 1/2 (Conover
 /// 1999, section 3.2). `None` of no values.

@@ -125,7 +125,7 @@ fn speed_ups(sweep: &Sweep) -> Table {
     }
     table.notes.push(format!(
         "Median time on {fewest} over median time on so many threads; intervals from both medians' order statistics, at 95 % for all \
-         configurations of a resolution together. Efficiency is the speed-up over the share of threads."
+         configurations of a resolution together, where the rounds suffice for that. Efficiency is the speed-up over the share of threads."
     ));
     table
 }

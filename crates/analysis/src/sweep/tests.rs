@@ -6,7 +6,7 @@ use design::record::PeakMemory;
 /// the time, memory grows as the cube; integrated clustering is the more regular and has a quarter of the triangles.
 pub(crate) fn made_up() -> Sweep {
     let study = fixture::study();
-    let base = fixture::bench(&study);
+    let base = fixture::bench_of(&study, 9);
     let (mut levels, mut meshes) = (Vec::new(), Vec::new());
     for cells in [16_u32, 32, 64, 128] {
         let size = f64::from(cells) / 32.0;

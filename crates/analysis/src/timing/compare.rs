@@ -40,7 +40,8 @@ pub struct Row {
     pub b_s: f64,
     /// B over A; `None` where a stage takes no time.
     pub ratio: Option<f64>,
-    /// Where the ratio may lie, at 95 % for all configurations of the stage together; `None` of means.
+    /// Where the ratio may lie, at 95 % for all configurations of the stage together; `None` of single values, and of fewer
+    /// rounds than that takes.
     pub interval: Option<Interval>,
     /// Ratios up to this, and down to its inverse, are no more than noise; `None` without an A/A block.
     pub floor: Option<f64>,
@@ -71,8 +72,9 @@ pub fn compare(a: &BenchRun, b: &BenchRun, across: Vec<String>) -> Comparison {
     let alone = only_a.chain(in_b.keys().filter(|id| !in_a.contains_key(*id)));
     let level = 1.0 - MISSES / both.len().max(1) as f64;
     let of_stage = |stage: Stage| {
-        let floor = between(&floors[0], &floors[1], shift, stage);
-        both.iter().map(move |(id, samples)| row(*samples, id, stage, floor, level))
+        let floors = &floors;
+        both.iter()
+            .map(move |(id, samples)| row(*samples, id, stage, between(floors, shift, stage, id), level))
     };
     let stages = stages(a.imported_from.is_some() || b.imported_from.is_some());
     Comparison {
@@ -121,9 +123,12 @@ fn row(
     let values = samples.map(|samples| values(samples, stage));
     let [a, b] = values.each_ref().map(|values| median(values.clone(), level).expect("both have samples"));
     let [a_s, b_s] = [a.median, b.median];
-    let (judgement, interval) = match a.interval.zip(b.interval) {
+    let (judgement, interval) = match a.interval_at(level).zip(b.interval_at(level)) {
         _ if a_s == 0.0 || b_s == 0.0 => (Judgement::cannot_say("takes no time"), None),
-        None => (Judgement::cannot_say("a mean has no interval"), None),
+        None if values.iter().any(|values| values.len() == 1) => {
+            (Judgement::cannot_say("a single value has no interval"), None)
+        }
+        None => (Judgement::cannot_say("too few rounds for an interval"), None),
         Some((around_a, around_b)) => {
             let difference = (b_s / a_s).ln();
             let below = (b_s / around_b.low).ln().hypot((around_a.high / a_s).ln());

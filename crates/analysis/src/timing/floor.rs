@@ -5,13 +5,10 @@ use super::series::middle;
 use design::record::{BenchRun, BenchSample};
 use design::{ConfigurationId, Stage};
 use serde::Serialize;
-use statrs::distribution::{ContinuousCDF, Normal};
+use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::SQRT_2;
 
-/// What the estimate of the noise between processes is multiplied by. It rests on five processes of one run; another run, at
-/// another hour, may have others. Chosen by simulation (`timing/simulation.rs`): where processes differ by fifteen times as
-/// much as samples, 1 gives a false verdict in one comparison of twenty, 1.1 in fewer; elsewhere both give next to none.
-pub const AA_MARGIN: f64 = 1.1;
 /// The chance that noise passes the floor somewhere among a stage's configurations (Bonferroni).
 const MISSES: f64 = 0.05;
 /// The standard error of a median of normal values, in standard errors of their mean.
@@ -22,19 +19,24 @@ const DEVIATION_OF_MAD: f64 = 1.482_602_218_505_602;
 /// What one process can add to Q: three standard deviations. Half of four rounds are outliers now and then.
 const MOST: f64 = 9.0;
 
+/// How many degrees of freedom the pooled noise between processes counts for beside a configuration's own.
+const POOLED_DEGREES: f64 = 4.0;
+
 /// Log-ratios that are no more than noise.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NoiseFloor {
-    /// Of each stage: how far the medians of two measurements of one program may lie apart because their processes
-    /// differ, beyond what their rounds differ. Empty without an A/A block.
+    /// Of each stage and configuration: how far the medians of two measurements of one program may lie apart because their
+    /// processes differ, beyond what their rounds differ. Empty without an A/A block.
     ///
     /// A run is measured by several processes, those of the A/A block among them, and all measure the same programs. The
-    /// standard deviation t between processes is the one with which Cochran's Q over all configurations, with variances
-    /// t² + s², is as large as its degrees of freedom (Paule & Mandel 1982); s is the standard error of a process's median
-    /// that follows from how its rounds differ. The floor is [`AA_MARGIN`] z t sqrt(2 / m) with m the processes of the
-    /// measured rounds, and z the normal quantile for all configurations together. Times are logarithms, in units of the
-    /// reference work's in the same process.
-    pub aa: BTreeMap<&'static str, f64>,
+    /// variance between processes is the one with which Cochran's Q, with variances t² + s², is as large as its degrees of
+    /// freedom (Paule & Mandel 1982); s is the standard error of a process's median that follows from how its rounds
+    /// differ, and a single term of Q counts 9 at most. It is estimated over all configurations and for each, and a
+    /// configuration's is the mean of both, weighted by degrees of freedom, the pooled one with 4 (a moderated variance, Smyth
+    /// 2004): some configurations differ more between processes than others, and few processes say little of one. The
+    /// floor is q t sqrt(2 / m) with m the processes of the measured rounds, and q the t quantile for all configurations
+    /// together. Times are logarithms, in units of the reference work's in the same process.
+    pub aa: BTreeMap<&'static str, BTreeMap<ConfigurationId, f64>>,
     /// What others may have added: -ln(1 - s), where s is the share of the CPU time that three rounds of four stayed below.
     pub load: f64,
 }
@@ -46,14 +48,26 @@ impl NoiseFloor {
             BTreeMap::new()
         } else {
             let stages = Stage::ALL.into_iter().chain([Stage::GeometryAsPublished]);
-            stages.map(|stage| (stage.label(), floor(run, stage))).collect()
+            stages.map(|stage| (stage.label(), floors(run, stage))).collect()
         };
         Self { aa, load: -(1.0 - busy_share(&run.load).min(0.999)).ln() }
     }
 
-    /// Of one stage, within the run: rounds are compared with themselves there, and load falls on both sides alike.
-    pub fn within(&self, stage: Stage) -> Option<f64> {
-        self.aa.get(stage.label()).copied()
+    /// Of one stage of a configuration measured twice; 0 where it takes no time.
+    pub fn of_stage(&self, stage: Stage, id: &ConfigurationId) -> Option<f64> {
+        Some(self.aa.get(stage.label())?.get(id).copied().unwrap_or(0.0))
+    }
+
+    /// Of one stage of two configurations of the run: rounds are compared with themselves there, and load falls on both
+    /// sides alike.
+    pub fn within(&self, stage: Stage, first: &ConfigurationId, second: &ConfigurationId) -> Option<f64> {
+        Some(self.of_stage(stage, first)?.hypot(self.of_stage(stage, second)?) / SQRT_2)
+    }
+
+    /// The smallest and the largest of a stage.
+    pub fn range(&self, stage: Stage) -> Option<(f64, f64)> {
+        let floors = self.aa.get(stage.label())?.values();
+        Some(floors.fold((f64::INFINITY, 0.0), |(low, high), &f| (low.min(f), high.max(f))))
     }
 }
 
@@ -64,7 +78,7 @@ struct ProcessMedian {
     variance: f64,
 }
 
-fn floor(run: &BenchRun, stage: Stage) -> f64 {
+fn floors(run: &BenchRun, stage: Stage) -> BTreeMap<ConfigurationId, f64> {
     let speeds = speeds(run);
     let mut configurations = BTreeMap::<&ConfigurationId, BTreeMap<u32, Vec<f64>>>::new();
     for sample in all_samples(run) {
@@ -76,10 +90,18 @@ fn floor(run: &BenchRun, stage: Stage) -> f64 {
         }
     }
     let medians: Vec<Vec<ProcessMedian>> = configurations.values().map(process_medians).collect();
-    let deviation = deviation_between(&medians);
-    let z = Normal::standard().inverse_cdf(1.0 - MISSES / 2.0 / medians.len().max(1) as f64);
+    let pooled = variance_between(&medians);
     let measured: BTreeSet<u32> = run.samples.iter().map(|sample| sample.sitting).collect();
-    AA_MARGIN * z * deviation * (2.0 / measured.len().max(1) as f64).sqrt()
+    let chance = MISSES / 2.0 / medians.len().max(1) as f64;
+    let floor = |own: &Vec<ProcessMedian>| {
+        let degrees = (own.len() - 1) as f64;
+        let all = POOLED_DEGREES + degrees;
+        let own = variance_between(std::slice::from_ref(own));
+        let moderated = (POOLED_DEGREES * pooled + degrees * own) / all;
+        let quantile = StudentsT::new(0.0, 1.0, all).expect("degrees > 0").inverse_cdf(1.0 - chance);
+        quantile * (moderated * 2.0 / measured.len().max(1) as f64).sqrt()
+    };
+    configurations.keys().zip(&medians).map(|(id, own)| ((*id).clone(), floor(own))).collect()
 }
 
 fn all_samples(run: &BenchRun) -> impl Iterator<Item = &BenchSample> {
@@ -112,24 +134,20 @@ fn process_medians(processes: &BTreeMap<u32, Vec<f64>>) -> Vec<ProcessMedian> {
         .collect()
 }
 
-/// The standard deviation between processes: Q falls as it grows, so by bisection.
-fn deviation_between(configurations: &[Vec<ProcessMedian>]) -> f64 {
+/// The variance between processes: Q falls as it grows, so by bisection on its root.
+fn variance_between(configurations: &[Vec<ProcessMedian>]) -> f64 {
     let degrees: usize = configurations.iter().map(|medians| medians.len() - 1).sum();
-    if degrees == 0 {
-        return 0.0;
-    }
-    let expected = degrees as f64;
     let q =
         |deviation: f64| -> f64 { configurations.iter().map(|medians| cochran(medians, deviation)).sum() };
     let (mut low, mut high) = (0.0, 10.0);
-    if q(low) <= expected {
+    if q(low) <= degrees as f64 {
         return 0.0;
     }
     for _ in 0..60 {
         let between = 0.5 * (low + high);
-        if q(between) > expected { low = between } else { high = between }
+        if q(between) > degrees as f64 { low = between } else { high = between }
     }
-    high
+    high * high
 }
 
 /// Cochran's Q: squared distances from the weighted mean, in variances. Processes that agree to the last digit add nothing.
@@ -149,9 +167,14 @@ pub(super) fn speed_shift(a: &BenchRun, b: &BenchRun) -> Option<f64> {
     Some((median(b)? / median(a)?).ln())
 }
 
-/// Between two runs: the larger of their A/A floors, the larger of their loads, and by how much the machine's speed
-/// changed. `None` without an A/A block in either.
-pub(super) fn between(a: &NoiseFloor, b: &NoiseFloor, shift: Option<f64>, stage: Stage) -> Option<f64> {
-    let aa = a.within(stage)?.max(b.within(stage)?);
+/// Between two runs, of a stage of a configuration: the larger of their A/A floors, the larger of their loads, and by how much
+/// the machine's speed changed. `None` without an A/A block in either.
+pub(super) fn between(
+    [a, b]: &[NoiseFloor; 2],
+    shift: Option<f64>,
+    stage: Stage,
+    id: &ConfigurationId,
+) -> Option<f64> {
+    let aa = a.of_stage(stage, id)?.max(b.of_stage(stage, id)?);
     Some(aa + a.load.max(b.load) + shift.unwrap_or(0.0).abs())
 }

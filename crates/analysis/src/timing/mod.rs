@@ -34,7 +34,7 @@ mod simulation;
 
 pub use compare::{Comparison, Limits, Row, compare};
 pub use differences::machine_differences;
-pub use floor::{AA_MARGIN, NoiseFloor};
+pub use floor::NoiseFloor;
 pub use outliers::{MAD_LIMIT, Outlier};
 pub use quiet::{BUSY, warnings};
 pub use ratios::Ratio;

@@ -78,7 +78,8 @@ fn ratio(
     let judgement = match interval {
         None => Judgement::cannot_say("a single value has no interval"),
         Some(Interval { low, high }) => {
-            Judgement::of(low, high, floor.within(stage), parts.as_ref().map(|parts| &parts[..]))
+            let noise = floor.within(stage, first.0, second.0);
+            Judgement::of(low, high, noise, parts.as_ref().map(|parts| &parts[..]))
         }
     };
     Some(Ratio {

@@ -13,7 +13,7 @@ use design::{ConfigurationId, Stage};
 use serde::Serialize;
 
 /// The version of [`Statements`] and [`Comparison`](super::Comparison) as JSON.
-pub const STATEMENTS_SCHEMA: u32 = 1;
+pub const STATEMENTS_SCHEMA: u32 = 2;
 
 /// What a run says of itself.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -62,9 +62,10 @@ fn medians(run: &BenchRun, statements: &Statements) -> Table {
         table.push(row);
     }
     table.notes.push(format!(
-        "Over {} Medians with their order-statistic intervals of at least 95 %; medians of stages need not add up to that of \
-         the total. Clustering is the edge collapse; integrated clustering is part of the vertex stage.",
-        circumstances(run)
+        "Over {} Medians with their order-statistic intervals of {:.1} %; medians of stages need not add up to that of the \
+         total. Clustering is the edge collapse; integrated clustering is part of the vertex stage.",
+        circumstances(run),
+        100.0 * statements.medians.iter().map(|median| median.seconds.level).fold(1.0, f64::min)
     ));
     if !statements.memory.is_empty() {
         table.notes.push(
@@ -74,12 +75,13 @@ fn medians(run: &BenchRun, statements: &Statements) -> Table {
                 .into(),
         );
     }
-    table.notes.push(match statements.floor.aa.get(Stage::Total.label()) {
-        Some(floor) => format!(
-            "Noise floor of the total, from how far the processes of the run lie apart, with {} rounds measured again in an A/A \
-             block: {:.1} %.",
+    table.notes.push(match statements.floor.range(Stage::Total) {
+        Some((low, high)) => format!(
+            "Noise floor of the totals, from how far the processes of the run lie apart, with {} rounds measured again in an \
+             A/A block: {:.1} to {:.1} %.",
             run.aa_iterations,
-            percent(*floor)
+            percent(low),
+            percent(high)
         ),
         None => "No A/A block: the noise floor is not known, and no verdict is given.".into(),
     });
@@ -172,7 +174,7 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
     }
     if let Some(shift) = comparison.speed_shift {
         totals.notes.push(format!(
-            "The reference work took {:+.1} % more time in B; a change of the machine is no change of the program, and \
+            "The reference work's time changed by {:+.1} % from A to B; a change of the machine is no change of the program, and \
              is part of the floor.",
             100.0 * (shift.exp() - 1.0)
         ));
@@ -185,7 +187,8 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
         totals.notes.extend(warnings(run).into_iter().map(|warning| format!("{name}: {warning}")));
     }
     totals.notes.push(
-        "Ratios of medians; intervals hold for all configurations together at 95 %. A verdict needs an interval beyond the \
+        "Ratios of medians; intervals hold for all configurations together at 95 %, and there is none where the rounds are too \
+         few for that. A verdict needs an interval beyond the \
          noise floor (A/A block, load of others, reference work) and the same direction in each third of the runs."
             .into(),
     );
