@@ -57,7 +57,8 @@ pub(crate) fn compare(arguments: &Compare) -> Result<Outcome> {
     for row in &regressions {
         let (id, a, b) = (&row.id, 1e3 * row.a_s, 1e3 * row.b_s);
         let label = if comparison.across.is_empty() { "" } else { " (across machines)" };
-        eprintln!("regression{label}: {id} takes {b:.3} ms, {a:.3} ms before");
+        let stage = row.stage.label();
+        eprintln!("regression{label}: {id}, {stage}: {b:.3} ms, {a:.3} ms before");
     }
     // A build that drops a configuration must not pass for one that is as fast.
     let missing = missing_in_b(&a, &comparison);

@@ -87,11 +87,10 @@ pub fn compare(a: &BenchRun, b: &BenchRun, across: Vec<String>) -> Comparison {
 }
 
 impl Comparison {
-    /// The configurations whose total is slower in B by more than the limits.
+    /// The totals and stages that are slower in B by more than the limits: what a total's noise hides, a stage may show.
     pub fn regressions(&self, limits: &Limits) -> Vec<&Row> {
         let beyond = |row: &&Row| {
-            row.stage == Stage::Total
-                && row.judgement.verdict == Verdict::Slower
+            row.judgement.verdict == Verdict::Slower
                 && row.b_s > row.a_s * (1.0 + limits.relative)
                 && row.b_s > row.a_s + limits.absolute_s
         };
