@@ -139,7 +139,7 @@ fn what_is_not_meant_well_changes_nothing() {
         let found = status("/api/answers", bad);
         assert!(found == 400 || found == 422, "{bad}: {found}");
     }
-    let long = answer(&session, 1, "L").replace("1500", "86400001");
+    let long = answer(&session, 1, "L").replace(r#""rt_ms":1500"#, r#""rt_ms":86400001"#);
     assert_eq!(status("/api/answers", &long), 422);
     assert_eq!(status("/api/answers", &answer(&session, 1, "maybe")), 422);
     assert_eq!(status("/api/answers", &format!("{{\"token\":\"{}\"}}", "x".repeat(10_000))), 413);

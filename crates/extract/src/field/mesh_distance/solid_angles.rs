@@ -46,11 +46,11 @@ struct Node {
 impl SolidAngles {
     pub(super) fn of(mut triangles: Vec<[Vec3; 3]>) -> Self {
         let mut nodes = Vec::new();
-        let count = triangles.len();
-        if count <= FEW {
-            nodes.extend((count > 0).then(|| Node { far: f64::INFINITY, ..Node::over(&triangles, 0) }));
-        } else {
+        if !triangles.is_empty() {
             build(&mut triangles, 0, &mut nodes);
+        }
+        if triangles.len() <= FEW {
+            nodes.iter_mut().for_each(|node| node.far = f64::INFINITY);
         }
         Self { triangles, nodes }
     }
@@ -88,20 +88,27 @@ impl SolidAngles {
     ///
     /// A surface of area A, nowhere nearer than d, covers at most A / d^2 of the unit sphere round a point.
     pub(super) fn cover_less(&self, share: f64, distance: impl Fn(DVec3) -> f64) -> bool {
+        let most = |centre: DVec3, radius: f64, area: f64| {
+            let clear = (distance(centre) - radius).max(0.0);
+            if area == 0.0 { 0.0 } else { area / (4.0 * PI * clear * clear) }
+        };
         let mut sum = 0.0;
         let mut at = 0;
         while let Some(node) = self.nodes.get(at) {
-            let clear = (distance(node.centre) - node.radius).max(0.0);
-            let most = if node.area == 0.0 { 0.0 } else { node.area / (4.0 * PI * clear * clear) };
-            let is_leaf = node.after == at + 1;
-            if is_leaf || most < share / 16.0 {
-                sum += most;
-                if sum >= share {
-                    return false;
-                }
+            let of_node = most(node.centre, node.radius, node.area);
+            if of_node < share / 16.0 {
+                sum += of_node;
                 at = node.after;
             } else {
+                if node.after == at + 1 {
+                    // Triangles of several holes, perhaps.
+                    let each = self.triangles[node.first..node.end].iter().map(ball);
+                    sum += each.map(|(centre, radius, area)| most(centre, radius, area)).sum::<f64>();
+                }
                 at += 1;
+            }
+            if sum >= share {
+                return false;
             }
         }
         true
@@ -147,6 +154,14 @@ impl Node {
         let far = far_from(area, radius).powi(2);
         Self { centre, radius, area, far, moments, first, end: first + triangles.len(), after: first + 1 }
     }
+}
+
+/// A ball that holds a triangle, its centre and radius, and the triangle's area.
+fn ball(triangle: &[Vec3; 3]) -> (DVec3, f64, f64) {
+    let [a, b, c] = triangle.map(|p| p.as_dvec3());
+    let centre = (a + b + c) / 3.0;
+    let radius = [a, b, c].map(|p| p.distance(centre)).into_iter().fold(0.0, f64::max) * (1.0 + 1e-9);
+    (centre, radius, 0.5 * (b - a).cross(c - a).length())
 }
 
 /// The distance from which an expansion leaves out little enough.
@@ -301,6 +316,17 @@ mod tests {
         }
         let none = SolidAngles::of(Vec::new());
         assert!(none.share(Vec3::ONE) == 0.0 && none.area() == 0.0 && none.cover_less(1e-9, |_| 0.0));
+    }
+
+    /// A few small holes far apart are no hole as large as all of them.
+    #[test]
+    fn few_triangles_far_apart_cover_little_between_them() {
+        let small = |at: f32| [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]].map(|[y, z]| Vec3::new(at, y, z));
+        let tree = SolidAngles::of((-10..=10).step_by(2).map(|at| small(at as f32)).collect());
+        for p in [DVec3::new(1.0, 0.0, 0.0), DVec3::new(-5.0, 0.5, 0.0)] {
+            assert!(tree.cover_less(0.25, |centre| p.distance(centre)), "{p}");
+        }
+        assert!(!tree.cover_less(0.25, |centre| centre.distance(DVec3::new(2.0, 0.0, 0.01))));
     }
 
     #[test]
