@@ -122,9 +122,9 @@ pub(crate) fn extract(arguments: &Extract) -> Result<()> {
     if arguments.json { Ok(()) } else { say(&out.display().to_string()) }
 }
 
-/// Nothing that was given is written over, and no output over another.
+/// Nothing that was given is written over; and no output over another, since no mesh ends as pictures do.
 fn check_outputs(arguments: &Extract, out: &Path) -> Result<()> {
-    let same = |a: &Path, b: &Path| match (place(a), place(b)) {
+    let same = |a: &Path, b: &Path| match (resolved(a), resolved(b)) {
         (Some(a), Some(b)) => a == b,
         _ => a == b,
     };
@@ -142,7 +142,7 @@ fn check_outputs(arguments: &Extract, out: &Path) -> Result<()> {
 }
 
 /// Where a file is or would be, whatever way leads there.
-fn place(path: &Path) -> Option<PathBuf> {
+fn resolved(path: &Path) -> Option<PathBuf> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     path.canonicalize().ok().or_else(|| Some(folder.canonicalize().ok()?.join(path.file_name()?)))
 }
