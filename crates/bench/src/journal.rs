@@ -1,6 +1,7 @@
 //! What a run has done so far, line by line, so that a killed run goes on in the middle of a round.
 
-use design::record::{BenchSample, LoadWindow, PeakMemory, Resumption};
+use design::ConfigurationId;
+use design::record::{BenchSample, LoadWindow, PeakMemory, Resumption, UnsoundSample};
 use serde::{Deserialize, Serialize};
 
 /// One line of a journal: something that happened, written when it happened.
@@ -67,6 +68,14 @@ pub enum JournalError {
         number: usize,
         /// What is wrong with it.
         reason: String,
+    },
+    /// A sample that no clock can have given.
+    #[error("a sample of {id}: {reason}")]
+    Unsound {
+        /// Of which configuration.
+        id: ConfigurationId,
+        /// What is wrong with it.
+        reason: UnsoundSample,
     },
     /// Its samples are not those that the plan begins with.
     #[error("its samples do not follow the plan")]

@@ -128,10 +128,10 @@ fn check(plan: &Plan, ids: &[ConfigurationId]) -> Result<(), BenchError> {
     }
 }
 
-/// Checks that what has been measured is what the plan begins with.
+/// Checks that what has been measured is what the plan begins with, and can have been measured.
 ///
 /// # Errors
-/// [`JournalError::OtherOrder`] if it is not.
+/// [`JournalError::OtherOrder`] or [`JournalError::Unsound`] if it is not.
 pub fn check_journal(plan: &Plan, ids: &[ConfigurationId], done: &[Entry]) -> Result<(), BenchError> {
     let sittings = plan.sittings();
     let planned = |aa: bool| {
@@ -152,7 +152,19 @@ pub fn check_journal(plan: &Plan, ids: &[ConfigurationId], done: &[Entry]) -> Re
         Entry::Memory(peak) => memory.next() == Some(&peak.id),
         Entry::Begun { .. } | Entry::Load(_) | Entry::Resumed(_) => true,
     });
-    if follows { Ok(()) } else { Err(JournalError::OtherOrder.into()) }
+    if !follows {
+        return Err(JournalError::OtherOrder.into());
+    }
+    for entry in done {
+        let (sample, rounds) = match entry {
+            Entry::Sample(sample) => (sample, plan.iterations),
+            Entry::AaSample(sample) => (sample, plan.aa_iterations),
+            _ => continue,
+        };
+        let unsound = |reason| JournalError::Unsound { id: sample.id.clone(), reason };
+        sample.check(rounds).map_err(unsound)?;
+    }
+    Ok(())
 }
 
 fn empty(plan: &Plan, machine: Machine) -> BenchRun {

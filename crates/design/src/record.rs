@@ -4,6 +4,10 @@ use crate::machine::{CpuProfile, Machine, ProfileDifference};
 use crate::method::ConfigurationId;
 use serde::{Deserialize, Serialize};
 
+mod sound;
+
+pub use sound::{UnsoundRun, UnsoundSample};
+
 /// What a mesh was extracted for; each purpose has its own spacing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

@@ -298,6 +298,16 @@ fn a_journal_that_does_not_follow_the_plan_is_refused() {
 }
 
 #[test]
+fn a_journal_with_a_time_that_no_clock_gives_is_refused() {
+    let mut done = broken_off(20);
+    let first = done.iter_mut().find_map(|e| if let Entry::Sample(sample) = e { Some(sample) } else { None });
+    first.unwrap().vertex_s = -0.1;
+    let error = resumed(done, &mut Mock::default()).unwrap_err();
+    let text = error.source().unwrap().to_string();
+    assert!(text.contains("vertex = -0.1 s: must be finite and not negative"), "{text}");
+}
+
+#[test]
 fn a_record_that_cannot_be_written_ends_the_run() {
     let mut record = |_: &Entry| Err(io::Error::other("disk full"));
     let mut mock = Mock::default();

@@ -1,0 +1,285 @@
+//! Whether a run that was read from a file can have been measured.
+
+use super::{BenchRun, BenchSample, LoadWindow};
+use crate::method::ConfigurationId;
+use crate::stage::Stage;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Share by which a total may be off the sum of its stages: a tool that rewrote the file may have rounded.
+const ROUNDING: f64 = 1e-9;
+
+/// Why a run cannot have been measured. Every variant names the place.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum UnsoundRun {
+    /// A sample that no clock can have given.
+    #[error("{list}[{place}], {id}: {reason}")]
+    Sample {
+        /// `samples` or `aa_samples`.
+        list: &'static str,
+        /// Where in it, from 0.
+        place: usize,
+        /// Of which configuration.
+        id: ConfigurationId,
+        /// What is wrong with it.
+        reason: UnsoundSample,
+    },
+    /// Two samples of one round.
+    #[error("{list}: {id} is there twice in round {round}")]
+    Twice {
+        /// `samples` or `aa_samples`.
+        list: &'static str,
+        /// Which configuration.
+        id: ConfigurationId,
+        /// Which round.
+        round: u32,
+    },
+    /// Rounds that a configuration lacks.
+    #[error("{list}: {id} has {found} of {asked} rounds")]
+    Rounds {
+        /// `samples` or `aa_samples`.
+        list: &'static str,
+        /// Which configuration.
+        id: ConfigurationId,
+        /// How many are there.
+        found: usize,
+        /// How many the run says it has.
+        asked: usize,
+    },
+    /// A share of the CPU time that is none.
+    #[error("load[{place}]: others = {}, steal = {}: must be from 0 to 1, together too", window.0, window.1)]
+    Load {
+        /// Where, from 0.
+        place: usize,
+        /// The shares of others and of other machines.
+        window: (f64, f64),
+    },
+    /// A peak below what was there before.
+    #[error("memory[{place}], {id}: peak_bytes = {peak} is below before_bytes = {before}")]
+    Memory {
+        /// Where, from 0.
+        place: usize,
+        /// Of which configuration.
+        id: ConfigurationId,
+        /// Bytes before.
+        before: u64,
+        /// Bytes at the peak.
+        peak: u64,
+    },
+    /// Memory of one configuration listed twice.
+    #[error("memory: {0} is there twice")]
+    MemoryTwice(ConfigurationId),
+}
+
+/// Why a sample cannot have been measured.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum UnsoundSample {
+    /// Not a duration.
+    #[error("{what} = {seconds} s: must be finite and not negative")]
+    NotADuration {
+        /// A stage, or the reference work.
+        what: &'static str,
+        /// What it says.
+        seconds: f64,
+    },
+    /// A total that is not the sum of the six stages.
+    #[error("total = {total} s, and its stages add up to {sum} s")]
+    Sum {
+        /// What is said.
+        total: f64,
+        /// What it should be.
+        sum: f64,
+    },
+    /// A round that the run does not have.
+    #[error("iteration = {iteration}: the run has {rounds}, counted from 0")]
+    Round {
+        /// What is said.
+        iteration: u32,
+        /// How many there are.
+        rounds: u32,
+    },
+}
+
+impl BenchRun {
+    /// Checks that the run can have been measured: durations, totals that are the sum of their stages, every round of every
+    /// configuration once, shares of time and peaks of memory that can be. An imported run has one sample a configuration.
+    ///
+    /// # Errors
+    /// The first thing that cannot be.
+    pub fn check(&self) -> Result<(), UnsoundRun> {
+        let measured = if self.imported_from.is_some() { 1 } else { self.iterations };
+        check_samples("samples", &self.samples, measured)?;
+        check_samples("aa_samples", &self.aa_samples, self.aa_iterations)?;
+        let share = |window: &LoadWindow| {
+            let sound = |share: f64| (0.0..=1.0).contains(&share);
+            sound(window.others) && sound(window.steal) && window.others + window.steal <= 1.0 + ROUNDING
+        };
+        if let Some((place, window)) = self.load.iter().enumerate().find(|(_, window)| !share(window)) {
+            return Err(UnsoundRun::Load { place, window: (window.others, window.steal) });
+        }
+        let mut seen = BTreeSet::new();
+        for (place, memory) in self.memory.iter().enumerate() {
+            let (id, before, peak) = (memory.id.clone(), memory.before_bytes, memory.peak_bytes);
+            if !seen.insert(&memory.id) {
+                return Err(UnsoundRun::MemoryTwice(id));
+            }
+            if peak < before {
+                return Err(UnsoundRun::Memory { place, id, before, peak });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn check_samples(list: &'static str, samples: &[BenchSample], rounds: u32) -> Result<(), UnsoundRun> {
+    let mut seen = BTreeMap::<&ConfigurationId, BTreeSet<u32>>::new();
+    for (place, sample) in samples.iter().enumerate() {
+        let (id, round) = (&sample.id, sample.iteration);
+        sample.check(rounds).map_err(|reason| UnsoundRun::Sample { list, place, id: id.clone(), reason })?;
+        if !seen.entry(id).or_default().insert(round) {
+            return Err(UnsoundRun::Twice { list, id: id.clone(), round });
+        }
+    }
+    let asked = rounds as usize;
+    match seen.into_iter().find(|(_, of)| of.len() != asked) {
+        Some((id, of)) => Err(UnsoundRun::Rounds { list, id: id.clone(), found: of.len(), asked }),
+        None => Ok(()),
+    }
+}
+
+impl BenchSample {
+    /// Checks that the sample can have been measured in a run of so many rounds.
+    ///
+    /// # Errors
+    /// The first thing that cannot be.
+    pub fn check(&self, rounds: u32) -> Result<(), UnsoundSample> {
+        let stages = Stage::ALL.map(|stage| (stage.label(), stage.of(self)));
+        let sound = |seconds: f64| seconds.is_finite() && seconds >= 0.0;
+        let reference = self.reference_s.map(|seconds| ("reference work", seconds));
+        if let Some((what, seconds)) = stages.into_iter().chain(reference).find(|(_, s)| !sound(*s)) {
+            return Err(UnsoundSample::NotADuration { what, seconds });
+        }
+        let (total, sum) = (self.total_s, stages[..6].iter().map(|(_, seconds)| seconds).sum::<f64>());
+        if (total - sum).abs() > ROUNDING * sum {
+            return Err(UnsoundSample::Sum { total, sum });
+        }
+        if self.iteration >= rounds {
+            return Err(UnsoundSample::Round { iteration: self.iteration, rounds });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::machine::{CpuProfile, Machine};
+    use crate::record::PeakMemory;
+
+    fn sample(id: &str, iteration: u32) -> BenchSample {
+        BenchSample {
+            id: id.parse().unwrap(),
+            sitting: 0,
+            iteration,
+            place: 0,
+            allocation_s: 0.001,
+            sampling_s: 0.01,
+            vertex_s: 0.1,
+            geometry_s: 0.3,
+            clustering_s: 0.7,
+            normals_s: 1e-7,
+            total_s: 0.001 + 0.01 + 0.1 + 0.3 + 0.7 + 1e-7,
+            reference_s: Some(0.001),
+        }
+    }
+
+    fn run() -> BenchRun {
+        let rounds = |of: u32| (0..of).flat_map(|round| ["ss_bi", "ss_su"].map(|id| sample(id, round)));
+        let memory =
+            PeakMemory { id: "ss_bi".parse().unwrap(), before_bytes: 2, peak_before_bytes: 3, peak_bytes: 4 };
+        let window =
+            LoadWindow { sitting: None, rounds: None, others: 0.25, steal: 0.75, load_average: None };
+        let target: CpuProfile = toml::from_str("name = \"any\"\nmodel = \"\"").unwrap();
+        BenchRun {
+            schema: BenchRun::SCHEMA,
+            study: "s".into(),
+            workload: None,
+            imported_from: None,
+            warmup: 1,
+            iterations: 3,
+            aa_iterations: 2,
+            seed: 1,
+            threads: 1,
+            pinned: None,
+            target,
+            machine: Machine::default(),
+            differences: Vec::new(),
+            samples: rounds(3).collect(),
+            aa_samples: rounds(2).collect(),
+            load: vec![window],
+            memory: vec![memory],
+            resumed: Vec::new(),
+        }
+    }
+
+    /// What is said of a run after this was done to it.
+    fn after(spoil: impl FnOnce(&mut BenchRun)) -> String {
+        let mut run = run();
+        spoil(&mut run);
+        run.check().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_run_as_measured_is_sound() {
+        assert_eq!(run().check(), Ok(()));
+        let mut rounded = run();
+        rounded.samples[0].total_s *= 1.0 + 1e-12;
+        assert_eq!(rounded.check(), Ok(()), "another tool may round");
+        let mut imported = run();
+        imported.imported_from = Some("a table".into());
+        imported.samples.truncate(2);
+        assert_eq!(imported.check(), Ok(()));
+    }
+
+    #[test]
+    fn what_no_clock_gives_is_refused_with_its_place() {
+        assert_eq!(
+            after(|run| run.samples[3].vertex_s = -0.5),
+            "samples[3], ss_su: vertex = -0.5 s: must be finite and not negative"
+        );
+        assert_eq!(
+            after(|run| run.aa_samples[0].reference_s = Some(f64::INFINITY)),
+            "aa_samples[0], ss_bi: reference work = inf s: must be finite and not negative"
+        );
+        let text = after(|run| run.samples[1].total_s = 2.0);
+        assert!(
+            text.starts_with("samples[1], ss_su: total = 2 s, and its stages add up to 1.111000"),
+            "{text}"
+        );
+        assert_eq!(
+            after(|run| run.samples[1].iteration = 3),
+            "samples[1], ss_su: iteration = 3: the run has 3, counted from 0"
+        );
+    }
+
+    #[test]
+    fn every_round_is_there_once() {
+        let text = after(|run| run.samples[2].iteration = 0);
+        assert_eq!(text, "samples: ss_bi is there twice in round 0");
+        let text = after(|run| drop(run.samples.pop()));
+        assert_eq!(text, "samples: ss_su has 2 of 3 rounds");
+        let text = after(|run| drop(run.aa_samples.remove(0)));
+        assert_eq!(text, "aa_samples: ss_bi has 1 of 2 rounds");
+    }
+
+    #[test]
+    fn shares_and_peaks_are_ones_that_can_be() {
+        let text = after(|run| run.load[0].steal = 0.8);
+        assert_eq!(text, "load[0]: others = 0.25, steal = 0.8: must be from 0 to 1, together too");
+        let text = after(|run| run.memory[0].peak_bytes = 1);
+        assert_eq!(text, "memory[0], ss_bi: peak_bytes = 1 is below before_bytes = 2");
+        let text = after(|run| run.memory.push(run.memory[0].clone()));
+        assert_eq!(text, "memory: ss_bi is there twice");
+    }
+}
