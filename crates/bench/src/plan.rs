@@ -6,12 +6,15 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::Serialize;
 use std::fmt;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
-/// Blocks into which measured rounds are cut where an A/A block goes between them.
-const BLOCKS: u32 = 3;
-/// Sittings of the A/A block, one after each measured block but the last.
-const AA_SITTINGS: u32 = BLOCKS - 1;
+/// Blocks into which measured rounds are cut where an A/A block goes between them, at least and at most. The more processes a
+/// median is of, the less is left of what chance gave each; but every one has to start and warm up.
+const BLOCKS: RangeInclusive<u32> = 3..=8;
+/// Rounds that a block has at least where that leaves blocks enough.
+const ROUNDS_OF_BLOCK: u32 = 10;
+/// Sittings of the A/A block, after a third and after two thirds of the measured blocks.
+const AA_SITTINGS: u32 = 2;
 /// Rounds of the A/A block take their orders from here on, so that none is that of a measured round.
 const AA_ORDERS: u32 = 1 << 31;
 
@@ -44,7 +47,7 @@ pub struct Plan {
 ///
 /// What a process is given by chance (where its memory lies, say) stays with it and shifts its times; only another
 /// process shows by how much. So the A/A block has sittings of its own, and where there is one, the measured rounds are
-/// cut into three sittings round it: it then sees the beginning, the middle and the end of the run.
+/// cut into three to eight sittings round it: it then sees the beginning, the middle and the end of the run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Sitting {
     /// Counted from 0.
@@ -90,20 +93,23 @@ pub struct Turn {
 impl Plan {
     /// The sittings in order. Nothing but the plan decides them, so a run that was broken off can be told what is left.
     pub fn sittings(&self) -> Vec<Sitting> {
-        let blocks = if self.aa_iterations == 0 { 1 } else { self.iterations.min(BLOCKS) };
+        let blocks = match self.aa_iterations {
+            0 => 1,
+            _ => {
+                (self.iterations / ROUNDS_OF_BLOCK).clamp(*BLOCKS.start(), *BLOCKS.end()).min(self.iterations)
+            }
+        };
         let again = self.aa_iterations.min(AA_SITTINGS);
         let cut = |rounds: u32, parts: u32, part: u32| {
             let at = |part: u32| (u64::from(rounds) * u64::from(part) / u64::from(parts)) as u32;
             at(part)..at(part + 1)
         };
         let mut sittings = Vec::new();
-        for part in 0..blocks.max(again) {
-            if part < blocks {
-                sittings.push((false, cut(self.iterations, blocks, part)));
-            }
-            if part < again {
-                sittings.push((true, cut(self.aa_iterations, again, part)));
-            }
+        for part in 0..blocks {
+            sittings.push((false, cut(self.iterations, blocks, part)));
+            let follows = |again_part: &u32| (blocks * (again_part + 1)).div_ceil(again + 1) == part + 1;
+            let following = (0..again).filter(follows);
+            sittings.extend(following.map(|part| (true, cut(self.aa_iterations, again, part))));
         }
         let number = |(number, (aa, rounds))| Sitting { number, aa, rounds };
         (0..).zip(sittings).map(number).collect()
@@ -195,8 +201,13 @@ mod tests {
             plan(1, iterations, aa).sittings().into_iter().map(of).collect::<Vec<_>>()
         };
         let (m, a) = (false, true);
-        let want = [(0, m, 0..33), (1, a, 0..4), (2, m, 33..66), (3, a, 4..8), (4, m, 66..100)];
-        assert_eq!(sittings(100, 8), want);
+        let want = [
+            [(0, m, 0..12), (1, m, 12..25), (2, m, 25..37), (3, a, 0..4), (4, m, 37..50)],
+            [(5, m, 50..62), (6, m, 62..75), (7, a, 4..8), (8, m, 75..87), (9, m, 87..100)],
+        ];
+        assert_eq!(sittings(100, 8), want.concat());
+        let want = [(0, m, 0..10), (1, a, 0..1), (2, m, 10..20), (3, a, 1..2), (4, m, 20..30)];
+        assert_eq!(sittings(30, 2), want);
         assert_eq!(sittings(10, 0), [(0, m, 0..10)], "nothing to surround: one process");
         assert_eq!(sittings(1, 1), [(0, m, 0..1), (1, a, 0..1)]);
         assert_eq!(sittings(1, 5), [(0, m, 0..1), (1, a, 0..2), (2, a, 2..5)]);
