@@ -28,6 +28,9 @@ pub(crate) enum Ours {
     Times(fn(&StageTimes) -> f64),
 }
 
+/// Two configurations, each an object and a method.
+pub(crate) type Pair = [(usize, Method); 2];
+
 /// Whose numbers.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Side {
@@ -54,7 +57,7 @@ impl<'a> Numbers<'a> {
     }
 
     pub(crate) fn get(&self, side: Side, measure: Measure, object: usize, method: Method) -> Option<f64> {
-        let id = ConfigurationId { object: self.inputs.study.file.objects[object].id.clone(), method };
+        let id = self.id(object, method);
         match (side, measure.ours) {
             (Side::Published, _) => {
                 let rows = &self.inputs.study.published.benchmark;
@@ -88,6 +91,29 @@ impl<'a> Numbers<'a> {
         objects.flat_map(|object| of.iter().map(move |&c| (object, c)).collect::<Vec<_>>()).collect()
     }
 
+    /// One clustering and another, in every lattice case.
+    pub(crate) fn clustering_pairs(&self, top: Clustering, bottom: Clustering) -> Vec<Pair> {
+        let pair = |(object, arrangement)| {
+            [top, bottom].map(|clustering| (object, Method { arrangement, clustering }))
+        };
+        self.lattice_cases().into_iter().map(pair).collect()
+    }
+
+    /// Body-centred and simple cubic, for every object and some clusterings.
+    pub(crate) fn arrangement_pairs(&self, of: &[Clustering]) -> Vec<Pair> {
+        let pair = |(object, clustering)| {
+            [Arrangement::BodyCentred, Arrangement::SimpleCubic]
+                .map(|arrangement| (object, Method { arrangement, clustering }))
+        };
+        self.clustering_cases(of).into_iter().map(pair).collect()
+    }
+
+    /// `measure` of the first over that of the second, for every pair that has both.
+    pub(crate) fn ratios(&self, side: Side, measure: Measure, pairs: &[Pair]) -> Vec<f64> {
+        let get = |(object, method): (usize, Method)| self.get(side, measure, object, method);
+        pairs.iter().filter_map(|&[top, bottom]| Some(get(top)? / get(bottom)?)).collect()
+    }
+
     /// `measure` with one clustering over that with another, for every lattice case that has both.
     pub(crate) fn over_clustering(
         &self,
@@ -96,20 +122,12 @@ impl<'a> Numbers<'a> {
         top: Clustering,
         bottom: Clustering,
     ) -> Vec<f64> {
-        let ratio = |&(object, arrangement): &(usize, Arrangement)| {
-            let get = |clustering| self.get(side, measure, object, Method { arrangement, clustering });
-            Some(get(top)? / get(bottom)?)
-        };
-        self.lattice_cases().iter().filter_map(ratio).collect()
+        self.ratios(side, measure, &self.clustering_pairs(top, bottom))
     }
 
     /// `measure` of body-centred over that of simple cubic, for every object and some clusterings.
     pub(crate) fn over_arrangement(&self, side: Side, measure: Measure, of: &[Clustering]) -> Vec<f64> {
-        let ratio = |&(object, clustering): &(usize, Clustering)| {
-            let get = |arrangement| self.get(side, measure, object, Method { arrangement, clustering });
-            Some(get(Arrangement::BodyCentred)? / get(Arrangement::SimpleCubic)?)
-        };
-        self.clustering_cases(of).iter().filter_map(ratio).collect()
+        self.ratios(side, measure, &self.arrangement_pairs(of))
     }
 
     /// `measure` of one clustering in every lattice case.
@@ -160,9 +178,9 @@ impl<'a> Numbers<'a> {
         &self.inputs.study.file.objects[object].name
     }
 
-    /// The id of a configuration, for people.
-    pub(crate) fn id(&self, object: usize, method: Method) -> String {
-        ConfigurationId { object: self.inputs.study.file.objects[object].id.clone(), method }.to_string()
+    /// The id of a configuration.
+    pub(crate) fn id(&self, object: usize, method: Method) -> ConfigurationId {
+        ConfigurationId { object: self.inputs.study.file.objects[object].id.clone(), method }
     }
 }
 

@@ -1,50 +1,157 @@
 //! Claims about times. Means of ratios are compared, not times; still, the machine decides them.
 
 use super::Finding;
-use super::numbers::{Measure, Numbers, Ours, Side, mean_change};
+use super::numbers::{Measure, Numbers, Ours, Pair, Side, mean, mean_change};
 use crate::inputs::Inputs;
 use crate::interval::{Interval, LEVEL};
 use crate::statistics::median;
+use crate::timing::NoiseFloor;
 use crate::verdict::Verdict;
 use design::Clustering::{self, EdgeCollapse, Integrated};
+use design::Stage;
 use design::published::Claim;
 use design::record::BenchRun;
 
-pub(crate) const VERTEX: Measure = Measure { published: |p| p.vertex_s, ours: Ours::Times(|t| t.vertex_s) };
-pub(crate) const GEOMETRY: Measure =
-    Measure { published: |p| p.geometry_s, ours: Ours::Times(|t| t.geometry_s) };
 const ALL: [Clustering; 3] = [Clustering::None, Integrated, EdgeCollapse];
+
+/// A pass of an extraction as the published tables have it, and the stage whose noise it has.
+#[derive(Clone, Copy)]
+pub(crate) struct Pass {
+    measure: Measure,
+    stage: Stage,
+}
+
+pub(crate) const VERTEX: Pass = Pass {
+    measure: Measure { published: |p| p.vertex_s, ours: Ours::Times(|t| t.vertex_s) },
+    stage: Stage::Vertex,
+};
+pub(crate) const GEOMETRY: Pass = Pass {
+    measure: Measure { published: |p| p.geometry_s, ours: Ours::Times(|t| t.geometry_s) },
+    stage: Stage::GeometryAsPublished,
+};
+/// Without normals, as published; they are a small part of the total, whose noise stands for it.
+pub(crate) const WHOLE: Pass = Pass {
+    measure: Measure {
+        published: |p| p.total_without_normals_s,
+        ours: Ours::Times(|t| t.total_without_normals_s()),
+    },
+    stage: Stage::Total,
+};
+
+/// By how much a time changes, as a mean over pairs of configurations, in per cent.
+#[derive(Debug)]
+pub(crate) struct Change {
+    pub(crate) published: Option<f64>,
+    /// Median over rounds.
+    pub(crate) ours: f64,
+    /// Of the median; `None` of fewer rounds than it takes.
+    pub(crate) interval: Option<Interval>,
+    /// What processes that differ may add or take away; `None` without an A/A block.
+    pub(crate) noise: Option<f64>,
+}
+
+/// What can be said of a change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Direction {
+    /// That of the published number.
+    Same,
+    /// The other one.
+    Opposite,
+    /// None: the interval does not lie beyond the noise.
+    WithinNoise,
+    /// The interval has one, but the noise is not known, or there is nothing published to hold it against.
+    NotJudged,
+    /// There is no interval.
+    TooFewRounds,
+}
+
+impl Change {
+    /// Of one pass; `None` without a benchmark of ours.
+    pub(crate) fn of(inputs: &Inputs<'_>, numbers: &Numbers<'_>, pass: Pass, pairs: &[Pair]) -> Option<Self> {
+        let run = inputs.bench?;
+        let ratios = |side| numbers.ratios(side, pass.measure, pairs);
+        let found = median(by_round(run, ratios, mean_change), LEVEL)?;
+        let floor = NoiseFloor::of(run);
+        // At worst all pairs are out to the same side.
+        let noise = |&[top, bottom]: &Pair| {
+            let [first, second] = [top, bottom].map(|(object, method)| numbers.id(object, method));
+            let ratio = numbers.ratios(Side::Ours, pass.measure, &[[top, bottom]]).first().copied()?;
+            Some(100.0 * ratio * floor.within(pass.stage, &first, &second)?.exp_m1())
+        };
+        let noise: Vec<f64> = pairs.iter().filter_map(noise).collect();
+        Some(Self {
+            published: mean_change(&ratios(Side::Published)),
+            ours: found.median,
+            interval: found.interval_at(LEVEL),
+            noise: mean(&noise),
+        })
+    }
+
+    /// What can be said of it.
+    pub(crate) fn direction(&self) -> Direction {
+        let Some(Interval { low, high }) = self.interval else { return Direction::TooFewRounds };
+        let noise = self.noise.unwrap_or(0.0);
+        let ours = match () {
+            () if low > noise => 1.0,
+            () if high < -noise => -1.0,
+            () => return Direction::WithinNoise,
+        };
+        match (self.noise, self.published) {
+            (Some(_), Some(published)) if published * ours > 0.0 => Direction::Same,
+            (Some(_), Some(_)) => Direction::Opposite,
+            _ => Direction::NotJudged,
+        }
+    }
+
+    /// What can be said, in words, with interval and noise.
+    fn told(&self) -> String {
+        let what = match self.direction() {
+            Direction::Same => "same direction",
+            Direction::Opposite => "opposite direction",
+            Direction::WithinNoise => "no change measurable here",
+            Direction::NotJudged => {
+                "a change over rounds, not judged: without an A/A block the noise is not known"
+            }
+            Direction::TooFewRounds => return "too few rounds to tell a change from noise".into(),
+        };
+        let interval = self.interval.map_or(String::new(), |Interval { low, high }| {
+            format!("95 % interval over rounds {low:.2} to {high:.2} %")
+        });
+        let noise = self.noise.map_or(String::new(), |noise| format!(", noise up to {noise:.2} points"));
+        format!("{what} ({interval}{noise})")
+    }
+}
 
 pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
     let numbers = Numbers::of(inputs);
-    let against_none =
-        |side, measure, clustering| numbers.over_clustering(side, measure, clustering, Clustering::None);
-    let against_simple = |side, measure| numbers.over_arrangement(side, measure, &ALL);
-    let ratios = |side| match claim.id.as_str() {
-        "vertex_integrated" => against_none(side, VERTEX, Integrated),
-        "geometry_integrated" => against_none(side, GEOMETRY, Integrated),
-        "vertex_edge_collapse" => against_none(side, VERTEX, EdgeCollapse),
-        "geometry_edge_collapse" => against_none(side, GEOMETRY, EdgeCollapse),
-        "arrangement_vertex" => against_simple(side, VERTEX),
-        "arrangement_geometry" => against_simple(side, GEOMETRY),
-        _ => Vec::new(),
+    let against_none = |clustering| numbers.clustering_pairs(clustering, Clustering::None);
+    let (pass, pairs) = match claim.id.as_str() {
+        "vertex_integrated" => (VERTEX, against_none(Integrated)),
+        "geometry_integrated" => (GEOMETRY, against_none(Integrated)),
+        "vertex_edge_collapse" => (VERTEX, against_none(EdgeCollapse)),
+        "geometry_edge_collapse" => (GEOMETRY, against_none(EdgeCollapse)),
+        "arrangement_vertex" => (VERTEX, numbers.arrangement_pairs(&ALL)),
+        "arrangement_geometry" => (GEOMETRY, numbers.arrangement_pairs(&ALL)),
+        _ => return None,
     };
     let (value, run) = (claim.value?, inputs.bench?);
-    let found = median(by_round(run, ratios, mean_change), LEVEL)?;
-    let (ours, interval) = (found.median, found.interval_at(LEVEL));
-    let direction = direction(value, interval);
+    let found = Change::of(inputs, &numbers, pass, &pairs)?;
+    let from_published = found.published;
+    // The text is what is checked, whatever its tables come to.
+    let found = Change { published: Some(value), ..found };
+    let told = found.told();
     let verdict = if !run.differences.is_empty() {
         let model = run.machine.model.as_deref().unwrap_or("an unnamed CPU");
-        Verdict::not_comparable(format!("{direction}; measured on {model}, not on {}", run.target.name))
-    } else if interval.is_some_and(|i| (i.low..=i.high).contains(&value)) {
-        Verdict::within("the interval", format!("{direction}; measured on a matching machine"))
+        Verdict::not_comparable(format!("{told}; measured on {model}, not on {}", run.target.name))
+    } else if found.interval.is_some_and(|i| (i.low..=i.high).contains(&value)) {
+        Verdict::within("the interval", format!("{told}; measured on a matching machine"))
     } else {
-        Verdict::differs(format!("{direction}; measured on a matching machine"))
+        Verdict::differs(format!("{told}; measured on a matching machine"))
     };
     Some(Finding {
-        from_published: mean_change(&ratios(Side::Published)),
-        as_published: Some(ours),
-        ours: Some(ours),
+        from_published,
+        as_published: Some(found.ours),
+        ours: Some(found.ours),
         decimals: 2,
         remark: String::new(),
         verdict,
@@ -65,15 +172,25 @@ pub(crate) fn by_round(
     rounds.filter_map(|of| summary(&of)).collect()
 }
 
-/// Whether we see the published direction at all; noise has a sign too.
-fn direction(published: f64, interval: Option<Interval>) -> String {
-    let Some(Interval { low, high }) = interval else {
-        return "too few rounds to tell a change from noise".into();
-    };
-    let what = match () {
-        () if low <= 0.0 && 0.0 <= high => "no change measurable here",
-        () if low.signum() == published.signum() => "same direction",
-        () => "opposite direction",
-    };
-    format!("{what} (95 % interval over rounds {low:.2} to {high:.2} %)")
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_direction_needs_an_interval_beyond_the_noise() {
+        let of = |low, high, noise| {
+            let interval = Some(Interval { low, high });
+            Change { published: Some(12.0), ours: 0.0, interval, noise }.direction()
+        };
+        assert_eq!(of(1.0, 5.0, Some(0.5)), Direction::Same);
+        assert_eq!(of(-5.0, -1.0, Some(0.5)), Direction::Opposite);
+        assert_eq!(of(1.0, 5.0, Some(1.0)), Direction::WithinNoise);
+        assert_eq!(of(-1.0, 5.0, Some(0.5)), Direction::WithinNoise);
+        assert_eq!(of(1.0, 5.0, None), Direction::NotJudged);
+        assert_eq!(of(-1.0, 5.0, None), Direction::WithinNoise, "zero is within any noise");
+        let few = Change { published: Some(12.0), ours: 9.0, interval: None, noise: Some(1.0) };
+        assert_eq!(few.direction(), Direction::TooFewRounds);
+        let alone = Change { published: None, interval: Some(Interval { low: 2.0, high: 3.0 }), ..few };
+        assert_eq!(alone.direction(), Direction::NotJudged);
+    }
 }
