@@ -40,7 +40,7 @@ pub(super) fn draft(study: &Study, tally: &Tally) -> Option<Draft> {
         (Swatch::Mark(Mark::nth(i, true)), format!("groups {}: at most {largest}", groups_of(cap)))
     };
     let mut legend: Vec<(Swatch, String)> = caps.iter().enumerate().map(entry).collect();
-    legend.push((Swatch::Line, "what a factor of such a group can be".into()));
+    legend.push((Swatch::Line(BLACK), "what a factor of such a group can be".into()));
     let mut marks = Vec::new();
     let mut names = Vec::new();
     for (i, cap) in caps.iter().enumerate() {

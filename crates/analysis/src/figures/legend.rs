@@ -1,6 +1,6 @@
 //! Legends: swatches with names, in as many rows as they need.
 
-use super::canvas::{Align, BLACK, Canvas, WHITE, text_width};
+use super::canvas::{Align, BLACK, Canvas, Colour, WHITE, text_width};
 use super::marks::Mark;
 use super::style::Fill;
 
@@ -16,8 +16,8 @@ pub(super) enum Swatch {
     Dashes,
     /// A mark told by its shape.
     Mark(Mark),
-    /// A line.
-    Line,
+    /// A line of this colour.
+    Line(Colour),
 }
 
 const EM: f64 = 12.0;
@@ -38,7 +38,7 @@ pub(super) fn draw(canvas: &mut Canvas, entries: &[(Swatch, String)], left: f64,
             Swatch::Diamond => diamond(canvas, (x + 9.0, middle)),
             Swatch::Whisker => whisker(canvas, x + 9.0, middle - 7.0, middle + 7.0),
             Swatch::Mark(mark) => mark.draw(canvas, (x + 9.0, middle)),
-            Swatch::Line => canvas.line(vec![(x, middle), (x + 18.0, middle)], BLACK, 1.5),
+            Swatch::Line(colour) => canvas.line(vec![(x, middle), (x + 18.0, middle)], *colour, 1.5),
             Swatch::Dashes => canvas.dashes(x, x + 18.0, middle, BLACK),
         }
         canvas.text(name, (x + 24.0, middle + 0.36 * EM), EM, Align::Start);

@@ -25,7 +25,7 @@ pub(super) fn draft(inputs: &Inputs<'_>, ballots: &[Ballot]) -> Option<Draft> {
     if hollow {
         legend.push((Swatch::Mark(Mark::nth(0, false)), "hollow: different lattices".into()));
     }
-    legend.push((Swatch::Line, "Davidson's model".into()));
+    legend.push((Swatch::Line(BLACK), "Davidson's model".into()));
     legend.push((Swatch::Dashes, "as many for either".into()));
     let rows: Vec<&[MetricPrediction]> = prediction.metrics.chunks(PER_ROW).collect();
     let (mut canvas, top) = canvas_with_legend(&legend, ROW * rows.len() as f64);

@@ -1,6 +1,7 @@
 //! A sweep: time against samples, time per triangle, speed-up against threads, quality against cost.
 
 use super::axis::Axis;
+use super::canvas::Colour;
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
@@ -10,6 +11,10 @@ use crate::sweep::{Point, SpeedUp, Sweep};
 use design::{Arrangement, Method, Study};
 
 const ROW: f64 = 340.0;
+/// The line of a speed-up in proportion to the threads.
+const IDEAL: Colour = style::GRID;
+/// From one mark to the next at the same number of threads, in widths of the axis.
+const ASIDE: f64 = 0.025;
 
 /// The figures of a sweep; those with nothing to show are left out.
 ///
@@ -67,10 +72,10 @@ fn line<'a>(sweep: &'a Sweep, object: &str, method: Method) -> Vec<&'a Point> {
 /// What a panel shows of a point.
 type Value = fn(&Point) -> Option<f64>;
 
-struct Labels<'a> {
+struct Labels {
     heading: String,
-    x: &'a str,
-    y: &'a str,
+    x: String,
+    y: String,
 }
 
 /// A line with marks for each method of an object.
@@ -78,7 +83,7 @@ fn lines(
     study: &Study,
     sweep: &Sweep,
     object: &str,
-    labels: Labels<'_>,
+    labels: Labels,
     [x, y]: [Value; 2],
     logarithmic_y: bool,
 ) -> Scatter {
@@ -96,7 +101,7 @@ fn lines(
     let (xs, ys) = (ends(&mut of(|p| p.0)), ends(&mut of(|p| p.1)));
     Scatter {
         heading: labels.heading,
-        labels: (labels.x.into(), labels.y.into()),
+        labels: (labels.x, labels.y),
         x: Axis::decades(xs.0, xs.1),
         y: if logarithmic_y { Axis::decades(ys.0, ys.1) } else { Axis::spanning(ys.0, ys.1) },
         lines,
@@ -130,7 +135,11 @@ fn threads(count: u32) -> String {
 
 fn time(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
     let panel = |object: &&str| {
-        let labels = Labels { heading: object_name(study, object).into(), x: "sample points", y: "time, ms" };
+        let labels = Labels {
+            heading: object_name(study, object).into(),
+            x: "sample points".into(),
+            y: format!("ms on {}", threads(fewest(sweep))),
+        };
         let values: [Value; 2] = [|p| Some(p.samples as f64), |p| Some(1e3 * p.total_s.median)];
         lines(study, sweep, object, labels, values, true)
     };
@@ -143,8 +152,11 @@ fn time(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
 
 fn per_triangle(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
     let panel = |object: &&str| {
-        let heading = object_name(study, object).into();
-        let labels = Labels { heading, x: "cells per axis", y: "time per triangle, \u{b5}s" };
+        let labels = Labels {
+            heading: object_name(study, object).into(),
+            x: "cells per axis".into(),
+            y: format!("\u{b5}s per triangle on {}", threads(fewest(sweep))),
+        };
         let each: Value = |p| (p.triangles > 0).then(|| 1e6 * p.total_s.median / p.triangles as f64);
         lines(study, sweep, object, labels, [|p| Some(f64::from(p.cells)), each], true)
     };
@@ -165,17 +177,26 @@ fn speed_up(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
     let mut shown = vec![cells[cells.len() / 2], last];
     shown.dedup();
     let most = sweep.speed_ups.iter().map(|found| found.threads).max()?;
-    let highest =
-        sweep.speed_ups.iter().map(|found| found.ratio).fold(f64::from(most) / f64::from(base), f64::max);
+    let ends = |found: &SpeedUp| found.interval.map_or(found.ratio, |interval| interval.high);
+    let shown_ups = sweep.speed_ups.iter().filter(|found| shown.contains(&found.cells));
+    let highest = shown_ups.map(ends).fold(f64::from(most) / f64::from(base), f64::max);
     let panel = |object: &str, cells: u32| {
         let ideal = vec![(f64::from(base), 1.0), (f64::from(most), f64::from(most) / f64::from(base))];
-        let (mut lines, mut marks) = (vec![(style::GRID, ideal)], Vec::new());
-        for method in study.methods() {
+        let (mut lines, mut marks) = (vec![(IDEAL, ideal)], Vec::new());
+        let methods = study.methods();
+        for (n, &method) in methods.iter().enumerate() {
+            // Side by side, so that one interval does not hide another.
+            let aside = (n as f64 - (methods.len() - 1) as f64 / 2.0) * ASIDE * f64::from(most - base);
             let own = |f: &&SpeedUp| f.cells == cells && f.id.object == object && f.id.method == method;
-            let found = sweep.speed_ups.iter().filter(own).map(|f| (f64::from(f.threads), f.ratio));
-            let points: Vec<(f64, f64)> = std::iter::once((f64::from(base), 1.0)).chain(found).collect();
+            let colour = style::method(method).outline;
+            let mut points = vec![(f64::from(base), 1.0)];
+            for found in sweep.speed_ups.iter().filter(own) {
+                let x = f64::from(found.threads) + aside;
+                points.push((x, found.ratio));
+                lines.extend(found.interval.map(|i| (colour, vec![(x, i.low), (x, i.high)])));
+            }
             marks.extend(points[1..].iter().map(|&at| (at, mark(study, method))));
-            lines.push((style::method(method).outline, points));
+            lines.push((colour, points));
         }
         Scatter {
             heading: format!("{}, {cells} cells per axis", object_name(study, object)),
@@ -192,8 +213,9 @@ fn speed_up(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
         shown.iter().map(|&cells| objects.iter().map(|object| panel(object, cells)).collect()).collect();
     let mut legend = legend(study);
     legend.push((Swatch::Dashes, "no faster".into()));
-    let caption = "What more threads are worth: time on the fewest over time on so many. The pale line is a speed-up in \
-                   proportion to the threads."
+    legend.push((Swatch::Line(IDEAL), "in proportion to the threads".into()));
+    let caption = "What more threads are worth: time on the fewest over time on so many, medians. Upright lines: intervals that \
+                   hold at 95 % for all configurations of a resolution together. Marks stand side by side."
         .to_owned();
     draw("sweep_speed_up", caption, &legend, &rows)
 }
@@ -201,13 +223,14 @@ fn speed_up(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
 fn quality(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
     let q: Value = |p| p.radius_ratio;
     let rows = objects.iter().map(|object| {
-        let panel = |x: &'static str, value: Value| {
-            let labels = Labels { heading: object_name(study, object).into(), x, y: "mean radius ratio" };
+        let panel = |x: String, value: Value| {
+            let labels =
+                Labels { heading: object_name(study, object).into(), x, y: "mean radius ratio".into() };
             lines(study, sweep, object, labels, [value, q], false)
         };
         vec![
-            panel("triangles", |p| Some(p.triangles as f64)),
-            panel("time, ms", |p| Some(1e3 * p.total_s.median)),
+            panel("triangles".into(), |p| Some(p.triangles as f64)),
+            panel(format!("ms on {}", threads(fewest(sweep))), |p| Some(1e3 * p.total_s.median)),
         ]
     });
     let rows: Vec<Vec<Scatter>> = rows.collect();
