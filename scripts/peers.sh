@@ -1,7 +1,7 @@
 #!/bin/sh
 # Times isostudy's extraction beside manifold3d, VTK, scikit-image (Python wheels) and fast-surface-nets, isosurface (Rust crates)
-# on the same fields and sizes, interleaved, and measures every mesh with isostudy's own `mesh`. What cannot be had is skipped
-# and named on standard error. What is fetched stays under cache/ and target/.
+# on the same fields and sizes, interleaved, and measures every mesh with isostudy's own `mesh`. What cannot be had or fails is
+# skipped and named, on standard error and under the table. What is fetched stays under cache/ and target/.
 #
 # usage: scripts/peers.sh [--rounds N] [--cells N,N] [--out DIR]
 # PEERS_PYTHON: a Python that has the wheels already; otherwise they are installed into cache/peers.
@@ -21,4 +21,4 @@ fi
 export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-target}/peers"
 cargo build --release --quiet --manifest-path scripts/peers/Cargo.toml
 # One core for all: a peer that would use more could not be told apart from a faster one.
-exec "$CARGO_TARGET_DIR/release/peers" --python "$python" --worker scripts/peers/worker.py "$@"
+exec "$CARGO_TARGET_DIR/release/peers" --python "$python" --worker scripts/peers/worker.py --date "$(date -u +%F)" "$@"

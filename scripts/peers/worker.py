@@ -1,10 +1,13 @@
 """Extracts an isosurface with one library, as often as asked; started by the `peers` program.
 
+usage: worker.py LIBRARY FIELDS, with FIELDS a shared library that has the fields.
+
 A request is a line of JSON: samples (a file of 32-bit floats, x fastest), size, origin, spacing, and mesh (a file to write, or
 null). A reply is a line of JSON: extraction_s, callback_s (0 where the library takes an array), or failed. Samples are read
 before the clock starts; positions are written as 32-bit floats and triangles as 32-bit integers after it stopped.
 """
 
+import ctypes
 import json
 import sys
 from time import perf_counter
@@ -64,14 +67,14 @@ def manifold_level_set():
     def extract(samples, request):
         # Its body-centred lattice has samples between those of the grid, so it is given the field: trilinear in the samples
         # would be another surface. The field's own time is taken from inside.
-        field, spent, calls = FIELDS[request["field"]], 0.0, 0
+        field, spent = getattr(FIELDS, request["field"]), 0.0
+        field.argtypes, field.restype = [ctypes.c_float] * 3, ctypes.c_float
 
         def timed(x, y, z):
-            nonlocal spent, calls
+            nonlocal spent
             begin = perf_counter()
             value = field(x, y, z)
             spent += perf_counter() - begin
-            calls += 1
             return value
 
         low = request["origin"]
@@ -85,11 +88,7 @@ def manifold_level_set():
     return extract, f"manifold3d {version('manifold3d')} level_set; calls the field through Python, sample by sample: the calls are in its time, which says little of the library"
 
 
-def sphere(x, y, z):
-    return 1.0 - (x * x + y * y + z * z) ** 0.5
-
-
-FIELDS = {"sphere": sphere}
+FIELDS = ctypes.CDLL(sys.argv[2])
 PEERS = {"vtk": vtk_flying_edges, "scikit-image": skimage_marching_cubes, "manifold3d": manifold_level_set}
 
 
@@ -107,9 +106,6 @@ def main():
     for line in sys.stdin:
         request = json.loads(line)
         samples = np.fromfile(request["samples"], dtype=np.float32)
-        if sys.argv[1] == "manifold3d" and request["field"] not in FIELDS:
-            say({"failed": f"the {request['field']} cannot be called from Python"})
-            continue
         seconds, callback, positions, triangles = extract(samples, request)
         if request["mesh"]:
             with open(request["mesh"], "wb") as file:

@@ -40,18 +40,18 @@ impl Peer for Ours {
         )
     }
 
-    fn extract(&mut self, grid: &Grid, with_mesh: bool) -> Result<Option<Outcome>> {
+    fn extract(&mut self, grid: &Grid, with_mesh: bool) -> Result<Outcome> {
         let bounds = Bounds { min: Vec3::splat(-REACH), max: Vec3::splat(REACH) };
         let lattice = Lattice::try_new(self.arrangement, bounds, grid.spacing)?;
         let settings = ExtractSettings { clustering: self.clustering, ..Default::default() };
         let made = extract::extract(&*field(grid.field), &lattice, &settings, &Execution { threads: 1 })?;
         let times = made.times;
         let extraction = times.allocation + times.vertex + times.geometry + times.clustering;
-        Ok(Some(Outcome {
+        Ok(Outcome {
             extraction_s: extraction.as_secs_f64(),
             sampling_s: times.sampling.as_secs_f64(),
             mesh: with_mesh.then_some(made.mesh),
-        }))
+        })
     }
 }
 
@@ -66,7 +66,7 @@ impl Peer for SurfaceNets {
         "fast-surface-nets 0.2.1; normals included".into()
     }
 
-    fn extract(&mut self, grid: &Grid, with_mesh: bool) -> Result<Option<Outcome>> {
+    fn extract(&mut self, grid: &Grid, with_mesh: bool) -> Result<Outcome> {
         // Inside is negative there.
         self.negated.clear();
         self.negated.extend(grid.samples.iter().map(|sample| -sample));
@@ -85,7 +85,7 @@ impl Peer for SurfaceNets {
             normals: Vec::new(),
             triangles: self.buffer.indices.as_chunks::<3>().0.to_vec(),
         });
-        Ok(Some(Outcome { extraction_s, sampling_s: 0.0, mesh }))
+        Ok(Outcome { extraction_s, sampling_s: 0.0, mesh })
     }
 }
 
@@ -107,7 +107,7 @@ impl Peer for Cubes {
         "isosurface 0.0.4 MarchingCubes; looking samples up included".into()
     }
 
-    fn extract(&mut self, grid: &Grid, with_mesh: bool) -> Result<Option<Outcome>> {
+    fn extract(&mut self, grid: &Grid, with_mesh: bool) -> Result<Outcome> {
         let begin = Instant::now();
         let (mut vertices, mut indices) = (Vec::new(), Vec::new());
         MarchingCubes::new(grid.cells as usize + 1).extract(&Samples(grid), &mut vertices, &mut indices);
@@ -118,6 +118,6 @@ impl Peer for Cubes {
             normals: Vec::new(),
             triangles: indices.as_chunks::<3>().0.to_vec(),
         });
-        Ok(Some(Outcome { extraction_s, sampling_s: 0.0, mesh }))
+        Ok(Outcome { extraction_s, sampling_s: 0.0, mesh })
     }
 }

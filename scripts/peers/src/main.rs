@@ -7,10 +7,12 @@ mod report;
 
 use anyhow::{Context, Result, bail};
 use bench::{CpuTimes, order};
+use design::machine::Machine;
 use extract::{Asteroid, ScalarField, Sphere};
 use glam::Vec3;
 use mesh::TriangleMesh;
 use std::path::PathBuf;
+use std::process::Command;
 
 const SEED: u64 = 2026;
 /// The volume has room round every surface, so that none of them has to be closed at its boundary.
@@ -59,8 +61,22 @@ pub(crate) trait Peer {
     fn process(&self) -> Option<u32> {
         None
     }
-    /// `None` if it cannot do this field.
-    fn extract(&mut self, grid: &Grid, with_mesh: bool) -> Result<Option<Outcome>>;
+    /// # Errors
+    /// Whatever stopped it.
+    fn extract(&mut self, grid: &Grid, with_mesh: bool) -> Result<Outcome>;
+}
+
+/// The machine, and the commit of the sources that stand here.
+fn machine() -> Machine {
+    let git = |arguments: &[&str]| {
+        let output =
+            Command::new("git").args(arguments).output().ok().filter(|output| output.status.success())?;
+        Some(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    };
+    let mut machine = bench::read_machine();
+    machine.build.commit = git(&["rev-parse", "HEAD"]);
+    machine.build.dirty = git(&["status", "--porcelain"]).map(|changes| !changes.is_empty());
+    machine
 }
 
 struct Arguments {
@@ -69,6 +85,7 @@ struct Arguments {
     out: PathBuf,
     rounds: u32,
     cells: Vec<u32>,
+    date: String,
 }
 
 fn arguments() -> Result<Arguments> {
@@ -78,6 +95,7 @@ fn arguments() -> Result<Arguments> {
         out: "results/peers".into(),
         rounds: 11,
         cells: vec![50, 100],
+        date: "a day that was not told".into(),
     };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
@@ -86,12 +104,13 @@ fn arguments() -> Result<Arguments> {
             "--python" => found.python = value.into(),
             "--worker" => found.worker = value.into(),
             "--out" => found.out = value.into(),
+            "--date" => found.date = value,
             "--rounds" => found.rounds = value.parse().with_context(|| format!("--rounds {value}"))?,
             "--cells" => {
                 let cells: Result<_, _> = value.split(',').map(str::parse).collect();
                 found.cells = cells.with_context(|| format!("--cells {value}"))?;
             }
-            _ => bail!("{word}: known are --python, --worker, --out, --rounds, --cells"),
+            _ => bail!("{word}: known are --python, --worker, --out, --date, --rounds, --cells"),
         }
     }
     if found.rounds < 2 || found.cells.is_empty() || found.cells.iter().any(|c| !(4..=1024).contains(c)) {
@@ -109,6 +128,8 @@ fn main() {
 
 fn run() -> Result<()> {
     let arguments = arguments()?;
+    // Before the pinning, after which there is one CPU.
+    let machine = machine();
     // What is started from here inherits it.
     let pinned = bench::pin(1);
     let mut peers = in_process::peers();
@@ -116,10 +137,7 @@ fn run() -> Result<()> {
     for library in ["manifold3d", "vtk", "scikit-image"] {
         match python::PythonPeer::start(&arguments.python, &arguments.worker, library) {
             Ok(peer) => peers.push(Box::new(peer)),
-            Err(error) => {
-                eprintln!("peers: SKIPPED: {library}: {error:#}");
-                skipped.push(format!("{library}: {error:#}"));
-            }
+            Err(error) => skip(&mut skipped, format!("{library}: {error:#}")),
         }
     }
     let (mut rows, mut others) = (Vec::new(), Vec::new());
@@ -131,7 +149,7 @@ fn run() -> Result<()> {
             let ours: Vec<u32> =
                 peers.iter().filter_map(|peer| peer.process()).chain([std::process::id()]).collect();
             let before = CpuTimes::read(&ours, pinned.as_deref());
-            let measured = measure(&mut peers, &grid, arguments.rounds, &mut samples)?;
+            let measured = measure(&mut peers, &grid, arguments.rounds, &mut samples, &mut skipped)?;
             let after = CpuTimes::read(&ours, pinned.as_deref());
             let shares = before.zip(after).and_then(|(before, after)| after.shares_since(&before));
             others.extend(shares.map(|shares| shares.others + shares.steal));
@@ -144,8 +162,16 @@ fn run() -> Result<()> {
         others: others.into_iter().reduce(f64::max),
         notes: peers.iter().map(|peer| peer.name()).collect(),
         skipped,
+        machine,
+        date: arguments.date,
     };
     report::write(&arguments.out, &rows, &samples, &conditions)
+}
+
+/// Says that something is not measured, and why; at once and under the table.
+fn skip(skipped: &mut Vec<String>, what: String) {
+    eprintln!("peers: SKIPPED: {what}");
+    skipped.push(what);
 }
 
 /// Name and version alone.
@@ -167,25 +193,28 @@ fn measure(
     grid: &Grid,
     rounds: u32,
     log: &mut Vec<String>,
+    skipped: &mut Vec<String>,
 ) -> Result<Vec<Measured>> {
     let mut found: Vec<Option<Measured>> = Vec::new();
     for peer in peers.iter_mut() {
-        let outcome = peer.extract(grid, true)?;
-        if outcome.is_none() {
-            eprintln!("peers: SKIPPED: {} on the {}", label(&peer.name()), grid.field);
+        match peer.extract(grid, true) {
+            Ok(outcome) => found.push(Some(Measured {
+                peer: label(&peer.name()).to_owned(),
+                extraction_s: Vec::new(),
+                sampling_s: Vec::new(),
+                mesh: outcome.mesh.unwrap_or_default(),
+            })),
+            Err(error) => {
+                let Grid { field, cells, .. } = grid;
+                skip(skipped, format!("{} on the {field} of {cells} cells: {error:#}", label(&peer.name())));
+                found.push(None);
+            }
         }
-        found.push(outcome.map(|outcome| Measured {
-            peer: label(&peer.name()).to_owned(),
-            extraction_s: Vec::new(),
-            sampling_s: Vec::new(),
-            mesh: outcome.mesh.unwrap_or_default(),
-        }));
     }
     for round in 0..rounds {
         for (place, subject) in order(SEED, round, peers.len()).into_iter().enumerate() {
             let Some(measured) = &mut found[subject] else { continue };
-            let Some(outcome) = peers[subject].extract(grid, false)? else { continue };
-            let Outcome { extraction_s, sampling_s, .. } = outcome;
+            let Outcome { extraction_s, sampling_s, .. } = peers[subject].extract(grid, false)?;
             let (field, cells, peer) = (grid.field, grid.cells, &measured.peer);
             log.push(format!("{field},{cells},{peer},{round},{place},{extraction_s},{sampling_s}"));
             measured.extraction_s.push(extraction_s);

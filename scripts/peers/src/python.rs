@@ -6,6 +6,7 @@ use glam::Vec3;
 use mesh::TriangleMesh;
 use serde::Deserialize;
 use serde_json::json;
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -33,9 +34,11 @@ impl PythonPeer {
     /// # Errors
     /// If Python or the library is not there.
     pub(crate) fn start(python: &Path, worker: &Path, library: &str) -> Result<Self> {
+        let fields = format!("{DLL_PREFIX}peer_fields{DLL_SUFFIX}");
         let mut child = Command::new(python)
             .arg(worker)
             .arg(library)
+            .arg(std::env::current_exe()?.with_file_name(fields))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()
@@ -86,7 +89,7 @@ impl Peer for PythonPeer {
         Some(self.child.id())
     }
 
-    fn extract(&mut self, grid: &Grid, with_mesh: bool) -> Result<Option<Outcome>> {
+    fn extract(&mut self, grid: &Grid, with_mesh: bool) -> Result<Outcome> {
         let samples = self.samples(grid)?;
         let file = self.folder.path().join("mesh.bin");
         let n = grid.cells + 1;
@@ -102,9 +105,9 @@ impl Peer for PythonPeer {
         match self.reply().with_context(|| self.name.clone())? {
             Reply::Done { extraction_s, callback_s } => {
                 let mesh = if with_mesh { Some(read_mesh(&std::fs::read(&file)?)?) } else { None };
-                Ok(Some(Outcome { extraction_s, sampling_s: callback_s, mesh }))
+                Ok(Outcome { extraction_s, sampling_s: callback_s, mesh })
             }
-            Reply::Failed { .. } => Ok(None),
+            Reply::Failed { failed } => bail!("{}: {failed}", self.name),
             Reply::Ready { .. } => bail!("unexpected answer"),
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::{Grid, Measured};
 use anyhow::Result;
+use design::machine::Machine;
 use glam::DVec3;
 use mesh::TriangleMesh;
 use std::fmt::Write;
@@ -18,8 +19,10 @@ pub(crate) struct Conditions {
     pub(crate) others: Option<f64>,
     /// Names of the peers with what is in their times.
     pub(crate) notes: Vec<String>,
-    /// Peers that are not there, and why.
+    /// What was not measured, and why.
     pub(crate) skipped: Vec<String>,
+    pub(crate) machine: Machine,
+    pub(crate) date: String,
 }
 
 pub(crate) struct Row {
@@ -51,7 +54,8 @@ fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
 
 pub(crate) fn rows(grid: &Grid, measured: Vec<Measured>) -> Vec<Row> {
     let base = measured.iter().find(|m| m.peer.starts_with(BASE)).map(|m| m.extraction_s.clone());
-    let base = base.expect("isostudy is always there");
+    // Without ours there is nothing to stand beside; the report says why.
+    let Some(base) = base else { return Vec::new() };
     let row = |measured: Measured| {
         let mesh = outward(measured.mesh);
         let (quality, topology) = (mesh::quality::quality(&mesh), mesh::topology::topology(&mesh));
@@ -119,14 +123,15 @@ pub(crate) fn write(out: &Path, rows: &[Row], samples: &[String], conditions: &C
             ms(high)
         )?;
     }
-    let machine = bench::read_machine();
+    let machine = &conditions.machine;
     writeln!(
         markdown,
-        "\nOn {}. Extraction: from samples, or from the field with the time in the field taken off, to vertices and triangles. Samples \
+        "\nOn {}, {}. Extraction: from samples, or from the field with the time in the field taken off, to vertices and triangles. Samples \
          are 32-bit floats on one cubic grid; isostudy and manifold3d call the field, since their body-centred lattices have points \
          that the grid has not, and isostudy samples near the surface only. Spacing is the same for all; a body-centred lattice has \
          twice the points of a cubic one.",
-        machine.model.as_deref().unwrap_or("an unnamed CPU")
+        machine.model.as_deref().unwrap_or("an unnamed CPU"),
+        conditions.date
     )?;
     if let Some(others) = conditions.others {
         writeln!(markdown, "\nOthers had up to {:.0} % of the CPU time meanwhile.", 100.0 * others)?;
@@ -141,7 +146,7 @@ pub(crate) fn write(out: &Path, rows: &[Row], samples: &[String], conditions: &C
     std::fs::write(out.join("peers.csv"), csv)?;
     std::fs::write(out.join("peers.md"), &markdown)?;
     std::fs::write(out.join("samples.csv"), samples.join("\n") + "\n")?;
-    std::fs::write(out.join("machine.json"), serde_json::to_vec_pretty(&machine)?)?;
+    std::fs::write(out.join("machine.json"), serde_json::to_vec_pretty(machine)?)?;
     print!("{markdown}");
     println!("{}", out.display());
     Ok(())
