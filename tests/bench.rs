@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+const STAGES: [&str; 6] = ["allocation", "sampling", "vertex", "geometry", "clustering", "normals"];
 const JOURNAL: &str = ".stages/bench.full.journal";
 
 fn run_of(folder: &Path) -> Value {
@@ -80,7 +81,7 @@ fn every_statement_is_there_in_every_format() {
     }
     let path = fixture.out().join("bench/full/statements.json");
     let statements: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
-    assert_eq!(statements["schema"], 2);
+    assert_eq!(statements["schema"], 3);
     assert_eq!(statements["medians"].as_array().unwrap().len(), 18 * 7);
     assert_eq!(statements["ratios"].as_array().unwrap().len(), 27 * 5);
     let machine = std::fs::read_to_string(fixture.out().join("bench/full/machine.csv")).unwrap();
@@ -104,7 +105,7 @@ impl Pair {
         for block in ["samples", "aa_samples"] {
             for sample in run[block].as_array_mut().unwrap() {
                 let unrest = 1.0 + 0.001 * (sample["iteration"].as_u64().unwrap() % 3) as f64;
-                for stage in ["allocation", "sampling", "vertex", "geometry", "clustering", "normals"] {
+                for stage in STAGES {
                     sample[format!("{stage}_s")] = (0.01 * unrest / 6.0).into();
                 }
                 sample["total_s"] = (0.01 * unrest).into();
@@ -146,7 +147,8 @@ impl Pair {
 }
 
 fn isostudy(arguments: &[&str]) -> Run {
-    let output = Command::new(env!("CARGO_BIN_EXE_isostudy")).args(arguments).output().unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
+    let output = command.args(arguments).current_dir(std::env::temp_dir()).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     Run { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
 }
@@ -157,16 +159,18 @@ fn comparisons_end_as_scripts_expect() {
     let same = pair.compare(&[]);
     assert_eq!(same.code, Some(0), "{}", same.stderr);
     assert!(same.stdout.contains("cannot say") && !same.stdout.contains("slower"), "{}", same.stdout);
+    assert!(same.stdout.contains("Programs and plans do not differ: of "), "{}", same.stdout);
+    assert!(same.stderr.contains("are not told from noise here"), "{}", same.stderr);
 
+    // Its A/A block is slower with it: the build is slower, not the machine restless.
     pair.change_b(|run| {
-        for sample in run["samples"].as_array_mut().unwrap().iter_mut().filter(|s| s["id"] == "ss_bi") {
-            sample["total_s"] = (1.2 * sample["total_s"].as_f64().unwrap()).into();
-        }
-    });
-    // Its A/A block is as it was: the build is slower, not the machine restless.
-    pair.change_b(|run| {
-        for sample in run["aa_samples"].as_array_mut().unwrap().iter_mut().filter(|s| s["id"] == "ss_bi") {
-            sample["total_s"] = (1.2 * sample["total_s"].as_f64().unwrap()).into();
+        for block in ["samples", "aa_samples"] {
+            for sample in run[block].as_array_mut().unwrap().iter_mut().filter(|s| s["id"] == "ss_bi") {
+                for time in STAGES.iter().chain(&["total"]) {
+                    let time = format!("{time}_s");
+                    sample[&time] = (1.2 * sample[&time].as_f64().unwrap()).into();
+                }
+            }
         }
     });
     let slower = pair.compare(&["--format", "json"]);
@@ -187,7 +191,11 @@ fn comparisons_end_as_scripts_expect() {
     assert_eq!(pair.compare(&["--relative", "0.3"]).code, Some(0), "slower, but within the limit");
     assert_eq!(pair.compare(&["--absolute", "0.01"]).code, Some(0), "slower, but by too little");
     let (csv, latex) = (pair.compare(&["--format", "csv"]), pair.compare(&["--format", "latex"]));
-    assert!(csv.stdout.starts_with("id,a_ms,b_ms,ratio,low,high,floor,verdict,reason\n"), "{}", csv.stdout);
+    assert!(
+        csv.stdout.starts_with("id,a_ms,b_ms,ratio,low,high,floor,tellable,verdict,reason\n"),
+        "{}",
+        csv.stdout
+    );
     assert!(latex.stdout.contains("\\begin{tabular}"), "{}", latex.stdout);
 
     pair.change_b(|run| run["machine"]["model"] = "Another CPU".into());
@@ -213,8 +221,17 @@ fn what_cannot_be_compared_is_refused_by_name() {
     let refused = pair.compare(&[]);
     assert_eq!(refused.code, Some(2));
     assert!(refused.stderr.contains("b.json: schema = 1: this version reads 2"), "{}", refused.stderr);
-    std::fs::write(&pair.b, "{").unwrap();
-    assert_eq!(pair.compare(&[]).code, Some(2));
+    pair.change_b(|run| run["schema"] = 2.into());
+    pair.change_b(|run| run["samples"][3]["vertex_s"] = (-0.5).into());
+    let refused = pair.compare(&[]);
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.stderr.contains("b.json: samples[3], "), "{}", refused.stderr);
+    assert!(refused.stderr.contains("vertex = -0.5 s: must be finite"), "{}", refused.stderr);
+    for text in ["{", "[]"] {
+        std::fs::write(&pair.b, text).unwrap();
+        let refused = pair.compare(&[]);
+        assert!(refused.code == Some(2) && !refused.stderr.contains("Versioned"), "{}", refused.stderr);
+    }
     let empty = isostudy(&["bench", "compare", pair.a.to_str().unwrap(), "/nowhere"]);
     assert!(empty.code == Some(2) && empty.stderr.contains("/nowhere"), "{}", empty.stderr);
     assert_eq!(pair.compare(&["--relative", "-1"]).code, Some(2));
@@ -241,6 +258,11 @@ fn the_published_table_stands_beside_a_run() {
     let numbers: Vec<f64> = row.split(',').skip(1).take(3).map(|cell| cell.parse().unwrap()).collect();
     assert!((numbers[1] - 18.472).abs() < 1e-9 && (numbers[2] - 18.472 / 10.01).abs() < 1e-9, "{row}");
     assert!(row.ends_with("cannot say (across machines),a single value has no interval"), "{row}");
+    // The paper's machine is the default wherever one stands.
+    let elsewhere = pair.fixture.folder().join("elsewhere.json");
+    let made = isostudy(&["bench", "import", &table, "--out", elsewhere.to_str().unwrap()]);
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    assert_eq!(std::fs::read(elsewhere).unwrap(), std::fs::read(&out).unwrap());
     let missing = isostudy(&["bench", "import", "/nowhere.csv", "--machine", &machine, "--out", "x"]);
     assert!(missing.code == Some(2) && missing.stderr.contains("/nowhere.csv"), "{}", missing.stderr);
 }
@@ -346,12 +368,13 @@ fn a_configuration_is_inspected() {
     }
     let vertices = counts["vertices"].as_f64().unwrap();
     assert!((vertices / 2180.0 - 1.0).abs() < 0.01, "{vertices}");
-    assert_eq!((&panel["schema"], panel["times"].as_array().unwrap().len()), (&2.into(), 7));
+    assert_eq!((&panel["schema"], panel["times"].as_array().unwrap().len()), (&3.into(), 7));
+    assert_eq!((&panel["iterations"], &panel["machine"]["os"]), (&3.into(), &std::env::consts::OS.into()));
     let stages: f64 =
         panel["times"].as_array().unwrap()[..6].iter().map(|t| t["median"].as_f64().unwrap()).sum();
     assert!(stages > 0.0);
     let text = inspect("ss_bi", &["--resolution", "20"]).stdout;
-    for heading in ["mesh", "generation", "timing, ms: medians on", "geometry"] {
+    for heading in ["mesh", "generation", "timing, ms: medians of 3 extractions on", "geometry"] {
         assert!(text.lines().any(|line| line.starts_with(heading)), "{heading}: {text}");
     }
     assert!(

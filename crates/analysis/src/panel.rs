@@ -1,22 +1,31 @@
 //! One configuration at a glance: mesh, generation, timing, geometry.
 
+use crate::digits::counted;
 use crate::interval::LEVEL;
 use crate::statistics::{Median, median};
+use design::machine::Machine;
 use design::record::{BenchSample, Distribution, MeshRecord};
-use design::{Configuration, Stage};
+use design::{Configuration, Stage, Study};
 use serde::Serialize;
 use std::fmt::Write;
 
 /// The version of [`Panel`] as JSON.
 ///
-/// 2 has the distance from the isosurface to the mesh (`mesh.accuracy.distance_to_mesh`).
-pub const PANEL_SCHEMA: u32 = 2;
+/// 2 has the distance from the isosurface to the mesh (`mesh.accuracy.distance_to_mesh`), 3 the study, the machine and how
+/// many extractions were timed.
+pub const PANEL_SCHEMA: u32 = 3;
 
 /// What is known of one configuration.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Panel {
     /// Version of this layout; [`PANEL_SCHEMA`].
     pub schema: u32,
+    /// The study's id.
+    pub study: String,
+    /// The machine that it was timed on.
+    pub machine: Machine,
+    /// How many extractions were timed.
+    pub iterations: usize,
     /// What the object is called.
     pub object: String,
     /// What the method is called.
@@ -42,8 +51,9 @@ pub struct StageTime {
 impl Panel {
     /// Puts a mesh and the samples of its extraction together. Samples of other configurations are not counted.
     pub fn new(
-        object: &str,
+        study: &Study,
         configuration: &Configuration,
+        machine: Machine,
         mesh: MeshRecord,
         samples: &[BenchSample],
         threads: u32,
@@ -55,7 +65,10 @@ impl Panel {
         };
         Self {
             schema: PANEL_SCHEMA,
-            object: object.into(),
+            study: study.file.study.id.clone(),
+            machine,
+            iterations: own.len(),
+            object: study.object(configuration).name.clone(),
             method: configuration.id.method.label(),
             threads,
             times: Stage::ALL.into_iter().filter_map(time).collect(),
@@ -127,12 +140,10 @@ impl Panel {
     }
 
     fn timing(&self, text: &mut Lines) {
-        let threads = if self.threads == 1 {
-            "1 sampling thread".into()
-        } else {
-            format!("{} sampling threads", self.threads)
-        };
-        text.heading(&format!("timing, ms: medians on {threads}"));
+        let (times, threads) =
+            (counted(self.iterations, "extraction"), counted(self.threads as usize, "sampling thread"));
+        let model = self.machine.model.as_deref().unwrap_or("an unnamed CPU");
+        text.heading(&format!("timing, ms: medians of {times} on {threads} of {model}"));
         let total =
             self.times.iter().find(|time| time.stage == Stage::Total).map_or(0.0, |t| t.seconds.median);
         for StageTime { stage, seconds } in &self.times {
@@ -201,7 +212,9 @@ mod tests {
             sample.vertex_s = 0.001 * f64::from(sample.iteration + 1);
             sample.total_s = 0.010;
         }
-        let panel = Panel::new("sphere", configuration, mesh, &samples, 2);
+        let machine = Machine { model: Some("Example CPU".into()), ..Machine::default() };
+        let panel = Panel::new(&study, configuration, machine, mesh, &samples, 2);
+        assert_eq!((panel.study.as_str(), panel.iterations), ("paper", 5));
         let text = panel.to_text();
         let has = |line: &str| assert!(text.lines().any(|l| l == line), "{line}\n{text}");
         has("ss_bi: sphere, body-centred, integrated, 50 x 50 x 50 cubes of 0.04");
@@ -210,7 +223,7 @@ mod tests {
         has("  discarded triangles                       74,520  73.26 % of all");
         has("    as published, some twice               105,086");
         has("  tetrahedra evaluated                     160,992  10.52 % of all");
-        has("timing, ms: medians on 2 sampling threads");
+        has("timing, ms: medians of 5 extractions on 2 sampling threads of Example CPU");
         has("  vertex                                     3.000  30.0 %");
         has("  mesh to isosurface, mean                0.000200  SD 0.000100, 0.000000 to 0.001400");
         has("    RMS                                   0.000224");

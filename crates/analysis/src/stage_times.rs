@@ -1,6 +1,8 @@
 //! Stage times of each configuration, over the samples of a benchmark run.
 
+use crate::digits::counted;
 use design::ConfigurationId;
+use design::machine::ProfileDifference;
 use design::record::{BenchRun, BenchSample};
 
 /// Mean seconds a stage.
@@ -65,23 +67,38 @@ pub(crate) fn conditions(run: &BenchRun) -> String {
     format!("Times: means over {}", circumstances(run))
 }
 
-/// How often and where a run was measured.
+/// How often and where a run was measured, and whether that is the target.
 pub(crate) fn circumstances(run: &BenchRun) -> String {
-    let model = run.machine.model.as_deref().unwrap_or("an unnamed CPU");
-    let matches = if run.differences.is_empty() {
-        format!("which matches the target {}", run.target.name)
-    } else {
-        let list: Vec<String> = run
-            .differences
-            .iter()
-            .map(|d| format!("{}: {} instead of {}", d.property, d.machine, d.target))
-            .collect();
-        format!("which does not match the target {} ({})", run.target.name, list.join("; "))
-    };
-    format!(
-        "{} iterations after {} of warm-up, on {model}, {} sampling threads, {matches}.",
-        run.iterations, run.warmup, run.threads
-    )
+    format!("{}, {}.", measured(run), target(run))
+}
+
+/// How often, where and on how many threads.
+pub(crate) fn measured(run: &BenchRun) -> String {
+    let (rounds, threads) = (run.iterations as usize, counted(run.threads as usize, "sampling thread"));
+    match &run.imported_from {
+        // What a profile says of a model is a part of its name.
+        Some(source) => {
+            format!(
+                "means of {} as published in {source}, on {}, {threads}",
+                counted(rounds, "iteration"),
+                run.target.name
+            )
+        }
+        None => {
+            let model = run.machine.model.as_deref().unwrap_or("an unnamed CPU");
+            format!("{} after {} of warm-up, on {model}, {threads}", counted(rounds, "iteration"), run.warmup)
+        }
+    }
+}
+
+/// Whether the machine is the target, and what it has instead.
+pub(crate) fn target(run: &BenchRun) -> String {
+    if run.differences.is_empty() {
+        return format!("which matches the target {}", run.target.name);
+    }
+    let instead = |d: &ProfileDifference| format!("{}: {} instead of {}", d.property, d.machine, d.target);
+    let list: Vec<String> = run.differences.iter().map(instead).collect();
+    format!("which does not match the target {} ({})", run.target.name, list.join("; "))
 }
 
 #[cfg(test)]
@@ -114,5 +131,14 @@ mod tests {
         assert!(conditions(&run).contains("does not match the target Intel Core i7-11700"));
         run.differences.clear();
         assert!(conditions(&run).contains("which matches the target"));
+        (run.iterations, run.threads) = (1, 1);
+        let start = "1 iteration after 1 of warm-up, on Example CPU, 1 sampling thread, which";
+        assert!(circumstances(&run).starts_with(start), "{}", circumstances(&run));
+        run.imported_from = Some("a table".into());
+        let text = measured(&run);
+        assert_eq!(
+            text,
+            "means of 1 iteration as published in a table, on Intel Core i7-11700 (the paper's), 1 sampling thread"
+        );
     }
 }

@@ -214,7 +214,7 @@ pub(crate) struct Bench {
     pub(crate) verb: Option<BenchVerb>,
     #[command(flatten)]
     pub(crate) run: Option<Run>,
-    /// Take the short plan of `isostudy study` instead: no A/A block, no memory
+    /// Take the short plan of `isostudy study` instead: no A/A block, no memory; a full run that is up to date stands for it
     #[arg(long)]
     pub(crate) short: bool,
 }
@@ -238,13 +238,14 @@ pub(crate) struct Compare {
     pub(crate) a: PathBuf,
     /// Results folder, or a run.json in it
     pub(crate) b: PathBuf,
-    /// A slower configuration is a regression beyond this share of its time in A ...
+    /// A slower configuration is a regression beyond this share of its time in A (but what is within the noise is never
+    /// told: see the column "Told from") ...
     #[arg(long, default_value_t = 0.05, value_name = "SHARE", value_parser = not_negative)]
     pub(crate) relative: f64,
     /// ... and beyond this many seconds
     #[arg(long, default_value_t = 0.0001, value_name = "SECONDS", value_parser = not_negative)]
     pub(crate) absolute: f64,
-    /// Compare runs of machines that differ; every heading and verdict then says so
+    /// Compare runs of machines that differ, in their settings too; every heading and verdict then says so
     #[arg(long)]
     pub(crate) across_machines: bool,
     /// What to print
@@ -271,9 +272,9 @@ pub(crate) struct Import {
     /// Where the table is from
     #[arg(long, default_value = "Costen (2026)")]
     pub(crate) source: String,
-    /// The machine it was measured on
-    #[arg(long, default_value = "configs/cpu/i7-11700.toml", value_name = "TOML")]
-    pub(crate) machine: PathBuf,
+    /// The machine it was measured on [default: the paper's, as configs/cpu/i7-11700.toml has it]
+    #[arg(long, value_name = "TOML")]
+    pub(crate) machine: Option<PathBuf>,
     /// How many rounds each mean is of
     #[arg(long, default_value_t = 100, value_name = "N")]
     pub(crate) iterations: u32,

@@ -5,15 +5,18 @@ use crate::store::write_whole;
 use crate::{Outcome, say};
 use analysis::timing::{self, Comparison, Limits};
 use anyhow::{Context, Result, bail};
-use design::ConfigurationId;
 use design::machine::CpuProfile;
 use design::published::read_benchmark;
 use design::record::BenchRun;
+use design::{ConfigurationId, Stage};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// Where a results folder keeps its runs; the full one stands for the short one.
 const RUNS: [&str; 3] = ["bench/full/run.json", "bench/short/run.json", "run.json"];
+
+/// In the program, so that a table can be imported from any folder.
+const PAPERS_MACHINE: &str = include_str!("../../../configs/cpu/i7-11700.toml");
 
 /// Prints the comparison; a regression is a check that failed.
 pub(crate) fn compare(arguments: &Compare) -> Result<Outcome> {
@@ -32,7 +35,7 @@ pub(crate) fn compare(arguments: &Compare) -> Result<Outcome> {
     if !across.is_empty() && !arguments.across_machines {
         let list = across.join("\n  ");
         bail!(
-            "A and B are not of one machine:\n  {list}\n--across-machines compares them nevertheless, and says so"
+            "A and B were not measured alike:\n  {list}\n--across-machines compares them nevertheless, and says so"
         );
     }
     let comparison = timing::compare(&a, &b, across);
@@ -60,6 +63,14 @@ pub(crate) fn compare(arguments: &Compare) -> Result<Outcome> {
         let stage = row.stage.label();
         eprintln!("regression{label}: {id}, {stage}: {b:.3} ms, {a:.3} ms before");
     }
+    if let Some((least, most)) = comparison.tellable(Stage::Total) {
+        let percent = |ratio: f64| format!("{:.0}", 100.0 * (ratio - 1.0));
+        eprintln!(
+            "totals that grew by less than {} to {} %, by configuration, are not told from noise here",
+            percent(least),
+            percent(most)
+        );
+    }
     // A build that drops a configuration must not pass for one that is as fast.
     let missing = missing_in_b(&a, &comparison);
     for id in &missing {
@@ -77,7 +88,10 @@ fn missing_in_b<'a>(a: &BenchRun, comparison: &'a Comparison) -> Vec<&'a Configu
 /// Writes the run that a table of means makes.
 pub(crate) fn import(arguments: &Import) -> Result<()> {
     let rows = read_benchmark(&arguments.table)?;
-    let machine = CpuProfile::load(&arguments.machine)?;
+    let machine = match &arguments.machine {
+        Some(path) => CpuProfile::load(path)?,
+        None => CpuProfile::parse(PAPERS_MACHINE, Path::new("configs/cpu/i7-11700.toml"))?,
+    };
     let run = bench::import(&rows, &arguments.source, arguments.iterations, arguments.threads, &machine)
         .with_context(|| arguments.table.display().to_string())?;
     let mut json = serde_json::to_vec_pretty(&run)?;
@@ -89,6 +103,7 @@ pub(crate) fn import(arguments: &Import) -> Result<()> {
 /// A run from its file, or from the results folder that has one.
 fn read_run(path: &Path) -> Result<BenchRun> {
     #[derive(Deserialize)]
+    #[serde(expecting = "a run, as `isostudy bench` writes it")]
     struct Versioned {
         schema: u32,
     }
@@ -99,7 +114,9 @@ fn read_run(path: &Path) -> Result<BenchRun> {
     if schema != BenchRun::SCHEMA {
         bail!("{}: schema = {schema}: this version reads {}", name(), BenchRun::SCHEMA);
     }
-    serde_json::from_slice(&text).with_context(name)
+    let run: BenchRun = serde_json::from_slice(&text).with_context(name)?;
+    run.check().with_context(name)?;
+    Ok(run)
 }
 
 fn in_folder(folder: &Path) -> Result<PathBuf> {

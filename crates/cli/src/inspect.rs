@@ -3,7 +3,7 @@
 use crate::args::Inspect;
 use crate::records::mesh_record;
 use crate::subject::Fields;
-use crate::{say, subject};
+use crate::{pipeline, say, subject};
 use analysis::Panel;
 use anyhow::{Context, Result, bail};
 use bench::StageSeconds;
@@ -28,8 +28,8 @@ pub(crate) fn inspect(arguments: &Inspect) -> Result<()> {
     let lattice = subject::lattice(object, method.arrangement, spacing)?;
     let settings = subject::settings(&study, configuration, Purpose::Benchmark);
     let execution = Execution { threads: arguments.threads as usize };
-    let memory_bytes = bench::read_machine().memory_bytes;
-    subject::check_memory(&study, &lattice, &settings, &execution, memory_bytes)
+    let machine = pipeline::read_machine();
+    subject::check_memory(&study, &lattice, &settings, &execution, machine.memory_bytes)
         .with_context(|| format!("{id} with spacing {spacing}"))?;
     let fields = Fields::new(&study);
     let field = fields.get(configuration.object)?;
@@ -52,6 +52,6 @@ pub(crate) fn inspect(arguments: &Inspect) -> Result<()> {
         0 => std::thread::available_parallelism().map_or(1, |n| n.get() as u32),
         threads => threads,
     };
-    let panel = Panel::new(&object.name, configuration, record, &samples, threads);
+    let panel = Panel::new(&study, configuration, machine, record, &samples, threads);
     say(&if arguments.json { serde_json::to_string_pretty(&panel)? } else { panel.to_text() })
 }

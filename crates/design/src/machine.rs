@@ -47,7 +47,15 @@ impl CpuProfile {
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
         let text = std::fs::read_to_string(path)
             .map_err(|source| ConfigError::Read { file: path.into(), source })?;
-        crate::study::parse_toml(&text, path)
+        Self::parse(&text, path)
+    }
+
+    /// Parses a profile; `path` is what errors name.
+    ///
+    /// # Errors
+    /// As [`CpuProfile::load`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, ConfigError> {
+        crate::study::parse_toml(text, path)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Two runs, configuration by configuration.
 
+use super::differences::build_differences;
 use super::floor::{NoiseFloor, between, speed_shift};
 use super::series::{Judgement, Verdict, by_configuration, middle, thirds, values};
 use super::statements::STATEMENTS_SCHEMA;
@@ -19,6 +20,8 @@ pub struct Comparison {
     pub schema: u32,
     /// How the machines differ, each difference in a line; empty if they do not.
     pub across: Vec<String>,
+    /// How the programs and their plans differ, each difference in a line; empty if they are of one build.
+    pub builds: Vec<String>,
     /// Log-ratio of the machines' speeds: the reference work's time in B over that in A. Part of every floor.
     pub speed_shift: Option<f64>,
     /// Of each stage, total first, each configuration that both runs have.
@@ -45,6 +48,9 @@ pub struct Row {
     pub interval: Option<Interval>,
     /// Ratios up to this, and down to its inverse, are no more than noise; `None` without an A/A block.
     pub floor: Option<f64>,
+    /// The smallest ratio above 1 that would have been told, with an interval as wide as this one; `None` without floor or
+    /// interval.
+    pub tellable: Option<f64>,
     /// What can be said of B.
     pub judgement: Judgement,
 }
@@ -80,6 +86,7 @@ pub fn compare(a: &BenchRun, b: &BenchRun, across: Vec<String>) -> Comparison {
     Comparison {
         schema: STATEMENTS_SCHEMA,
         across,
+        builds: build_differences(a, b),
         speed_shift: shift,
         rows: stages.into_iter().flat_map(of_stage).collect(),
         unmatched: alone.map(|id| (*id).clone()).collect(),
@@ -95,6 +102,13 @@ impl Comparison {
                 && row.b_s > row.a_s + limits.absolute_s
         };
         self.rows.iter().filter(beyond).collect()
+    }
+
+    /// The smallest and the largest of what would have been told of a stage, as ratios above 1; `None` if nothing would.
+    pub fn tellable(&self, stage: Stage) -> Option<(f64, f64)> {
+        let mut ratios = self.of_stage(stage).filter_map(|row| row.tellable);
+        let first = ratios.next()?;
+        Some(ratios.fold((first, first), |(low, high), ratio| (low.min(ratio), high.max(ratio))))
     }
 
     /// Of one stage.
@@ -142,5 +156,7 @@ fn row(
         }
     };
     let ratio = (a_s > 0.0 && b_s > 0.0).then(|| b_s / a_s);
-    Row { id: id.clone(), stage, a_s, b_s, ratio, interval, floor: floor.map(f64::exp), judgement }
+    let floor = floor.map(f64::exp);
+    let tellable = || Some(floor? * ratio? / interval?.low);
+    Row { id: id.clone(), stage, a_s, b_s, ratio, interval, floor, tellable: tellable(), judgement }
 }

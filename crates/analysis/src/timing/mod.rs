@@ -33,11 +33,11 @@ mod tables;
 mod simulation;
 
 pub use compare::{Comparison, Limits, Row, compare};
-pub use differences::machine_differences;
+pub use differences::{build_differences, machine_differences};
 pub use floor::NoiseFloor;
 pub use outliers::{MAD_LIMIT, Outlier};
 pub use quiet::{BUSY, warnings};
 pub use ratios::Ratio;
 pub use series::{Judgement, Verdict};
 pub use statements::{STATEMENTS_SCHEMA, StageMedian, Statements, statements};
-pub use tables::{comparison_tables, statement_tables};
+pub use tables::{comparison_tables, statement_tables, statement_tables_in_short};

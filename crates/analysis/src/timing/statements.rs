@@ -12,8 +12,9 @@ use design::record::{BenchRun, PeakMemory};
 use design::{ConfigurationId, Stage};
 use serde::Serialize;
 
-/// The version of [`Statements`] and [`Comparison`](super::Comparison) as JSON.
-pub const STATEMENTS_SCHEMA: u32 = 2;
+/// The version of [`Statements`] and [`Comparison`](super::Comparison) as JSON. 3 has what a comparison could have told, and how
+/// its builds differ.
+pub const STATEMENTS_SCHEMA: u32 = 3;
 
 /// What a run says of itself.
 #[derive(Debug, Clone, PartialEq, Serialize)]

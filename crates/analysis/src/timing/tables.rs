@@ -1,11 +1,12 @@
 //! Statements and comparisons as tables.
 
 use super::compare::{Comparison, Row};
+use super::differences::commit;
 use super::quiet::warnings;
 use super::series::by_configuration;
 use super::statements::Statements;
 use crate::interval::Interval;
-use crate::stage_times::circumstances;
+use crate::stage_times::{circumstances, measured, target};
 use crate::table::{Cell, Table};
 use design::Stage;
 use design::record::BenchRun;
@@ -14,7 +15,16 @@ const MS: f64 = 1e3;
 
 /// A run's statements: medians, ratios within the run, outliers, and what to know of machine and noise.
 pub fn statement_tables(run: &BenchRun, statements: &Statements) -> Vec<Table> {
-    let mut tables = vec![medians(run, statements), ratios(statements), outliers(statements)];
+    tables(run, statements, &Stage::ALL)
+}
+
+/// Those of them that a terminal has room for: ratios of totals alone.
+pub fn statement_tables_in_short(run: &BenchRun, statements: &Statements) -> Vec<Table> {
+    tables(run, statements, &[Stage::Total])
+}
+
+fn tables(run: &BenchRun, statements: &Statements, ratios_of: &[Stage]) -> Vec<Table> {
+    let mut tables = vec![medians(run, statements), ratios(statements, ratios_of), outliers(statements)];
     tables.retain(|table| !table.rows.is_empty());
     tables
 }
@@ -89,7 +99,7 @@ fn medians(run: &BenchRun, statements: &Statements) -> Table {
     table
 }
 
-fn ratios(statements: &Statements) -> Table {
+fn ratios(statements: &Statements, of: &[Stage]) -> Table {
     let columns = [
         ("stage", "Stage"),
         ("first", "First"),
@@ -101,7 +111,7 @@ fn ratios(statements: &Statements) -> Table {
         ("reason", "Why not more"),
     ];
     let mut table = Table::new("bench_ratios", "Configurations against each other", &columns);
-    for ratio in &statements.ratios {
+    for ratio in statements.ratios.iter().filter(|ratio| of.contains(&ratio.stage)) {
         let end = |end: fn(Interval) -> f64| Cell::number(ratio.interval.map(end), 3);
         table.push(vec![
             Cell::text(ratio.stage.label()),
@@ -158,12 +168,12 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
     for row in comparison.of_stage(Stage::Total) {
         totals.push(cells(row, false, &across));
     }
-    totals.notes.push(format!("A: {}", circumstances(a)));
-    totals.notes.push(format!("B: {}", circumstances(b)));
+    totals.notes.extend(how(a, b));
+    totals.notes.push(builds(a, comparison));
     if !comparison.across.is_empty() {
         totals.notes.push(format!(
-            "A and B are not of one machine ({}). A ratio says how much faster one machine is with its program, not what \
-             the program does.",
+            "A and B were not measured alike ({}). A ratio says how much faster one machine is with its program, not what the \
+             program does.",
             comparison.across.join("; ")
         ));
     }
@@ -174,9 +184,9 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
     }
     if let Some(shift) = comparison.speed_shift {
         totals.notes.push(format!(
-            "The reference work's time changed by {:+.1} % from A to B; a change of the machine is no change of the program, and \
-             is part of the floor.",
-            100.0 * (shift.exp() - 1.0)
+            "The reference work's time changed by {} from A to B; a change of the machine is no change of the program, and \
+             is part of the noise.",
+            change(shift.exp())
         ));
     }
     if !comparison.unmatched.is_empty() {
@@ -187,9 +197,10 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
         totals.notes.extend(warnings(run).into_iter().map(|warning| format!("{name}: {warning}")));
     }
     totals.notes.push(
-        "Ratios of medians; intervals hold for all configurations together at 95 %, and there is none where the rounds are too \
-         few for that. A verdict needs an interval beyond the \
-         noise floor (A/A block, load of others, reference work) and the same direction in each third of the runs."
+        "Ratios of medians, or of means where no more was published; intervals hold for all configurations together at 95 %, \
+         and there is none where the rounds are too few for that. A verdict needs an interval beyond the noise (A/A block, \
+         load of others, reference work) and the same direction in each third of the runs. \"Told from\": the smallest slowdown \
+         that would have got one; what is smaller cannot be seen in these runs."
             .into(),
     );
     let mut stages = Table::new(
@@ -203,6 +214,30 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
     vec![totals, stages]
 }
 
+/// How A and B were measured, once where it is the same.
+fn how(a: &BenchRun, b: &BenchRun) -> Vec<String> {
+    let mut notes = match measured(a) == measured(b) {
+        true => vec![format!("A and B: {}.", measured(a))],
+        false => vec![format!("A: {}.", measured(a)), format!("B: {}.", measured(b))],
+    };
+    // The machine of a published table is what its profile says.
+    let mut targets: Vec<String> =
+        [a, b].into_iter().filter(|run| run.imported_from.is_none()).map(target).collect();
+    targets.dedup();
+    notes.extend(targets.into_iter().map(|target| format!("On a machine {target}.")));
+    notes
+}
+
+/// What was built, once where it is the same.
+fn builds(a: &BenchRun, comparison: &Comparison) -> String {
+    if !comparison.builds.is_empty() {
+        return format!("Programs and plans: {}.", comparison.builds.join("; "));
+    }
+    let build = &a.machine.build;
+    let commit = commit(build).map_or("of an unknown commit".into(), |commit| format!("of commit {commit}"));
+    format!("Programs and plans do not differ: {commit}, {}.", build.compiler)
+}
+
 fn columns(before: &[(&'static str, &'static str)]) -> Vec<(&'static str, &'static str)> {
     let rest = [
         ("id", "Id"),
@@ -212,6 +247,7 @@ fn columns(before: &[(&'static str, &'static str)]) -> Vec<(&'static str, &'stat
         ("low", "from"),
         ("high", "to"),
         ("floor", "Noise up to"),
+        ("tellable", "Told from"),
         ("verdict", "B is"),
         ("reason", "Why not more"),
     ];
@@ -228,6 +264,7 @@ fn cells(row: &Row, with_stage: bool, across: &str) -> Vec<Cell> {
         end(|i| i.low),
         end(|i| i.high),
         Cell::number(row.floor, 3),
+        Cell::number(row.tellable, 3),
         Cell::text(format!("{}{}", row.judgement.verdict.label(), across.to_lowercase())),
         Cell::text(row.judgement.reason),
     ];
@@ -239,4 +276,9 @@ fn cells(row: &Row, with_stage: bool, across: &str) -> Vec<Cell> {
 
 fn percent(log_ratio: f64) -> f64 {
     100.0 * (log_ratio.exp() - 1.0)
+}
+
+/// `+3.1 %`.
+fn change(ratio: f64) -> String {
+    format!("{:+.1} %", 100.0 * (ratio - 1.0))
 }

@@ -48,6 +48,7 @@ impl Pipeline<'_> {
             && let Some(full) =
                 self.store.peek(stage_name(PlanLength::Full), self.inputs(PlanLength::Full, &machine)?)
         {
+            eprintln!("timings: the full run is up to date and stands for the short one");
             return Ok(full);
         }
         let plan = self.plan(length)?;
@@ -77,7 +78,8 @@ impl Pipeline<'_> {
         Ok(stamp)
     }
 
-    /// Writes what follows from a run, as JSON, CSV, Markdown and LaTeX, and returns the tables as Markdown.
+    /// Writes what follows from a run, as JSON, CSV, Markdown and LaTeX, and returns those tables as Markdown that a terminal
+    /// has room for.
     pub(crate) fn timing_statements(&self, timings: &Stamp) -> Result<Vec<String>> {
         let run = self.bench_run(timings)?;
         let statements = timing::statements(&run);
@@ -94,13 +96,18 @@ impl Pipeline<'_> {
             }
             Ok(())
         })?;
-        Ok(tables.iter().map(analysis::Table::to_markdown).collect())
+        let short = timing::statement_tables_in_short(&run, &statements);
+        Ok(short.iter().map(analysis::Table::to_markdown).collect())
     }
 
     /// A finished run.
     pub(crate) fn bench_run(&self, stamp: &Stamp) -> Result<BenchRun> {
-        let text = std::fs::read(self.store.root().join(stamp.file("run.json")))?;
-        Ok(serde_json::from_slice(&text)?)
+        let path = self.store.root().join(stamp.file("run.json"));
+        let name = || path.display().to_string();
+        let text = std::fs::read(&path).with_context(name)?;
+        let run: BenchRun = serde_json::from_slice(&text).with_context(name)?;
+        run.check().with_context(name)?;
+        Ok(run)
     }
 
     fn plan(&self, length: PlanLength) -> Result<Plan> {
@@ -233,7 +240,7 @@ pub(crate) fn measure(arguments: &Worker) -> Result<()> {
 }
 
 /// The machine, and the commit that this program was built from.
-pub(super) fn read_machine() -> Machine {
+pub(crate) fn read_machine() -> Machine {
     let mut machine = bench::read_machine();
     let told = |text: &'static str| (!text.is_empty()).then_some(text);
     machine.build.commit = told(env!("ISOSTUDY_COMMIT")).map(Into::into);
