@@ -3,6 +3,7 @@
 use crate::journal::JournalError;
 use crate::plan::Round;
 use design::ConfigurationId;
+use design::record::UnsoundSample;
 use std::error::Error;
 
 /// Why a benchmark stopped. Samples taken before are in the journal, if one was kept.
@@ -28,13 +29,16 @@ pub enum BenchError {
         /// Why.
         source: Box<BenchError>,
     },
-    /// A row of a published table; the source says what is wrong with it.
-    #[error("the row of {id}")]
+    /// A published table is empty.
+    #[error("the table has no rows")]
+    NoRows,
+    /// A row of a published table.
+    #[error("the row of {id}: {reason}")]
     Row {
         /// Which configuration's.
         id: ConfigurationId,
-        /// What.
-        source: Box<BenchError>,
+        /// What is wrong with it.
+        reason: UnsoundSample,
     },
     /// What was recorded before cannot be gone on from.
     #[error("the journal cannot be used")]

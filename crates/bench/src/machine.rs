@@ -72,6 +72,7 @@ pub fn read_machine() -> Machine {
             target_cpu: env!("BENCH_TARGET_CPU").into(),
             commit: None,
             dirty: None,
+            sources: None,
         },
     }
 }

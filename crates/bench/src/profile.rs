@@ -65,6 +65,7 @@ pub fn compare_profile(target: &CpuProfile, machine: &Machine) -> Vec<ProfileRow
         ("compiler flags", Some(build.rustflags.clone())),
         ("commit", build.commit.clone()),
         ("uncommitted changes", build.dirty.map(|dirty| if dirty { "yes" } else { "no" }.into())),
+        ("sources", build.sources.clone()),
     ] {
         rows.push(recorded(property, String::new(), told));
     }

@@ -146,13 +146,17 @@ pub struct Build {
     pub commit: Option<String>,
     /// Whether the sources had changes that were not committed.
     pub dirty: Option<bool>,
+    /// Digest of the sources that what is timed was compiled from; `None` if it is not known, as of runs from before it was
+    /// recorded.
+    #[serde(default)]
+    pub sources: Option<String>,
 }
 
 impl Machine {
     /// The machine without what changes from one hour or commit to the next: load, governor, turbo, commit. Results
     /// depend on the rest.
     pub fn lasting(&self) -> Self {
-        let build = Build { commit: None, dirty: None, ..self.build.clone() };
+        let build = Build { commit: None, dirty: None, sources: None, ..self.build.clone() };
         Self { load: None, governor: None, turbo: None, build, ..self.clone() }
     }
 }

@@ -46,25 +46,37 @@ pub enum UnsoundRun {
         /// How many the run says it has.
         asked: usize,
     },
+    /// A configuration that only one of the lists has.
+    #[error("{id} is in one of samples and aa_samples only")]
+    OneList {
+        /// Which configuration.
+        id: ConfigurationId,
+    },
+    /// A process that measured for both lists.
+    #[error("sitting {0} has both samples and aa_samples: the A/A block has processes of its own")]
+    SharedSitting(u32),
     /// A share of the CPU time that is none.
-    #[error("load[{place}]: others = {}, steal = {}: must be from 0 to 1, together too", window.0, window.1)]
+    #[error("load[{place}]: others = {others}, steal = {steal}: must be from 0 to 1, together too")]
     Load {
         /// Where, from 0.
         place: usize,
-        /// The shares of others and of other machines.
-        window: (f64, f64),
+        /// The share of other processes.
+        others: f64,
+        /// The share of other machines.
+        steal: f64,
     },
-    /// A peak below what was there before.
-    #[error("memory[{place}], {id}: peak_bytes = {peak} is below before_bytes = {before}")]
+    /// Peaks that fall.
+    #[error(
+        "memory[{place}], {id}: before_bytes = {}, peak_before_bytes = {}, peak_bytes = {}: must not fall",
+        bytes[0], bytes[1], bytes[2]
+    )]
     Memory {
         /// Where, from 0.
         place: usize,
         /// Of which configuration.
         id: ConfigurationId,
-        /// Bytes before.
-        before: u64,
-        /// Bytes at the peak.
-        peak: u64,
+        /// The three, in their order.
+        bytes: [u64; 3],
     },
     /// Memory of one configuration listed twice.
     #[error("memory: {0} is there twice")]
@@ -78,11 +90,14 @@ pub enum UnsoundSample {
     /// Not a duration.
     #[error("{what} = {seconds} s: must be finite and not negative")]
     NotADuration {
-        /// A stage, or the reference work.
+        /// Which stage.
         what: &'static str,
         /// What it says.
         seconds: f64,
     },
+    /// A reference work that took no time.
+    #[error("reference work = {0} s: must be finite and above 0")]
+    Reference(f64),
     /// A total that is not the sum of the six stages.
     #[error("total = {total} s, and its stages add up to {sum} s")]
     Sum {
@@ -109,30 +124,45 @@ impl BenchRun {
     /// The first thing that cannot be.
     pub fn check(&self) -> Result<(), UnsoundRun> {
         let measured = if self.imported_from.is_some() { 1 } else { self.iterations };
-        check_samples("samples", &self.samples, measured)?;
-        check_samples("aa_samples", &self.aa_samples, self.aa_iterations)?;
-        let share = |window: &LoadWindow| {
+        let of_samples = check_samples("samples", &self.samples, measured)?;
+        let of_aa = check_samples("aa_samples", &self.aa_samples, self.aa_iterations)?;
+        if self.aa_iterations > 0 {
+            if let Some(id) = of_samples.symmetric_difference(&of_aa).next() {
+                return Err(UnsoundRun::OneList { id: (*id).clone() });
+            }
+            let measured: BTreeSet<u32> = self.samples.iter().map(|sample| sample.sitting).collect();
+            let mut again = self.aa_samples.iter().map(|sample| sample.sitting);
+            if let Some(sitting) = again.find(|sitting| measured.contains(sitting)) {
+                return Err(UnsoundRun::SharedSitting(sitting));
+            }
+        }
+        for (place, &LoadWindow { others, steal, .. }) in self.load.iter().enumerate() {
             let sound = |share: f64| (0.0..=1.0).contains(&share);
-            sound(window.others) && sound(window.steal) && window.others + window.steal <= 1.0 + ROUNDING
-        };
-        if let Some((place, window)) = self.load.iter().enumerate().find(|(_, window)| !share(window)) {
-            return Err(UnsoundRun::Load { place, window: (window.others, window.steal) });
+            if !(sound(others) && sound(steal) && others + steal <= 1.0 + ROUNDING) {
+                return Err(UnsoundRun::Load { place, others, steal });
+            }
         }
         let mut seen = BTreeSet::new();
         for (place, memory) in self.memory.iter().enumerate() {
-            let (id, before, peak) = (memory.id.clone(), memory.before_bytes, memory.peak_bytes);
+            let (id, bytes) =
+                (memory.id.clone(), [memory.before_bytes, memory.peak_before_bytes, memory.peak_bytes]);
             if !seen.insert(&memory.id) {
                 return Err(UnsoundRun::MemoryTwice(id));
             }
-            if peak < before {
-                return Err(UnsoundRun::Memory { place, id, before, peak });
+            if !bytes.is_sorted() {
+                return Err(UnsoundRun::Memory { place, id, bytes });
             }
         }
         Ok(())
     }
 }
 
-fn check_samples(list: &'static str, samples: &[BenchSample], rounds: u32) -> Result<(), UnsoundRun> {
+/// Returns the configurations that are there.
+fn check_samples<'a>(
+    list: &'static str,
+    samples: &'a [BenchSample],
+    rounds: u32,
+) -> Result<BTreeSet<&'a ConfigurationId>, UnsoundRun> {
     let mut seen = BTreeMap::<&ConfigurationId, BTreeSet<u32>>::new();
     for (place, sample) in samples.iter().enumerate() {
         let (id, round) = (&sample.id, sample.iteration);
@@ -142,9 +172,9 @@ fn check_samples(list: &'static str, samples: &[BenchSample], rounds: u32) -> Re
         }
     }
     let asked = rounds as usize;
-    match seen.into_iter().find(|(_, of)| of.len() != asked) {
-        Some((id, of)) => Err(UnsoundRun::Rounds { list, id: id.clone(), found: of.len(), asked }),
-        None => Ok(()),
+    match seen.iter().find(|(_, of)| of.len() != asked) {
+        Some((id, of)) => Err(UnsoundRun::Rounds { list, id: (*id).clone(), found: of.len(), asked }),
+        None => Ok(seen.into_keys().collect()),
     }
 }
 
@@ -156,12 +186,15 @@ impl BenchSample {
     pub fn check(&self, rounds: u32) -> Result<(), UnsoundSample> {
         let stages = Stage::ALL.map(|stage| (stage.label(), stage.of(self)));
         let sound = |seconds: f64| seconds.is_finite() && seconds >= 0.0;
-        let reference = self.reference_s.map(|seconds| ("reference work", seconds));
-        if let Some((what, seconds)) = stages.into_iter().chain(reference).find(|(_, s)| !sound(*s)) {
+        if let Some((what, seconds)) = stages.into_iter().find(|(_, s)| !sound(*s)) {
             return Err(UnsoundSample::NotADuration { what, seconds });
         }
+        if let Some(seconds) = self.reference_s.filter(|seconds| !(sound(*seconds) && *seconds > 0.0)) {
+            return Err(UnsoundSample::Reference(seconds));
+        }
         let (total, sum) = (self.total_s, stages[..6].iter().map(|(_, seconds)| seconds).sum::<f64>());
-        if (total - sum).abs() > ROUNDING * sum {
+        // A sum beyond every number is none.
+        if !sum.is_finite() || (total - sum).abs() > ROUNDING * sum {
             return Err(UnsoundSample::Sum { total, sum });
         }
         if self.iteration >= rounds {
@@ -216,7 +249,7 @@ mod tests {
             machine: Machine::default(),
             differences: Vec::new(),
             samples: rounds(3).collect(),
-            aa_samples: rounds(2).collect(),
+            aa_samples: rounds(2).map(|sample| BenchSample { sitting: 1, ..sample }).collect(),
             load: vec![window],
             memory: vec![memory],
             resumed: Vec::new(),
@@ -250,13 +283,20 @@ mod tests {
         );
         assert_eq!(
             after(|run| run.aa_samples[0].reference_s = Some(f64::INFINITY)),
-            "aa_samples[0], ss_bi: reference work = inf s: must be finite and not negative"
+            "aa_samples[0], ss_bi: reference work = inf s: must be finite and above 0"
         );
         let text = after(|run| run.samples[1].total_s = 2.0);
         assert!(
             text.starts_with("samples[1], ss_su: total = 2 s, and its stages add up to 1.111000"),
             "{text}"
         );
+        let text = after(|run| run.samples[1].reference_s = Some(0.0));
+        assert_eq!(text, "samples[1], ss_su: reference work = 0 s: must be finite and above 0");
+        let text = after(|run| {
+            let sample = &mut run.samples[1];
+            (sample.vertex_s, sample.geometry_s, sample.total_s) = (1e308, 1e308, 1.7e308);
+        });
+        assert_eq!(text, "samples[1], ss_su: total = 1.7e308 s, and its stages add up to inf s");
         assert_eq!(
             after(|run| run.samples[1].iteration = 3),
             "samples[1], ss_su: iteration = 3: the run has 3, counted from 0"
@@ -271,6 +311,10 @@ mod tests {
         assert_eq!(text, "samples: ss_su has 2 of 3 rounds");
         let text = after(|run| drop(run.aa_samples.remove(0)));
         assert_eq!(text, "aa_samples: ss_bi has 1 of 2 rounds");
+        let text = after(|run| run.aa_samples.clear());
+        assert_eq!(text, "ss_bi is in one of samples and aa_samples only");
+        let text = after(|run| run.aa_samples[1].sitting = 0);
+        assert_eq!(text, "sitting 0 has both samples and aa_samples: the A/A block has processes of its own");
     }
 
     #[test]
@@ -278,7 +322,8 @@ mod tests {
         let text = after(|run| run.load[0].steal = 0.8);
         assert_eq!(text, "load[0]: others = 0.25, steal = 0.8: must be from 0 to 1, together too");
         let text = after(|run| run.memory[0].peak_bytes = 1);
-        assert_eq!(text, "memory[0], ss_bi: peak_bytes = 1 is below before_bytes = 2");
+        let bytes = "before_bytes = 2, peak_before_bytes = 3, peak_bytes = 1";
+        assert_eq!(text, format!("memory[0], ss_bi: {bytes}: must not fall"));
         let text = after(|run| run.memory.push(run.memory[0].clone()));
         assert_eq!(text, "memory: ss_bi is there twice");
     }
