@@ -61,19 +61,19 @@ impl Axis {
         Self { low: 1.0, high, ticks, logarithmic: true }
     }
 
-    /// Logarithmic, from the tenfold at or below `low` to the one at or above `high`; where that is one decade or less, from
-    /// and to 1, 2 or 5 times a tenfold.
+    /// Logarithmic, from the tenfold below `low` to the one above `high`; over 30 times or less, from and to 1, 2 or 5 times a
+    /// tenfold. There is room for a mark at either end.
     pub(super) fn decades(low: f64, high: f64) -> Self {
+        const ROOM: f64 = 1.06;
         let low = if low > 0.0 && low.is_finite() { low } else { 1.0 };
         let high = if high.is_finite() { high.max(low) } else { low };
-        let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
+        let (first, last) = ((low / ROOM).log10().floor() as i32, (high * ROOM).log10().ceil() as i32);
         let steps: &[f64] = if high / low > 30.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
         let all =
             (first..=last.max(first + 1)).flat_map(|power| steps.iter().map(move |s| s * 10_f64.powi(power)));
         let all: Vec<f64> = all.collect();
-        let begin = all.iter().rposition(|tick| *tick <= low * (1.0 + 1e-9)).unwrap_or(0);
-        let end =
-            all.iter().position(|tick| *tick >= high * (1.0 - 1e-9)).unwrap_or(all.len() - 1).max(begin + 1);
+        let begin = all.iter().rposition(|tick| *tick <= low / ROOM).unwrap_or(0);
+        let end = all.iter().position(|tick| *tick >= high * ROOM).unwrap_or(all.len() - 1).max(begin + 1);
         let ticks = all[begin..=end].to_vec();
         Self { low: ticks[0], high: ticks[ticks.len() - 1], ticks, logarithmic: true }
     }
@@ -164,7 +164,8 @@ mod tests {
         assert_eq!(Axis::decades(0.03, 450.0).labels(), ["0.01", "0.1", "1", "10", "100", "1,000"]);
         assert_eq!(Axis::decades(0.7, 4.1).labels(), ["0.5", "1", "2", "5"]);
         assert_eq!(Axis::decades(2e5, 3e7).labels(), ["100,000", "1 M", "10 M", "100 M"]);
-        assert_eq!(Axis::decades(1.0, 1.0).labels(), ["1", "2"]);
+        assert_eq!(Axis::decades(1.0, 1.0).labels(), ["0.5", "1", "2"], "room for a mark at either end");
+        assert_eq!(Axis::decades(1.1, 4.9).labels(), ["1", "2", "5", "10"]);
         let decades = Axis::decades(0.01, 100.0);
         assert!((decades.place(1.0, 100.0, 0.0) - 50.0).abs() < 1e-9);
         assert_eq!(Axis::whole(1, 4).labels(), ["1", "2", "3", "4"]);

@@ -15,6 +15,8 @@ pub(super) struct Fill {
     pub(super) stripes: bool,
 }
 
+/// What is hoped for, under what was measured.
+pub(super) const IDEAL: Colour = RGBColor(0x99, 0x99, 0x99);
 pub(super) const GRID: Colour = RGBColor(0xdd, 0xdd, 0xdd);
 pub(super) const LEFT: Colour = RGBColor(0x00, 0x72, 0xb2);
 pub(super) const NONE: Colour = RGBColor(0xdc, 0xdc, 0xdc);

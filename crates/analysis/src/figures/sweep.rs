@@ -1,7 +1,6 @@
 //! A sweep: time against samples, time per triangle, speed-up against threads, quality against cost.
 
 use super::axis::Axis;
-use super::canvas::Colour;
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
@@ -11,8 +10,6 @@ use crate::sweep::{Point, SpeedUp, Sweep};
 use design::{Arrangement, Method, Study};
 
 const ROW: f64 = 340.0;
-/// The line of a speed-up in proportion to the threads.
-const IDEAL: Colour = style::GRID;
 /// From one mark to the next at the same number of threads, in widths of the axis.
 const ASIDE: f64 = 0.025;
 
@@ -138,7 +135,7 @@ fn time(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
         let labels = Labels {
             heading: object_name(study, object).into(),
             x: "sample points".into(),
-            y: format!("ms on {}", threads(fewest(sweep))),
+            y: format!("time on {}, ms", threads(fewest(sweep))),
         };
         let values: [Value; 2] = [|p| Some(p.samples as f64), |p| Some(1e3 * p.total_s.median)];
         lines(study, sweep, object, labels, values, true)
@@ -155,7 +152,7 @@ fn per_triangle(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft>
         let labels = Labels {
             heading: object_name(study, object).into(),
             x: "cells per axis".into(),
-            y: format!("\u{b5}s per triangle on {}", threads(fewest(sweep))),
+            y: format!("time per triangle on {}, \u{b5}s", threads(fewest(sweep))),
         };
         let each: Value = |p| (p.triangles > 0).then(|| 1e6 * p.total_s.median / p.triangles as f64);
         lines(study, sweep, object, labels, [|p| Some(f64::from(p.cells)), each], true)
@@ -182,7 +179,7 @@ fn speed_up(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
     let highest = shown_ups.map(ends).fold(f64::from(most) / f64::from(base), f64::max);
     let panel = |object: &str, cells: u32| {
         let ideal = vec![(f64::from(base), 1.0), (f64::from(most), f64::from(most) / f64::from(base))];
-        let (mut lines, mut marks) = (vec![(IDEAL, ideal)], Vec::new());
+        let (mut lines, mut marks) = (vec![(style::IDEAL, ideal)], Vec::new());
         let methods = study.methods();
         for (n, &method) in methods.iter().enumerate() {
             // Side by side, so that one interval does not hide another.
@@ -213,7 +210,7 @@ fn speed_up(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
         shown.iter().map(|&cells| objects.iter().map(|object| panel(object, cells)).collect()).collect();
     let mut legend = legend(study);
     legend.push((Swatch::Dashes, "no faster".into()));
-    legend.push((Swatch::Line(IDEAL), "in proportion to the threads".into()));
+    legend.push((Swatch::Line(style::IDEAL), "in proportion to the threads".into()));
     let caption = "What more threads are worth: time on the fewest over time on so many, medians. Upright lines: intervals that \
                    hold at 95 % for all configurations of a resolution together. Marks stand side by side."
         .to_owned();
@@ -230,7 +227,7 @@ fn quality(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
         };
         vec![
             panel("triangles".into(), |p| Some(p.triangles as f64)),
-            panel(format!("ms on {}", threads(fewest(sweep))), |p| Some(1e3 * p.total_s.median)),
+            panel(format!("time on {}, ms", threads(fewest(sweep))), |p| Some(1e3 * p.total_s.median)),
         ]
     });
     let rows: Vec<Vec<Scatter>> = rows.collect();
