@@ -59,7 +59,7 @@ pub(crate) enum Direction {
     Opposite,
     /// None: the interval does not lie beyond the noise.
     WithinNoise,
-    /// The interval has one, but the noise is not known, or there is nothing published to hold it against.
+    /// The noise is not known, or nothing was published.
     NotJudged,
     /// There is no interval.
     TooFewRounds,
@@ -90,17 +90,21 @@ impl Change {
     /// What can be said of it.
     pub(crate) fn direction(&self) -> Direction {
         let Some(Interval { low, high }) = self.interval else { return Direction::TooFewRounds };
-        let noise = self.noise.unwrap_or(0.0);
+        let (Some(noise), Some(published)) = (self.noise, self.published) else {
+            return Direction::NotJudged;
+        };
         let ours = match () {
             () if low > noise => 1.0,
             () if high < -noise => -1.0,
             () => return Direction::WithinNoise,
         };
-        match (self.noise, self.published) {
-            (Some(_), Some(published)) if published * ours > 0.0 => Direction::Same,
-            (Some(_), Some(_)) => Direction::Opposite,
-            _ => Direction::NotJudged,
-        }
+        if published * ours > 0.0 { Direction::Same } else { Direction::Opposite }
+    }
+
+    /// Whether the published number lies in the interval, noise included; `None` where one of them is not known.
+    pub(crate) fn has_the_published_size(&self) -> Option<bool> {
+        let (Interval { low, high }, noise) = (self.interval?, self.noise?);
+        self.published.map(|published| (low - noise..=high + noise).contains(&published))
     }
 
     /// What can be said, in words, with interval and noise.
@@ -109,9 +113,10 @@ impl Change {
             Direction::Same => "same direction",
             Direction::Opposite => "opposite direction",
             Direction::WithinNoise => "no change measurable here",
-            Direction::NotJudged => {
-                "a change over rounds, not judged: without an A/A block the noise is not known"
+            Direction::NotJudged if self.noise.is_none() => {
+                "not judged: without an A/A block the noise is not known"
             }
+            Direction::NotJudged => "nothing published to hold it against",
             Direction::TooFewRounds => return "too few rounds to tell a change from noise".into(),
         };
         let interval = self.interval.map_or(String::new(), |Interval { low, high }| {
@@ -143,10 +148,13 @@ pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
     let verdict = if !run.differences.is_empty() {
         let model = run.machine.model.as_deref().unwrap_or("an unnamed CPU");
         Verdict::not_comparable(format!("{told}; measured on {model}, not on {}", run.target.name))
-    } else if found.interval.is_some_and(|i| (i.low..=i.high).contains(&value)) {
-        Verdict::within("the interval", format!("{told}; measured on a matching machine"))
     } else {
-        Verdict::differs(format!("{told}; measured on a matching machine"))
+        let reason = format!("{told}; measured on a matching machine");
+        match found.has_the_published_size() {
+            Some(true) => Verdict::within("interval and noise", reason),
+            Some(false) => Verdict::differs(reason),
+            None => Verdict::not_comparable(reason),
+        }
     };
     Some(Finding {
         from_published,
@@ -187,10 +195,22 @@ mod tests {
         assert_eq!(of(1.0, 5.0, Some(1.0)), Direction::WithinNoise);
         assert_eq!(of(-1.0, 5.0, Some(0.5)), Direction::WithinNoise);
         assert_eq!(of(1.0, 5.0, None), Direction::NotJudged);
-        assert_eq!(of(-1.0, 5.0, None), Direction::WithinNoise, "zero is within any noise");
+        assert_eq!(of(-1.0, 5.0, None), Direction::NotJudged);
         let few = Change { published: Some(12.0), ours: 9.0, interval: None, noise: Some(1.0) };
         assert_eq!(few.direction(), Direction::TooFewRounds);
         let alone = Change { published: None, interval: Some(Interval { low: 2.0, high: 3.0 }), ..few };
         assert_eq!(alone.direction(), Direction::NotJudged);
+    }
+
+    #[test]
+    fn a_size_is_the_published_one_within_interval_and_noise() {
+        let of = |published, noise| {
+            let interval = Some(Interval { low: 10.0, high: 12.0 });
+            Change { published, ours: 11.0, interval, noise }.has_the_published_size()
+        };
+        assert_eq!(of(Some(13.0), Some(1.0)), Some(true));
+        assert_eq!(of(Some(13.1), Some(1.0)), Some(false));
+        assert_eq!(of(Some(8.9), Some(1.0)), Some(false));
+        assert_eq!((of(Some(11.0), None), of(None, Some(1.0))), (None, None));
     }
 }
