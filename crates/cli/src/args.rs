@@ -238,8 +238,9 @@ pub(crate) struct Compare {
     pub(crate) a: PathBuf,
     /// Results folder, or a run.json in it
     pub(crate) b: PathBuf,
-    /// A slower configuration is a regression beyond this share of its time in A (but what is within the noise is never
-    /// told: see the column "Told from") ...
+    /// A slower configuration is a regression beyond this share of its time in A ...
+    ///
+    /// What is within the noise is never told, however small the share: the column "Told from" says how large that is.
     #[arg(long, default_value_t = 0.05, value_name = "SHARE", value_parser = not_negative)]
     pub(crate) relative: f64,
     /// ... and beyond this many seconds
@@ -270,16 +271,16 @@ pub(crate) struct Import {
     #[arg(long, short, value_name = "FILE")]
     pub(crate) out: PathBuf,
     /// Where the table is from
-    #[arg(long, default_value = "Costen (2026)")]
+    #[arg(long, default_value = "Costen (2026)", value_parser = clap::builder::NonEmptyStringValueParser::new())]
     pub(crate) source: String,
     /// The machine it was measured on [default: the paper's, as configs/cpu/i7-11700.toml has it]
     #[arg(long, value_name = "TOML")]
     pub(crate) machine: Option<PathBuf>,
     /// How many rounds each mean is of
-    #[arg(long, default_value_t = 100, value_name = "N")]
+    #[arg(long, default_value_t = 100, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) iterations: u32,
     /// How many threads sampled
-    #[arg(long, default_value_t = 16, value_name = "N")]
+    #[arg(long, default_value_t = 16, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) threads: u32,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::args::{Compare, Format, Import};
 use crate::store::write_whole;
-use crate::{Outcome, say};
+use crate::{Outcome, counted, say};
 use analysis::timing::{self, Comparison, Limits};
 use anyhow::{Context, Result, bail};
 use design::machine::CpuProfile;
@@ -26,7 +26,8 @@ pub(crate) fn compare(arguments: &Compare) -> Result<Outcome> {
         && of_a != of_b
     {
         bail!(
-            "A and B were asked for different extractions (study {} and {}); their times say nothing of each other",
+            "A (study {}) and B (study {}) were asked for different extractions: other fields, spacings, rules or cells per axis; \
+             their times say nothing of each other",
             a.study,
             b.study
         );
@@ -59,9 +60,17 @@ pub(crate) fn compare(arguments: &Compare) -> Result<Outcome> {
     let regressions = comparison.regressions(&limits);
     for row in &regressions {
         let (id, a, b) = (&row.id, 1e3 * row.a_s, 1e3 * row.b_s);
-        let label = if comparison.across.is_empty() { "" } else { " (across machines)" };
+        let label = if comparison.across.is_empty() { "" } else { " (not measured alike)" };
         let stage = row.stage.label();
         eprintln!("regression{label}: {id}, {stage}: {b:.3} ms, {a:.3} ms before");
+    }
+    // What a total's noise hides, a stage shows.
+    for stage in Stage::ALL {
+        let slower = regressions.iter().filter(|row| row.stage == stage).count();
+        if slower > 0 {
+            let of = comparison.of_stage(stage).count();
+            eprintln!("{}: slower on {slower} of {}", stage.label(), counted(of, "configuration"));
+        }
     }
     if let Some((least, most)) = comparison.tellable(Stage::Total) {
         let percent = |ratio: f64| format!("{:.0}", 100.0 * (ratio - 1.0));

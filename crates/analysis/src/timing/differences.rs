@@ -12,7 +12,11 @@ pub fn machine_differences(a: &BenchRun, b: &BenchRun) -> Vec<String> {
         machine.memory_bytes.map(|bytes| format!("{:.1} GiB", bytes as f64 / (1u64 << 30) as f64))
     };
     let on = |on: Option<bool>| on.map(|on| if on { "on" } else { "off" });
-    let pinned = |run: &BenchRun| Some(if run.pinned.is_some() { "yes" } else { "no" });
+    // Of a published table it is not known.
+    let pinned = |run: &BenchRun| match run.imported_from {
+        Some(_) => None,
+        None => Some(if run.pinned.is_some() { "yes" } else { "no" }),
+    };
     let isa = |machine: &Machine| machine.isa.map(|level| level.label());
     let features = |machine: &Machine| {
         let mut features = machine.features.clone();
@@ -43,9 +47,17 @@ pub fn machine_differences(a: &BenchRun, b: &BenchRun) -> Vec<String> {
     .collect()
 }
 
-/// What differs between the programs of two runs and their plans, a line each; empty if they are of one build and plan.
+/// What is known to differ between the programs of two runs and their plans, a line each. Of a published table nothing is known
+/// but where it is from.
 pub fn build_differences(a: &BenchRun, b: &BenchRun) -> Vec<String> {
     let (x, y) = (&a.machine.build, &b.machine.build);
+    if a.imported_from.is_some() || b.imported_from.is_some() {
+        let program = |run: &BenchRun| match &run.imported_from {
+            Some(source) => Some(format!("that of {source}")),
+            None => Some("isostudy".into()),
+        };
+        return differ("program", program(a), program(b)).into_iter().collect();
+    }
     // That only one was pinned is no difference of builds.
     let both_pinned = a.pinned.is_some() && b.pinned.is_some();
     let cpus = |run: &BenchRun| {
@@ -55,6 +67,7 @@ pub fn build_differences(a: &BenchRun, b: &BenchRun) -> Vec<String> {
     let [aa_of_a, aa_of_b] = [a, b].map(|run| Some(run.aa_iterations));
     [
         differ("commit", commit(x), commit(y)),
+        differ("sources", sources(x), sources(y)),
         differ("compiler", told(&x.compiler), told(&y.compiler)),
         differ("profile", told(&x.profile), told(&y.profile)),
         differ("optimisation level", told(&x.opt_level), told(&y.opt_level)),
@@ -68,6 +81,11 @@ pub fn build_differences(a: &BenchRun, b: &BenchRun) -> Vec<String> {
     .into_iter()
     .flatten()
     .collect()
+}
+
+/// The first digits of their digest, as many as tell two apart.
+pub(super) fn sources(build: &Build) -> Option<&str> {
+    build.sources.as_deref().map(|digest| digest.get(..12).unwrap_or(digest))
 }
 
 /// The commit, and whether more than that was compiled.
@@ -130,19 +148,24 @@ mod tests {
         let mut b = a.clone();
         assert_eq!(build_differences(&a, &b), [] as [String; 0]);
         b.machine.build.dirty = Some(true);
+        b.machine.build.sources = Some("0123456789abcdef".into());
         b.machine.build.rustflags = "-C target-cpu=native".into();
         b.machine.build.target_cpu = "native".into();
         b.iterations = 10;
         b.pinned = Some(vec![0, 2]);
-        assert_eq!(build_differences(&a, &b).len(), 4, "that one is not pinned is not about builds");
+        assert_eq!(build_differences(&a, &b).len(), 5, "that one is not pinned is not about builds");
         a.pinned = Some(vec![1]);
         let want = [
             "commit: abc in A, abc with uncommitted changes in B",
+            "sources: unknown in A, 0123456789ab in B",
             "compiler flags: none in A, -C target-cpu=native in B",
             "target-cpu: x86-64 in A, native in B",
             "rounds: 5 in A, 10 in B",
             "CPUs pinned to: 1 in A, 0 2 in B",
         ];
+        assert_eq!(build_differences(&a, &b), want);
+        b.imported_from = Some("a table".into());
+        let want = ["program: isostudy in A, that of a table in B"];
         assert_eq!(build_differences(&a, &b), want);
     }
 }

@@ -16,6 +16,9 @@ const MEDIAN_ERROR: f64 = 1.253_314_137_315_500_1;
 /// The standard deviation of normal values, in median absolute deviations.
 const DEVIATION_OF_MAD: f64 = 1.482_602_218_505_602;
 
+/// Why there is no floor.
+pub(super) const NO_AA_BLOCK: &str = "no A/A block: the noise floor is not known";
+
 /// What one process can add to Q: three standard deviations. Half of four rounds are outliers now and then.
 const MOST: f64 = 9.0;
 
@@ -168,13 +171,76 @@ pub(super) fn speed_shift(a: &BenchRun, b: &BenchRun) -> Option<f64> {
 }
 
 /// Between two runs, of a stage of a configuration: the larger of their A/A floors, the larger of their loads, and by how much
-/// the machine's speed changed. `None` without an A/A block in either.
+/// the machine's speed changed.
+///
+/// # Errors
+/// What is not known of the noise: unknown is not quiet.
 pub(super) fn between(
     [a, b]: &[NoiseFloor; 2],
     shift: Option<f64>,
     stage: Stage,
     id: &ConfigurationId,
-) -> Option<f64> {
-    let aa = a.of_stage(stage, id)?.max(b.of_stage(stage, id)?);
-    Some(aa + a.load.max(b.load) + shift.unwrap_or(0.0).abs())
+) -> Result<f64, &'static str> {
+    let [Some(of_a), Some(of_b)] = [a, b].map(|floor| floor.of_stage(stage, id)) else {
+        return Err(NO_AA_BLOCK);
+    };
+    let shift = shift.ok_or("no reference work: whether the machine was as fast is not known")?;
+    Ok(of_a.max(of_b) + a.load.max(b.load) + shift.abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn medians(of: &[(f64, f64)]) -> Vec<ProcessMedian> {
+        of.iter().map(|&(log, variance)| ProcessMedian { log, variance }).collect()
+    }
+
+    /// statsmodels 0.15, `combine_effects(effects, variances, method_re="iterated").tau2`: Paule and Mandel's estimate.
+    #[test]
+    fn the_variance_between_processes_is_paule_and_mandels() {
+        let found = |of: &[(f64, f64)]| variance_between(&[medians(of)]);
+        let five = [(0.01, 0.0004), (-0.03, 0.0003), (0.05, 0.0004), (0.02, 0.0005), (-0.06, 0.0002)];
+        assert!((found(&five) - 0.001_565_824_780_870_156_2).abs() < 1e-9, "{}", found(&five));
+        let ten = [
+            (4.605, 0.0011),
+            (4.541, 0.0009),
+            (4.702, 0.0010),
+            (4.633, 0.0012),
+            (4.588, 0.0010),
+            (4.671, 0.0008),
+            (4.499, 0.0011),
+            (4.622, 0.0010),
+            (4.757, 0.0013),
+            (4.560, 0.0009),
+        ];
+        assert!((found(&ten) - 0.004_891_194_734_491_597).abs() < 1e-9, "{}", found(&ten));
+        let alike = [(0.01, 0.0004), (0.011, 0.0003), (0.009, 0.0004)];
+        assert_eq!(found(&alike), 0.0, "less apart than their rounds explain");
+    }
+
+    /// Ten configurations of five processes have 40 degrees of freedom. One process far out: its term would be 0.64 over the
+    /// variance, and is 9; the 0.16 of the other four come to 31.
+    #[test]
+    fn a_single_process_adds_a_limited_amount() {
+        let quiet = medians(&[(0.0, 0.0004); 5]);
+        let far = medians(&[(0.0, 0.0004), (0.0, 0.0004), (0.0, 0.0004), (0.0, 0.0004), (1.0, 0.0004)]);
+        let mut all = vec![quiet; 9];
+        all.push(far);
+        let found = variance_between(&all);
+        assert!((found - (0.16 / 31.0 - 0.0004)).abs() < 1e-12, "{found}");
+    }
+
+    #[test]
+    fn what_is_not_known_is_no_quiet() {
+        let id: ConfigurationId = "ss_bi".parse().unwrap();
+        let of = |aa: f64, load| NoiseFloor { aa: [("total", [(id.clone(), aa)].into())].into(), load };
+        let floors = [of(0.1, 0.02), of(0.2, 0.01)];
+        let found = between(&floors, Some(-0.05), Stage::Total, &id).unwrap();
+        assert!((found - 0.27).abs() < 1e-15, "{found}");
+        assert!(between(&floors, None, Stage::Total, &id).unwrap_err().starts_with("no reference work"));
+        let without = NoiseFloor { aa: BTreeMap::new(), load: 0.0 };
+        let floors = [floors[0].clone(), without];
+        assert_eq!(between(&floors, Some(0.0), Stage::Total, &id), Err(NO_AA_BLOCK));
+    }
 }

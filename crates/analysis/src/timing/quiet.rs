@@ -21,7 +21,7 @@ pub(super) fn busy_share(load: &[LoadWindow]) -> f64 {
 /// What a reader of the numbers should know of the machine, in plain words; empty if it was quiet.
 pub fn warnings(run: &BenchRun) -> Vec<String> {
     let mut warnings = Vec::new();
-    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     if run.imported_from.is_some() {
         return warnings;
     }
@@ -98,11 +98,11 @@ mod tests {
         run.load.push(window(Some(4), 0.0, 0.07));
         let text = warnings(&run).join("\n");
         assert!(
-            text.contains("Before the run others had 50 % of the CPU time. Close other programs"),
+            text.contains("Before the run others had 50.0 % of the CPU time. Close other programs"),
             "{text}"
         );
-        assert!(text.contains("In 3 of 5 stretches of the run other programs had more than 5 %"), "{text}");
-        assert!(text.contains("of the CPU time, 30 % at most."), "{text}");
+        assert!(text.contains("In 3 of 5 stretches of the run other programs had more than 5.0 %"), "{text}");
+        assert!(text.contains("of the CPU time, 30.0 % at most."), "{text}");
         assert!(text.contains("In 1 of 5 stretches of the run other machines on the same host"), "{text}");
         // Shares 0, .07, .1, .2, .3: the fourth of five; 1 / (1 - .2) is 1.25.
         assert_eq!(busy_share(&run.load), 0.2);

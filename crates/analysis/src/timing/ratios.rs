@@ -23,6 +23,8 @@ pub struct Ratio {
     pub ratio: f64,
     /// Its 95 % interval: percentile bootstrap of whole rounds; `None` of a single one.
     pub interval: Option<Interval>,
+    /// Ratios up to this, and down to its inverse, are no more than noise; `None` without an A/A block.
+    pub floor: Option<f64>,
     /// What can be said of the second beside the first.
     pub judgement: Judgement,
 }
@@ -75,10 +77,10 @@ fn ratio(
         (logs.len() > 1).then(|| percentile(&vec![1; logs.len()], resampling, statistic)).flatten();
     let interval = interval.map(|found| found.interval);
     let parts = thirds(&logs).map(|parts| parts.map(middle));
+    let noise = floor.within(stage, first.0, second.0);
     let judgement = match interval {
         None => Judgement::cannot_say("a single value has no interval"),
         Some(Interval { low, high }) => {
-            let noise = floor.within(stage, first.0, second.0);
             Judgement::of(low, high, noise, parts.as_ref().map(|parts| &parts[..]))
         }
     };
@@ -88,6 +90,7 @@ fn ratio(
         stage,
         ratio: middle(&logs).exp(),
         interval: interval.map(|i| Interval { low: i.low.exp(), high: i.high.exp() }),
+        floor: noise.map(f64::exp),
         judgement,
     })
 }

@@ -1,5 +1,6 @@
 //! The samples of one stage of one configuration, and the words for what follows from them.
 
+use super::floor::NO_AA_BLOCK;
 use design::record::BenchSample;
 use design::{ConfigurationId, Stage};
 use serde::Serialize;
@@ -45,7 +46,7 @@ impl Judgement {
     /// The verdict of a log-ratio whose interval is `low` to `high`, against a floor, if each of `parts` has its sign.
     pub(super) fn of(low: f64, high: f64, floor: Option<f64>, parts: Option<&[f64]>) -> Self {
         let Some(floor) = floor else {
-            return Self::cannot_say("no A/A block: the noise floor is not known");
+            return Self::cannot_say(NO_AA_BLOCK);
         };
         let verdict = match () {
             () if low > floor => Verdict::Slower,

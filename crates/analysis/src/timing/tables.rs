@@ -1,10 +1,11 @@
 //! Statements and comparisons as tables.
 
 use super::compare::{Comparison, Row};
-use super::differences::commit;
+use super::differences::{commit, sources};
 use super::quiet::warnings;
 use super::series::by_configuration;
 use super::statements::Statements;
+use crate::digits::MINUS;
 use crate::interval::Interval;
 use crate::stage_times::{circumstances, measured, target};
 use crate::table::{Cell, Table};
@@ -15,16 +16,16 @@ const MS: f64 = 1e3;
 
 /// A run's statements: medians, ratios within the run, outliers, and what to know of machine and noise.
 pub fn statement_tables(run: &BenchRun, statements: &Statements) -> Vec<Table> {
-    tables(run, statements, &Stage::ALL)
+    tables(run, statements, |_| true)
 }
 
 /// Those of them that a terminal has room for: ratios of totals alone.
 pub fn statement_tables_in_short(run: &BenchRun, statements: &Statements) -> Vec<Table> {
-    tables(run, statements, &[Stage::Total])
+    tables(run, statements, |stage| stage == Stage::Total)
 }
 
-fn tables(run: &BenchRun, statements: &Statements, ratios_of: &[Stage]) -> Vec<Table> {
-    let mut tables = vec![medians(run, statements), ratios(statements, ratios_of), outliers(statements)];
+fn tables(run: &BenchRun, statements: &Statements, with_ratios_of: fn(Stage) -> bool) -> Vec<Table> {
+    let mut tables = vec![medians(run, statements), ratios(statements, with_ratios_of), outliers(statements)];
     tables.retain(|table| !table.rows.is_empty());
     tables
 }
@@ -99,7 +100,7 @@ fn medians(run: &BenchRun, statements: &Statements) -> Table {
     table
 }
 
-fn ratios(statements: &Statements, of: &[Stage]) -> Table {
+fn ratios(statements: &Statements, of: fn(Stage) -> bool) -> Table {
     let columns = [
         ("stage", "Stage"),
         ("first", "First"),
@@ -107,11 +108,12 @@ fn ratios(statements: &Statements, of: &[Stage]) -> Table {
         ("ratio", "second / first"),
         ("low", "from"),
         ("high", "to"),
+        ("floor", "Noise up to"),
         ("verdict", "Second is"),
         ("reason", "Why not more"),
     ];
     let mut table = Table::new("bench_ratios", "Configurations against each other", &columns);
-    for ratio in statements.ratios.iter().filter(|ratio| of.contains(&ratio.stage)) {
+    for ratio in statements.ratios.iter().filter(|ratio| of(ratio.stage)) {
         let end = |end: fn(Interval) -> f64| Cell::number(ratio.interval.map(end), 3);
         table.push(vec![
             Cell::text(ratio.stage.label()),
@@ -120,6 +122,7 @@ fn ratios(statements: &Statements, of: &[Stage]) -> Table {
             Cell::Number(ratio.ratio, 3),
             end(|i| i.low),
             end(|i| i.high),
+            Cell::number(ratio.floor, 3),
             Cell::text(ratio.judgement.verdict.label()),
             Cell::text(ratio.judgement.reason),
         ]);
@@ -162,7 +165,7 @@ fn outliers(statements: &Statements) -> Table {
 pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) -> Vec<Table> {
     let across = match comparison.across.is_empty() {
         true => String::new(),
-        false => " (ACROSS MACHINES)".to_owned(),
+        false => " (NOT MEASURED ALIKE)".to_owned(),
     };
     let mut totals = Table::new("bench_comparison", format!("B against A{across}"), &columns(&[]));
     for row in comparison.of_stage(Stage::Total) {
@@ -172,8 +175,7 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
     totals.notes.push(builds(a, comparison));
     if !comparison.across.is_empty() {
         totals.notes.push(format!(
-            "A and B were not measured alike ({}). A ratio says how much faster one machine is with its program, not what the \
-             program does.",
+            "A and B were not measured alike ({}). A ratio speaks of machines and their settings as much as of programs.",
             comparison.across.join("; ")
         ));
     }
@@ -216,16 +218,22 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
 
 /// How A and B were measured, once where it is the same.
 fn how(a: &BenchRun, b: &BenchRun) -> Vec<String> {
-    let mut notes = match measured(a) == measured(b) {
-        true => vec![format!("A and B: {}.", measured(a))],
-        false => vec![format!("A: {}.", measured(a)), format!("B: {}.", measured(b))],
-    };
     // The machine of a published table is what its profile says.
-    let mut targets: Vec<String> =
-        [a, b].into_iter().filter(|run| run.imported_from.is_none()).map(target).collect();
-    targets.dedup();
-    notes.extend(targets.into_iter().map(|target| format!("On a machine {target}.")));
-    notes
+    let sentence = |run: &BenchRun| match run.imported_from {
+        Some(_) => format!("{}.", measured(run)),
+        None => circumstances(run),
+    };
+    let (of_a, of_b) = (sentence(a), sentence(b));
+    if of_a == of_b {
+        return vec![format!("A and B: {of_a}")];
+    }
+    if target(a) == target(b) && a.imported_from.is_none() && b.imported_from.is_none() {
+        return vec![
+            format!("A: {}. B: {}.", measured(a), measured(b)),
+            format!("Both on a machine {}.", target(a)),
+        ];
+    }
+    vec![format!("A: {of_a}"), format!("B: {of_b}")]
 }
 
 /// What was built, once where it is the same.
@@ -234,8 +242,16 @@ fn builds(a: &BenchRun, comparison: &Comparison) -> String {
         return format!("Programs and plans: {}.", comparison.builds.join("; "));
     }
     let build = &a.machine.build;
-    let commit = commit(build).map_or("of an unknown commit".into(), |commit| format!("of commit {commit}"));
-    format!("Programs and plans do not differ: {commit}, {}.", build.compiler)
+    let commit = commit(build).map_or("an unknown commit".into(), |commit| format!("commit {commit}"));
+    match sources(build) {
+        Some(sources) => {
+            format!("Programs and plans do not differ: {commit}, sources {sources}, {}.", build.compiler)
+        }
+        None if build.dirty == Some(false) && build.commit.is_some() => {
+            format!("Programs and plans do not differ: {commit}, {}.", build.compiler)
+        }
+        None => format!("Programs and plans are not known to differ: both of {commit}, {}.", build.compiler),
+    }
 }
 
 fn columns(before: &[(&'static str, &'static str)]) -> Vec<(&'static str, &'static str)> {
@@ -280,5 +296,6 @@ fn percent(log_ratio: f64) -> f64 {
 
 /// `+3.1 %`.
 fn change(ratio: f64) -> String {
-    format!("{:+.1} %", 100.0 * (ratio - 1.0))
+    let digits = format!("{:+.1} %", 100.0 * (ratio - 1.0));
+    digits.replace('-', &MINUS.to_string())
 }

@@ -239,12 +239,13 @@ pub(crate) fn measure(arguments: &Worker) -> Result<()> {
     Ok(bench::serve(requests, replies, pinned, arguments.threads, &mut subject)?)
 }
 
-/// The machine, and the commit that this program was built from.
+/// The machine, and the commit and the sources that this program was built from.
 pub(crate) fn read_machine() -> Machine {
     let mut machine = bench::read_machine();
     let told = |text: &'static str| (!text.is_empty()).then_some(text);
     machine.build.commit = told(env!("ISOSTUDY_COMMIT")).map(Into::into);
     machine.build.dirty = told(env!("ISOSTUDY_DIRTY")).map(|dirty| dirty == "yes");
+    machine.build.sources = Some(Inputs::of_rooms(rooms::TIMINGS).finish());
     machine
 }
 
