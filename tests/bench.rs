@@ -165,7 +165,7 @@ fn comparisons_end_as_scripts_expect() {
     assert_eq!(same.code, Some(0), "{}", same.stderr);
     assert!(same.stdout.contains("cannot say") && !same.stdout.contains("slower"), "{}", same.stdout);
     assert!(
-        same.stdout.contains(", sources ") && same.stdout.contains("Programs and plans do not differ: "),
+        same.stdout.contains(", sources ") && same.stdout.contains("Builds and plans are the same: "),
         "{}",
         same.stdout
     );

@@ -130,7 +130,7 @@ mod tests {
         let mut rows = rows();
         rows[3].vertex_s = -1.0;
         let text = error(&rows);
-        assert_eq!(text.to_string(), "the row of ss_su: vertex = -1 s: must be finite and not negative");
+        assert_eq!(text.to_string(), "the row of ss_su: vertex = -1.0 s: must be finite and not negative");
         let twice = [rows[0].clone(), rows[0].clone()];
         assert!(matches!(error(&twice), BenchError::Repeated(_)));
     }

@@ -239,18 +239,18 @@ fn how(a: &BenchRun, b: &BenchRun) -> Vec<String> {
 /// What was built, once where it is the same.
 fn builds(a: &BenchRun, comparison: &Comparison) -> String {
     if !comparison.builds.is_empty() {
-        return format!("Programs and plans: {}.", comparison.builds.join("; "));
+        return format!("Builds and plans differ: {}.", comparison.builds.join("; "));
     }
     let build = &a.machine.build;
     let commit = commit(build).map_or("an unknown commit".into(), |commit| format!("commit {commit}"));
     match sources(build) {
         Some(sources) => {
-            format!("Programs and plans do not differ: {commit}, sources {sources}, {}.", build.compiler)
+            format!("Builds and plans are the same: {commit}, sources {sources}, {}.", build.compiler)
         }
         None if build.dirty == Some(false) && build.commit.is_some() => {
-            format!("Programs and plans do not differ: {commit}, {}.", build.compiler)
+            format!("Builds and plans are the same: {commit}, {}.", build.compiler)
         }
-        None => format!("Programs and plans are not known to differ: both of {commit}, {}.", build.compiler),
+        None => format!("Builds and plans are not known to differ: both of {commit}, {}.", build.compiler),
     }
 }
 

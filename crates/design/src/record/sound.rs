@@ -88,7 +88,7 @@ pub enum UnsoundRun {
 #[non_exhaustive]
 pub enum UnsoundSample {
     /// Not a duration.
-    #[error("{what} = {seconds} s: must be finite and not negative")]
+    #[error("{what} = {seconds:?} s: must be finite and not negative")]
     NotADuration {
         /// Which stage.
         what: &'static str,
@@ -96,10 +96,10 @@ pub enum UnsoundSample {
         seconds: f64,
     },
     /// A reference work that took no time.
-    #[error("reference work = {0} s: must be finite and above 0")]
+    #[error("reference work = {0:?} s: must be finite and above 0")]
     Reference(f64),
     /// A total that is not the sum of the six stages.
-    #[error("total = {total} s, and its stages add up to {sum} s")]
+    #[error("total = {total:?} s, and its stages add up to {sum:?} s")]
     Sum {
         /// What is said.
         total: f64,
@@ -287,11 +287,11 @@ mod tests {
         );
         let text = after(|run| run.samples[1].total_s = 2.0);
         assert!(
-            text.starts_with("samples[1], ss_su: total = 2 s, and its stages add up to 1.111000"),
+            text.starts_with("samples[1], ss_su: total = 2.0 s, and its stages add up to 1.111000"),
             "{text}"
         );
         let text = after(|run| run.samples[1].reference_s = Some(0.0));
-        assert_eq!(text, "samples[1], ss_su: reference work = 0 s: must be finite and above 0");
+        assert_eq!(text, "samples[1], ss_su: reference work = 0.0 s: must be finite and above 0");
         let text = after(|run| {
             let sample = &mut run.samples[1];
             (sample.vertex_s, sample.geometry_s, sample.total_s) = (1e308, 1e308, 1.7e308);
