@@ -52,12 +52,7 @@ pub enum BenchError {
     /// What an [`Executor`](crate::Executor) ran into.
     #[error(transparent)]
     Execution(Box<dyn Error + Send + Sync>),
-    /// An executor returned something that is not a duration.
-    #[error("{stage} took {seconds} s: must be finite and not negative")]
-    NotADuration {
-        /// Which stage.
-        stage: &'static str,
-        /// What was returned.
-        seconds: f64,
-    },
+    /// An executor returned times that no clock gives.
+    #[error(transparent)]
+    Unsound(#[from] UnsoundSample),
 }

@@ -1,7 +1,7 @@
 //! The six stages of an extraction, in seconds.
 
+use design::ConfigurationId;
 use design::record::BenchSample;
-use design::{ConfigurationId, Stage};
 use extract::StageTimes;
 use serde::{Deserialize, Serialize};
 
@@ -64,17 +64,5 @@ impl StageSeconds {
             + self.geometry_s
             + self.clustering_s
             + self.normals_s
-    }
-
-    /// The six with their names, in their order.
-    pub(crate) fn by_stage(&self) -> [(Stage, f64); 6] {
-        [
-            (Stage::Allocation, self.allocation_s),
-            (Stage::Sampling, self.sampling_s),
-            (Stage::Vertex, self.vertex_s),
-            (Stage::Geometry, self.geometry_s),
-            (Stage::Clustering, self.clustering_s),
-            (Stage::Normals, self.normals_s),
-        ]
     }
 }

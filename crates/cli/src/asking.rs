@@ -155,8 +155,8 @@ pub(crate) fn collect(arguments: &Collect) -> Result<()> {
     let given: Vec<Given> = all.into_values().collect();
     store::write_whole(&arguments.out, lines(&given, &key)?.as_bytes())?;
     let repeated = if again > 0 { format!("; {again} came twice") } else { String::new() };
-    let people = counted(participants(&given), "participant");
-    eprintln!("{} of {people}{repeated}", counted(given.len(), "answer"));
+    let people = counted(participants(&given) as u64, "participant");
+    eprintln!("{} of {people}{repeated}", counted(given.len() as u64, "answer"));
     say(&arguments.out.display().to_string())
 }
 

@@ -2,14 +2,13 @@
 
 use crate::args::{Compare, Format, Import};
 use crate::store::write_whole;
-use crate::{Outcome, counted, say};
+use crate::{Outcome, counted, run_file, say};
 use analysis::timing::{self, Comparison, Limits};
 use anyhow::{Context, Result, bail};
 use design::machine::CpuProfile;
 use design::published::read_benchmark;
 use design::record::BenchRun;
 use design::{ConfigurationId, Stage};
-use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// Where a results folder keeps its runs; the full one stands for the short one.
@@ -20,7 +19,7 @@ const PAPERS_MACHINE: &str = include_str!("../../../configs/cpu/i7-11700.toml");
 
 /// Prints the comparison; a regression is a check that failed.
 pub(crate) fn compare(arguments: &Compare) -> Result<Outcome> {
-    let [a, b] = [&arguments.a, &arguments.b].map(|path| read_run(path));
+    let [a, b] = [&arguments.a, &arguments.b].map(|path| run_file::read(&run_at(path)?));
     let (a, b) = (a?, b?);
     if let (Some(of_a), Some(of_b)) = (&a.workload, &b.workload)
         && of_a != of_b
@@ -69,7 +68,7 @@ pub(crate) fn compare(arguments: &Compare) -> Result<Outcome> {
         let slower = regressions.iter().filter(|row| row.stage == stage).count();
         if slower > 0 {
             let of = comparison.of_stage(stage).count();
-            eprintln!("{}: slower on {slower} of {}", stage.label(), counted(of, "configuration"));
+            eprintln!("{}: slower on {slower} of {}", stage.label(), counted(of as u64, "configuration"));
         }
     }
     if let Some((least, most)) = comparison.tellable(Stage::Total) {
@@ -109,28 +108,13 @@ pub(crate) fn import(arguments: &Import) -> Result<()> {
     say(&arguments.out.display().to_string())
 }
 
-/// A run from its file, or from the results folder that has one.
-fn read_run(path: &Path) -> Result<BenchRun> {
-    #[derive(Deserialize)]
-    #[serde(expecting = "a run, as `isostudy bench` writes it")]
-    struct Versioned {
-        schema: u32,
+/// The file of a run, or that in the results folder that has one.
+fn run_at(path: &Path) -> Result<PathBuf> {
+    if !path.is_dir() {
+        return Ok(path.to_owned());
     }
-    let file = if path.is_dir() { in_folder(path)? } else { path.to_owned() };
-    let name = || file.display().to_string();
-    let text = std::fs::read(&file).with_context(name)?;
-    let Versioned { schema } = serde_json::from_slice(&text).with_context(name)?;
-    if schema != BenchRun::SCHEMA {
-        bail!("{}: schema = {schema}: this version reads {}", name(), BenchRun::SCHEMA);
-    }
-    let run: BenchRun = serde_json::from_slice(&text).with_context(name)?;
-    run.check().with_context(name)?;
-    Ok(run)
-}
-
-fn in_folder(folder: &Path) -> Result<PathBuf> {
-    let found = RUNS.iter().map(|run| folder.join(run)).find(|run| run.is_file());
+    let found = RUNS.iter().map(|run| path.join(run)).find(|run| run.is_file());
     found.with_context(|| {
-        format!("{} has none of {}; `isostudy bench` makes them", folder.display(), RUNS.join(", "))
+        format!("{} has none of {}; `isostudy bench` makes them", path.display(), RUNS.join(", "))
     })
 }

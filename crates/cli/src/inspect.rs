@@ -3,7 +3,7 @@
 use crate::args::Inspect;
 use crate::records::mesh_record;
 use crate::subject::Fields;
-use crate::{pipeline, say, subject};
+use crate::{machine, say, subject};
 use analysis::Panel;
 use anyhow::{Context, Result, bail};
 use bench::StageSeconds;
@@ -28,7 +28,7 @@ pub(crate) fn inspect(arguments: &Inspect) -> Result<()> {
     let lattice = subject::lattice(object, method.arrangement, spacing)?;
     let settings = subject::settings(&study, configuration, Purpose::Benchmark);
     let execution = Execution { threads: arguments.threads as usize };
-    let machine = pipeline::read_machine();
+    let machine = machine::read();
     subject::check_memory(&study, &lattice, &settings, &execution, machine.memory_bytes)
         .with_context(|| format!("{id} with spacing {spacing}"))?;
     let fields = Fields::new(&study);

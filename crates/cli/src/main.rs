@@ -6,6 +6,7 @@ mod asking;
 mod comparing;
 mod distance;
 mod inspect;
+mod machine;
 mod manifest;
 mod mesh_file;
 mod picture;
@@ -14,6 +15,7 @@ mod progress;
 mod questionnaire;
 mod records;
 mod rooms;
+mod run_file;
 mod source;
 mod store;
 mod subject;
@@ -291,7 +293,7 @@ fn no_forms(study: &Path) -> String {
 }
 
 /// `1 answer`, `2 answers`.
-fn counted(number: usize, word: &str) -> String {
+fn counted(number: u64, word: &str) -> String {
     format!("{number} {word}{}", if number == 1 { "" } else { "s" })
 }
 

@@ -94,7 +94,7 @@ fn faults_text(study: &Study, faults: &[Fault]) -> String {
     let file = study.path.display();
     text + &match faults.len() {
         0 => format!("{file}: no faults"),
-        count => format!("{file}: {}", counted(count, "fault")),
+        count => format!("{file}: {}", counted(count as u64, "fault")),
     }
 }
 
@@ -192,7 +192,7 @@ fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Vec<Fault>>> 
         eprintln!(
             "{outdated} of {} in {} were made with other settings than the study file has now and are judged as \
              they are; `isostudy pairs` makes them anew",
-            counted(files.len(), "animation"),
+            counted(files.len() as u64, "animation"),
             results.display()
         );
     }

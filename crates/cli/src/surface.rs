@@ -3,7 +3,7 @@
 use crate::args::{Run, Selection};
 use crate::source::{Inside, Source, SourceArguments};
 use crate::store::{write_whole, write_whole_by};
-use crate::{mesh_file, records, say, significant, subject};
+use crate::{counted, mesh_file, records, say, significant, subject};
 use anyhow::{Context, Result, bail};
 use clap::{ArgGroup, Args};
 use design::record::{Accuracy, Counts, Distribution, Quality, Topology};
@@ -267,8 +267,4 @@ fn way(distances: &Distribution) -> String {
 
 fn lost(points: u64) -> String {
     if points == 0 { String::new() } else { format!(", {} without a distance", counted(points, "point")) }
-}
-
-fn counted(count: u64, what: &str) -> String {
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }

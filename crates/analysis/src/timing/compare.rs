@@ -167,25 +167,13 @@ fn row(
 
 #[cfg(test)]
 mod tests {
+    use super::super::simulation::sample;
     use super::*;
+    use std::ops::RangeInclusive;
 
-    fn samples(totals: std::ops::RangeInclusive<u32>) -> Vec<BenchSample> {
-        let id: ConfigurationId = "ss_bi".parse().unwrap();
-        let sample = |total: u32| BenchSample {
-            id: id.clone(),
-            sitting: 0,
-            iteration: 0,
-            place: 0,
-            allocation_s: 0.0,
-            sampling_s: 0.0,
-            vertex_s: 0.0,
-            geometry_s: 0.0,
-            clustering_s: 0.0,
-            normals_s: 0.0,
-            total_s: f64::from(total),
-            reference_s: None,
-        };
-        totals.map(sample).collect()
+    fn samples(totals: RangeInclusive<u32>) -> Vec<BenchSample> {
+        let id = "ss_bi".parse().unwrap();
+        totals.map(|total| sample(&id, 0, 0, 0, f64::from(total), 0.001)).collect()
     }
 
     /// By hand: of nine values the second and the eighth hold the median at 96 %, the third and the seventh at 82 %. The rule for

@@ -1,7 +1,7 @@
 //! How far two measurements of one and the same program may lie apart.
 
 use super::quiet::busy_share;
-use super::series::middle;
+use super::series::{NO_AA_BLOCK, middle};
 use design::record::{BenchRun, BenchSample};
 use design::{ConfigurationId, Stage};
 use serde::Serialize;
@@ -15,9 +15,6 @@ const MISSES: f64 = 0.05;
 const MEDIAN_ERROR: f64 = 1.253_314_137_315_500_1;
 /// The standard deviation of normal values, in median absolute deviations.
 const DEVIATION_OF_MAD: f64 = 1.482_602_218_505_602;
-
-/// Why there is no floor.
-pub(super) const NO_AA_BLOCK: &str = "no A/A block: the noise floor is not known";
 
 /// What one process can add to Q: three standard deviations. Half of four rounds are outliers now and then.
 const MOST: f64 = 9.0;

@@ -1,10 +1,12 @@
 //! The samples of one stage of one configuration, and the words for what follows from them.
 
-use super::floor::NO_AA_BLOCK;
 use design::record::BenchSample;
 use design::{ConfigurationId, Stage};
 use serde::Serialize;
 use std::collections::BTreeMap;
+
+/// Why there is no floor.
+pub(super) const NO_AA_BLOCK: &str = "no A/A block: the noise floor is not known";
 
 /// What can be said of two times.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

@@ -99,7 +99,8 @@ fn run(template: &BenchRun, ids: &[ConfigurationId], noise: Noise, factor: f64, 
     run
 }
 
-fn sample(
+/// A sample of which only the total is known.
+pub(super) fn sample(
     id: &ConfigurationId,
     sitting: u32,
     iteration: u32,

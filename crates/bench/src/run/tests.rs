@@ -341,7 +341,7 @@ fn what_is_not_a_duration_is_refused() {
     let (error, calls) = error_of(&plan(), &ids(), Mock { nan_at_call: Some(9), ..Default::default() });
     assert_eq!(calls, 10);
     let source = error.source().unwrap().to_string();
-    assert_eq!(source, "normals took NaN s: must be finite and not negative");
+    assert_eq!(source, "normals = NaN s: must be finite and not negative");
 }
 
 #[test]

@@ -21,7 +21,7 @@ pub(crate) use bundle::forms_digest;
 pub(crate) use meshes::Meshes;
 pub(crate) use stimuli::MadeWith;
 pub(crate) use tables::{write_answers_only, write_without_study};
-pub(crate) use timings::{PlanLength, measure, read_machine};
+pub(crate) use timings::{PlanLength, measure};
 
 use crate::store::{Inputs, Stamp, Store, Writer};
 use crate::subject::Fields;

@@ -1,10 +1,10 @@
 //! The sweep over resolutions and threads: each pair of them a benchmark run of its own, so that a killed sweep goes on.
 
 use super::Pipeline;
-use super::timings::{Bout, read_machine};
+use super::timings::Bout;
 use crate::progress::Step;
 use crate::store::{Inputs, Stamp, remove_if_there};
-use crate::{rooms, subject};
+use crate::{machine, rooms, subject};
 use analysis::sweep::SweepLevel;
 use anyhow::{Context, Result, bail};
 use bench::Plan;
@@ -28,7 +28,7 @@ impl Pipeline<'_> {
             bail!("{}: there is no [benchmark.sweep]; configs/paper.toml has one", self.study.path.display());
         };
         subject::check_sweep(self.study, section, bench::read_machine().memory_bytes)?;
-        let machine = read_machine();
+        let machine = machine::read();
         let (mut levels, mut meshes, mut stamps) = (Vec::new(), Vec::new(), Vec::new());
         // Threads inside: what is compared is measured close together.
         for &cells in &section.cells {

@@ -5,7 +5,7 @@ use crate::args::Worker;
 use crate::progress::Step;
 use crate::store::{Inputs, Stamp, remove_if_there, sha256, write_whole};
 use crate::subject::Fields;
-use crate::{rooms, subject};
+use crate::{machine, rooms, run_file, subject};
 use analysis::timing;
 use anyhow::{Context, Result, bail};
 use bench::{BenchError, Entry, Plan, ProcessExecutor, Subject};
@@ -43,7 +43,7 @@ impl Bout<'_> {
 impl Pipeline<'_> {
     /// Times every configuration. The short plan is not run where a full run is up to date: the full one stands for it.
     pub(crate) fn timings(&self, length: PlanLength) -> Result<Stamp> {
-        let machine = read_machine();
+        let machine = machine::read();
         if length == PlanLength::Short
             && let Some(full) =
                 self.store.peek(stage_name(PlanLength::Full), self.inputs(PlanLength::Full, &machine)?)
@@ -102,12 +102,7 @@ impl Pipeline<'_> {
 
     /// A finished run.
     pub(crate) fn bench_run(&self, stamp: &Stamp) -> Result<BenchRun> {
-        let path = self.store.root().join(stamp.file("run.json"));
-        let name = || path.display().to_string();
-        let text = std::fs::read(&path).with_context(name)?;
-        let run: BenchRun = serde_json::from_slice(&text).with_context(name)?;
-        run.check().with_context(name)?;
-        Ok(run)
+        run_file::read(&self.store.root().join(stamp.file("run.json")))
     }
 
     fn plan(&self, length: PlanLength) -> Result<Plan> {
@@ -237,16 +232,6 @@ pub(crate) fn measure(arguments: &Worker) -> Result<()> {
     };
     let (requests, replies) = (std::io::stdin().lock(), std::io::stdout().lock());
     Ok(bench::serve(requests, replies, pinned, arguments.threads, &mut subject)?)
-}
-
-/// The machine, and the commit and the sources that this program was built from.
-pub(crate) fn read_machine() -> Machine {
-    let mut machine = bench::read_machine();
-    let told = |text: &'static str| (!text.is_empty()).then_some(text);
-    machine.build.commit = told(env!("ISOSTUDY_COMMIT")).map(Into::into);
-    machine.build.dirty = told(env!("ISOSTUDY_DIRTY")).map(|dirty| dirty == "yes");
-    machine.build.sources = Some(Inputs::of_rooms(rooms::TIMINGS).finish());
-    machine
 }
 
 fn stage_name(length: PlanLength) -> &'static str {
