@@ -67,7 +67,7 @@ def manifold_level_set():
     def extract(samples, request):
         # Its body-centred lattice has samples between those of the grid, so it is given the field: trilinear in the samples
         # would be another surface. The field's own time is taken from inside.
-        field, spent = getattr(FIELDS, request["field"]), 0.0
+        field, spent = getattr(FIELDS, f"peer_field_{request['field']}"), 0.0
         field.argtypes, field.restype = [ctypes.c_float] * 3, ctypes.c_float
 
         def timed(x, y, z):
