@@ -2,9 +2,9 @@
 //!
 //! `cargo run --release -p analysis --example simulate -- configs/paper.toml 100000 answers.csv [SEED]`
 
-use analysis::simulation::{Plan, Population, Shown, simulate, stream};
-use analysis::statistics::Outcome;
 use design::{Method, Study};
+use statistics::Outcome;
+use statistics::simulation::{Plan, Population, Shown, simulate, stream};
 use std::io::Write;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

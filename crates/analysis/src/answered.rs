@@ -2,17 +2,17 @@
 
 use crate::ballots::{BallotGroup, ballot_groups, ballots};
 use crate::hypotheses::{self, Hypothesis};
-use crate::statistics::Ballot;
 use crate::tally::Tally;
 use design::Study;
 use responses::Responses;
+use statistics::ShownBallot;
 
 /// Answers that were counted and tested once, for all that is said about them.
 #[derive(Debug, Clone)]
 pub struct Answered {
     pub(crate) responses: Responses,
     pub(crate) tally: Tally,
-    pub(crate) ballots: Vec<Ballot>,
+    pub(crate) ballots: Vec<ShownBallot>,
     pub(crate) groups: Vec<BallotGroup>,
     /// Every contrast, then every question.
     pub(crate) hypotheses: Vec<Hypothesis>,

@@ -13,7 +13,7 @@ mod stimuli;
 mod swapped;
 
 use crate::ballots::BallotGroup;
-use crate::statistics::{Ballot, Pairs, Separation, oddness, screening, separation};
+use statistics::{Pairs, Separation, ShownBallot, oddness, screening, separation};
 use stimuli::Stimuli;
 
 /// A probe speaks up at this p, adjusted for all that it looks at.
@@ -111,7 +111,7 @@ pub struct Report {
 #[derive(Debug, Clone, Copy)]
 pub struct Audited<'a> {
     /// Every answer. Participants are named by their number from 1.
-    pub ballots: &'a [Ballot],
+    pub ballots: &'a [ShownBallot],
     /// The groups whose items are compared, with the same participants and questions.
     pub groups: &'a [BallotGroup],
     /// By question, the object on which it shows its items.
@@ -166,13 +166,13 @@ fn list(names: &[String]) -> String {
 }
 
 /// See [`oddness`].
-fn odd_respondent(ballots: &[Ballot]) -> Report {
+fn odd_respondent(ballots: &[ShownBallot]) -> Report {
     let judged = oddness(&screening(ballots));
     let Some(least) = judged.first() else {
         let reason = "fewer than five people decided ten questions on which the others have a majority";
         return Report::not_answerable(Probe::OddRespondent, reason);
     };
-    let name = |odd: &crate::statistics::Oddness| {
+    let name = |odd: &statistics::Oddness| {
         format!(
             "respondent {} agrees with the others' majority on {:.0} %",
             odd.participant + 1,

@@ -1,8 +1,8 @@
 //! A study's answers as ballots, and the groups of items that the models compare.
 
-use crate::statistics::{Ballot, Outcome};
 use design::{Method, Study};
 use responses::{Choice, Responses};
+use statistics::{Outcome, ShownBallot};
 
 /// Items compared with one another, and the answers about them.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -12,7 +12,7 @@ pub struct BallotGroup {
     /// Names of the items; the first is the reference of every worth.
     pub items: Vec<String>,
     /// The answers; `left` and `right` are indices into `items`.
-    pub ballots: Vec<Ballot>,
+    pub ballots: Vec<ShownBallot>,
 }
 
 /// Every answer to a study's questions, question by question, with the sides as they were shown; items are methods in the
@@ -20,14 +20,14 @@ pub struct BallotGroup {
 ///
 /// # Panics
 /// If the answers were read for another study.
-pub fn ballots(study: &Study, answers: &Responses) -> Vec<Ballot> {
+pub fn ballots(study: &Study, answers: &Responses) -> Vec<ShownBallot> {
     let items = method_of_item(study, answers);
-    let mut ballots: Vec<Ballot> = answers
+    let mut ballots: Vec<ShownBallot> = answers
         .answers
         .iter()
         .filter(|answer| is_asked(study, answer))
         .map(|answer| {
-            Ballot::new(
+            ShownBallot::new(
                 answer.participant as usize,
                 answer.question as usize,
                 [items[answer.left as usize], items[answer.right as usize]],
@@ -41,9 +41,9 @@ pub fn ballots(study: &Study, answers: &Responses) -> Vec<Ballot> {
 
 /// The same answers with the sides that the study declares, so that answers to one question can be compared whichever way
 /// round it was shown.
-pub fn as_declared(study: &Study, ballots: &[Ballot]) -> Vec<Ballot> {
+pub fn as_declared(study: &Study, ballots: &[ShownBallot]) -> Vec<ShownBallot> {
     let methods = study.methods();
-    let declared = |b: &Ballot| {
+    let declared = |b: &ShownBallot| {
         if methods[b.left()] == study.comparisons[b.question()].left.method { *b } else { b.turned() }
     };
     ballots.iter().map(declared).collect()
@@ -72,7 +72,7 @@ pub(crate) fn outcome(choice: Choice) -> Outcome {
 
 /// The study's comparison groups, then clusterings pooled over arrangements (`clustering`) and arrangements pooled over
 /// clusterings (`arrangement`), where more than one group has them. Groups without an answer are left out.
-pub fn ballot_groups(study: &Study, ballots: &[Ballot]) -> Vec<BallotGroup> {
+pub fn ballot_groups(study: &Study, ballots: &[ShownBallot]) -> Vec<BallotGroup> {
     let methods = study.methods();
     let mut groups: Vec<BallotGroup> = study
         .groups
@@ -85,19 +85,19 @@ pub fn ballot_groups(study: &Study, ballots: &[Ballot]) -> Vec<BallotGroup> {
             BallotGroup { name: group.id.clone(), items, ballots: relabel(own, |item| place(methods[item])) }
         })
         .collect();
-    let one_group = |ballots: &[Ballot]| {
-        let group = |b: &Ballot| study.comparisons[b.question()].group;
+    let one_group = |ballots: &[ShownBallot]| {
+        let group = |b: &ShownBallot| study.comparisons[b.question()].group;
         ballots.iter().all(|b| group(b) == group(&ballots[0]))
     };
     let code = |code: char| code.to_ascii_uppercase().to_string();
     let clusterings = &study.file.clusterings;
-    let same = |b: &&Ballot| methods[b.left()].arrangement == methods[b.right()].arrangement;
+    let same = |b: &&ShownBallot| methods[b.left()].arrangement == methods[b.right()].arrangement;
     let place = |item: usize| clusterings.iter().position(|&c| c == methods[item].clustering);
     let items = clusterings.iter().map(|c| code(c.code())).collect();
     let pooled = relabel(ballots.iter().filter(same), place);
     let clustering = BallotGroup { name: "clustering".into(), items, ballots: pooled };
     let arrangements = &study.file.arrangements;
-    let same = |b: &&Ballot| methods[b.left()].clustering == methods[b.right()].clustering;
+    let same = |b: &&ShownBallot| methods[b.left()].clustering == methods[b.right()].clustering;
     let place = |item: usize| arrangements.iter().position(|&a| a == methods[item].arrangement);
     let items = arrangements.iter().map(|a| code(a.code())).collect();
     let pooled = relabel(ballots.iter().filter(same), place);
@@ -109,10 +109,10 @@ pub fn ballot_groups(study: &Study, ballots: &[Ballot]) -> Vec<BallotGroup> {
 
 /// Ballots with other item numbers; those with an item that has none are left out.
 fn relabel<'a>(
-    ballots: impl Iterator<Item = &'a Ballot>,
+    ballots: impl Iterator<Item = &'a ShownBallot>,
     place: impl Fn(usize) -> Option<usize>,
-) -> Vec<Ballot> {
-    let renamed = |b: &Ballot| Some(b.with_items([place(b.left())?, place(b.right())?]));
+) -> Vec<ShownBallot> {
+    let renamed = |b: &ShownBallot| Some(b.with_items([place(b.left())?, place(b.right())?]));
     ballots.filter_map(renamed).collect()
 }
 

@@ -24,11 +24,11 @@ mod worths;
 use crate::answered::Answered;
 use crate::ballots::BallotGroup;
 use crate::inputs::{AnalysisError, Inputs};
-use crate::statistics::Ballot;
 use canvas::Canvas;
 use legend::Swatch;
 pub use power::power_figure;
 use rayon::prelude::*;
+use statistics::ShownBallot;
 
 pub use sweep::sweep_figures;
 
@@ -58,7 +58,7 @@ pub fn figures(inputs: &Inputs<'_>) -> Result<Vec<Figure>, AnalysisError> {
 /// # Errors
 /// If drawing fails, which is not to be expected.
 pub fn figures_of_groups(groups: &[BallotGroup]) -> Result<Vec<Figure>, AnalysisError> {
-    let ballots: Vec<Ballot> = groups.iter().flat_map(|group| group.ballots.iter().copied()).collect();
+    let ballots: Vec<ShownBallot> = groups.iter().flat_map(|group| group.ballots.iter().copied()).collect();
     let drafts = [worths::draft(groups), respondents::draft(&ballots)];
     drafts.into_iter().flatten().map(Draft::finish).collect()
 }

@@ -1,10 +1,10 @@
 //! Every hypothesis that is tested, with p adjusted within its family.
 
 use crate::ballots::{BallotGroup, as_declared};
-use crate::statistics::contrast::{Contrast, ContrastTest, Level, Over, contrasts};
-use crate::statistics::{Ballot, benjamini_hochberg, holm};
 use design::Study;
 use rayon::prelude::*;
+use statistics::contrast::{Contrast, ContrastTest, Level, Over, contrasts};
+use statistics::{ShownBallot, benjamini_hochberg, holm};
 use std::collections::BTreeMap;
 
 /// How p values of a family are adjusted.
@@ -108,14 +108,14 @@ impl Hypothesis {
 }
 
 /// Every contrast of a study, then every question. `ballots` are by question.
-pub(crate) fn of_study(study: &Study, ballots: &[Ballot]) -> Vec<Hypothesis> {
+pub(crate) fn of_study(study: &Study, ballots: &[ShownBallot]) -> Vec<Hypothesis> {
     let mut all = of_contrasts(study, ballots);
     all.extend(of_questions(study, ballots));
     all
 }
 
 /// Every contrast of a study. `ballots` are by question.
-pub(crate) fn of_contrasts(study: &Study, ballots: &[Ballot]) -> Vec<Hypothesis> {
+pub(crate) fn of_contrasts(study: &Study, ballots: &[ShownBallot]) -> Vec<Hypothesis> {
     let of_contrast = |contrast: Contrast| {
         let subject = Subject::Contrast { levels: contrast.levels, over: contrast.over };
         let test = contrast.test(contrast.weights.keys().flat_map(|&question| of_one(ballots, question)));
@@ -126,7 +126,7 @@ pub(crate) fn of_contrasts(study: &Study, ballots: &[Ballot]) -> Vec<Hypothesis>
     all
 }
 
-fn of_questions(study: &Study, ballots: &[Ballot]) -> Vec<Hypothesis> {
+fn of_questions(study: &Study, ballots: &[ShownBallot]) -> Vec<Hypothesis> {
     let of_question = |(q, comparison): (usize, &design::Comparison)| {
         let own = as_declared(study, of_one(ballots, q));
         let test = ContrastTest::of(own.iter().map(|b| (b.participant(), 1, b.outcome())));
@@ -139,7 +139,7 @@ fn of_questions(study: &Study, ballots: &[Ballot]) -> Vec<Hypothesis> {
 }
 
 /// The ballots of one question.
-fn of_one(ballots: &[Ballot], question: usize) -> &[Ballot] {
+fn of_one(ballots: &[ShownBallot], question: usize) -> &[ShownBallot] {
     let below = |end: usize| ballots.partition_point(|ballot| ballot.question() < end);
     &ballots[below(question)..below(question + 1)]
 }
@@ -150,7 +150,7 @@ pub(crate) fn of_groups(groups: &[BallotGroup]) -> Vec<Hypothesis> {
     for group in groups {
         for (i, first) in group.items.iter().enumerate() {
             for (j, second) in group.items.iter().enumerate().skip(i + 1) {
-                let weight = |b: &Ballot| match (b.left(), b.right()) {
+                let weight = |b: &ShownBallot| match (b.left(), b.right()) {
                     (l, r) if (l, r) == (i, j) => Some((b.participant(), 1, b.outcome())),
                     (l, r) if (l, r) == (j, i) => Some((b.participant(), -1, b.outcome())),
                     _ => None,

@@ -10,8 +10,8 @@
 //! - Nothing is indexed by the paper's ids: any objects, methods and groups will do. Parts that are not there (no
 //!   benchmark, no answers, nothing published) leave out their tables and figures.
 //!
-//! Tests and models of preference are in [`statistics`], over plain ballots; [`audit`] looks for defects of a study,
-//! [`simulation`] makes studies whose truth is known, and [`self_test`] tries the ones on the others.
+//! Tests and models of preference are in the crate [`statistics`], over plain ballots; [`audit`] looks for defects of a study,
+//! [`statistics::simulation`] makes studies whose truth is known, and [`self_test`] tries the ones on the others.
 
 mod answered;
 pub mod audit;
@@ -23,7 +23,6 @@ mod figures;
 mod fraction;
 mod hypotheses;
 mod inputs;
-pub mod interval;
 mod mesh_set;
 mod panel;
 pub mod power;
@@ -33,9 +32,7 @@ mod published_ratio;
 mod recorded;
 pub mod report;
 pub mod self_test;
-pub mod simulation;
 mod stage_times;
-pub mod statistics;
 pub mod sweep;
 mod table;
 mod tables;

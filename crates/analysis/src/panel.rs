@@ -1,12 +1,12 @@
 //! One configuration at a glance: mesh, generation, timing, geometry.
 
 use crate::digits::counted;
-use crate::interval::LEVEL;
-use crate::statistics::{Median, median};
 use design::machine::Machine;
 use design::record::{BenchSample, Distribution, MeshRecord};
 use design::{Configuration, Stage, Study};
 use serde::Serialize;
+use statistics::interval::LEVEL;
+use statistics::{Median, median};
 use std::fmt::Write;
 
 /// The version of [`Panel`] as JSON.

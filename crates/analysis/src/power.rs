@@ -1,6 +1,6 @@
 //! How likely a study is to find a preference that is there, before anyone is asked.
 //!
-//! The study's own forms are answered by simulated people, and each study is tested as [`statistics`](crate::statistics)
+//! The study's own forms are answered by simulated people, and each study is tested as [`statistics`](statistics)
 //! tests a real one: exact sign-flip over participants, two-sided at 5 %, with and without adjustment in its family.
 //! What is found must be what was assumed: a rejection in favour of the wrong one is none.
 //!
@@ -12,13 +12,13 @@
 #[cfg(test)]
 mod tests;
 
-use crate::simulation::{davidson, draw, normal, stream};
-use crate::statistics::contrast::{Contrast, Family, Level, contrasts};
-use crate::statistics::{Outcome, benjamini_hochberg, holm, sign_flip_of_counts};
 use design::Study;
 use design::forms::{Questionnaire, Role};
 use rand::Rng;
 use rayon::prelude::*;
+use statistics::contrast::{Contrast, Family, Level, contrasts};
+use statistics::simulation::{davidson, draw, normal, stream};
+use statistics::{Outcome, benjamini_hochberg, holm, sign_flip_of_counts};
 use std::collections::BTreeMap;
 
 /// Level of the tests.

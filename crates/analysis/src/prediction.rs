@@ -14,9 +14,9 @@ pub(crate) use metric::{METRICS, Metric, Scale};
 
 use crate::inputs::Inputs;
 use crate::mesh_set::MeshSet;
-use crate::statistics::{Ballot, Coefficient, FitError, holm, regression, spearman};
 use design::Study;
 use design::record::Purpose;
+use statistics::{Coefficient, FitError, ShownBallot, holm, regression, spearman};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// One metric over the study's questions.
@@ -62,7 +62,7 @@ pub(crate) struct Prediction {
 
 impl Prediction {
     /// `None` without answers to questions whose meshes were measured.
-    pub(crate) fn of(inputs: &Inputs<'_>, ballots: &[Ballot]) -> Option<Self> {
+    pub(crate) fn of(inputs: &Inputs<'_>, ballots: &[ShownBallot]) -> Option<Self> {
         let study = inputs.study;
         let meshes = MeshSet::of(inputs, Purpose::Stimulus);
         let answered: BTreeSet<usize> = ballots.iter().map(|ballot| ballot.question()).collect();
@@ -109,7 +109,12 @@ impl Prediction {
 }
 
 impl MetricPrediction {
-    fn of(metric: &'static Metric, advantages: Vec<Option<f64>>, study: &Study, ballots: &[Ballot]) -> Self {
+    fn of(
+        metric: &'static Metric,
+        advantages: Vec<Option<f64>>,
+        study: &Study,
+        ballots: &[ShownBallot],
+    ) -> Self {
         let known: Vec<f64> = advantages.iter().flatten().copied().collect();
         let unit = (known.iter().map(|a| a * a).sum::<f64>() / known.len() as f64).sqrt();
         let x: Vec<Option<Vec<f64>>> = advantages.iter().map(|a| a.map(|a| vec![a / unit])).collect();

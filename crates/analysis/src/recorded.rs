@@ -2,16 +2,16 @@
 
 use crate::audit::Audited;
 use crate::ballots::{BallotGroup, is_asked, method_of_item, outcome};
-use crate::statistics::{Ballot, Circumstances, Protocol};
 use design::Study;
 use responses::{Answer, Responses};
+use statistics::{Circumstances, Protocol, ShownBallot};
 use std::borrow::Cow;
 use std::collections::HashMap;
 
 /// Answers as they were recorded. Participants and questions have the numbers of [`Responses`].
 #[derive(Debug, Clone)]
 pub struct Recorded<'a> {
-    ballots: Cow<'a, [Ballot]>,
+    ballots: Cow<'a, [ShownBallot]>,
     /// One a ballot; none if nothing is known.
     circumstances: Vec<Circumstances>,
     /// By question, the object on which it shows its items, where it says one, else itself.
@@ -29,7 +29,7 @@ impl<'a> Recorded<'a> {
     ///
     /// # Panics
     /// If the answers were read for another study.
-    pub fn of_study(study: &Study, answers: &Responses, ballots: &'a [Ballot]) -> Self {
+    pub fn of_study(study: &Study, answers: &Responses, ballots: &'a [ShownBallot]) -> Self {
         let mut order: Vec<&Answer> = answers.answers.iter().collect();
         order.sort_by_key(|answer| answer.question);
         let items = method_of_item(study, answers);
@@ -83,7 +83,7 @@ impl<'a> Recorded<'a> {
     }
 
     /// Every answer, controls and repeats included.
-    pub fn ballots(&self) -> &[Ballot] {
+    pub fn ballots(&self) -> &[ShownBallot] {
         &self.ballots
     }
 
@@ -110,8 +110,8 @@ impl<'a> Recorded<'a> {
     }
 }
 
-fn ballot(answer: &Answer, item: impl Fn(u32) -> usize) -> Ballot {
-    Ballot::new(
+fn ballot(answer: &Answer, item: impl Fn(u32) -> usize) -> ShownBallot {
+    ShownBallot::new(
         answer.participant as usize,
         answer.question as usize,
         [item(answer.left), item(answer.right)],

@@ -27,9 +27,9 @@ use crate::figures::Figure;
 use crate::hypotheses::{self, Hypothesis};
 use crate::inputs::Inputs;
 use crate::prediction::Prediction;
-use crate::statistics::Ballot;
 use crate::table::Table;
 use design::Study;
+use statistics::ShownBallot;
 use std::collections::BTreeSet;
 use words::{counted, list};
 
@@ -73,7 +73,7 @@ pub enum Block {
 /// What sentences are made from.
 struct Evidence<'a> {
     study: Option<&'a Study>,
-    ballots: &'a [Ballot],
+    ballots: &'a [ShownBallot],
     groups: &'a [BallotGroup],
     hypotheses: &'a [Hypothesis],
 }
@@ -95,7 +95,7 @@ impl<'a> Evidence<'a> {
     }
 
     /// Every hypothesis on some of the ballots.
-    fn tested(&self, ballots: &[Ballot]) -> Vec<Hypothesis> {
+    fn tested(&self, ballots: &[ShownBallot]) -> Vec<Hypothesis> {
         match self.study {
             Some(study) => hypotheses::of_study(study, ballots),
             None => {
@@ -161,7 +161,7 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Repo
 
 /// The report of answers without a study: groups of items, as [`report`].
 pub fn report_of_groups(title: &str, groups: &[BallotGroup], tables: &[Table], figures: &[Figure]) -> Report {
-    let ballots: Vec<Ballot> = groups.iter().flat_map(|group| group.ballots.iter().copied()).collect();
+    let ballots: Vec<ShownBallot> = groups.iter().flat_map(|group| group.ballots.iter().copied()).collect();
     let hypotheses = hypotheses::of_groups(groups);
     let evidence = Evidence { study: None, ballots: &ballots, groups, hypotheses: &hypotheses };
     let mut press = Press::new(tables, figures);

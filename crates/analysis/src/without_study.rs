@@ -2,10 +2,10 @@
 
 use crate::ballots::{BallotGroup, outcome};
 use crate::recorded::Recorded;
-use crate::statistics::{Ballot, Model};
 use crate::table::{Cell, Table};
 use crate::{audit, interval, tables};
 use responses::Responses;
+use statistics::{Model, ShownBallot};
 use std::collections::BTreeMap;
 
 /// Every table about answers that no study explains: `answer_counts`, `tests`, `worths`, `models`, `respondents`, `screened`
@@ -54,7 +54,7 @@ pub fn open_groups(answers: &Responses) -> Vec<BallotGroup> {
             })
         });
         let (participant, question) = (answer.participant as usize, answer.question as usize);
-        group.ballots.push(Ballot::new(participant, question, [left, right], outcome(answer.choice)));
+        group.ballots.push(ShownBallot::new(participant, question, [left, right], outcome(answer.choice)));
     }
     groups
 }

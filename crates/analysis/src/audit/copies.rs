@@ -4,7 +4,7 @@
 //! how often that is to be expected.
 
 use super::{Probe, Report, list};
-use crate::statistics::Ballot;
+use statistics::ShownBallot;
 use statrs::distribution::{DiscreteCDF, Poisson};
 use std::ops::Range;
 
@@ -23,8 +23,8 @@ const ALLOWANCE: f64 = 3.0;
 /// - how improbable the least probable of these rows is: the number of pairs times the chance that somebody gives that
 ///   row, three times over, which bounds the chance that any two people give one as improbable. One copy of a row that is
 ///   nobody's modal one shows here long before it does in the count.
-pub(super) fn probe(ballots: &[Ballot]) -> Report {
-    let mut sorted: Vec<Ballot> = ballots.to_vec();
+pub(super) fn probe(ballots: &[ShownBallot]) -> Report {
+    let mut sorted: Vec<ShownBallot> = ballots.to_vec();
     sorted.sort_unstable();
     let mut people: Vec<Range<usize>> = Vec::new();
     let mut start = 0;
@@ -124,7 +124,7 @@ struct Chances {
 }
 
 impl Chances {
-    fn of(people: &[Range<usize>], sorted: &[Ballot]) -> Self {
+    fn of(people: &[Range<usize>], sorted: &[ShownBallot]) -> Self {
         let n = people[0].len();
         let mut counts = vec![[0_u64; 3]; n];
         for of in people {
@@ -142,7 +142,7 @@ impl Chances {
     }
 
     /// That somebody gives the row which so many gave, who count once.
-    fn of_row(&self, row: &[Ballot], gave: usize) -> f64 {
+    fn of_row(&self, row: &[ShownBallot], gave: usize) -> f64 {
         let extra = gave as u64 - 1;
         let rest = (self.people - extra) as f64;
         self.joint(
@@ -170,7 +170,7 @@ fn same_answer(counts: &[u64; 3], people: u64) -> f64 {
 }
 
 /// Over pairs of rows that differ: every pair, or so many of each row's.
-fn variance_of_overlaps(people: &[Range<usize>], sorted: &[Ballot]) -> f64 {
+fn variance_of_overlaps(people: &[Range<usize>], sorted: &[ShownBallot]) -> f64 {
     let overlap = |a: usize, b: usize| {
         let (a, b) = (&sorted[people[a].clone()], &sorted[people[b].clone()]);
         a.iter().zip(b).filter(|(a, b)| a.outcome() == b.outcome()).count()

@@ -3,7 +3,7 @@
 use super::{ALARM, Audited, Probe, Report, list};
 use crate::ballots::BallotGroup;
 use crate::digits::{counted, number};
-use crate::statistics::{Split, exchange, holm};
+use statistics::{Split, exchange, holm};
 use std::collections::BTreeSet;
 
 /// One pair of items in one group, on one object against the others.

@@ -3,7 +3,7 @@
 use super::stimuli::{Stimuli, for_lower};
 use super::{Audited, Probe, Report};
 use crate::digits::counted;
-use crate::statistics::contrast::ContrastTest;
+use statistics::contrast::ContrastTest;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,6 +1,6 @@
 //! The same two items in the same scene, seen in either order of sides.
 
-use crate::statistics::Ballot;
+use statistics::ShownBallot;
 use std::collections::BTreeMap;
 
 /// Answers to one stimulus in one order of sides, for its lower item: 1 chosen, 0 tie, -1 the other chosen.
@@ -49,7 +49,7 @@ pub(super) struct Stimuli {
 }
 
 impl Stimuli {
-    pub(super) fn of(ballots: &[Ballot], scenes: &[usize]) -> Self {
+    pub(super) fn of(ballots: &[ShownBallot], scenes: &[usize]) -> Self {
         let mut stimuli = Self { places: BTreeMap::new(), all: Vec::new() };
         for ballot in ballots.iter().filter(|b| b.left() != b.right()) {
             let next = stimuli.all.len();
@@ -71,7 +71,7 @@ impl Stimuli {
     }
 
     /// Which stimulus a ballot is about, by index; `None` for a control.
-    pub(super) fn place(&self, ballot: &Ballot, scenes: &[usize]) -> Option<usize> {
+    pub(super) fn place(&self, ballot: &ShownBallot, scenes: &[usize]) -> Option<usize> {
         self.places.get(&key(ballot, scenes)).copied()
     }
 
@@ -81,12 +81,12 @@ impl Stimuli {
     }
 }
 
-fn key(ballot: &Ballot, scenes: &[usize]) -> (usize, usize, usize) {
+fn key(ballot: &ShownBallot, scenes: &[usize]) -> (usize, usize, usize) {
     (scenes[ballot.question()], ballot.left().min(ballot.right()), ballot.left().max(ballot.right()))
 }
 
 /// 1 if the lower item was chosen, -1 if the other.
-pub(super) fn for_lower(ballot: &Ballot) -> f64 {
+pub(super) fn for_lower(ballot: &ShownBallot) -> f64 {
     let sign = ballot.outcome().sign() as f64;
     if ballot.left() < ballot.right() { sign } else { -sign }
 }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::fixture;
 use crate::self_test::{Defect, planted};
-use crate::statistics::Outcome;
+use statistics::Outcome;
 
 fn report(reports: &[Report], probe: Probe) -> &Report {
     reports.iter().find(|report| report.probe == probe).unwrap()
@@ -56,9 +56,10 @@ fn planted_defects_are_found_with_their_place() {
 
 #[test]
 fn a_side_is_seen_in_controls_alone() {
-    let control = |participant, outcome| Ballot::new(participant, 0, [1, 1], outcome);
-    let shown = |participant| Ballot::new(participant, 1, [0, 1], Outcome::Tie);
-    let mut ballots: Vec<Ballot> = (0..12).map(|participant| control(participant, Outcome::Right)).collect();
+    let control = |participant, outcome| ShownBallot::new(participant, 0, [1, 1], outcome);
+    let shown = |participant| ShownBallot::new(participant, 1, [0, 1], Outcome::Tie);
+    let mut ballots: Vec<ShownBallot> =
+        (0..12).map(|participant| control(participant, Outcome::Right)).collect();
     ballots.extend((0..12).map(shown));
     let names = ["Q1".to_owned(), "Q2".to_owned()];
     let objects = ["all".to_owned()];
@@ -96,7 +97,7 @@ fn without_a_decision_there_are_no_worths_to_be_penalised() {
     let group = |name: &str, outcomes: &[Outcome]| BallotGroup {
         name: name.into(),
         items: ["a", "b"].map(String::from).into(),
-        ballots: outcomes.iter().enumerate().map(|(i, &o)| Ballot::new(i, 0, [0, 1], o)).collect(),
+        ballots: outcomes.iter().enumerate().map(|(i, &o)| ShownBallot::new(i, 0, [0, 1], o)).collect(),
     };
     let (none, both) = (group("none", &[Outcome::Tie; 3]), group("both", &[Outcome::Left, Outcome::Right]));
     let found = separated(std::slice::from_ref(&none));

@@ -3,14 +3,14 @@
 use super::Finding;
 use super::numbers::{Measure, Numbers, Ours, Pair, Side, mean, mean_change};
 use crate::inputs::Inputs;
-use crate::interval::{Interval, LEVEL};
-use crate::statistics::median;
 use crate::timing::NoiseFloor;
 use crate::verdict::Verdict;
 use design::Clustering::{self, EdgeCollapse, Integrated};
 use design::Stage;
 use design::published::Claim;
 use design::record::BenchRun;
+use statistics::interval::{Interval, LEVEL};
+use statistics::median;
 
 const ALL: [Clustering; 3] = [Clustering::None, Integrated, EdgeCollapse];
 

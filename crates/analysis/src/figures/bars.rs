@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::canvas::{Align, BLACK, Canvas, WHITE, text_width};
 use super::legend;
 use super::style::{Fill, GRID};
-use crate::interval::Interval;
+use statistics::interval::Interval;
 
 /// One bar: segments from the bottom up.
 #[derive(Debug, Clone, Default)]

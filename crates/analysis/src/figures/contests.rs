@@ -5,11 +5,11 @@ use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::{Draft, canvas_with_legend};
-use crate::statistics::Ballot;
-use crate::statistics::contrast::{Contrast, ContrastTest, Level, Over, contrasts};
 use design::Study;
+use statistics::ShownBallot;
+use statistics::contrast::{Contrast, ContrastTest, Level, Over, contrasts};
 
-pub(super) fn by_object(study: &Study, ballots: &[Ballot]) -> Option<Draft> {
+pub(super) fn by_object(study: &Study, ballots: &[ShownBallot]) -> Option<Draft> {
     let pooled = contrasts(study).into_iter().filter(|c| c.over == Over::All);
     let blocks: Vec<Block> = pooled.filter_map(|contrast| block(study, ballots, &contrast)).collect();
     if blocks.is_empty() {
@@ -34,9 +34,9 @@ pub(super) fn by_object(study: &Study, ballots: &[Ballot]) -> Option<Draft> {
     Some(Draft { name: "object_interaction", caption, canvas })
 }
 
-fn block(study: &Study, ballots: &[Ballot], contrast: &Contrast) -> Option<Block> {
+fn block(study: &Study, ballots: &[ShownBallot], contrast: &Contrast) -> Option<Block> {
     let row = |object: Option<usize>| {
-        let inside = |b: &&Ballot| object.is_none_or(|o| study.comparisons[b.question()].object == o);
+        let inside = |b: &&ShownBallot| object.is_none_or(|o| study.comparisons[b.question()].object == o);
         let own = ballots.iter().filter(inside);
         let weighted =
             own.filter_map(|b| Some((b.participant(), *contrast.weights.get(&b.question())?, b.outcome())));

@@ -5,7 +5,7 @@ use super::canvas::{Align, BLACK, Canvas};
 use super::marks::Mark;
 use super::style::GRID;
 use super::{WIDTH, legend};
-use crate::interval::Interval;
+use statistics::interval::Interval;
 
 const ROW: f64 = 21.0;
 const HEADING: f64 = 30.0;

@@ -8,13 +8,13 @@ use super::scatter::Scatter;
 use super::{Draft, WIDTH, canvas_with_legend};
 use crate::inputs::Inputs;
 use crate::prediction::{MetricPrediction, Prediction, Scale};
-use crate::statistics::{Ballot, outcome_counts};
 use design::Study;
+use statistics::{ShownBallot, outcome_counts};
 
 const ROW: f64 = 320.0;
 const PER_ROW: usize = 3;
 
-pub(super) fn draft(inputs: &Inputs<'_>, ballots: &[Ballot]) -> Option<Draft> {
+pub(super) fn draft(inputs: &Inputs<'_>, ballots: &[ShownBallot]) -> Option<Draft> {
     let (study, prediction) = (inputs.study, Prediction::of(inputs, ballots)?);
     let counts = outcome_counts(ballots);
     let mut legend: Vec<(Swatch, String)> = Vec::new();

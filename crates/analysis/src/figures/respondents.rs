@@ -7,14 +7,14 @@ use super::legend::Swatch;
 use super::marks::Mark;
 use super::style::{Fill, LEFT};
 use super::{Draft, WIDTH, canvas_with_legend};
-use crate::statistics::{Ballot, Screening, screening};
+use statistics::{Screening, ShownBallot, screening};
 
 /// Up to so many people have a row of their own; more are counted in steps of a twentieth.
 const ROWS: usize = 60;
 const STEPS: usize = 20;
 const NAME: &str = "respondents";
 
-pub(super) fn draft(ballots: &[Ballot]) -> Option<Draft> {
+pub(super) fn draft(ballots: &[ShownBallot]) -> Option<Draft> {
     let mut screened = screening(ballots);
     screened.retain(|s| s.comparable > 0);
     if screened.is_empty() {

@@ -7,7 +7,7 @@ use super::marks::Mark;
 use super::{Draft, canvas_with_legend};
 use crate::ballots::BallotGroup;
 use crate::digits::number;
-use crate::statistics::{Model, Pairs, Participants, clustered_covariance, fit};
+use statistics::{Model, Pairs, Participants, clustered_covariance, fit};
 
 pub(super) fn draft(groups: &[BallotGroup]) -> Option<Draft> {
     let blocks: Vec<Block> = groups.iter().filter_map(block).collect();

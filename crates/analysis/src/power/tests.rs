@@ -1,7 +1,7 @@
 use super::*;
 use crate::fixture;
-use crate::simulation::Population;
 use design::config::FormsSection;
+use statistics::simulation::Population;
 
 /// The paper's 27 comparisons, dealt to participants with sides balanced.
 fn study() -> Study {

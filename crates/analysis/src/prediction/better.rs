@@ -1,9 +1,9 @@
 //! How often the side with the better value was chosen.
 
-use crate::interval::Interval;
-use crate::statistics::bootstrap::{Resampling, bca};
-use crate::statistics::contrast::ContrastTest;
-use crate::statistics::{Ballot, ClusteredShare, clustered_share};
+use statistics::bootstrap::{Resampling, bca};
+use statistics::contrast::ContrastTest;
+use statistics::interval::Interval;
+use statistics::{ClusteredShare, ShownBallot, clustered_share};
 use std::collections::BTreeMap;
 
 /// Pairs by who won them.
@@ -41,13 +41,13 @@ pub(crate) struct Better {
 
 impl Better {
     /// `advantages` are the left sides', by question.
-    pub(crate) fn of(advantages: &[Option<f64>], ballots: &[Ballot]) -> Self {
+    pub(crate) fn of(advantages: &[Option<f64>], ballots: &[ShownBallot]) -> Self {
         let weight = |question: usize| match advantages.get(question).copied().flatten() {
             Some(advantage) if advantage > 0.0 => Some(1),
             Some(advantage) if advantage < 0.0 => Some(-1),
             _ => None,
         };
-        let weighted = |b: &Ballot| Some((b.participant(), weight(b.question())?, b.outcome()));
+        let weighted = |b: &ShownBallot| Some((b.participant(), weight(b.question())?, b.outcome()));
         let mut people: BTreeMap<usize, BTreeMap<usize, [u64; 2]>> = BTreeMap::new();
         for ballot in ballots {
             let Some(weight) = weight(ballot.question()) else { continue };
@@ -106,10 +106,10 @@ fn pairs(kinds: &[&BTreeMap<usize, [u64; 2]>], weights: &[u64]) -> PairCount {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::statistics::Outcome::{self, Left, Right, Tie};
+    use statistics::Outcome::{self, Left, Right, Tie};
 
-    fn ballot(participant: usize, question: usize, outcome: Outcome) -> Ballot {
-        Ballot::new(participant, question, [0, 1], outcome)
+    fn ballot(participant: usize, question: usize, outcome: Outcome) -> ShownBallot {
+        ShownBallot::new(participant, question, [0, 1], outcome)
     }
 
     #[test]

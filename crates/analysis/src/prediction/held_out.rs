@@ -1,8 +1,8 @@
 //! A model judged on objects that it was not fitted to.
 
-use crate::interval::{Interval, t_over_respondents};
-use crate::statistics::{Ballot, ClusteredShare, Outcome, clustered_share, regression};
 use design::Study;
+use statistics::interval::{Interval, t_over_respondents};
+use statistics::{ClusteredShare, Outcome, ShownBallot, clustered_share, regression};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Predictions of each object's answers from a fit to the other objects'.
@@ -23,9 +23,13 @@ pub(crate) struct HeldOut {
 impl HeldOut {
     /// `covariates` by question. `None` with fewer than two objects, if a fit has no estimate, or if an outcome that a fit
     /// never saw occurs on the object left out (its loss is infinite).
-    pub(crate) fn of(study: &Study, covariates: &[Option<Vec<f64>>], ballots: &[Ballot]) -> Option<Self> {
-        let object = |b: &Ballot| study.comparisons[b.question()].object;
-        let used: Vec<Ballot> =
+    pub(crate) fn of(
+        study: &Study,
+        covariates: &[Option<Vec<f64>>],
+        ballots: &[ShownBallot],
+    ) -> Option<Self> {
+        let object = |b: &ShownBallot| study.comparisons[b.question()].object;
+        let used: Vec<ShownBallot> =
             ballots.iter().filter(|b| covariates[b.question()].is_some()).copied().collect();
         let objects: BTreeSet<usize> = used.iter().map(object).collect();
         if objects.len() < 2 {
@@ -34,7 +38,8 @@ impl HeldOut {
         let mut people: BTreeMap<usize, Person> = BTreeMap::new();
         let mut of_objects = Vec::new();
         for &left_out in &objects {
-            let (own, others): (Vec<Ballot>, Vec<Ballot>) = used.iter().partition(|b| object(b) == left_out);
+            let (own, others): (Vec<ShownBallot>, Vec<ShownBallot>) =
+                used.iter().partition(|b| object(b) == left_out);
             let fit = regression(covariates, &others).ok()?;
             let ties =
                 others.iter().filter(|b| b.outcome() == Outcome::Tie).count() as f64 / others.len() as f64;

@@ -1,8 +1,8 @@
 use super::better::PairCount;
 use super::*;
 use crate::fixture::{self, Everything};
-use crate::statistics::Outcome;
 use design::Clustering;
+use statistics::Outcome;
 
 fn named<'a>(prediction: &'a Prediction, code: &str) -> &'a MetricPrediction {
     prediction.metrics.iter().find(|m| m.metric.code == code).unwrap_or_else(|| panic!("no {code}"))
@@ -99,13 +99,13 @@ fn nothing_measured_or_nothing_answered_predicts_nothing() {
     let bare = Inputs { meshes: &[], ..all.inputs() };
     assert!(Prediction::of(&bare, &ballots).is_none());
     // One object: a fit, but nothing to judge it on.
-    let sphere: Vec<Ballot> = ballots.iter().filter(|b| b.question() < 9).copied().collect();
+    let sphere: Vec<ShownBallot> = ballots.iter().filter(|b| b.question() < 9).copied().collect();
     let prediction = Prediction::of(&all.inputs(), &sphere).unwrap();
     assert_eq!((prediction.pairs, prediction.independent), (9, 5));
     let found = named(&prediction, "triangles");
     assert!(found.held_out.is_none() && found.coefficient.is_ok());
     // Only ties: counts, and no coefficient.
-    let ties: Vec<Ballot> = ballots.iter().map(|b| b.with_outcome(Outcome::Tie)).collect();
+    let ties: Vec<ShownBallot> = ballots.iter().map(|b| b.with_outcome(Outcome::Tie)).collect();
     let prediction = Prediction::of(&all.inputs(), &ties).unwrap();
     let found = named(&prediction, "triangles");
     assert_eq!(found.coefficient, Err(FitError::OnlyTies));

@@ -4,8 +4,8 @@ use super::finding::{Finding, Standing};
 use super::words::{counted, list, number, p, percent};
 use super::{Block, Evidence, names};
 use crate::hypotheses::{ALPHA, Conclusion, Hypothesis, Subject};
-use crate::statistics::{
-    Ballot, Metric, Screening, Triads, agreement, alpha, outcome_counts, screening, sign_test, triads,
+use statistics::{
+    Metric, Screening, ShownBallot, Triads, agreement, alpha, outcome_counts, screening, sign_test, triads,
 };
 use statrs::distribution::{Binomial, DiscreteCDF};
 
@@ -59,11 +59,11 @@ fn consistency(evidence: &Evidence<'_>) -> Option<Finding> {
         Some(study) => {
             for object in 0..study.file.objects.len() {
                 for group in 0..study.groups.len() {
-                    let inside = |b: &&Ballot| {
+                    let inside = |b: &&ShownBallot| {
                         let c = &study.comparisons[b.question()];
                         c.object == object && c.group == group
                     };
-                    let own: Vec<Ballot> = evidence.ballots.iter().filter(inside).copied().collect();
+                    let own: Vec<ShownBallot> = evidence.ballots.iter().filter(inside).copied().collect();
                     sum = sum.and(triads(&own));
                 }
             }
@@ -189,7 +189,7 @@ fn odd_ones(evidence: &Evidence<'_>) -> Vec<Finding> {
 
 /// `left_out` in order.
 fn without(evidence: &Evidence<'_>, left_out: &[usize]) -> Finding {
-    let kept: Vec<Ballot> = evidence
+    let kept: Vec<ShownBallot> = evidence
         .ballots
         .iter()
         .filter(|b| left_out.binary_search(&b.participant()).is_err())

@@ -7,14 +7,14 @@ use crate::claims;
 use crate::claims::numbers::{Measure, Numbers, Ours, Pair, Side, mean};
 use crate::claims::times::{Change, Direction, GEOMETRY, VERTEX, WHOLE, by_round};
 use crate::inputs::Inputs;
-use crate::interval::LEVEL;
 use crate::mesh_set::{discard_fraction, known};
-use crate::statistics::median;
 use crate::verdict::{Verdict, prints_alike};
 use design::Clustering::{self, EdgeCollapse, Integrated, None as Unclustered};
 use design::published::Claim;
 use design::record::Purpose;
 use design::{Arrangement, Method};
+use statistics::interval::LEVEL;
+use statistics::median;
 
 const SAMPLING_SHARE: Measure = Measure {
     published: |p| p.sampling_s / p.total_without_normals_s,

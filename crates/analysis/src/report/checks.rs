@@ -5,8 +5,8 @@ use super::finding::{Finding, Standing};
 use super::words::{counted, list, p as p_value};
 use super::{Block, Evidence, names};
 use crate::audit::Finding as Probed;
-use crate::statistics::Flag;
 use crate::table::{Cell, Table};
+use statistics::Flag;
 use std::collections::BTreeMap;
 
 /// Tests named at most.

@@ -6,9 +6,9 @@ use super::{Block, Evidence, names};
 use crate::fraction::Fraction;
 use crate::hypotheses::Subject;
 use crate::preference::{GroupFactor, Margin, group_factors, margins, overall};
-use crate::statistics::contrast::{Level, Over};
 use crate::tally::Tally;
 use design::{Arrangement, Method, Study};
+use statistics::contrast::{Level, Over};
 
 pub(super) fn findings(study: &Study, tally: &Tally, evidence: &Evidence<'_>) -> Vec<Block> {
     let factors = group_factors(study, tally, |_| true);

@@ -2,9 +2,9 @@
 
 use super::words::{against, capital, counted, interval, number, p};
 use crate::hypotheses::{ALPHA, Conclusion, Hypothesis, Subject};
-use crate::interval::{Interval, unanimous};
-use crate::statistics::MARGIN;
-use crate::statistics::contrast::ContrastTest;
+use statistics::MARGIN;
+use statistics::contrast::ContrastTest;
+use statistics::interval::{Interval, unanimous};
 
 /// What a statement is worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 
 use super::Evidence;
 use crate::hypotheses::{Hypothesis, Subject};
-use crate::statistics::contrast::{Level, Over};
 use design::{Arrangement, Clustering, Study};
+use statistics::contrast::{Level, Over};
 
 /// A level as a noun: `edge collapse`, `the body-centred lattice`.
 pub(super) fn level(level: Level) -> &'static str {

@@ -46,7 +46,7 @@ fn metric(found: &MetricPrediction, family: usize) -> Finding {
             format!(
                 "One typical difference multiplies the odds of being chosen by {} ({}; Davidson's model, t, {}).",
                 number(c.estimate.exp(), 2),
-                interval(crate::interval::Interval { low: c.interval.low.exp(), high: c.interval.high.exp() }, 2),
+                interval(statistics::interval::Interval { low: c.interval.low.exp(), high: c.interval.high.exp() }, 2),
                 p(c.p)
             )
         },

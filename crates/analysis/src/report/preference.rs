@@ -4,10 +4,10 @@ use super::finding::{Finding, Standing, score, tested};
 use super::words::{against, capital, counted, list, number, p};
 use super::{Block, Evidence, names};
 use crate::hypotheses::{ALPHA, Hypothesis, Subject};
-use crate::statistics::contrast::{ContrastTest, Level, Over, contrasts};
-use crate::statistics::friedman;
 use crate::tables::contrasts::study_scores;
 use design::Study;
+use statistics::contrast::{ContrastTest, Level, Over, contrasts};
+use statistics::friedman;
 
 /// So many comparisons that too few people lean on are told one by one, more of them together.
 const APART: usize = 3;
@@ -235,8 +235,7 @@ fn on_and_off(
 ) -> Option<(ContrastTest, ContrastTest)> {
     let all = contrasts(study).into_iter().find(|c| c.levels == levels && c.over == Over::All)?;
     let of = |on: bool| {
-        let weight =
-            |b: &&crate::statistics::Ballot| (study.comparisons[b.question()].object == object) == on;
+        let weight = |b: &&statistics::ShownBallot| (study.comparisons[b.question()].object == object) == on;
         let own = evidence.ballots.iter().filter(weight);
         ContrastTest::of(
             own.filter_map(|b| Some((b.participant(), *all.weights.get(&b.question())?, b.outcome()))),

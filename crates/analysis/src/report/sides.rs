@@ -3,9 +3,9 @@
 use super::finding::{Finding, Standing};
 use super::words::{capital, counted, interval, list, number};
 use super::{Block, Evidence, names};
-use crate::statistics::contrast::{Level, contrasts};
-use crate::statistics::{
-    Ballot, Model, Pairs, Participants, Separation, SideDesign, clustered_covariance, fit, has_spread,
+use statistics::contrast::{Level, contrasts};
+use statistics::{
+    Model, Pairs, Participants, Separation, ShownBallot, SideDesign, clustered_covariance, fit, has_spread,
     separation, side_design,
 };
 use std::collections::BTreeMap;
@@ -34,7 +34,7 @@ fn side(evidence: &Evidence<'_>) -> Vec<Finding> {
     let totals =
         format!("{} went left, {right} right and {none} to neither", counted(left as usize, "answer"));
     let items = evidence.ballots.iter().map(|b| b.left().max(b.right()) + 1).max().unwrap_or(0);
-    let mut designs: BTreeMap<&str, (SideDesign, &[Ballot], usize)> = BTreeMap::new();
+    let mut designs: BTreeMap<&str, (SideDesign, &[ShownBallot], usize)> = BTreeMap::new();
     for group in evidence.groups {
         let pairs = Pairs::of(group.items.len(), &group.ballots);
         designs.insert(&group.name, (side_design(&pairs), &group.ballots, group.items.len()));
@@ -92,7 +92,7 @@ fn side(evidence: &Evidence<'_>) -> Vec<Finding> {
     found
 }
 
-fn estimate(name: &str, ballots: &[Ballot], items: usize) -> Option<String> {
+fn estimate(name: &str, ballots: &[ShownBallot], items: usize) -> Option<String> {
     let pairs = Pairs::of(items, ballots);
     // Where ties alone keep the worths finite, the side would take the blame.
     if separation(&pairs) != Separation::None {
@@ -104,14 +104,14 @@ fn estimate(name: &str, ballots: &[Ballot], items: usize) -> Option<String> {
     let place = fitted.parameters.len() - 1;
     let side = fitted.side?;
     let (people, se) = (participants.number() as f64, covariance[place][place].sqrt());
-    let t = crate::interval::t_half_width(people - 1.0)?;
+    let t = statistics::interval::t_half_width(people - 1.0)?;
     if !has_spread(se, fitted.covariance[place][place].sqrt()) {
         return Some(format!(
             "{} (no interval: the answers tell no spread between participants) in group {name}",
             number(side, 2)
         ));
     }
-    let found = crate::interval::Interval { low: side - t * se, high: side + t * se };
+    let found = statistics::interval::Interval { low: side - t * se, high: side + t * se };
     Some(format!("{} ({}) in group {name}", number(side, 2), interval(found, 2)))
 }
 
@@ -119,8 +119,7 @@ fn estimate(name: &str, ballots: &[Ballot], items: usize) -> Option<String> {
 fn always(evidence: &Evidence<'_>) -> Option<String> {
     let study = evidence.study?;
     let mut seen: Vec<(Level, [bool; 2])> = Vec::new();
-    for contrast in contrasts(study).into_iter().filter(|c| c.over == crate::statistics::contrast::Over::All)
-    {
+    for contrast in contrasts(study).into_iter().filter(|c| c.over == statistics::contrast::Over::All) {
         for &weight in contrast.weights.values() {
             for (level, left) in [(contrast.levels[0], weight > 0), (contrast.levels[1], weight < 0)] {
                 let place = seen.iter().position(|(l, _)| *l == level).unwrap_or_else(|| {

@@ -1,11 +1,11 @@
 use super::*;
 use crate::fixture::{self, Everything};
-use crate::statistics::Outcome::{self, Left, Right, Tie};
+use statistics::Outcome::{self, Left, Right, Tie};
 
 /// What the paper's study says if people answered like this; the argument is participant and question.
 fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'static str, Vec<Finding>)> {
     let study = fixture::study();
-    let ballots: Vec<Ballot> = crate::ballots::ballots(&study, &fixture::answers(&study))
+    let ballots: Vec<ShownBallot> = crate::ballots::ballots(&study, &fixture::answers(&study))
         .into_iter()
         .filter(|b| b.participant() < people)
         .map(|b| b.with_outcome(answer(b.participant(), b.question())))
@@ -27,7 +27,7 @@ fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'stati
 
 fn groups(answers: &[(usize, usize, usize, Outcome)]) -> Vec<BallotGroup> {
     let ballot = |&(participant, left, right, outcome)| {
-        Ballot::new(participant, left + right - 1, [left, right], outcome)
+        ShownBallot::new(participant, left + right - 1, [left, right], outcome)
     };
     let items = ["oak", "elm", "ash"].map(String::from).into();
     vec![BallotGroup { name: "trees".into(), items, ballots: answers.iter().map(ballot).collect() }]
@@ -298,8 +298,8 @@ fn no_answers_at_all() {
     let report = report_of_groups("Nothing", &[], &[], &[]);
     assert_eq!(report.lead, ["No answers were given, so nothing is said about preference."]);
     assert!(report.sections.is_empty());
-    let control = |participant| Ballot::new(participant, 0, [0, 0], Left);
-    let protocol = crate::statistics::Protocol::default();
+    let control = |participant| ShownBallot::new(participant, 0, [0, 0], Left);
+    let protocol = statistics::Protocol::default();
     let respondents = crate::tables::agreement::respondents(&[control(0), control(1)], &protocol);
     let report = report_of_groups("Controls", &[], &[respondents], &[]);
     assert_eq!(

@@ -1,7 +1,7 @@
 //! Numbers in words: p values, intervals, counts, lists.
 
 pub(super) use crate::digits::{counted, number};
-use crate::interval::Interval;
+use statistics::interval::Interval;
 
 /// Below this a p value is not printed in digits.
 const LEAST_P: f64 = 1e-6;

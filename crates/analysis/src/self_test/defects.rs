@@ -2,8 +2,8 @@
 
 use crate::audit::{self, Audited, Probe, Report};
 use crate::ballots::BallotGroup;
-use crate::simulation::{Plan, Population, simulate, stream};
-use crate::statistics::Ballot;
+use statistics::ShownBallot;
+use statistics::simulation::{Plan, Population, simulate, stream};
 use std::collections::BTreeMap;
 
 /// Participants of a planted study.
@@ -84,7 +84,7 @@ pub struct Planted {
     /// What was asked.
     pub plan: Plan,
     /// What was answered, as it would be read.
-    pub ballots: Vec<Ballot>,
+    pub ballots: Vec<ShownBallot>,
 }
 
 impl Planted {
@@ -134,12 +134,12 @@ pub fn planted(defect: Defect, seed: u64, study: u64) -> Planted {
             replace(&mut ballots, 7, own.into_iter().filter(|b| b.participant() == 7));
         }
         Defect::CopiedRows => {
-            let first: Vec<Ballot> = ballots.iter().filter(|b| b.participant() == 4).copied().collect();
+            let first: Vec<ShownBallot> = ballots.iter().filter(|b| b.participant() == 4).copied().collect();
             replace(&mut ballots, 16, first.into_iter().map(|b| b.with_participant(16)));
         }
         Defect::SwappedKey => {
             // Items 1 and 4 on the first object.
-            let wrong = |b: &&mut Ballot| b.question() == 2 && b.left() < b.right();
+            let wrong = |b: &&mut ShownBallot| b.question() == 2 && b.left() < b.right();
             ballots.iter_mut().filter(wrong).for_each(|b| *b = b.with_outcome(b.outcome().swapped()));
         }
         _ => {}
@@ -147,6 +147,6 @@ pub fn planted(defect: Defect, seed: u64, study: u64) -> Planted {
     Planted { plan, ballots }
 }
 
-fn replace(ballots: &mut [Ballot], participant: usize, with: impl Iterator<Item = Ballot>) {
+fn replace(ballots: &mut [ShownBallot], participant: usize, with: impl Iterator<Item = ShownBallot>) {
     ballots.iter_mut().filter(|b| b.participant() == participant).zip(with).for_each(|(b, new)| *b = new);
 }

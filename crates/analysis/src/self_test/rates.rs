@@ -1,14 +1,14 @@
 //! How often tests reject what is true, and intervals cover it.
 
 use super::allowance;
-use crate::interval::Interval;
-use crate::simulation::{Plan, Population, simulate, stream};
-use crate::statistics::bootstrap::{Resampling, bca_each};
-use crate::statistics::contrast::ContrastTest;
-use crate::statistics::{
-    Ballot, MARGIN, Model, Pairs, Participants, clustered_covariance, fit, friedman, holm, sign_test,
-};
 use rayon::prelude::*;
+use statistics::bootstrap::{Resampling, bca_each};
+use statistics::contrast::ContrastTest;
+use statistics::interval::Interval;
+use statistics::simulation::{Plan, Population, simulate, stream};
+use statistics::{
+    MARGIN, Model, Pairs, Participants, ShownBallot, clustered_covariance, fit, friedman, holm, sign_test,
+};
 
 /// How the studies are, for people.
 pub(super) const DESCRIPTION: &str = "18 people; Davidson's model with tie parameter 0.3, people 1 logit apart. One contrast: \
@@ -116,7 +116,7 @@ fn pair(by: f64) -> Population {
     Population { worths: vec![by, 0.0], ..Population::indifferent(2, SD) }
 }
 
-fn contrast(ballots: &[Ballot]) -> ContrastTest {
+fn contrast(ballots: &[ShownBallot]) -> ContrastTest {
     ContrastTest::of(
         ballots.iter().map(|b| (b.participant(), if b.left() == 0 { 1 } else { -1 }, b.outcome())),
     )
@@ -145,7 +145,8 @@ fn one_contrast(studies: u64, seed: u64, by: f64, name: &str) -> Vec<Rate> {
         if by == 0.0 {
             let [a, _, b] = test.counts.expect("one weight for all");
             let few = |questions: usize| {
-                let own: Vec<Ballot> = ballots.iter().filter(|b| b.question() < questions).copied().collect();
+                let own: Vec<ShownBallot> =
+                    ballots.iter().filter(|b| b.question() < questions).copied().collect();
                 contrast(&own)
             };
             let single = few(1);
@@ -218,7 +219,7 @@ fn three_items(studies: u64, seed: u64, worths: [f64; 3], name: &str) -> Vec<Rat
         ];
         if worths == [0.0; 3] {
             let p = pairs.map(|(i, j)| {
-                let towards = |b: &Ballot| match (b.left(), b.right()) {
+                let towards = |b: &ShownBallot| match (b.left(), b.right()) {
                     sides if sides == (i, j) => Some((b.participant(), 1, b.outcome())),
                     sides if sides == (j, i) => Some((b.participant(), -1, b.outcome())),
                     _ => None,

@@ -14,12 +14,12 @@
 mod budgets;
 mod tables;
 
-use crate::interval::{Interval, LEVEL};
-use crate::statistics::{Median, PowerLaw, median, power_law};
 use crate::timing;
 use design::record::{BenchRun, BenchSample, SweepMesh};
 use design::{ConfigurationId, Stage};
 use serde::Serialize;
+use statistics::interval::{Interval, LEVEL};
+use statistics::{Median, PowerLaw, median, power_law};
 
 pub use budgets::{Best, Budget};
 pub use tables::sweep_tables;

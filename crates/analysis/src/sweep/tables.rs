@@ -35,7 +35,8 @@ fn exponents(sweep: &Sweep) -> Table {
     ];
     let mut table = Table::new("sweep_exponents", "How cost grows with the cells per axis", &columns);
     for growth in &sweep.growth {
-        let end = |end: fn(crate::interval::Interval) -> f64| Cell::number(growth.law.interval.map(end), 3);
+        let end =
+            |end: fn(statistics::interval::Interval) -> f64| Cell::number(growth.law.interval.map(end), 3);
         table.push(vec![
             Cell::text(&growth.id),
             Cell::count(growth.threads.into()),
@@ -112,7 +113,7 @@ fn speed_ups(sweep: &Sweep) -> Table {
     let mut table = Table::new("sweep_speed_up", "What more threads are worth", &columns);
     let fewest = sweep.points.iter().map(|point| point.threads).min().unwrap_or(1);
     for found in &sweep.speed_ups {
-        let end = |end: fn(crate::interval::Interval) -> f64| Cell::number(found.interval.map(end), 2);
+        let end = |end: fn(statistics::interval::Interval) -> f64| Cell::number(found.interval.map(end), 2);
         table.push(vec![
             Cell::text(&found.id),
             Cell::count(found.cells.into()),
@@ -193,8 +194,9 @@ fn points(sweep: &Sweep) -> Table {
     let mut table = Table::new("sweep", "Every resolution and thread count", &columns);
     for point in &sweep.points {
         let total = point.total_s;
-        let end =
-            |end: fn(crate::interval::Interval) -> f64| Cell::number(total.interval.map(|i| MS * end(i)), 3);
+        let end = |end: fn(statistics::interval::Interval) -> f64| {
+            Cell::number(total.interval.map(|i| MS * end(i)), 3)
+        };
         let each = |count: u64| Cell::number((count > 0).then(|| 1e9 * total.median / count as f64), 1);
         let mut row = vec![
             Cell::text(&point.id),

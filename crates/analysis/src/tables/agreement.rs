@@ -1,15 +1,15 @@
 //! Agreement of participants with each other and with themselves.
 
 use crate::ballots::as_declared;
-use crate::statistics::{
-    Ballot, Metric, Protocol, Triads, agreement as kendall, alpha, outcome_counts, screening_with, triads,
-    zetas,
-};
 use crate::table::{Cell, Table};
 use design::Study;
+use statistics::{
+    Metric, Protocol, ShownBallot, Triads, agreement as kendall, alpha, outcome_counts, screening_with,
+    triads, zetas,
+};
 
 /// All questions, then each comparison group: agreement between participants, and circular triads within.
-pub(super) fn agreement(study: &Study, ballots: &[Ballot]) -> Table {
+pub(super) fn agreement(study: &Study, ballots: &[ShownBallot]) -> Table {
     let mut table = Table::new(
         "agreement",
         "Agreement between participants, and consistency of each",
@@ -33,8 +33,8 @@ pub(super) fn agreement(study: &Study, ballots: &[Ballot]) -> Table {
     );
     let ballots = as_declared(study, ballots);
     for group in std::iter::once(None).chain((0..study.groups.len()).map(Some)) {
-        let inside = |b: &&Ballot| group.is_none_or(|g| study.comparisons[b.question()].group == g);
-        let own: Vec<Ballot> = ballots.iter().filter(inside).copied().collect();
+        let inside = |b: &&ShownBallot| group.is_none_or(|g| study.comparisons[b.question()].group == g);
+        let own: Vec<ShownBallot> = ballots.iter().filter(inside).copied().collect();
         let counts: Vec<[u64; 3]> =
             outcome_counts(&own).into_iter().filter(|counts| counts.iter().sum::<u64>() > 0).collect();
         if counts.is_empty() {
@@ -73,12 +73,12 @@ pub(super) fn agreement(study: &Study, ballots: &[Ballot]) -> Table {
 }
 
 /// Triads within one object and group, and Kendall's zeta of whoever decided all pairs there: how many, and their sum.
-fn consistency(study: &Study, ballots: &[Ballot]) -> (Triads, (u64, f64)) {
-    let scope = |b: &Ballot| {
+fn consistency(study: &Study, ballots: &[ShownBallot]) -> (Triads, (u64, f64)) {
+    let scope = |b: &ShownBallot| {
         let comparison = &study.comparisons[b.question()];
         comparison.object * study.groups.len() + comparison.group
     };
-    let mut scopes: Vec<Vec<Ballot>> = vec![Vec::new(); study.file.objects.len() * study.groups.len()];
+    let mut scopes: Vec<Vec<ShownBallot>> = vec![Vec::new(); study.file.objects.len() * study.groups.len()];
     ballots.iter().for_each(|b| scopes[scope(b)].push(*b));
     scopes.iter().fold((Triads::default(), (0, 0.0)), |(sum, (n, total)), own| {
         let (tournaments, zetas) = zetas(own);
@@ -90,7 +90,7 @@ fn consistency(study: &Study, ballots: &[Ballot]) -> (Triads, (u64, f64)) {
 const MANY: usize = 200;
 
 /// One row a participant: what careless answering would show in.
-pub(crate) fn respondents(ballots: &[Ballot], protocol: &Protocol<'_>) -> Table {
+pub(crate) fn respondents(ballots: &[ShownBallot], protocol: &Protocol<'_>) -> Table {
     let mut table = Table::new(
         "respondents",
         "Screening of participants; nobody is left out",

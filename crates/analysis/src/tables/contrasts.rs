@@ -2,12 +2,12 @@
 
 use crate::ballots::BallotGroup;
 use crate::hypotheses::{self, Hypothesis, Subject};
-use crate::interval::Interval;
-use crate::statistics::bootstrap::Resampling;
-use crate::statistics::{Ballot, ChiSquareTest, friedman, sign_test};
 use crate::table::{Cell, Table};
 use design::{Arrangement, Clustering, Study};
 use rayon::prelude::*;
+use statistics::bootstrap::Resampling;
+use statistics::interval::Interval;
+use statistics::{ChiSquareTest, ShownBallot, friedman, sign_test};
 
 /// Every contrast of a study, then every question.
 pub(super) fn study_tests(hypotheses: &[Hypothesis]) -> Table {
@@ -158,7 +158,7 @@ fn cells(row: &Hypothesis) -> Vec<Cell> {
 }
 
 /// Friedman's tests: does anything differ at all?
-pub(super) fn omnibus(study: &Study, ballots: &[Ballot]) -> Table {
+pub(super) fn omnibus(study: &Study, ballots: &[ShownBallot]) -> Table {
     let mut table = Table::new(
         "omnibus",
         "Does anything differ? Friedman's tests over participants",
@@ -201,17 +201,17 @@ pub(crate) struct StudyScores {
 }
 
 /// Sums over the questions that differ in one property alone.
-pub(crate) fn study_scores(study: &Study, ballots: &[Ballot]) -> StudyScores {
+pub(crate) fn study_scores(study: &Study, ballots: &[ShownBallot]) -> StudyScores {
     let methods = study.methods();
     let at = |clustering: Clustering| study.file.clusterings.iter().position(|&c| c == clustering);
-    let sign = |b: &Ballot| b.outcome().sign() as f64;
+    let sign = |b: &ShownBallot| b.outcome().sign() as f64;
     let clusterings = scores(ballots, study.file.clusterings.len(), |b| {
         let (left, right) = (methods[b.left()], methods[b.right()]);
         let same = left.arrangement == right.arrangement;
         let place = |clustering| if same { at(clustering) } else { None };
         [place(left.clustering).map(|c| (c, sign(b))), place(right.clustering).map(|c| (c, -sign(b)))]
     });
-    let arrangement = |b: &Ballot| {
+    let arrangement = |b: &ShownBallot| {
         let (left, right) = (methods[b.left()], methods[b.right()]);
         let direct = left.clustering == right.clustering && left.arrangement != right.arrangement;
         let towards = if left.arrangement == Arrangement::BodyCentred { 1.0 } else { -1.0 };
@@ -229,9 +229,9 @@ pub(crate) fn study_scores(study: &Study, ballots: &[Ballot]) -> StudyScores {
 /// One row of sums for each participant who answered every question that has a part in them: what was not answered is not
 /// zero, and people who stop before the last object would look as if they liked it less.
 fn scores(
-    ballots: &[Ballot],
+    ballots: &[ShownBallot],
     columns: usize,
-    parts: impl Fn(&Ballot) -> [Option<(usize, f64)>; 2],
+    parts: impl Fn(&ShownBallot) -> [Option<(usize, f64)>; 2],
 ) -> Vec<Vec<f64>> {
     let people = ballots.iter().map(|ballot| ballot.participant() + 1).max().unwrap_or_default();
     let (mut sums, mut answered) = (vec![0.0; people * columns], vec![0; people]);

@@ -1,12 +1,12 @@
 //! Models of preference: worths with their errors, and what each model says about ties and sides.
 
 use crate::ballots::BallotGroup;
-use crate::statistics::bootstrap::{BootstrapInterval, Resampling, bca_each};
-use crate::statistics::{
+use crate::table::{Cell, Table};
+use statistics::bootstrap::{BootstrapInterval, Resampling, bca_each};
+use statistics::{
     FitError, Model, Pairs, Participants, Separation, SideDesign, WorthFit, clustered_covariance, fit,
     separation, side_design,
 };
-use crate::table::{Cell, Table};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// `worths` and `models` of every group, with every model.

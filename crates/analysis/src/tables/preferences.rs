@@ -1,10 +1,10 @@
 //! The preference factors: per group, overall, margins, per object, and the direct contest of arrangements.
 
-use crate::interval::{Interval, t_over_respondents};
 use crate::preference::{self, GroupFactor, Margin};
 use crate::table::{Cell, Column, Table};
 use crate::tally::Tally;
 use design::{Method, Study};
+use statistics::interval::{Interval, t_over_respondents};
 
 pub(super) fn all(study: &Study, tally: &Tally) -> Vec<Table> {
     let factors = preference::group_factors(study, tally, |_| true);

@@ -3,22 +3,22 @@
 use crate::ballots::BallotGroup;
 use crate::hypotheses::{self, Hypothesis, Subject};
 use crate::recorded::Recorded;
-use crate::statistics::{Ballot, Flag, screening_with};
 use crate::table::{Cell, Table};
 use design::Study;
+use statistics::{Flag, ShownBallot, screening_with};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Every contrast of a study; single questions are left out. `hypotheses` are those of all ballots, `recorded` is what is
 /// screened.
 pub(super) fn of_study(
     study: &Study,
-    ballots: &[Ballot],
+    ballots: &[ShownBallot],
     hypotheses: &[Hypothesis],
     recorded: &Recorded<'_>,
 ) -> Table {
     let contrasts = hypotheses.iter().filter(|h| !matches!(h.subject, Subject::Question(_)));
     screened(recorded, &contrasts.collect::<Vec<_>>(), |keep| {
-        let kept: Vec<Ballot> = ballots.iter().filter(|b| keep(b)).copied().collect();
+        let kept: Vec<ShownBallot> = ballots.iter().filter(|b| keep(b)).copied().collect();
         hypotheses::of_contrasts(study, &kept)
     })
 }
@@ -39,7 +39,7 @@ pub fn screened_pair_tests(groups: &[BallotGroup], recorded: &Recorded<'_>) -> T
 fn screened(
     recorded: &Recorded<'_>,
     all: &[&Hypothesis],
-    tested: impl Fn(&dyn Fn(&Ballot) -> bool) -> Vec<Hypothesis>,
+    tested: impl Fn(&dyn Fn(&ShownBallot) -> bool) -> Vec<Hypothesis>,
 ) -> Table {
     let mut table = Table::new(
         "screened",
@@ -74,7 +74,7 @@ fn screened(
         broken.remove(&None);
     }
     for (rule, people) in broken {
-        let others = tested(&|b: &Ballot| !people.contains(&b.participant()));
+        let others = tested(&|b: &ShownBallot| !people.contains(&b.participant()));
         let same = |a: &Hypothesis, b: &Hypothesis| {
             (&a.family, &a.contrast, &a.scope) == (&b.family, &b.contrast, &b.scope)
         };
@@ -179,7 +179,7 @@ mod tests {
         // p without 16 is one end of the leave-one-out range or inside it: STATISTICS 3.12, 0.0063 to 0.0188.
         let Cell::P(p, _) = cell(&table, &["odd", "B-S", "all"], "p_without") else { panic!("no p") };
         assert!((0.0062..0.0189).contains(&p), "{p}");
-        let kept: Vec<Ballot> = ballots.iter().filter(|b| b.participant() != 15).copied().collect();
+        let kept: Vec<ShownBallot> = ballots.iter().filter(|b| b.participant() != 15).copied().collect();
         let alone = hypotheses::of_study(&study, &kept);
         let same = alone.iter().find(|h| h.contrast == "B-S" && h.scope == "all").unwrap();
         assert_eq!(p, same.test.sign_flip.p());

@@ -4,11 +4,11 @@ use super::differences::build_differences;
 use super::floor::{NoiseFloor, between, speed_shift};
 use super::series::{Judgement, Verdict, by_configuration, middle, thirds, values};
 use super::statements::STATEMENTS_SCHEMA;
-use crate::interval::Interval;
-use crate::statistics::median;
 use design::record::{BenchRun, BenchSample};
 use design::{ConfigurationId, Stage};
 use serde::Serialize;
+use statistics::interval::Interval;
+use statistics::median;
 
 /// The chance that any one interval of a stage misses, over all its configurations together (Bonferroni).
 const MISSES: f64 = 0.05;

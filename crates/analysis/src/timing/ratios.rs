@@ -2,11 +2,11 @@
 
 use super::floor::NoiseFloor;
 use super::series::{Judgement, by_configuration, middle, thirds};
-use crate::interval::Interval;
-use crate::statistics::bootstrap::{Resampling, percentile};
 use design::record::{BenchRun, BenchSample};
 use design::{ConfigurationId, Stage};
 use serde::Serialize;
+use statistics::bootstrap::{Resampling, percentile};
+use statistics::interval::Interval;
 use std::collections::BTreeMap;
 
 /// The time of one configuration over that of another, of the same object and in the same round: what slows a round down

@@ -87,7 +87,7 @@ pub(super) fn thirds(values: &[f64]) -> Option<[&[f64]; 3]> {
 
 /// The median alone; not a number of no values.
 pub(super) fn middle(values: &[f64]) -> f64 {
-    crate::statistics::median(values.to_vec(), 0.0).map_or(f64::NAN, |median| median.median)
+    statistics::median(values.to_vec(), 0.0).map_or(f64::NAN, |median| median.median)
 }
 
 #[cfg(test)]

@@ -2,11 +2,11 @@
 
 use super::*;
 use crate::fixture;
-use crate::statistics::bootstrap::Resampling;
 use design::record::{BenchRun, BenchSample, LoadWindow};
 use design::{ConfigurationId, Stage};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use statistics::bootstrap::Resampling;
 use std::f64::consts::TAU;
 use std::ops::Range;
 

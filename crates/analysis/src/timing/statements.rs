@@ -5,12 +5,12 @@ use super::outliers::{Outlier, outliers};
 use super::quiet::warnings;
 use super::ratios::{Ratio, ratios};
 use super::series::{by_configuration, values};
-use crate::interval::LEVEL;
-use crate::statistics::bootstrap::Resampling;
-use crate::statistics::{Median, median};
 use design::record::{BenchRun, PeakMemory};
 use design::{ConfigurationId, Stage};
 use serde::Serialize;
+use statistics::bootstrap::Resampling;
+use statistics::interval::LEVEL;
+use statistics::{Median, median};
 
 /// The version of [`Statements`] and [`Comparison`](super::Comparison) as JSON. 3 has what a comparison could have told, and how
 /// its builds differ.

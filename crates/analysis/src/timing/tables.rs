@@ -6,11 +6,11 @@ use super::quiet::warnings;
 use super::series::by_configuration;
 use super::statements::Statements;
 use crate::digits::MINUS;
-use crate::interval::Interval;
 use crate::stage_times::{circumstances, measured, target};
 use crate::table::{Cell, Table};
 use design::Stage;
 use design::record::BenchRun;
+use statistics::interval::Interval;
 
 const MS: f64 = 1e3;
 

@@ -1,7 +1,7 @@
 use super::*;
 use crate::ballots::ballots;
 use crate::fixture;
-use crate::statistics::Outcome;
+use statistics::Outcome;
 
 #[test]
 fn the_papers_participants() {
@@ -51,9 +51,9 @@ fn of_many_participants_those_who_break_a_rule_are_printed() {
                 Outcome::Right
             }
         };
-        (0..10).map(move |question| Ballot::new(participant, question, [0, 1], outcome(question)))
+        (0..10).map(move |question| ShownBallot::new(participant, question, [0, 1], outcome(question)))
     };
-    let ballots: Vec<Ballot> = (0..201).flat_map(of).collect();
+    let ballots: Vec<ShownBallot> = (0..201).flat_map(of).collect();
     let table = respondents(&ballots, &Protocol::default());
     assert_eq!((table.rows.len(), table.printed()[0].rows.len()), (201, 1));
     assert_eq!(table.printed()[0].shown_rows()[0][0], "8");

@@ -1,7 +1,7 @@
 use super::*;
 use crate::ballots::ballots;
 use crate::fixture;
-use crate::statistics::Outcome;
+use statistics::Outcome;
 
 fn rows(table: &Table, start: &str) -> Vec<String> {
     table.to_csv().lines().filter(|line| line.starts_with(start)).map(str::to_owned).collect()
@@ -69,10 +69,10 @@ fn who_stops_early_tells_nothing_about_differences() {
     let study = fixture::study();
     let answered = fixture::answered(&study);
     let last = study.file.objects.len() - 1;
-    let stops = |b: &&Ballot| b.participant() < 9 || study.comparisons[b.question()].object != last;
-    let kept: Vec<Ballot> = answered.ballots.iter().filter(stops).copied().collect();
-    let complete: Vec<Ballot> = kept.iter().filter(|b| b.participant() < 9).copied().collect();
-    let interactions = |ballots: &[Ballot]| {
+    let stops = |b: &&ShownBallot| b.participant() < 9 || study.comparisons[b.question()].object != last;
+    let kept: Vec<ShownBallot> = answered.ballots.iter().filter(stops).copied().collect();
+    let complete: Vec<ShownBallot> = kept.iter().filter(|b| b.participant() < 9).copied().collect();
+    let interactions = |ballots: &[ShownBallot]| {
         let all = hypotheses::of_study(&study, ballots).into_iter().filter(|h| h.family == "interactions");
         all.map(|h| (h.contrast, h.scope, h.test)).collect::<Vec<_>>()
     };
@@ -80,13 +80,13 @@ fn who_stops_early_tells_nothing_about_differences() {
     assert!(interactions(&kept).iter().all(|(_, _, test)| test.participants() == 9));
     assert_eq!(omnibus(&study, &kept).rows, omnibus(&study, &complete).rows);
     // What is no difference counts them.
-    let overall = |ballots: &[Ballot]| hypotheses::of_study(&study, ballots)[0].test.participants();
+    let overall = |ballots: &[ShownBallot]| hypotheses::of_study(&study, ballots)[0].test.participants();
     assert_eq!((overall(&kept), overall(&complete)), (18, 9));
 }
 
 #[test]
 fn every_compared_pair_is_tested_whatever_the_side() {
-    let ballot = |participant, left, right, outcome| Ballot::new(participant, 0, [left, right], outcome);
+    let ballot = |participant, left, right, outcome| ShownBallot::new(participant, 0, [left, right], outcome);
     use Outcome::{Left, Right, Tie};
     let group = BallotGroup {
         name: "g".into(),

@@ -1,5 +1,5 @@
 use super::*;
-use crate::statistics::{Ballot, Outcome};
+use statistics::{Outcome, ShownBallot};
 
 fn cell(table: &Table, keys: &[(&str, &str)], column: &str) -> Cell {
     let index = |name: &str| table.columns.iter().position(|c| c.name == name).unwrap();
@@ -25,7 +25,7 @@ fn two_items(rows: &[&str]) -> BallotGroup {
                 'R' => Outcome::Right,
                 _ => Outcome::Tie,
             };
-            ballots.push(Ballot::new(participant, question, [0, 1], outcome));
+            ballots.push(ShownBallot::new(participant, question, [0, 1], outcome));
         }
     }
     BallotGroup { name: "two".into(), items: vec!["a".into(), "b".into()], ballots }
@@ -68,7 +68,7 @@ fn degenerate_groups_are_stated_results() {
 fn a_worth_that_rests_on_one_tie_has_no_error_of_clusters() {
     let mut group = two_items(&["L", "R", "", "L"]);
     group.items.push("c".into());
-    group.ballots.push(Ballot::new(2, 1, [0, 2], Outcome::Tie));
+    group.ballots.push(ShownBallot::new(2, 1, [0, 2], Outcome::Tie));
     let [worths, _] = model_tables(&[group]);
     let of = |item: &str, column: &str| cell(&worths, &[("item", item), ("model", "davidson")], column);
     for column in ["clustered_se", "low", "high"] {

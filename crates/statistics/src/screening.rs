@@ -1,9 +1,8 @@
 //! Signs of careless answering, reported beside the results and never applied silently.
 
-use super::ballot::{Ballot, Outcome};
+use super::ballot::{DeclaredBallot, Outcome, ShownBallot};
 use super::kendall::outcome_counts;
 use super::odd::oddness;
-use super::reading::Reading;
 
 /// How an answer was given, as far as it is known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -126,21 +125,21 @@ impl Screening {
 }
 
 /// Screens every participant with a ballot, in their order, by the ballots alone.
-pub fn screening(ballots: &[Ballot]) -> Vec<Screening> {
+pub fn screening(ballots: &[ShownBallot]) -> Vec<Screening> {
     screening_with(ballots, &Protocol::default())
 }
 
 /// Screens every participant with a ballot, in their order.
 ///
-/// Agreement compares items: if a question was shown in both orders of sides, answers are read in one of them.
+/// Agreement compares items, whichever side they stood on; everything else is about sides as they were shown.
 ///
 /// # Panics
 /// If there are circumstances, but not one a ballot.
-pub fn screening_with(ballots: &[Ballot], protocol: &Protocol<'_>) -> Vec<Screening> {
+pub fn screening_with(ballots: &[ShownBallot], protocol: &Protocol<'_>) -> Vec<Screening> {
     let known = protocol.circumstances;
     assert!(known.is_empty() || known.len() == ballots.len(), "circumstances of another set of ballots");
-    let reading = Reading::of(ballots);
-    let counts = outcome_counts(ballots);
+    let by_item: Vec<DeclaredBallot> = ballots.iter().map(ShownBallot::by_item).collect();
+    let counts = outcome_counts(&by_item);
     let ordered = !known.is_empty() && known.iter().all(|of| of.order.is_some());
     let mut places: Vec<usize> = (0..ballots.len()).collect();
     places.sort_by_key(|&i| {
@@ -165,7 +164,7 @@ pub fn screening_with(ballots: &[Ballot], protocol: &Protocol<'_>) -> Vec<Screen
                 continue;
             }
             seen.answers[ballot.outcome().index()] += 1;
-            let own = reading.outcome(ballot).sign();
+            let own = by_item[i].preference().sign();
             let [first, _, second] = counts[ballot.question()];
             let others = first as i64 - second as i64 - own;
             if ballot.outcome() != Outcome::Tie && others != 0 {
@@ -187,12 +186,12 @@ pub fn screening_with(ballots: &[Ballot], protocol: &Protocol<'_>) -> Vec<Screen
 
 impl Screening {
     /// Decided answers about the same items in the same scene, each against the one before.
-    fn count_repeats<'a>(&mut self, own: impl Iterator<Item = &'a Ballot>, scenes: &[usize]) {
+    fn count_repeats<'a>(&mut self, own: impl Iterator<Item = &'a ShownBallot>, scenes: &[usize]) {
         // Without scenes every question is its own.
-        let scene = |b: &Ballot| {
+        let scene = |b: &ShownBallot| {
             (scenes.get(b.question()).copied(), if scenes.is_empty() { b.question() } else { 0 })
         };
-        let chosen = |b: &Ballot| if b.outcome() == Outcome::Left { b.left() } else { b.right() };
+        let chosen = |b: &ShownBallot| if b.outcome() == Outcome::Left { b.left() } else { b.right() };
         let decided = own.filter(|b| b.left() != b.right() && b.outcome() != Outcome::Tie);
         let mut shown: Vec<_> = decided
             .map(|b| (scene(b), b.left().min(b.right()), b.left().max(b.right()), chosen(b)))

@@ -1,6 +1,5 @@
 use super::*;
-use crate::statistics::Outcome;
-use crate::statistics::golden;
+use crate::{Outcome, ShownBallot, golden};
 use design::{Clustering, ConfigurationId};
 
 /// Two covariates of the paper's questions: log ratio of the published triangle counts, and whether a side is merged.
@@ -66,9 +65,9 @@ fn with_ties_as_a_log_linear_model_has_it() {
 #[test]
 fn two_items_are_the_saturated_davidson_model() {
     // 36 : 8 : 10 (STATISTICS 3.4): ln 3.6 = 1.2809, nu = 8 / sqrt(360) = 0.4216.
-    let answer = |participant: usize, outcome| Ballot::new(participant, 0, [0, 1], outcome);
+    let answer = |participant: usize, outcome| ShownBallot::new(participant, 0, [0, 1], outcome);
     let counts = [(36, Outcome::Left), (8, Outcome::Tie), (10, Outcome::Right)];
-    let ballots: Vec<Ballot> =
+    let ballots: Vec<ShownBallot> =
         counts.iter().flat_map(|&(n, outcome)| (0..n).map(move |p| answer(p, outcome))).collect();
     let fit = regression(&[Some(vec![2.0])], &ballots).unwrap();
     close(2.0 * fit.coefficients[0], 3.6_f64.ln());
@@ -78,7 +77,7 @@ fn two_items_are_the_saturated_davidson_model() {
 #[test]
 fn exchanged_sides_change_nothing() {
     let ballots = golden::ballots(&golden::study());
-    let turned: Vec<Ballot> = ballots
+    let turned: Vec<ShownBallot> = ballots
         .iter()
         .map(|b| if b.question().is_multiple_of(2) { *b } else { b.with_outcome(b.outcome().swapped()) })
         .collect();
@@ -97,20 +96,20 @@ fn exchanged_sides_change_nothing() {
 #[test]
 fn what_has_no_estimate_says_why() {
     let ballots = golden::ballots(&golden::study());
-    assert_eq!(regression(&covariates(), &[]), Err(FitError::Nothing));
+    assert_eq!(regression::<ShownBallot>(&covariates(), &[]), Err(FitError::Nothing));
     assert_eq!(regression(&[None, None], &ballots), Err(FitError::Nothing));
-    let ties: Vec<Ballot> = ballots.iter().map(|b| b.with_outcome(Outcome::Tie)).collect();
+    let ties: Vec<ShownBallot> = ballots.iter().map(|b| b.with_outcome(Outcome::Tie)).collect();
     assert_eq!(regression(&covariates(), &ties), Err(FitError::OnlyTies));
     let twice: Vec<Option<Vec<f64>>> =
         covariates().into_iter().map(|x| x.map(|x| vec![x[0], -3.0 * x[0]])).collect();
     assert_eq!(regression(&twice, &ballots), Err(FitError::NoMaximum));
     // Everybody always takes the larger: the likelihood rises for ever.
     let x: Vec<Option<Vec<f64>>> = (0..27).map(|q| Some(vec![if q % 2 == 0 { 1.0 } else { -1.0 }])).collect();
-    let always = |b: &Ballot| {
+    let always = |b: &ShownBallot| {
         b.with_outcome(if b.question().is_multiple_of(2) { Outcome::Left } else { Outcome::Right })
     };
-    let ballots: Vec<Ballot> = ballots.iter().map(always).collect();
+    let ballots: Vec<ShownBallot> = ballots.iter().map(always).collect();
     assert_eq!(regression(&x, &ballots), Err(FitError::NoMaximum));
-    let one: Vec<Ballot> = golden::ballots(&golden::study()).into_iter().take(1).collect();
+    let one: Vec<ShownBallot> = golden::ballots(&golden::study()).into_iter().take(1).collect();
     assert!(regression(&covariates(), &one).is_err());
 }

@@ -61,35 +61,108 @@ pub fn sign_flip(differences: &[i64]) -> SignFlip {
 /// # Panics
 /// As [`sign_flip`].
 pub fn sign_flip_of_counts(counts: &BTreeMap<i64, u64>) -> SignFlip {
-    let mut sizes = BTreeMap::new();
-    for (&d, &n) in counts.iter().filter(|&(&d, &n)| d != 0 && n > 0) {
-        *sizes.entry(d.unsigned_abs()).or_insert(0) += n;
-    }
-    let net: i64 = counts.iter().map(|(&d, &n)| d * n as i64).sum();
-    let participants = counts.values().sum::<u64>() as usize;
-    let sizes: Vec<(u64, u64)> = sizes.into_iter().collect();
-    SignFlip { net, participants, ..two_sided(&sizes, net) }
+    sign_flip_within(counts, 0)
 }
 
-/// The two-sided p of a sum of `n` signs times `size` for each `(size, n)`; sizes are above zero.
-pub(super) fn two_sided(sizes: &[(u64, u64)], net: i64) -> SignFlip {
-    let divisor = sizes.iter().fold(net.unsigned_abs(), |divisor, &(size, _)| gcd(divisor, size)).max(1);
-    let sizes: Vec<(u64, u64)> = sizes.iter().map(|&(size, n)| (size / divisor, n)).collect();
-    let (decided, net_size) = (sizes.iter().map(|&(_, n)| n).sum::<u64>(), net.unsigned_abs() / divisor);
-    let participants = decided as usize;
-    if participants <= RATIO_LIMIT {
-        let extreme = extreme_patterns(&sizes, net_size);
-        let all = 1_u128 << decided;
-        let ln_p = (extreme as f64).ln() - decided as f64 * std::f64::consts::LN_2;
-        return SignFlip { net, participants, ln_p, ratio: Some((extreme, all)) };
+/// As [`sign_flip_of_counts`], for differences that were rounded: patterns count as extreme that fall short of the observed
+/// sum by up to `slack`, so that p is an upper bound. Beyond [`RATIO_LIMIT`], where no single sum matters, it is ignored.
+///
+/// # Panics
+/// As [`sign_flip`].
+pub(super) fn sign_flip_within(counts: &BTreeMap<i64, u64>, slack: u64) -> SignFlip {
+    let observed = Observed::of(counts);
+    let Observed { net, participants, decided, ref sizes, divisor } = observed;
+    if decided <= RATIO_LIMIT {
+        let patterns = patterns(sizes);
+        let ratio = observed.ratio(&patterns, net, decided, slack);
+        let ln_p = (ratio.0 as f64).ln() - decided as f64 * std::f64::consts::LN_2;
+        return SignFlip { net, participants, ln_p, ratio: Some(ratio) };
     }
-    SignFlip { net, participants, ln_p: ln_tilted(&sizes, net_size), ratio: None }
+    let ln_p = ln_tilted(sizes, net.unsigned_abs() / divisor);
+    SignFlip { net, participants, ln_p, ratio: None }
 }
 
-/// How many sign patterns give a sum of at least `net` in size.
-fn extreme_patterns(sizes: &[(u64, u64)], net: u64) -> u128 {
+/// The two-sided p of `n` signs times `size` for each `(size, n)`, sizes above zero, adding up to `net` or more either way.
+pub(super) fn two_sided(sizes: &[(u64, u64)], net: u64) -> f64 {
+    let decided = sizes.iter().map(|&(_, n)| n).sum::<u64>();
+    if decided as usize > RATIO_LIMIT {
+        return ln_tilted(sizes, net).exp();
+    }
     let total: u64 = sizes.iter().map(|&(size, n)| size * n).sum();
-    // patterns[j]: how many have plus signs on sizes that add up to j; the signed sum is 2j - total.
+    let extreme = |&(j, _): &(usize, &u128)| (2 * j as u64).abs_diff(total) >= net;
+    let extreme: u128 = patterns(sizes).iter().enumerate().filter(extreme).map(|(_, count)| count).sum();
+    extreme as f64 / (1_u128 << decided) as f64
+}
+
+/// p with one participant left out, by that participant's difference.
+///
+/// # Panics
+/// As [`sign_flip`].
+pub(super) fn without_one(counts: &BTreeMap<i64, u64>, slack: u64) -> BTreeMap<i64, f64> {
+    let observed = Observed::of(counts);
+    let Observed { net, decided, ref sizes, divisor, .. } = observed;
+    let present = counts.iter().filter(|&(_, &n)| n > 0).map(|(&d, _)| d);
+    if decided > RATIO_LIMIT {
+        let without = |d: i64| {
+            let mut others = counts.clone();
+            *others.get_mut(&d).expect("one of them") -= 1;
+            (d, sign_flip_within(&others, slack).p())
+        };
+        return present.map(without).collect();
+    }
+    let all = patterns(sizes);
+    let without = |d: i64| {
+        let (extreme, of) = match d {
+            0 => observed.ratio(&all, net, decided, slack),
+            _ => {
+                let size = (d.unsigned_abs() / divisor) as usize;
+                observed.ratio(&divided(&all, size), net - d, decided - 1, slack)
+            }
+        };
+        (d, extreme as f64 / of as f64)
+    };
+    present.map(without).collect()
+}
+
+/// Differences, their signs taken off and their common divisor with them.
+struct Observed {
+    net: i64,
+    participants: usize,
+    /// How many have a difference.
+    decided: usize,
+    /// `(size, n)`: how many differences are of this size, in units of the divisor.
+    sizes: Vec<(u64, u64)>,
+    divisor: u64,
+}
+
+impl Observed {
+    fn of(counts: &BTreeMap<i64, u64>) -> Self {
+        let mut sizes: BTreeMap<u64, u64> = BTreeMap::new();
+        for (&d, &n) in counts.iter().filter(|&(&d, &n)| d != 0 && n > 0) {
+            *sizes.entry(d.unsigned_abs()).or_insert(0) += n;
+        }
+        let divisor = sizes.keys().fold(0, |divisor, &size| greatest_common_divisor(divisor, size)).max(1);
+        Self {
+            net: counts.iter().map(|(&d, &n)| d * n as i64).sum(),
+            participants: counts.values().sum::<u64>() as usize,
+            decided: sizes.values().sum::<u64>() as usize,
+            sizes: sizes.into_iter().map(|(size, n)| (size / divisor, n)).collect(),
+            divisor,
+        }
+    }
+
+    /// How many of all patterns give a sum of at least `net` in size, less the slack.
+    fn ratio(&self, patterns: &[u128], net: i64, decided: usize, slack: u64) -> (u128, u128) {
+        let total = patterns.len() as u64 - 1;
+        let least = net.unsigned_abs().saturating_sub(slack).div_ceil(self.divisor);
+        let extreme = |&(j, _): &(usize, &u128)| (2 * j as u64).abs_diff(total) >= least;
+        (patterns.iter().enumerate().filter(extreme).map(|(_, count)| count).sum(), 1 << decided)
+    }
+}
+
+/// By j, how many patterns have plus signs on sizes that add up to j; the signed sum is then 2j less their total.
+fn patterns(sizes: &[(u64, u64)]) -> Vec<u128> {
+    let total: u64 = sizes.iter().map(|&(size, n)| size * n).sum();
     let mut patterns = vec![0_u128; total as usize + 1];
     patterns[0] = 1;
     let mut reached = 0;
@@ -101,8 +174,16 @@ fn extreme_patterns(sizes: &[(u64, u64)], net: u64) -> u128 {
             }
         }
     }
-    let extreme = |&(j, _): &(usize, &u128)| (2 * j as u64).abs_diff(total) >= net;
-    patterns.iter().enumerate().filter(extreme).map(|(_, count)| count).sum()
+    patterns
+}
+
+/// The patterns of all sizes but one: the generating polynomial divided by 1 + x^size.
+fn divided(patterns: &[u128], size: usize) -> Vec<u128> {
+    let mut others = patterns[..patterns.len() - size].to_vec();
+    for j in size..others.len() {
+        others[j] -= others[j - size];
+    }
+    others
 }
 
 /// ln P(|sum| >= net) by exponential tilting; `net` has the parity of the sum of sizes.
@@ -205,8 +286,9 @@ fn ln_cosh(x: f64) -> f64 {
     x.abs() + (-2.0 * x.abs()).exp().ln_1p() - std::f64::consts::LN_2
 }
 
-fn gcd(a: u64, b: u64) -> u64 {
-    if b == 0 { a } else { gcd(b, a % b) }
+/// The greatest common divisor; of zero and a number, the number.
+pub(super) fn greatest_common_divisor(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ pub struct Interval {
 
 impl Interval {
     /// Both ends cut to what is possible: a t interval knows of no range.
-    pub(crate) fn cut(self, low: f64, high: f64) -> Self {
+    pub fn cut(self, low: f64, high: f64) -> Self {
         Self { low: self.low.clamp(low, high), high: self.high.clamp(low, high) }
     }
 }
@@ -54,7 +54,7 @@ pub fn of_mean_score(scores: &[f64], reach: f64) -> Option<Interval> {
 }
 
 /// The one value that all scores have.
-pub(crate) fn unanimous(scores: &[f64]) -> Option<f64> {
+pub fn unanimous(scores: &[f64]) -> Option<f64> {
     let (first, others) = scores.split_first()?;
     others.iter().all(|score| score == first).then_some(*first)
 }
@@ -62,13 +62,13 @@ pub(crate) fn unanimous(scores: &[f64]) -> Option<f64> {
 /// The greatest chance of `people` independent scores between -`reach` and `reach` being all `score`, whatever their
 /// distribution, if its mean is `mean`: the rest of it is then at the far end. For a score of 1 that reaches as far it is
 /// Clopper and Pearson's bound (1934).
-pub(crate) fn chance_of_unanimity(score: f64, people: usize, mean: f64, reach: f64) -> f64 {
+pub fn chance_of_unanimity(score: f64, people: usize, mean: f64, reach: f64) -> f64 {
     let far = if mean > score { reach } else { -reach };
     if mean == score { 1.0 } else { ((far - mean) / (far - score)).powf(people as f64) }
 }
 
 /// The t quantile that half a t interval has of standard errors; `None` below one degree of freedom.
-pub(crate) fn t_half_width(degrees: f64) -> Option<f64> {
+pub fn t_half_width(degrees: f64) -> Option<f64> {
     (degrees >= 1.0)
         .then(|| StudentsT::new(0.0, 1.0, degrees).expect("degrees >= 1").inverse_cdf(0.5 + LEVEL / 2.0))
 }

@@ -1,18 +1,18 @@
 use super::*;
-use crate::statistics::sign_test;
-use crate::statistics::{contrast::ContrastTest, sign_flip};
+use crate::sign_test;
+use crate::{ScoreTest, sign_flip};
 use rayon::prelude::*;
 
 /// Share of simulated studies of one contrast, item 0 against 1, for which something holds.
 fn rate(
     [questions, people, studies]: [usize; 3],
     population: &Population,
-    holds: impl Fn(&ContrastTest) -> bool + Sync,
+    holds: impl Fn(&ScoreTest) -> bool + Sync,
 ) -> f64 {
     let plan = Plan { counterbalanced: false, ..Plan::round_robin(2, questions) };
     let one = |study: u64| {
         let ballots = simulate(&plan, population, people, &mut stream(5, study));
-        holds(&ContrastTest::of(ballots.iter().map(|b| (b.participant(), 1, b.outcome()))))
+        holds(&ScoreTest::of(ballots.iter().map(|b| (b.participant(), b.declared(0).preference().sign()))))
     };
     let count = (0..studies as u64).into_par_iter().filter(|&study| one(study)).count();
     count as f64 / studies as f64
@@ -44,7 +44,7 @@ fn answers_have_these_chances() {
     let plan = Plan::round_robin(2, 2);
     let ballots = simulate(&plan, &population, 40_000, &mut stream(1, 0));
     for sides in [(0, 1), (1, 0)] {
-        let own: Vec<&Ballot> = ballots.iter().filter(|b| (b.left(), b.right()) == sides).collect();
+        let own: Vec<&ShownBallot> = ballots.iter().filter(|b| (b.left(), b.right()) == sides).collect();
         assert_eq!(own.len(), 40_000);
         for (o, want) in population.chances(sides, 0).into_iter().enumerate() {
             let share = own.iter().filter(|b| b.outcome().index() == o).count() as f64 / 40_000.0;
@@ -59,7 +59,7 @@ fn answers_have_these_chances() {
 fn rejections_of_a_true_null() {
     // STATISTICS 3.2: nine questions, 18 people; the pooled binomial rejects 4, 9, 16, 27 %, sign-flip 4 to 5 %.
     for (sd, naive) in [(0.0, 0.04), (0.5, 0.09), (1.0, 0.16), (1.5, 0.27)] {
-        let binomial = |t: &ContrastTest| {
+        let binomial = |t: &ScoreTest| {
             let [a, _, b] = t.counts.unwrap();
             sign_test::binomial(a, b) <= 0.05
         };
@@ -100,7 +100,7 @@ fn coverage_of_the_t_interval() {
         let population = ahead(by, 1.0);
         let [left, _, right] = population.chances((0, 1), 0);
         let covers =
-            |t: &ContrastTest| t.interval.is_some_and(|i| i.low <= left - right && left - right <= i.high);
+            |t: &ScoreTest| t.interval.is_some_and(|i| i.low <= left - right && left - right <= i.high);
         let found = rate([9, 18, 4000], &population, covers);
         assert!((found - 0.95).abs() < 0.012, "{by}: {found}");
     }

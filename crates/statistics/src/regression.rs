@@ -1,11 +1,11 @@
 //! Davidson's model with covariates in place of items: what about two things makes people choose one of them?
 //!
-//! With x the difference of the covariates, left minus right, and u = beta'x, the outcomes have the weights
+//! With x the difference of the covariates, first minus second, and u = beta'x, the outcomes have the weights
 //! e^{u/2} : nu : e^{-u/2}: among decided answers a logistic model without intercept, ties between (Davidson 1970 with
 //! l_left - l_right = beta'x; the adjacent-category logits of left, tie, right are u/2 -+ ln nu). Exchanging the sides
 //! of a question changes nothing. Without a tie among the answers it is the logistic model alone.
 
-use super::ballot::Ballot;
+use super::ballot::Answer;
 use super::fit::FitError;
 use super::model::add_log_linear;
 use super::newton::{Curvature, Matrix, inverse, maximise, times};
@@ -31,20 +31,22 @@ pub struct Regression {
     pub participants: usize,
 }
 
-/// Fits the model by maximum likelihood. `covariates[question]` is x, or `None` for a question to leave out.
+/// Fits the model by maximum likelihood. `covariates[question]` is x, or `None` for a question to leave out: the advantage
+/// of the first item where answers are about items ([`DeclaredBallot`](super::DeclaredBallot)), of the left side where they
+/// are about sides ([`ShownBallot`](super::ShownBallot)).
 ///
 /// # Errors
 /// [`FitError::Nothing`] without an answer or a covariate, [`FitError::OnlyTies`], and [`FitError::NoMaximum`] if
 /// covariates are collinear or separate the answers.
-pub fn regression(covariates: &[Option<Vec<f64>>], ballots: &[Ballot]) -> Result<Regression, FitError> {
-    let of = |ballot: &&Ballot| covariates.get(ballot.question()).is_some_and(Option::is_some);
-    let used: Vec<&Ballot> = ballots.iter().filter(of).collect();
+pub fn regression<A: Answer>(covariates: &[Option<Vec<f64>>], ballots: &[A]) -> Result<Regression, FitError> {
+    let of = |ballot: &&A| covariates.get(ballot.question()).is_some_and(Option::is_some);
+    let used: Vec<&A> = ballots.iter().filter(of).collect();
     let width = covariates.iter().flatten().map(Vec::len).next().unwrap_or(0);
     if used.is_empty() || width == 0 {
         return Err(FitError::Nothing);
     }
     let mut answers = vec![[0.0; 3]; covariates.len()];
-    used.iter().for_each(|ballot| answers[ballot.question()][ballot.outcome().index()] += 1.0);
+    used.iter().for_each(|ballot| answers[ballot.question()][ballot.place()] += 1.0);
     let ties: f64 = answers.iter().map(|answers| answers[1]).sum();
     if ties == used.len() as f64 {
         return Err(FitError::OnlyTies);
@@ -78,7 +80,7 @@ pub fn regression(covariates: &[Option<Vec<f64>>], ballots: &[Ballot]) -> Result
     let mut sums: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     for ballot in &used {
         let sum = sums.entry(ballot.participant()).or_insert_with(|| vec![0.0; size]);
-        let own = &scores[ballot.question()][ballot.outcome().index()];
+        let own = &scores[ballot.question()][ballot.place()];
         sum.iter_mut().zip(own).for_each(|(sum, score)| *sum += score);
     }
     let bread = inverse(&likelihood(&at).information).ok_or(FitError::NoMaximum)?;

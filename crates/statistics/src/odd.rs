@@ -57,7 +57,7 @@ pub fn oddness(screened: &[Screening]) -> Vec<Oddness> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::statistics::{golden, screening};
+    use crate::{golden, screening};
 
     #[test]
     fn the_papers_respondent_sixteen() {

@@ -160,7 +160,7 @@ impl WorthFit {
 }
 
 /// Whether a clustered standard error is more than the rounding of zero, beside the one that takes answers as independent.
-pub(crate) fn has_spread(clustered: f64, independent: f64) -> bool {
+pub fn has_spread(clustered: f64, independent: f64) -> bool {
     clustered > 1e-6 * independent
 }
 

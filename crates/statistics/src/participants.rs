@@ -3,7 +3,7 @@
 //! Models see of a participant only how often each pair came out how. Among a hundred thousand people few such patterns
 //! are distinct, so what has to be done for everyone (gradients, resamples, leaving one out) is done for each pattern.
 
-use super::ballot::{Ballot, Outcome};
+use super::ballot::{Outcome, ShownBallot};
 use super::pairs::{Pair, Pairs};
 use std::collections::BTreeMap;
 
@@ -21,8 +21,8 @@ pub struct Participants {
 
 impl Participants {
     /// Everyone with a ballot about two different items. The order of ballots does not matter.
-    pub fn of(items: usize, ballots: &[Ballot]) -> Self {
-        let useful = |b: &&Ballot| b.left() != b.right();
+    pub fn of(items: usize, ballots: &[ShownBallot]) -> Self {
+        let useful = |b: &&ShownBallot| b.left() != b.right();
         let mut sorted: Vec<(usize, usize, usize, Outcome)> = ballots
             .iter()
             .filter(useful)
@@ -89,7 +89,7 @@ impl Participants {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::statistics::golden;
+    use crate::golden;
 
     #[test]
     fn patterns_add_up_to_the_ballots() {
@@ -100,7 +100,7 @@ mod tests {
         assert_eq!(participants.sum(&participants.counts), Pairs::of(3, &ballots));
         // Everyone three times: the same kinds, three times as many.
         let again = |times: usize| {
-            let copy = move |b: &Ballot| b.with_participant(b.participant() + 18 * times);
+            let copy = move |b: &ShownBallot| b.with_participant(b.participant() + 18 * times);
             ballots.iter().rev().map(copy).collect::<Vec<_>>()
         };
         let tripled = Participants::of(3, &[again(2), again(0), again(1)].concat());
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn controls_say_nothing_about_worths() {
-        let ballot = |left, right| Ballot::new(3, 0, [left, right], Outcome::Left);
+        let ballot = |left, right| ShownBallot::new(3, 0, [left, right], Outcome::Left);
         assert_eq!(Participants::of(2, &[ballot(1, 1)]).number(), 0);
         assert_eq!(Participants::of(2, &[ballot(1, 1), ballot(1, 0)]).counts, [1]);
     }

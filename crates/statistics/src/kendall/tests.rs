@@ -1,5 +1,5 @@
 use super::*;
-use crate::statistics::Outcome;
+use crate::{Outcome, Preference, ShownBallot};
 use proptest::prelude::*;
 
 #[test]
@@ -41,15 +41,21 @@ fn agreement_at_its_ends() {
 }
 
 /// One participant's answers to the pairs 0-1, 1-2, 0-2.
-fn three(signs: [Outcome; 3]) -> Vec<Ballot> {
+fn three(signs: [Preference; 3]) -> Vec<DeclaredBallot> {
+    three_of(0, signs)
+}
+
+fn three_of(participant: usize, signs: [Preference; 3]) -> Vec<DeclaredBallot> {
     let pairs = [(0, 1), (1, 2), (0, 2)];
-    let ballot = |(i, (left, right)): (usize, (usize, usize))| Ballot::new(0, i, [left, right], signs[i]);
+    let ballot = |(i, (first, second)): (usize, (usize, usize))| {
+        DeclaredBallot::new(participant, i, [first, second], signs[i])
+    };
     pairs.into_iter().enumerate().map(ballot).collect()
 }
 
 #[test]
 fn strict_and_weak_cycles() {
-    use Outcome::{Left, Right, Tie};
+    use Preference::{First as Left, Neither as Tie, Second as Right};
     let counted = |signs| {
         let t = triads(&three(signs));
         (t.all, t.decided, t.strict_cycles, t.weak_cycles)
@@ -66,18 +72,19 @@ fn strict_and_weak_cycles() {
 
 #[test]
 fn zetas_of_those_who_decided_everything() {
-    use Outcome::{Left, Right, Tie};
+    use Preference::{First as Left, Neither as Tie, Second as Right};
     // An order, a circle, an order; a tie leaves the last out.
     let rows = [[Left, Left, Left], [Left, Left, Right], [Right, Left, Left], [Left, Tie, Left]];
-    let of = |(participant, signs)| three(signs).into_iter().map(move |b| b.with_participant(participant));
-    let all: Vec<Ballot> = rows.into_iter().enumerate().flat_map(of).collect();
+    let all: Vec<DeclaredBallot> =
+        rows.into_iter().enumerate().flat_map(|(person, signs)| three_of(person, signs)).collect();
     assert_eq!(zetas(&all), (3, 2.0));
     assert_eq!(zetas(&all[..2]), (0, 0.0));
 }
 
 #[test]
 fn outcomes_are_counted_for_items_whatever_their_sides() {
-    let ballot = |participant, left, outcome| Ballot::new(participant, 1, [left, 5 - left], outcome);
+    let ballot =
+        |participant, left, outcome| ShownBallot::new(participant, 1, [left, 5 - left], outcome).declared(2);
     use Outcome::{Left, Right, Tie};
     let all = [
         ballot(0, 2, Left),
@@ -89,22 +96,25 @@ fn outcomes_are_counted_for_items_whatever_their_sides() {
     assert_eq!(outcome_counts(&all), [[0, 0, 0], [3, 1, 1]]);
 }
 
+const ALL: [Preference; 3] = [Preference::First, Preference::Neither, Preference::Second];
+
 proptest! {
     #[test]
     fn a_quarter_of_all_tournaments_is_circular_and_sides_do_not_matter(
         outcomes in prop::collection::vec(0..3usize, 3),
         swapped in prop::collection::vec(prop::bool::ANY, 3),
     ) {
-        let signs = [0, 1, 2].map(|i| Outcome::ALL[outcomes[i]]);
+        let signs = [0, 1, 2].map(|i| ALL[outcomes[i]]);
         let straight = three(signs);
-        let mut turned = straight.clone();
-        for (ballot, swap) in turned.iter_mut().zip(swapped) {
+        let mut reversed = straight.clone();
+        for (ballot, swap) in reversed.iter_mut().zip(swapped) {
             if swap {
-                *ballot = ballot.turned();
+                let items = [ballot.second(), ballot.first()];
+                *ballot = DeclaredBallot::new(0, ballot.question(), items, ballot.preference().reversed());
             }
         }
-        prop_assert_eq!(triads(&straight), triads(&turned));
-        let all = Outcome::ALL.into_iter().filter(|&o| o != Outcome::Tie);
+        prop_assert_eq!(triads(&straight), triads(&reversed));
+        let all = ALL.into_iter().filter(|&o| o != Preference::Neither);
         let tournaments = all.clone().flat_map(|a| all.clone().flat_map({ let all = all.clone(); move |b| all.clone().map(move |c| [a, b, c]) }));
         let sum = tournaments.map(|t| triads(&three(t))).fold(Triads::default(), Triads::and);
         prop_assert_eq!((sum.all, sum.strict_cycles), (8, 2));

@@ -3,8 +3,8 @@
 use crate::interval::{chance_of_unanimity, unanimous};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// The declared margin for mean scores, which run from -1 to 1: a mean within 0.2 of zero means that, of a hundred
-/// answers, fewer than 60 go one way and more than 40 the other. Declared before looking, for every study alike.
+/// The margin of a study that declares none, for mean scores, which run from -1 to 1: a mean within 0.2 of zero means that, of
+/// a hundred answers, fewer than 60 go one way and more than 40 the other.
 pub const MARGIN: f64 = 0.2;
 
 /// Two one-sided tests (Schuirmann 1987, J. Pharmacokinet. Biopharm. 15:657).

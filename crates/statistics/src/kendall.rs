@@ -1,8 +1,7 @@
 //! Kendall's coefficients for paired comparisons: consistency of one participant, agreement of several.
 
-use super::ballot::Ballot;
+use super::ballot::DeclaredBallot;
 use super::friedman::ChiSquareTest;
-use super::reading::Reading;
 
 /// Consistency of a complete tournament without ties (Kendall and Babington Smith 1940, Biometrika 31:324), from the
 /// number of wins of each of n items: circular triads T = n(n-1)(2n-1)/12 - sum a^2 / 2, and zeta = 1 - T / T_max with
@@ -33,7 +32,7 @@ pub struct Agreement {
 
 /// Kendall's u over judges who all answered the same pairs (Kendall and Babington Smith 1940, section 13).
 ///
-/// `pairs` holds, for each pair, the answers `[left, tie, right]` of `m` judges. u = 2 S / (P C(m,2)) - 1 with P pairs
+/// `pairs` holds, for each pair, the answers `[first, neither, second]` of `m` judges. u = 2 S / (P C(m,2)) - 1 with P pairs
 /// and S = sum of C(a, 2) over both sides, a tie counting as half an answer for each; C(a, 2) = a(a-1)/2 for halves too.
 /// The test: chi2 = 4/(m-2) (S - P C(m,2) (m-3) / (2(m-2))) on P m(m-1)/(m-2)^2 degrees of freedom, without continuity
 /// correction. It holds for decided answers; ties make it conservative.
@@ -72,7 +71,7 @@ pub struct Triads {
 /// Every participant's triads among ballots of one scope (one object, one group), added up.
 ///
 /// A pair that one participant answered more than once is taken at one of its ballots.
-pub fn triads(ballots: &[Ballot]) -> Triads {
+pub fn triads(ballots: &[DeclaredBallot]) -> Triads {
     let mut triads = Triads::default();
     for of in tournaments(ballots) {
         for a in 0..of.items {
@@ -89,7 +88,7 @@ pub fn triads(ballots: &[Ballot]) -> Triads {
 }
 
 /// [`zeta`] of every participant who decided every pair of the scope's items: how many, and the sum.
-pub fn zetas(ballots: &[Ballot]) -> (u64, f64) {
+pub fn zetas(ballots: &[DeclaredBallot]) -> (u64, f64) {
     let wins = |of: &Tournament| -> Option<Vec<u64>> {
         let of_item = |a: usize| {
             let won = |b: usize| of.sign(a, b).filter(|&sign| sign != 0).map(|sign| u64::from(sign > 0));
@@ -114,22 +113,23 @@ impl Tournament {
     }
 }
 
-fn tournaments(ballots: &[Ballot]) -> impl Iterator<Item = Tournament> {
+fn tournaments(ballots: &[DeclaredBallot]) -> impl Iterator<Item = Tournament> {
     let mut items: Vec<usize> = Vec::new();
-    for item in ballots.iter().flat_map(|b| [b.left(), b.right()]) {
+    for item in ballots.iter().flat_map(|b| [b.first(), b.second()]) {
         if let Err(place) = items.binary_search(&item) {
             items.insert(place, item);
         }
     }
     let mut sorted = ballots.to_vec();
     sorted.sort_unstable();
-    let of_participant = move |of: &[Ballot]| {
+    let of_participant = move |of: &[DeclaredBallot]| {
         let place = |item: usize| items.binary_search(&item).expect("collected above");
         let mut signs = vec![None; items.len() * items.len()];
         for ballot in of {
-            let (left, right, sign) = (place(ballot.left()), place(ballot.right()), ballot.outcome().sign());
-            signs[left * items.len() + right] = Some(sign);
-            signs[right * items.len() + left] = Some(-sign);
+            let (first, second) = (place(ballot.first()), place(ballot.second()));
+            let sign = ballot.preference().sign();
+            signs[first * items.len() + second] = Some(sign);
+            signs[second * items.len() + first] = Some(-sign);
         }
         Tournament { items: items.len(), signs }
     };
@@ -165,13 +165,12 @@ impl Triads {
     }
 }
 
-/// How many of each outcome each question got, read in the order of sides in which it was shown most often; questions from
-/// 0 to the largest in the ballots.
-pub fn outcome_counts(ballots: &[Ballot]) -> Vec<[u64; 3]> {
-    let reading = Reading::of(ballots);
-    let mut counts = vec![[0; 3]; reading.questions()];
+/// How often each question's first item, neither and the second were chosen; questions from 0 to the largest in the ballots.
+pub fn outcome_counts(ballots: &[DeclaredBallot]) -> Vec<[u64; 3]> {
+    let questions = ballots.iter().map(|ballot| ballot.question() + 1).max().unwrap_or(0);
+    let mut counts = vec![[0; 3]; questions];
     for ballot in ballots {
-        counts[ballot.question()][reading.outcome(ballot).index()] += 1;
+        counts[ballot.question()][ballot.preference().index()] += 1;
     }
     counts
 }

@@ -1,6 +1,6 @@
 //! Answers added up by who stood left and who stood right: all that the models need to know.
 
-use super::ballot::{Ballot, Outcome};
+use super::ballot::{Outcome, ShownBallot};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Answers to one item on the left of another; parts of answers where a penalty was added.
@@ -43,9 +43,10 @@ impl Pairs {
     ///
     /// # Panics
     /// If an item is not below `items`.
-    pub fn of<'a>(items: usize, ballots: impl IntoIterator<Item = &'a Ballot>) -> Self {
-        let one =
-            |b: &Ballot| (b.left(), b.right(), Outcome::ALL.map(|o| f64::from(u8::from(o == b.outcome()))));
+    pub fn of<'a>(items: usize, ballots: impl IntoIterator<Item = &'a ShownBallot>) -> Self {
+        let one = |b: &ShownBallot| {
+            (b.left(), b.right(), Outcome::ALL.map(|o| f64::from(u8::from(o == b.outcome()))))
+        };
         Self::new(items, ballots.into_iter().filter(|b| b.left() != b.right()).map(one))
     }
 

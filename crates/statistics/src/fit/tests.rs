@@ -1,5 +1,5 @@
 use super::*;
-use crate::statistics::{Ballot, Outcome, golden};
+use crate::{Outcome, ShownBallot, golden};
 use proptest::prelude::*;
 
 #[track_caller]
@@ -161,7 +161,7 @@ fn what_cannot_be_answered_says_why() {
 
 #[test]
 fn separated_answers_get_half_a_win_each_way() {
-    let two = [0, 1].map(|participant| Ballot::new(participant, 0, [0, 1], Outcome::Left));
+    let two = [0, 1].map(|participant| ShownBallot::new(participant, 0, [0, 1], Outcome::Left));
     for model in [Model::Davidson, Model::RaoKupper, Model::BradleyTerry] {
         let fit = fit(model, &Pairs::new(2, [(0, 1, [7., 0., 0.])])).unwrap();
         assert!(fit.penalised, "{model:?}");

@@ -1,7 +1,7 @@
 //! Statistics of paired comparisons with ties, where one participant answers several questions.
 //!
-//! Takes [`Ballot`]s: participant, question, left item, right item, outcome. Knows nothing of files, tables, plots or
-//! geometry; only [`contrast`] knows what a study is.
+//! Takes answers: as they were shown ([`ShownBallot`]) where sides matter, about items ([`DeclaredBallot`]) where they do not.
+//! Each function says in its signature which it takes. Knows nothing of studies, files, tables or plots.
 //!
 //! # Guarantees
 //! - Participants are what is independent; answers of one participant are not. [`sign_flip`] assumes nothing else.
@@ -16,11 +16,11 @@
 
 mod ballot;
 pub mod bootstrap;
-pub mod contrast;
 mod equivalence;
 mod exchange;
 mod fit;
 mod friedman;
+pub mod interval;
 mod kendall;
 mod krippendorff;
 mod model;
@@ -33,23 +33,23 @@ mod pairs;
 mod participants;
 mod power_law;
 mod rank_correlation;
-pub(crate) mod reading;
 mod regression;
+mod score;
 mod screening;
 mod separation;
 mod share;
 mod side;
 mod sign_flip;
 pub mod sign_test;
+pub mod simulation;
 
 #[cfg(test)]
 mod golden;
 
-pub use ballot::{Ballot, Outcome};
+pub use ballot::{Answer, DeclaredBallot, Outcome, Preference, ShownBallot};
 pub use equivalence::{Equivalence, MARGIN, equivalence};
 pub use exchange::{Split, exchange};
-pub(crate) use fit::has_spread;
-pub use fit::{FitError, WorthFit, clustered_covariance, fit};
+pub use fit::{FitError, WorthFit, clustered_covariance, fit, has_spread};
 pub use friedman::{ChiSquareTest, friedman};
 pub use kendall::{Agreement, Triads, agreement, outcome_counts, triads, zeta, zetas};
 pub use krippendorff::{Metric, alpha};
@@ -63,6 +63,7 @@ pub use participants::Participants;
 pub use power_law::{PowerLaw, power_law};
 pub use rank_correlation::spearman;
 pub use regression::{Coefficient, Regression, regression};
+pub use score::{ScoreGroup, ScoreTest};
 pub use screening::{Circumstances, Flag, Protocol, Screening, screening, screening_with};
 pub use separation::{Separation, separation};
 pub use share::{ClusteredShare, clustered_share};

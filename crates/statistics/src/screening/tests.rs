@@ -1,6 +1,6 @@
 use super::*;
 
-fn ballots(rows: &[&str]) -> Vec<Ballot> {
+fn ballots(rows: &[&str]) -> Vec<ShownBallot> {
     let outcome = |c| match c {
         'L' => Outcome::Left,
         'R' => Outcome::Right,
@@ -9,7 +9,7 @@ fn ballots(rows: &[&str]) -> Vec<Ballot> {
     let mut all = Vec::new();
     for (participant, row) in rows.iter().enumerate() {
         for (question, c) in row.chars().enumerate().filter(|&(_, c)| c != ' ') {
-            all.push(Ballot::new(participant, question, [0, 1], outcome(c)));
+            all.push(ShownBallot::new(participant, question, [0, 1], outcome(c)));
         }
     }
     all
@@ -37,9 +37,9 @@ fn nothing_to_compare() {
 }
 
 /// Participant 0: controls `left == right`, repeats of pair 0-1 in both orders, each with order and time.
-fn watched(answers: &[(usize, usize, usize, Outcome, u32, f64)]) -> (Vec<Ballot>, Vec<Circumstances>) {
+fn watched(answers: &[(usize, usize, usize, Outcome, u32, f64)]) -> (Vec<ShownBallot>, Vec<Circumstances>) {
     let ballot = |&(question, left, right, outcome, ..): &(usize, usize, usize, Outcome, u32, f64)| {
-        Ballot::new(0, question, [left, right], outcome)
+        ShownBallot::new(0, question, [left, right], outcome)
     };
     let known = |&(.., order, rt): &(usize, usize, usize, Outcome, u32, f64)| Circumstances {
         order: Some(order),
@@ -112,8 +112,8 @@ fn agreement_is_about_items_where_sides_were_swapped() {
         let swapped = participant % 2 == 1;
         let (left, right) = if swapped { (1, 0) } else { (0, 1) };
         let outcome = if swapped { Outcome::Right } else { Outcome::Left };
-        Ballot::new(participant, 0, [left, right], outcome)
+        ShownBallot::new(participant, 0, [left, right], outcome)
     };
-    let all: Vec<Ballot> = (0..5).map(ballot).collect();
+    let all: Vec<ShownBallot> = (0..5).map(ballot).collect();
     assert!(screening(&all).iter().all(|s| s.agreement() == Some(1.0)));
 }

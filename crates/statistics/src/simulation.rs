@@ -1,9 +1,9 @@
 //! Simulated answers of people whose preferences are known: for proving tests, and for planning how many people to ask.
 //!
 //! Each participant has an own deviation from the population's worths; the answers follow Davidson's model with a bonus
-//! for the left side ([`Model::DavidsonSide`](crate::statistics::Model)), given that deviation.
+//! for the left side ([`Model::DavidsonSide`](crate::Model)), given that deviation.
 
-use crate::statistics::{Ballot, Outcome};
+use crate::{Outcome, ShownBallot};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::collections::BTreeMap;
@@ -98,7 +98,7 @@ impl Population {
 }
 
 /// Davidson's chances `[left, tie, right]` where left is ahead by this many logits.
-pub(crate) fn davidson(ahead: f64, nu: f64) -> [f64; 3] {
+pub fn davidson(ahead: f64, nu: f64) -> [f64; 3] {
     // Relative to the larger side, so that nothing overflows.
     let behind = (-ahead.abs()).exp();
     let (left, right) = if ahead >= 0.0 { (1.0, behind) } else { (behind, 1.0) };
@@ -121,7 +121,7 @@ pub fn simulate(
     population: &Population,
     participants: usize,
     stream: &mut impl Rng,
-) -> Vec<Ballot> {
+) -> Vec<ShownBallot> {
     let mut ballots = Vec::with_capacity(participants * plan.questions.len());
     for participant in 0..participants {
         // Two independent deviations of sd / sqrt(2) differ by sd.
@@ -132,13 +132,14 @@ pub fn simulate(
             let ahead =
                 population.advantage((left, right), shown.scene) + deviations[left] - deviations[right];
             let outcome = draw(davidson(ahead, population.nu), stream);
-            ballots.push(Ballot::new(participant, question, [left, right], outcome));
+            ballots.push(ShownBallot::new(participant, question, [left, right], outcome));
         }
     }
     ballots
 }
 
-pub(crate) fn draw([left, tie, _]: [f64; 3], stream: &mut impl Rng) -> Outcome {
+/// An outcome with these chances of left, tie and right.
+pub fn draw([left, tie, _]: [f64; 3], stream: &mut impl Rng) -> Outcome {
     let u: f64 = stream.random();
     match u {
         u if u < left => Outcome::Left,
@@ -148,7 +149,7 @@ pub(crate) fn draw([left, tie, _]: [f64; 3], stream: &mut impl Rng) -> Outcome {
 }
 
 /// A standard normal number (Box and Muller 1958).
-pub(crate) fn normal(stream: &mut impl Rng) -> f64 {
+pub fn normal(stream: &mut impl Rng) -> f64 {
     let (u, v): (f64, f64) = (stream.random(), stream.random());
     (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
 }

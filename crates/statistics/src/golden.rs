@@ -1,7 +1,6 @@
 //! The study's 18 x 27 answers against the golden numbers of STATISTICS 3.12, each to its printed digit.
 
 use super::*;
-use crate::interval::Interval;
 use design::{Arrangement, Clustering, Study};
 use std::path::Path;
 
@@ -13,7 +12,7 @@ pub(super) fn study() -> Study {
 }
 
 /// All 486 answers; items are methods in the study's order.
-pub(super) fn ballots(study: &Study) -> Vec<Ballot> {
+pub(super) fn ballots(study: &Study) -> Vec<ShownBallot> {
     let text = std::fs::read_to_string(study.responses.as_deref().unwrap()).unwrap();
     let methods = study.methods();
     let item = |method| methods.iter().position(|&m| m == method).unwrap();
@@ -29,14 +28,19 @@ pub(super) fn ballots(study: &Study) -> Vec<Ballot> {
                 other => panic!("{other}"),
             };
             let (left, right) = (item(comparison.left.method), item(comparison.right.method));
-            ballots.push(Ballot::new(participant, question, [left, right], outcome));
+            ballots.push(ShownBallot::new(participant, question, [left, right], outcome));
         }
     }
     ballots
 }
 
+/// The answers about items; every question names its left item first, as everybody saw it.
+pub(super) fn declared(ballots: &[ShownBallot]) -> Vec<DeclaredBallot> {
+    ballots.iter().map(|ballot| ballot.declared(ballot.left())).collect()
+}
+
 /// The clustering questions as items U, P, I (the order the golden worths are printed in), of one arrangement or both.
-pub(super) fn clusterings(study: &Study, of: Option<Arrangement>) -> Vec<Ballot> {
+pub(super) fn clusterings(study: &Study, of: Option<Arrangement>) -> Vec<ShownBallot> {
     let order = [Clustering::None, Clustering::EdgeCollapse, Clustering::Integrated];
     let item = |clustering| order.iter().position(|&c| c == clustering).unwrap();
     let mut kept = ballots(study);
@@ -49,14 +53,6 @@ pub(super) fn clusterings(study: &Study, of: Option<Arrangement>) -> Vec<Ballot>
     kept
 }
 
-fn tested(name: &str, scope: &str) -> contrast::ContrastTest {
-    let study = study();
-    let contrasts = contrast::contrasts(&study);
-    let found: Vec<_> = contrasts.iter().filter(|c| c.name == name && c.scope == scope).collect();
-    assert_eq!(found.len(), 1, "{name} {scope}");
-    found[0].test(&ballots(&study))
-}
-
 #[track_caller]
 fn prints(value: f64, want: &str) {
     let decimals = want.split_once('.').map_or(0, |(_, decimals)| decimals.len());
@@ -66,90 +62,9 @@ fn prints(value: f64, want: &str) {
 
 #[test]
 fn counts() {
-    let study = study();
-    let all = outcome_counts(&ballots(&study));
+    let all = outcome_counts(&declared(&ballots(&study())));
     let sum = |o: usize| all.iter().map(|counts| counts[o]).sum::<u64>();
     assert_eq!([sum(0), sum(1), sum(2)], [144, 49, 293]);
-    let cases = [
-        ("U-I", "within B", [7, 1, 46]),
-        ("U-I", "within S", [7, 1, 46]),
-        ("U-P", "within B", [10, 1, 43]),
-        ("U-P", "within S", [18, 1, 35]),
-        ("P-I", "within B", [15, 17, 22]),
-        ("P-I", "within S", [3, 6, 45]),
-        ("B-S", "within U", [36, 8, 10]),
-        ("B-S", "within I", [20, 7, 27]),
-        ("B-S", "within P", [28, 7, 19]),
-        ("B-S", "all", [84, 22, 56]),
-        ("B-S", "sphere", [44, 5, 5]),
-    ];
-    for (name, scope, counts) in cases {
-        assert_eq!(tested(name, scope).counts, Some(counts), "{name} {scope}");
-    }
-}
-
-#[test]
-fn sign_flip_of_the_pooled_contrasts() {
-    let cases =
-        [("B-S", 28, "0.00940"), ("U-I", -78, "0.00033"), ("U-P", -50, "0.00259"), ("P-I", -49, "0.00009")];
-    for (name, net, p) in cases {
-        let test = tested(name, "all");
-        assert_eq!(test.sign_flip.net, net);
-        prints(test.sign_flip.p(), p);
-    }
-    prints(sign_test::binomial(84, 56), "0.0222");
-}
-
-#[test]
-fn sign_flip_of_arrangements_within_clusterings() {
-    for (scope, p) in [("within U", "0.00563"), ("within I", "0.30530"), ("within P", "0.29755")] {
-        prints(tested("B-S", scope).sign_flip.p(), p);
-    }
-    // STATISTICS 1.4: the sphere against the other two.
-    prints(tested("B-S", "sphere - others").sign_flip.p(), "0.00005");
-}
-
-#[test]
-fn mean_score_with_its_interval() {
-    let test = tested("B-S", "all");
-    let Interval { low, high } = test.interval.unwrap();
-    prints(test.mean, "0.173");
-    prints(low, "0.056");
-    prints(high, "0.290");
-}
-
-#[test]
-fn holm_over_the_nine_group_contrasts() {
-    let (study, mut p, mut names) = (study(), Vec::new(), Vec::new());
-    for contrast in contrast::contrasts(&study) {
-        if contrast.family == contrast::Family::Groups {
-            p.push(contrast.test(&ballots(&study)).sign_flip.p());
-            names.push(format!("{} {}", contrast.name, contrast.scope));
-        }
-    }
-    assert_eq!(p.len(), 9);
-    let adjusted = holm(&p);
-    let want = [
-        ("U-I within B", "0.0027"),
-        ("U-P within B", "0.0071"),
-        ("P-I within B", "0.8243"),
-        ("U-I within S", "0.0044"),
-        ("U-P within S", "0.2381"),
-        ("P-I within S", "0.0003"),
-        ("B-S within U", "0.0282"),
-        ("B-S within I", "0.8243"),
-        ("B-S within P", "0.8243"),
-    ];
-    for (name, p) in want {
-        prints(adjusted[names.iter().position(|n| n == name).unwrap()], p);
-    }
-}
-
-#[test]
-fn leave_one_out_range() {
-    let (low, high) = tested("B-S", "all").leave_one_out().unwrap();
-    prints(low, "0.0063");
-    prints(high, "0.0188");
 }
 
 #[test]
@@ -206,7 +121,7 @@ fn friedman_on_clustering_scores() {
 
 #[test]
 fn agreement_between_participants() {
-    let counts = outcome_counts(&ballots(&study()));
+    let counts = outcome_counts(&declared(&ballots(&study())));
     prints(alpha(&counts, Metric::Nominal).unwrap(), "0.2465");
     prints(alpha(&counts, Metric::Ordinal).unwrap(), "0.3063");
 }
@@ -219,7 +134,7 @@ fn triads_of_the_clusterings() {
         for object in 0..3 {
             let mut of = clusterings(&study, Some(arrangement));
             of.retain(|ballot| study.comparisons[ballot.question()].object == object);
-            all = all.and(triads(&of));
+            all = all.and(triads(&declared(&of)));
         }
     }
     assert_eq!((all.all, all.decided, all.strict_cycles), (108, 82, 5));

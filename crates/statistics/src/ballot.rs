@@ -1,0 +1,296 @@
+//! One answer, freed of objects, files and pictures: who compared which two items, and how it came out.
+//!
+//! There are two orientations of an answer, and two types, so that one cannot be taken for the other. A [`ShownBallot`]
+//! speaks of the sides that the participant saw: `left`, `right`. A [`DeclaredBallot`] speaks of items: `first`, `second`,
+//! in the order in which somebody names them, whichever side they stood on. What is about sides (side models, probes,
+//! screening) takes the first; what is about items (contrasts, agreement, prediction) takes the second. The one way
+//! across is [`ShownBallot::declared`], which has to be told which item comes first.
+
+/// What was chosen of two sides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Outcome {
+    /// The left item was chosen.
+    Left,
+    /// No preference.
+    Tie,
+    /// The right item was chosen.
+    Right,
+}
+
+impl Outcome {
+    /// The three outcomes, left to right.
+    pub const ALL: [Self; 3] = [Self::Left, Self::Tie, Self::Right];
+
+    /// +1 for left, 0 for a tie, -1 for right.
+    pub fn sign(self) -> i64 {
+        match self {
+            Self::Left => 1,
+            Self::Tie => 0,
+            Self::Right => -1,
+        }
+    }
+
+    /// Place in [`Outcome::ALL`].
+    pub fn index(self) -> usize {
+        (1 - self.sign()) as usize
+    }
+
+    /// The same answer with the sides swapped.
+    pub fn swapped(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Tie => Self::Tie,
+            Self::Right => Self::Left,
+        }
+    }
+}
+
+/// What was chosen of two items.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Preference {
+    /// The item named first was chosen.
+    First,
+    /// Neither.
+    Neither,
+    /// The item named second was chosen.
+    Second,
+}
+
+impl Preference {
+    /// +1 for the first, 0 for neither, -1 for the second.
+    pub fn sign(self) -> i64 {
+        match self {
+            Self::First => 1,
+            Self::Neither => 0,
+            Self::Second => -1,
+        }
+    }
+
+    /// Place among first, neither, second.
+    pub fn index(self) -> usize {
+        (1 - self.sign()) as usize
+    }
+
+    /// The same answer with the items named the other way round.
+    pub fn reversed(self) -> Self {
+        match self {
+            Self::First => Self::Second,
+            Self::Neither => Self::Neither,
+            Self::Second => Self::First,
+        }
+    }
+}
+
+/// One answer of one participant, as it was shown. A question that was not answered has no ballot.
+///
+/// Kept in 20 bytes, since there may be millions. Ordered by participant, question, items and outcome.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ShownBallot {
+    participant: u32,
+    question: u32,
+    items: [u32; 2],
+    outcome: Outcome,
+}
+
+/// One answer of one participant about two items, whichever side they stood on.
+///
+/// Kept in 20 bytes. Ordered by participant, question, items and preference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct DeclaredBallot {
+    participant: u32,
+    question: u32,
+    items: [u32; 2],
+    preference: Preference,
+}
+
+/// What both orientations have.
+pub trait Answer: Copy {
+    /// The participant, from 0.
+    fn participant(&self) -> usize;
+    /// The question, from 0.
+    fn question(&self) -> usize;
+    /// What was chosen: 0 the left or first item, 1 none, 2 the right or second item.
+    fn place(&self) -> usize;
+}
+
+/// # Panics
+/// If a number does not fit in 32 bits.
+fn narrow(number: usize) -> u32 {
+    u32::try_from(number).expect("four thousand million are not answered")
+}
+
+impl ShownBallot {
+    /// An answer to a question that shows `items` left and right; all are numbered from 0.
+    ///
+    /// # Panics
+    /// If a number does not fit in 32 bits.
+    pub fn new(participant: usize, question: usize, items: [usize; 2], outcome: Outcome) -> Self {
+        Self {
+            participant: narrow(participant),
+            question: narrow(question),
+            items: items.map(narrow),
+            outcome,
+        }
+    }
+
+    /// The participant, from 0.
+    pub fn participant(&self) -> usize {
+        self.participant as usize
+    }
+
+    /// The question, from 0.
+    pub fn question(&self) -> usize {
+        self.question as usize
+    }
+
+    /// The item on the left, from 0.
+    pub fn left(&self) -> usize {
+        self.items[0] as usize
+    }
+
+    /// The item on the right, from 0.
+    pub fn right(&self) -> usize {
+        self.items[1] as usize
+    }
+
+    /// What was chosen.
+    pub fn outcome(&self) -> Outcome {
+        self.outcome
+    }
+
+    /// The same answer about items, `first` named first.
+    ///
+    /// # Panics
+    /// If `first` is neither of the two items.
+    pub fn declared(&self, first: usize) -> DeclaredBallot {
+        let [left, right] = self.items;
+        assert!(first == self.left() || first == self.right(), "item {first} was not shown in {self:?}");
+        let preference = match self.outcome {
+            Outcome::Left => Preference::First,
+            Outcome::Tie => Preference::Neither,
+            Outcome::Right => Preference::Second,
+        };
+        let (items, preference) = match first == self.left() {
+            true => ([left, right], preference),
+            false => ([right, left], preference.reversed()),
+        };
+        DeclaredBallot { participant: self.participant, question: self.question, items, preference }
+    }
+
+    /// The same answer about items, the one with the lower number named first.
+    pub fn by_item(&self) -> DeclaredBallot {
+        self.declared(self.left().min(self.right()))
+    }
+
+    /// The same answer of another participant.
+    pub fn with_participant(&self, participant: usize) -> Self {
+        Self { participant: narrow(participant), ..*self }
+    }
+
+    /// The same with other items.
+    pub fn with_items(&self, items: [usize; 2]) -> Self {
+        Self { items: items.map(narrow), ..*self }
+    }
+
+    /// The same with another outcome.
+    pub fn with_outcome(&self, outcome: Outcome) -> Self {
+        Self { outcome, ..*self }
+    }
+
+    /// The same with items and outcome exchanged between the sides.
+    pub fn turned(&self) -> Self {
+        let [left, right] = self.items;
+        Self { items: [right, left], outcome: self.outcome.swapped(), ..*self }
+    }
+}
+
+impl DeclaredBallot {
+    /// An answer to a question about `items`, first and second; all are numbered from 0.
+    ///
+    /// # Panics
+    /// If a number does not fit in 32 bits.
+    pub fn new(participant: usize, question: usize, items: [usize; 2], preference: Preference) -> Self {
+        Self {
+            participant: narrow(participant),
+            question: narrow(question),
+            items: items.map(narrow),
+            preference,
+        }
+    }
+
+    /// The participant, from 0.
+    pub fn participant(&self) -> usize {
+        self.participant as usize
+    }
+
+    /// The question, from 0.
+    pub fn question(&self) -> usize {
+        self.question as usize
+    }
+
+    /// The item named first, from 0.
+    pub fn first(&self) -> usize {
+        self.items[0] as usize
+    }
+
+    /// The item named second, from 0.
+    pub fn second(&self) -> usize {
+        self.items[1] as usize
+    }
+
+    /// What was chosen.
+    pub fn preference(&self) -> Preference {
+        self.preference
+    }
+}
+
+impl Answer for ShownBallot {
+    fn participant(&self) -> usize {
+        self.participant()
+    }
+
+    fn question(&self) -> usize {
+        self.question()
+    }
+
+    fn place(&self) -> usize {
+        self.outcome.index()
+    }
+}
+
+impl Answer for DeclaredBallot {
+    fn participant(&self) -> usize {
+        self.participant()
+    }
+
+    fn question(&self) -> usize {
+        self.question()
+    }
+
+    fn place(&self) -> usize {
+        self.preference.index()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_answer_about_items_does_not_depend_on_sides() {
+        let shown = ShownBallot::new(3, 7, [4, 1], Outcome::Left);
+        for ballot in [shown, shown.turned()] {
+            assert_eq!(ballot.declared(4), DeclaredBallot::new(3, 7, [4, 1], Preference::First));
+            assert_eq!(ballot.by_item(), DeclaredBallot::new(3, 7, [1, 4], Preference::Second));
+        }
+        let control = ShownBallot::new(0, 0, [2, 2], Outcome::Right).by_item();
+        assert_eq!((control.first(), control.second(), control.preference()), (2, 2, Preference::Second));
+        assert_eq!(Preference::Neither.reversed().index(), 1);
+    }
+
+    #[test]
+    #[should_panic(expected = "was not shown")]
+    fn an_item_that_was_not_shown_cannot_come_first() {
+        ShownBallot::new(0, 0, [1, 2], Outcome::Tie).declared(0);
+    }
+}

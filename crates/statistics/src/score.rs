@@ -1,0 +1,214 @@
+//! One score a participant, and whether people lean one way: the test of every contrast.
+//!
+//! A participant's score is the mean of the answers that count: +1 for the first, 0 for neither, -1 for the second. Of a
+//! difference it is the mean over one part of the questions less the mean over the other. People weigh alike, however many
+//! questions each of them answered, and mean, interval and sign-flip test are all about these scores.
+
+use super::bootstrap::{BootstrapInterval, Resampling, kinds, mean_and_error, studentised};
+use super::equivalence::{Equivalence, equivalence};
+use super::sign_flip::{RATIO_LIMIT, SignFlip, greatest_common_divisor, sign_flip_within, without_one};
+use crate::interval::{Interval, of_mean_score};
+use std::collections::BTreeMap;
+
+/// The test needs whole numbers. Scores without a common unit as coarse as 1 / this are rounded to multiples of it.
+const FINEST: i64 = 55_440;
+/// The exact test adds up this many steps at most, which bounds the units of all people together.
+const MOST_STEPS: i64 = 1 << 19;
+
+/// What answers say about a contrast.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScoreTest {
+    /// Answers for the first, for neither, for the second; `None` of a difference, whose parts weigh unlike.
+    pub counts: Option<[u64; 3]>,
+    /// Participants with a score, those with the same score together; ascending by score.
+    pub groups: Vec<ScoreGroup>,
+    /// The exact test of the scores. Its `net` is their sum in a unit that makes them whole numbers.
+    pub sign_flip: SignFlip,
+    /// How far scores can be from zero: 1, and 2 for differences.
+    pub reach: f64,
+    /// Mean of the scores; 0 without participants.
+    pub mean: f64,
+    /// Interval for it over participants: [`of_mean_score`].
+    pub interval: Option<Interval>,
+}
+
+/// Participants with the same score, a fraction in lowest terms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ScoreGroup {
+    /// Numerator of the score.
+    pub numerator: i64,
+    /// Denominator, above 0.
+    pub denominator: i64,
+    /// How many participants.
+    pub people: u64,
+}
+
+impl ScoreGroup {
+    /// The score.
+    pub fn score(&self) -> f64 {
+        self.numerator as f64 / self.denominator as f64
+    }
+}
+
+/// What one participant answered to one part of the questions.
+#[derive(Debug, Clone, Copy, Default)]
+struct Part {
+    net: i64,
+    answers: i64,
+}
+
+impl ScoreTest {
+    /// Tests answers given as `(participant, sign)`; the sign is +1 for the first, 0 for neither, -1 for the second.
+    pub fn of(answers: impl IntoIterator<Item = (usize, i64)>) -> Self {
+        let mut people: Vec<Part> = Vec::new();
+        let mut counts = [0; 3];
+        for (participant, sign) in answers {
+            add(&mut people, participant, Part { net: sign, answers: 1 });
+            counts[(1 - sign.signum()) as usize] += 1;
+        }
+        let scores = people.into_iter().filter(|of| of.answers > 0).map(|of| (of.net, of.answers));
+        Self::of_scores(scores, Some(counts), 1.0)
+    }
+
+    /// Tests a difference: answers are `(participant, whether to the second part, sign)`. Whoever answered nothing of one
+    /// part has no score.
+    pub fn of_difference(answers: impl IntoIterator<Item = (usize, bool, i64)>) -> Self {
+        let mut parts: [Vec<Part>; 2] = Default::default();
+        for (participant, second, sign) in answers {
+            add(&mut parts[usize::from(second)], participant, Part { net: sign, answers: 1 });
+        }
+        let [first, second] = &parts;
+        let both = first.iter().zip(second).filter(|(a, b)| a.answers > 0 && b.answers > 0);
+        let scores = both.map(|(a, b)| (a.net * b.answers - b.net * a.answers, a.answers * b.answers));
+        Self::of_scores(scores, None, 2.0)
+    }
+
+    /// Scores as numerator and denominator.
+    fn of_scores(scores: impl Iterator<Item = (i64, i64)>, counts: Option<[u64; 3]>, reach: f64) -> Self {
+        let mut alike: BTreeMap<(i64, i64), u64> = BTreeMap::new();
+        for (numerator, denominator) in scores {
+            let divisor =
+                greatest_common_divisor(numerator.unsigned_abs(), denominator.unsigned_abs()) as i64;
+            *alike.entry((numerator / divisor, denominator / divisor)).or_default() += 1;
+        }
+        let mut groups: Vec<ScoreGroup> = alike
+            .into_iter()
+            .map(|((numerator, denominator), people)| ScoreGroup { numerator, denominator, people })
+            .collect();
+        groups.sort_by_key(|group| (group.numerator as i128 * WIDE) / i128::from(group.denominator));
+        let units = Units::of(&groups);
+        let sign_flip = sign_flip_within(&units.counts(&groups), units.slack);
+        let test = Self { counts, groups, sign_flip, reach, mean: 0.0, interval: None };
+        let scores = test.scores();
+        // Rounding must not make a preference of none.
+        let none = test.sign_flip.net == 0 && units.slack == 0;
+        let mean = match scores.len() {
+            0 => 0.0,
+            _ if none => 0.0,
+            people => scores.iter().sum::<f64>() / people as f64,
+        };
+        Self { mean, interval: of_mean_score(&scores, reach), ..test }
+    }
+
+    /// How many participants have a score.
+    pub fn participants(&self) -> usize {
+        self.groups.iter().map(|group| group.people as usize).sum()
+    }
+
+    /// How many of them score above zero, at zero and below.
+    pub fn people(&self) -> [u64; 3] {
+        let mut people = [0; 3];
+        for group in &self.groups {
+            people[(1 - group.numerator.signum()) as usize] += group.people;
+        }
+        people
+    }
+
+    /// How many of them lean to one side.
+    pub fn leaning(&self) -> usize {
+        let [first, _, second] = self.people();
+        (first + second) as usize
+    }
+
+    /// One score a participant, ascending.
+    pub fn scores(&self) -> Vec<f64> {
+        let of = |group: &ScoreGroup| std::iter::repeat_n(group.score(), group.people as usize);
+        self.groups.iter().flat_map(of).collect()
+    }
+
+    /// The test that the mean score lies within `margin` of zero.
+    pub fn equivalence(&self, margin: f64) -> Option<Equivalence> {
+        equivalence(&self.scores(), margin, self.reach)
+    }
+
+    /// p with one participant left out: one value for each group of equal scores, in their order; empty for fewer than two
+    /// participants.
+    pub fn leave_one_out(&self) -> Vec<f64> {
+        if self.participants() < 2 {
+            return Vec::new();
+        }
+        let units = Units::of(&self.groups);
+        let p = without_one(&units.counts(&self.groups), units.slack);
+        self.groups.iter().map(|group| p[&units.whole(group)]).collect()
+    }
+
+    /// Studentised bootstrap interval for the mean score, resampling participants.
+    pub fn studentised(&self, resampling: Resampling) -> Option<BootstrapInterval> {
+        let (scores, counts) = kinds(&self.scores());
+        studentised(&counts, resampling, |weights| mean_and_error(&scores, weights))
+    }
+}
+
+/// Enough to order any two fractions of sums of answers.
+const WIDE: i128 = 1 << 60;
+
+/// The whole numbers that stand for scores.
+struct Units {
+    per_one: i64,
+    /// How far rounding can move a sum of scores against another, in units; 0 where nothing is rounded.
+    slack: u64,
+}
+
+impl Units {
+    /// The least common multiple of the denominators, or if that is too fine for so many people, what is fine enough.
+    fn of(groups: &[ScoreGroup]) -> Self {
+        let people: i64 = groups.iter().map(|group| group.people as i64).sum();
+        // Differences reach to 2. Beyond the exact test's number of people the cost grows with the root of theirs.
+        let finest = if people <= RATIO_LIMIT as i64 { MOST_STEPS / (2 * people.max(1)) } else { FINEST };
+        let rounded = Self { per_one: finest, slack: people as u64 };
+        let mut per_one = 1_i64;
+        for group in groups {
+            let divisor =
+                greatest_common_divisor(per_one.unsigned_abs(), group.denominator.unsigned_abs()) as i64;
+            match per_one.checked_mul(group.denominator / divisor).filter(|&of| of <= finest) {
+                Some(of) => per_one = of,
+                None => return rounded,
+            }
+        }
+        Self { per_one, slack: 0 }
+    }
+
+    fn whole(&self, group: &ScoreGroup) -> i64 {
+        let scaled = i128::from(group.numerator) * i128::from(self.per_one);
+        let (of, half) = (i128::from(group.denominator), i128::from(group.denominator / 2));
+        // Rounded alike for a score and its opposite; nothing to round where there is no slack.
+        ((scaled.abs() + half) / of * scaled.signum()) as i64
+    }
+
+    fn counts(&self, groups: &[ScoreGroup]) -> BTreeMap<i64, u64> {
+        let mut counts = BTreeMap::new();
+        groups.iter().for_each(|group| *counts.entry(self.whole(group)).or_default() += group.people);
+        counts
+    }
+}
+
+fn add(people: &mut Vec<Part>, participant: usize, answer: Part) {
+    if participant >= people.len() {
+        people.resize(participant + 1, Part::default());
+    }
+    people[participant].net += answer.net;
+    people[participant].answers += answer.answers;
+}
+
+#[cfg(test)]
+mod tests;
