@@ -3,9 +3,11 @@
 //! These types mirror the file and nothing else: paths are as written (relative to the file's own folder), numbers
 //! are unchecked. [`crate::Study::load`] turns them into something to work from.
 
+mod analysis;
 mod forms;
 mod responses;
 
+pub use analysis::{AnalysisSection, Declaration, Exclusion, FamilyRule};
 pub use forms::{FormsSection, OrderRule, ShownNames, SideRule, TrainingSection};
 pub use responses::{PairSection, ResponsesSection, SynonymsSection};
 
@@ -52,6 +54,9 @@ pub struct StudyFile {
     pub forms: Option<FormsSection>,
     /// The answers to analyse; leave out for a study that has none yet.
     pub responses: Option<ResponsesSection>,
+    /// What of the analysis is a choice, and when it was made.
+    #[serde(default)]
+    pub analysis: AnalysisSection,
     /// Published numbers to compare with; leave out for a new study.
     pub published: Option<PublishedSection>,
 }

@@ -11,6 +11,7 @@
 mod check;
 pub mod code_names;
 pub mod config;
+mod date;
 pub mod forms;
 pub mod lint;
 pub mod machine;
@@ -21,6 +22,7 @@ mod stage;
 mod study;
 
 pub use check::ConfigError;
+pub use date::{Date, ParseDateError};
 pub use method::{Arrangement, Clustering, ConfigurationId, Method, ParseIdError};
 pub use stage::Stage;
 pub use study::{Comparison, Configuration, Group, Published, Study};

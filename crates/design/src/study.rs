@@ -111,6 +111,7 @@ impl Study {
         let comparisons = comparisons(&checker, &file, &configurations, &mut groups)?;
         check_stills(&checker, &file, &configurations)?;
         check_forms(&checker, &file, &configurations)?;
+        file.analysis.check(&checker)?;
 
         let target_path = checker.existing("benchmark.target", &file.benchmark.target)?;
         let target = CpuProfile::load(&target_path)?;

@@ -1,0 +1,156 @@
+//! What of the analysis is a choice, and when it was made.
+
+use crate::check::{Checker, ConfigError, short};
+use crate::date::Date;
+use serde::{Deserialize, Serialize};
+
+/// Which tests are corrected together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FamilyRule {
+    /// Each kind of contrast by itself, see `contrast::Family`.
+    #[default]
+    ByKind,
+    /// All contrasts of the study.
+    One,
+}
+
+/// A rule of screening whose breakers the main analysis leaves out. What breaks it is defined where answers are screened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Exclusion {
+    /// Chose one side throughout.
+    OneSided,
+    /// Preferred one of two equal configurations.
+    Controls,
+    /// Chose the other configuration when asked again.
+    Repeats,
+    /// Answered before everything could have been seen.
+    Time,
+    /// Preferred what the others did not.
+    Odd,
+}
+
+impl Exclusion {
+    /// The name in study files.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::OneSided => "one-sided",
+            Self::Controls => "controls",
+            Self::Repeats => "repeats",
+            Self::Time => "time",
+            Self::Odd => "odd",
+        }
+    }
+}
+
+/// What of the analysis is a choice, and when it was made. Every key has a default.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct AnalysisSection {
+    /// The day on which this section was fixed.
+    pub declared: Option<Date>,
+    /// The day of the first answer, where the file of answers does not say it.
+    pub first_answer: Option<Date>,
+    /// Whether answers were known when this section was fixed, whatever the dates say.
+    pub answers_known: bool,
+    /// Level of tests, after correction; 1 less it is the confidence of intervals. 0.0001 to 0.5.
+    pub level: f64,
+    /// Mean score up to which two things count as liked alike; above 0, below 1.
+    pub margin: f64,
+    /// Which tests are corrected together.
+    pub families: FamilyRule,
+    /// The contrasts that matter most, such as `B-S` or `B-S within U`: a family of their own, corrected first. Whether the
+    /// study has them is not checked here.
+    pub primary: Vec<String>,
+    /// The rules whose breakers the main analysis leaves out; empty if everybody counts.
+    pub exclude: Vec<Exclusion>,
+}
+
+impl Default for AnalysisSection {
+    fn default() -> Self {
+        Self {
+            declared: None,
+            first_answer: None,
+            answers_known: false,
+            level: 0.05,
+            margin: 0.2,
+            families: FamilyRule::ByKind,
+            primary: Vec::new(),
+            exclude: Vec::new(),
+        }
+    }
+}
+
+/// Whether the choices of an analysis could have been made to fit the answers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Declaration {
+    /// The study does not say when they were made.
+    Undeclared,
+    /// They were made on the day of the first answer at the latest.
+    BeforeAnswers {
+        /// The day on which they were made.
+        declared: Date,
+        /// The day of the first answer.
+        first_answer: Date,
+    },
+    /// They were made when answers were known.
+    AfterAnswers {
+        /// The day on which they were made.
+        declared: Date,
+        /// The day of the first answer; `None` if the study says only that answers were known.
+        first_answer: Option<Date>,
+    },
+    /// The study says when they were made, and nothing says when the first answer was given.
+    Unknown {
+        /// The day on which they were made.
+        declared: Date,
+    },
+}
+
+impl AnalysisSection {
+    /// Holds [`declared`](Self::declared) against the first answer's day: `in_answers` is the day that the answers
+    /// themselves say. Where the study says another, the earlier of the two counts.
+    pub fn declaration(&self, in_answers: Option<Date>) -> Declaration {
+        let Some(declared) = self.declared else { return Declaration::Undeclared };
+        let first_answer = self.first_answer.into_iter().chain(in_answers).min();
+        match first_answer {
+            _ if self.answers_known => Declaration::AfterAnswers { declared, first_answer },
+            None => Declaration::Unknown { declared },
+            Some(first) if declared <= first => Declaration::BeforeAnswers { declared, first_answer: first },
+            Some(_) => Declaration::AfterAnswers { declared, first_answer },
+        }
+    }
+
+    /// Refuses values outside their ranges, and dates that contradict each other.
+    pub(crate) fn check(&self, c: &Checker<'_>) -> Result<(), ConfigError> {
+        match (self.declared, self.first_answer) {
+            (None, _) if self.answers_known => {
+                return c.refuse("analysis.answers_known", true, "needs analysis.declared: since when?");
+            }
+            (Some(declared), Some(first)) if self.answers_known && declared < first => {
+                let limit = format!("before analysis.first_answer = {first} nobody knew answers");
+                return c.refuse("analysis.answers_known", true, limit);
+            }
+            _ => {}
+        }
+        c.number("analysis.level", self.level, 0.0001, 0.5)?;
+        if !(self.margin > 0.0 && self.margin < 1.0) {
+            return c.refuse("analysis.margin", short(self.margin), "must be above 0 and below 1");
+        }
+        for (i, name) in self.primary.iter().enumerate() {
+            let letters = name.chars().count();
+            if name.trim() != name || !(1..=64).contains(&letters) || name.chars().any(char::is_control) {
+                let limit = "must be the name of a contrast, such as B-S or B-S within U: 1 to 64 letters, with no \
+                             space at its ends";
+                return c.refuse(format!("analysis.primary[{i}]"), format!("{name:?}"), limit);
+            }
+        }
+        c.distinct(|i| format!("analysis.primary[{i}]"), &self.primary)?;
+        let rules: Vec<String> = self.exclude.iter().map(|rule| rule.code().into()).collect();
+        c.distinct(|i| format!("analysis.exclude[{i}]"), &rules)
+    }
+}
+
+#[cfg(test)]
+mod tests;
