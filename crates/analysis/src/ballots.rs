@@ -2,7 +2,7 @@
 
 use design::{Method, Study};
 use responses::{Choice, Responses};
-use statistics::{Outcome, ShownBallot};
+use statistics::{DeclaredBallot, Outcome, ShownBallot};
 
 /// Items compared with one another, and the answers about them.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -39,14 +39,13 @@ pub fn ballots(study: &Study, answers: &Responses) -> Vec<ShownBallot> {
     ballots
 }
 
-/// The same answers with the sides that the study declares, so that answers to one question can be compared whichever way
-/// round it was shown.
-pub fn as_declared(study: &Study, ballots: &[ShownBallot]) -> Vec<ShownBallot> {
+/// The same answers, in the same order, about the methods of each question: first the one that the study lists on the left,
+/// whichever side it stood on.
+pub fn declared(study: &Study, ballots: &[ShownBallot]) -> Vec<DeclaredBallot> {
     let methods = study.methods();
-    let declared = |b: &ShownBallot| {
-        if methods[b.left()] == study.comparisons[b.question()].left.method { *b } else { b.turned() }
-    };
-    ballots.iter().map(declared).collect()
+    let item = |method: Method| methods.iter().position(|&m| m == method).expect("crossed from these methods");
+    let first: Vec<usize> = study.comparisons.iter().map(|c| item(c.left.method)).collect();
+    ballots.iter().map(|ballot| ballot.declared(first[ballot.question()])).collect()
 }
 
 /// Whether an answer is to one of a study's comparisons, rather than to a control or a repeat.

@@ -70,15 +70,15 @@ fn drafts(inputs: &Inputs<'_>) -> Vec<Draft> {
     drafts.extend(meshes::aspect_ratios(inputs));
     drafts.extend(stages::stage_times(inputs));
     drafts.extend(distributions::aspect_ratios(inputs));
-    if let Some(Answered { tally, ballots, groups, .. }) = inputs.answers {
+    if let Some(Answered { tally, shown, declared, groups, .. }) = inputs.answers {
         drafts.push(answers::per_question(inputs.study, tally));
         drafts.push(preferences::per_object(inputs.study, tally));
         drafts.push(preferences::overall(inputs.study, tally));
         drafts.extend(factor_share::draft(inputs.study, tally));
         drafts.extend(worths::draft(groups));
-        drafts.extend(contests::by_object(inputs.study, ballots));
-        drafts.extend(respondents::draft(ballots));
-        drafts.extend(prediction::draft(inputs, ballots));
+        drafts.extend(contests::by_object(inputs.study, declared));
+        drafts.extend(respondents::draft(shown));
+        drafts.extend(prediction::draft(inputs, shown, declared));
     }
     drafts
 }

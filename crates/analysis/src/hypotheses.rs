@@ -1,11 +1,11 @@
 //! Every hypothesis that is tested, with p adjusted within its family.
 
-use crate::ballots::{BallotGroup, as_declared};
+use crate::ballots::BallotGroup;
 use design::Study;
+use design::config::AnalysisSection;
+use design::contrast::{Contrast, Factor, Level, Over, PRIMARY, contrasts, families};
 use rayon::prelude::*;
-use statistics::contrast::{Contrast, ContrastTest, Level, Over, contrasts};
-use statistics::{ShownBallot, benjamini_hochberg, holm};
-use std::collections::BTreeMap;
+use statistics::{DeclaredBallot, MARGIN, ScoreTest, benjamini_hochberg, holm};
 
 /// How p values of a family are adjusted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,9 +30,16 @@ impl Adjustment {
             Self::BenjaminiHochberg => "Benjamini and Hochberg's",
         }
     }
+
+    fn of(self, p: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Holm => holm(p),
+            Self::BenjaminiHochberg => benjamini_hochberg(p),
+        }
+    }
 }
 
-/// What both adjusted p allow to say, at [`ALPHA`].
+/// What both adjusted p allow to say, at the level of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Conclusion {
     /// There is a preference.
@@ -43,6 +50,8 @@ pub(crate) enum Conclusion {
     Equal,
     /// Neither can be said.
     Open,
+    /// Nobody has a score: nobody answered what it is about.
+    NotTested,
 }
 
 impl Conclusion {
@@ -52,12 +61,35 @@ impl Conclusion {
             Self::DiffersWithinMargin => "differs, within the margin",
             Self::Equal => "equal within the margin",
             Self::Open => "open",
+            Self::NotTested => "not tested",
         }
     }
 }
 
-/// Level of every test here.
+/// Level of tests where a study says nothing else.
 pub(crate) const ALPHA: f64 = 0.05;
+
+/// What decides conclusions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Rules {
+    /// Level of tests, after correction.
+    pub(crate) level: f64,
+    /// Mean score up to which two things count as liked alike.
+    pub(crate) margin: f64,
+}
+
+impl Default for Rules {
+    fn default() -> Self {
+        Self { level: ALPHA, margin: MARGIN }
+    }
+}
+
+impl Rules {
+    /// Those of a study.
+    pub(crate) fn of(section: &AnalysisSection) -> Self {
+        Self { level: section.level, margin: section.margin }
+    }
+}
 
 /// What a hypothesis is about.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,66 +112,161 @@ pub(crate) struct Hypothesis {
     /// Over which answers, such as `within B`.
     pub(crate) scope: String,
     pub(crate) subject: Subject,
-    pub(crate) test: ContrastTest,
+    pub(crate) test: ScoreTest,
     /// The sign-flip p, adjusted within the family.
     pub(crate) adjusted: f64,
-    /// p of the test that the mean score lies within [`MARGIN`] of zero, adjusted likewise; `None` for one participant.
+    /// The same, adjusted over every test but those of single questions; `None` for those.
+    pub(crate) adjusted_over_all: Option<f64>,
+    /// p of the test that the mean score lies within the margin of zero, adjusted within the family; `None` for one
+    /// participant.
     pub(crate) equivalence: Option<f64>,
     pub(crate) adjustment: Adjustment,
-    /// How many hypotheses the family has.
+    /// How many hypotheses of the family were tested.
     pub(crate) family_size: usize,
+    pub(crate) rules: Rules,
 }
 
 impl Hypothesis {
-    fn new(family: &str, contrast: String, scope: &str, subject: Subject, test: ContrastTest) -> Self {
-        let (family, scope) = (family.into(), scope.into());
-        let (adjusted, adjustment, family_size) = (1.0, Adjustment::Holm, 1);
-        Self { family, contrast, scope, subject, test, adjusted, equivalence: None, adjustment, family_size }
+    fn new(contrast: String, scope: &str, subject: Subject, test: ScoreTest, rules: Rules) -> Self {
+        Self {
+            family: String::new(),
+            contrast,
+            scope: scope.into(),
+            subject,
+            test,
+            adjusted: 1.0,
+            adjusted_over_all: None,
+            equivalence: None,
+            adjustment: Adjustment::Holm,
+            family_size: 1,
+            rules,
+        }
+    }
+
+    /// Whether anybody has a score.
+    pub(crate) fn is_tested(&self) -> bool {
+        self.test.participants() > 0
     }
 
     pub(crate) fn conclusion(&self) -> Conclusion {
-        match (self.adjusted <= ALPHA, self.equivalence.is_some_and(|p| p <= ALPHA)) {
+        let level = self.rules.level;
+        match (self.adjusted <= level, self.equivalence.is_some_and(|p| p <= level)) {
+            _ if !self.is_tested() => Conclusion::NotTested,
             (true, false) => Conclusion::Differs,
             (true, true) => Conclusion::DiffersWithinMargin,
             (false, true) => Conclusion::Equal,
             (false, false) => Conclusion::Open,
         }
     }
+
+    /// Whether a preference was shown.
+    pub(crate) fn differs(&self) -> bool {
+        matches!(self.conclusion(), Conclusion::Differs | Conclusion::DiffersWithinMargin)
+    }
+
+    /// Whether it is about one question alone, which is exploratory.
+    pub(crate) fn is_question(&self) -> bool {
+        matches!(self.subject, Subject::Question(_))
+    }
+
+    /// Whether two hypotheses are the same one, tested on different answers.
+    pub(crate) fn is_about_the_same(&self, other: &Self) -> bool {
+        (&self.family, &self.contrast, &self.scope) == (&other.family, &other.contrast, &other.scope)
+    }
 }
 
-/// Every contrast of a study, then every question. `ballots` are by question.
-pub(crate) fn of_study(study: &Study, ballots: &[ShownBallot]) -> Vec<Hypothesis> {
+/// Every contrast of a study, then every question. `ballots` are by question, as the study declares them.
+pub(crate) fn of_study(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hypothesis> {
     let mut all = of_contrasts(study, ballots);
     all.extend(of_questions(study, ballots));
     all
 }
 
-/// Every contrast of a study. `ballots` are by question.
-pub(crate) fn of_contrasts(study: &Study, ballots: &[ShownBallot]) -> Vec<Hypothesis> {
-    let of_contrast = |contrast: Contrast| {
+/// Every contrast of a study. `ballots` are by question, as the study declares them.
+pub(crate) fn of_contrasts(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hypothesis> {
+    let rules = Rules::of(&study.file.analysis);
+    let contrasts = contrasts(study);
+    let families = families(&contrasts, &study.file.analysis);
+    let of_contrast = |contrast: &Contrast| {
         let subject = Subject::Contrast { levels: contrast.levels, over: contrast.over };
-        let test = contrast.test(contrast.weights.keys().flat_map(|&question| of_one(ballots, question)));
-        Hypothesis::new(contrast.family.code(), contrast.name, &contrast.scope, subject, test)
+        Hypothesis::new(contrast.name.clone(), &contrast.scope, subject, test(study, contrast, ballots), rules)
     };
-    let mut all: Vec<Hypothesis> = contrasts(study).into_par_iter().map(of_contrast).collect();
-    adjust(&mut all, Adjustment::Holm);
+    let mut all: Vec<Hypothesis> = contrasts.par_iter().map(of_contrast).collect();
+    for family in &families {
+        for &member in &family.members {
+            let kind = contrasts[member].family.code();
+            // A family that mixes kinds is named after what it is, its members after their kind.
+            all[member].family = match family.name {
+                PRIMARY => PRIMARY.into(),
+                _ => kind.into(),
+            };
+        }
+        let mut members: Vec<&mut Hypothesis> = all
+            .iter_mut()
+            .enumerate()
+            .filter(|(i, _)| family.members.contains(i))
+            .map(|(_, hypothesis)| hypothesis)
+            .collect();
+        adjust(&mut members, Adjustment::Holm);
+    }
+    let first = |h: &Hypothesis| h.family != PRIMARY;
+    all.sort_by_key(first);
+    adjust_over_all(&mut all);
     all
 }
 
-fn of_questions(study: &Study, ballots: &[ShownBallot]) -> Vec<Hypothesis> {
+/// The test of one contrast.
+///
+/// Differences between values of the other factor are taken object by object, differences between objects value by value of
+/// the other factor.
+pub(crate) fn test(study: &Study, contrast: &Contrast, ballots: &[DeclaredBallot]) -> ScoreTest {
+    let part = |place: usize| {
+        contrast.parts[place].iter().flat_map(move |(&question, &sign)| {
+            of_one(ballots, question)
+                .iter()
+                .map(move |b| (b.participant(), question, sign * b.preference().sign()))
+        })
+    };
+    if !contrast.is_difference() {
+        return ScoreTest::of(part(0).map(|(person, _, sign)| (person, sign)));
+    }
+    let stratum = |question: usize| {
+        let comparison = &study.comparisons[question];
+        let method = comparison.left.method;
+        match (contrast.over, contrast.levels[0].factor()) {
+            (Over::Difference(..), _) => comparison.object,
+            (_, Factor::Clustering) => {
+                study.file.arrangements.iter().position(|&a| a == method.arrangement).unwrap_or(0)
+            }
+            (_, Factor::Arrangement) => {
+                study.file.clusterings.iter().position(|&c| c == method.clustering).unwrap_or(0)
+            }
+            (_, Factor::Method) => 0,
+        }
+    };
+    let both = [false, true].into_iter().flat_map(|second| {
+        part(usize::from(second)).map(move |(person, question, sign)| (person, question, second, sign))
+    });
+    ScoreTest::of_difference(both.map(|(person, question, second, sign)| (person, stratum(question), second, sign)))
+}
+
+fn of_questions(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hypothesis> {
+    let rules = Rules::of(&study.file.analysis);
     let of_question = |(q, comparison): (usize, &design::Comparison)| {
-        let own = as_declared(study, of_one(ballots, q));
-        let test = ContrastTest::of(own.iter().map(|b| (b.participant(), 1, b.outcome())));
+        let test =
+            ScoreTest::of(of_one(ballots, q).iter().map(|b| (b.participant(), b.preference().sign())));
         let contrast = format!("{}-{}", comparison.left.method, comparison.right.method);
-        Hypothesis::new("questions", contrast, &comparison.question, Subject::Question(q), test)
+        let mut of = Hypothesis::new(contrast, &comparison.question, Subject::Question(q), test, rules);
+        of.family = "questions".into();
+        of
     };
     let mut all: Vec<Hypothesis> = study.comparisons.par_iter().enumerate().map(of_question).collect();
-    adjust(&mut all, Adjustment::BenjaminiHochberg);
+    adjust(&mut all.iter_mut().collect::<Vec<_>>(), Adjustment::BenjaminiHochberg);
     all
 }
 
 /// The ballots of one question.
-fn of_one(ballots: &[ShownBallot], question: usize) -> &[ShownBallot] {
+fn of_one(ballots: &[DeclaredBallot], question: usize) -> &[DeclaredBallot] {
     let below = |end: usize| ballots.partition_point(|ballot| ballot.question() < end);
     &ballots[below(question)..below(question + 1)]
 }
@@ -148,44 +275,49 @@ fn of_one(ballots: &[ShownBallot], question: usize) -> &[ShownBallot] {
 pub(crate) fn of_groups(groups: &[BallotGroup]) -> Vec<Hypothesis> {
     let mut all = Vec::new();
     for group in groups {
+        let mut family = Vec::new();
         for (i, first) in group.items.iter().enumerate() {
             for (j, second) in group.items.iter().enumerate().skip(i + 1) {
-                let weight = |b: &ShownBallot| match (b.left(), b.right()) {
-                    (l, r) if (l, r) == (i, j) => Some((b.participant(), 1, b.outcome())),
-                    (l, r) if (l, r) == (j, i) => Some((b.participant(), -1, b.outcome())),
-                    _ => None,
+                let about_both = |b: &&statistics::ShownBallot| {
+                    (b.left(), b.right()) == (i, j) || (b.left(), b.right()) == (j, i)
                 };
-                let test = ContrastTest::of(group.ballots.iter().filter_map(weight));
+                let own = group.ballots.iter().filter(about_both).map(|b| b.declared(i));
+                let test = ScoreTest::of(own.map(|b| (b.participant(), b.preference().sign())));
                 if test.participants() > 0 {
                     let (first, second) = (first.clone(), second.clone());
                     let contrast = format!("{first}-{second}");
                     let subject = Subject::Items { group: group.name.clone(), first, second };
-                    all.push(Hypothesis::new(&group.name, contrast, "all", subject, test));
+                    let mut of = Hypothesis::new(contrast, "all", subject, test, Rules::default());
+                    of.family = group.name.clone();
+                    family.push(of);
                 }
             }
         }
+        adjust(&mut family.iter_mut().collect::<Vec<_>>(), Adjustment::Holm);
+        all.extend(family);
     }
-    adjust(&mut all, Adjustment::Holm);
+    adjust_over_all(&mut all);
     all
 }
 
-fn adjust(all: &mut [Hypothesis], adjustment: Adjustment) {
-    let adjusted = |p: Vec<f64>| match adjustment {
-        Adjustment::Holm => holm(&p),
-        Adjustment::BenjaminiHochberg => benjamini_hochberg(&p),
-    };
-    let mut families: BTreeMap<String, Vec<usize>> = BTreeMap::new();
-    all.iter().enumerate().for_each(|(i, h)| families.entry(h.family.clone()).or_default().push(i));
-    for members in families.into_values() {
-        let different = adjusted(members.iter().map(|&i| all[i].test.sign_flip.p()).collect());
-        let equal = |i: &usize| all[*i].test.equivalence().map(|test| test.p);
-        let tested: Vec<Option<f64>> = members.iter().map(equal).collect();
-        // One participant alone has no test of equivalence, and then adds none to the family.
-        let mut equal = adjusted(tested.iter().flatten().copied().collect()).into_iter();
-        for ((&i, different), tested) in members.iter().zip(different).zip(tested) {
-            let of = &mut all[i];
-            (of.adjusted, of.adjustment, of.family_size) = (different, adjustment, members.len());
-            of.equivalence = tested.and_then(|_| equal.next());
-        }
+/// Adjusts the p of one family; what nobody answered is not among its tests.
+fn adjust(family: &mut [&mut Hypothesis], adjustment: Adjustment) {
+    let mut tested: Vec<&mut &mut Hypothesis> = family.iter_mut().filter(|h| h.is_tested()).collect();
+    let different = adjustment.of(&tested.iter().map(|h| h.test.sign_flip.p()).collect::<Vec<_>>());
+    let equal: Vec<Option<f64>> =
+        tested.iter().map(|h| h.test.equivalence(h.rules.margin).map(|test| test.p)).collect();
+    // One participant alone has no test of equivalence, and then adds none to the family.
+    let mut adjusted_equal = adjustment.of(&equal.iter().flatten().copied().collect::<Vec<_>>()).into_iter();
+    let size = tested.len();
+    for ((of, different), equal) in tested.iter_mut().zip(different).zip(equal) {
+        (of.adjusted, of.adjustment, of.family_size) = (different, adjustment, size);
+        of.equivalence = equal.and_then(|_| adjusted_equal.next());
     }
+}
+
+/// Holm over every test, whatever its family.
+fn adjust_over_all(all: &mut [Hypothesis]) {
+    let tested: Vec<usize> = (0..all.len()).filter(|&i| all[i].is_tested()).collect();
+    let adjusted = holm(&tested.iter().map(|&i| all[i].test.sign_flip.p()).collect::<Vec<_>>());
+    tested.into_iter().zip(adjusted).for_each(|(i, p)| all[i].adjusted_over_all = Some(p));
 }

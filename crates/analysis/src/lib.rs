@@ -45,7 +45,7 @@ mod without_study;
 mod fixture;
 
 pub use answered::Answered;
-pub use ballots::{BallotGroup, as_declared, ballot_groups, ballots};
+pub use ballots::{BallotGroup, ballot_groups, ballots, declared};
 pub use comparison::unexplained_differences;
 pub use figures::{Figure, figures, figures_of_groups, power_figure, sweep_figures};
 pub use fraction::Fraction;

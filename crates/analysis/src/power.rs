@@ -16,7 +16,7 @@ use design::Study;
 use design::forms::{Questionnaire, Role};
 use rand::Rng;
 use rayon::prelude::*;
-use statistics::contrast::{Contrast, Family, Level, contrasts};
+use design::contrast::{Contrast, Family, Level, contrasts};
 use statistics::simulation::{davidson, draw, normal, stream};
 use statistics::{Outcome, benjamini_hochberg, holm, sign_flip_of_counts};
 use std::collections::BTreeMap;

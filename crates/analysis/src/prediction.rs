@@ -1,6 +1,6 @@
 //! What predicts preference? People's choices against measures of the meshes that they were shown.
 //!
-//! For each [`Metric`]: how often the side with the better value was chosen, and a model of choice on the difference,
+//! For each [`Metric`]: how often the item with the better value was chosen, and a model of choice on the difference,
 //! judged on objects that it was not fitted to. Everything is clustered on participants, so intervals speak of other
 //! people before the same pairs; nothing here speaks of other objects beyond what leaving one out shows.
 
@@ -16,19 +16,24 @@ use crate::inputs::Inputs;
 use crate::mesh_set::MeshSet;
 use design::Study;
 use design::record::Purpose;
-use statistics::{Coefficient, FitError, ShownBallot, holm, regression, spearman};
+use statistics::{Coefficient, DeclaredBallot, FitError, ShownBallot, holm, regression, spearman};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// One metric over the study's questions.
 #[derive(Debug, Clone)]
 pub(crate) struct MetricPrediction {
     pub(crate) metric: &'static Metric,
-    /// The left side's advantage in each question, see [`Metric::advantage`]; `None` without values or answers.
+    /// The advantage of each question's first item, which the study lists on the left, see [`Metric::advantage`]; `None`
+    /// without values or answers.
     pub(crate) advantages: Vec<Option<f64>>,
     /// Root mean square of the advantages: the unit of the coefficient.
     pub(crate) unit: f64,
-    /// How often the better side was chosen.
+    /// How often the better item was chosen.
     pub(crate) better: Better,
+    /// Of the answers to pairs with a better and a worse value, how many were given with the better one on the right.
+    pub(crate) better_right: u64,
+    /// How many such answers there are.
+    pub(crate) showings: u64,
     /// The sign-flip p, adjusted by Holm over the metrics.
     pub(crate) adjusted: f64,
     /// Log-odds of being chosen for one `unit` of advantage.
@@ -61,11 +66,16 @@ pub(crate) struct Prediction {
 }
 
 impl Prediction {
-    /// `None` without answers to questions whose meshes were measured.
-    pub(crate) fn of(inputs: &Inputs<'_>, ballots: &[ShownBallot]) -> Option<Self> {
+    /// From the same answers, as they were shown and as the study declares them. `None` without answers to questions whose
+    /// meshes were measured.
+    pub(crate) fn of(
+        inputs: &Inputs<'_>,
+        shown: &[ShownBallot],
+        declared: &[DeclaredBallot],
+    ) -> Option<Self> {
         let study = inputs.study;
         let meshes = MeshSet::of(inputs, Purpose::Stimulus);
-        let answered: BTreeSet<usize> = ballots.iter().map(|ballot| ballot.question()).collect();
+        let answered: BTreeSet<usize> = declared.iter().map(|ballot| ballot.question()).collect();
         let mut metrics = Vec::new();
         for metric in METRICS {
             let advantage = |(q, c): (usize, &design::Comparison)| {
@@ -75,7 +85,7 @@ impl Prediction {
             };
             let advantages: Vec<Option<f64>> = study.comparisons.iter().enumerate().map(advantage).collect();
             if advantages.iter().flatten().any(|advantage| *advantage != 0.0) {
-                metrics.push(MetricPrediction::of(metric, advantages, study, ballots));
+                metrics.push(MetricPrediction::of(metric, advantages, study, (shown, declared)));
             }
         }
         let p: Vec<f64> = metrics.iter().map(|m| m.better.test.sign_flip.p()).collect();
@@ -85,7 +95,7 @@ impl Prediction {
         };
         let joint: Vec<Option<Vec<f64>>> = (0..study.comparisons.len()).map(complete).collect();
         let side: Vec<Option<Vec<f64>>> = joint.iter().map(|x| x.as_ref().map(|_| vec![1.0])).collect();
-        let coefficients = regression(&joint, ballots).and_then(|fit| {
+        let coefficients = regression(&joint, declared).and_then(|fit| {
             (0..metrics.len())
                 .map(|i| fit.coefficient(i))
                 .collect::<Option<Vec<_>>>()
@@ -97,8 +107,8 @@ impl Prediction {
         (!metrics.is_empty()).then(|| Self {
             correlations: correlations(&metrics),
             joint: coefficients,
-            joint_held_out: HeldOut::of(study, &joint, ballots),
-            side_held_out: HeldOut::of(study, &side, ballots),
+            joint_held_out: HeldOut::of(study, &joint, declared),
+            side_held_out: HeldOut::of(study, &side, shown),
             pairs: used.len(),
             meshes,
             independent,
@@ -113,15 +123,26 @@ impl MetricPrediction {
         metric: &'static Metric,
         advantages: Vec<Option<f64>>,
         study: &Study,
-        ballots: &[ShownBallot],
+        (shown, declared): (&[ShownBallot], &[DeclaredBallot]),
     ) -> Self {
         let known: Vec<f64> = advantages.iter().flatten().copied().collect();
         let unit = (known.iter().map(|a| a * a).sum::<f64>() / known.len() as f64).sqrt();
         let x: Vec<Option<Vec<f64>>> = advantages.iter().map(|a| a.map(|a| vec![a / unit])).collect();
-        let coefficient = regression(&x, ballots).and_then(|fit| fit.coefficient(0).ok_or(FitError::Nothing));
+        let coefficient = regression(&x, declared).and_then(|fit| fit.coefficient(0).ok_or(FitError::Nothing));
+        // Whether the better one stood on the right, of each answer to a pair with a better one.
+        let right: Vec<bool> = shown
+            .iter()
+            .zip(declared)
+            .filter_map(|(shown, declared)| {
+                let advantage = advantages[shown.question()].filter(|advantage| *advantage != 0.0)?;
+                Some((advantage > 0.0) == (declared.first() == shown.right()))
+            })
+            .collect();
         Self {
-            better: Better::of(&advantages, ballots),
-            held_out: HeldOut::of(study, &x, ballots),
+            better: Better::of(&advantages, declared),
+            better_right: right.iter().filter(|right| **right).count() as u64,
+            showings: right.len() as u64,
+            held_out: HeldOut::of(study, &x, declared),
             adjusted: 1.0,
             metric,
             unit,

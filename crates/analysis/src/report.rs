@@ -138,11 +138,11 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Repo
     }
     paper.extend(press.figures(&["preference_overall", "answers"]));
     press.section("tables", "The tables of the study", paper);
-    if let Some(Answered { tally, ballots, .. }) = inputs.answers {
+    if let Some(Answered { tally, shown, declared, .. }) = inputs.answers {
         press.section("factors", "What the sums hide", factors::findings(study, tally, &evidence));
         press.add_figures(&["factor_share", "preference_objects"]);
         press.preferences(&evidence);
-        let predicted = Prediction::of(inputs, ballots);
+        let predicted = Prediction::of(inputs, shown, declared);
         press.section(
             "prediction",
             "What predicts preference",

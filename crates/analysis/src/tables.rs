@@ -9,6 +9,7 @@ pub(crate) mod contrasts;
 mod design;
 mod mesh_quality;
 pub(crate) mod models;
+pub(crate) mod omnibus;
 pub(crate) mod power;
 mod prediction;
 pub(crate) mod preferences;
@@ -46,25 +47,26 @@ pub fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
 /// What holds up beside the factors: tests, models, agreement, screening, and what predicts preference.
 fn statistics(inputs: &Inputs<'_>, answers: &Answered) -> Vec<Table> {
     let study = inputs.study;
-    let Answered { ballots, groups, hypotheses, .. } = answers;
-    let recorded = Recorded::of_study(study, &answers.responses, ballots);
+    let Answered { shown, declared, groups, hypotheses, .. } = answers;
+    let everyone = answers.everyone(study);
+    let recorded = Recorded::of_study(study, &answers.responses, &everyone);
     let (models, ([respondents, screened], audited)) = rayon::join(
         || models::model_tables(groups),
         || {
             rayon::join(
                 || {
                     let respondents = agreement::respondents(recorded.ballots(), &recorded.protocol());
-                    [respondents, screened::of_study(study, ballots, hypotheses, &recorded)]
+                    [respondents, screened::of_study(study, answers, &recorded)]
                 },
                 || audit::audit_table(&probes::audit(&recorded.audited(groups))),
             )
         },
     );
-    let mut tables = vec![contrasts::study_tests(hypotheses), contrasts::omnibus(study, ballots)];
+    let mut tables = vec![contrasts::study_tests(hypotheses), omnibus::omnibus(study, declared)];
     tables.extend(models);
-    tables.push(agreement::agreement(study, ballots));
+    tables.push(agreement::agreement(study, declared));
     tables.extend([respondents, screened, audited]);
-    let prediction = Prediction::of(inputs, ballots);
+    let prediction = Prediction::of(inputs, shown, declared);
     tables.extend(prediction.iter().flat_map(|found| prediction::all(study, found)));
     tables.retain(|table| !table.rows.is_empty());
     tables

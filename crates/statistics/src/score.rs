@@ -63,33 +63,42 @@ impl ScoreTest {
         let mut people: Vec<Part> = Vec::new();
         let mut counts = [0; 3];
         for (participant, sign) in answers {
-            add(&mut people, participant, Part { net: sign, answers: 1 });
+            if participant >= people.len() {
+                people.resize(participant + 1, Part::default());
+            }
+            people[participant].add(sign);
             counts[(1 - sign.signum()) as usize] += 1;
         }
         let scores = people.into_iter().filter(|of| of.answers > 0).map(|of| (of.net, of.answers));
         Self::of_scores(scores, Some(counts), 1.0)
     }
 
-    /// Tests a difference: answers are `(participant, whether to the second part, sign)`. Whoever answered nothing of one
-    /// part has no score.
-    pub fn of_difference(answers: impl IntoIterator<Item = (usize, bool, i64)>) -> Self {
-        let mut parts: [Vec<Part>; 2] = Default::default();
-        for (participant, second, sign) in answers {
-            add(&mut parts[usize::from(second)], participant, Part { net: sign, answers: 1 });
+    /// Tests a difference: answers are `(participant, stratum, whether to the second part, sign)`, strata from 0.
+    ///
+    /// A participant's difference is the mean over the strata in which both parts were answered, such as objects, so that who
+    /// stops before the last object does not look like a change of taste. Who answered both parts in no common stratum, as
+    /// where questions are dealt into blocks, has the difference of the two means. Whoever answered nothing of one part has
+    /// no score.
+    pub fn of_difference(answers: impl IntoIterator<Item = (usize, usize, bool, i64)>) -> Self {
+        let mut people: Vec<Vec<[Part; 2]>> = Vec::new();
+        for (participant, stratum, second, sign) in answers {
+            if participant >= people.len() {
+                people.resize(participant + 1, Vec::new());
+            }
+            let strata = &mut people[participant];
+            if stratum >= strata.len() {
+                strata.resize(stratum + 1, Default::default());
+            }
+            strata[stratum][usize::from(second)].add(sign);
         }
-        let [first, second] = &parts;
-        let both = first.iter().zip(second).filter(|(a, b)| a.answers > 0 && b.answers > 0);
-        let scores = both.map(|(a, b)| (a.net * b.answers - b.net * a.answers, a.answers * b.answers));
-        Self::of_scores(scores, None, 2.0)
+        Self::of_scores(people.iter().filter_map(|strata| difference(strata)), None, 2.0)
     }
 
     /// Scores as numerator and denominator.
     fn of_scores(scores: impl Iterator<Item = (i64, i64)>, counts: Option<[u64; 3]>, reach: f64) -> Self {
         let mut alike: BTreeMap<(i64, i64), u64> = BTreeMap::new();
         for (numerator, denominator) in scores {
-            let divisor =
-                greatest_common_divisor(numerator.unsigned_abs(), denominator.unsigned_abs()) as i64;
-            *alike.entry((numerator / divisor, denominator / divisor)).or_default() += 1;
+            *alike.entry(reduced(numerator, denominator)).or_default() += 1;
         }
         let mut groups: Vec<ScoreGroup> = alike
             .into_iter()
@@ -202,12 +211,36 @@ impl Units {
     }
 }
 
-fn add(people: &mut Vec<Part>, participant: usize, answer: Part) {
-    if participant >= people.len() {
-        people.resize(participant + 1, Part::default());
+impl Part {
+    fn add(&mut self, sign: i64) {
+        self.net += sign;
+        self.answers += 1;
     }
-    people[participant].net += answer.net;
-    people[participant].answers += answer.answers;
+}
+
+/// Numerator and denominator of one participant's difference.
+fn difference(strata: &[[Part; 2]]) -> Option<(i64, i64)> {
+    let of = |[a, b]: [Part; 2]| (a.net * b.answers - b.net * a.answers, a.answers * b.answers);
+    let mut both = strata.iter().filter(|[a, b]| a.answers > 0 && b.answers > 0).map(|parts| of(*parts));
+    if let Some(first) = both.next() {
+        let mut count = 1;
+        let (sum, denominator) = both.fold(first, |(sum, denominator), (net, answers)| {
+            count += 1;
+            reduced(sum * answers + net * denominator, denominator * answers)
+        });
+        return Some((sum, denominator * count));
+    }
+    let total = strata.iter().fold([Part::default(); 2], |sum, parts| {
+        [0, 1].map(|i| Part { net: sum[i].net + parts[i].net, answers: sum[i].answers + parts[i].answers })
+    });
+    let [a, b] = total;
+    (a.answers > 0 && b.answers > 0).then(|| of(total))
+}
+
+/// In lowest terms.
+fn reduced(numerator: i64, denominator: i64) -> (i64, i64) {
+    let divisor = greatest_common_divisor(numerator.unsigned_abs(), denominator.unsigned_abs()) as i64;
+    (numerator / divisor, denominator / divisor)
 }
 
 #[cfg(test)]

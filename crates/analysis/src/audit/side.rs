@@ -3,7 +3,7 @@
 use super::stimuli::{Stimuli, for_lower};
 use super::{Audited, Probe, Report};
 use crate::digits::counted;
-use statistics::contrast::ContrastTest;
+use statistics::ScoreTest;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,7 +15,7 @@ pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSe
         return Report::not_answerable(Probe::Side, super::NO_SIDES);
     }
     let controls = audited.ballots.iter().filter(|b| b.left() == b.right());
-    let controls = ContrastTest::of(controls.map(|b| (b.participant(), 1, b.outcome())));
+    let controls = ScoreTest::of(controls.map(|b| (b.participant(), b.outcome().sign())));
     let of_pairs = pull(audited, stimuli, suspects);
     let mut evidence = Vec::new();
     let mut p = Vec::new();

@@ -6,10 +6,10 @@ use super::legend::Swatch;
 use super::marks::Mark;
 use super::{Draft, canvas_with_legend};
 use design::Study;
-use statistics::ShownBallot;
-use statistics::contrast::{Contrast, ContrastTest, Level, Over, contrasts};
+use design::contrast::{Contrast, Level, Over, contrasts};
+use statistics::{DeclaredBallot, ScoreTest};
 
-pub(super) fn by_object(study: &Study, ballots: &[ShownBallot]) -> Option<Draft> {
+pub(super) fn by_object(study: &Study, ballots: &[DeclaredBallot]) -> Option<Draft> {
     let pooled = contrasts(study).into_iter().filter(|c| c.over == Over::All);
     let blocks: Vec<Block> = pooled.filter_map(|contrast| block(study, ballots, &contrast)).collect();
     if blocks.is_empty() {
@@ -34,13 +34,15 @@ pub(super) fn by_object(study: &Study, ballots: &[ShownBallot]) -> Option<Draft>
     Some(Draft { name: "object_interaction", caption, canvas })
 }
 
-fn block(study: &Study, ballots: &[ShownBallot], contrast: &Contrast) -> Option<Block> {
+fn block(study: &Study, ballots: &[DeclaredBallot], contrast: &Contrast) -> Option<Block> {
     let row = |object: Option<usize>| {
-        let inside = |b: &&ShownBallot| object.is_none_or(|o| study.comparisons[b.question()].object == o);
+        let inside = |b: &&DeclaredBallot| object.is_none_or(|o| study.comparisons[b.question()].object == o);
         let own = ballots.iter().filter(inside);
-        let weighted =
-            own.filter_map(|b| Some((b.participant(), *contrast.weights.get(&b.question())?, b.outcome())));
-        let test = ContrastTest::of(weighted);
+        let signed = own.filter_map(|b| {
+            let sign = contrast.parts[0].get(&b.question())?;
+            Some((b.participant(), sign * b.preference().sign()))
+        });
+        let test = ScoreTest::of(signed);
         let [first, ties, second] = test.counts?;
         (test.participants() > 0).then(|| Row {
             label: object.map_or("all objects".into(), |o| study.file.objects[o].name.clone()),
@@ -56,10 +58,9 @@ fn block(study: &Study, ballots: &[ShownBallot], contrast: &Contrast) -> Option<
     (!rows.is_empty()).then_some(Block { heading, rows })
 }
 
-fn label(level: Level) -> &'static str {
+fn label(level: Level) -> String {
     match level {
-        Level::Arrangement(arrangement) => arrangement.label(),
-        Level::Clustering(design::Clustering::None) => "no clustering",
-        Level::Clustering(clustering) => clustering.label(),
+        Level::Clustering(design::Clustering::None) => "no clustering".into(),
+        level => level.label(),
     }
 }

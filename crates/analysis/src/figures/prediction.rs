@@ -9,14 +9,18 @@ use super::{Draft, WIDTH, canvas_with_legend};
 use crate::inputs::Inputs;
 use crate::prediction::{MetricPrediction, Prediction, Scale};
 use design::Study;
-use statistics::{ShownBallot, outcome_counts};
+use statistics::{DeclaredBallot, ShownBallot, outcome_counts};
 
 const ROW: f64 = 320.0;
 const PER_ROW: usize = 3;
 
-pub(super) fn draft(inputs: &Inputs<'_>, ballots: &[ShownBallot]) -> Option<Draft> {
-    let (study, prediction) = (inputs.study, Prediction::of(inputs, ballots)?);
-    let counts = outcome_counts(ballots);
+pub(super) fn draft(
+    inputs: &Inputs<'_>,
+    shown: &[ShownBallot],
+    declared: &[DeclaredBallot],
+) -> Option<Draft> {
+    let (study, prediction) = (inputs.study, Prediction::of(inputs, shown, declared)?);
+    let counts = outcome_counts(declared);
     let mut legend: Vec<(Swatch, String)> = Vec::new();
     for (o, object) in study.file.objects.iter().enumerate() {
         legend.push((Swatch::Mark(Mark::nth(o, true)), object.name.clone()));

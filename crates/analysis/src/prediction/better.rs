@@ -1,15 +1,14 @@
-//! How often the side with the better value was chosen.
+//! How often the item with the better value was chosen.
 
-use statistics::bootstrap::{Resampling, bca};
-use statistics::contrast::ContrastTest;
+use statistics::bootstrap::{Resampling, percentile};
 use statistics::interval::Interval;
-use statistics::{ClusteredShare, ShownBallot, clustered_share};
+use statistics::{ClusteredShare, DeclaredBallot, ScoreTest, clustered_share};
 use std::collections::BTreeMap;
 
 /// Pairs by who won them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct PairCount {
-    /// Won by the side with the better value: more answers for it than for the other.
+    /// Won by the item with the better value: more answers for it than for the other.
     pub(crate) better: usize,
     /// As many answers for either.
     pub(crate) drawn: usize,
@@ -28,31 +27,30 @@ impl PairCount {
 #[derive(Debug, Clone)]
 pub(crate) struct Better {
     /// Each participant's answers for the better value less those for the worse; pairs with equal values left out.
-    pub(crate) test: ContrastTest,
+    pub(crate) test: ScoreTest,
     /// Share of decided answers that went to the better value.
     pub(crate) share: Option<ClusteredShare>,
     /// Pairs by winner.
     pub(crate) pairs: PairCount,
-    /// BCa interval for the share of decided pairs won by the better value, resampling participants.
+    /// Percentile interval for the share of decided pairs won by the better value, resampling participants.
     pub(crate) pairs_interval: Option<Interval>,
-    /// Pairs in which the better value stood on the right.
-    pub(crate) better_right: usize,
 }
 
 impl Better {
-    /// `advantages` are the left sides', by question.
-    pub(crate) fn of(advantages: &[Option<f64>], ballots: &[ShownBallot]) -> Self {
+    /// `advantages` are those of each question's first item.
+    pub(crate) fn of(advantages: &[Option<f64>], ballots: &[DeclaredBallot]) -> Self {
         let weight = |question: usize| match advantages.get(question).copied().flatten() {
             Some(advantage) if advantage > 0.0 => Some(1),
             Some(advantage) if advantage < 0.0 => Some(-1),
             _ => None,
         };
-        let weighted = |b: &ShownBallot| Some((b.participant(), weight(b.question())?, b.outcome()));
+        let signed =
+            |b: &DeclaredBallot| Some((b.participant(), weight(b.question())? * b.preference().sign()));
         let mut people: BTreeMap<usize, BTreeMap<usize, [u64; 2]>> = BTreeMap::new();
         for ballot in ballots {
             let Some(weight) = weight(ballot.question()) else { continue };
             let of = people.entry(ballot.participant()).or_default().entry(ballot.question()).or_default();
-            match weight * ballot.outcome().sign() {
+            match weight * ballot.preference().sign() {
                 1 => of[0] += 1,
                 -1 => of[1] += 1,
                 _ => {}
@@ -67,14 +65,12 @@ impl Better {
         let mut kinds: BTreeMap<&BTreeMap<usize, [u64; 2]>, u64> = BTreeMap::new();
         people.iter().for_each(|of| *kinds.entry(of).or_default() += 1);
         let (kinds, counts): (Vec<_>, Vec<u64>) = kinds.into_iter().unzip();
-        let resampled = bca(&counts, Resampling::default(), |weights| pairs(&kinds, weights).share());
-        let with_values = |q: &usize| weight(*q) == Some(-1);
+        let resampled = percentile(&counts, Resampling::default(), |weights| pairs(&kinds, weights).share());
         Self {
-            test: ContrastTest::of(ballots.iter().filter_map(weighted)),
+            test: ScoreTest::of(ballots.iter().filter_map(signed)),
             share: clustered_share(answers),
             pairs: pairs(&kinds, &counts),
             pairs_interval: resampled.map(|r| r.interval),
-            better_right: (0..advantages.len()).filter(with_values).count(),
         }
     }
 
@@ -106,10 +102,10 @@ fn pairs(kinds: &[&BTreeMap<usize, [u64; 2]>], weights: &[u64]) -> PairCount {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use statistics::Outcome::{self, Left, Right, Tie};
+    use statistics::Preference::{self, First as Left, Neither as Tie, Second as Right};
 
-    fn ballot(participant: usize, question: usize, outcome: Outcome) -> ShownBallot {
-        ShownBallot::new(participant, question, [0, 1], outcome)
+    fn ballot(participant: usize, question: usize, preference: Preference) -> DeclaredBallot {
+        DeclaredBallot::new(participant, question, [0, 1], preference)
     }
 
     #[test]
@@ -128,7 +124,7 @@ mod tests {
         ];
         let found = Better::of(&advantages, &ballots);
         assert_eq!(found.test.counts, Some([3, 1, 2]));
-        assert_eq!(found.test.kinds.iter().map(|kind| kind.net).collect::<Vec<_>>(), [-1, 0, 2]);
+        assert_eq!(found.test.scores(), [-0.5, 0.0, 1.0]);
         // 2 of 2, 1 of 2, 0 of 1: p = 3/5; residuals 0.8, -0.2, -0.6, squares 1.04; se = sqrt(1.5 * 1.04) / 5 = 0.2498.
         let share = found.share.unwrap();
         assert_eq!((share.hits, share.of), (3.0, 5.0));
@@ -136,7 +132,7 @@ mod tests {
         assert!((interval.low - (0.6 - 4.302_653 * 0.249_800)).abs() < 1e-6, "{interval:?}");
         // Question 0 is drawn, 1 : 1; question 1 is won 2 : 1.
         assert_eq!(found.pairs, PairCount { better: 1, drawn: 1, worse: 0 });
-        assert_eq!((found.better_right, found.pair_count()), (1, 2));
+        assert_eq!(found.pair_count(), 2);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use design::Study;
 use statistics::interval::{Interval, t_over_respondents};
-use statistics::{ClusteredShare, Outcome, ShownBallot, clustered_share, regression};
+use statistics::{Answer, ClusteredShare, clustered_share, regression};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Predictions of each object's answers from a fit to the other objects'.
@@ -21,15 +21,16 @@ pub(crate) struct HeldOut {
 }
 
 impl HeldOut {
-    /// `covariates` by question. `None` with fewer than two objects, if a fit has no estimate, or if an outcome that a fit
+    /// `covariates` by question: of the first item where the ballots are about items, of the left side where they are about
+    /// sides. `None` with fewer than two objects, if a fit has no estimate, or if an outcome that a fit
     /// never saw occurs on the object left out (its loss is infinite).
-    pub(crate) fn of(
+    pub(crate) fn of<A: Answer>(
         study: &Study,
         covariates: &[Option<Vec<f64>>],
-        ballots: &[ShownBallot],
+        ballots: &[A],
     ) -> Option<Self> {
-        let object = |b: &ShownBallot| study.comparisons[b.question()].object;
-        let used: Vec<ShownBallot> =
+        let object = |b: &A| study.comparisons[b.question()].object;
+        let used: Vec<A> =
             ballots.iter().filter(|b| covariates[b.question()].is_some()).copied().collect();
         let objects: BTreeSet<usize> = used.iter().map(object).collect();
         if objects.len() < 2 {
@@ -38,19 +39,19 @@ impl HeldOut {
         let mut people: BTreeMap<usize, Person> = BTreeMap::new();
         let mut of_objects = Vec::new();
         for &left_out in &objects {
-            let (own, others): (Vec<ShownBallot>, Vec<ShownBallot>) =
+            let (own, others): (Vec<A>, Vec<A>) =
                 used.iter().partition(|b| object(b) == left_out);
             let fit = regression(covariates, &others).ok()?;
             let ties =
-                others.iter().filter(|b| b.outcome() == Outcome::Tie).count() as f64 / others.len() as f64;
+                others.iter().filter(|b| b.place() == 1).count() as f64 / others.len() as f64;
             let constant = [0.5 * (1.0 - ties), ties, 0.5 * (1.0 - ties)];
             let (mut hits, mut decided) = (0.0, 0.0);
             for ballot in &own {
                 let x = covariates[ballot.question()].as_ref().expect("filtered above");
-                let sign = (fit.log_odds(x) * ballot.outcome().sign() as f64).partial_cmp(&0.0)?;
-                let place = (1 - ballot.outcome().sign()) as usize;
+                let place = ballot.place();
+                let sign = (fit.log_odds(x) * (1.0 - place as f64)).partial_cmp(&0.0)?;
                 let person = people.entry(ballot.participant()).or_default();
-                if ballot.outcome() != Outcome::Tie {
+                if place != 1 {
                     let hit = 0.5 + 0.5 * f64::from(sign as i8);
                     (hits, decided) = (hits + hit, decided + 1.0);
                     (person.hits, person.decided) = (person.hits + hit, person.decided + 1.0);

@@ -8,7 +8,7 @@ use crate::hypotheses::Subject;
 use crate::preference::{GroupFactor, Margin, group_factors, margins, overall};
 use crate::tally::Tally;
 use design::{Arrangement, Method, Study};
-use statistics::contrast::{Level, Over};
+use design::contrast::{Level, Over};
 
 pub(super) fn findings(study: &Study, tally: &Tally, evidence: &Evidence<'_>) -> Vec<Block> {
     let factors = group_factors(study, tally, |_| true);

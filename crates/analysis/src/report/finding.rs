@@ -3,7 +3,7 @@
 use super::words::{against, capital, counted, interval, number, p};
 use crate::hypotheses::{ALPHA, Conclusion, Hypothesis, Subject};
 use statistics::MARGIN;
-use statistics::contrast::ContrastTest;
+use statistics::ScoreTest;
 use statistics::interval::{Interval, unanimous};
 
 /// What a statement is worth.
@@ -140,7 +140,7 @@ impl Finding {
 }
 
 /// `Mean score 0.17 (95 % t interval 0.06 to 0.29, 18 participants)`, turned round for the second.
-pub(super) fn score(test: &ContrastTest, towards_first: bool) -> String {
+pub(super) fn score(test: &ScoreTest, towards_first: bool) -> String {
     let sign = if towards_first { 1.0 } else { -1.0 };
     let people = counted(test.participants(), "participant");
     let turned = test.interval.map(|i| i.cut(-test.reach, test.reach)).map(|i| match towards_first {
@@ -173,7 +173,7 @@ fn equivalence(hypothesis: &Hypothesis) -> String {
 }
 
 /// How large a preference is not ruled out.
-fn not_equal(test: &ContrastTest) -> String {
+fn not_equal(test: &ScoreTest) -> String {
     let Some(i) = test.interval else { return " Not significant is not equal.".into() };
     let room = |end: f64| number(end.abs().min(1.0), 2);
     match (i.low < 0.0, i.high > 0.0) {

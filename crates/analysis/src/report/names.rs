@@ -2,12 +2,16 @@
 
 use super::Evidence;
 use crate::hypotheses::{Hypothesis, Subject};
-use design::{Arrangement, Clustering, Study};
-use statistics::contrast::{Level, Over};
+use design::{Arrangement, Clustering, Method, Study};
+use design::contrast::{Level, Over};
 
 /// A level as a noun: `edge collapse`, `the body-centred lattice`.
-pub(super) fn level(level: Level) -> &'static str {
+pub(super) fn level(level: Level) -> String {
     match level {
+        Level::Method(Method { arrangement, clustering }) => {
+            let clustering = self::level(Level::Clustering(clustering));
+            return format!("{clustering} on {}", self::level(Level::Arrangement(arrangement)));
+        }
         Level::Arrangement(Arrangement::BodyCentred) => "the body-centred lattice",
         Level::Arrangement(Arrangement::SimpleCubic) => "the simple cubic lattice",
         Level::Arrangement(Arrangement::FiveTetrahedra) => "the lattice of five tetrahedra a cube",
@@ -17,6 +21,7 @@ pub(super) fn level(level: Level) -> &'static str {
         Level::Clustering(Clustering::EdgeCollapse) => "edge collapse",
         Level::Clustering(Clustering::IntegratedCollapse) => "integrated clustering with collapse",
     }
+    .into()
 }
 
 /// Where, with a space before it: ` on the body-centred lattice`, ` without clustering`.
@@ -24,7 +29,7 @@ pub(super) fn within(level: Level) -> String {
     match level {
         Level::Clustering(Clustering::None) => " without clustering".into(),
         Level::Clustering(_) => format!(" with {}", self::level(level)),
-        Level::Arrangement(_) => format!(" on {}", self::level(level)),
+        Level::Arrangement(_) | Level::Method(_) => format!(" on {}", self::level(level)),
     }
 }
 
@@ -35,8 +40,9 @@ pub(super) fn over(study: &Study, over: Over) -> String {
         Over::Within(level) => within(level),
         Over::Object(object) => format!(" on the {}", study.file.objects[object].name),
         Over::Difference(a, b) => format!("{} rather than{}", within(a), within(b)),
-        Over::AgainstOthers(object) => {
-            format!(" on the {} rather than elsewhere", study.file.objects[object].name)
+        Over::ObjectDifference(a, b) => {
+            let [a, b] = [a, b].map(|object| study.file.objects[object].name.as_str());
+            format!(" on the {a} rather than on the {b}")
         }
     }
 }

@@ -3,7 +3,6 @@
 use super::allowance;
 use rayon::prelude::*;
 use statistics::bootstrap::{Resampling, bca_each};
-use statistics::contrast::ContrastTest;
 use statistics::interval::Interval;
 use statistics::simulation::{Plan, Population, simulate, stream};
 use statistics::{
@@ -116,8 +115,8 @@ fn pair(by: f64) -> Population {
     Population { worths: vec![by, 0.0], ..Population::indifferent(2, SD) }
 }
 
-fn contrast(ballots: &[ShownBallot]) -> ContrastTest {
-    ContrastTest::of(
+fn contrast(ballots: &[ShownBallot]) -> ScoreTest {
+    ScoreTest::of(
         ballots.iter().map(|b| (b.participant(), if b.left() == 0 { 1 } else { -1 }, b.outcome())),
     )
 }
@@ -224,7 +223,7 @@ fn three_items(studies: u64, seed: u64, worths: [f64; 3], name: &str) -> Vec<Rat
                     sides if sides == (j, i) => Some((b.participant(), -1, b.outcome())),
                     _ => None,
                 };
-                ContrastTest::of(ballots.iter().filter_map(towards)).sign_flip.p()
+                ScoreTest::of(ballots.iter().filter_map(towards)).sign_flip.p()
             });
             let any = holm(&p).into_iter().any(|p| p <= LEVEL);
             let mut scores = vec![vec![0.0; 3]; PEOPLE];

@@ -1,15 +1,14 @@
 //! Agreement of participants with each other and with themselves.
 
-use crate::ballots::as_declared;
 use crate::table::{Cell, Table};
 use design::Study;
 use statistics::{
-    Metric, Protocol, ShownBallot, Triads, agreement as kendall, alpha, outcome_counts, screening_with,
+    DeclaredBallot, Metric, Protocol, ShownBallot, Triads, agreement as kendall, alpha, outcome_counts, screening_with,
     triads, zetas,
 };
 
 /// All questions, then each comparison group: agreement between participants, and circular triads within.
-pub(super) fn agreement(study: &Study, ballots: &[ShownBallot]) -> Table {
+pub(super) fn agreement(study: &Study, ballots: &[DeclaredBallot]) -> Table {
     let mut table = Table::new(
         "agreement",
         "Agreement between participants, and consistency of each",
@@ -31,10 +30,9 @@ pub(super) fn agreement(study: &Study, ballots: &[ShownBallot]) -> Table {
             ("mean_zeta", "mean zeta"),
         ],
     );
-    let ballots = as_declared(study, ballots);
     for group in std::iter::once(None).chain((0..study.groups.len()).map(Some)) {
-        let inside = |b: &&ShownBallot| group.is_none_or(|g| study.comparisons[b.question()].group == g);
-        let own: Vec<ShownBallot> = ballots.iter().filter(inside).copied().collect();
+        let inside = |b: &&DeclaredBallot| group.is_none_or(|g| study.comparisons[b.question()].group == g);
+        let own: Vec<DeclaredBallot> = ballots.iter().filter(inside).copied().collect();
         let counts: Vec<[u64; 3]> =
             outcome_counts(&own).into_iter().filter(|counts| counts.iter().sum::<u64>() > 0).collect();
         if counts.is_empty() {
@@ -73,12 +71,12 @@ pub(super) fn agreement(study: &Study, ballots: &[ShownBallot]) -> Table {
 }
 
 /// Triads within one object and group, and Kendall's zeta of whoever decided all pairs there: how many, and their sum.
-fn consistency(study: &Study, ballots: &[ShownBallot]) -> (Triads, (u64, f64)) {
-    let scope = |b: &ShownBallot| {
+fn consistency(study: &Study, ballots: &[DeclaredBallot]) -> (Triads, (u64, f64)) {
+    let scope = |b: &DeclaredBallot| {
         let comparison = &study.comparisons[b.question()];
         comparison.object * study.groups.len() + comparison.group
     };
-    let mut scopes: Vec<Vec<ShownBallot>> = vec![Vec::new(); study.file.objects.len() * study.groups.len()];
+    let mut scopes: Vec<Vec<DeclaredBallot>> = vec![Vec::new(); study.file.objects.len() * study.groups.len()];
     ballots.iter().for_each(|b| scopes[scope(b)].push(*b));
     scopes.iter().fold((Triads::default(), (0, 0.0)), |(sum, (n, total)), own| {
         let (tournaments, zetas) = zetas(own);

@@ -69,7 +69,7 @@ fn metrics(prediction: &Prediction) -> Table {
             Cell::number((decided > 0).then(|| better.pairs.better as f64 / decided as f64), 3),
             Cell::number(better.pairs_interval.map(|i| i.low), 3),
             Cell::number(better.pairs_interval.map(|i| i.high), 3),
-            Cell::count(better.better_right as u64),
+            Cell::count(XX as u64),
             Cell::Number(found.unit, 4),
             Cell::number(coefficient.map(|c| c.estimate), 3),
             Cell::number(coefficient.map(|c| c.se), 3),

@@ -1,24 +1,26 @@
 //! The tests with everybody, and without those who broke a rule: nobody is left out silently.
 
-use crate::ballots::BallotGroup;
-use crate::hypotheses::{self, Hypothesis, Subject};
+use crate::answered::Answered;
+use crate::ballots::{BallotGroup, declared};
+use crate::hypotheses::{self, Hypothesis};
 use crate::recorded::Recorded;
 use crate::table::{Cell, Table};
 use design::Study;
-use statistics::{Flag, ShownBallot, screening_with};
+use statistics::{DeclaredBallot, Flag, screening_with};
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Every contrast of a study; single questions are left out. `hypotheses` are those of all ballots, `recorded` is what is
-/// screened.
-pub(super) fn of_study(
-    study: &Study,
-    ballots: &[ShownBallot],
-    hypotheses: &[Hypothesis],
-    recorded: &Recorded<'_>,
-) -> Table {
-    let contrasts = hypotheses.iter().filter(|h| !matches!(h.subject, Subject::Question(_)));
-    screened(recorded, &contrasts.collect::<Vec<_>>(), |keep| {
-        let kept: Vec<ShownBallot> = ballots.iter().filter(|b| keep(b)).copied().collect();
+/// Every contrast of a study with everybody, those included whom the study leaves out; single questions are left out.
+/// `recorded` is what is screened.
+pub(super) fn of_study(study: &Study, answers: &Answered, recorded: &Recorded<'_>) -> Table {
+    let everyone = match answers.excluded.is_empty() {
+        true => Cow::Borrowed(&answers.declared),
+        false => Cow::Owned(declared(study, &answers.everyone(study))),
+    };
+    let own = hypotheses::of_contrasts(study, &everyone);
+    screened(recorded, &own.iter().collect::<Vec<_>>(), |keep| {
+        let kept: Vec<DeclaredBallot> =
+            everyone.iter().filter(|b| keep(b.participant())).copied().collect();
         hypotheses::of_contrasts(study, &kept)
     })
 }
@@ -29,7 +31,7 @@ pub fn screened_pair_tests(groups: &[BallotGroup], recorded: &Recorded<'_>) -> T
     let hypotheses = hypotheses::of_groups(groups);
     screened(recorded, &hypotheses.iter().collect::<Vec<_>>(), |keep| {
         let kept = |group: &BallotGroup| BallotGroup {
-            ballots: group.ballots.iter().filter(|b| keep(b)).copied().collect(),
+            ballots: group.ballots.iter().filter(|b| keep(b.participant())).copied().collect(),
             ..group.clone()
         };
         hypotheses::of_groups(&groups.iter().map(kept).collect::<Vec<_>>())
@@ -39,7 +41,7 @@ pub fn screened_pair_tests(groups: &[BallotGroup], recorded: &Recorded<'_>) -> T
 fn screened(
     recorded: &Recorded<'_>,
     all: &[&Hypothesis],
-    tested: impl Fn(&dyn Fn(&ShownBallot) -> bool) -> Vec<Hypothesis>,
+    tested: impl Fn(&dyn Fn(usize) -> bool) -> Vec<Hypothesis>,
 ) -> Table {
     let mut table = Table::new(
         "screened",
@@ -74,13 +76,11 @@ fn screened(
         broken.remove(&None);
     }
     for (rule, people) in broken {
-        let others = tested(&|b: &ShownBallot| !people.contains(&b.participant()));
-        let same = |a: &Hypothesis, b: &Hypothesis| {
-            (&a.family, &a.contrast, &a.scope) == (&b.family, &b.contrast, &b.scope)
-        };
-        for &with in all {
-            let without = others.iter().find(|other| same(with, other));
-            let answered = without.filter(|other| other.test.participants() > 0);
+        let others = tested(&|participant| !people.contains(&participant));
+        // What nobody answered at all does not come out otherwise without anybody.
+        for &with in all.iter().filter(|with| with.is_tested()) {
+            let without = others.iter().find(|other| with.is_about_the_same(other));
+            let answered = without.filter(|other| other.is_tested());
             table.push(vec![
                 Cell::text(rule.map_or("any", Flag::code)),
                 Cell::count(people.len() as u64),

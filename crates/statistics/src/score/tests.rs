@@ -45,6 +45,24 @@ fn differences_need_an_answer_to_both_parts() {
     assert_eq!(test.reach, 2.0);
 }
 
+#[test]
+fn who_stops_early_tells_nothing_about_differences() {
+    // The first part is liked on stratum 0 alone, and so is the second: that is no difference.
+    let row = |person, strata: usize| {
+        (0..strata).flat_map(move |stratum| {
+            let sign = if stratum == 0 { 1 } else { -1 };
+            [(person, stratum, false, sign), (person, stratum, true, sign)]
+        })
+    };
+    let stopped = row(0, 2).chain([(0, 2, false, -1)]);
+    let test = ScoreTest::of_difference(stopped.chain(row(1, 3)));
+    assert_eq!(test.scores(), [0.0, 0.0]);
+    // Blocks: no stratum with both parts. (1 - 1/2) and, with both parts in stratum 1, -1 - 1.
+    let blocks = [(0, 0, false, 1), (0, 1, true, 1), (0, 2, true, 0)];
+    let matched = [(1, 0, false, 1), (1, 1, false, -1), (1, 1, true, 1)];
+    assert_eq!(ScoreTest::of_difference(blocks.into_iter().chain(matched)).scores(), [-2.0, 0.5]);
+}
+
 /// p of every pattern of signs, in fractions of one common denominator.
 fn enumerated(scores: &[(i128, i128)]) -> f64 {
     let common: i128 = scores.iter().map(|of| of.1).product();
