@@ -11,6 +11,7 @@
 mod check;
 pub mod code_names;
 pub mod config;
+pub mod contrast;
 mod date;
 pub mod forms;
 pub mod lint;

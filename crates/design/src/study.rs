@@ -9,7 +9,7 @@ use crate::forms::Questionnaire;
 use crate::machine::CpuProfile;
 use crate::method::{ConfigurationId, Method};
 use crate::published::{BenchmarkRow, Claim, PreferenceCell};
-use checks::{check_forms, check_objects, check_sections, check_stills};
+use checks::{check_forms, check_objects, check_primary, check_sections, check_stills};
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 
@@ -134,7 +134,7 @@ impl Study {
                 claims: published_table(&checker, "published.claims", &section.claims)?,
             },
         };
-        Ok(Self {
+        let study = Self {
             path: path.into(),
             configurations,
             comparisons,
@@ -143,7 +143,9 @@ impl Study {
             responses,
             published,
             file,
-        })
+        };
+        check_primary(&checker, &study)?;
+        Ok(study)
     }
 
     /// The object of a configuration.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FamilyRule {
-    /// Each kind of contrast by itself, see `contrast::Family`.
+    /// Each kind of contrast by itself, see [`Family`](crate::contrast::Family).
     #[default]
     ByKind,
     /// All contrasts of the study.
@@ -60,8 +60,7 @@ pub struct AnalysisSection {
     pub margin: f64,
     /// Which tests are corrected together.
     pub families: FamilyRule,
-    /// The contrasts that matter most, such as `B-S` or `B-S within U`: a family of their own, corrected first. Whether the
-    /// study has them is not checked here.
+    /// The contrasts that matter most, such as `B-S` or `B-S within U`: a family of their own, corrected first.
     pub primary: Vec<String>,
     /// The rules whose breakers the main analysis leaves out; empty if everybody counts.
     pub exclude: Vec<Exclusion>,

@@ -1,9 +1,10 @@
 //! What may stand in each section of a study file.
 
-use super::Configuration;
+use super::{Configuration, Study};
 use crate::Arrangement;
 use crate::check::{Checker, ConfigError, short};
 use crate::config::{FieldSection, ObjectSection, Positions, StudyFile, SweepSection};
+use crate::contrast::contrasts;
 
 /// Everything that does not need another section to judge.
 pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigError> {
@@ -264,4 +265,20 @@ pub(super) fn check_forms(
         }
     }
     Ok(())
+}
+
+/// Whether the study has the contrasts that it calls primary.
+pub(super) fn check_primary(c: &Checker<'_>, study: &Study) -> Result<(), ConfigError> {
+    let primary = &study.file.analysis.primary;
+    if primary.is_empty() {
+        return Ok(());
+    }
+    let known: Vec<String> = contrasts(study).iter().map(ToString::to_string).collect();
+    match primary.iter().position(|name| !known.contains(name)) {
+        None => Ok(()),
+        Some(i) => {
+            let limit = format!("is not a contrast of this study, which has: {}", known.join(", "));
+            c.refuse(format!("analysis.primary[{i}]"), &primary[i], limit)
+        }
+    }
 }
