@@ -43,7 +43,8 @@ pub fn ballots(study: &Study, answers: &Responses) -> Vec<ShownBallot> {
 /// whichever side it stood on.
 pub fn declared(study: &Study, ballots: &[ShownBallot]) -> Vec<DeclaredBallot> {
     let methods = study.methods();
-    let item = |method: Method| methods.iter().position(|&m| m == method).expect("crossed from these methods");
+    let item =
+        |method: Method| methods.iter().position(|&m| m == method).expect("crossed from these methods");
     let first: Vec<usize> = study.comparisons.iter().map(|c| item(c.left.method)).collect();
     ballots.iter().map(|ballot| ballot.declared(first[ballot.question()])).collect()
 }

@@ -121,7 +121,8 @@ pub(crate) struct Hypothesis {
     /// participant.
     pub(crate) equivalence: Option<f64>,
     pub(crate) adjustment: Adjustment,
-    /// How many hypotheses of the family were tested.
+    /// The name of what p is corrected with, and how many hypotheses of that were tested.
+    pub(crate) corrected_with: String,
     pub(crate) family_size: usize,
     pub(crate) rules: Rules,
 }
@@ -138,6 +139,7 @@ impl Hypothesis {
             adjusted_over_all: None,
             equivalence: None,
             adjustment: Adjustment::Holm,
+            corrected_with: String::new(),
             family_size: 1,
             rules,
         }
@@ -189,7 +191,13 @@ pub(crate) fn of_contrasts(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hyp
     let families = families(&contrasts, &study.file.analysis);
     let of_contrast = |contrast: &Contrast| {
         let subject = Subject::Contrast { levels: contrast.levels, over: contrast.over };
-        Hypothesis::new(contrast.name.clone(), &contrast.scope, subject, test(study, contrast, ballots), rules)
+        Hypothesis::new(
+            contrast.name.clone(),
+            &contrast.scope,
+            subject,
+            test(study, contrast, ballots),
+            rules,
+        )
     };
     let mut all: Vec<Hypothesis> = contrasts.par_iter().map(of_contrast).collect();
     for family in &families {
@@ -200,6 +208,7 @@ pub(crate) fn of_contrasts(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hyp
                 PRIMARY => PRIMARY.into(),
                 _ => kind.into(),
             };
+            all[member].corrected_with = family.name.into();
         }
         let mut members: Vec<&mut Hypothesis> = all
             .iter_mut()
@@ -247,17 +256,19 @@ pub(crate) fn test(study: &Study, contrast: &Contrast, ballots: &[DeclaredBallot
     let both = [false, true].into_iter().flat_map(|second| {
         part(usize::from(second)).map(move |(person, question, sign)| (person, question, second, sign))
     });
-    ScoreTest::of_difference(both.map(|(person, question, second, sign)| (person, stratum(question), second, sign)))
+    ScoreTest::of_difference(
+        both.map(|(person, question, second, sign)| (person, stratum(question), second, sign)),
+    )
 }
 
 fn of_questions(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hypothesis> {
     let rules = Rules::of(&study.file.analysis);
     let of_question = |(q, comparison): (usize, &design::Comparison)| {
-        let test =
-            ScoreTest::of(of_one(ballots, q).iter().map(|b| (b.participant(), b.preference().sign())));
+        let test = ScoreTest::of(of_one(ballots, q).iter().map(|b| (b.participant(), b.preference().sign())));
         let contrast = format!("{}-{}", comparison.left.method, comparison.right.method);
         let mut of = Hypothesis::new(contrast, &comparison.question, Subject::Question(q), test, rules);
         of.family = "questions".into();
+        of.corrected_with = "questions".into();
         of
     };
     let mut all: Vec<Hypothesis> = study.comparisons.par_iter().enumerate().map(of_question).collect();
@@ -289,6 +300,7 @@ pub(crate) fn of_groups(groups: &[BallotGroup]) -> Vec<Hypothesis> {
                     let subject = Subject::Items { group: group.name.clone(), first, second };
                     let mut of = Hypothesis::new(contrast, "all", subject, test, Rules::default());
                     of.family = group.name.clone();
+                    of.corrected_with = group.name.clone();
                     family.push(of);
                 }
             }

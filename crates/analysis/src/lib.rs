@@ -23,6 +23,7 @@ mod figures;
 mod fraction;
 mod hypotheses;
 mod inputs;
+mod leave_one_out;
 mod mesh_set;
 mod panel;
 pub mod power;

@@ -13,10 +13,10 @@
 mod tests;
 
 use design::Study;
+use design::contrast::{Contrast, Family, Level, contrasts};
 use design::forms::{Questionnaire, Role};
 use rand::Rng;
 use rayon::prelude::*;
-use design::contrast::{Contrast, Family, Level, contrasts};
 use statistics::simulation::{davidson, draw, normal, stream};
 use statistics::{Outcome, benjamini_hochberg, holm, sign_flip_of_counts};
 use std::collections::BTreeMap;

@@ -128,7 +128,8 @@ impl MetricPrediction {
         let known: Vec<f64> = advantages.iter().flatten().copied().collect();
         let unit = (known.iter().map(|a| a * a).sum::<f64>() / known.len() as f64).sqrt();
         let x: Vec<Option<Vec<f64>>> = advantages.iter().map(|a| a.map(|a| vec![a / unit])).collect();
-        let coefficient = regression(&x, declared).and_then(|fit| fit.coefficient(0).ok_or(FitError::Nothing));
+        let coefficient =
+            regression(&x, declared).and_then(|fit| fit.coefficient(0).ok_or(FitError::Nothing));
         // Whether the better one stood on the right, of each answer to a pair with a better one.
         let right: Vec<bool> = shown
             .iter()

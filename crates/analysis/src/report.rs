@@ -4,6 +4,7 @@
 //! sentence is kept for a study: each is chosen by a test's conclusion and filled with its counts, so another study, or
 //! answers without a study, get other sentences.
 
+mod asked;
 mod bearing;
 mod benchmark;
 mod checks;
@@ -24,12 +25,17 @@ pub use finding::{Finding, Standing};
 use crate::answered::Answered;
 use crate::ballots::BallotGroup;
 use crate::figures::Figure;
-use crate::hypotheses::{self, Hypothesis};
+use crate::hypotheses::{self, Hypothesis, Rules};
 use crate::inputs::Inputs;
 use crate::prediction::Prediction;
+use crate::recorded::Recorded;
 use crate::table::Table;
+use crate::tables::omnibus::{self, Omnibus};
 use design::Study;
+use responses::Responses;
+use statistics::DeclaredBallot;
 use statistics::ShownBallot;
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use words::{counted, list};
 
@@ -73,40 +79,78 @@ pub enum Block {
 /// What sentences are made from.
 struct Evidence<'a> {
     study: Option<&'a Study>,
-    ballots: &'a [ShownBallot],
+    /// Answers to comparisons, by the sides that people saw.
+    shown: &'a [ShownBallot],
+    /// The same answers, about items.
+    declared: Cow<'a, [DeclaredBallot]>,
+    /// Controls and repeats as well, and who is left out of everything else.
+    everything: Cow<'a, [ShownBallot]>,
+    /// By question, what it shows its items on.
+    scenes: Vec<usize>,
+    /// How many answers were asked for: what stands on people's forms.
+    asked: usize,
+    /// How many people are left out, by a rule that the study declares.
+    excluded: usize,
     groups: &'a [BallotGroup],
     hypotheses: &'a [Hypothesis],
+    omnibus: Vec<Omnibus>,
 }
 
 impl<'a> Evidence<'a> {
     fn of_study(study: &'a Study, answers: Option<&'a Answered>) -> Self {
-        let Some(Answered { ballots, groups, hypotheses, .. }) = answers else {
-            return Self { study: Some(study), ballots: &[], groups: &[], hypotheses: &[] };
+        let nothing = Self {
+            study: Some(study),
+            shown: &[],
+            declared: Cow::Borrowed(&[]),
+            everything: Cow::Borrowed(&[]),
+            scenes: Vec::new(),
+            asked: 0,
+            excluded: 0,
+            groups: &[],
+            hypotheses: &[],
+            omnibus: Vec::new(),
         };
-        Self { study: Some(study), ballots, groups, hypotheses }
+        let Some(answered) = answers else { return nothing };
+        let everyone = answered.everyone(study);
+        let recorded = Recorded::of_study(study, &answered.responses, &everyone);
+        Self {
+            shown: &answered.shown,
+            declared: Cow::Borrowed(&answered.declared),
+            scenes: recorded.protocol().scenes.to_vec(),
+            everything: Cow::Owned(recorded.ballots().to_vec()),
+            asked: asked::asked(study, answered),
+            excluded: answered.excluded.len(),
+            groups: &answered.groups,
+            hypotheses: &answered.hypotheses,
+            omnibus: omnibus::tests(study, &answered.declared),
+            ..nothing
+        }
+    }
+
+    /// What decides conclusions.
+    fn rules(&self) -> Rules {
+        self.study.map_or_else(Rules::default, |study| Rules::of(&study.file.analysis))
     }
 
     fn participants(&self) -> usize {
-        self.ballots.iter().map(|b| b.participant()).collect::<BTreeSet<_>>().len()
+        self.shown.iter().map(|b| b.participant()).collect::<BTreeSet<_>>().len()
     }
 
     fn questions(&self) -> usize {
-        self.ballots.iter().map(|b| b.question()).collect::<BTreeSet<_>>().len()
+        self.shown.iter().map(|b| b.question()).collect::<BTreeSet<_>>().len()
     }
 
-    /// Every hypothesis on some of the ballots.
-    fn tested(&self, ballots: &[ShownBallot]) -> Vec<Hypothesis> {
+    /// Every hypothesis on the answers of those whom `keep` picks.
+    fn tested(&self, keep: impl Fn(usize) -> bool) -> Vec<Hypothesis> {
         match self.study {
-            Some(study) => hypotheses::of_study(study, ballots),
+            Some(study) => {
+                let kept: Vec<DeclaredBallot> =
+                    self.declared.iter().filter(|b| keep(b.participant())).copied().collect();
+                hypotheses::of_study(study, &kept)
+            }
             None => {
-                let kept: BTreeSet<usize> = ballots.iter().map(|b| b.participant()).collect();
                 let some = |group: &BallotGroup| BallotGroup {
-                    ballots: group
-                        .ballots
-                        .iter()
-                        .filter(|b| kept.contains(&b.participant()))
-                        .copied()
-                        .collect(),
+                    ballots: group.ballots.iter().filter(|b| keep(b.participant())).copied().collect(),
                     ..group.clone()
                 };
                 hypotheses::of_groups(&self.groups.iter().map(some).collect::<Vec<_>>())
@@ -159,11 +203,29 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Repo
     press.finish(title, lead)
 }
 
-/// The report of answers without a study: groups of items, as [`report`].
-pub fn report_of_groups(title: &str, groups: &[BallotGroup], tables: &[Table], figures: &[Figure]) -> Report {
-    let ballots: Vec<ShownBallot> = groups.iter().flat_map(|group| group.ballots.iter().copied()).collect();
+/// The report of answers without a study, as [`report`]; `groups` are their [`open_groups`](crate::open_groups).
+pub fn report_of_groups(
+    title: &str,
+    answers: &Responses,
+    groups: &[BallotGroup],
+    tables: &[Table],
+    figures: &[Figure],
+) -> Report {
+    let shown: Vec<ShownBallot> = groups.iter().flat_map(|group| group.ballots.iter().copied()).collect();
     let hypotheses = hypotheses::of_groups(groups);
-    let evidence = Evidence { study: None, ballots: &ballots, groups, hypotheses: &hypotheses };
+    let recorded = Recorded::without_study(answers, None);
+    let evidence = Evidence {
+        study: None,
+        declared: shown.iter().map(ShownBallot::by_item).collect(),
+        everything: Cow::Borrowed(recorded.ballots()),
+        scenes: recorded.protocol().scenes.to_vec(),
+        asked: 0,
+        excluded: 0,
+        shown: &shown,
+        groups,
+        hypotheses: &hypotheses,
+        omnibus: Vec::new(),
+    };
     let mut press = Press::new(tables, figures);
     press.preferences(&evidence);
     press.finish(title.into(), lead(&evidence, tables))
@@ -171,7 +233,7 @@ pub fn report_of_groups(title: &str, groups: &[BallotGroup], tables: &[Table], f
 
 fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
     let (people, questions) = (evidence.participants(), evidence.questions());
-    let answers = evidence.ballots.len();
+    let answers = evidence.shown.len();
     if answers == 0 {
         let controls = tables.iter().find(|table| table.name == "respondents").map_or(0, checks::controls);
         return vec![match controls {
@@ -192,19 +254,28 @@ fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
         counted(answers, "answer"),
         counted(questions, "question"),
     )];
-    let missing = (people * questions).saturating_sub(answers);
+    let asked = if evidence.study.is_some() { evidence.asked } else { people * questions };
+    let missing = asked.saturating_sub(answers);
     if missing > 0 {
         lead[0].push_str(&format!(
-            " {missing} of the {} possible answers {} not given; people count as far as they answered.",
-            people * questions,
+            " {missing} of the {asked} answers that were asked for {} not given; people count as far as they answered.",
             if missing == 1 { "was" } else { "were" }
         ));
     }
+    if evidence.excluded > 0 {
+        lead[0].push_str(&format!(
+            " {} more broke a rule whose breakers the study leaves out.",
+            words::capital(&counted(evidence.excluded, "participant"))
+        ));
+    }
     lead.push(
-        "One person's answers hang together, so the person is the unit of every test and interval here. A person's score \
-         is the answers for the one less the answers for the other, over all answers: 1 is always the one, \u{2212}1 always the \
-         other. A result holds if its p, corrected for the tests of its family, is at most 0.05."
-            .into(),
+        format!(
+            "One person's answers hang together, so the person is the unit of every test and interval here. A person's score \
+             is the answers for the one less the answers for the other, divided by the number of that person's answers: 1 is \
+             always the one, \u{2212}1 always the other. A result holds if its p, corrected for the tests of its family, is at \
+             most {}.",
+            evidence.rules().level
+        ),
     );
     lead
 }
@@ -257,7 +328,7 @@ impl Press {
 
     /// What answers alone can tell.
     fn preferences(&mut self, evidence: &Evidence<'_>) {
-        if evidence.ballots.is_empty() {
+        if evidence.shown.is_empty() {
             return;
         }
         let sorted = preference::findings(evidence);

@@ -4,8 +4,8 @@ use crate::ballots::{BallotGroup, outcome};
 use crate::recorded::Recorded;
 use crate::table::{Cell, Table};
 use crate::{audit, tables};
-use statistics::interval;
 use responses::Responses;
+use statistics::interval;
 use statistics::{Model, ShownBallot};
 use std::collections::BTreeMap;
 

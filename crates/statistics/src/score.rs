@@ -22,6 +22,8 @@ pub struct ScoreTest {
     pub counts: Option<[u64; 3]>,
     /// Participants with a score, those with the same score together; ascending by score.
     pub groups: Vec<ScoreGroup>,
+    /// By participant, the place of its group; [`NO_SCORE`] without a score.
+    places: Vec<u32>,
     /// The exact test of the scores. Its `net` is their sum in a unit that makes them whole numbers.
     pub sign_flip: SignFlip,
     /// How far scores can be from zero: 1, and 2 for differences.
@@ -31,6 +33,9 @@ pub struct ScoreTest {
     /// Interval for it over participants: [`of_mean_score`].
     pub interval: Option<Interval>,
 }
+
+/// The place of whoever has no score.
+const NO_SCORE: u32 = u32::MAX;
 
 /// Participants with the same score, a fraction in lowest terms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,7 +74,7 @@ impl ScoreTest {
             people[participant].add(sign);
             counts[(1 - sign.signum()) as usize] += 1;
         }
-        let scores = people.into_iter().filter(|of| of.answers > 0).map(|of| (of.net, of.answers));
+        let scores = people.iter().map(|of| (of.answers > 0).then_some((of.net, of.answers)));
         Self::of_scores(scores, Some(counts), 1.0)
     }
 
@@ -91,23 +96,31 @@ impl ScoreTest {
             }
             strata[stratum][usize::from(second)].add(sign);
         }
-        Self::of_scores(people.iter().filter_map(|strata| difference(strata)), None, 2.0)
+        Self::of_scores(people.iter().map(|strata| difference(strata)), None, 2.0)
     }
 
-    /// Scores as numerator and denominator.
-    fn of_scores(scores: impl Iterator<Item = (i64, i64)>, counts: Option<[u64; 3]>, reach: f64) -> Self {
+    /// Scores by participant, as numerator and denominator.
+    fn of_scores(
+        scores: impl Iterator<Item = Option<(i64, i64)>>,
+        counts: Option<[u64; 3]>,
+        reach: f64,
+    ) -> Self {
+        let scores: Vec<Option<(i64, i64)>> = scores
+            .map(|score| score.map(|(numerator, denominator)| reduced(numerator, denominator)))
+            .collect();
         let mut alike: BTreeMap<(i64, i64), u64> = BTreeMap::new();
-        for (numerator, denominator) in scores {
-            *alike.entry(reduced(numerator, denominator)).or_default() += 1;
-        }
+        scores.iter().flatten().for_each(|score| *alike.entry(*score).or_default() += 1);
         let mut groups: Vec<ScoreGroup> = alike
             .into_iter()
             .map(|((numerator, denominator), people)| ScoreGroup { numerator, denominator, people })
             .collect();
         groups.sort_by_key(|group| (group.numerator as i128 * WIDE) / i128::from(group.denominator));
+        let place: BTreeMap<(i64, i64), u32> =
+            groups.iter().zip(0..).map(|(of, place)| ((of.numerator, of.denominator), place)).collect();
+        let places = scores.iter().map(|score| score.map_or(NO_SCORE, |score| place[&score])).collect();
         let units = Units::of(&groups);
         let sign_flip = sign_flip_within(&units.counts(&groups), units.slack);
-        let test = Self { counts, groups, sign_flip, reach, mean: 0.0, interval: None };
+        let test = Self { counts, groups, places, sign_flip, reach, mean: 0.0, interval: None };
         let scores = test.scores();
         // Rounding must not make a preference of none.
         let none = test.sign_flip.net == 0 && units.slack == 0;
@@ -117,6 +130,16 @@ impl ScoreTest {
             people => scores.iter().sum::<f64>() / people as f64,
         };
         Self { mean, interval: of_mean_score(&scores, reach), ..test }
+    }
+
+    /// The place of a participant's group in [`groups`](Self::groups); `None` without a score.
+    pub fn group_of(&self, participant: usize) -> Option<usize> {
+        self.places.get(participant).filter(|&&place| place != NO_SCORE).map(|&place| place as usize)
+    }
+
+    /// Every participant with a score, ascending.
+    pub fn with_score(&self) -> impl Iterator<Item = usize> {
+        self.places.iter().enumerate().filter(|(_, place)| **place != NO_SCORE).map(|(person, _)| person)
     }
 
     /// How many participants have a score.

@@ -30,8 +30,7 @@ impl HeldOut {
         ballots: &[A],
     ) -> Option<Self> {
         let object = |b: &A| study.comparisons[b.question()].object;
-        let used: Vec<A> =
-            ballots.iter().filter(|b| covariates[b.question()].is_some()).copied().collect();
+        let used: Vec<A> = ballots.iter().filter(|b| covariates[b.question()].is_some()).copied().collect();
         let objects: BTreeSet<usize> = used.iter().map(object).collect();
         if objects.len() < 2 {
             return None;
@@ -39,11 +38,9 @@ impl HeldOut {
         let mut people: BTreeMap<usize, Person> = BTreeMap::new();
         let mut of_objects = Vec::new();
         for &left_out in &objects {
-            let (own, others): (Vec<A>, Vec<A>) =
-                used.iter().partition(|b| object(b) == left_out);
+            let (own, others): (Vec<A>, Vec<A>) = used.iter().partition(|b| object(b) == left_out);
             let fit = regression(covariates, &others).ok()?;
-            let ties =
-                others.iter().filter(|b| b.place() == 1).count() as f64 / others.len() as f64;
+            let ties = others.iter().filter(|b| b.place() == 1).count() as f64 / others.len() as f64;
             let constant = [0.5 * (1.0 - ties), ties, 0.5 * (1.0 - ties)];
             let (mut hits, mut decided) = (0.0, 0.0);
             for ballot in &own {

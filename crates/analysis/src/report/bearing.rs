@@ -3,11 +3,13 @@
 use super::finding::{Finding, Standing};
 use super::words::{counted, list, number, p, percent};
 use super::{Block, Evidence, names};
-use crate::hypotheses::{ALPHA, Conclusion, Hypothesis, Subject};
+use crate::hypotheses::{ALPHA, Hypothesis};
+use crate::leave_one_out::WithoutOne;
 use statistics::{
-    Metric, Screening, ShownBallot, Triads, agreement, alpha, outcome_counts, screening, sign_test, triads,
+    DeclaredBallot, Metric, Screening, Triads, agreement, alpha, outcome_counts, screening, sign_test, triads,
 };
 use statrs::distribution::{Binomial, DiscreteCDF};
+use std::collections::BTreeMap;
 
 /// Fewer comparable answers than this say nothing about a person.
 const COMPARABLE: u64 = 6;
@@ -25,7 +27,7 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
 
 fn unanimity(evidence: &Evidence<'_>) -> Finding {
     let counts: Vec<[u64; 3]> =
-        outcome_counts(evidence.ballots).into_iter().filter(|c| c.iter().sum::<u64>() > 0).collect();
+        outcome_counts(&evidence.declared).into_iter().filter(|c| c.iter().sum::<u64>() > 0).collect();
     let of = |metric| alpha(&counts, metric).map(|a| number(a, 2));
     let over = counted(counts.len(), "question");
     let mut text = match (of(Metric::Nominal), of(Metric::Ordinal)) {
@@ -54,22 +56,25 @@ fn unanimity(evidence: &Evidence<'_>) -> Finding {
 }
 
 fn consistency(evidence: &Evidence<'_>) -> Option<Finding> {
-    let mut sum = Triads::default();
+    // One person's answers about different objects are no tournament.
+    let mut tournaments: BTreeMap<(usize, usize), Vec<DeclaredBallot>> = BTreeMap::new();
     match evidence.study {
         Some(study) => {
-            for object in 0..study.file.objects.len() {
-                for group in 0..study.groups.len() {
-                    let inside = |b: &&ShownBallot| {
-                        let c = &study.comparisons[b.question()];
-                        c.object == object && c.group == group
-                    };
-                    let own: Vec<ShownBallot> = evidence.ballots.iter().filter(inside).copied().collect();
-                    sum = sum.and(triads(&own));
+            for ballot in evidence.declared.iter() {
+                let comparison = &study.comparisons[ballot.question()];
+                tournaments.entry((comparison.group, comparison.object)).or_default().push(*ballot);
+            }
+        }
+        None => {
+            for (g, group) in evidence.groups.iter().enumerate() {
+                for ballot in &group.ballots {
+                    let scene = evidence.scenes[ballot.question()];
+                    tournaments.entry((g, scene)).or_default().push(ballot.by_item());
                 }
             }
         }
-        None => evidence.groups.iter().for_each(|group| sum = sum.and(triads(&group.ballots))),
     }
+    let sum = tournaments.values().fold(Triads::default(), |sum, own| sum.and(triads(own)));
     if sum.decided == 0 {
         return None;
     }
@@ -96,32 +101,45 @@ fn consistency(evidence: &Evidence<'_>) -> Option<Finding> {
 }
 
 /// What is tested of a study or its groups; single questions are exploratory.
-fn declared(hypotheses: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
-    hypotheses.iter().filter(|h| !matches!(h.subject, Subject::Question(_)))
+fn tests(hypotheses: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
+    hypotheses.iter().filter(|h| !h.is_question() && h.is_tested())
 }
 
-fn differs(h: &Hypothesis) -> bool {
-    matches!(h.conclusion(), Conclusion::Differs | Conclusion::DiffersWithinMargin)
-}
-
-/// Does a result hang on one person?
+/// Does a result hang on one person? Judged as results are: by the corrected p, with the correction done anew.
 fn one_by_one(evidence: &Evidence<'_>) -> Option<Finding> {
-    let holding: Vec<&Hypothesis> = declared(evidence.hypotheses).filter(|h| differs(h)).collect();
-    let worst: Vec<(&Hypothesis, f64)> =
-        holding.iter().filter_map(|h| h.test.leave_one_out().map(|(_, worst)| (*h, worst))).collect();
-    let largest = worst.iter().map(|(_, p)| *p).max_by(f64::total_cmp)?;
-    let fragile: Vec<String> =
-        worst.iter().filter(|(_, p)| *p > ALPHA).map(|(h, _)| names::hypothesis(evidence, h)).collect();
-    let tests = counted(worst.len(), "result");
+    let level = evidence.rules().level;
+    let all: Vec<&Hypothesis> = tests(evidence.hypotheses).collect();
+    let without = WithoutOne::of(&all);
+    let holding: Vec<(usize, &WithoutOne)> =
+        without.iter().enumerate().filter(|(i, _)| all[*i].differs()).collect();
+    let largest = holding.iter().map(|(_, of)| of.largest).max_by(f64::total_cmp)?;
+    let fragile: Vec<String> = holding
+        .iter()
+        .filter(|(_, of)| of.largest > level)
+        .map(|(i, of)| {
+            let name = names::hypothesis(evidence, all[*i]);
+            let mut people: Vec<String> =
+                of.undone_by.iter().take(NAMED).map(|person| (person + 1).to_string()).collect();
+            if of.undone_by.len() > NAMED {
+                people.push(format!("{} more", of.undone_by.len() - NAMED));
+            }
+            let (who, any) = match of.undone_by.len() {
+                1 => ("participant", ""),
+                _ => ("participants", ", any one"),
+            };
+            format!("{name} ({who} {}{any}; {})", list(&people), p(of.largest))
+        })
+        .collect();
+    let results = counted(holding.len(), "result");
     Some(match fragile.is_empty() {
         true => Finding::new(
             Standing::Holds,
             format!(
-                "No result hangs on one person: with any one participant left out, {} p at or below 0.05 in its own \
-                 sign-flip test (largest {}).",
-                match worst.len() {
-                    1 => "the one result that holds keeps".into(),
-                    _ => format!("each of the {tests} that hold keeps"),
+                "No result hangs on one person. With any one participant left out and the correction done anew, {} (largest \
+                 corrected {}).",
+                match holding.len() {
+                    1 => "the one result that holds still does".into(),
+                    _ => format!("each of the {results} that hold still does"),
                 },
                 p(largest)
             ),
@@ -129,10 +147,9 @@ fn one_by_one(evidence: &Evidence<'_>) -> Option<Finding> {
         false => Finding::new(
             Standing::Open,
             format!(
-                "Of the {tests} that {}, {} would not without some one participant (sign-flip test, largest {}): {}.",
-                if worst.len() == 1 { "holds" } else { "hold" },
+                "Of the {results} that {}, {} would not hold without some one participant, the correction done anew: {}.",
+                if holding.len() == 1 { "holds" } else { "hold" },
                 fragile.len(),
-                p(largest),
                 list(&fragile)
             ),
         ),
@@ -141,7 +158,7 @@ fn one_by_one(evidence: &Evidence<'_>) -> Option<Finding> {
 
 /// Who answers against the others, and what the results are without them.
 fn odd_ones(evidence: &Evidence<'_>) -> Vec<Finding> {
-    let screened = screening(evidence.ballots);
+    let screened = screening(evidence.shown);
     let judged: Vec<(&Screening, f64)> = screened
         .iter()
         .filter(|s| s.comparable >= COMPARABLE)
@@ -189,24 +206,17 @@ fn odd_ones(evidence: &Evidence<'_>) -> Vec<Finding> {
 
 /// `left_out` in order.
 fn without(evidence: &Evidence<'_>, left_out: &[usize]) -> Finding {
-    let kept: Vec<ShownBallot> = evidence
-        .ballots
+    let again = evidence.tested(|person| left_out.binary_search(&person).is_err());
+    let own: Vec<&Hypothesis> = tests(evidence.hypotheses).collect();
+    let pairs: Vec<(&Hypothesis, &Hypothesis)> = own
         .iter()
-        .filter(|b| left_out.binary_search(&b.participant()).is_err())
-        .copied()
+        .filter_map(|h| tests(&again).find(|other| h.is_about_the_same(other)).map(|b| (*h, b)))
         .collect();
-    let again = evidence.tested(&kept);
-    let same = |a: &&Hypothesis, b: &&Hypothesis| {
-        (&a.family, &a.contrast, &a.scope) == (&b.family, &b.contrast, &b.scope)
-    };
-    let tests: Vec<&Hypothesis> = declared(evidence.hypotheses).collect();
-    let pairs: Vec<(&Hypothesis, &Hypothesis)> =
-        tests.iter().filter_map(|h| declared(&again).find(|b| same(h, b)).map(|b| (*h, b))).collect();
     let changed: Vec<String> = pairs
         .iter()
-        .filter(|(with, without)| differs(with) != differs(without))
+        .filter(|(with, without)| with.differs() != without.differs())
         .map(|(with, without)| {
-            let becomes = if differs(without) { "then holds" } else { "no longer holds" };
+            let becomes = if without.differs() { "then holds" } else { "no longer holds" };
             format!(
                 "{} {becomes} (corrected {}, before {})",
                 names::hypothesis(evidence, with),
@@ -216,7 +226,7 @@ fn without(evidence: &Evidence<'_>, left_out: &[usize]) -> Finding {
         })
         .collect();
     let whom = if left_out.len() == 1 { "this participant" } else { "these participants" };
-    let tests = counted(pairs.len(), "declared test");
+    let tests = counted(pairs.len(), "test");
     let text = match changed.is_empty() {
         true => format!("Without {whom}, none of the {tests} comes out otherwise."),
         false => format!(
@@ -231,9 +241,8 @@ fn without(evidence: &Evidence<'_>, left_out: &[usize]) -> Finding {
 }
 
 fn single_questions(evidence: &Evidence<'_>) -> Option<Finding> {
-    let all: Vec<&Hypothesis> =
-        evidence.hypotheses.iter().filter(|h| matches!(h.subject, Subject::Question(_))).collect();
-    let holding: Vec<&str> = all.iter().filter(|h| differs(h)).map(|h| h.scope.as_str()).collect();
+    let all: Vec<&Hypothesis> = evidence.hypotheses.iter().filter(|h| h.is_question()).collect();
+    let holding: Vec<&str> = all.iter().filter(|h| h.differs()).map(|h| h.scope.as_str()).collect();
     let asked = all.iter().filter(|h| h.test.participants() > 0).count();
     let bare = |h: &&&Hypothesis| match h.test.counts {
         Some([a, _, b]) => sign_test::binomial(a, b) <= ALPHA,

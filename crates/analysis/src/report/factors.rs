@@ -7,8 +7,8 @@ use crate::fraction::Fraction;
 use crate::hypotheses::Subject;
 use crate::preference::{GroupFactor, Margin, group_factors, margins, overall};
 use crate::tally::Tally;
-use design::{Arrangement, Method, Study};
 use design::contrast::{Level, Over};
+use design::{Arrangement, Method, Study};
 
 pub(super) fn findings(study: &Study, tally: &Tally, evidence: &Evidence<'_>) -> Vec<Block> {
     let factors = group_factors(study, tally, |_| true);

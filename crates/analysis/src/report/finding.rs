@@ -1,8 +1,7 @@
 //! A statement with its verdict, and the sentences of tests of preference.
 
 use super::words::{against, capital, counted, interval, number, p};
-use crate::hypotheses::{ALPHA, Conclusion, Hypothesis, Subject};
-use statistics::MARGIN;
+use crate::hypotheses::{Conclusion, Hypothesis, Subject};
 use statistics::ScoreTest;
 use statistics::interval::{Interval, unanimous};
 
@@ -56,7 +55,7 @@ impl Finding {
 
     /// Whether the first was preferred to the second; `scope` says over which answers, with a space before it.
     pub(super) fn of_preference(hypothesis: &Hypothesis, first: &str, second: &str, scope: &str) -> Self {
-        let test = &hypothesis.test;
+        let (test, margin) = (&hypothesis.test, hypothesis.rules.margin);
         let counts = test.counts.unwrap_or_default();
         // A name that somebody gave stays as it is, at the head of a sentence too.
         let opening = |name: &str| match hypothesis.subject {
@@ -73,7 +72,7 @@ impl Finding {
             return Self::new(Standing::TooFew, text);
         }
         let least = 2.0_f64.powi(1 - leaning as i32);
-        if least > ALPHA {
+        if least > hypothesis.rules.level {
             let lean = if leaning == 1 { "leans" } else { "lean" };
             let text = format!(
                 "{} against {second}{scope} is not decided: {}. {} {lean} one way or the other, and no outcome of so \
@@ -85,7 +84,7 @@ impl Finding {
             );
             return Self::new(Standing::TooFew, text);
         }
-        let towards_first = test.sign_flip.net >= 0;
+        let towards_first = test.mean >= 0.0;
         let [winner, loser] = if towards_first { [first, second] } else { [second, first] };
         let [a, ties, b] = counts;
         let turned = if towards_first { counts } else { [b, ties, a] };
@@ -102,7 +101,7 @@ impl Finding {
             Conclusion::DiffersWithinMargin => {
                 let text = format!(
                     "{} was preferred to {loser}{scope}, but by little: {}. {score}; {tested}. The mean lies within \
-                     {MARGIN} of none ({}).",
+                     {margin} of none ({}).",
                     opening(winner),
                     against(turned),
                     equivalence(hypothesis)
@@ -112,7 +111,7 @@ impl Finding {
             Conclusion::Equal => {
                 // Names stand in the order of the contrast, and so do counts and score.
                 let text = format!(
-                    "{} and {second}{scope} are liked alike, within the declared margin of {MARGIN}: {}. {}; {}; \
+                    "{} and {second}{scope} are liked alike, within the margin of {margin}: {}. {}; {}; \
                      {tested}.",
                     opening(first),
                     against(counts),
@@ -121,8 +120,8 @@ impl Finding {
                 );
                 Self::new(Standing::Equal, text)
             }
-            Conclusion::Open => {
-                let alone = match test.sign_flip.p() <= ALPHA {
+            Conclusion::Open | Conclusion::NotTested => {
+                let alone = match test.sign_flip.p() <= hypothesis.rules.level {
                     true => " As the only test it would have passed; among so many it does not.",
                     false => "",
                 };

@@ -2,8 +2,8 @@
 
 use super::Evidence;
 use crate::hypotheses::{Hypothesis, Subject};
-use design::{Arrangement, Clustering, Method, Study};
 use design::contrast::{Level, Over};
+use design::{Arrangement, Clustering, Method, Study};
 
 /// A level as a noun: `edge collapse`, `the body-centred lattice`.
 pub(super) fn level(level: Level) -> String {

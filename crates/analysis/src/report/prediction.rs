@@ -171,9 +171,8 @@ fn limits(prediction: &Prediction) -> Finding {
         .iter()
         .enumerate()
         .map(|(i, m)| {
-            let pairs = if i == 0 { " pairs" } else { "" };
-            let (right, all) = (m.better.better_right, m.better.pair_count());
-            format!("{right} of {all}{pairs} for {}", m.metric.label)
+            let answers = if i == 0 { " answers" } else { "" };
+            format!("{} of {}{answers} for {}", m.better_right, m.showings, m.metric.label)
         })
         .collect();
     let text = format!(

@@ -3,11 +3,11 @@
 use super::finding::{Finding, Standing, score, tested};
 use super::words::{against, capital, counted, list, number, p};
 use super::{Block, Evidence, names};
-use crate::hypotheses::{ALPHA, Hypothesis, Subject};
-use crate::tables::contrasts::study_scores;
+use crate::hypotheses::{Conclusion, Hypothesis, Subject};
+use crate::tables::omnibus::{Asked, Omnibus};
 use design::Study;
-use statistics::contrast::{ContrastTest, Level, Over, contrasts};
-use statistics::friedman;
+use design::contrast::{Factor, Level, Over, contrasts};
+use statistics::ScoreTest;
 
 /// So many comparisons that too few people lean on are told one by one, more of them together.
 const APART: usize = 3;
@@ -44,7 +44,7 @@ impl Sorted {
     }
 
     /// Puts the comparisons that too few lean on among the open ones: in their place while they are few, else as one.
-    fn fold(mut self, all: usize) -> Self {
+    fn fold(mut self, all: usize, level: f64) -> Self {
         let too_few = std::mem::take(&mut self.too_few);
         if too_few.len() <= APART {
             for TooFew { place, finding, .. } in too_few {
@@ -67,7 +67,7 @@ impl Sorted {
                      would have to).",
                     counted(most, "participant"),
                     if most == 1 { "leans" } else { "lean" },
-                    fewest_leaning()
+                    fewest_leaning(level)
                 ),
             }
         );
@@ -76,8 +76,14 @@ impl Sorted {
     }
 }
 
+/// The fewest people whose unanimity is significant.
+fn fewest_leaning(level: f64) -> usize {
+    (1..).find(|&people| 2.0_f64.powi(1 - people) <= level).expect("a power of a half") as usize
+}
+
 pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
     let mut sorted = Sorted::default();
+    let level = evidence.rules().level;
     let Some(study) = evidence.study else {
         for hypothesis in evidence.hypotheses {
             if let Subject::Items { group, first, second } = &hypothesis.subject {
@@ -86,103 +92,168 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
                 sorted.add(evidence, hypothesis, finding);
             }
         }
-        return sorted.fold(evidence.hypotheses.len());
+        return sorted.fold(evidence.hypotheses.len(), level);
     };
-    sorted.holds.extend(omnibus(study, evidence));
+    sorted.holds.extend(levels_differ(evidence));
+    let mut by_object = Vec::new();
     for (hypothesis, levels, over) in contrasts_of(evidence) {
         let [first, second] = levels.map(names::level);
+        let scope = names::over(study, over);
         match over {
-            Over::Difference(..) | Over::AgainstOthers(_) => {}
+            Over::Difference(..) | Over::ObjectDifference(..) => {}
             Over::Object(_) => {
-                let finding = Finding::of_preference(hypothesis, first, second, &names::over(study, over));
-                sorted.depends.push(Block::Finding(finding));
+                by_object.push(Block::Finding(Finding::of_preference(hypothesis, &first, &second, &scope)));
             }
             Over::All | Over::Within(_) => {
-                let mut finding =
-                    Finding::of_preference(hypothesis, first, second, &names::over(study, over));
-                let object = (over == Over::All).then(|| standing_out(evidence, levels)).flatten();
-                if let (Standing::Holds, Some((_, object))) = (finding.standing, object) {
-                    let name = &study.file.objects[object].name;
-                    finding
-                        .text
-                        .push_str(&format!(" It depends on the object, the {name} above all: see below."));
+                let mut finding = Finding::of_preference(hypothesis, &first, &second, &scope);
+                if let Some(shown) = depends_on_object(evidence, levels) {
+                    caution(study, evidence, &mut finding, hypothesis, &shown);
                 }
                 sorted.add(evidence, hypothesis, finding);
             }
         }
     }
-    let mut by_object = std::mem::take(&mut sorted.depends);
-    sorted.depends.extend(dependences(study, evidence));
+    sorted.depends.extend(dependences(evidence));
     sorted.depends.append(&mut by_object);
-    sorted
-        .fold(contrasts_of(evidence).filter(|(.., over)| matches!(over, Over::All | Over::Within(_))).count())
+    let pooled = contrasts_of(evidence).filter(|(.., over)| matches!(over, Over::All | Over::Within(_)));
+    sorted.fold(pooled.count(), level)
 }
 
+/// Every contrast that was tested.
 fn contrasts_of<'a>(evidence: &'a Evidence<'_>) -> impl Iterator<Item = (&'a Hypothesis, [Level; 2], Over)> {
-    evidence.hypotheses.iter().filter_map(|h| match h.subject {
+    evidence.hypotheses.iter().filter(|h| h.is_tested()).filter_map(|h| match h.subject {
         Subject::Contrast { levels, over } => Some((h, levels, over)),
         _ => None,
     })
 }
 
-/// The object whose preference differs most clearly from the others', if any does.
-fn standing_out<'a>(evidence: &'a Evidence<'_>, levels: [Level; 2]) -> Option<(&'a Hypothesis, usize)> {
-    let of = contrasts_of(evidence).filter_map(|(h, l, over)| match over {
-        Over::AgainstOthers(object) if l == levels && h.adjusted <= ALPHA => Some((h, object)),
-        _ => None,
+/// What shows that a preference depends on the object, in words; `None` if nothing does.
+fn depends_on_object(evidence: &Evidence<'_>, levels: [Level; 2]) -> Option<String> {
+    let level = evidence.rules().level;
+    let omnibus = evidence.omnibus.iter().find(|of| of.asked == Asked::ByObject(levels));
+    if let Some(of) = omnibus.filter(|of| of.adjusted <= level) {
+        return Some(format!("Friedman's test over objects, {} after Holm's correction", p(of.adjusted)));
+    }
+    let pairs = contrasts_of(evidence).filter(|(h, l, over)| {
+        matches!(over, Over::ObjectDifference(..)) && *l == levels && h.adjusted <= level
     });
-    of.min_by(|(a, _), (b, _)| a.test.sign_flip.ln_p.total_cmp(&b.test.sign_flip.ln_p))
+    let clearest =
+        pairs.min_by(|(a, ..), (b, ..)| a.test.sign_flip.ln_p.total_cmp(&b.test.sign_flip.ln_p))?;
+    Some(tested(clearest.0))
 }
 
-fn omnibus(study: &Study, evidence: &Evidence<'_>) -> Vec<Block> {
-    let clusterings = study_scores(study, evidence.ballots).clusterings;
-    let Some(test) = friedman(&clusterings).filter(|test| test.p <= ALPHA) else { return Vec::new() };
-    let text = format!(
-        "The clusterings are not liked alike: Friedman's test on {}' wins less losses, chi-square {:.2} on {} degrees of \
-         freedom, {}.",
-        counted(clusterings.len(), "participant"),
-        test.statistic,
-        test.degrees,
-        p(test.p)
-    );
-    vec![Block::Finding(Finding::new(Standing::Holds, text))]
+/// What is said of all objects together where a preference depends on the object.
+fn caution(
+    study: &Study,
+    evidence: &Evidence<'_>,
+    finding: &mut Finding,
+    hypothesis: &Hypothesis,
+    shown: &str,
+) {
+    match finding.standing {
+        Standing::Holds => {
+            finding.text.push_str(&format!(" It depends on the object ({shown})."));
+            finding.text.push_str(&without_one_object(study, evidence, hypothesis));
+        }
+        // A mean of opposite preferences says nothing about any object.
+        Standing::Equal => {
+            *finding = Finding::new(
+                Standing::Open,
+                finding.text.replace(" are liked alike, within the margin", " average out within the margin"),
+            );
+            finding.text.push_str(&format!(
+                " That does not say that they are liked alike: the preference depends on the object ({shown})."
+            ));
+        }
+        Standing::Open | Standing::TooFew => {
+            finding.text.push_str(&format!(" The preference depends on the object ({shown})."));
+        }
+        _ => {}
+    }
 }
 
-/// The fewest people whose unanimity is significant at 5 %.
-fn fewest_leaning() -> usize {
-    (1..).find(|&people| 2.0_f64.powi(1 - people) <= ALPHA).expect("a power of a half") as usize
+/// Whether any one object is what an overall preference rests on.
+fn without_one_object(study: &Study, evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> String {
+    let all = contrasts(study);
+    let Some(contrast) = all
+        .iter()
+        .find(|c| (&c.name, &c.scope) == (&hypothesis.contrast, &hypothesis.scope) && !c.is_difference())
+    else {
+        return String::new();
+    };
+    let mut text = String::new();
+    for (o, object) in study.file.objects.iter().enumerate() {
+        let off = |question: usize| study.comparisons[question].object != o;
+        let on = contrast.parts[0].keys().any(|&question| !off(question));
+        let signed = evidence.declared.iter().filter(|b| off(b.question())).filter_map(|b| {
+            let sign = contrast.parts[0].get(&b.question())?;
+            Some((b.participant(), sign * b.preference().sign()))
+        });
+        let rest = ScoreTest::of(signed);
+        if !on || rest.participants() == 0 {
+            continue;
+        }
+        let p_rest = p(rest.sign_flip.p());
+        let level = evidence.rules().level;
+        let same_way = (hypothesis.test.mean > 0.0) == (rest.mean > 0.0);
+        match (rest.sign_flip.p() <= level, same_way) {
+            (true, true) => {}
+            (true, false) => {
+                text.push_str(&format!(" Without the {} it is the other way round ({p_rest}).", object.name));
+            }
+            (false, _) => {
+                let left = lower(&score(&rest, true));
+                text.push_str(&format!(" Without the {} it is not shown: {left}; {p_rest}.", object.name));
+            }
+        }
+    }
+    text
+}
+
+fn levels_differ(evidence: &Evidence<'_>) -> Vec<Block> {
+    let level = evidence.rules().level;
+    let shown = evidence.omnibus.iter().filter(|of| of.adjusted <= level);
+    let text = |of: &Omnibus| {
+        let Asked::Levels(factor) = of.asked else { return None };
+        let noun = match factor {
+            Factor::Clustering => "clusterings",
+            Factor::Arrangement => "lattices",
+            Factor::Method => "methods",
+        };
+        Some(format!(
+            "The {noun} are not liked alike: Friedman's test on {}' wins less losses, chi-square {:.2} on {} degrees of \
+             freedom, {}.",
+            counted(of.participants, "participant"),
+            of.test.statistic,
+            of.test.degrees,
+            p(of.test.p)
+        ))
+    };
+    shown.filter_map(text).map(|text| Block::Finding(Finding::new(Standing::Holds, text))).collect()
 }
 
 /// Interactions: one that holds is told with its parts, those that do not in one sentence.
-fn dependences(study: &Study, evidence: &Evidence<'_>) -> Vec<Block> {
+fn dependences(evidence: &Evidence<'_>) -> Vec<Block> {
+    let Some(study) = evidence.study else { return Vec::new() };
     let mut blocks = Vec::new();
     let mut open: Vec<&Hypothesis> = Vec::new();
     for (hypothesis, levels, over) in contrasts_of(evidence) {
-        match over {
-            Over::Difference(..) | Over::AgainstOthers(_) if hypothesis.adjusted > ALPHA => {
-                open.push(hypothesis)
-            }
-            Over::Difference(a, b) => {
-                let parts = [a, b].map(|level| {
-                    let part =
-                        contrasts_of(evidence).find(|(_, l, o)| *l == levels && *o == Over::Within(level));
-                    part.map(|(part, ..)| (names::within(level), &part.test))
-                });
-                if let [Some((at_a, a)), Some((at_b, b))] = parts {
-                    blocks.push(Block::Finding(dependence(hypothesis, levels, (&at_a, a), (&at_b, b))));
-                }
-            }
-            Over::AgainstOthers(object) => {
-                let Some((own, rest)) = on_and_off(study, evidence, levels, object) else { continue };
-                let here = format!(" on the {}", study.file.objects[object].name);
-                let first = standing_out(evidence, levels).is_some_and(|(_, o)| o == object);
-                let mut finding = dependence(hypothesis, levels, (&here, &own), (" elsewhere", &rest));
-                if first {
-                    finding.text.push_str(&without(study, evidence, levels, object, &rest));
-                }
-                blocks.push(Block::Finding(finding));
-            }
-            _ => {}
+        let parts = match over {
+            Over::Difference(a, b) => [Over::Within(a), Over::Within(b)],
+            Over::ObjectDifference(a, b) => [Over::Object(a), Over::Object(b)],
+            _ => continue,
+        };
+        if !hypothesis.differs() {
+            open.push(hypothesis);
+            continue;
+        }
+        let found = parts.map(|part| {
+            contrasts_of(evidence)
+                .find(|(_, l, o)| *l == levels && *o == part)
+                .map(|(part_of, ..)| (names::over(study, part), &part_of.test))
+        });
+        if let [Some((at_a, a)), Some((at_b, b))] = &found {
+            blocks.push(Block::Finding(dependence(hypothesis, levels, (at_a, a), (at_b, b))));
         }
     }
     if let Some(smallest) = open.iter().map(|h| h.adjusted).min_by(f64::total_cmp) {
@@ -205,11 +276,11 @@ fn dependences(study: &Study, evidence: &Evidence<'_>) -> Vec<Block> {
 fn dependence(
     hypothesis: &Hypothesis,
     levels: [Level; 2],
-    (here, own): (&str, &ContrastTest),
-    (there, rest): (&str, &ContrastTest),
+    (here, own): (&str, &ScoreTest),
+    (there, rest): (&str, &ScoreTest),
 ) -> Finding {
     let [first, second] = levels.map(names::level);
-    let part = |place: &str, test: &ContrastTest| {
+    let part = |place: &str, test: &ScoreTest| {
         format!(
             "{}: {}, mean score {}",
             capital(place.trim_start()),
@@ -217,53 +288,17 @@ fn dependence(
             number(test.mean, 2)
         )
     };
+    let within = match hypothesis.conclusion() {
+        Conclusion::DiffersWithinMargin => " It is smaller than the margin.",
+        _ => "",
+    };
     let text = format!(
-        "How much {first} is preferred to {second} differs. {}. {}. The difference holds: {}.",
+        "How much {first} is preferred to {second} differs. {}. {}. The difference holds: {}.{within}",
         part(here, own),
         part(there, rest),
         tested(hypothesis)
     );
     Finding::new(Standing::Holds, text)
-}
-
-/// The contrast on one object and on all others.
-fn on_and_off(
-    study: &Study,
-    evidence: &Evidence<'_>,
-    levels: [Level; 2],
-    object: usize,
-) -> Option<(ContrastTest, ContrastTest)> {
-    let all = contrasts(study).into_iter().find(|c| c.levels == levels && c.over == Over::All)?;
-    let of = |on: bool| {
-        let weight = |b: &&statistics::ShownBallot| (study.comparisons[b.question()].object == object) == on;
-        let own = evidence.ballots.iter().filter(weight);
-        ContrastTest::of(
-            own.filter_map(|b| Some((b.participant(), *all.weights.get(&b.question())?, b.outcome()))),
-        )
-    };
-    Some((of(true), of(false)))
-}
-
-/// What is left of an overall preference without the object that stands out.
-fn without(
-    study: &Study,
-    evidence: &Evidence<'_>,
-    levels: [Level; 2],
-    object: usize,
-    rest: &ContrastTest,
-) -> String {
-    let pooled = contrasts_of(evidence).find(|(_, l, over)| *l == levels && *over == Over::All);
-    let Some((pooled, ..)) = pooled.filter(|(h, ..)| h.adjusted <= ALPHA) else { return String::new() };
-    let name = &study.file.objects[object].name;
-    let same_way = pooled.test.sign_flip.net.signum() == rest.sign_flip.net.signum();
-    let p = p(rest.sign_flip.p());
-    match (rest.sign_flip.p() <= ALPHA, same_way) {
-        (true, true) => format!(" Without the {name} the overall preference still holds ({p})."),
-        (true, false) => format!(" Without the {name} the preference is the other way round ({p})."),
-        (false, _) => {
-            format!(" Without the {name} the overall preference is gone: {}; {p}.", lower(&score(rest, true)))
-        }
-    }
 }
 
 fn lower(text: &str) -> String {

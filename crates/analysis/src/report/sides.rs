@@ -3,7 +3,7 @@
 use super::finding::{Finding, Standing};
 use super::words::{capital, counted, interval, list, number};
 use super::{Block, Evidence, names};
-use statistics::contrast::{Level, contrasts};
+use design::contrast::{Level, Over, contrasts};
 use statistics::{
     Model, Pairs, Participants, Separation, ShownBallot, SideDesign, clustered_covariance, fit, has_spread,
     separation, side_design,
@@ -29,11 +29,11 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
 
 fn side(evidence: &Evidence<'_>) -> Vec<Finding> {
     let mut counts = [0_u64; 3];
-    evidence.ballots.iter().for_each(|b| counts[b.outcome().index()] += 1);
+    evidence.shown.iter().for_each(|b| counts[b.outcome().index()] += 1);
     let [left, none, right] = counts;
     let totals =
         format!("{} went left, {right} right and {none} to neither", counted(left as usize, "answer"));
-    let items = evidence.ballots.iter().map(|b| b.left().max(b.right()) + 1).max().unwrap_or(0);
+    let items = evidence.shown.iter().map(|b| b.left().max(b.right()) + 1).max().unwrap_or(0);
     let mut designs: BTreeMap<&str, (SideDesign, &[ShownBallot], usize)> = BTreeMap::new();
     for group in evidence.groups {
         let pairs = Pairs::of(group.items.len(), &group.ballots);
@@ -42,7 +42,7 @@ fn side(evidence: &Evidence<'_>) -> Vec<Finding> {
     let of = |design: SideDesign| -> Vec<&str> {
         evidence.groups.iter().map(|g| g.name.as_str()).filter(|name| designs[name].0 == design).collect()
     };
-    let everywhere = side_design(&Pairs::of(items, evidence.ballots)) != SideDesign::Counterbalanced
+    let everywhere = side_design(&Pairs::of(items, evidence.shown)) != SideDesign::Counterbalanced
         && of(SideDesign::Counterbalanced).is_empty();
     let mut found = Vec::new();
     if everywhere {
@@ -119,7 +119,7 @@ fn estimate(name: &str, ballots: &[ShownBallot], items: usize) -> Option<String>
 fn always(evidence: &Evidence<'_>) -> Option<String> {
     let study = evidence.study?;
     let mut seen: Vec<(Level, [bool; 2])> = Vec::new();
-    for contrast in contrasts(study).into_iter().filter(|c| c.over == statistics::contrast::Over::All) {
+    for contrast in contrasts(study).into_iter().filter(|c| c.over == Over::All) {
         for &weight in contrast.weights.values() {
             for (level, left) in [(contrast.levels[0], weight > 0), (contrast.levels[1], weight < 0)] {
                 let place = seen.iter().position(|(l, _)| *l == level).unwrap_or_else(|| {
@@ -131,7 +131,7 @@ fn always(evidence: &Evidence<'_>) -> Option<String> {
         }
     }
     let of = |sides: [bool; 2], word: &str| {
-        let own: Vec<&str> =
+        let own: Vec<String> =
             seen.iter().filter(|(_, s)| *s == sides).map(|(level, _)| names::level(*level)).collect();
         (!own.is_empty()).then(|| format!("{} always stood on the {word}", list(&own)))
     };

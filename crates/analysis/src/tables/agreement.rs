@@ -3,8 +3,8 @@
 use crate::table::{Cell, Table};
 use design::Study;
 use statistics::{
-    DeclaredBallot, Metric, Protocol, ShownBallot, Triads, agreement as kendall, alpha, outcome_counts, screening_with,
-    triads, zetas,
+    DeclaredBallot, Metric, Protocol, ShownBallot, Triads, agreement as kendall, alpha, outcome_counts,
+    screening_with, triads, zetas,
 };
 
 /// All questions, then each comparison group: agreement between participants, and circular triads within.
@@ -76,7 +76,8 @@ fn consistency(study: &Study, ballots: &[DeclaredBallot]) -> (Triads, (u64, f64)
         let comparison = &study.comparisons[b.question()];
         comparison.object * study.groups.len() + comparison.group
     };
-    let mut scopes: Vec<Vec<DeclaredBallot>> = vec![Vec::new(); study.file.objects.len() * study.groups.len()];
+    let mut scopes: Vec<Vec<DeclaredBallot>> =
+        vec![Vec::new(); study.file.objects.len() * study.groups.len()];
     ballots.iter().for_each(|b| scopes[scope(b)].push(*b));
     scopes.iter().fold((Triads::default(), (0, 0.0)), |(sum, (n, total)), own| {
         let (tournaments, zetas) = zetas(own);

@@ -19,8 +19,7 @@ pub(super) fn of_study(study: &Study, answers: &Answered, recorded: &Recorded<'_
     };
     let own = hypotheses::of_contrasts(study, &everyone);
     screened(recorded, &own.iter().collect::<Vec<_>>(), |keep| {
-        let kept: Vec<DeclaredBallot> =
-            everyone.iter().filter(|b| keep(b.participant())).copied().collect();
+        let kept: Vec<DeclaredBallot> = everyone.iter().filter(|b| keep(b.participant())).copied().collect();
         hypotheses::of_contrasts(study, &kept)
     })
 }

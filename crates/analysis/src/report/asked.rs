@@ -1,0 +1,24 @@
+//! How many answers a study asked for: what was not asked is not missing.
+
+use crate::answered::Answered;
+use design::Study;
+use design::forms::{Questionnaire, Role};
+
+/// The comparisons on the forms of those who count. Whose form is not known was asked what was answered, where questions are
+/// dealt into blocks, and everything elsewhere.
+pub(super) fn asked(study: &Study, answered: &Answered) -> usize {
+    let mut given = vec![0; answered.responses.participants.len()];
+    answered.shown.iter().for_each(|ballot| given[ballot.participant()] += 1);
+    let questionnaire = Questionnaire::of(study).filter(|of| of.blocks() > 1);
+    let of_person = |(person, given): (usize, &usize)| {
+        let Some(questionnaire) = &questionnaire else { return study.comparisons.len() };
+        let form = answered.responses.participants[person].form.as_deref();
+        let number = form.and_then(|form| form.parse::<usize>().ok()).filter(|&number| number > 0);
+        let comparisons = |number: usize| {
+            let form = questionnaire.form(number - 1);
+            form.trials.iter().filter(|trial| trial.role == Role::Comparison).count()
+        };
+        number.map_or(*given, comparisons)
+    };
+    given.iter().enumerate().filter(|(_, given)| **given > 0).map(of_person).sum()
+}
