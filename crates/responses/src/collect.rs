@@ -5,10 +5,17 @@ use crate::choice::Choice;
 use crate::error::{Fault, UnknownCell, shorten};
 use crate::mapping::{Duplicates, Mapping, Unknown};
 use crate::name;
-use crate::plan::Plan;
+use crate::natural;
+use crate::plan::{Plan, REPEAT};
 use crate::report::{Kind, Report};
-use crate::value::{Answer, Participant, Question, Responses};
-use std::collections::HashMap;
+use crate::sides::SidesSource;
+use crate::value::{Answer, Participant, Question, Responses, StimulusId};
+use design::forms::Role;
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+
+/// Most answers that rows with a `count` may stand for.
+pub const MOST_COUNTED: u64 = 10_000_000;
 
 /// Names by number, and numbers by name.
 #[derive(Debug, Default)]
@@ -44,24 +51,55 @@ pub(crate) struct Place {
     pub(crate) column: usize,
 }
 
+/// What a file without a study calls a question.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Ids {
+    /// One pair: another pair under the same id is a mistake.
+    OnePair,
+    /// Something that several pairs may show, and that is their object then.
+    Scene,
+    /// Made up from the pair.
+    MadeUp,
+}
+
+/// What a row asks, where no plan has it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Asking<'a> {
+    pub(crate) id: &'a str,
+    pub(crate) object: &'a str,
+    pub(crate) group: &'a str,
+    pub(crate) sides: [u32; 2],
+    pub(crate) role: Role,
+}
+
 /// Answers as they come.
 pub(crate) struct Collector<'a> {
     pub(crate) mapping: &'a Mapping,
     pub(crate) report: &'a mut Report,
+    /// Whether the file alone says what was asked.
+    open: bool,
+    pub(crate) naming: Ids,
     participants: Vec<Participant>,
     by_id: HashMap<String, u32>,
     /// Participants whose id is an e-mail address, and named by a row instead.
     unnamed: Vec<u32>,
+    /// Participants whom the file does not name at all, in ranges.
+    nameless: Vec<Range<u32>>,
     /// Whether a place in the order makes a second answer one to a second showing.
     pub(crate) shown_again: bool,
     questions: Vec<Question>,
-    by_pair: HashMap<[u32; 5], u32>,
+    by_pair: HashMap<([u32; 5], Role), u32>,
+    /// The first question with an id, and its row.
+    by_id_alone: HashMap<u32, (u32, u64)>,
     ids: Index,
     labels: Index,
     pub(crate) items: Index,
+    stimuli: Index,
     answers: Vec<Answer>,
-    /// The row of each answer.
-    rows: Vec<u64>,
+    /// The row of each answer; no file that is read has as many rows as there are numbers.
+    rows: Vec<u32>,
+    /// The first cell with R's mark for a missing answer, and how many there are.
+    missing: Option<(Place, u64)>,
     unknown: Vec<UnknownCell>,
     /// What cells were found to mean; there are few different ones.
     replies: HashMap<String, Option<(Choice, bool)>>,
@@ -76,17 +114,23 @@ impl<'a> Collector<'a> {
         Self {
             mapping,
             report,
+            open: plan.is_none(),
+            naming: Ids::OnePair,
             participants: Vec::new(),
             by_id: HashMap::new(),
             unnamed: Vec::new(),
+            nameless: Vec::new(),
             shown_again: true,
             questions: plan.map_or(Vec::new(), |plan| plan.questions().to_vec()),
             by_pair: HashMap::new(),
+            by_id_alone: HashMap::new(),
             ids: Index::default(),
             labels: Index::default(),
             items,
+            stimuli: Index::default(),
             answers: Vec::new(),
             rows: Vec::new(),
+            missing: None,
             unknown: Vec::new(),
             replies: HashMap::new(),
         }
@@ -97,6 +141,9 @@ impl<'a> Collector<'a> {
         /// Other cells are looked up anew each time.
         const REMEMBERED: usize = 4096;
         if self.mapping.words.is_blank(cell) {
+            if self.mapping.words.is_missing(cell) {
+                self.missing.get_or_insert((place, 0)).1 += 1;
+            }
             return Reply::Blank;
         }
         let found = match self.replies.get(cell) {
@@ -146,7 +193,10 @@ impl<'a> Collector<'a> {
         // Files go participant by participant.
         let last =
             self.participants.last().filter(|last| last.id == id).map(|_| self.participants.len() as u32 - 1);
-        let last = last.filter(|last| self.unnamed.last() != Some(last));
+        let end = self.participants.len() as u32;
+        let last = last.filter(|last| {
+            self.unnamed.last() != Some(last) && self.nameless.last().is_none_or(|range| range.end != end)
+        });
         let address = address::folded(id);
         let key = address.as_deref().unwrap_or(id);
         let known = last.or_else(|| self.by_id.get(key).copied());
@@ -177,52 +227,155 @@ impl<'a> Collector<'a> {
         Ok(number)
     }
 
-    /// A question that no plan has: two questions with one id and different pairs are two questions.
-    pub(crate) fn question(&mut self, id: &str, object: &str, group: &str, left: u32, right: u32) -> u32 {
+    /// So many participants of whom the file says nothing but their answer; returns the first one's number. They are named by
+    /// their row.
+    ///
+    /// # Errors
+    /// If there are too many.
+    pub(crate) fn nameless(&mut self, count: u32, form: Option<&str>, row: u64) -> Result<u32, Fault> {
+        let all = self.answers.len() as u64 + u64::from(count);
+        if all > MOST_COUNTED {
+            return Err(Fault::TooManyAnswers { row, answers: all, limit: MOST_COUNTED });
+        }
+        let first = self.participants.len() as u32;
+        self.participants.extend((1..=count).map(|i| {
+            let id = if count == 1 { format!("row {row}") } else { format!("row {row}.{i}") };
+            Participant { id, form: form.map(str::to_owned) }
+        }));
+        self.nameless.push(first..first + count);
+        Ok(first)
+    }
+
+    /// A question that no plan has, with the row that asks it. One id may stand for one pair on several objects or in several
+    /// groups: these are several questions.
+    ///
+    /// # Errors
+    /// Without a plan, if the id stands for another pair already.
+    pub(crate) fn question(&mut self, asking: Asking<'_>, row: u64) -> Result<u32, Fault> {
+        let Asking { id: name, object, group, sides: [left, right], role } = asking;
         let (low, high) = (left.min(right), left.max(right));
-        let key = [self.ids.number(id), self.labels.number(object), self.labels.number(group), low, high];
+        let id = self.ids.number(name);
+        let key = ([id, self.labels.number(object), self.labels.number(group), low, high], role);
         if let Some(&known) = self.by_pair.get(&key) {
-            return known;
+            return Ok(known);
         }
         let number = self.questions.len() as u32;
-        let (id, object, group) = (id.to_owned(), object.to_owned(), group.to_owned());
-        self.questions.push(Question { id, object, group, left, right });
+        let (first, first_row) = *self.by_id_alone.entry(id).or_insert((number, row));
+        if self.open && self.naming == Ids::OnePair && first != number {
+            let other = &self.questions[first as usize];
+            if [other.left.min(other.right), other.left.max(other.right)] != [low, high] {
+                return Err(Fault::TwoPairs {
+                    row,
+                    question: shorten(name),
+                    pair: self.pair([left, right]),
+                    first_row,
+                    first_pair: self.pair([other.left, other.right]),
+                });
+            }
+        }
+        let question = Question::new(name, object, group, [left, right]);
+        self.questions.push(Question { role, ..question });
         self.by_pair.insert(key, number);
-        number
+        Ok(number)
+    }
+
+    /// Two items as messages show them.
+    fn pair(&self, items: [u32; 2]) -> String {
+        let [left, right] = items.map(|item| shorten(&self.items.names[item as usize]));
+        format!("{left} and {right}")
+    }
+
+    /// The id of a question.
+    pub(crate) fn id_of(&self, question: u32) -> &str {
+        &self.questions[question as usize].id
+    }
+
+    /// The id of a code name.
+    pub(crate) fn stimulus(&mut self, name: &str) -> Option<StimulusId> {
+        (!name.is_empty()).then(|| StimulusId::new(self.stimuli.number(name)))
     }
 
     pub(crate) fn answer(&mut self, answer: Answer, row: u64) {
         self.answers.push(answer);
-        self.rows.push(row);
+        self.rows.push(row as u32);
+    }
+
+    /// The same answer of several participants, whose numbers follow one another.
+    pub(crate) fn answers(&mut self, answer: Answer, count: u32, row: u64) {
+        let of = (answer.participant..answer.participant + count)
+            .map(|participant| Answer { participant, ..answer });
+        self.answers.extend(of);
+        self.rows.resize(self.answers.len(), row as u32);
     }
 
     /// Checks what was gathered.
     ///
     /// # Errors
     /// Cells that are no answers, answers given twice, no answers at all.
-    pub(crate) fn finish(mut self, sides_recorded: bool, end: u64) -> Result<Responses, Fault> {
+    pub(crate) fn finish(
+        mut self,
+        sides: SidesSource,
+        (header_row, end): (u64, u64),
+    ) -> Result<Responses, Fault> {
         if !self.unknown.is_empty() {
             return Err(Fault::UnknownAnswers { cells: self.unknown, known: self.mapping.words.summary() });
         }
-        for &number in &self.unnamed {
+        if let Some((Place { row, column }, cells)) = self.missing {
+            let action = match cells {
+                1 => "R's mark for a missing value: read as no answer".to_owned(),
+                _ => {
+                    format!("R's mark for a missing value: read as no answer, here and in {} more", cells - 1)
+                }
+            };
+            self.report.cell(Kind::Noted, row, column, "NA", action);
+        }
+        let nameless = self.nameless.iter().cloned().flatten();
+        for number in self.unnamed.iter().copied().chain(nameless) {
             let name = &mut self.participants[number as usize].id;
             while self.by_id.contains_key(name) {
                 name.push('\'');
             }
+        }
+        let without_participant: u64 = self.nameless.iter().map(|range| range.len() as u64).sum();
+        if without_participant > 0 {
+            let of = match without_participant {
+                1 => "1 answer names no participant: it is".to_owned(),
+                n => format!("{n} answers name no participant: each is"),
+            };
+            self.report.row(Kind::Noted, header_row, format!("{of} read as that of another person"));
         }
         self.check_repeats()?;
         if self.answers.is_empty() {
             return Err(Fault::NoAnswers { row: end });
         }
         self.drop_silent_participants();
+        if self.open {
+            self.sort_items();
+        }
         self.name_pairs();
         Ok(Responses {
             participants: self.participants,
             questions: self.questions,
             items: self.items.names,
             answers: self.answers,
-            sides_recorded,
+            sides_recorded: sides != SidesSource::Unknown,
+            sides,
+            stimuli: self.stimuli.names,
+            without_participant,
         })
+    }
+
+    /// Numbers the items by their names, so that their order does not depend on that of the rows.
+    fn sort_items(&mut self) {
+        let names = std::mem::take(&mut self.items.names);
+        let mut order: Vec<u32> = (0..names.len() as u32).collect();
+        order.sort_by(|&a, &b| natural::compare(&names[a as usize], &names[b as usize]));
+        let mut place = vec![0; names.len()];
+        order.iter().zip(0..).for_each(|(&item, new)| place[item as usize] = new);
+        let renumber = |item: &mut u32| *item = place[*item as usize];
+        self.questions.iter_mut().flat_map(|q| [&mut q.left, &mut q.right]).for_each(renumber);
+        self.answers.iter_mut().flat_map(|a| [&mut a.left, &mut a.right]).for_each(renumber);
+        self.items.names = order.iter().map(|&item| names[item as usize].clone()).collect();
     }
 
     /// Nobody answers a question twice, unless it was shown twice or the other way round.
@@ -244,7 +397,7 @@ impl<'a> Collector<'a> {
             }
             let kept = match self.mapping.duplicates {
                 Duplicates::Refuse => {
-                    let [first, second] = [same[0], same[1]].map(|i| self.rows[i as usize]);
+                    let [first, second] = [same[0], same[1]].map(|i| u64::from(self.rows[i as usize]));
                     let (participant, question, _) = key(same[0] as usize);
                     return Err(Fault::DuplicateAnswer {
                         row: second,
@@ -262,7 +415,7 @@ impl<'a> Collector<'a> {
         for &i in &dropped {
             let question = &self.questions[self.answers[i as usize].question as usize].id;
             let action = format!("{} answered more than once: this one is left out", shorten(question));
-            self.report.row(Kind::Rejected, self.rows[i as usize], action);
+            self.report.row(Kind::Rejected, u64::from(self.rows[i as usize]), action);
         }
         let mut i = 0;
         self.answers.retain(|_| {
@@ -294,9 +447,19 @@ impl<'a> Collector<'a> {
     fn name_pairs(&mut self) {
         /// Leaves room for a number.
         const CUT: usize = name::LONGEST_NAME - 20;
+        let repeated: HashSet<String> =
+            self.questions.iter().filter(|q| q.role != Role::Repeat).map(|q| q.id.clone()).collect();
+        for question in self.questions.iter_mut().filter(|q| q.role == Role::Repeat) {
+            if repeated.contains(&question.id) && question.id.len() < CUT {
+                question.id.push_str(REPEAT);
+            }
+        }
         let mut of_id: HashMap<String, u32> = HashMap::new();
         self.questions.iter().for_each(|q| *of_id.entry(q.id.clone()).or_default() += 1);
         for (i, question) in self.questions.iter_mut().enumerate().filter(|(_, q)| of_id[&q.id] > 1) {
+            if self.naming == Ids::Scene && question.object.is_empty() {
+                question.object.clone_from(&question.id);
+            }
             let [left, right] = [question.left, question.right].map(|item| &self.items.names[item as usize]);
             let parts = [&question.id, &question.group, &question.object].map(String::as_str);
             let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();

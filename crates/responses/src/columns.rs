@@ -4,7 +4,7 @@ use crate::error::{Fault, number_of, shorten};
 use crate::format::Format;
 use crate::layout::Layout;
 use crate::mapping::Mapping;
-use crate::plan::Plan;
+use crate::plan::{Plan, is_training};
 use crate::records::is_blank;
 use crate::source::Source;
 use crate::words::normalise;
@@ -76,7 +76,8 @@ fn wanted(plan: &Plan, mapping: &Mapping) -> Result<Vec<u32>, Fault> {
     for id in ids {
         let declaration =
             |limit: &str| Fault::Declaration { key: "questions", value: shorten(id), limit: limit.into() };
-        let question = plan.question(id).ok_or_else(|| declaration("is not a question of this study"))?;
+        let question = plan.question(id).or_else(|| plan.beside(id));
+        let question = question.ok_or_else(|| declaration("is not a question of this study"))?;
         if wanted.contains(&question) {
             return Err(declaration("is named twice"));
         }
@@ -85,7 +86,8 @@ fn wanted(plan: &Plan, mapping: &Mapping) -> Result<Vec<u32>, Fault> {
     Ok(wanted)
 }
 
-/// The study's own table: every column is named, and every question has one.
+/// The study's own table: every column is named, and every question has one. Repeats and controls may have one, and training is
+/// not read.
 fn own_table(layout: &Layout, plan: &Plan, wanted: &[u32]) -> Result<(Assigned, String), Fault> {
     let mut assigned: Assigned = Vec::new();
     for column in 0..layout.titles.len() {
@@ -93,7 +95,11 @@ fn own_table(layout: &Layout, plan: &Plan, wanted: &[u32]) -> Result<(Assigned, 
             continue;
         }
         let name = layout.title(column);
-        let Some(question) = plan.question(name) else {
+        let question = plan.question(name).or_else(|| plan.beside(name));
+        if question.is_none() && is_training(name) {
+            continue;
+        }
+        let Some(question) = question else {
             return Err(Fault::UnknownQuestion { column: column + 1, name: shorten(name) });
         };
         if let Some((first, _)) = assigned.iter().find(|(_, other)| *other == question) {
@@ -104,7 +110,7 @@ fn own_table(layout: &Layout, plan: &Plan, wanted: &[u32]) -> Result<(Assigned, 
     }
     for question in wanted {
         if assigned.iter().all(|(_, found)| found != question) {
-            let name = format!("question {}", plan.questions()[*question as usize].id);
+            let name = format!("question {}", plan.asked(*question).id);
             return Err(Fault::MissingColumn { name });
         }
     }
@@ -158,13 +164,7 @@ fn declared(layout: &Layout, mapping: &Mapping, count: usize) -> Result<Option<V
 
 /// Every question by a header that is its id, or begins with it: `Q7. Which ...`. None if one is missing or comes twice.
 fn named(layout: &Layout, plan: &Plan, wanted: &[u32]) -> Option<Assigned> {
-    let columns = |question: u32| -> Vec<usize> {
-        let id = &plan.questions()[question as usize].id;
-        (0..layout.titles.len())
-            .filter(|column| !layout.aside.contains(column))
-            .filter(|&column| layout.titles[column].iter().any(|title| names(title, id)))
-            .collect()
-    };
+    let columns = |question: u32| -> Vec<usize> { columns_of(layout, &plan.asked(question).id) };
     let mut assigned: Assigned = Vec::new();
     for &question in wanted {
         match columns(question)[..] {
@@ -174,7 +174,23 @@ fn named(layout: &Layout, plan: &Plan, wanted: &[u32]) -> Option<Assigned> {
             _ => return None,
         }
     }
+    // Repeats and controls that are there count as well; none has to be.
+    for (number, beside) in plan.all_beside().filter(|(number, _)| !wanted.contains(number)) {
+        if let [column] = columns_of(layout, &beside.id)[..]
+            && assigned.iter().all(|(other, _)| *other != column)
+        {
+            assigned.push((column, number));
+        }
+    }
     Some(assigned)
+}
+
+/// The columns whose headers name a question.
+fn columns_of(layout: &Layout, id: &str) -> Vec<usize> {
+    (0..layout.titles.len())
+        .filter(|column| !layout.aside.contains(column))
+        .filter(|&column| layout.titles[column].iter().any(|title| names(title, id)))
+        .collect()
 }
 
 /// Whether a header names the question: the id alone, or in front of `.`, `:`, `)` or a space.
@@ -214,7 +230,7 @@ fn answering(source: &Source<'_>, layout: &Layout, mapping: &Mapping) -> Result<
         }
         for (column, holds) in holds.iter_mut().enumerate().filter(|(_, holds)| **holds != Holds::Other) {
             let cell = record.cell(column);
-            if is_blank(cell) {
+            if is_blank(cell) || mapping.words.is_missing(cell) {
                 continue;
             }
             let known = match seen.get(cell) {
@@ -277,7 +293,7 @@ fn contradiction(layout: &Layout, plan: &Plan, assigned: &Assigned) -> Result<()
         let other =
             layout.titles[column].iter().find_map(|title| plan.question(title).filter(|&q| q != question));
         if let Some(other) = other {
-            let id = |question: u32| &plan.questions()[question as usize].id;
+            let id = |question: u32| &plan.asked(question).id;
             return Err(Fault::Columns {
                 first: format!("column {} is {} by its name", column + 1, id(other)),
                 second: format!("it is {} by its position", id(question)),

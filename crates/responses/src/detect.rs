@@ -4,7 +4,7 @@ use crate::error::{Fault, shorten};
 use crate::format::Format;
 use crate::layout::{Detected, Layout};
 use crate::long;
-use crate::plan::Plan;
+use crate::plan::{Plan, is_training};
 use crate::surveys;
 use crate::words::normalise;
 
@@ -31,8 +31,10 @@ fn mark(format: Format, head: &Head, plan: Option<&Plan>) -> Option<Detected> {
     let rule: Option<&str> = match format {
         Format::Table => {
             let plan = plan?;
-            let own =
-                |title: &String| is_participant(title) || is_form(title) || plan.question(title).is_some();
+            let beside = |title: &String| plan.beside(title).is_some() || is_training(title);
+            let own = |title: &String| {
+                is_participant(title) || is_form(title) || plan.question(title).is_some() || beside(title)
+            };
             let all = header.iter().all(own) && header.iter().any(|title| plan.question(title).is_some());
             all.then_some("every header is a question's id")
         }
@@ -56,7 +58,7 @@ fn is_participant(title: &str) -> bool {
     ["participant", "respondent", "id"].contains(&normalise(title).as_str())
 }
 
-fn is_form(title: &str) -> bool {
+pub(crate) fn is_form(title: &str) -> bool {
     normalise(title) == "form"
 }
 

@@ -207,6 +207,89 @@ pub enum Fault {
         /// The row's items.
         found: String,
     },
+    /// One id for two pairs, in a file without a study.
+    #[error(
+        "row {row}: question {question} compares {pair}, and {first_pair} in row {first_row}; give each pair a question of its own"
+    )]
+    TwoPairs {
+        /// The second row.
+        row: u64,
+        /// The question.
+        question: String,
+        /// The items of the second row.
+        pair: String,
+        /// The first row.
+        first_row: u64,
+        /// The items of the first row.
+        first_pair: String,
+    },
+    /// A pair that no question of the study compares, or several do, in a file that names no questions.
+    #[error("row {row}: not one question of this study compares {found}")]
+    NoSuchPair {
+        /// The row.
+        row: u64,
+        /// The items, and on what.
+        found: String,
+    },
+    /// A file without sides, of a study that shows participants different ones.
+    #[error(
+        "row {row}: the file does not say which item was on which side, and this study shows participants different sides. Add \
+         a `form` column with the number of each participant's form; cells are then read as what was pressed. Or use the long \
+         format with `left` and `right`. Answers that were turned to the study's sides, as in tables/answers.csv, are not read: \
+         nobody may have seen those sides"
+    )]
+    NoSides {
+        /// The header's row.
+        row: u64,
+    },
+    /// A repeat or control without sides, where the study does not say them either.
+    #[error(
+        "row {row}: neither the file nor the study says on which sides {question} was shown; add the columns `left` and `right`"
+    )]
+    NoSidesOf {
+        /// The row.
+        row: u64,
+        /// The question.
+        question: String,
+    },
+    /// An answer to what the participant's form does not ask.
+    #[error("row {row}: form {form} does not ask {question}, and here is an answer to it; is that the form?")]
+    NotInForm {
+        /// The row.
+        row: u64,
+        /// The form.
+        form: String,
+        /// The question.
+        question: String,
+    },
+    /// A code name that contradicts the form.
+    #[error(
+        "row {row}: stimulus {stimulus} shows {shown}, left to right, and form {form} asks {question} with {asked}"
+    )]
+    OtherStimulus {
+        /// The row.
+        row: u64,
+        /// The code name.
+        stimulus: String,
+        /// What it shows.
+        shown: String,
+        /// The form.
+        form: String,
+        /// The question.
+        question: String,
+        /// What the form shows.
+        asked: String,
+    },
+    /// Rows that stand for more answers than are read.
+    #[error("row {row}: {answers} answers so far, by their counts; at most {limit} are read")]
+    TooManyAnswers {
+        /// The row.
+        row: u64,
+        /// Answers so far, with this row's.
+        answers: u64,
+        /// The most that are read.
+        limit: u64,
+    },
     /// One participant twice.
     #[error(
         "row {row}: participant {participant} is already in row {first}; declare `duplicates` to keep the first or the last"

@@ -25,11 +25,15 @@ pub enum Format {
     WebMushra,
     /// REDCap's flat CSV.
     RedCap,
+    /// arenakit's battles: `model_a, model_b, winner`, of which the first model was shown first, here on the left.
+    Arenakit,
+    /// pwcmp's comparisons: `observer, scene, condition_A, condition_B, is_A_selected`, which are no sides.
+    Pwcmp,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Table,
         Self::Long,
         Self::GoogleForms,
@@ -41,6 +45,8 @@ impl Format {
         Self::Jatos,
         Self::WebMushra,
         Self::RedCap,
+        Self::Arenakit,
+        Self::Pwcmp,
     ];
 
     /// The name in study files and on the command line.
@@ -57,6 +63,8 @@ impl Format {
             Self::Jatos => "jatos",
             Self::WebMushra => "webmushra",
             Self::RedCap => "redcap",
+            Self::Arenakit => "arenakit",
+            Self::Pwcmp => "pwcmp",
         }
     }
 

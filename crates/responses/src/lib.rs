@@ -6,6 +6,11 @@
 //! words, policies). [`write_long`] and its neighbours write
 //! answers again.
 //!
+//! # Sides
+//! An answer has the sides that the participant saw. A file names them, or has the code names or form numbers from which a study
+//! knows them. Without any of these it is read only where everybody was shown the listed sides, and refused otherwise: see
+//! [`SidesSource`], which [`Responses`] and [`Report`] carry.
+//!
 //! # Guarantees
 //! - No input panics; what is wrong is an error that names file, row and column.
 //! - Nothing is dropped silently and nothing is guessed: every cell that is not taken as it stands is in the report, and where two
@@ -13,6 +18,8 @@
 
 mod address;
 mod archive;
+mod arenakit;
+mod asked;
 mod choice;
 mod collect;
 mod columns;
@@ -24,11 +31,15 @@ mod layout;
 mod long;
 mod mapping;
 mod name;
+mod natural;
 mod people;
 mod plan;
+mod pwcmp;
 mod read;
 mod records;
 mod report;
+mod shown;
+mod sides;
 mod source;
 mod surveys;
 mod text;
@@ -42,6 +53,7 @@ mod write;
 
 pub use archive::LARGEST_ARCHIVE;
 pub use choice::Choice;
+pub use collect::MOST_COUNTED;
 pub use error::{Fault, ReadError, UnknownCell};
 pub use escape::{escape, unescape};
 pub use format::Format;
@@ -50,6 +62,7 @@ pub use name::LONGEST_NAME;
 pub use plan::{Plan, PlannedPair};
 pub use read::{LARGEST_FILE, Reading, parse, read};
 pub use report::{Kind, Remark, Report};
-pub use value::{Answer, Participant, Question, Responses};
+pub use sides::SidesSource;
+pub use value::{Answer, Participant, Question, Responses, StimulusId};
 pub use words::{Words, normalise};
 pub use write::{Ties, WriteError, Written, write_arenakit, write_long, write_pwcmp};

@@ -1,6 +1,6 @@
-//! The long format: one row an answer.
+//! The long format: one row an answer, or, with a `count`, one row for several people's.
 
-use crate::collect::{Collector, Place, Reply};
+use crate::collect::{Collector, Ids, Place, Reply};
 use crate::error::{Fault, shorten};
 use crate::escape::unescape;
 use crate::format::Format;
@@ -9,24 +9,38 @@ use crate::name;
 use crate::plan::Plan;
 use crate::records::{Record, is_blank, trim};
 use crate::report::{Kind, Report};
+use crate::sides::SidesSource;
 use crate::source::Source;
-use crate::value::{Answer, Question, Responses};
-use crate::words::normalise;
+use crate::value::{Answer, Responses};
+use crate::words::{is_na, normalise};
 
 /// Columns that are read; others are noted.
-const NAMES: [&str; 10] =
-    ["participant", "question", "left", "right", "choice", "object", "group", "form", "order", "rt_ms"];
-
-/// Columns of `isostudy`'s own export that say nothing of an answer which the study does not say itself.
-const KNOWN: [&str; 2] = ["role", "stimulus"];
+const NAMES: [&str; 13] = [
+    "participant",
+    "question",
+    "left",
+    "right",
+    "choice",
+    "object",
+    "group",
+    "form",
+    "order",
+    "rt_ms",
+    "role",
+    "stimulus",
+    "count",
+];
 
 /// Where the columns of a file with one row an answer are.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Columns {
-    pub(crate) participant: usize,
+    /// Who answered; where there is none, everybody is somebody else.
+    pub(crate) participant: Option<usize>,
     /// The participant's column counts trials instead, and starts again with each participant.
     pub(crate) restarts: bool,
-    pub(crate) question: usize,
-    /// Both sides, or as the study declares them.
+    /// The question; where there is none, it follows from the pair.
+    pub(crate) question: Option<usize>,
+    /// Both sides, or what the study shows.
     pub(crate) sides: Option<(usize, usize)>,
     pub(crate) choice: usize,
     pub(crate) object: Option<usize>,
@@ -34,14 +48,12 @@ pub(crate) struct Columns {
     pub(crate) form: Option<usize>,
     pub(crate) order: Option<usize>,
     pub(crate) rt_ms: Option<usize>,
-}
-
-/// What the id of a repeat has behind that of its question, and that of training before its number, in a study's forms.
-const REPEAT: &str = "-r";
-const TRAINING: &str = "training-";
-
-fn is_training(id: &str) -> bool {
-    id.strip_prefix(TRAINING).is_some_and(|number| number.parse::<u32>().is_ok())
+    /// Why it was asked, as forms say it.
+    pub(crate) role: Option<usize>,
+    /// The code name of what was shown.
+    pub(crate) stimulus: Option<usize>,
+    /// How many people gave this answer.
+    pub(crate) count: Option<usize>,
 }
 
 /// What differs between formats with one row an answer.
@@ -53,16 +65,11 @@ pub(crate) struct Rule {
     pub(crate) escaped: bool,
     /// Whether every row is an answer; otherwise those with a question.
     pub(crate) every_row: bool,
+    /// What an id means where there is no study.
+    pub(crate) ids: Ids,
 }
 
 impl Columns {
-    /// What there must be; the rest is absent.
-    pub(crate) fn new(participant: usize, question: usize, choice: usize) -> Self {
-        let (sides, restarts) = (None, false);
-        let (object, group, form, order, rt_ms) = (None, None, None, None, None);
-        Self { participant, restarts, question, sides, choice, object, group, form, order, rt_ms }
-    }
-
     fn of(header: &[String], row: u64, with_plan: bool, report: &mut Report) -> Result<Self, Fault> {
         let mut at = [None; NAMES.len()];
         for (column, title) in header.iter().enumerate() {
@@ -73,25 +80,81 @@ impl Columns {
                         return Err(Fault::DuplicateColumn { column: column + 1, first: first + 1, name });
                     }
                 }
-                None if is_blank(title) || KNOWN.contains(&normalise(title).as_str()) => {}
+                None if is_blank(title) => {}
                 None => report.cell(Kind::Noted, row, column, title, "not a column of this format: not read"),
             }
         }
-        let needed = |name: usize| at[name].ok_or_else(|| Fault::MissingColumn { name: NAMES[name].into() });
-        let sides = match (at[2], at[3]) {
-            (Some(left), Some(right)) => Some((left, right)),
-            (None, None) if with_plan => None,
-            _ => Some((needed(2)?, needed(3)?)),
+        let [
+            participant,
+            question,
+            left,
+            right,
+            choice,
+            object,
+            group,
+            form,
+            order,
+            rt_ms,
+            role,
+            stimulus,
+            count,
+        ] = at;
+        let needed = |column: Option<usize>, name: &str| match column {
+            Some(column) => Ok(column),
+            None => Err(Fault::MissingColumn { name: name.into() }),
         };
-        let (object, group, form, order, rt_ms) = (at[5], at[6], at[7], at[8], at[9]);
-        Ok(Self { sides, object, group, form, order, rt_ms, ..Self::new(needed(0)?, needed(1)?, needed(4)?) })
+        if count.is_none() {
+            needed(participant, "participant")?;
+        }
+        if with_plan {
+            needed(question, "question")?;
+        }
+        let sides = match (left, right) {
+            (None, None) if with_plan => None,
+            _ => Some((needed(left, "left")?, needed(right, "right")?)),
+        };
+        let choice = needed(choice, "choice")?;
+        let restarts = false;
+        Ok(Self {
+            participant,
+            restarts,
+            question,
+            sides,
+            choice,
+            object,
+            group,
+            form,
+            order,
+            rt_ms,
+            role,
+            stimulus,
+            count,
+        })
+    }
+
+    /// How sides are known.
+    ///
+    /// # Errors
+    /// If they are not.
+    fn source(&self, rule: Rule, plan: Option<&Plan>, row: u64) -> Result<SidesSource, Fault> {
+        match (self.sides, plan) {
+            _ if !rule.sides_recorded => Ok(SidesSource::Unknown),
+            (Some(_), _) => Ok(SidesSource::InFile),
+            (None, Some(plan)) if plan.shows_listed_sides() => Ok(SidesSource::AsListed),
+            (None, Some(plan)) if self.stimulus.is_some() && plan.has_codes() => {
+                Ok(SidesSource::FromCodeNames)
+            }
+            (None, Some(_)) if self.form.is_some() => Ok(SidesSource::FromForms),
+            (None, _) => Err(Fault::NoSides { row }),
+        }
     }
 }
 
 /// Whether a header has the columns that nothing else has.
 pub(crate) fn is_long(header: &[String]) -> bool {
     let has = |name: &str| header.iter().any(|title| normalise(title) == name);
-    has("participant") && has("choice") && (has("question") || (has("left") && has("right")))
+    let sides = has("left") && has("right");
+    has("choice") && (has("participant") || (has("count") && sides)) && (has("question") || sides)
 }
 
 /// Reads every row under the header, which is the first row that is not blank.
@@ -106,7 +169,8 @@ pub(crate) fn read(
     report: &mut Report,
 ) -> Result<Responses, Fault> {
     let columns = Columns::of(header, header_row, plan.is_some(), report)?;
-    let rule = Rule { sides_recorded: true, escaped: true, every_row: true };
+    let ids = if columns.question.is_some() { Ids::OnePair } else { Ids::MadeUp };
+    let rule = Rule { sides_recorded: true, escaped: true, every_row: true, ids };
     read_columns(source, (header_row, header.len()), columns, rule, plan, mapping, report)
 }
 
@@ -123,8 +187,11 @@ pub(crate) fn read_columns(
     mapping: &Mapping,
     report: &mut Report,
 ) -> Result<Responses, Fault> {
-    let collector = Collector::new(plan, mapping, report);
-    let mut rows = Rows { columns, rule, plan, collector, width, run: 0, last_trial: None, passed_over: 0 };
+    let sides = columns.source(rule, plan, header_row)?;
+    let mut collector = Collector::new(plan, mapping, report);
+    collector.naming = rule.ids;
+    let mut rows =
+        Rows { columns, rule, sides, plan, collector, width, run: 0, last_trial: None, passed_over: 0 };
     let (mut end, mut blank) = (header_row + 1, None::<(u64, u64)>);
     source.each(|record| {
         if record.row <= header_row {
@@ -145,14 +212,16 @@ pub(crate) fn read_columns(
         };
         rows.collector.report.row(Kind::Noted, header_row, action);
     }
-    rows.collector.finish(rule.sides_recorded, end)
+    rows.collector.finish(sides, (header_row, end))
 }
 
-struct Rows<'a> {
-    columns: Columns,
-    rule: Rule,
-    plan: Option<&'a Plan>,
-    collector: Collector<'a>,
+/// Rows as they are read.
+pub(crate) struct Rows<'a> {
+    pub(crate) columns: Columns,
+    pub(crate) rule: Rule,
+    pub(crate) sides: SidesSource,
+    pub(crate) plan: Option<&'a Plan>,
+    pub(crate) collector: Collector<'a>,
     width: usize,
     /// Participants so far, where the trials' numbers tell them apart.
     run: u32,
@@ -169,32 +238,88 @@ impl Rows<'_> {
         }
         let row = record.row;
         let run = self.run(record);
-        if !self.rule.every_row && is_blank(record.cell(self.columns.question)) {
+        let unasked = self.columns.question.is_some_and(|column| is_blank(record.cell(column)));
+        if !self.rule.every_row && unasked {
             self.passed_over += 1;
             return Ok(());
         }
+        let count = self.count(record)?;
+        if count == 0 {
+            self.collector.report.row(Kind::Noted, row, "a count of 0: nobody gave this answer");
+            return Ok(());
+        }
         let id = match &run {
-            Some(run) => run.as_str(),
-            None => self.needed(record, self.columns.participant, "participant")?,
+            Some(run) => Some(run.as_str()),
+            None => self.participant(record, count)?,
         };
-        let asked = self.needed(record, self.columns.question, "question")?;
+        let asked = match self.columns.question {
+            Some(column) => self.needed(record, column, "question")?,
+            None => "",
+        };
         let form = Some(self.name(record, self.columns.form, "form")?).filter(|form| !form.is_empty());
-        let participant = self.collector.participant(id, form, row)?;
-        let Some((question, left, right)) = self.pair(record, asked)? else { return Ok(()) };
+        let named = id.map(|id| self.collector.participant(id, form, row)).transpose()?;
+        let Some((question, [left, right])) = self.asked(record, asked, form)? else { return Ok(()) };
         let place = Place { row, column: self.columns.choice };
         let choice = match self.collector.reply(record.cell(self.columns.choice), place, asked) {
             Reply::Choice(choice) => choice,
             Reply::Unknown => return Ok(()),
             Reply::Blank => {
-                let action = format!("{} left {} unanswered", shorten(id), shorten(asked));
+                let asked = if asked.is_empty() { self.collector.id_of(question) } else { asked };
+                let action =
+                    format!("{} left {} unanswered", shorten(id.unwrap_or("nobody")), shorten(asked));
                 self.collector.report.row(Kind::Noted, row, action);
                 return Ok(());
             }
         };
         let order = self.columns.order.and_then(|column| self.number(record, column));
         let rt_ms = self.columns.rt_ms.and_then(|column| self.time(record, column));
-        self.collector.answer(Answer { participant, question, left, right, choice, order, rt_ms }, row);
+        let stimulus = self.name(record, self.columns.stimulus, "stimulus")?;
+        let stimulus = self.collector.stimulus(stimulus);
+        let of = |participant: u32| Answer {
+            order,
+            rt_ms,
+            stimulus,
+            ..Answer::new(participant, question, [left, right], choice)
+        };
+        match named {
+            Some(participant) => self.collector.answer(of(participant), row),
+            None => {
+                let first = self.collector.nameless(count, form, row)?;
+                let mut answer = of(first);
+                if count > 1 && (order.is_some() || rt_ms.is_some()) {
+                    (answer.order, answer.rt_ms) = (None, None);
+                    let action = "a place or a time for several answers together: not read";
+                    self.collector.report.row(Kind::Noted, row, action);
+                }
+                self.collector.answers(answer, count, row);
+            }
+        }
         Ok(())
+    }
+
+    /// How many answers a row stands for.
+    fn count(&self, record: &Record<'_>) -> Result<u32, Fault> {
+        let Some(column) = self.columns.count else { return Ok(1) };
+        let cell = self.text(record, column);
+        cell.parse().map_err(|_| self.refuse(record, column, "count", "must be a whole number of answers"))
+    }
+
+    /// Who answered; `None` is somebody else in every row.
+    fn participant<'r>(&self, record: &'r Record<'_>, count: u32) -> Result<Option<&'r str>, Fault> {
+        let Some(column) = self.columns.participant else { return Ok(None) };
+        let counted = self.columns.count;
+        if counted.is_some() && self.text(record, column).is_empty() {
+            return Ok(None);
+        }
+        let id = self.needed(record, column, "participant")?;
+        match counted {
+            Some(counted) if count > 1 => {
+                let limit = "must be 1 where a participant is named, who gives an answer once; leave the participant empty \
+                             where these are different people";
+                Err(self.refuse(record, counted, "count", limit))
+            }
+            _ => Ok(Some(id)),
+        }
     }
 
     /// The number of the participant, where trials are counted anew for each.
@@ -202,7 +327,7 @@ impl Rows<'_> {
         if !self.columns.restarts {
             return None;
         }
-        let trial = record.cell(self.columns.participant).trim().parse().ok();
+        let trial = self.columns.participant.and_then(|column| record.cell(column).trim().parse().ok());
         if self.run == 0 || trial.is_some_and(|trial| self.last_trial.is_some_and(|last| trial <= last)) {
             self.run += 1;
         }
@@ -210,12 +335,17 @@ impl Rows<'_> {
         Some(self.run.to_string())
     }
 
-    fn text<'r>(&self, record: &'r Record<'_>, column: usize) -> &'r str {
+    pub(crate) fn text<'r>(&self, record: &'r Record<'_>, column: usize) -> &'r str {
         let cell = trim(record.cell(column));
         if self.rule.escaped { unescape(cell) } else { cell }
     }
 
-    fn needed<'r>(&self, record: &'r Record<'_>, column: usize, name: &str) -> Result<&'r str, Fault> {
+    pub(crate) fn needed<'r>(
+        &self,
+        record: &'r Record<'_>,
+        column: usize,
+        name: &str,
+    ) -> Result<&'r str, Fault> {
         let cell = self.text(record, column);
         if cell.is_empty() {
             return Err(self.refuse(record, column, name, "must not be empty"));
@@ -224,7 +354,12 @@ impl Rows<'_> {
     }
 
     /// The name in a cell, empty where there is no such column.
-    fn name<'r>(&self, record: &'r Record<'_>, column: Option<usize>, name: &str) -> Result<&'r str, Fault> {
+    pub(crate) fn name<'r>(
+        &self,
+        record: &'r Record<'_>,
+        column: Option<usize>,
+        name: &str,
+    ) -> Result<&'r str, Fault> {
         let Some(column) = column else { return Ok("") };
         let cell = self.text(record, column);
         if name::is_too_long(cell) {
@@ -233,104 +368,22 @@ impl Rows<'_> {
         Ok(cell)
     }
 
-    fn refuse(&self, record: &Record<'_>, column: usize, name: &str, limit: impl Into<String>) -> Fault {
+    pub(crate) fn refuse(
+        &self,
+        record: &Record<'_>,
+        column: usize,
+        name: &str,
+        limit: impl Into<String>,
+    ) -> Fault {
         let (row, cell) = (record.row, shorten(record.cell(column)));
         Fault::Cell { row, column: column + 1, name: name.into(), cell, limit: limit.into() }
-    }
-
-    /// The question and the items on its sides. A control that a study does not list is a question of its own.
-    fn pair(&mut self, record: &Record<'_>, asked: &str) -> Result<Option<(u32, u32, u32)>, Fault> {
-        let sides = match self.columns.sides {
-            None => None,
-            Some((left, right)) => {
-                Some((self.needed(record, left, "left")?, self.needed(record, right, "right")?))
-            }
-        };
-        let object = self.name(record, self.columns.object, "object")?;
-        let group = self.name(record, self.columns.group, "group")?;
-        let Some(plan) = self.plan else {
-            let (left, right) = sides.expect("needed without a plan");
-            let (left, right) = (self.collector.items.number(left), self.collector.items.number(right));
-            return Ok(Some((self.collector.question(asked, object, group, left, right), left, right)));
-        };
-        let known = plan.question(asked);
-        // Forms of a study have repeats and training beside its questions.
-        if known.is_none() && is_training(asked) {
-            self.collector.report.row(Kind::Noted, record.row, "training, which is not analysed: not read");
-            return Ok(None);
-        }
-        let repeated =
-            asked.strip_suffix(REPEAT).filter(|_| known.is_none()).and_then(|id| plan.question(id));
-        if let Some(question) = repeated {
-            return self.repeat(record, asked, &plan.questions()[question as usize], sides).map(Some);
-        }
-        let Some((left, right)) = sides else {
-            let question = known.ok_or_else(|| self.unknown_question(record))?;
-            let of = &plan.questions()[question as usize];
-            return Ok(Some((question, of.left, of.right)));
-        };
-        let [a, b] = [left, right].map(|name| plan.item(name, known));
-        match (known, a, b) {
-            (Some(question), Some(a), Some(b))
-                if a != b || plan.questions()[question as usize].is_control() =>
-            {
-                Ok(Some((question, a, b)))
-            }
-            (Some(question), ..) => Err(Fault::Pair {
-                row: record.row,
-                question: shorten(asked),
-                declared: plan.pair(question),
-                found: format!("{} and {}", shorten(left), shorten(right)),
-            }),
-            (None, Some(a), Some(b)) if a == b => {
-                Ok(Some((self.collector.question(asked, object, group, a, b), a, b)))
-            }
-            (None, ..) => Err(self.unknown_question(record)),
-        }
-    }
-
-    /// A question again, as a question of its own: it checks answers and is not one of the study's. Where the file has no
-    /// sides they are exchanged.
-    fn repeat(
-        &mut self,
-        record: &Record<'_>,
-        asked: &str,
-        of: &Question,
-        sides: Option<(&str, &str)>,
-    ) -> Result<(u32, u32, u32), Fault> {
-        let plan = self.plan.expect("only a plan's questions are repeated");
-        let known = plan.question(&of.id);
-        let (left, right) = match sides {
-            None => (of.right, of.left),
-            Some((left, right)) => match (plan.item(left, known), plan.item(right, known)) {
-                (Some(a), Some(b)) if a != b => (a, b),
-                _ => {
-                    return Err(Fault::Pair {
-                        row: record.row,
-                        question: shorten(asked),
-                        declared: plan.pair(known.expect("found by this id")),
-                        found: format!("{} and {}", shorten(left), shorten(right)),
-                    });
-                }
-            },
-        };
-        Ok((self.collector.question(asked, &of.object, &of.group, left, right), left, right))
-    }
-
-    fn unknown_question(&self, record: &Record<'_>) -> Fault {
-        self.refuse(
-            record,
-            self.columns.question,
-            "question",
-            "is not a question of this study, nor a control or a repeat",
-        )
     }
 
     /// A whole number; anything else is rejected and listed.
     fn number(&mut self, record: &Record<'_>, column: usize) -> Option<u32> {
         let cell = self.text(record, column);
         let number = cell.parse().ok();
-        if number.is_none() && !cell.is_empty() {
+        if number.is_none() && !cell.is_empty() && !is_na(cell) {
             let action = "not a whole number: the answer has no place in the order";
             self.collector.report.cell(Kind::Rejected, record.row, column, cell, action);
         }
@@ -340,7 +393,7 @@ impl Rows<'_> {
     /// Milliseconds; anything else is rejected and listed.
     fn time(&mut self, record: &Record<'_>, column: usize) -> Option<f32> {
         let cell = self.text(record, column);
-        if cell.is_empty() {
+        if cell.is_empty() || is_na(cell) {
             return None;
         }
         let sound = |time: &f32| time.is_finite() && *time >= 0.0;

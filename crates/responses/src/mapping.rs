@@ -1,6 +1,6 @@
 //! What a study declares about its files of answers.
 
-use crate::error::shorten;
+use crate::error::{Fault, number_of, shorten};
 use crate::format::Format;
 use crate::name;
 use crate::plan::PlannedPair;
@@ -140,6 +140,20 @@ impl Mapping {
         };
         mapping.pairs = section.pairs.iter().map(pair).collect();
         Ok(mapping)
+    }
+
+    /// The declared column of participants, counted from 0, in a file with so many columns.
+    ///
+    /// # Errors
+    /// If it has fewer.
+    pub(crate) fn participant(&self, columns: usize) -> Result<Option<usize>, Fault> {
+        match self.participant_column {
+            Some(column) if !(1..=columns).contains(&column) => {
+                let limit = format!("the file has {}", number_of(columns, "column"));
+                Err(Fault::Declaration { key: "participant_column", value: column.to_string(), limit })
+            }
+            column => Ok(column.map(|column| column - 1)),
+        }
     }
 
     /// The format with this name.

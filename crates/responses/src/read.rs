@@ -1,6 +1,7 @@
 //! Reading: bytes, text, rows, format, answers.
 
 use crate::archive::{self, Archive};
+use crate::arenakit;
 use crate::detect;
 use crate::error::{Fault, ReadError, shorten};
 use crate::format::Format;
@@ -9,7 +10,9 @@ use crate::long;
 use crate::mapping::Mapping;
 use crate::name;
 use crate::plan::Plan;
+use crate::pwcmp;
 use crate::report::Report;
+use crate::sides::SidesSource;
 use crate::source::Source;
 use crate::surveys;
 use crate::text;
@@ -65,10 +68,14 @@ pub fn parse(
         format_rule: String::new(),
         text_rule: String::new(),
         column_rule: String::new(),
+        sides: SidesSource::Unknown,
         remarks: Vec::new(),
     };
     match content(bytes, plan, mapping, &mut report) {
-        Ok(responses) => Ok(Reading { responses, report }),
+        Ok(responses) => {
+            report.sides = responses.sides;
+            Ok(Reading { responses, report })
+        }
         Err(fault) => Err(ReadError::Content { file: path.into(), fault: Box::new(fault) }),
     }
 }
@@ -165,6 +172,8 @@ fn table(
         }
         Format::JsPsych | Format::Jatos => trials::read_table(source, &head, plan, mapping, report),
         Format::WebMushra => webmushra::read(source, &head, plan, mapping, report),
+        Format::Arenakit => arenakit::read(source, &head, plan, mapping, report),
+        Format::Pwcmp => pwcmp::read(source, &head, plan, mapping, report),
         _ => {
             let layout = surveys::layout(format, &head)?;
             wide::read(source, format, &layout, plan, mapping, report)

@@ -2,6 +2,7 @@
 
 use crate::error::shorten;
 use crate::format::Format;
+use crate::sides::SidesSource;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -18,6 +19,8 @@ pub struct Report {
     pub text_rule: String,
     /// How columns were assigned to questions; empty where rows name their question.
     pub column_rule: String,
+    /// How it is known which item was on which side; [`SidesSource::sentence`] says it.
+    pub sides: SidesSource,
     /// Cells and rows that were repaired, rejected or passed over.
     pub remarks: Vec<Remark>,
 }
@@ -116,6 +119,7 @@ impl fmt::Display for Report {
         if !self.column_rule.is_empty() {
             write!(f, "; {}", self.column_rule)?;
         }
+        write!(f, "; sides: {}", self.sides.name())?;
         for Remark { row, column, raw, kind, action } in &self.remarks {
             write!(f, "\n{}: row {row}", self.file.display())?;
             if let Some(column) = column {

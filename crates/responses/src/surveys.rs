@@ -1,7 +1,7 @@
 //! Exports of survey tools with one row a participant: how each is known, and what of its header is the tool's own.
 
 use crate::address;
-use crate::detect::Head;
+use crate::detect::{Head, is_form};
 use crate::error::Fault;
 use crate::format::Format;
 use crate::layout::{Layout, Sign};
@@ -175,6 +175,14 @@ pub(crate) fn mark(format: Format, head: &Head) -> Option<String> {
             .then(|| "the headers have trial_type and trial_index".into()),
         Format::WebMushra => (has("session_test_id") && has("choice_answer"))
             .then(|| "the headers have session_test_id and choice_answer".into()),
+        Format::Arenakit => ["model_a", "model_b", "winner"]
+            .into_iter()
+            .all(has)
+            .then(|| "the headers have model_a, model_b and winner".into()),
+        Format::Pwcmp => {
+            (has("condition_a") && has("condition_b") && crate::pwcmp::SELECTED.into_iter().any(has))
+                .then(|| "the headers have condition_A, condition_B and is_A_selected".into())
+        }
         Format::Table | Format::Long | Format::Jatos => None,
     }
 }
@@ -195,6 +203,10 @@ pub(crate) fn layout(format: Format, head: &Head) -> Result<Layout, Fault> {
     };
     let address = |column: &usize| layout.titles[*column].iter().any(|title| address::is_title(title));
     layout.addresses = (0..layout.titles.len()).filter(address).collect();
+    // Forms are no tool's own: people are asked for the number, or it is in the link to the survey.
+    layout.form =
+        (0..layout.titles.len()).find(|&column| layout.titles[column].iter().any(|title| is_form(title)));
+    layout.aside.extend(layout.form);
     Ok(layout)
 }
 

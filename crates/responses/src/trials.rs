@@ -1,5 +1,6 @@
 //! jsPsych's data, one row or JSON object a trial, and JATOS result text, which is one such array a participant.
 
+use crate::collect::Ids;
 use crate::detect::Head;
 use crate::error::{Fault, shorten};
 use crate::format::Format;
@@ -150,15 +151,14 @@ pub(crate) fn read_table(
         order: find(&["order", "trial_index"]),
         rt_ms: find(&["rt_ms", "rt"]),
         restarts,
-        ..Columns::new(participant, question, choice)
+        participant: Some(participant),
+        question: Some(question),
+        choice,
+        ..Columns::default()
     };
     if sides.is_none() {
-        report.row(
-            Kind::Noted,
-            *row,
-            "trials do not say what was left and right: taken as the study declares",
-        );
+        report.row(Kind::Noted, *row, "trials do not say what was left and right: taken from the study");
     }
-    let rows = long::Rule { sides_recorded: true, escaped: false, every_row: false };
+    let rows = long::Rule { sides_recorded: true, escaped: false, every_row: false, ids: Ids::OnePair };
     long::read_columns(source, (*row, header.len()), columns, rows, plan, mapping, report)
 }

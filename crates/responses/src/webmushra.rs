@@ -3,8 +3,9 @@
 //! Which of them was A, the left one, is drawn anew for every page and not written to the file: sides are not recorded. The answer is
 //! `correct` for the reference, `incorrect` for the other, `undecided`, or `unknown` if there was none.
 
+use crate::collect::Ids;
 use crate::detect::Head;
-use crate::error::{Fault, number_of, shorten};
+use crate::error::{Fault, shorten};
 use crate::format::Format;
 use crate::long::{self, Columns};
 use crate::mapping::Mapping;
@@ -35,13 +36,8 @@ pub(crate) fn read(
         header.iter().position(|title| normalise(title) == name).ok_or_else(missing)
     };
     let question = find("trial_id")?;
-    let participant = match mapping.participant_column {
-        Some(column) if (1..=header.len()).contains(&column) => column - 1,
-        Some(column) => {
-            let (value, limit) =
-                (column.to_string(), format!("the file has {}", number_of(header.len(), "column")));
-            return Err(Fault::Declaration { key: "participant_column", value, limit });
-        }
+    let participant = match mapping.participant(header.len())? {
+        Some(column) => column,
         None if question > 1 => 1,
         None => {
             let missing = "no column says who answered; declare `participant_column`".into();
@@ -53,13 +49,16 @@ pub(crate) fn read(
     let columns = Columns {
         sides: Some((find("choice_reference")?, find("choice_non_reference")?)),
         rt_ms: find("choice_time").ok(),
-        ..Columns::new(participant, question, find("choice_answer")?)
+        participant: Some(participant),
+        question: Some(question),
+        choice: find("choice_answer")?,
+        ..Columns::default()
     };
     let mut own = mapping.clone();
     let list = |word: &str| vec![word.to_owned()];
     let words = [&list("correct"), &list("undecided"), &list("incorrect")];
     own.words.declare(words.map(Vec::as_slice)).expect("three words");
     own.words.declare_blank("unknown");
-    let rows = long::Rule { sides_recorded: false, escaped: false, every_row: true };
+    let rows = long::Rule { sides_recorded: false, escaped: false, every_row: true, ids: Ids::OnePair };
     long::read_columns(source, (*row, header.len()), columns, rows, plan, &own, report)
 }

@@ -1,8 +1,13 @@
 //! Files with one row a participant and one column a question.
+//!
+//! Such a file has no sides. A cell says what was pressed, and the sides are those that the participant saw: the listed ones
+//! where everybody saw these, otherwise those of the form whose number is in the `form` column. A file without that column is
+//! refused then. So a table of answers that were turned to the listed sides must not be given as one of these.
 
 use crate::address;
+use crate::asked;
 use crate::choice::Choice;
-use crate::collect::{Collector, Place, Reply};
+use crate::collect::{Asking, Collector, Place, Reply};
 use crate::columns::{Assigned, assign};
 use crate::error::{Fault, number_of, shorten};
 use crate::escape::unescape;
@@ -14,8 +19,10 @@ use crate::people::People;
 use crate::plan::Plan;
 use crate::records::{Record, is_blank, trim};
 use crate::report::{Kind, Report};
+use crate::shown::Sheet;
+use crate::sides::SidesSource;
 use crate::source::Source;
-use crate::value::{Answer, Responses};
+use crate::value::{Answer, Question, Responses};
 use crate::words::normalise;
 use std::collections::HashMap;
 
@@ -34,14 +41,15 @@ pub(crate) fn read(
     let plan = plan.ok_or(Fault::NoPlan { format })?;
     let mut layout = layout.clone();
     let width = layout.titles.len();
-    if let Some(column) = mapping.participant_column {
-        if column > width {
-            let (value, limit) = (column.to_string(), format!("the file has {}", number_of(width, "column")));
-            return Err(Fault::Declaration { key: "participant_column", value, limit });
-        }
-        layout.participant = Some(column - 1);
-        layout.aside.push(column - 1);
+    if let Some(column) = mapping.participant(width)? {
+        layout.participant = Some(column);
+        layout.aside.push(column);
     }
+    let sides = match layout.form {
+        _ if plan.shows_listed_sides() => SidesSource::AsListed,
+        Some(_) => SidesSource::FromForms,
+        None => return Err(Fault::NoSides { row: layout.last_header_row }),
+    };
     let (assigned, rule) = assign(source, format, &layout, plan, mapping)?;
     report.column_rule = rule;
     let passed_over: Vec<usize> = (0..width)
@@ -59,6 +67,7 @@ pub(crate) fn read(
     let mut rows = Rows {
         layout: &layout,
         plan,
+        sides,
         assigned,
         orders,
         collector,
@@ -74,13 +83,13 @@ pub(crate) fn read(
         end = record.row + 1;
         rows.row(record, source.is_text())
     })?;
-    // A form shows what the study declares; shuffled sides would have to be in the file.
-    rows.collector.finish(true, end)
+    rows.collector.finish(sides, (layout.last_header_row, end))
 }
 
 struct Rows<'a> {
     layout: &'a Layout,
     plan: &'a Plan,
+    sides: SidesSource,
     assigned: Assigned,
     orders: Orders,
     collector: Collector<'a>,
@@ -91,7 +100,7 @@ struct Rows<'a> {
     blank: Option<(u64, u64)>,
 }
 
-impl Rows<'_> {
+impl<'a> Rows<'a> {
     fn row(&mut self, record: &Record<'_>, counted: bool) -> Result<(), Fault> {
         let row = record.row;
         if record.is_blank() {
@@ -156,30 +165,54 @@ impl Rows<'_> {
         if form.is_some_and(name::is_too_long) {
             return Err(self.too_long(record, self.layout.form));
         }
+        let sheet = match self.sides {
+            SidesSource::FromForms => Some(self.sheet(record, form)?),
+            _ => None,
+        };
         let participant = self.collector.participant(id, form, row)?;
         let orders = self.orders.of_row(record);
         let mut unanswered: Vec<&str> = Vec::new();
-        let (mut answered, mut choices) = (0, vec![None; self.assigned.len()]);
-        for (&(column, question), kept) in self.assigned.iter().zip(&mut choices) {
-            let asked = &self.plan.questions()[question as usize];
-            match self.collector.reply(record.cell(column), Place { row, column }, &asked.id) {
-                Reply::Choice(choice) => {
+        let (mut all, mut answered, mut choices) = (0, 0, vec![None; self.assigned.len()]);
+        for (&(column, number), kept) in self.assigned.iter().zip(&mut choices) {
+            let asked = self.plan.asked(number);
+            let reply = self.collector.reply(record.cell(column), Place { row, column }, &asked.id);
+            let sides = match sheet {
+                Some(sheet) => sheet[number as usize],
+                None => self.plan.listed(number),
+            };
+            // What the form does not ask is not left unanswered.
+            all += usize::from(sides.is_some() || sheet.is_none());
+            match (reply, sides) {
+                (Reply::Choice(choice), Some(sides)) => {
                     answered += 1;
                     *kept = Some(choice);
-                    let (left, right) = (asked.left, asked.right);
-                    let order = orders.get(&question).copied();
-                    let answer = Answer { participant, question, left, right, choice, order, rt_ms: None };
+                    let question = match self.plan.questions().get(number as usize) {
+                        Some(_) => number,
+                        None => {
+                            let Question { id, object, group, role, .. } = asked;
+                            self.collector.question(Asking { id, object, group, sides, role: *role }, row)?
+                        }
+                    };
+                    let order = orders.get(&number).copied();
+                    let answer = Answer { order, ..Answer::new(participant, question, sides, choice) };
                     self.collector.answer(answer, row);
                 }
-                Reply::Blank => unanswered.push(&asked.id),
-                Reply::Unknown => answered += 1,
+                (Reply::Choice(_), None) => {
+                    let (question, form) = (shorten(&asked.id), shorten(form.unwrap_or_default()));
+                    return Err(match sheet {
+                        Some(_) => Fault::NotInForm { row, form, question },
+                        None => Fault::NoSidesOf { row, question },
+                    });
+                }
+                (Reply::Blank, None) if sheet.is_some() => {}
+                (Reply::Blank, _) => unanswered.push(&asked.id),
+                (Reply::Unknown, _) => answered += 1,
             }
         }
         if answered == 0 {
             self.collector.report.row(Kind::Rejected, row, format!("{} answered no question", shorten(id)));
         } else if !unanswered.is_empty() {
             const SHOWN: usize = 10;
-            let all = self.assigned.len();
             let more = if unanswered.len() > SHOWN { ", ..." } else { "" };
             let shown = unanswered.iter().take(SHOWN).copied().collect::<Vec<_>>().join(", ");
             let action = format!(
@@ -190,6 +223,15 @@ impl Rows<'_> {
             self.collector.report.row(Kind::Noted, row, action);
         }
         Ok(choices)
+    }
+
+    /// What a row's form asks.
+    fn sheet(&self, record: &Record<'_>, form: Option<&str>) -> Result<&'a Sheet, Fault> {
+        asked::sheet(self.plan, form).map_err(|limit| {
+            let column = self.layout.form.expect("sides are told by it");
+            let (name, cell) = (shorten(self.layout.title(column)), shorten(record.cell(column)));
+            Fault::Cell { row: record.row, column: column + 1, name, cell, limit }
+        })
     }
 
     fn too_long(&self, record: &Record<'_>, column: Option<usize>) -> Fault {

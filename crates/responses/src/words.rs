@@ -169,9 +169,15 @@ impl Words {
         self.blank = Some(normalise(word));
     }
 
+    /// Whether a cell is R's mark for a missing value, `NA` in any case, unless that is declared to be an answer.
+    pub(crate) fn is_missing(&self, cell: &str) -> bool {
+        is_na(cell) && !self.known.contains_key("na")
+    }
+
     /// Whether a cell says that there is no answer.
     pub(crate) fn is_blank(&self, cell: &str) -> bool {
         crate::records::is_blank(cell)
+            || self.is_missing(cell)
             || self.blank.as_ref().is_some_and(|word| cell.len() < 99 && normalise(cell) == *word)
     }
 
@@ -191,6 +197,11 @@ impl Words {
         };
         format!("L, NP, R, left, none, right, words in {}{declared}", languages.join(", "))
     }
+}
+
+/// Whether a cell holds what R writes for a missing value.
+pub(crate) fn is_na(cell: &str) -> bool {
+    crate::records::trim(cell).eq_ignore_ascii_case("na")
 }
 
 /// A text as it is compared: lower case, one space between words, straight quotes, no mark of a compulsory question.
@@ -249,6 +260,15 @@ mod tests {
         for cell in ["", "1", "A", "vlevo", "left right", &"left ".repeat(10_000)] {
             assert_eq!(words.choice(cell), None, "{cell}");
         }
+    }
+
+    #[test]
+    fn na_is_missing_unless_it_is_declared() {
+        let mut words = Words::default();
+        assert!(["NA", "na", " Na "].into_iter().all(|cell| words.is_blank(cell) && words.is_missing(cell)));
+        assert!(["NaN", "N/A", "NULL", "n a", "-"].into_iter().all(|cell| !words.is_blank(cell)));
+        words.declare([&[], &["NA".to_owned()], &[]]).unwrap();
+        assert!(!words.is_blank("NA") && words.choice("NA") == Some(Choice::NoPreference));
     }
 
     #[test]

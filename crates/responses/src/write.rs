@@ -2,7 +2,8 @@
 
 use crate::choice::Choice;
 use crate::escape::escape;
-use crate::value::{Answer, Responses};
+use crate::value::{Answer, Question, Responses};
+use design::forms::Role;
 use std::io::Write;
 
 /// What to do with answers without preference where a format has none.
@@ -22,10 +23,12 @@ pub enum Ties {
 pub struct Written {
     /// Rows under the header.
     pub rows: u64,
-    /// Answers without preference among those read.
+    /// Answers without preference among those written.
     pub ties: u64,
-    /// Answers to controls, which compare nothing and are left out.
+    /// Answers to controls, which compare nothing. Formats that hold comparisons alone leave them out.
     pub controls: u64,
+    /// Answers to repeats, which check answers and are left out likewise.
+    pub repeats: u64,
 }
 
 /// Why nothing, or not everything, was written.
@@ -44,8 +47,9 @@ pub enum WriteError {
     Io(#[from] csv::Error),
 }
 
-/// `participant,form,order,question,object,left,right,choice,rt_ms`: everything, with the sides as they were shown. Cells that a
-/// spreadsheet would run as a formula are escaped; reading the file gives the same answers.
+/// `participant,form,order,question,object,group,left,right,choice,rt_ms,role,stimulus`: everything, with the sides as they were
+/// shown; controls and repeats are marked by their role. Cells that a spreadsheet would run as a formula are escaped; reading the
+/// file gives the same answers.
 ///
 /// # Errors
 /// If `out` cannot be written to.
@@ -57,12 +61,15 @@ pub fn write_long(responses: &Responses, out: impl Write) -> Result<Written, Wri
         "order",
         "question",
         "object",
+        "group",
         "left",
         "right",
         "choice",
         "rt_ms",
+        "role",
+        "stimulus",
     ])?;
-    let mut written = Written::default();
+    let mut written = counted(responses);
     for answer in &responses.answers {
         let participant = &responses.participants[answer.participant as usize];
         let question = &responses.questions[answer.question as usize];
@@ -75,20 +82,33 @@ pub fn write_long(responses: &Responses, out: impl Write) -> Result<Written, Wri
             &order,
             &question.id,
             &question.object,
+            &question.group,
             left,
             right,
             answer.choice.name(),
             &rt_ms,
+            role_name(question.role),
+            responses.stimulus(answer).unwrap_or(""),
         ];
         writer.write_record(texts.map(|text| escape(text).into_owned()))?;
         written.rows += 1;
-        written.ties += u64::from(answer.choice == Choice::NoPreference);
     }
+    written.ties = count(responses, |_, answer| answer.choice == Choice::NoPreference);
     writer.flush().map_err(csv::Error::from)?;
     Ok(written)
 }
 
-/// pwcmp: `observer,session,scene,condition_A,condition_B,is_A_selected`; A was on the left. `names` are the items'; the
+/// What forms and the long format call a role.
+fn role_name(role: Role) -> &'static str {
+    match role {
+        Role::Training => "training",
+        Role::Comparison => "comparison",
+        Role::Control => "control",
+        Role::Repeat => "repeat",
+    }
+}
+
+/// Comparisons for pwcmp: `observer,session,scene,condition_A,condition_B,is_A_selected`; A was on the left. `names` are the items'; the
 /// scene is the object, or the group.
 ///
 /// # Errors
@@ -131,7 +151,7 @@ pub fn write_pwcmp(
     Ok(written)
 }
 
-/// arenakit: `model_a,model_b,winner,item_id,voter_id`; `model_a` was on the left, the winner is `a`, `b` or `tie`.
+/// Comparisons for arenakit: `model_a,model_b,winner,item_id,voter_id`; `model_a` was on the left, the winner is `a`, `b` or `tie`.
 /// `names` are the items'.
 ///
 /// # Errors
@@ -163,13 +183,21 @@ pub fn write_arenakit(
     Ok(written)
 }
 
-/// Answers that compare two items.
+/// Answers to comparisons, which controls and repeats only check.
 fn comparing(responses: &Responses) -> impl Iterator<Item = &Answer> {
-    responses.answers.iter().filter(|answer| answer.left != answer.right)
+    let is_comparison = |answer: &&Answer| responses.questions[answer.question as usize].is_comparison();
+    responses.answers.iter().filter(is_comparison)
 }
 
 fn counted(responses: &Responses) -> Written {
-    let ties = comparing(responses).filter(|answer| answer.choice == Choice::NoPreference).count();
-    let controls = responses.answers.len() - comparing(responses).count();
-    Written { rows: 0, ties: ties as u64, controls: controls as u64 }
+    let of = |role: Role| count(responses, |question, _| question.role == role);
+    let ties = count(responses, |question, answer| {
+        question.is_comparison() && answer.choice == Choice::NoPreference
+    });
+    Written { rows: 0, ties, controls: of(Role::Control), repeats: of(Role::Repeat) }
+}
+
+fn count(responses: &Responses, which: impl Fn(&Question, &Answer) -> bool) -> u64 {
+    let fits = |answer: &&Answer| which(&responses.questions[answer.question as usize], answer);
+    responses.answers.iter().filter(fits).count() as u64
 }

@@ -170,12 +170,12 @@ fn declared_names_longer_than_a_name_is() {
 
 #[test]
 fn names_made_up_for_pairs_are_names() {
-    // Two pairs of one question, all of whose names are as long as a name may be.
+    // One question on two objects, all of whose names are as long as a name may be.
     let name = |c: &str| c.repeat(responses::LONGEST_NAME);
     let row =
-        |right: &str| format!("p,{},{},{},{},{},left\n", name("q"), name("a"), right, name("o"), name("g"));
+        |object: &str| format!("p,{},{},{},{},{},left\n", name("q"), name("a"), name("b"), object, name("g"));
     let text =
-        format!("participant,question,left,right,object,group,choice\n{}{}", row(&name("b")), row("c"));
+        format!("participant,question,left,right,object,group,choice\n{}{}", row(&name("o")), row("p"));
     let read = |text: &[u8]| responses::parse(text, Path::new("x"), None, &Mapping::default()).unwrap();
     let reading = read(text.as_bytes());
     let ids: Vec<&str> = reading.responses.questions.iter().map(|q| q.id.as_str()).collect();

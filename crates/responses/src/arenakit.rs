@@ -1,0 +1,64 @@
+//! arenakit's battles: one row an answer, `model_a, model_b, winner`, and where it is known `item_id` and `voter_id`.
+//!
+//! arenakit's `model_a` is the model that was shown first, which here is the left side. Its `item_id` is what two models were
+//! compared on: where several pairs share one it is their object, otherwise it is the question. Rows without a voter are of
+//! different people. Source: arenakit 0.1.1, `schema.py`.
+
+use crate::collect::Ids;
+use crate::detect::Head;
+use crate::error::{Fault, shorten};
+use crate::format::Format;
+use crate::long::{self, Columns};
+use crate::mapping::Mapping;
+use crate::plan::Plan;
+use crate::report::{Kind, Report};
+use crate::source::Source;
+use crate::value::Responses;
+use crate::words::normalise;
+
+const COLUMNS: [&str; 5] = ["model_a", "model_b", "winner", "item_id", "voter_id"];
+
+/// Reads every row under the header.
+///
+/// # Errors
+/// See [`Fault`].
+pub(crate) fn read(
+    source: &Source<'_>,
+    head: &Head,
+    plan: Option<&Plan>,
+    mapping: &Mapping,
+    report: &mut Report,
+) -> Result<Responses, Fault> {
+    let (row, header) = &head[0];
+    let find = |name: &str| header.iter().position(|title| normalise(title) == name);
+    let needed = |name: &str| {
+        let missing = format!("the header has no {name}");
+        find(name).ok_or(Fault::NotThatFormat { format: Format::Arenakit, row: *row, missing })
+    };
+    let participant = mapping.participant(header.len())?.or_else(|| find("voter_id"));
+    for (column, title) in header.iter().enumerate() {
+        if participant != Some(column) && !COLUMNS.contains(&normalise(title).as_str()) {
+            report.cell(Kind::Noted, *row, column, title, "not a column of this format: not read");
+        }
+    }
+    report.column_rule = match participant {
+        Some(column) => format!("participants by \"{}\"", shorten(&header[column])),
+        None => "no voters: every answer is another person's".into(),
+    };
+    let question = find("item_id");
+    let columns = Columns {
+        participant,
+        question,
+        sides: Some((needed("model_a")?, needed("model_b")?)),
+        choice: needed("winner")?,
+        ..Columns::default()
+    };
+    let mut own = mapping.clone();
+    let list = |words: [&str; 3]| words.map(str::to_owned);
+    let words =
+        [list(["a", "model_a", "left"]), list(["tie", "draw", "tie"]), list(["b", "model_b", "right"])];
+    own.words.declare(words.each_ref().map(|words| &words[..])).expect("no word twice");
+    let ids = if question.is_some() { Ids::Scene } else { Ids::MadeUp };
+    let rule = long::Rule { sides_recorded: true, escaped: true, every_row: true, ids };
+    long::read_columns(source, (*row, header.len()), columns, rule, plan, &own, report)
+}

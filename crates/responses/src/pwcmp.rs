@@ -1,0 +1,111 @@
+//! pwcmp's comparisons: one row an answer, `observer, session, scene, condition_A, condition_B, is_A_selected`.
+//!
+//! The format names no questions: a question is a scene with a pair. It does not say which condition was on the left, so sides
+//! are not recorded. The session is the form where an observer has one alone. Source: M. Perez-Ortiz and R. Mantiuk, "A practical guide and
+//! software for analysing pairwise comparison experiments" (2017), and the examples of their pwcmp.
+
+use crate::collect::Ids;
+use crate::detect::Head;
+use crate::error::Fault;
+use crate::format::Format;
+use crate::long::{self, Columns};
+use crate::mapping::Mapping;
+use crate::plan::Plan;
+use crate::report::{Kind, Report};
+use crate::source::Source;
+use crate::value::Responses;
+use crate::words::normalise;
+use std::collections::HashMap;
+
+/// Names of the column with the answer.
+pub(crate) const SELECTED: [&str; 2] = ["is_a_selected", "selected_a"];
+const COLUMNS: [&str; 7] =
+    ["observer", "session", "scene", "condition_a", "condition_b", SELECTED[0], SELECTED[1]];
+/// The session that is written where there are no forms.
+const ONLY_SESSION: &str = "1";
+
+/// Reads every row under the header.
+///
+/// # Errors
+/// See [`Fault`].
+pub(crate) fn read(
+    source: &Source<'_>,
+    head: &Head,
+    plan: Option<&Plan>,
+    mapping: &Mapping,
+    report: &mut Report,
+) -> Result<Responses, Fault> {
+    let (row, header) = &head[0];
+    let find = |name: &str| header.iter().position(|title| normalise(title) == name);
+    let needed = |column: Option<usize>, name: &str| {
+        let missing = format!("the header has no {name}");
+        column.ok_or(Fault::NotThatFormat { format: Format::Pwcmp, row: *row, missing })
+    };
+    let participant = needed(mapping.participant(header.len())?.or_else(|| find("observer")), "observer")?;
+    for (column, title) in header.iter().enumerate() {
+        if participant != column && !COLUMNS.contains(&normalise(title).as_str()) {
+            report.cell(Kind::Noted, *row, column, title, "not a column of this format: not read");
+        }
+    }
+    let form = match find("session") {
+        None => None,
+        Some(session) => match sessions(source, *row, participant, session)? {
+            Sessions::Several => {
+                let action = "observers have several sessions: not read as forms";
+                report.cell(Kind::Noted, *row, session, &header[session], action);
+                None
+            }
+            Sessions::Only => None,
+            Sessions::Forms => Some(session),
+        },
+    };
+    report.column_rule = "questions by scene and pair".into();
+    let columns = Columns {
+        participant: Some(participant),
+        sides: Some((
+            needed(find("condition_a"), "condition_A")?,
+            needed(find("condition_b"), "condition_B")?,
+        )),
+        choice: needed(SELECTED.into_iter().find_map(find), "is_A_selected")?,
+        object: find("scene"),
+        form,
+        ..Columns::default()
+    };
+    let mut own = mapping.clone();
+    let [first, second] = ["1", "0"].map(|word| [word.to_owned()]);
+    own.words.declare([&first, &[], &second]).expect("two words");
+    let rule = long::Rule { sides_recorded: false, escaped: true, every_row: true, ids: Ids::MadeUp };
+    long::read_columns(source, (*row, header.len()), columns, rule, plan, &own, report)
+}
+
+/// What sessions say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Sessions {
+    /// Nothing: there is one, with the name that is written where there are no forms.
+    Only,
+    /// Each observer's form.
+    Forms,
+    /// When an observer answered.
+    Several,
+}
+
+fn sessions(source: &Source<'_>, header: u64, observer: usize, session: usize) -> Result<Sessions, Fault> {
+    let mut of: HashMap<String, String> = HashMap::new();
+    let (mut several, mut only) = (false, true);
+    source.each(|record| {
+        if record.row > header && !record.is_blank() {
+            let session = crate::records::trim(record.cell(session));
+            only &= session == ONLY_SESSION;
+            match of.get(record.cell(observer)) {
+                Some(first) => several |= first != session,
+                None => drop(of.insert(record.cell(observer).to_owned(), session.to_owned())),
+            }
+        }
+        Ok(())
+    })?;
+    Ok(match (several, only) {
+        (true, _) => Sessions::Several,
+        (false, true) => Sessions::Only,
+        (false, false) => Sessions::Forms,
+    })
+}
