@@ -113,8 +113,11 @@ pub(crate) fn convert(arguments: &Convert) -> Result<()> {
             Ties::Refuse => {}
         }
     }
-    if written.controls > 0 {
-        eprintln!("{out}: left out: {} to controls", number_of(written.controls, "answer"));
+    for (left_out, which) in [(written.controls, "controls"), (written.repeats, "repeats")] {
+        if left_out > 0 {
+            let answers = number_of(left_out, "answer");
+            eprintln!("{out}: left out: {answers} to {which}, which are no comparisons of their own");
+        }
     }
     if !answers.sides_recorded {
         eprintln!("{out}: sides were not recorded: which item comes first means nothing");

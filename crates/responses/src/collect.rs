@@ -457,17 +457,18 @@ impl<'a> Collector<'a> {
         let mut of_id: HashMap<String, u32> = HashMap::new();
         self.questions.iter().for_each(|q| *of_id.entry(q.id.clone()).or_default() += 1);
         for (i, question) in self.questions.iter_mut().enumerate().filter(|(_, q)| of_id[&q.id] > 1) {
-            if self.naming == Ids::Scene && question.object.is_empty() {
-                question.object.clone_from(&question.id);
-            }
             let [left, right] = [question.left, question.right].map(|item| &self.items.names[item as usize]);
             let parts = [&question.id, &question.group, &question.object].map(String::as_str);
             let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
             let full = format!("{}: {left}-{right}", parts.join(" "));
-            question.id = match name::is_too_long(&full) {
+            let named = match name::is_too_long(&full) {
                 false => full,
                 true => format!("{}... {}", question.id.chars().take(CUT).collect::<String>(), i + 1),
             };
+            let id = std::mem::replace(&mut question.id, named);
+            if self.naming == Ids::Scene && question.object.is_empty() {
+                question.object = id;
+            }
         }
     }
 }

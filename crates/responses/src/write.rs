@@ -25,9 +25,9 @@ pub struct Written {
     pub rows: u64,
     /// Answers without preference among those written.
     pub ties: u64,
-    /// Answers to controls, which compare nothing. Formats that hold comparisons alone leave them out.
+    /// Answers to controls that were left out, since they compare nothing.
     pub controls: u64,
-    /// Answers to repeats, which check answers and are left out likewise.
+    /// Answers to repeats that were left out, since they only check other answers.
     pub repeats: u64,
 }
 
@@ -69,7 +69,7 @@ pub fn write_long(responses: &Responses, out: impl Write) -> Result<Written, Wri
         "role",
         "stimulus",
     ])?;
-    let mut written = counted(responses);
+    let mut written = Written::default();
     for answer in &responses.answers {
         let participant = &responses.participants[answer.participant as usize];
         let question = &responses.questions[answer.question as usize];

@@ -83,3 +83,159 @@ fn arenakit_has_the_left_one_first() {
     let want = "model_a,model_b,winner,item_id,voter_id\na,b,a,Q1,p1\na,c,tie,Q2,p1\nb,c,b,Q3,p1\na,b,b,Q1,p2\nb,a,a,Q1,p2\n";
     assert_eq!(written, want);
 }
+
+/// The forms of a study, answered by pressing left throughout.
+fn pressed_left(study: &design::Study) -> responses::Reading {
+    let mut text =
+        "participant,form,order,question,object,group,left,right,choice,role,stimulus\n".to_owned();
+    for line in crate::sides::key(study) {
+        let design::forms::KeyEntry { form, order, stimulus, role, question, object, group, left, right } =
+            line;
+        let role = format!("{role:?}").to_lowercase();
+        let line = format!(
+            "p{form},{form},{order},{question},{object},{group},{left},{right},L,{role},{stimulus}\n"
+        );
+        text += &line;
+    }
+    crate::sides::read(&text, study).unwrap()
+}
+
+fn open(text: &str) -> responses::Reading {
+    responses::parse(text.as_bytes(), std::path::Path::new("x.csv"), None, &Mapping::default())
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn other_programs_get_comparisons_alone() {
+    for (name, all, comparisons) in
+        [("balanced.toml", 36 * 32, 36 * 27), ("two-methods.toml", 24 * 6, 24 * 2)]
+    {
+        let study = crate::sides::study(name, &[]);
+        let (reading, names) =
+            (pressed_left(&study), responses::Plan::of_study(&study).short_names().to_vec());
+        let answers = &reading.responses;
+        assert_eq!(answers.answers.len(), all);
+        for text in [
+            text(|out| {
+                responses::write_arenakit(answers, &names, out).unwrap();
+            }),
+            text(|out| {
+                responses::write_pwcmp(answers, &names, Ties::Refuse, out).unwrap();
+            }),
+        ] {
+            assert_eq!(text.lines().count(), 1 + comparisons, "{name}");
+        }
+        let written = responses::write_arenakit(answers, &names, Vec::new()).unwrap();
+        assert_eq!(
+            (written.rows, written.controls + written.repeats),
+            (comparisons as u64, (all - comparisons) as u64)
+        );
+        assert!(written.controls > 0 && written.repeats > 0);
+        // The long format has everything, and says what is what.
+        let long = text(|out| assert_eq!(responses::write_long(answers, out).unwrap().rows, all as u64));
+        let again = open(&long);
+        assert_eq!(said(&again), said(&reading));
+        let question = |reading: &responses::Reading, i: usize| {
+            let question = &reading.responses.questions[reading.responses.answers[i].question as usize];
+            let responses::Question { id, object, group, role, .. } = question.clone();
+            (id, object, group, role)
+        };
+        assert!((0..all).all(|i| question(&again, i) == question(&reading, i)));
+        assert_eq!(crate::sides::read(&long, &study).unwrap().responses, *answers);
+    }
+}
+
+#[test]
+fn groups_come_back() {
+    let text_of =
+        "participant,question,object,group,left,right,choice\np,q1,o,g1,A,B,left\np,q2,o,g2,A,C,left\n";
+    let reading = open(text_of);
+    let long = text(|out| {
+        responses::write_long(&reading.responses, out).unwrap();
+    });
+    assert_eq!(open(&long).responses, reading.responses);
+    assert_eq!(reading.responses.questions[1].group, "g2");
+}
+
+#[test]
+fn arenakit_comes_back_with_a_study_and_without() {
+    let study = crate::sides::study("two-methods.toml", &[]);
+    let (reading, names) = (pressed_left(&study), responses::Plan::of_study(&study).short_names().to_vec());
+    let arena = text(|out| {
+        responses::write_arenakit(&reading.responses, &names, out).unwrap();
+    });
+    let again = crate::sides::read(&arena, &study).unwrap();
+    let comparisons: Vec<String> = said(&reading)
+        .into_iter()
+        .filter(|said| !said.contains("-r ") && !said.contains("control"))
+        .collect();
+    assert_eq!(said(&again), comparisons);
+    assert!(again.responses.sides_recorded);
+    // Without the study, items are methods, and the second time it is written as the first time.
+    let alone = open(&arena);
+    assert_eq!(said(&alone).len(), comparisons.len());
+    let items = alone.responses.items.clone();
+    assert_eq!(
+        text(|out| {
+            responses::write_arenakit(&alone.responses, &items, out).unwrap();
+        }),
+        arena
+    );
+
+    // What several pairs are compared on is their object; who is not named is somebody else.
+    let bare = open(
+        "model_a,model_b,winner,item_id,turn\nm1,m10,model_a,poem,1\nm2,m1,tie,poem,1\nm1,m10,right,song,2\n",
+    );
+    assert_eq!(bare.responses.items, ["m1", "m2", "m10"]);
+    assert_eq!(said(&bare), ["row 2 poem: m1-m10 m1<m10", "row 3 poem: m2-m1 m2=m1", "row 4 song m1>m10"]);
+    let objects: Vec<&str> = bare.responses.questions.iter().map(|q| q.object.as_str()).collect();
+    assert_eq!(objects, ["poem", "poem", ""]);
+    let plain = open("model_a,model_b,winner\nm1,m10,a\nm10,m1,draw\n");
+    assert_eq!(said(&plain), ["row 2 m1-m10 m1<m10", "row 3 m1-m10 m10=m1"]);
+    let bad = responses::parse(
+        b"model_a,model_b,winner\nm1,m10,tie (bothbad)\n",
+        std::path::Path::new("x"),
+        None,
+        &Mapping::default(),
+    );
+    assert!(bad.unwrap_err().to_string().contains("\"tie (bothbad)\" is not an answer"));
+}
+
+#[test]
+fn pwcmp_comes_back_without_sides() {
+    let study = crate::sides::study("two-methods.toml", &[]);
+    let (reading, names) = (pressed_left(&study), responses::Plan::of_study(&study).short_names().to_vec());
+    let pwcmp = text(|out| {
+        responses::write_pwcmp(&reading.responses, &names, Ties::Refuse, out).unwrap();
+    });
+    let again = crate::sides::read(&pwcmp, &study).unwrap();
+    let comparisons: Vec<String> = said(&reading)
+        .into_iter()
+        .filter(|said| !said.contains("-r ") && !said.contains("control"))
+        .collect();
+    assert_eq!(said(&again), comparisons);
+    let forms = |reading: &responses::Reading| -> Vec<Option<String>> {
+        reading.responses.participants.iter().map(|person| person.form.clone()).collect()
+    };
+    assert_eq!(forms(&again), forms(&reading));
+    // Which condition was on the left the format does not say.
+    assert!(!again.responses.sides_recorded);
+    let alone = open(&pwcmp);
+    let items = alone.responses.items.clone();
+    assert_eq!(
+        text(|out| {
+            responses::write_pwcmp(&alone.responses, &items, Ties::Refuse, out).unwrap();
+        }),
+        pwcmp
+    );
+
+    let text_of = "observer,session,scene,condition_A,condition_B,selected_A\n1,1,Window,T,F,1\n1,2,Hall,F,T,0\n2,1,Hall,T,F,0\n";
+    let several = open(text_of);
+    assert_eq!(said(&several), ["1 Window: F-T T<F", "1 Hall: F-T F>T", "2 Hall: F-T T>F"]);
+    assert_eq!(
+        crate::study::remarks(&several),
+        ["1:2 noted: observers have several sessions: not read as forms"]
+    );
+    let other = crate::sides::read(&text_of.replace("Window", "Sphere"), &study).unwrap_err();
+    assert_eq!(other, "x.csv: row 2: not one question of this study compares T and F on Sphere");
+}
