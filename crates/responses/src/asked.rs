@@ -180,8 +180,7 @@ impl Rows<'_> {
                 match number.zip(sheet).and_then(|(number, sheet)| sheet[number as usize]) {
                     Some(asked) if asked != sides => Err(Fault::OtherStimulus {
                         row,
-                        stimulus: shorten(stimulus),
-                        shown: plan.names_of(sides),
+                        stimulus: format!("{} shows {}", shorten(stimulus), plan.names_of(sides)),
                         form: shorten(form.unwrap_or_default()),
                         question,
                         asked: plan.names_of(asked),

@@ -263,16 +263,12 @@ pub enum Fault {
         question: String,
     },
     /// A code name that contradicts the form.
-    #[error(
-        "row {row}: stimulus {stimulus} shows {shown}, left to right, and form {form} asks {question} with {asked}"
-    )]
+    #[error("row {row}: stimulus {stimulus}, left to right, and form {form} asks {question} with {asked}")]
     OtherStimulus {
         /// The row.
         row: u64,
-        /// The code name.
+        /// The code name, and what it shows.
         stimulus: String,
-        /// What it shows.
-        shown: String,
         /// The form.
         form: String,
         /// The question.

@@ -19,7 +19,8 @@ pub(crate) fn compare(a: &str, b: &str) -> Ordering {
             }
             (Some(x), Some(y)) => {
                 let order = x.to_lowercase().cmp(y.to_lowercase());
-                (left.next(), right.next());
+                left.next();
+                right.next();
                 order
             }
         };

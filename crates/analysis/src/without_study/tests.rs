@@ -3,21 +3,11 @@ use responses::{Answer, Choice, Participant, Question};
 
 /// One participant who takes the left item of every question `(id, object, group, left, right)`.
 fn answered(questions: &[(&str, &str, &str, u32, u32)]) -> Responses {
-    let question = |&(id, object, group, left, right): &(&str, &str, &str, u32, u32)| Question {
-        id: id.into(),
-        object: object.into(),
-        group: group.into(),
-        left,
-        right,
+    let question = |&(id, object, group, left, right): &(&str, &str, &str, u32, u32)| {
+        Question::new(id, object, group, [left, right])
     };
-    let answer = |(question, &(_, _, _, left, right)): (usize, &(&str, &str, &str, u32, u32))| Answer {
-        participant: 0,
-        question: question as u32,
-        left,
-        right,
-        choice: Choice::Left,
-        order: None,
-        rt_ms: None,
+    let answer = |(question, &(_, _, _, left, right)): (usize, &(&str, &str, &str, u32, u32))| {
+        Answer::new(0, question as u32, [left, right], Choice::Left)
     };
     Responses {
         participants: vec![Participant { id: "p".into(), form: None }],
@@ -25,6 +15,7 @@ fn answered(questions: &[(&str, &str, &str, u32, u32)]) -> Responses {
         items: "abcdefgh".chars().map(String::from).collect(),
         answers: questions.iter().enumerate().map(answer).collect(),
         sides_recorded: true,
+        ..Responses::default()
     }
 }
 

@@ -212,3 +212,28 @@ fn redcap_codes_are_declared() {
     assert!(refused.contains("declare what \"1\", \"2\", \"3\" mean as `synonyms`"), "{refused}");
     assert_eq!(remarks(&reading)[0], "3:8 noted: not complete (2): answers kept as far as they go");
 }
+
+#[test]
+fn other_programs_comparisons_are_read() {
+    let arena = read("arenakit.csv", &Mapping::default());
+    assert_eq!(arena.report.format, Format::Arenakit);
+    assert_eq!(said(&arena), ["p1 Q1 a<b", "p1 Q2 c=a", "p1 Q3 b>c", "p2 Q1 b<a"]);
+    assert!(arena.responses.sides_recorded);
+    let pwcmp = read("pwcmp.csv", &Mapping::default());
+    assert_eq!(pwcmp.report.format, Format::Pwcmp);
+    assert_eq!(said(&pwcmp), ["1 Q1 a<b", "1 Q3 c>b", "2 Q1 b<a"]);
+    assert!(!pwcmp.responses.sides_recorded);
+    for name in ["arenakit.csv", "pwcmp.csv"] {
+        assert_eq!(remarks(&read(name, &Mapping::default())), [""; 0], "{name}");
+    }
+    let counted = read("long_counts.csv", &Mapping::default());
+    let people = [
+        "row 2.1 Q1 a<b",
+        "row 2.2 Q1 a<b",
+        "row 2.3 Q1 a<b",
+        "p1 Q1-r b>a",
+        "row 5.1 check c=c",
+        "row 5.2 check c=c",
+    ];
+    assert_eq!(said(&counted), people);
+}

@@ -7,7 +7,7 @@ use std::io::{Cursor, Read, Write};
 use std::path::Path;
 
 /// What breaks readers.
-const TOKENS: [&[u8]; 30] = [
+const TOKENS: [&[u8]; 33] = [
     b"\"",
     b"\"\"",
     b",",
@@ -28,6 +28,9 @@ const TOKENS: [&[u8]; 30] = [
     b"Q1",
     b"Q2",
     b"a",
+    b"NA",
+    b"count",
+    b"repeat",
     b"-1",
     b"99999999999999999999",
     b"1e400",

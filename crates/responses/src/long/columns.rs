@@ -1,0 +1,150 @@
+//! The columns of files with one row an answer.
+
+use crate::collect::Ids;
+use crate::error::Fault;
+use crate::plan::Plan;
+use crate::records::is_blank;
+use crate::report::{Kind, Report};
+use crate::sides::SidesSource;
+use crate::words::normalise;
+
+/// Columns that are read; others are noted.
+const NAMES: [&str; 13] = [
+    "participant",
+    "question",
+    "left",
+    "right",
+    "choice",
+    "object",
+    "group",
+    "form",
+    "order",
+    "rt_ms",
+    "role",
+    "stimulus",
+    "count",
+];
+
+/// Where the columns of a file with one row an answer are.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Columns {
+    /// Who answered; where there is none, everybody is somebody else.
+    pub(crate) participant: Option<usize>,
+    /// The participant's column counts trials instead, and starts again with each participant.
+    pub(crate) restarts: bool,
+    /// The question; where there is none, it follows from the pair.
+    pub(crate) question: Option<usize>,
+    /// Both sides, or what the study shows.
+    pub(crate) sides: Option<(usize, usize)>,
+    pub(crate) choice: usize,
+    pub(crate) object: Option<usize>,
+    pub(crate) group: Option<usize>,
+    pub(crate) form: Option<usize>,
+    pub(crate) order: Option<usize>,
+    pub(crate) rt_ms: Option<usize>,
+    /// Why it was asked, as forms say it.
+    pub(crate) role: Option<usize>,
+    /// The code name of what was shown.
+    pub(crate) stimulus: Option<usize>,
+    /// How many people gave this answer.
+    pub(crate) count: Option<usize>,
+}
+
+/// What differs between formats with one row an answer.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rule {
+    /// Whether left and right are sides.
+    pub(crate) sides_recorded: bool,
+    /// Whether cells were protected from spreadsheets.
+    pub(crate) escaped: bool,
+    /// Whether every row is an answer; otherwise those with a question.
+    pub(crate) every_row: bool,
+    /// What an id means where there is no study.
+    pub(crate) ids: Ids,
+}
+
+impl Columns {
+    pub(super) fn of(
+        header: &[String],
+        row: u64,
+        with_plan: bool,
+        report: &mut Report,
+    ) -> Result<Self, Fault> {
+        let mut at = [None; NAMES.len()];
+        for (column, title) in header.iter().enumerate() {
+            match NAMES.iter().position(|name| *name == normalise(title)) {
+                Some(name) => {
+                    if let Some(first) = at[name].replace(column) {
+                        let name = NAMES[name].into();
+                        return Err(Fault::DuplicateColumn { column: column + 1, first: first + 1, name });
+                    }
+                }
+                None if is_blank(title) => {}
+                None => report.cell(Kind::Noted, row, column, title, "not a column of this format: not read"),
+            }
+        }
+        let [
+            participant,
+            question,
+            left,
+            right,
+            choice,
+            object,
+            group,
+            form,
+            order,
+            rt_ms,
+            role,
+            stimulus,
+            count,
+        ] = at;
+        let needed = |column: Option<usize>, name: &str| match column {
+            Some(column) => Ok(column),
+            None => Err(Fault::MissingColumn { name: name.into() }),
+        };
+        if count.is_none() {
+            needed(participant, "participant")?;
+        }
+        if with_plan {
+            needed(question, "question")?;
+        }
+        let sides = match (left, right) {
+            (None, None) if with_plan => None,
+            _ => Some((needed(left, "left")?, needed(right, "right")?)),
+        };
+        let choice = needed(choice, "choice")?;
+        let restarts = false;
+        Ok(Self {
+            participant,
+            restarts,
+            question,
+            sides,
+            choice,
+            object,
+            group,
+            form,
+            order,
+            rt_ms,
+            role,
+            stimulus,
+            count,
+        })
+    }
+
+    /// How sides are known.
+    ///
+    /// # Errors
+    /// If they are not.
+    pub(super) fn source(&self, rule: Rule, plan: Option<&Plan>, row: u64) -> Result<SidesSource, Fault> {
+        match (self.sides, plan) {
+            _ if !rule.sides_recorded => Ok(SidesSource::Unknown),
+            (Some(_), _) => Ok(SidesSource::InFile),
+            (None, Some(plan)) if plan.shows_listed_sides() => Ok(SidesSource::AsListed),
+            (None, Some(plan)) if self.stimulus.is_some() && plan.has_codes() => {
+                Ok(SidesSource::FromCodeNames)
+            }
+            (None, Some(_)) if self.form.is_some() => Ok(SidesSource::FromForms),
+            (None, _) => Err(Fault::NoSides { row }),
+        }
+    }
+}
