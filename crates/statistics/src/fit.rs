@@ -6,6 +6,7 @@ use super::pairs::Pairs;
 use super::participants::Participants;
 use super::separation::{Separation, separation};
 use super::side::side_design;
+use super::side_separation::side_separation;
 use crate::interval::{Interval, LEVEL};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -24,9 +25,28 @@ pub enum FitError {
     /// The design cannot tell sides from worths.
     #[error("{0}")]
     Side(&'static str),
-    /// The likelihood keeps rising.
+    /// Covariates of which some are sums of others.
+    #[error("not answerable here, because the covariates cannot be told apart")]
+    Collinear,
+    /// The likelihood keeps rising: covariates foretell the answers without exception.
     #[error("not answerable here, because the likelihood has no maximum")]
     NoMaximum,
+    /// There is a maximum, and double precision does not suffice to find it: the pairs' numbers of answers are a factor of
+    /// 10^10 or more apart.
+    #[error("not computed, because the numbers of answers are too far apart for double precision")]
+    Unsettled,
+}
+
+/// Why half a win each way was added to every compared pair: the answers allow no finite estimate without.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Penalty {
+    /// Nothing was added.
+    None,
+    /// Some items never won against the others ([`Separation::Separated`](crate::Separation)).
+    ItemsSeparated,
+    /// The items have estimates, and a liking for a side has none, as where everybody takes the left
+    /// ([`side_separation`](crate::side_separation)): see [`side_bound`](crate::side_bound), and the model without a side.
+    SideSeparated,
 }
 
 /// Estimates of one model.
@@ -45,8 +65,8 @@ pub struct WorthFit {
     /// Log-likelihood of the answers at the estimates, without multinomial constants. For Bradley-Terry a tie is half a
     /// win and half a loss, so that its value is comparable with that of no model that keeps ties.
     pub log_likelihood: f64,
-    /// Half a win each way was added to every compared pair, because the answers were separated.
-    pub penalised: bool,
+    /// Whether half a win each way was added to every compared pair, and why.
+    pub penalty: Penalty,
     /// Parameters in the order of `covariance`: worths of items 1.., then ln nu or ln theta if there was a tie, then side.
     pub parameters: Vec<f64>,
     /// Inverse of the exact information at the estimates: right if all answers are independent, which the answers of one
@@ -54,7 +74,7 @@ pub struct WorthFit {
     pub covariance: Matrix,
 }
 
-/// Fits a model; separated answers are fitted with [half a win each way](Pairs::with_half_wins), and say so.
+/// Fits a model; separated answers, and only these, are fitted with [half a win each way](Pairs::with_half_wins), and say so.
 ///
 /// Joint maximum likelihood by Newton's method with the exact second derivatives; estimates to about 1e-12.
 ///
@@ -74,22 +94,24 @@ pub fn fit(model: Model, pairs: &Pairs) -> Result<WorthFit, FitError> {
     if let (Model::DavidsonSide, Some(objection)) = (model, side_design(pairs).objection()) {
         return Err(FitError::Side(objection));
     }
-    let separated = match model {
+    let items_separated = match model {
         // Half a win each way on every tied pair is a win in both directions.
-        Model::BradleyTerry => {
-            let split = |p: &super::pairs::Pair| {
-                let half = 0.5 * p.answers[1];
-                (p.left, p.right, [p.answers[0] + half, 0.0, p.answers[2] + half])
-            };
-            separation(&Pairs::new(pairs.items, pairs.pairs.iter().map(split))) != Separation::None
-        }
+        Model::BradleyTerry => separation(&pairs.with_ties_split()) != Separation::None,
         _ => judged == Separation::Separated,
     };
-    let first = if separated { None } else { estimate(model, pairs, pairs, false) };
-    first.or_else(|| estimate(model, &pairs.with_half_wins(), pairs, true)).ok_or(FitError::NoMaximum)
+    let penalty = match model {
+        _ if items_separated => Penalty::ItemsSeparated,
+        Model::DavidsonSide if side_separation(pairs).is_some() => Penalty::SideSeparated,
+        _ => Penalty::None,
+    };
+    let fitted = match penalty {
+        Penalty::None => estimate(model, pairs, pairs, penalty),
+        _ => estimate(model, &pairs.with_half_wins(), pairs, penalty),
+    };
+    fitted.ok_or(FitError::Unsettled)
 }
 
-fn estimate(model: Model, fitted: &Pairs, answered: &Pairs, penalised: bool) -> Option<WorthFit> {
+fn estimate(model: Model, fitted: &Pairs, answered: &Pairs, penalty: Penalty) -> Option<WorthFit> {
     let layout = Layout::of(model, fitted);
     let maximum = maximise(layout.start(), |at| layout.likelihood(fitted, at))?;
     let at = maximum.at;
@@ -102,13 +124,18 @@ fn estimate(model: Model, fitted: &Pairs, answered: &Pairs, penalised: bool) -> 
         ln_theta: (model == Model::RaoKupper).then(|| tie.unwrap_or(0.0)),
         side: layout.side().map(|side| at[side]),
         log_likelihood: layout.likelihood(answered, &at).value,
-        penalised,
+        penalty,
         covariance: maximum.covariance,
         parameters: at,
     })
 }
 
 impl WorthFit {
+    /// Whether half a win each way was added.
+    pub fn penalised(&self) -> bool {
+        self.penalty != Penalty::None
+    }
+
     /// Standard error of l_item - l_other under a covariance of the parameters.
     ///
     /// # Panics
@@ -171,7 +198,7 @@ pub fn has_spread(clustered: f64, independent: f64) -> bool {
 /// singular.
 pub fn clustered_covariance(fit: &WorthFit, participants: &Participants) -> Option<Matrix> {
     let m = participants.number() as f64;
-    if m < 2.0 || fit.penalised {
+    if m < 2.0 || fit.penalised() {
         return None;
     }
     let all = participants.sum(&participants.counts);
@@ -191,5 +218,7 @@ pub fn clustered_covariance(fit: &WorthFit, participants: &Participants) -> Opti
     Some(covariance)
 }
 
+#[cfg(test)]
+pub(crate) mod large;
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,10 @@
-//! Krippendorff's alpha over questions (units) and participants (raters).
+//! Krippendorff's alpha over questions (units) and participants (raters), with its interval.
 
-/// What counts as disagreement between two of the values left < none < right.
+use super::ballot::DeclaredBallot;
+use super::kendall::outcome_counts;
+use crate::interval::{Interval, t_half_width};
+
+/// What counts as disagreement between two of the values first < neither < second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Metric {
     /// Different is different.
@@ -9,38 +13,109 @@ pub enum Metric {
     Ordinal,
 }
 
+/// Agreement of participants about items.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Alpha {
+    /// 1 in full agreement, 0 by chance, negative below.
+    pub value: f64,
+    /// Jackknife t interval at [`LEVEL`](crate::interval::LEVEL), participants left out one by one; within -1 and 1. `None`
+    /// for fewer than three participants, and where leaving one out changes nothing or leaves nothing.
+    pub interval: Option<Interval>,
+}
+
 /// Krippendorff's alpha (2004, *Content Analysis*, chapter 11): 1 - observed / expected disagreement, from the counts
-/// `[left, tie, right]` of each question. 1 in full agreement, 0 by chance, negative below.
+/// `[first, neither, second]` of each question.
+///
+/// Every question is counted in both orientations, items named one way and the other, so that it makes no difference which
+/// item somebody named first or put on the left. Counted once, chance agreement would rise with how one-sided the design
+/// is, and alpha would speak of the design. So counted, chance is that of people who like the first and the second alike.
 ///
 /// Questions with fewer than two answers are left out, as the definition has it; different numbers of answers are fine.
-/// `None` if nothing can be paired or if all answers are the same value, which leaves 0/0.
-///
-/// The value speaks of sides. If sides were swapped between participants, recode to configurations first.
+/// `None` if nothing can be paired or if nobody decided, which leaves 0/0.
 pub fn alpha(questions: &[[u64; 3]], metric: Metric) -> Option<f64> {
-    let units: Vec<[f64; 3]> = questions
-        .iter()
-        .filter(|unit| unit.iter().sum::<u64>() >= 2)
-        .map(|unit| unit.map(|count| count as f64))
-        .collect();
-    let mut margins = [0.0; 3];
-    units.iter().flat_map(|unit| unit.iter().enumerate()).for_each(|(v, count)| margins[v] += count);
-    let n: f64 = margins.iter().sum();
-    let difference = |a: usize, b: usize| match metric {
-        Metric::Nominal => f64::from(a != b),
-        Metric::Ordinal => {
-            let between: f64 = margins[a.min(b)..=a.max(b)].iter().sum();
-            (between - (margins[a] + margins[b]) / 2.0).powi(2)
+    let mut table = Table::default();
+    questions.iter().for_each(|counts| table.add(counts, 1.0));
+    table.alpha(metric)
+}
+
+/// [`alpha`] with an interval for what so many more people of the kind would show: alpha -+ t s on m - 1 degrees of freedom,
+/// s the jackknife's standard error over the m participants (Efron and Tibshirani 1993, *An Introduction to the
+/// Bootstrap*, section 11.5). All questions are the same for everybody, so it speaks of other people, not of other questions.
+///
+/// The bootstrap does not serve: resamples have people more than once, who agree with themselves, and alpha rises.
+///
+/// Takes time in proportion to the ballots. Questions are numbered from 0.
+pub fn alpha_with_interval(ballots: &[DeclaredBallot], metric: Metric) -> Option<Alpha> {
+    let counts = outcome_counts(ballots);
+    let mut all = Table::default();
+    counts.iter().for_each(|counts| all.add(counts, 1.0));
+    let value = all.alpha(metric)?;
+    let mut sorted = ballots.to_vec();
+    sorted.sort_unstable();
+    let without = |own: &[DeclaredBallot]| {
+        let mut table = all;
+        for of_question in own.chunk_by(|a, b| a.question() == b.question()) {
+            let mut left = counts[of_question[0].question()];
+            table.add(&left, -1.0);
+            of_question.iter().for_each(|ballot| left[ballot.preference().index()] -= 1);
+            table.add(&left, 1.0);
         }
+        table.alpha(metric)
     };
-    let (mut observed, mut expected) = (0.0, 0.0);
-    for a in 0..3 {
-        for b in (0..3).filter(|&b| b != a) {
-            let pairs = |unit: &[f64; 3]| unit[a] * unit[b] / (unit.iter().sum::<f64>() - 1.0);
-            observed += units.iter().map(pairs).sum::<f64>() * difference(a, b);
-            expected += margins[a] * margins[b] * difference(a, b);
+    let left_out: Option<Vec<f64>> =
+        sorted.chunk_by(|a, b| a.participant() == b.participant()).map(without).collect();
+    Some(Alpha { value, interval: left_out.and_then(|left_out| jackknife(value, &left_out)) })
+}
+
+fn jackknife(value: f64, left_out: &[f64]) -> Option<Interval> {
+    let m = left_out.len() as f64;
+    let mean = left_out.iter().sum::<f64>() / m;
+    let squares: f64 = left_out.iter().map(|x| (x - mean) * (x - mean)).sum();
+    let error = ((m - 1.0) / m * squares).sqrt();
+    // Below is rounding.
+    let half = t_half_width(m - 1.0).filter(|_| m > 2.0 && error > 1e-12)? * error;
+    Some(Interval { low: value - half, high: value + half }.cut(-1.0, 1.0))
+}
+
+/// Sums over questions with two answers or more. What both orientations of a question make alike is added up together.
+#[derive(Debug, Clone, Copy, Default)]
+struct Table {
+    /// Answers for the first or the second.
+    decided: f64,
+    /// Answers for neither.
+    neither: f64,
+    /// Pairs of a decided answer and neither; each pair of a question's n answers weighs 1 / (n - 1).
+    near: f64,
+    /// Pairs of the first and the second, likewise.
+    far: f64,
+}
+
+impl Table {
+    /// Adds a question so many times.
+    fn add(&mut self, counts: &[u64; 3], times: f64) {
+        let [first, neither, second] = counts.map(|count| count as f64);
+        let n = first + neither + second;
+        if n < 2.0 {
+            return;
         }
+        self.decided += times * (first + second);
+        self.neither += times * neither;
+        self.near += times * (first + second) * neither / (n - 1.0);
+        self.far += times * first * second / (n - 1.0);
     }
-    (expected > 0.0).then(|| 1.0 - (n - 1.0) * observed / expected)
+
+    fn alpha(&self, metric: Metric) -> Option<f64> {
+        // In both orientations together, each end is chosen as often as both ends in one, and neither twice as often.
+        let (end, middle) = (self.decided, 2.0 * self.neither);
+        let n = 2.0 * end + middle;
+        let (near, far) = match metric {
+            Metric::Nominal => (1.0, 1.0),
+            Metric::Ordinal => (((end + middle) / 2.0).powi(2), (end + middle).powi(2)),
+        };
+        let observed = 2.0 * self.near * near + 2.0 * self.far * far;
+        let expected = 2.0 * end * middle * near + end * end * far;
+        (expected > 0.0).then(|| 1.0 - (n - 1.0) * observed / expected)
+    }
 }
 
 #[cfg(test)]

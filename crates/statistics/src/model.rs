@@ -124,12 +124,13 @@ impl Layout {
         let cuts = [(left, u - eta, towards(1.0)), (right, -u - eta, towards(-1.0))];
         let logistic = |z: f64| 1.0 / (1.0 + (-z).exp());
         for (count, z, d) in &cuts {
-            let chance = logistic(*z);
-            sum.value -= count * (-z).exp().ln_1p();
+            // 1 less a chance is the logistic of the opposite: nothing cancels.
+            let (chance, rest) = (logistic(*z), logistic(-z));
+            sum.value -= count * softplus(-z);
             for i in 0..x.len() {
-                sum.gradient[i] += count * (1.0 - chance) * d[i];
+                sum.gradient[i] += count * rest * d[i];
                 for j in 0..x.len() {
-                    sum.information[i][j] += count * chance * (1.0 - chance) * d[i] * d[j];
+                    sum.information[i][j] += count * chance * rest * d[i] * d[j];
                 }
             }
         }
@@ -138,24 +139,29 @@ impl Layout {
         }
         // P(tie) = 1 - F(u - eta) - F(-u - eta), factored so that nothing cancels: (e^{2 eta} - 1) F(u - eta) F(-u - eta).
         let [(_, a, da), (_, b, db)] = &cuts;
-        let (fa, fb) = (logistic(*a), logistic(*b));
+        let ([fa, fb], [ra, rb]) = ([*a, *b].map(logistic), [-a, -b].map(logistic));
         if eta <= 0.0 {
             sum.value = f64::NEG_INFINITY;
             return;
         }
         let growth = (2.0 * eta).exp_m1();
-        sum.value += ties * (growth.ln() - (-a).exp().ln_1p() - (-b).exp().ln_1p());
+        sum.value += ties * (growth.ln() - softplus(-a) - softplus(-b));
         for i in 0..x.len() {
             let free = if i == tie { 2.0 * (1.0 + 1.0 / growth) } else { 0.0 };
-            sum.gradient[i] += ties * (free + (1.0 - fa) * da[i] + (1.0 - fb) * db[i]);
+            sum.gradient[i] += ties * (free + ra * da[i] + rb * db[i]);
             for j in 0..x.len() {
-                let curved = fa * (1.0 - fa) * da[i] * da[j] + fb * (1.0 - fb) * db[i] * db[j];
+                let curved = fa * ra * da[i] * da[j] + fb * rb * db[i] * db[j];
                 // d2/d eta2 of ln(e^{2 eta} - 1) = -4 e^{2 eta} / (e^{2 eta} - 1)^2.
                 let free = if i == tie && j == tie { 4.0 * (growth + 1.0) / (growth * growth) } else { 0.0 };
                 sum.information[i][j] += ties * (curved + free);
             }
         }
     }
+}
+
+/// ln(1 + e^z), also where e^z is beyond any double.
+fn softplus(z: f64) -> f64 {
+    z.max(0.0) + (-z.abs()).exp().ln_1p()
 }
 
 /// Adds answers `[left, tie, right]` with weights e^{u/2} : nu : e^{-u/2}, u = x'parameters and ln nu the parameter at
@@ -183,20 +189,24 @@ pub(super) fn add_log_linear(
     }
     let dot = |feature: &Vec<f64>| -> f64 { feature.iter().zip(parameters).map(|(f, p)| f * p).sum() };
     let logs: Vec<f64> = features.iter().map(dot).collect();
-    let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let total = largest + logs.iter().map(|log| (log - largest).exp()).sum::<f64>().ln();
+    // Beside the likeliest outcome, whose own chance is then 1 less what is small: a thousand million answers of it make
+    // every digit of its logarithm count.
+    let likeliest = (0..logs.len()).fold(0, |best, k| if logs[k] > logs[best] { k } else { best });
+    let behind: Vec<f64> = logs.iter().map(|log| log - logs[likeliest]).collect();
+    let others = (0..logs.len()).filter(|&k| k != likeliest);
+    let total = others.map(|k| behind[k].exp()).sum::<f64>().ln_1p();
     let n: f64 = counts.iter().sum();
-    let chances: Vec<f64> = logs.iter().map(|log| (log - total).exp()).collect();
-    let mean: Vec<f64> = (0..x.len())
-        .map(|i| features.iter().zip(&chances).map(|(feature, chance)| feature[i] * chance).sum())
-        .collect();
+    let chances: Vec<f64> = behind.iter().map(|log| (log - total).exp()).collect();
     for (k, feature) in features.iter().enumerate() {
-        sum.value += counts[k] * (logs[k] - total);
+        // A feature less its mean, as a sum of differences: where one chance is nearly 1, a difference of sums would be lost.
+        let from_mean: Vec<f64> = (0..x.len())
+            .map(|i| features.iter().zip(&chances).map(|(other, p)| p * (feature[i] - other[i])).sum())
+            .collect();
+        sum.value += counts[k] * (behind[k] - total);
         for i in 0..x.len() {
-            sum.gradient[i] += counts[k] * (feature[i] - mean[i]);
+            sum.gradient[i] += counts[k] * from_mean[i];
             for j in 0..x.len() {
-                let spread = (feature[i] - mean[i]) * (feature[j] - mean[j]);
-                sum.information[i][j] += n * chances[k] * spread;
+                sum.information[i][j] += n * chances[k] * from_mean[i] * from_mean[j];
             }
         }
     }

@@ -28,23 +28,32 @@ pub(super) struct Maximum {
     pub(super) covariance: Matrix,
 }
 
-/// No estimate is taken seriously beyond this log-odds: the likelihood is then flat towards infinity. The gain left along a
-/// flat direction falls like e^-x, so the climb gets here before it looks finished.
-const FARTHEST: f64 = 20.0;
+/// How often to step at most. A maximum at log-odds u is some u / 2 steps away, and the last few double the digits.
+const MOST_STEPS: usize = 400;
+/// By how much of its size a sum of many logarithms may be lower through rounding alone.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// The step, beside the parameter, from which one step more leaves rounding alone.
+const SHORT: f64 = 1e-6;
 
-/// Climbs from `start` with halved steps until the gain left, g' H^-1 g, is below 1e-13, then takes one step more: the
-/// convergence being quadratic, what is left is rounding.
+/// Climbs from `start` until the gain left, g' H^-1 g, is below what the log-likelihood's size lets anyone see or below
+/// 1e-13, and the step is short; then takes one step more: the convergence being quadratic, what is left is rounding.
 ///
-/// `None` if the information is singular or the climb leads to infinity.
+/// A step is halved only while it makes the log-likelihood lower by more than rounding: close to the maximum of thousands
+/// of answers the gain left is less than one unit in the last place of the value, and no step can look like a gain.
+///
+/// `None` if the information is singular or there is no maximum. Towards infinity the gain left falls as well, but every
+/// step stays as long as the last: it is the step that tells.
 pub(super) fn maximise(start: Vec<f64>, likelihood: impl Fn(&[f64]) -> Curvature) -> Option<Maximum> {
     let mut at = start;
     let mut here = likelihood(&at);
-    for _ in 0..200 {
+    for _ in 0..MOST_STEPS {
         let covariance = inverse(&here.information)?;
         let step = times(&covariance, &here.gradient);
         let gain: f64 = step.iter().zip(&here.gradient).map(|(s, g)| s * g).sum();
         let forward = |part: f64| -> Vec<f64> { at.iter().zip(&step).map(|(a, s)| a + part * s).collect() };
-        if gain < 1e-13 {
+        let short = at.iter().zip(&step).all(|(a, s)| s.abs() <= SHORT * (1.0 + a.abs()));
+        let unseen = ROUNDING * here.value.abs();
+        if short && gain < unseen.max(1e-13) {
             at = forward(1.0);
             let covariance = inverse(&likelihood(&at).information)?;
             return Some(Maximum { at, covariance });
@@ -52,7 +61,7 @@ pub(super) fn maximise(start: Vec<f64>, likelihood: impl Fn(&[f64]) -> Curvature
         let mut part = 1.0;
         let next = loop {
             let there = likelihood(&forward(part));
-            if there.value >= here.value {
+            if there.value >= here.value - unseen {
                 break there;
             }
             part *= 0.5;
@@ -62,9 +71,6 @@ pub(super) fn maximise(start: Vec<f64>, likelihood: impl Fn(&[f64]) -> Curvature
         };
         at = forward(part);
         here = next;
-        if at.iter().any(|x| x.abs() > FARTHEST) {
-            return None;
-        }
     }
     None
 }

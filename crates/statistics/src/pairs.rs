@@ -63,6 +63,16 @@ impl Pairs {
         penalised
     }
 
+    /// Every tie as half a win for each.
+    pub(super) fn with_ties_split(&self) -> Self {
+        let mut split = self.clone();
+        for pair in &mut split.pairs {
+            let [left, tie, right] = pair.answers;
+            pair.answers = [left + 0.5 * tie, 0.0, right + 0.5 * tie];
+        }
+        split
+    }
+
     /// Sum of the ties.
     pub fn ties(&self) -> f64 {
         self.pairs.iter().map(|pair| pair.answers[1]).sum()

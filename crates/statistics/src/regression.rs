@@ -36,8 +36,8 @@ pub struct Regression {
 /// are about sides ([`ShownBallot`](super::ShownBallot)).
 ///
 /// # Errors
-/// [`FitError::Nothing`] without an answer or a covariate, [`FitError::OnlyTies`], and [`FitError::NoMaximum`] if
-/// covariates are collinear or separate the answers.
+/// [`FitError::Nothing`] without an answer or a covariate, [`FitError::OnlyTies`], [`FitError::Collinear`] if covariates are,
+/// and [`FitError::NoMaximum`] if they separate the answers.
 pub fn regression<A: Answer>(covariates: &[Option<Vec<f64>>], ballots: &[A]) -> Result<Regression, FitError> {
     let of = |ballot: &&A| covariates.get(ballot.question()).is_some_and(Option::is_some);
     let used: Vec<&A> = ballots.iter().filter(of).collect();
@@ -53,7 +53,13 @@ pub fn regression<A: Answer>(covariates: &[Option<Vec<f64>>], ballots: &[A]) -> 
     }
     let tie = (ties > 0.0).then_some(width);
     let size = width + usize::from(tie.is_some());
-    let padded = |x: &Vec<f64>| x.iter().copied().chain(std::iter::repeat_n(0.0, size - width)).collect();
+    // In units of their own size, so that neither metres nor millimetres look like steps to infinity. Powers of two cost
+    // no digits.
+    let units = units(covariates.iter().flatten(), width);
+    let padded = |x: &Vec<f64>| {
+        let scaled = x.iter().zip(&units).map(|(x, unit)| x / unit);
+        scaled.chain(std::iter::repeat_n(0.0, size - width)).collect()
+    };
     let rows: Vec<Option<Vec<f64>>> = covariates.iter().map(|x| x.as_ref().map(padded)).collect();
     let likelihood = |at: &[f64]| {
         let mut sum = Curvature::zero(size);
@@ -64,6 +70,7 @@ pub fn regression<A: Answer>(covariates: &[Option<Vec<f64>>], ballots: &[A]) -> 
         }
         sum
     };
+    inverse(&likelihood(&vec![0.0; size]).information).ok_or(FitError::Collinear)?;
     let maximum = maximise(vec![0.0; size], likelihood).ok_or(FitError::NoMaximum)?;
     let at = maximum.at;
     // The gradient of one answer depends on question and outcome alone.
@@ -84,14 +91,28 @@ pub fn regression<A: Answer>(covariates: &[Option<Vec<f64>>], ballots: &[A]) -> 
         sum.iter_mut().zip(own).for_each(|(sum, score)| *sum += score);
     }
     let bread = inverse(&likelihood(&at).information).ok_or(FitError::NoMaximum)?;
+    let unit = |i: usize| units.get(i).copied().unwrap_or(1.0);
+    let in_own_units = |mut matrix: Matrix| {
+        for (i, row) in matrix.iter_mut().enumerate() {
+            row.iter_mut().enumerate().for_each(|(j, cell)| *cell /= unit(i) * unit(j));
+        }
+        matrix
+    };
     Ok(Regression {
-        coefficients: at[..width].to_vec(),
+        coefficients: (0..width).map(|i| at[i] / unit(i)).collect(),
         ln_nu: tie.map(|tie| at[tie]),
         log_likelihood: likelihood(&at).value,
-        covariance: maximum.covariance,
-        clustered: sandwich(&bread, sums.values()),
+        covariance: in_own_units(maximum.covariance),
+        clustered: sandwich(&bread, sums.values()).map(in_own_units),
         participants: sums.len(),
     })
+}
+
+/// The power of two next above each covariate's largest value; 1 of nothing but zeros.
+fn units<'a>(covariates: impl Iterator<Item = &'a Vec<f64>>, width: usize) -> Vec<f64> {
+    let mut largest = vec![0.0_f64; width];
+    covariates.for_each(|x| largest.iter_mut().zip(x).for_each(|(most, x)| *most = most.max(x.abs())));
+    largest.into_iter().map(|most| if most > 0.0 { most.log2().ceil().exp2() } else { 1.0 }).collect()
 }
 
 /// m/(m-1) B (sum of s s') B over m gradients.

@@ -2,6 +2,15 @@
 
 use super::pairs::Pairs;
 
+/// A side of what was shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Side {
+    /// The left.
+    Left,
+    /// The right.
+    Right,
+}
+
 /// What a design says about sides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SideDesign {

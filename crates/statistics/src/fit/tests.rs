@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Outcome, ShownBallot, golden};
+use crate::{Outcome, ShownBallot, Side, golden};
 use proptest::prelude::*;
 
 #[track_caller]
@@ -25,7 +25,7 @@ fn check(fit: &WorthFit, estimates: &[f64], errors: &[f64], log_likelihood: f64)
     fit.parameters.iter().zip(estimates).for_each(|(got, want)| close(*got, *want, 1e-10));
     errors.iter().enumerate().for_each(|(i, want)| close(fit.covariance[i][i].sqrt(), *want, 1e-8));
     close(fit.log_likelihood, log_likelihood, 1e-9);
-    assert_eq!((fit.parameters.len(), fit.penalised), (estimates.len(), false));
+    assert_eq!((fit.parameters.len(), fit.penalty), (estimates.len(), Penalty::None));
 }
 
 #[test]
@@ -164,7 +164,7 @@ fn separated_answers_get_half_a_win_each_way() {
     let two = [0, 1].map(|participant| ShownBallot::new(participant, 0, [0, 1], Outcome::Left));
     for model in [Model::Davidson, Model::RaoKupper, Model::BradleyTerry] {
         let fit = fit(model, &Pairs::new(2, [(0, 1, [7., 0., 0.])])).unwrap();
-        assert!(fit.penalised, "{model:?}");
+        assert_eq!(fit.penalty, Penalty::ItemsSeparated, "{model:?}");
         // No tie: all three are ln(7.5 / 0.5), and the answers themselves have probability (15/16)^7.
         close(-fit.log_worths[1], 15.0_f64.ln(), 1e-12);
         close(fit.log_likelihood, 7.0 * (15.0_f64 / 16.0).ln(), 1e-12);
@@ -175,8 +175,27 @@ fn separated_answers_get_half_a_win_each_way() {
     close(tied.ln_nu.unwrap(), (2.0 / (7.5_f64 * 0.5).sqrt()).ln(), 1e-12);
     // A tie is half a win for both, so Bradley-Terry needs no penalty: 8 to 1.
     let halves = fit(Model::BradleyTerry, &Pairs::new(2, [(0, 1, [7., 2., 0.])])).unwrap();
-    assert!(!halves.penalised);
+    assert!(!halves.penalised());
     close(-halves.log_worths[1], 8.0_f64.ln(), 1e-12);
+}
+
+#[test]
+fn a_side_without_bound_is_not_an_item_that_never_won() {
+    // Everybody takes the left, and each item wins half of its showings.
+    let left = ORDERED.map(|(l, r)| (l, r, [6.0, 0.0, 0.0]));
+    let pairs = Pairs::new(3, left);
+    let with_side = fit(Model::DavidsonSide, &pairs).unwrap();
+    assert_eq!((with_side.penalty, side_separation(&pairs)), (Penalty::SideSeparated, Some(Side::Left)));
+    let plain = fit(Model::Davidson, &pairs).unwrap();
+    assert_eq!(plain.penalty, Penalty::None);
+    assert!(plain.log_worths.iter().all(|worth| worth.abs() < 1e-12), "{plain:?}");
+    // One answer to the right can be the item's doing. With one in both orders of a pair the side has an estimate.
+    let but = |others: &[(usize, usize)]| {
+        Pairs::new(3, left.map(|(l, r, [n, ..])| (l, r, [n, 0.0, f64::from(others.contains(&(l, r)))])))
+    };
+    assert_eq!(fit(Model::DavidsonSide, &but(&[(2, 0)])).unwrap().penalty, Penalty::SideSeparated);
+    let both = fit(Model::DavidsonSide, &but(&[(2, 0), (0, 2)])).unwrap();
+    assert!(both.penalty == Penalty::None && both.side.unwrap() > 2.0, "{both:?}");
 }
 
 fn any_answers() -> impl Strategy<Value = Vec<[f64; 3]>> {
@@ -245,8 +264,29 @@ proptest! {
         let judged = separation(&pairs);
         prop_assume!(judged != Separation::Disconnected && pairs.ties() < pairs.answers());
         for model in [Model::Davidson, Model::RaoKupper] {
-            let found = estimate(model, &pairs, &pairs, false).is_some();
+            let found = estimate(model, &pairs, &pairs, Penalty::None).is_some();
             prop_assert_eq!(found, judged != Separation::Separated, "{:?} {:?}", model, judged);
+        }
+        if side_design(&pairs).objection().is_none() {
+            let found = estimate(Model::DavidsonSide, &pairs, &pairs, Penalty::None).is_some();
+            let side = side_separation(&pairs);
+            prop_assert_eq!(found, judged != Separation::Separated && side.is_none(), "{:?} {:?}", side, judged);
+        }
+    }
+
+    #[test]
+    fn only_separation_is_penalised_whatever_the_numbers(
+        answers in prop::collection::vec([(0..9u8, 0..7i32), (0..9u8, 0..7i32), (0..9u8, 0..7i32)], 6),
+    ) {
+        let counts: Vec<[f64; 3]> =
+            answers.iter().map(|a| a.map(|(n, power)| f64::from(n) * 10_f64.powi(power))).collect();
+        let pairs = pairs_of(&counts, [0, 1, 2]);
+        let judged = separation(&pairs);
+        prop_assume!(judged != Separation::Disconnected && pairs.ties() < pairs.answers());
+        for model in [Model::Davidson, Model::RaoKupper] {
+            let fit = fit(model, &pairs);
+            let items = judged == Separation::Separated;
+            prop_assert_eq!(fit.as_ref().map(|fit| fit.penalised()), Ok(items), "{:?} {:?}", model, fit);
         }
     }
 

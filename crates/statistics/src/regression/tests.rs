@@ -94,6 +94,20 @@ fn exchanged_sides_change_nothing() {
 }
 
 #[test]
+fn the_unit_of_a_covariate_is_no_separation() {
+    let ballots = golden::ballots(&golden::study());
+    let metres = regression(&covariates(), &ballots).unwrap();
+    for unit in [1e-6, 1e6] {
+        let x: Vec<Option<Vec<f64>>> =
+            covariates().into_iter().map(|x| x.map(|x| vec![x[0] * unit, x[1]])).collect();
+        let found = regression(&x, &ballots).unwrap();
+        close(found.coefficients[0] * unit, metres.coefficients[0]);
+        close(found.coefficient(0).unwrap().p, metres.coefficient(0).unwrap().p);
+        close(found.coefficients[1], metres.coefficients[1]);
+    }
+}
+
+#[test]
 fn what_has_no_estimate_says_why() {
     let ballots = golden::ballots(&golden::study());
     assert_eq!(regression::<ShownBallot>(&covariates(), &[]), Err(FitError::Nothing));
@@ -102,7 +116,7 @@ fn what_has_no_estimate_says_why() {
     assert_eq!(regression(&covariates(), &ties), Err(FitError::OnlyTies));
     let twice: Vec<Option<Vec<f64>>> =
         covariates().into_iter().map(|x| x.map(|x| vec![x[0], -3.0 * x[0]])).collect();
-    assert_eq!(regression(&twice, &ballots), Err(FitError::NoMaximum));
+    assert_eq!(regression(&twice, &ballots), Err(FitError::Collinear));
     // Everybody always takes the larger: the likelihood rises for ever.
     let x: Vec<Option<Vec<f64>>> = (0..27).map(|q| Some(vec![if q % 2 == 0 { 1.0 } else { -1.0 }])).collect();
     let always = |b: &ShownBallot| {
