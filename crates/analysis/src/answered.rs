@@ -30,6 +30,11 @@ pub struct Answered {
 }
 
 impl Answered {
+    /// Whether anybody saw a comparison other than as the study lists it.
+    pub(crate) fn sides_differ(&self) -> bool {
+        self.shown.iter().zip(&self.declared).any(|(shown, declared)| shown.left() != declared.first())
+    }
+
     /// Every answer to a comparison as it was shown, those of people who are left out included.
     pub(crate) fn everyone(&self, study: &Study) -> Cow<'_, [ShownBallot]> {
         match self.excluded.is_empty() {

@@ -71,7 +71,8 @@ pub(crate) fn outcome(choice: Choice) -> Outcome {
 }
 
 /// The study's comparison groups, then clusterings pooled over arrangements (`clustering`) and arrangements pooled over
-/// clusterings (`arrangement`), where more than one group has them. Groups without an answer are left out.
+/// clusterings (`arrangement`), where more than one group has them; then all methods (`all`), where the groups hang together.
+/// Groups without an answer are left out.
 pub fn ballot_groups(study: &Study, ballots: &[ShownBallot]) -> Vec<BallotGroup> {
     let methods = study.methods();
     let mut groups: Vec<BallotGroup> = study
@@ -103,8 +104,36 @@ pub fn ballot_groups(study: &Study, ballots: &[ShownBallot]) -> Vec<BallotGroup>
     let pooled = relabel(ballots.iter().filter(same), place);
     let arrangement = BallotGroup { name: "arrangement".into(), items, ballots: pooled };
     groups.extend([clustering, arrangement].into_iter().filter(|group| !one_group(&group.ballots)));
+    groups.extend(all_methods(study, ballots));
     groups.retain(|group| !group.ballots.is_empty());
     groups
+}
+
+/// The group of all methods.
+pub(crate) const ALL_METHODS: &str = "all";
+
+/// Every method that is compared, as one group, where a study has several groups and they hang together.
+fn all_methods(study: &Study, ballots: &[ShownBallot]) -> Option<BallotGroup> {
+    let methods = study.methods();
+    let compared = |method: &Method| {
+        study.comparisons.iter().any(|c| c.left.method == *method || c.right.method == *method)
+    };
+    let items: Vec<Method> = methods.iter().copied().filter(compared).collect();
+    let place = |item: usize| items.iter().position(|&method| method == methods[item]);
+    let own = relabel(ballots.iter(), place);
+    // Linked to the first, directly or through others.
+    let mut linked = vec![false; items.len()];
+    *linked.first_mut()? = true;
+    while let Some(ballot) = own.iter().find(|b| linked[b.left()] != linked[b.right()]) {
+        (linked[ballot.left()], linked[ballot.right()]) = (true, true);
+    }
+    let named = study.groups.iter().all(|group| group.id != ALL_METHODS);
+    let several = named && study.groups.len() > 1 && linked.into_iter().all(|linked| linked);
+    several.then(|| BallotGroup {
+        name: ALL_METHODS.into(),
+        items: items.iter().map(Method::to_string).collect(),
+        ballots: own,
+    })
 }
 
 /// Ballots with other item numbers; those with an item that has none are left out.
@@ -137,6 +166,7 @@ mod tests {
             ("P", "sp bp", 54),
             ("clustering", "U I P", 324),
             ("arrangement", "S B", 162),
+            ("all", "bu bi bp su si sp", 486),
         ];
         assert_eq!(seen.len(), want.len());
         for ((name, items, ballots), want) in seen.iter().zip(want) {

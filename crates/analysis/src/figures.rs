@@ -70,8 +70,9 @@ fn drafts(inputs: &Inputs<'_>) -> Vec<Draft> {
     drafts.extend(meshes::aspect_ratios(inputs));
     drafts.extend(stages::stage_times(inputs));
     drafts.extend(distributions::aspect_ratios(inputs));
-    if let Some(Answered { tally, shown, declared, groups, .. }) = inputs.answers {
-        drafts.push(answers::per_question(inputs.study, tally));
+    if let Some(answered) = inputs.answers {
+        let Answered { tally, shown, declared, groups, .. } = answered;
+        drafts.push(answers::per_question(inputs.study, tally, answered.sides_differ()));
         drafts.push(preferences::per_object(inputs.study, tally));
         drafts.push(preferences::overall(inputs.study, tally));
         drafts.extend(factor_share::draft(inputs.study, tally));

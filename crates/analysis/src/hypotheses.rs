@@ -333,3 +333,6 @@ fn adjust_over_all(all: &mut [Hypothesis]) {
     let adjusted = holm(&tested.iter().map(|&i| all[i].test.sign_flip.p()).collect::<Vec<_>>());
     tested.into_iter().zip(adjusted).for_each(|(i, p)| all[i].adjusted_over_all = Some(p));
 }
+
+#[cfg(test)]
+mod tests;

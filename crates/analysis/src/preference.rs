@@ -6,8 +6,8 @@
 //! The overall factor of a method is the sum of its group factors, and mixes these scales.
 
 use crate::fraction::Fraction;
-use crate::tally::Tally;
-use design::{Arrangement, Clustering, Method, Study};
+use crate::tally::{QuestionCount, Tally};
+use design::{Arrangement, Clustering, Comparison, Method, Study};
 
 /// Answers that chose something, ties, and all answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -151,45 +151,51 @@ pub struct ArrangementContest {
     pub simple_cubic: u64,
 }
 
-/// Body-centred against simple cubic where nothing else differs: by object and group, by object, then pooled.
+/// Whether a question compares the body-centred with the simple cubic lattice, everything else equal.
+fn is_direct(comparison: &Comparison) -> bool {
+    let (left, right) = (comparison.left.method, comparison.right.method);
+    let papers = |a| matches!(a, Arrangement::BodyCentred | Arrangement::SimpleCubic);
+    left.clustering == right.clustering
+        && left.arrangement != right.arrangement
+        && papers(left.arrangement)
+        && papers(right.arrangement)
+}
+
+/// How many questions compare lattices, everything else equal, and are not in [`arrangement_contests`], because one of the
+/// two is another lattice.
+pub fn other_arrangement_questions(study: &Study) -> usize {
+    let lattices = |c: &&Comparison| {
+        c.left.method.clustering == c.right.method.clustering
+            && c.left.method.arrangement != c.right.method.arrangement
+    };
+    study.comparisons.iter().filter(lattices).filter(|c| !is_direct(c)).count()
+}
+
+/// Body-centred against simple cubic where nothing else differs: by object and group, by object, then pooled. Counted are
+/// questions, whatever else their groups compare.
 ///
 /// This is the direct evidence on arrangements; sums over clustering groups carry none, because the members of such a
 /// group share their arrangement. Empty if the study never compares the two.
 pub fn arrangement_contests(study: &Study, tally: &Tally) -> Vec<ArrangementContest> {
-    let direct: Vec<usize> = (0..study.groups.len())
-        .filter(|&g| {
-            let comparisons = &study.groups[g].comparisons;
-            let one_property = |&c: &usize| {
-                let (left, right) = (study.comparisons[c].left.method, study.comparisons[c].right.method);
-                let papers = |a| matches!(a, Arrangement::BodyCentred | Arrangement::SimpleCubic);
-                left.clustering == right.clustering
-                    && left.arrangement != right.arrangement
-                    && papers(left.arrangement)
-                    && papers(right.arrangement)
-            };
-            !comparisons.is_empty() && comparisons.iter().all(one_property)
-        })
-        .collect();
+    let direct: Vec<(&Comparison, &QuestionCount)> =
+        study.comparisons.iter().zip(&tally.questions).filter(|(comparison, _)| is_direct(comparison)).collect();
     let contest = |object: Option<usize>, group: Option<usize>| {
-        let counted = |chosen: Option<Arrangement>| {
-            tally.count(|row| {
-                direct.contains(&row.group)
-                    && group.is_none_or(|g| row.group == g)
-                    && object.is_none_or(|o| row.object == o)
-                    && row.chosen.map(|method| method.arrangement) == chosen
-            })
-        };
-        ArrangementContest {
-            object,
-            group,
-            body_centred: counted(Some(Arrangement::BodyCentred)),
-            none: counted(None),
-            simple_cubic: counted(Some(Arrangement::SimpleCubic)),
+        let mut sum = ArrangementContest { object, group, body_centred: 0, none: 0, simple_cubic: 0 };
+        let own = direct.iter().filter(|(comparison, _)| {
+            object.is_none_or(|o| comparison.object == o) && group.is_none_or(|g| comparison.group == g)
+        });
+        for (comparison, count) in own {
+            let straight = comparison.left.method.arrangement == Arrangement::BodyCentred;
+            let (body, simple) = if straight { (count.left, count.right) } else { (count.right, count.left) };
+            sum.body_centred += body;
+            sum.none += count.none;
+            sum.simple_cubic += simple;
         }
+        sum
     };
     let mut contests = Vec::new();
     for object in (0..study.file.objects.len()).map(Some).chain([None]) {
-        contests.extend(direct.iter().map(|&g| contest(object, Some(g))));
+        contests.extend((0..study.groups.len()).map(|g| contest(object, Some(g))));
         contests.push(contest(object, None));
     }
     contests.retain(|c| c.body_centred + c.none + c.simple_cubic > 0);

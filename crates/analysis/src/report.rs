@@ -8,6 +8,7 @@ mod asked;
 mod bearing;
 mod benchmark;
 mod checks;
+mod declaration;
 mod factors;
 mod finding;
 mod markdown;
@@ -16,7 +17,9 @@ mod prediction;
 mod preference;
 mod published;
 mod sides;
+mod tipping;
 mod words;
+mod worths;
 
 pub(crate) use words::whole;
 
@@ -31,6 +34,7 @@ use crate::prediction::Prediction;
 use crate::recorded::Recorded;
 use crate::table::Table;
 use crate::tables::omnibus::{self, Omnibus};
+use crate::tables::scale::{self, GroupScale};
 use design::Study;
 use responses::Responses;
 use statistics::DeclaredBallot;
@@ -83,17 +87,19 @@ struct Evidence<'a> {
     shown: &'a [ShownBallot],
     /// The same answers, about items.
     declared: Cow<'a, [DeclaredBallot]>,
-    /// Controls and repeats as well, and who is left out of everything else.
-    everything: Cow<'a, [ShownBallot]>,
     /// By question, what it shows its items on.
     scenes: Vec<usize>,
     /// How many answers were asked for: what stands on people's forms.
     asked: usize,
     /// How many people are left out, by a rule that the study declares.
     excluded: usize,
+    /// What was assumed of the answers' file, in sentences.
+    assumptions: Vec<String>,
     groups: &'a [BallotGroup],
     hypotheses: &'a [Hypothesis],
     omnibus: Vec<Omnibus>,
+    /// The items of each group on one scale.
+    scales: Vec<GroupScale<'a>>,
 }
 
 impl<'a> Evidence<'a> {
@@ -102,13 +108,14 @@ impl<'a> Evidence<'a> {
             study: Some(study),
             shown: &[],
             declared: Cow::Borrowed(&[]),
-            everything: Cow::Borrowed(&[]),
             scenes: Vec::new(),
             asked: 0,
             excluded: 0,
+            assumptions: Vec::new(),
             groups: &[],
             hypotheses: &[],
             omnibus: Vec::new(),
+            scales: Vec::new(),
         };
         let Some(answered) = answers else { return nothing };
         let everyone = answered.everyone(study);
@@ -117,12 +124,13 @@ impl<'a> Evidence<'a> {
             shown: &answered.shown,
             declared: Cow::Borrowed(&answered.declared),
             scenes: recorded.protocol().scenes.to_vec(),
-            everything: Cow::Owned(recorded.ballots().to_vec()),
             asked: asked::asked(study, answered),
             excluded: answered.excluded.len(),
+            assumptions: answered.responses.assumptions(),
             groups: &answered.groups,
             hypotheses: &answered.hypotheses,
             omnibus: omnibus::tests(study, &answered.declared),
+            scales: scale::scales(&answered.groups),
             ..nothing
         }
     }
@@ -217,14 +225,15 @@ pub fn report_of_groups(
     let evidence = Evidence {
         study: None,
         declared: shown.iter().map(ShownBallot::by_item).collect(),
-        everything: Cow::Borrowed(recorded.ballots()),
         scenes: recorded.protocol().scenes.to_vec(),
         asked: 0,
         excluded: 0,
+        assumptions: answers.assumptions(),
         shown: &shown,
         groups,
         hypotheses: &hypotheses,
         omnibus: Vec::new(),
+        scales: scale::scales(groups),
     };
     let mut press = Press::new(tables, figures);
     press.preferences(&evidence);
@@ -268,6 +277,13 @@ fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
             words::capital(&counted(evidence.excluded, "participant"))
         ));
     }
+    lead.extend(
+        evidence
+            .study
+            .and_then(|study| asked::instruction(study))
+            .map(|instruction| format!("What they were asked: {instruction}")),
+    );
+    lead.extend(evidence.assumptions.iter().cloned());
     lead.push(
         format!(
             "One person's answers hang together, so the person is the unit of every test and interval here. A person's score \
@@ -332,15 +348,24 @@ impl Press {
             return;
         }
         let sorted = preference::findings(evidence);
-        self.section("holds", "What holds", sorted.holds);
+        let mut holds = sides::caution(evidence);
+        holds.extend(sorted.holds);
+        self.section("holds", "What holds", holds);
         self.section("depends", "What depends on what", sorted.depends);
         self.add_figures(&["object_interaction"]);
-        self.section("open", "What does not hold", sorted.open);
-        self.section("worths", "Worths on one scale", Vec::new());
+        self.section("open", "What stays open", sorted.open);
+        self.section("worths", "Worths on one scale", worths::findings(evidence));
         self.add_figures(&["worths"]);
-        self.add_tables(&["worths", "models"]);
-        self.section("unanswerable", "What cannot be answered here", sides::findings(evidence));
-        self.section("bearing", "How much the answers can bear", bearing::findings(evidence));
+        self.add_tables(&["scale", "differences", "fit", "worths", "models"]);
+        let audit = self.tables.iter().find(|table| table.name == "audit");
+        let sides = sides::findings(evidence, audit);
+        self.section("unanswerable", "What cannot be answered here", sides);
+        self.section(
+            "declared",
+            "What was fixed beforehand, and what was not",
+            declaration::findings(evidence),
+        );
+        self.section("bearing", "How far the answers can be relied on", bearing::findings(evidence));
         self.add_figures(&["respondents"]);
         self.add_tables(&["tests", "omnibus", "agreement", "answer_counts"]);
         let checks = checks::findings(evidence, |name| self.tables.iter().find(|table| table.name == name));

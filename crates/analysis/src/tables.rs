@@ -13,9 +13,11 @@ pub(crate) mod omnibus;
 pub(crate) mod power;
 mod prediction;
 pub(crate) mod preferences;
+pub(crate) mod scale;
 pub(crate) mod screened;
 
 use crate::answered::Answered;
+use crate::ballots::ALL_METHODS;
 use crate::inputs::Inputs;
 use crate::prediction::Prediction;
 use crate::recorded::Recorded;
@@ -31,7 +33,7 @@ pub fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
     tables.extend(design::questionnaire(inputs.study));
     if let Some(answers) = inputs.answers {
         tables.extend(answers::answers(inputs.study, &answers.responses));
-        tables.push(answers::counts(inputs.study, &answers.tally));
+        tables.push(answers::counts(inputs.study, &answers.tally, answers.sides_differ()));
         tables.extend(preferences::all(inputs.study, &answers.tally));
         tables.extend(statistics(inputs, answers));
     }
@@ -49,6 +51,11 @@ fn statistics(inputs: &Inputs<'_>, answers: &Answered) -> Vec<Table> {
     let study = inputs.study;
     let Answered { shown, declared, groups, hypotheses, .. } = answers;
     let everyone = answers.everyone(study);
+    // What the groups compare, all methods compare again.
+    let probed = match groups.split_last() {
+        Some((last, others)) if last.name == ALL_METHODS => others,
+        _ => groups,
+    };
     let recorded = Recorded::of_study(study, &answers.responses, &everyone);
     let (models, ([respondents, screened], audited)) = rayon::join(
         || models::model_tables(groups),
@@ -58,12 +65,13 @@ fn statistics(inputs: &Inputs<'_>, answers: &Answered) -> Vec<Table> {
                     let respondents = agreement::respondents(recorded.ballots(), &recorded.protocol());
                     [respondents, screened::of_study(study, answers, &recorded)]
                 },
-                || audit::audit_table(&probes::audit(&recorded.audited(groups))),
+                || audit::audit_table(&probes::audit(&recorded.audited(probed))),
             )
         },
     );
     let mut tables = vec![contrasts::study_tests(hypotheses), omnibus::omnibus(study, declared)];
     tables.extend(models);
+    tables.extend(scale::tables(&scale::scales(groups)));
     tables.push(agreement::agreement(study, declared));
     tables.extend([respondents, screened, audited]);
     let prediction = Prediction::of(inputs, shown, declared);

@@ -4,17 +4,17 @@ use crate::ballots::{BallotGroup, outcome};
 use crate::recorded::Recorded;
 use crate::table::{Cell, Table};
 use crate::{audit, tables};
-use responses::Responses;
+use responses::{Answer, Responses};
 use statistics::interval;
 use statistics::{Model, ShownBallot};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Every table about answers that no study explains: `answer_counts`, `tests`, `worths`, `models`, `respondents`, `screened`
-/// and `audit`, as far as they have rows. `shown_s` is how long what a question shows lasts, in seconds.
-pub fn answer_tables(answers: &Responses, shown_s: Option<f64>) -> Vec<Table> {
-    let groups = open_groups(answers);
-    let mut tables = vec![counts(answers), tables::contrasts::pair_tests(&groups)];
-    for mut table in tables::models::model_tables(&groups) {
+/// and `audit`, as far as they have rows. `groups` are [`open_groups`] of the same answers; `shown_s` is how long what a
+/// question shows lasts, in seconds.
+pub fn answer_tables(answers: &Responses, groups: &[BallotGroup], shown_s: Option<f64>) -> Vec<Table> {
+    let mut tables = vec![counts(answers), tables::contrasts::pair_tests(groups)];
+    for mut table in tables::models::model_tables(groups) {
         if !answers.sides_recorded {
             let model = table.columns.iter().position(|column| column.name == "model");
             let side = Cell::text(Model::DavidsonSide.code());
@@ -25,39 +25,46 @@ pub fn answer_tables(answers: &Responses, shown_s: Option<f64>) -> Vec<Table> {
         }
         tables.push(table);
     }
+    tables.extend(tables::scale::tables(&tables::scale::scales(groups)));
     let recorded = Recorded::without_study(answers, shown_s);
     tables.push(tables::agreement::respondents(recorded.ballots(), &recorded.protocol()));
-    tables.push(tables::screened::screened_pair_tests(&groups, &recorded));
-    tables.push(tables::audit::audit_table(&audit::audit(&recorded.audited(&groups))));
+    tables.push(tables::screened::screened_pair_tests(groups, &recorded));
+    tables.push(tables::audit::audit_table(&audit::audit(&recorded.audited(groups))));
     tables.retain(|table| !table.rows.is_empty());
     tables
 }
 
-/// The answers by the group that their question names. Answers that name none are in groups of items that were compared with
-/// one another, directly or through others: `all`, or the object, or a number.
-pub fn open_groups(answers: &Responses) -> Vec<BallotGroup> {
+/// The answers by the group that their question names, groups by name. Answers that name none are in groups of items that
+/// were compared with one another, directly or through others: `all`, or the object, or a number.
+///
+/// Items stand in the order of the [`Responses`], so that no order of rows changes anything. The first is the reference of
+/// every worth: `reference`, where the group has it.
+pub fn open_groups(answers: &Responses, reference: Option<&str>) -> Vec<BallotGroup> {
     let names = group_of_question(answers);
-    let mut groups: Vec<BallotGroup> = Vec::new();
-    let mut number: BTreeMap<&str, usize> = BTreeMap::new();
-    let mut places: Vec<BTreeMap<u32, usize>> = Vec::new();
-    for answer in answers.answers.iter().filter(|answer| answer.left != answer.right) {
-        let name = names[answer.question as usize].as_str();
-        let group = *number.entry(name).or_insert_with(|| {
-            groups.push(BallotGroup { name: name.into(), items: Vec::new(), ballots: Vec::new() });
-            places.push(BTreeMap::new());
-            groups.len() - 1
-        });
-        let (group, places) = (&mut groups[group], &mut places[group]);
-        let [left, right] = [answer.left, answer.right].map(|item| {
-            *places.entry(item).or_insert_with(|| {
-                group.items.push(answers.items[item as usize].clone());
-                group.items.len() - 1
-            })
-        });
-        let (participant, question) = (answer.participant as usize, answer.question as usize);
-        group.ballots.push(ShownBallot::new(participant, question, [left, right], outcome(answer.choice)));
+    let asked = |answer: &&Answer| answers.questions[answer.question as usize].is_comparison();
+    let mut members: BTreeMap<&str, BTreeSet<u32>> = BTreeMap::new();
+    for answer in answers.answers.iter().filter(asked) {
+        members.entry(&names[answer.question as usize]).or_default().extend([answer.left, answer.right]);
     }
-    groups
+    let name = |&item: &u32| answers.items[item as usize].clone();
+    let mut places: BTreeMap<&str, BTreeMap<u32, usize>> = BTreeMap::new();
+    let mut groups: BTreeMap<&str, BallotGroup> = BTreeMap::new();
+    for (group, items) in members {
+        let mut items: Vec<u32> = items.into_iter().collect();
+        // Stable: the others keep their order.
+        items.sort_by_key(|item| Some(name(item).as_str()) != reference);
+        places.insert(group, items.iter().enumerate().map(|(place, &item)| (item, place)).collect());
+        let items = items.iter().map(name).collect();
+        groups.insert(group, BallotGroup { name: group.into(), items, ballots: Vec::new() });
+    }
+    for answer in answers.answers.iter().filter(asked) {
+        let group = names[answer.question as usize].as_str();
+        let sides = [answer.left, answer.right].map(|item| places[group][&item]);
+        let (participant, question) = (answer.participant as usize, answer.question as usize);
+        let ballot = ShownBallot::new(participant, question, sides, outcome(answer.choice));
+        groups.get_mut(group).expect("a member's group").ballots.push(ballot);
+    }
+    groups.into_values().collect()
 }
 
 fn group_of_question(answers: &Responses) -> Vec<String> {
@@ -72,7 +79,7 @@ fn group_of_question(answers: &Responses) -> Vec<String> {
         }
         item
     }
-    let compared = answers.questions.iter().filter(|q| !own(&q.group) && !q.is_control());
+    let compared = answers.questions.iter().filter(|q| !own(&q.group) && q.is_comparison());
     for question in compared.clone() {
         let (a, b) = (root(&mut first, question.left), root(&mut first, question.right));
         first[a.max(b) as usize] = a.min(b);
@@ -104,7 +111,7 @@ fn group_of_question(answers: &Responses) -> Vec<String> {
         .collect()
 }
 
-/// Left, none and right of every question, with the sides as first shown.
+/// How every question was answered, the item with the lower place in the [`Responses`] on the left.
 fn counts(answers: &Responses) -> Table {
     let mut table = Table::new(
         "answer_counts",
@@ -125,18 +132,24 @@ fn counts(answers: &Responses) -> Table {
     );
     let mut counts = vec![[0_u64; 3]; answers.questions.len()];
     for answer in &answers.answers {
-        counts[answer.question as usize][answers.declared_choice(answer) as usize] += 1;
+        let straight = answer.left <= answer.right;
+        let place = match outcome(answer.choice).index() {
+            place if straight => place,
+            place => 2 - place,
+        };
+        counts[answer.question as usize][place] += 1;
     }
     let groups = group_of_question(answers);
     for ((question, group), [left, none, right]) in answers.questions.iter().zip(groups).zip(counts) {
+        let [first, second] = [question.left.min(question.right), question.left.max(question.right)];
         let all = left + none + right;
         let interval = interval::wilson(right, all);
         table.push(vec![
             Cell::text(group),
             Cell::text(&question.object),
             Cell::text(&question.id),
-            Cell::text(&answers.items[question.left as usize]),
-            Cell::text(&answers.items[question.right as usize]),
+            Cell::text(&answers.items[first as usize]),
+            Cell::text(&answers.items[second as usize]),
             Cell::count(left),
             Cell::count(none),
             Cell::count(right),
@@ -146,7 +159,7 @@ fn counts(answers: &Responses) -> Table {
         ]);
     }
     table.notes.push(
-        "Sides are those of the first time the pair was shown; answers to the mirrored pair are turned. From and to: Wilson's \
+        "Left and right are the order of names, not the sides that people saw. From and to: Wilson's \
          interval at 95 %, for one question at a time."
             .into(),
     );

@@ -11,6 +11,7 @@ use crate::method::{ConfigurationId, Method};
 use crate::published::{BenchmarkRow, Claim, PreferenceCell};
 use checks::{check_forms, check_objects, check_primary, check_sections, check_stills};
 use serde::de::DeserializeOwned;
+use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
 /// A study: its file, checked, with everything derived from it.
@@ -18,6 +19,8 @@ use std::path::{Path, PathBuf};
 pub struct Study {
     /// The file it was read from.
     pub path: PathBuf,
+    /// SHA-256 of the file's text, lower-case hexadecimal: what was declared, and not changed since.
+    pub sha256: String,
     /// What the file says, checked.
     pub file: StudyFile,
     /// Every object with every arrangement and clustering, in the file's order.
@@ -136,6 +139,7 @@ impl Study {
         };
         let study = Self {
             path: path.into(),
+            sha256: Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect(),
             configurations,
             comparisons,
             groups,

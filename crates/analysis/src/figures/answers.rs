@@ -12,15 +12,15 @@ const HEADING: f64 = 30.0;
 /// Room for a question's id and left configuration, and for its right configuration.
 const LABELS: (f64, f64) = (180.0, 90.0);
 
-pub(super) fn per_question(study: &Study, tally: &Tally) -> Draft {
+pub(super) fn per_question(study: &Study, tally: &Tally, sides_differ: bool) -> Draft {
     let blocks: Vec<(usize, Vec<usize>)> = (0..study.file.objects.len())
         .map(|o| (o, (0..study.comparisons.len()).filter(|&c| study.comparisons[c].object == o).collect()))
         .filter(|(_, questions): &(usize, Vec<usize>)| !questions.is_empty())
         .collect();
     let legend = [
-        (Swatch::Area(Fill::plain(LEFT)), "left preferred".to_owned()),
+        (Swatch::Area(Fill::plain(LEFT)), "the one on the left of its row preferred".to_owned()),
         (Swatch::Area(Fill::plain(NONE)), "no preference".to_owned()),
-        (Swatch::Area(Fill::plain(RIGHT)), "right preferred".to_owned()),
+        (Swatch::Area(Fill::plain(RIGHT)), "the one on the right preferred".to_owned()),
     ];
     let height = HEADING * blocks.len() as f64 + ROW * study.comparisons.len() as f64;
     let (mut canvas, mut y) = canvas_with_legend(&legend, height);
@@ -44,9 +44,12 @@ pub(super) fn per_question(study: &Study, tally: &Tally) -> Draft {
         }
     }
     let caption = format!(
-        "Answers of {} to each question, centred on no preference; the configurations stand on the side \
-         where they were shown.",
-        crate::digits::counted(tally.respondents, "respondent")
+        "Answers of {} to each question, centred on no preference. The configurations stand as the study lists them{}.",
+        crate::digits::counted(tally.respondents, "participant"),
+        match sides_differ {
+            true => ", not on the side where each person saw them",
+            false => ", and everybody saw them on these sides",
+        }
     );
     Draft { name: "answers", caption, canvas }
 }

@@ -39,7 +39,7 @@ fn block(group: &BallotGroup) -> Option<Block> {
         let interval = interval.and_then(|c| fitted.clustered_error(c, participants.number(), item));
         let interval = interval.map(|(_, interval)| interval);
         let worth = number(fitted.log_worths[item], 2);
-        let remark = match (item, fitted.penalised, interval) {
+        let remark = match (item, fitted.penalised(), interval) {
             (0, ..) => "reference".into(),
             (_, true, _) => format!("{worth}, penalised"),
             (_, _, Some(i)) => format!("{worth} [{}, {}]", number(i.low, 2), number(i.high, 2)),

@@ -8,6 +8,10 @@ fn named<'a>(prediction: &'a Prediction, code: &str) -> &'a MetricPrediction {
     prediction.metrics.iter().find(|m| m.metric.code == code).unwrap_or_else(|| panic!("no {code}"))
 }
 
+fn predicted(inputs: &Inputs<'_>, shown: &[ShownBallot]) -> Option<Prediction> {
+    Prediction::of(inputs, shown, &crate::ballots::declared(inputs.study, shown))
+}
+
 #[track_caller]
 fn close(got: f64, want: f64) {
     assert!((got - want).abs() < 1e-8, "{got} instead of {want}");
@@ -17,8 +21,8 @@ fn close(got: f64, want: f64) {
 #[test]
 fn the_papers_answers_on_published_triangle_counts() {
     let all = Everything::of(fixture::study());
-    let ballots = all.answers.ballots.clone();
-    let prediction = Prediction::of(&all.inputs(), &ballots).unwrap();
+    let ballots = all.answers.shown.clone();
+    let prediction = predicted(&all.inputs(), &ballots).unwrap();
     let codes: Vec<&str> = prediction.metrics.iter().map(|m| m.metric.code).collect();
     assert_eq!(codes, ["published_aspect_ratio", "triangles"]);
     assert_eq!((prediction.pairs, prediction.meshes, prediction.objects), (27, 18, 3));
@@ -39,7 +43,8 @@ fn the_papers_answers_on_published_triangle_counts() {
     assert_eq!(found.better.test.counts, Some([286, 49, 151]));
     let pairs = found.better.pairs;
     assert_eq!((pairs.better, pairs.drawn, pairs.worse), (19, 1, 7));
-    assert_eq!(found.better.better_right, 24);
+    // The better value stands on the right of 24 of 27 pairs, and everybody saw the same sides.
+    assert_eq!((found.better_right, found.showings), (24 * 18, 27 * 18));
     // scipy.stats.spearmanr of both orders.
     close(prediction.correlations[0][1].unwrap(), 0.761_006_289_308_176);
     close(prediction.correlations[1][0].unwrap(), 0.761_006_289_308_176);
@@ -62,7 +67,7 @@ fn a_planted_metric_is_found() {
             _ => 0.9,
         };
     }
-    let mut ballots = all.answers.ballots.clone();
+    let mut ballots = all.answers.shown.clone();
     for ballot in &mut ballots {
         let c = &all.study.comparisons[ballot.question()];
         let ratio = |id: &design::ConfigurationId| match id.method.clustering {
@@ -78,7 +83,7 @@ fn a_planted_metric_is_found() {
         let slip = ballot.question() == 9 * (ballot.participant() % 3) + ballot.participant() % 6;
         *ballot = ballot.with_outcome(if slip { rounder.swapped() } else { rounder });
     }
-    let prediction = Prediction::of(&all.inputs(), &ballots).unwrap();
+    let prediction = predicted(&all.inputs(), &ballots).unwrap();
     let found = named(&prediction, "radius_ratio");
     // 18 pairs differ in clustering; the other nine are equal and count for nothing. The first six questions of an object are on clusterings.
     assert_eq!(found.better.test.counts, Some([18 * 17, 0, 18]));
@@ -92,21 +97,39 @@ fn a_planted_metric_is_found() {
 }
 
 #[test]
+fn sides_do_not_matter_to_metrics() {
+    // The same choices of items, every other person's pairs the other way round.
+    let all = Everything::of(fixture::study());
+    let ballots = all.answers.shown.clone();
+    let turned: Vec<ShownBallot> =
+        ballots.iter().map(|b| if b.participant() % 2 == 0 { *b } else { b.turned() }).collect();
+    let [one, other] = [&ballots, &turned].map(|of| predicted(&all.inputs(), of).unwrap());
+    for (a, b) in one.metrics.iter().zip(&other.metrics) {
+        assert_eq!((a.better.test.counts, a.better.pairs), (b.better.test.counts, b.better.pairs));
+        close(a.coefficient.unwrap().estimate, b.coefficient.unwrap().estimate);
+        assert_eq!(b.better_right, b.showings / 2);
+    }
+    // The side alone knows nothing any more: nine people saw it one way and nine the other.
+    let side = other.side_held_out.as_ref().unwrap();
+    assert!((side.accuracy.share - 0.5).abs() < 0.1, "{}", side.accuracy.share);
+}
+
+#[test]
 fn nothing_measured_or_nothing_answered_predicts_nothing() {
     let all = Everything::of(fixture::study());
-    let ballots = all.answers.ballots.clone();
-    assert!(Prediction::of(&all.inputs(), &[]).is_none());
+    let ballots = all.answers.shown.clone();
+    assert!(predicted(&all.inputs(), &[]).is_none());
     let bare = Inputs { meshes: &[], ..all.inputs() };
-    assert!(Prediction::of(&bare, &ballots).is_none());
+    assert!(predicted(&bare, &ballots).is_none());
     // One object: a fit, but nothing to judge it on.
     let sphere: Vec<ShownBallot> = ballots.iter().filter(|b| b.question() < 9).copied().collect();
-    let prediction = Prediction::of(&all.inputs(), &sphere).unwrap();
+    let prediction = predicted(&all.inputs(), &sphere).unwrap();
     assert_eq!((prediction.pairs, prediction.independent), (9, 5));
     let found = named(&prediction, "triangles");
     assert!(found.held_out.is_none() && found.coefficient.is_ok());
     // Only ties: counts, and no coefficient.
     let ties: Vec<ShownBallot> = ballots.iter().map(|b| b.with_outcome(Outcome::Tie)).collect();
-    let prediction = Prediction::of(&all.inputs(), &ties).unwrap();
+    let prediction = predicted(&all.inputs(), &ties).unwrap();
     let found = named(&prediction, "triangles");
     assert_eq!(found.coefficient, Err(FitError::OnlyTies));
     assert!(found.better.share.is_none() && prediction.joint.is_err());

@@ -1,8 +1,14 @@
-//! How many answers a study asked for: what was not asked is not missing.
+//! What a study asked, and how many answers it asked for: what was not asked is not missing.
 
 use crate::answered::Answered;
 use design::Study;
 use design::forms::{Questionnaire, Role};
+
+/// What people were asked about each pair, as far as the study says it.
+pub(super) fn instruction(study: &Study) -> Option<&str> {
+    let of_answers = study.file.responses.as_ref().and_then(|section| section.asked.as_deref());
+    of_answers.or_else(|| study.file.forms.as_ref().map(|forms| forms.prompt.as_str()))
+}
 
 /// The comparisons on the forms of those who count. Whose form is not known was asked what was answered, where questions are
 /// dealt into blocks, and everything elsewhere.

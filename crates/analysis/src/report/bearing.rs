@@ -1,12 +1,13 @@
 //! How much the answers can bear: agreement, consistency, odd respondents, single questions.
 
 use super::finding::{Finding, Standing};
-use super::words::{counted, list, number, p, percent};
+use super::words::{counted, interval, list, number, p, percent};
 use super::{Block, Evidence, names};
 use crate::hypotheses::{ALPHA, Hypothesis};
 use crate::leave_one_out::WithoutOne;
 use statistics::{
-    DeclaredBallot, Metric, Screening, Triads, agreement, alpha, outcome_counts, screening, sign_test, triads,
+    DeclaredBallot, Metric, Screening, Triads, agreement, alpha_with_interval, outcome_counts, screening,
+    sign_test, triads,
 };
 use statrs::distribution::{Binomial, DiscreteCDF};
 use std::collections::BTreeMap;
@@ -28,12 +29,16 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
 fn unanimity(evidence: &Evidence<'_>) -> Finding {
     let counts: Vec<[u64; 3]> =
         outcome_counts(&evidence.declared).into_iter().filter(|c| c.iter().sum::<u64>() > 0).collect();
-    let of = |metric| alpha(&counts, metric).map(|a| number(a, 2));
+    let of = |metric| {
+        let alpha = alpha_with_interval(&evidence.declared, metric)?;
+        let within = alpha.interval.map_or(String::new(), |i| format!(" ({})", interval(i, 2)));
+        Some(format!("{}{within}", number(alpha.value, 2)))
+    };
     let over = counted(counts.len(), "question");
     let mut text = match (of(Metric::Nominal), of(Metric::Ordinal)) {
         (Some(nominal), Some(ordinal)) => format!(
-            "Krippendorff's alpha over {over} is {nominal} (nominal) and {ordinal} (left, none, right in order); 1 is full \
-             agreement, 0 what chance gives.",
+            "Krippendorff's alpha over {over} is {nominal} nominal and {ordinal} ordinal; 1 is full agreement, 0 what chance gives. In brackets: \
+             95 % jackknife intervals over participants.",
         ),
         _ => format!(
             "Krippendorff's alpha over {over} has no value: nobody answered what another did, or all answers are the same.",
@@ -52,7 +57,7 @@ fn unanimity(evidence: &Evidence<'_>) -> Finding {
         test.degrees,
         p(test.p)
     ));
-    Finding::new(if test.p <= ALPHA { Standing::Holds } else { Standing::Open }, text)
+    Finding::new(Standing::Noted, text)
 }
 
 fn consistency(evidence: &Evidence<'_>) -> Option<Finding> {

@@ -15,7 +15,7 @@ const NAMED: usize = 6;
 pub(super) fn findings<'t>(evidence: &Evidence<'_>, table: impl Fn(&str) -> Option<&'t Table>) -> Vec<Block> {
     let mut found = Vec::new();
     if let Some(respondents) = table("respondents") {
-        found.push(screened(respondents));
+        found.push(screened(evidence, respondents));
     }
     found.extend(table("screened").map(|screened| without(evidence, screened)).unwrap_or_default());
     found.extend(table("audit").map(probed).unwrap_or_default());
@@ -38,7 +38,7 @@ pub(super) fn controls(respondents: &Table) -> u64 {
 }
 
 /// How many broke which rule, and what was there to judge.
-fn screened(respondents: &Table) -> Finding {
+fn screened(evidence: &Evidence<'_>, respondents: &Table) -> Finding {
     let people = respondents.rows.len();
     let flags: Vec<String> = column(respondents, "flags").map(Cell::in_full).collect();
     let broken = flags.iter().filter(|flags| !flags.is_empty()).count();
@@ -61,8 +61,12 @@ fn screened(respondents: &Table) -> Finding {
     };
     let which = if rules.is_empty() { String::new() } else { format!(" ({})", list(&rules)) };
     let mut text = format!(
-        "{who} a rule of screening that is declared beforehand{which}. Nobody is left out of any other part of this report. \
-         Judged: {}.",
+        "{who} a rule of screening{which}. {}. Judged: {}.",
+        match evidence.excluded {
+            0 => "Nobody is left out of any other part of this report".to_owned(),
+            1 => "1 of them is left out of every other part of this report".to_owned(),
+            n => format!("{n} of them are left out of every other part of this report"),
+        },
         list(&judged)
     );
     if !absent.is_empty() {
@@ -108,7 +112,7 @@ fn without(evidence: &Evidence<'_>, screened: &Table) -> Vec<Finding> {
     let of_rule = |rows: &[usize]| {
         let [rule, left_out, people] = [0, 1, 2].map(|c| columns[c][rows[0]].as_str());
         let changed: Vec<usize> = rows.iter().copied().filter(|&r| columns[6][r] != columns[7][r]).collect();
-        let tests = counted(rows.len(), "declared test");
+        let tests = counted(rows.len(), "test");
         let outcome = match changed.len() {
             0 => format!("none of {tests} comes out otherwise"),
             n => {

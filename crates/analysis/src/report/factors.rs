@@ -33,15 +33,21 @@ fn text_of(fraction: Fraction) -> String {
     text.strip_suffix("/1").map_or(text.clone(), str::to_owned)
 }
 
-/// Groups of different size have factors on different scales.
+/// Groups of different size have factors on different scales, whoever answered.
 fn two_scales(study: &Study, factors: &[GroupFactor]) -> Option<String> {
     let mut caps: Vec<(Fraction, Vec<&str>)> = Vec::new();
     for factor in factors {
-        let id = study.groups[factor.group].id.as_str();
-        match caps.iter_mut().find(|(cap, _)| *cap == factor.cap()) {
-            Some((_, groups)) if groups.contains(&id) => {}
-            Some((_, groups)) => groups.push(id),
-            None => caps.push((factor.cap(), vec![id])),
+        let group = &study.groups[factor.group];
+        let shows = |&&c: &&usize| {
+            let comparison = &study.comparisons[c];
+            [comparison.left.method, comparison.right.method].contains(&factor.method)
+        };
+        let shown = group.comparisons.iter().filter(shows).count();
+        let cap = Fraction::new(shown as i128, group.comparisons.len() as i128);
+        match caps.iter_mut().find(|(known, _)| *known == cap) {
+            Some((_, groups)) if groups.contains(&group.id.as_str()) => {}
+            Some((_, groups)) => groups.push(&group.id),
+            None => caps.push((cap, vec![&group.id])),
         }
     }
     (caps.len() > 1).then(|| {
@@ -98,6 +104,23 @@ fn difference(study: &Study, factors: &[GroupFactor], evidence: &Evidence<'_>) -
         let part = own.filter(|f| shared(study, f.group).is_none() == direct);
         part.map(|f| f.share.factor().value()).sum::<f64>() / of
     };
+    // Only where the clustering groups of both have one factor for each of the same number of methods do their factors add up
+    // to one less the share of ties.
+    let members = |arrangement: Arrangement| {
+        let own = factors.iter().filter(|f| f.method.arrangement == arrangement);
+        let mut groups: Vec<usize> =
+            own.filter(|f| shared(study, f.group).is_some()).map(|f| f.group).collect();
+        groups.dedup();
+        let methods = sums.iter().filter(|(m, _)| m.arrangement == arrangement).count();
+        (groups.len(), methods)
+    };
+    let ties: u64 = (0..study.groups.len())
+        .filter(|&g| shared(study, g).is_some())
+        .filter_map(|g| factors.iter().find(|f| f.group == g).map(|f| f.share.ties))
+        .sum();
+    if members(first) != members(second) || ties == 0 {
+        return None;
+    }
     let by_ties = half(first, false) - half(second, false);
     let direct = half(first, true) - half(second, true);
     let of_contrast = evidence.hypotheses.iter().find(|h| match h.subject {
@@ -124,53 +147,68 @@ fn is_arrangement(level: Level) -> bool {
     matches!(level, Level::Arrangement(_))
 }
 
-/// Who has the largest sum: over all, by wins over appearances, and on each object.
+/// Who has the largest sum: over all, by wins over appearances, and on each object. A first place may be shared.
 fn favourite(study: &Study, tally: &Tally, factors: &[GroupFactor]) -> Option<String> {
-    let (method, sum) = largest(overall(study, factors).into_iter().map(|(m, f)| (m, f.value())))?;
+    let (methods, sum) = largest(overall(study, factors))?;
     let shares = study.methods().into_iter().filter_map(|m| {
         let own: Vec<&GroupFactor> = factors.iter().filter(|f| f.method == m).collect();
         let (wins, shown) = own.iter().fold((0, 0), |(w, n), f| (w + f.share.wins, n + f.appearances));
-        (shown > 0).then(|| (m, wins as f64 / shown as f64))
+        (shown > 0).then(|| (m, Fraction::new(wins.into(), shown.into())))
     });
     let (by_share, share) = largest(shares)?;
-    let mut objects: Vec<(Method, Vec<&str>)> = Vec::new();
+    let mut objects: Vec<(Vec<Method>, Vec<&str>)> = Vec::new();
     for (o, object) in study.file.objects.iter().enumerate() {
         let own = group_factors(study, tally, |other| other == o);
-        let Some((best, _)) = largest(overall(study, &own).into_iter().map(|(m, f)| (m, f.value()))) else {
-            continue;
-        };
-        match objects.iter_mut().find(|(m, _)| *m == best) {
+        let Some((best, _)) = largest(overall(study, &own)) else { continue };
+        match objects.iter_mut().find(|(known, _)| *known == best) {
             Some((_, names)) => names.push(&object.name),
             None => objects.push((best, vec![&object.name])),
         }
     }
-    let share_text = match by_share == method {
-        true => format!("and the largest share of wins over appearances, {}", number(share, 3)),
-        false => {
-            format!("but {by_share} has the largest share of wins over appearances, {}", number(share, 3))
-        }
+    let together = |methods: &[Method]| list(&methods.iter().map(Method::to_string).collect::<Vec<_>>());
+    let (has, have) = ("has", "have together");
+    let verb = |methods: &[Method]| if methods.len() == 1 { has } else { have };
+    let share_text = match by_share == methods {
+        true => format!("and the largest share of wins over appearances, {}", number(share.value(), 3)),
+        false => format!(
+            "but {} {} the largest share of wins over appearances, {}",
+            together(&by_share),
+            verb(&by_share),
+            number(share.value(), 3)
+        ),
     };
     let by_object = match &objects[..] {
-        [_] => format!("{method} has it on each object as well"),
+        [(best, _)] if *best == methods => {
+            format!("{} {} it on each object as well", together(best), verb(best))
+        }
+        [(best, _)] => format!("{} {} it on each object", together(best), verb(best)),
         _ => {
             let parts: Vec<String> =
-                objects.iter().map(|(m, names)| format!("{m} on the {}", list(names))).collect();
+                objects.iter().map(|(m, names)| format!("{} on the {}", together(m), list(names))).collect();
             format!("object by object there is no one favourite: the largest sum goes to {}", list(&parts))
         }
     };
+    let who = match methods[..] {
+        [method] => format!("{} ({method})", capital(&method.label())),
+        _ => together(&methods),
+    };
     Some(format!(
-        "{} ({}) has the largest sum, {}, {share_text}. {}.",
-        capital(&method.label()),
-        method,
-        number(sum, 3),
+        "{who} {} the largest sum, {}, {share_text}. {}.",
+        verb(&methods),
+        number(sum.value(), 3),
         capital(&by_object)
     ))
 }
 
-/// The first of the largest.
-fn largest(values: impl Iterator<Item = (Method, f64)>) -> Option<(Method, f64)> {
-    values.fold(None, |best: Option<(Method, f64)>, (m, v)| match best {
-        Some((_, most)) if most >= v => best,
-        _ => Some((m, v)),
-    })
+/// All that share the largest value.
+fn largest(values: impl IntoIterator<Item = (Method, Fraction)>) -> Option<(Vec<Method>, Fraction)> {
+    let mut best: Option<(Vec<Method>, Fraction)> = None;
+    for (method, value) in values {
+        match &mut best {
+            Some((methods, most)) if *most == value => methods.push(method),
+            Some((_, most)) if most.value() >= value.value() => {}
+            _ => best = Some((vec![method], value)),
+        }
+    }
+    best
 }

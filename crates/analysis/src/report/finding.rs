@@ -92,9 +92,10 @@ impl Finding {
         match hypothesis.conclusion() {
             Conclusion::Differs => {
                 let text = format!(
-                    "{} was preferred to {loser}{scope}: {}. {score}; {tested}.",
+                    "{} was preferred to {loser}{scope}: {}. {score}; {tested}.{}",
                     opening(winner),
-                    against(turned)
+                    against(turned),
+                    over_all(hypothesis)
                 );
                 Self::new(Standing::Holds, text)
             }
@@ -168,6 +169,16 @@ fn equivalence(hypothesis: &Hypothesis) -> String {
     match hypothesis.family_size {
         0 | 1 => format!("two one-sided t tests, {p}"),
         _ => format!("two one-sided t tests, {p} after correction"),
+    }
+}
+
+/// What one correction over all tests makes of a result, where that is another.
+fn over_all(hypothesis: &Hypothesis) -> String {
+    match hypothesis.adjusted_over_all {
+        Some(over_all) if over_all > hypothesis.rules.level => {
+            format!(" With one correction over all tests it does not hold ({}).", p(over_all))
+        }
+        _ => String::new(),
     }
 }
 

@@ -6,6 +6,7 @@ use super::words::{capital, counted, interval, list, number, p, percent, percent
 use crate::hypotheses::ALPHA;
 use crate::prediction::{MetricPrediction, Prediction};
 use design::Study;
+use design::forms::Questionnaire;
 
 pub(super) fn findings(study: &Study, prediction: Option<&Prediction>) -> Vec<Block> {
     let Some(prediction) = prediction else { return Vec::new() };
@@ -13,7 +14,7 @@ pub(super) fn findings(study: &Study, prediction: Option<&Prediction>) -> Vec<Bl
         prediction.metrics.iter().map(|m| metric(m, prediction.metrics.len())).collect();
     found.extend(held_out(study, prediction));
     found.extend(together(prediction));
-    found.push(limits(prediction));
+    found.push(limits(study, prediction));
     found.into_iter().map(Block::Finding).collect()
 }
 
@@ -32,7 +33,7 @@ fn metric(found: &MetricPrediction, family: usize) -> Finding {
     let people = share.interval.map_or(String::new(), |i| {
         format!(", 95 % t interval {}, {}", percents(i), counted(better.test.participants(), "participant"))
     });
-    let toward = better.test.sign_flip.net >= 0;
+    let toward = better.test.mean >= 0.0;
     let (standing, verdict) = match (found.adjusted <= ALPHA, toward) {
         (true, true) => (Standing::Holds, "goes with preference"),
         (true, false) => (Standing::Holds, "goes against preference"),
@@ -165,7 +166,7 @@ fn together(prediction: &Prediction) -> Option<Finding> {
     Some(Finding::new(standing, format!("{verdict}: {range}.")))
 }
 
-fn limits(prediction: &Prediction) -> Finding {
+fn limits(study: &Study, prediction: &Prediction) -> Finding {
     let sides: Vec<String> = prediction
         .metrics
         .iter()
@@ -176,13 +177,16 @@ fn limits(prediction: &Prediction) -> Finding {
         })
         .collect();
     let text = format!(
-        "{} of {} from {} are no large sample: only {} of their differences do not follow from the others, and every person saw \
-         the same ones. The intervals are about other people before these pairs, not about other meshes. The better value stood \
+        "{} of {} from {} are no large sample: only {} of their differences do not follow from the others, and {}. The intervals are about other people before these pairs, not about other meshes. The better value stood \
          on the right in {}, so a leaning to one side would look like a metric.",
         capital(&counted(prediction.pairs, "pair")),
         counted(prediction.meshes, "mesh").replace("meshs", "meshes"),
         counted(prediction.objects, "object"),
         prediction.independent,
+        match Questionnaire::of(study).is_some_and(|of| of.blocks() > 1) {
+            true => "each person saw only a part of them",
+            false => "every person saw the same ones",
+        },
         list(&sides)
     );
     Finding::new(Standing::NotAnswerable, text)

@@ -2,7 +2,7 @@
 
 use super::finding::{Finding, Standing, score, tested};
 use super::words::{against, capital, counted, list, number, p};
-use super::{Block, Evidence, names};
+use super::{Block, Evidence, names, tipping, worths};
 use crate::hypotheses::{Conclusion, Hypothesis, Subject};
 use crate::tables::omnibus::{Asked, Omnibus};
 use design::Study;
@@ -88,7 +88,9 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
         for hypothesis in evidence.hypotheses {
             if let Subject::Items { group, first, second } = &hypothesis.subject {
                 let scope = names::in_group(evidence, group);
-                let finding = Finding::of_preference(hypothesis, first, second, &scope);
+                let mut finding = Finding::of_preference(hypothesis, first, second, &scope);
+                let shown = hypothesis.differs();
+                finding.text.push_str(&worths::beside(evidence, group, [first, second], shown));
                 sorted.add(evidence, hypothesis, finding);
             }
         }
@@ -106,6 +108,9 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
             }
             Over::All | Over::Within(_) => {
                 let mut finding = Finding::of_preference(hypothesis, &first, &second, &scope);
+                if finding.standing == Standing::Holds {
+                    finding.text.push_str(&tipping::sentence(evidence, hypothesis));
+                }
                 if let Some(shown) = depends_on_object(evidence, levels) {
                     caution(study, evidence, &mut finding, hypothesis, &shown);
                 }

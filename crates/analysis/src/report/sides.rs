@@ -1,8 +1,10 @@
 //! What the design cannot answer: sides, other objects, other people.
 
 use super::finding::{Finding, Standing};
-use super::words::{capital, counted, interval, list, number};
+use super::words::{capital, counted, interval, list, number, p as p_value};
 use super::{Block, Evidence, names};
+use crate::audit::{Finding as Verdict, Probe};
+use crate::table::Table;
 use design::contrast::{Level, Over, contrasts};
 use statistics::{
     Model, Pairs, Participants, Separation, ShownBallot, SideDesign, clustered_covariance, fit, has_spread,
@@ -10,8 +12,49 @@ use statistics::{
 };
 use std::collections::BTreeMap;
 
-pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
-    let mut found = side(evidence);
+/// What the probe for a side says, from the table of probes.
+struct Probed {
+    found: bool,
+    evidence: String,
+}
+
+impl Probed {
+    /// `None` where the probe could not look.
+    fn of(audit: Option<&Table>) -> Option<Self> {
+        let audit = audit?;
+        let place = |name: &str| audit.columns.iter().position(|column| column.name == name);
+        let (probe, finding, evidence) = (place("probe")?, place("finding")?, place("evidence")?);
+        let row = audit.rows.iter().find(|row| row[probe].in_full() == Probe::Side.code())?;
+        let finding = row[finding].in_full();
+        let p = place("p").map(|p| row[p].in_full()).filter(|p| !p.is_empty());
+        let p = p.and_then(|p| p.parse::<f64>().ok()).map_or(String::new(), |p| format!(" ({})", p_value(p)));
+        (finding != Verdict::NotAnswerable.label()).then(|| Self {
+            found: finding == Verdict::Found.label(),
+            evidence: format!("{}{p}", row[evidence].in_full()),
+        })
+    }
+}
+
+/// What stands before the results where sides and methods go together.
+pub(super) fn caution(evidence: &Evidence<'_>) -> Vec<Block> {
+    let items = evidence.shown.iter().map(|b| b.left().max(b.right()) + 1).max().unwrap_or(0);
+    let both = |ballots: &[ShownBallot], items| {
+        side_design(&Pairs::of(items, ballots)) == SideDesign::Counterbalanced
+    };
+    if evidence.shown.is_empty()
+        || both(evidence.shown, items)
+        || evidence.groups.iter().any(|group| both(&group.ballots, group.items.len()))
+    {
+        return Vec::new();
+    }
+    let text = "No comparison was shown in both orders. So each result is about a method together with the side on which it \
+                stood.";
+    vec![Block::Text(text.into())]
+}
+
+/// `audit` is the table of probes.
+pub(super) fn findings(evidence: &Evidence<'_>, audit: Option<&Table>) -> Vec<Block> {
+    let mut found = side(evidence, Probed::of(audit));
     if let Some(study) = evidence.study {
         let names: Vec<&str> = study.file.objects.iter().map(|o| o.name.as_str()).collect();
         found.push(Finding::new(
@@ -27,7 +70,7 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
     found.into_iter().map(Block::Finding).collect()
 }
 
-fn side(evidence: &Evidence<'_>) -> Vec<Finding> {
+fn side(evidence: &Evidence<'_>, probe: Option<Probed>) -> Vec<Finding> {
     let mut counts = [0_u64; 3];
     evidence.shown.iter().for_each(|b| counts[b.outcome().index()] += 1);
     let [left, none, right] = counts;
@@ -45,18 +88,34 @@ fn side(evidence: &Evidence<'_>) -> Vec<Finding> {
     let everywhere = side_design(&Pairs::of(items, evidence.shown)) != SideDesign::Counterbalanced
         && of(SideDesign::Counterbalanced).is_empty();
     let mut found = Vec::new();
-    if everywhere {
-        found.push(Finding::new(
+    match (everywhere, probe) {
+        (true, None) => found.push(Finding::new(
             Standing::NotAnswerable,
             format!(
-                "Whether people favour a side is not answerable here, because no pair was shown in both orders. {}. {}, and \
-                 how much of that is the side and how much what stood there, no analysis of these answers can tell.",
+                "Whether people favour a side is not answerable here, because no pair was shown in both orders. {}. {}. How \
+                 much of that is the side and how much what stood there, these answers cannot tell.",
                 always(evidence).unwrap_or_else(|| "Every pair kept its sides".into()),
                 capital(&totals)
             ),
-        ));
-    } else {
-        found.push(Finding::new(Standing::Noted, format!("Over all questions {totals}.")));
+        )),
+        (true, Some(probe)) => {
+            let (standing, verdict) = match probe.found {
+                true => (Standing::Holds, "People favour a side"),
+                false => (Standing::Open, "That people favour a side is not shown"),
+            };
+            found.push(Finding::new(standing, format!("{verdict}: {}. {}.", probe.evidence, capital(&totals))));
+            let text = format!(
+                "How much of a preference is the side cannot be told, because no comparison was shown in both orders. {}.",
+                always(evidence).unwrap_or_else(|| "Every pair kept its sides".into())
+            );
+            found.push(Finding::new(Standing::NotAnswerable, text));
+        }
+        (false, probe) => {
+            found.push(Finding::new(Standing::Noted, format!("Over all questions {totals}.")));
+            if let Some(probe) = probe.filter(|probe| probe.found) {
+                found.push(Finding::new(Standing::Holds, format!("People favour a side: {}.", probe.evidence)));
+            }
+        }
     }
     let estimates = |names: &[&str]| -> Vec<String> {
         names.iter().filter_map(|name| estimate(name, designs[name].1, designs[name].2)).collect()
@@ -98,7 +157,7 @@ fn estimate(name: &str, ballots: &[ShownBallot], items: usize) -> Option<String>
     if separation(&pairs) != Separation::None {
         return None;
     }
-    let fitted = fit(Model::DavidsonSide, &pairs).ok().filter(|fit| !fit.penalised)?;
+    let fitted = fit(Model::DavidsonSide, &pairs).ok().filter(|fit| !fit.penalised())?;
     let participants = Participants::of(items, ballots);
     let covariance = clustered_covariance(&fitted, &participants)?;
     let place = fitted.parameters.len() - 1;
@@ -115,19 +174,28 @@ fn estimate(name: &str, ballots: &[ShownBallot], items: usize) -> Option<String>
     Some(format!("{} ({}) in group {name}", number(side, 2), interval(found, 2)))
 }
 
-/// The levels of a study that always stood on one side of the questions that compare them.
+/// The levels of a study that always stood on one side of the questions that compare them, as people saw them.
 fn always(evidence: &Evidence<'_>) -> Option<String> {
     let study = evidence.study?;
-    let mut seen: Vec<(Level, [bool; 2])> = Vec::new();
+    // By question: which level is its first item's, and its second's.
+    let mut levels: Vec<Option<[Level; 2]>> = vec![None; study.comparisons.len()];
     for contrast in contrasts(study).into_iter().filter(|c| c.over == Over::All) {
-        for &weight in contrast.weights.values() {
-            for (level, left) in [(contrast.levels[0], weight > 0), (contrast.levels[1], weight < 0)] {
-                let place = seen.iter().position(|(l, _)| *l == level).unwrap_or_else(|| {
-                    seen.push((level, [false; 2]));
-                    seen.len() - 1
-                });
-                seen[place].1[usize::from(!left)] = true;
-            }
+        let [a, b] = contrast.levels;
+        for (&question, &sign) in &contrast.parts[0] {
+            levels[question] = Some(if sign > 0 { [a, b] } else { [b, a] });
+        }
+    }
+    let mut seen: Vec<(Level, [bool; 2])> = Vec::new();
+    for (shown, declared) in evidence.shown.iter().zip(evidence.declared.iter()) {
+        let Some([first, second]) = levels[shown.question()] else { continue };
+        let straight = declared.first() == shown.left();
+        let [left, right] = if straight { [first, second] } else { [second, first] };
+        for (level, side) in [(left, 0), (right, 1)] {
+            let place = seen.iter().position(|(l, _)| *l == level).unwrap_or_else(|| {
+                seen.push((level, [false; 2]));
+                seen.len() - 1
+            });
+            seen[place].1[side] = true;
         }
     }
     let of = |sides: [bool; 2], word: &str| {

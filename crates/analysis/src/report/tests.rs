@@ -1,19 +1,18 @@
 use super::*;
 use crate::fixture::{self, Everything};
+use responses::{Answer, Choice, Question, Responses};
 use statistics::Outcome::{self, Left, Right, Tie};
 
 /// What the paper's study says if people answered like this; the argument is participant and question.
 fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'static str, Vec<Finding>)> {
     let study = fixture::study();
-    let ballots: Vec<ShownBallot> = crate::ballots::ballots(&study, &fixture::answers(&study))
-        .into_iter()
-        .filter(|b| b.participant() < people)
-        .map(|b| b.with_outcome(answer(b.participant(), b.question())))
-        .collect();
-    let groups = crate::ballot_groups(&study, &ballots);
-    let hypotheses = hypotheses::of_study(&study, &ballots);
-    let evidence =
-        Evidence { study: Some(&study), ballots: &ballots, groups: &groups, hypotheses: &hypotheses };
+    let mut answers = fixture::answers(&study);
+    answers.answers.retain(|answer| (answer.participant as usize) < people);
+    for of in &mut answers.answers {
+        of.choice = choice(answer(of.participant as usize, of.question as usize));
+    }
+    let answered = Answered::of(&study, answers).unwrap();
+    let evidence = Evidence::of_study(&study, Some(&answered));
     let mut press = Press::new(&[], &[]);
     press.preferences(&evidence);
     let report = press.finish("A test".into(), lead(&evidence, &[]));
@@ -31,6 +30,32 @@ fn groups(answers: &[(usize, usize, usize, Outcome)]) -> Vec<BallotGroup> {
     };
     let items = ["oak", "elm", "ash"].map(String::from).into();
     vec![BallotGroup { name: "trees".into(), items, ballots: answers.iter().map(ballot).collect() }]
+}
+
+fn choice(outcome: Outcome) -> Choice {
+    match outcome {
+        Left => Choice::Left,
+        Tie => Choice::NoPreference,
+        Right => Choice::Right,
+    }
+}
+
+/// The report of these groups' answers, which are about one object.
+fn report_of(title: &str, groups: &[BallotGroup], tables: &[Table]) -> Report {
+    let mut answers = Responses::default();
+    for group in groups {
+        answers.items.extend(group.items.iter().cloned());
+        for ballot in &group.ballots {
+            let sides = [ballot.left() as u32, ballot.right() as u32];
+            while answers.questions.len() <= ballot.question() {
+                let id = format!("Q{}", answers.questions.len() + 1);
+                answers.questions.push(Question::new(&id, "garden", &group.name, sides));
+            }
+            let (person, question) = (ballot.participant() as u32, ballot.question() as u32);
+            answers.answers.push(Answer::new(person, question, sides, choice(ballot.outcome())));
+        }
+    }
+    report_of_groups(title, &answers, groups, tables, &[])
 }
 
 fn texts(report: &Report, id: &str) -> Vec<String> {
@@ -179,7 +204,7 @@ fn nobody_leaning_is_said_so() {
     assert!(said.iter().all(|(id, _)| *id != "holds"), "{said:#?}");
     of(&said, "open", "13 of 13 comparisons are not decided: ");
     let answers: Vec<_> = (0..18).map(|person| (person, 0, 1, Tie)).collect();
-    let report = report_of_groups("Trees", &groups(&answers), &[], &[]);
+    let report = report_of("Trees", &groups(&answers), &[]);
     assert_eq!(
         texts(&report, "open"),
         [
@@ -209,11 +234,7 @@ fn small_differences_are_equal_within_the_margin() {
     let said = said(18, |p, q| if (q + q / 9 + p) % 2 == 0 { Left } else { Right });
     let found = of(&said, "holds", "The body-centred lattice and the simple cubic lattice are liked alike");
     assert_eq!(found.standing, Standing::Equal);
-    assert!(
-        found.text.contains("within the declared margin of 0.2: 81 answers against 81"),
-        "{}",
-        found.text
-    );
+    assert!(found.text.contains("within the margin of 0.2: 81 answers against 81"), "{}", found.text);
 }
 
 #[test]
@@ -222,11 +243,12 @@ fn equal_counts_stand_in_the_order_of_the_names() {
     let one = |p: usize| {
         (0..40).map(move |q| (p, 0, 1, if q < if p < 12 { 18 } else { 22 } { Left } else { Right }))
     };
-    let report = report_of_groups("Trees", &groups(&(0..20).flat_map(one).collect::<Vec<_>>()), &[], &[]);
+    let report = report_of("Trees", &groups(&(0..20).flat_map(one).collect::<Vec<_>>()), &[]);
     let text = &texts(&report, "holds")[0];
     assert!(
-        text.contains("liked alike, within the declared margin of 0.2: 392 answers against 408, none without preference.")
-            && text.contains("Mean score \u{2212}0.02 (95 % t interval \u{2212}0.07 to 0.03, 20 participants)"),
+        text.contains(
+            "liked alike, within the margin of 0.2: 392 answers against 408, none without preference."
+        ) && text.contains("Mean score \u{2212}0.02 (95 % t interval \u{2212}0.07 to 0.03, 20 participants)"),
         "{text}"
     );
 }
@@ -246,7 +268,7 @@ fn too_few_people_are_told_what_they_could_have_shown() {
     );
     // A few are told one by one.
     let answers: Vec<_> = (0..3).map(|person| (person, 0, 1, Left)).collect();
-    let report = report_of_groups("Trees", &groups(&answers), &[], &[]);
+    let report = report_of("Trees", &groups(&answers), &[]);
     assert_eq!(
         texts(&report, "open"),
         [
@@ -269,7 +291,7 @@ fn answers_without_a_study() {
             });
         }
     }
-    let report = report_of_groups("Trees", &groups(&answers), &[], &[]);
+    let report = report_of("Trees", &groups(&answers), &[]);
     assert_eq!(report.lead[0], "10 participants gave 30 answers to 3 questions.");
     assert_eq!(
         texts(&report, "holds")[0],
@@ -288,20 +310,20 @@ fn names_of_items_stay_as_they_are() {
     let answers: Vec<_> = (0..8).map(|person| (person, 0, 1, Left)).collect();
     let mut groups = groups(&answers);
     groups[0].items = ["\u{e9}clair", "\u{c9}clair"].map(String::from).into();
-    let report = report_of_groups("Cakes", &groups, &[], &[]);
+    let report = report_of("Cakes", &groups, &[]);
     let text = &texts(&report, "holds")[0];
     assert!(text.starts_with("\u{e9}clair was preferred to \u{c9}clair: 8 answers against 0"), "{text}");
 }
 
 #[test]
 fn no_answers_at_all() {
-    let report = report_of_groups("Nothing", &[], &[], &[]);
+    let report = report_of("Nothing", &[], &[]);
     assert_eq!(report.lead, ["No answers were given, so nothing is said about preference."]);
     assert!(report.sections.is_empty());
     let control = |participant| ShownBallot::new(participant, 0, [0, 0], Left);
     let protocol = statistics::Protocol::default();
     let respondents = crate::tables::agreement::respondents(&[control(0), control(1)], &protocol);
-    let report = report_of_groups("Controls", &[], &[respondents], &[]);
+    let report = report_of("Controls", &[], &[respondents]);
     assert_eq!(
         report.lead,
         [

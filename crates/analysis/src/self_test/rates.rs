@@ -188,7 +188,7 @@ fn three_items(studies: u64, seed: u64, worths: [f64; 3], name: &str) -> Vec<Rat
     count(studies, name, |study| {
         let ballots = simulate(&plan, &population, PEOPLE, &mut stream(seed, study));
         let participants = Participants::of(3, &ballots);
-        let fitted = fit(Model::Davidson, &Pairs::of(3, &ballots)).ok().filter(|fit| !fit.penalised);
+        let fitted = fit(Model::Davidson, &Pairs::of(3, &ballots)).ok().filter(|fit| !fit.penalised());
         let sandwich = fitted.as_ref().and_then(|fit| Some((fit, clustered_covariance(fit, &participants)?)));
         let t =
             sandwich.map(|(fit, s)| covers(fit.clustered_interval(&s, participants.number(), 2, 0), truth));

@@ -3,8 +3,8 @@
 use crate::table::{Cell, Table};
 use design::Study;
 use statistics::{
-    DeclaredBallot, Metric, Protocol, ShownBallot, Triads, agreement as kendall, alpha, outcome_counts,
-    screening_with, triads, zetas,
+    DeclaredBallot, Metric, Protocol, ShownBallot, Triads, agreement as kendall, alpha_with_interval,
+    outcome_counts, screening_with, triads, zetas,
 };
 
 /// All questions, then each comparison group: agreement between participants, and circular triads within.
@@ -16,7 +16,11 @@ pub(super) fn agreement(study: &Study, ballots: &[DeclaredBallot]) -> Table {
             ("scope", "Questions"),
             ("questions", "Number"),
             ("alpha_nominal", "Alpha, nominal"),
+            ("alpha_nominal_low", "from"),
+            ("alpha_nominal_high", "to"),
             ("alpha_ordinal", "Alpha, ordinal"),
+            ("alpha_ordinal_low", "from"),
+            ("alpha_ordinal_high", "to"),
             ("kendall_u", "Kendall's u"),
             ("chi_square", "Chi-square"),
             ("degrees", "Degrees"),
@@ -38,6 +42,8 @@ pub(super) fn agreement(study: &Study, ballots: &[DeclaredBallot]) -> Table {
         if counts.is_empty() {
             continue;
         }
+        let [nominal, ordinal] =
+            [Metric::Nominal, Metric::Ordinal].map(|metric| alpha_with_interval(&own, metric));
         let found = kendall(&counts);
         let test = found.and_then(|found| found.test);
         let (circles, (tournaments, zetas)) = consistency(study, &own);
@@ -45,8 +51,12 @@ pub(super) fn agreement(study: &Study, ballots: &[DeclaredBallot]) -> Table {
         table.push(vec![
             Cell::text(group.map_or("all", |g| &study.groups[g].id)),
             Cell::count(counts.len() as u64),
-            Cell::number(alpha(&counts, Metric::Nominal), 4),
-            Cell::number(alpha(&counts, Metric::Ordinal), 4),
+            Cell::number(nominal.map(|alpha| alpha.value), 4),
+            Cell::number(nominal.and_then(|alpha| alpha.interval).map(|i| i.low), 4),
+            Cell::number(nominal.and_then(|alpha| alpha.interval).map(|i| i.high), 4),
+            Cell::number(ordinal.map(|alpha| alpha.value), 4),
+            Cell::number(ordinal.and_then(|alpha| alpha.interval).map(|i| i.low), 4),
+            Cell::number(ordinal.and_then(|alpha| alpha.interval).map(|i| i.high), 4),
             Cell::number(found.map(|found| found.u), 4),
             Cell::number(test.map(|test| test.statistic), 2),
             Cell::number(test.map(|test| test.degrees), 2),
@@ -61,7 +71,8 @@ pub(super) fn agreement(study: &Study, ballots: &[DeclaredBallot]) -> Table {
         ]);
     }
     table.notes.push(
-        "Alpha: Krippendorff's, over the sides left, none, right; 1 is full agreement, 0 chance. Kendall's u: a tie is half \
+        "Alpha: Krippendorff's, each question counted in both orientations, so that sides do not matter; 1 is full agreement, 0 \
+         chance; from and to: jackknife t interval at 95 % over participants. Kendall's u: a tie is half \
          an answer for each side; its test is without continuity correction. Triads: three items that one person compared \
          pairwise on one object; strict by chance: a quarter of those decided throughout, as answers by chance would have it. A weak cycle is two wins closed by a tie, \
          which need not be an error. Zeta: Kendall's, of whoever decided every pair of an object and group; 1 is no circle."

@@ -46,7 +46,7 @@ pub(super) fn answers(study: &Study, answers: &Responses) -> Option<Table> {
 }
 
 /// Left, none and right of every question, with the right side's share among decided answers.
-pub(super) fn counts(study: &Study, tally: &Tally) -> Table {
+pub(super) fn counts(study: &Study, tally: &Tally, sides_differ: bool) -> Table {
     let mut table = Table::new(
         "answer_counts",
         "Answers per question",
@@ -84,9 +84,12 @@ pub(super) fn counts(study: &Study, tally: &Tally) -> Table {
         ]);
     }
     table.notes.push(format!(
-        "All questions: {} left, {} without preference, {} right. From and to: Wilson's interval at 95 %, for one \
+        "All questions: {} for the one listed on the left, {} without preference, {} for the one listed on the right{}. From and to: Wilson's interval at 95 %, for one \
          question at a time; it may not be pooled over questions, because the same people answer all of them.",
-        sums[0], sums[1], sums[2]
+        sums[0],
+        sums[1],
+        sums[2],
+        if sides_differ { "; people saw them on either side" } else { "" },
     ));
     table
 }

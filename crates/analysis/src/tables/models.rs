@@ -2,10 +2,9 @@
 
 use crate::ballots::BallotGroup;
 use crate::table::{Cell, Table};
-use statistics::bootstrap::{BootstrapInterval, Resampling, bca_each};
 use statistics::{
-    FitError, Model, Pairs, Participants, Separation, SideDesign, WorthFit, clustered_covariance, fit,
-    separation, side_design,
+    FitError, Model, Pairs, Participants, Penalty, Separation, SideDesign, WorthFit, clustered_covariance,
+    fit, separation, side_design,
 };
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -44,16 +43,12 @@ fn empty_worths() -> Table {
             ("clustered_se", "SE, participants"),
             ("low", "from"),
             ("high", "to"),
-            ("bca_low", "BCa from"),
-            ("bca_high", "BCa to"),
-            ("resamples_separated", "Resamples separated"),
         ],
     );
     table.notes.push(
         "SE, answers independent: from the exact information, for comparison with other programs; too small, because one \
          person's answers hang together. SE, participants: sandwich with m/(m \u{2212} 1); from and to: its t interval at 95 % on \
-         m \u{2212} 1 degrees of freedom; none where the answers tell no spread between participants. BCa: 2000 resamples of participants, Davidson's model only; resamples in which some \
-         item never lost or never won have no estimate and are counted. Rao and Kupper's worths are on another scale: \
+         m \u{2212} 1 degrees of freedom; none where the answers tell no spread between participants. Rao and Kupper's worths are on another scale: \
          compare orders."
             .into(),
     );
@@ -62,13 +57,11 @@ fn empty_worths() -> Table {
 
 fn add_worths(table: &mut Table, group: &BallotGroup, fitted: &WorthFit, participants: &Participants) {
     let clustered = clustered_covariance(fitted, participants);
-    let resampled = resampled(fitted, participants);
     for (item, name) in group.items.iter().enumerate() {
         let estimated = item > 0;
         let sandwich = clustered.as_ref().filter(|_| estimated);
         let found = sandwich.and_then(|s| fitted.clustered_error(s, participants.number(), item));
         let error = if estimated { found.map(|(error, _)| error) } else { Some(0.0) };
-        let resampled = if estimated { resampled.get(item - 1).copied().flatten() } else { None };
         table.push(vec![
             Cell::text(&group.name),
             Cell::text(name),
@@ -78,23 +71,8 @@ fn add_worths(table: &mut Table, group: &BallotGroup, fitted: &WorthFit, partici
             Cell::number(clustered.as_ref().and(error), 3),
             Cell::of_sum(found.map(|(_, i)| i.low), 3),
             Cell::of_sum(found.map(|(_, i)| i.high), 3),
-            Cell::of_sum(resampled.map(|r| r.interval.low), 3),
-            Cell::of_sum(resampled.map(|r| r.interval.high), 3),
-            resampled.map_or(Cell::Missing, |r| Cell::count(r.without_estimate as u64)),
         ]);
     }
-}
-
-/// BCa intervals of the log worths of items 1.., of Davidson's model alone.
-fn resampled(fitted: &WorthFit, participants: &Participants) -> Vec<Option<BootstrapInterval>> {
-    if fitted.model != Model::Davidson || fitted.penalised {
-        return Vec::new();
-    }
-    let worths = |weights: &[u64]| {
-        let fit = fit(fitted.model, &participants.sum(weights)).ok().filter(|fit| !fit.penalised)?;
-        Some(fit.log_worths[1..].to_vec())
-    };
-    bca_each(&participants.counts, Resampling::default(), worths).unwrap_or_default()
 }
 
 fn empty_models() -> Table {
@@ -119,7 +97,7 @@ fn empty_models() -> Table {
         "Log-likelihood: of the answers, without multinomial constants; Bradley and Terry's counts a tie as half a win for \
          both and is not on the others' scale. ln nu: Davidson's tie parameter, symmetric form. Side: bonus of the left \
          side in log-odds; its p by likelihood ratio, as if all answers were independent. Penalised: half a win each way \
-         was added to every compared pair, because the answers separate the items."
+         was added to every compared pair, because the answers separate the items or a side; the remark says which."
             .into(),
     );
     table
@@ -136,7 +114,7 @@ fn model_row(
     let side_index = |fit: &WorthFit| fit.side.map(|_| fit.parameters.len() - 1);
     let side_error = of.and_then(|fit| side_index(fit).map(|i| fit.covariance[i][i].sqrt()));
     let ratio = match (of, plain) {
-        (Some(fit), Some(plain)) if fit.side.is_some() && !fit.penalised && !plain.penalised => {
+        (Some(fit), Some(plain)) if fit.side.is_some() && !fit.penalised() && !plain.penalised() => {
             Some(2.0 * (fit.log_likelihood - plain.log_likelihood).max(0.0))
         }
         _ => None,
@@ -156,17 +134,24 @@ fn model_row(
         Cell::p(ratio.map(|ratio| one.sf(ratio)), 4),
         Cell::number(of.and_then(|fit| fit.ln_theta), 4),
         Cell::count(pairs.answers() as u64),
-        Cell::text(of.map_or("", |fit| if fit.penalised { "yes" } else { "no" })),
+        Cell::text(of.map_or("", |fit| if fit.penalised() { "yes" } else { "no" })),
         Cell::text(remark),
     ]
 }
 
 fn remark(fit: &WorthFit, pairs: &Pairs) -> String {
     let mut remarks = Vec::new();
-    if fit.penalised {
-        remarks.push("some items never won against the others: half a win each way added");
-    } else if separation(pairs) == Separation::HeldByTies {
-        remarks.push("some items never won against the others: ties alone keep the estimates finite");
+    match fit.penalty {
+        Penalty::ItemsSeparated => {
+            remarks.push("some items never won against the others: half a win each way added");
+        }
+        Penalty::SideSeparated => {
+            remarks.push("the answers put no bound on the liking for a side: half a win each way added");
+        }
+        Penalty::None if separation(pairs) == Separation::HeldByTies => {
+            remarks.push("some items never won against the others: ties alone keep the estimates finite");
+        }
+        Penalty::None => {}
     }
     if fit.ln_nu == Some(f64::NEG_INFINITY) || fit.ln_theta == Some(0.0) {
         remarks.push("no ties");

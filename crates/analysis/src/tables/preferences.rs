@@ -1,5 +1,6 @@
 //! The preference factors: per group, overall, margins, per object, and the direct contest of arrangements.
 
+use crate::digits::counted;
 use crate::preference::{self, GroupFactor, Margin};
 use crate::table::{Cell, Column, Table};
 use crate::tally::Tally;
@@ -200,5 +201,10 @@ fn contests(study: &Study, tally: &Tally) -> Option<Table> {
         ]);
     }
     table.notes.push("Counts of answers; the direct evidence on arrangements.".into());
+    let others = preference::other_arrangement_questions(study);
+    if others > 0 {
+        let noun = counted(others, "question");
+        table.notes.push(format!("Left out: {noun} on other lattices. The table of tests has every pair."));
+    }
     (!table.rows.is_empty()).then_some(table)
 }

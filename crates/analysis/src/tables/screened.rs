@@ -146,7 +146,7 @@ fn numbers(people: &BTreeSet<usize>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ballots::{ballot_groups, ballots};
+    use crate::ballots::ballot_groups;
     use crate::fixture;
 
     fn cell(table: &Table, keys: &[&str], column: &str) -> Cell {
@@ -165,11 +165,11 @@ mod tests {
     #[test]
     fn the_papers_tests_without_respondent_sixteen() {
         let study = fixture::study();
-        let answers = fixture::answers(&study);
-        let ballots = ballots(&study, &answers);
-        let recorded = Recorded::of_study(&study, &answers, &ballots);
-        let table = of_study(&study, &ballots, &hypotheses::of_study(&study, &ballots), &recorded);
-        assert_eq!(table.rows.len(), 4 + 9 + 3 + 9);
+        let answered = fixture::answered(&study);
+        let ballots = &answered.shown;
+        let recorded = Recorded::of_study(&study, &answered.responses, ballots);
+        let table = of_study(&study, &answered, &recorded);
+        assert_eq!(table.rows.len(), 4 + 9 + 3 + 9 + 6 + 3 + 9);
         let of = |column| cell(&table, &["odd", "B-S", "all"], column).shown();
         assert_eq!(
             (of("left_out"), of("respondents"), of("mean")),
@@ -178,11 +178,12 @@ mod tests {
         // p without 16 is one end of the leave-one-out range or inside it: STATISTICS 3.12, 0.0063 to 0.0188.
         let Cell::P(p, _) = cell(&table, &["odd", "B-S", "all"], "p_without") else { panic!("no p") };
         assert!((0.0062..0.0189).contains(&p), "{p}");
-        let kept: Vec<ShownBallot> = ballots.iter().filter(|b| b.participant() != 15).copied().collect();
+        let kept: Vec<DeclaredBallot> =
+            answered.declared.iter().filter(|b| b.participant() != 15).copied().collect();
         let alone = hypotheses::of_study(&study, &kept);
         let same = alone.iter().find(|h| h.contrast == "B-S" && h.scope == "all").unwrap();
         assert_eq!(p, same.test.sign_flip.p());
-        let pairs = screened_pair_tests(&ballot_groups(&study, &ballots), &recorded);
+        let pairs = screened_pair_tests(&ballot_groups(&study, ballots), &recorded);
         assert!(pairs.rows.iter().any(|row| row[4].in_full() == "bu-bi"));
     }
 
@@ -191,9 +192,8 @@ mod tests {
         let study = fixture::study();
         let mut answers = fixture::answers(&study);
         answers.answers.retain(|answer| answer.participant != 15);
-        let ballots = ballots(&study, &answers);
-        assert!(
-            of_study(&study, &ballots, &[], &Recorded::of_study(&study, &answers, &ballots)).rows.is_empty()
-        );
+        let answered = Answered::of(&study, answers).unwrap();
+        let recorded = Recorded::of_study(&study, &answered.responses, &answered.shown);
+        assert!(of_study(&study, &answered, &recorded).rows.is_empty());
     }
 }

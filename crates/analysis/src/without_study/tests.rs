@@ -20,7 +20,7 @@ fn answered(questions: &[(&str, &str, &str, u32, u32)]) -> Responses {
 }
 
 fn names(questions: &[(&str, &str, &str, u32, u32)]) -> Vec<String> {
-    open_groups(&answered(questions)).into_iter().map(|group| group.name).collect()
+    open_groups(&answered(questions), None).into_iter().map(|group| group.name).collect()
 }
 
 #[test]
@@ -32,17 +32,28 @@ fn groups_are_named_or_follow_from_who_met_whom() {
     assert_eq!(names(&apart), ["cube", "torus"]);
     assert_eq!(names(&[("1", "cube", "", 0, 1), ("2", "cube", "", 2, 3)]), ["1", "2"]);
     // A named group is kept, and does not join what is not named.
-    assert_eq!(names(&[("1", "", "g", 0, 1), ("2", "", "", 1, 2), ("3", "", "g", 2, 0)]), ["g", "all"]);
+    assert_eq!(names(&[("1", "", "g", 0, 1), ("2", "", "", 1, 2), ("3", "", "g", 2, 0)]), ["all", "g"]);
 }
 
 #[test]
 fn ballots_count_the_items_of_their_group() {
-    let groups = open_groups(&answered(&[("1", "", "", 4, 5), ("2", "", "", 1, 0), ("3", "", "", 5, 4)]));
+    let groups =
+        open_groups(&answered(&[("1", "", "", 4, 5), ("2", "", "", 1, 0), ("3", "", "", 5, 4)]), None);
     let items: Vec<String> = groups.iter().map(|group| group.items.join("")).collect();
-    assert_eq!(items, ["ef", "ba"]);
+    assert_eq!(items, ["ab", "ef"]);
     let shown = |group: &BallotGroup| {
         group.ballots.iter().map(|b| (b.question(), b.left(), b.right())).collect::<Vec<_>>()
     };
-    assert_eq!(shown(&groups[0]), [(0, 0, 1), (2, 1, 0)]);
-    assert_eq!(shown(&groups[1]), [(1, 0, 1)]);
+    assert_eq!(shown(&groups[0]), [(1, 1, 0)]);
+    assert_eq!(shown(&groups[1]), [(0, 0, 1), (2, 1, 0)]);
+}
+
+#[test]
+fn the_order_of_rows_changes_nothing_and_the_reference_is_named() {
+    let straight = answered(&[("1", "", "", 4, 5), ("2", "", "", 5, 1), ("3", "", "", 1, 4)]);
+    let mut reversed = straight.clone();
+    reversed.answers.reverse();
+    let items = |answers: &Responses, reference| open_groups(answers, reference)[0].items.join("");
+    assert_eq!((items(&straight, None), items(&reversed, None)), ("bef".into(), "bef".into()));
+    assert_eq!(items(&reversed, Some("f")), "fbe");
 }

@@ -75,15 +75,23 @@ pub(crate) fn write_without_study(
 ) -> Result<Vec<Table>> {
     let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
     let inputs = Inputs::of_rooms(rooms::TABLES).value("mapping", section).text("responses", &sha256(&bytes));
-    let tables = analysis::answer_tables(&reading.responses, section.shown_s);
-    let groups = analysis::open_groups(&reading.responses);
+    let items = &reading.responses.items;
+    if let Some(reference) = section.reference.as_ref().filter(|reference| !items.contains(reference)) {
+        anyhow::bail!("reference = {reference:?}: no item has this name; there are {}", items.join(", "));
+    }
+    let groups = analysis::open_groups(&reading.responses, section.reference.as_deref());
+    let tables = analysis::answer_tables(&reading.responses, &groups, section.shown_s);
     let title = path.file_name().unwrap_or_default().to_string_lossy();
     store.stage("answers", inputs, |writer| {
         writer.write(READING, reading.report.to_csv().as_bytes())?;
         write_tables(writer, &tables)?;
         let figures = analysis::figures_of_groups(&groups).context("figures")?;
         write_figures(writer, &figures)?;
-        super::report::write(writer, &analysis::report_of_groups(&title, &groups, &tables, &figures), false)
+        super::report::write(
+            writer,
+            &analysis::report_of_groups(&title, &reading.responses, &groups, &tables, &figures),
+            false,
+        )
     })?;
     Ok(tables)
 }

@@ -29,6 +29,10 @@ pub struct ResponsesSection {
     pub unknown: Option<String>,
     /// `refuse` (default), `first` or `last`: which of several answers to the same counts.
     pub duplicates: Option<String>,
+    /// What people were asked about each pair, where no form of the study says it.
+    pub asked: Option<String>,
+    /// The item whose log worth is 0, of answers without a study; otherwise the first by name. A study's is its first method.
+    pub reference: Option<String>,
     /// How long what a question shows lasts, in seconds, above 0: nobody has seen it in less. A study's turntables say it too.
     pub shown_s: Option<f64>,
     /// The questions of answers without a study; a study has its comparisons.

@@ -6,8 +6,7 @@ use statistics::Outcome;
 #[test]
 fn the_papers_participants() {
     let study = fixture::study();
-    let ballots = ballots(&study, &fixture::answers(&study));
-    let table = agreement(&study, &ballots);
+    let table = agreement(&study, &fixture::answered(&study).declared);
     let shown = table.shown_rows();
     let scopes: Vec<&str> = shown.iter().map(|row| row[0].as_str()).collect();
     assert_eq!(scopes, ["all", "B", "S", "U", "I", "P"]);
