@@ -177,8 +177,12 @@ pub fn other_arrangement_questions(study: &Study) -> usize {
 /// This is the direct evidence on arrangements; sums over clustering groups carry none, because the members of such a
 /// group share their arrangement. Empty if the study never compares the two.
 pub fn arrangement_contests(study: &Study, tally: &Tally) -> Vec<ArrangementContest> {
-    let direct: Vec<(&Comparison, &QuestionCount)> =
-        study.comparisons.iter().zip(&tally.questions).filter(|(comparison, _)| is_direct(comparison)).collect();
+    let direct: Vec<(&Comparison, &QuestionCount)> = study
+        .comparisons
+        .iter()
+        .zip(&tally.questions)
+        .filter(|(comparison, _)| is_direct(comparison))
+        .collect();
     let contest = |object: Option<usize>, group: Option<usize>| {
         let mut sum = ArrangementContest { object, group, body_centred: 0, none: 0, simple_cubic: 0 };
         let own = direct.iter().filter(|(comparison, _)| {

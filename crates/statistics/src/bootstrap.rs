@@ -1,4 +1,5 @@
-//! Bootstrap intervals that resample participants, never answers (Efron 1987, J. Amer. Statist. Assoc. 82:171).
+//! Bootstrap intervals that resample participants, never answers (Davison and Hinkley 1997, *Bootstrap Methods and their
+//! Application*).
 //!
 //! Participants of the same kind (the same score, the same answers) are interchangeable, so a resample is how many it has
 //! of each kind: one multinomial draw, whose cost goes with the number of kinds and not of people. Resample b draws from
@@ -9,7 +10,6 @@ use crate::interval::{Interval, LEVEL};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, Normal};
 
 /// How to resample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,82 +57,8 @@ fn replicates<T: Send>(
     all.into_iter().flatten().collect()
 }
 
-/// The bias-corrected and accelerated interval of a statistic of participants, of whom there are `counts[k]` of kind k; the
-/// statistic is given how many it is to take of each.
-///
-/// The acceleration is the jackknife's over participants. `None` if the statistic, a jackknife value or more than half of
-/// the resamples have no estimate, if the estimate lies outside all resamples, or if nothing varies.
-pub fn bca(
-    counts: &[u64],
-    resampling: Resampling,
-    statistic: impl Fn(&[u64]) -> Option<f64> + Sync,
-) -> Option<BootstrapInterval> {
-    bca_each(counts, resampling, |weights| statistic(weights).map(|value| vec![value]))?.pop()?
-}
-
-/// As [`bca`], for several statistics of the same resamples; `None` altogether if a value that all need is missing.
-pub fn bca_each(
-    counts: &[u64],
-    resampling: Resampling,
-    statistic: impl Fn(&[u64]) -> Option<Vec<f64>> + Sync,
-) -> Option<Vec<Option<BootstrapInterval>>> {
-    let estimates = statistic(counts)?;
-    let without = |k: usize| {
-        let mut others = counts.to_vec();
-        others[k] -= 1;
-        statistic(&others).map(|values| (values, counts[k]))
-    };
-    let kinds: Vec<usize> = (0..counts.len()).filter(|&k| counts[k] > 0).collect();
-    let jackknife: Option<Vec<(Vec<f64>, u64)>> = kinds.into_par_iter().map(without).collect();
-    let jackknife = jackknife?;
-    let replicates = replicates(counts, resampling, &statistic);
-    let without_estimate = resampling.resamples - replicates.len();
-    if 2 * without_estimate > resampling.resamples {
-        return None;
-    }
-    let interval = |i: usize| {
-        let own = replicates.iter().map(|values| values[i]).collect();
-        let left_out: Vec<(f64, u64)> = jackknife.iter().map(|(values, count)| (values[i], *count)).collect();
-        let interval = bca_interval(own, estimates[i], &left_out)?;
-        Some(BootstrapInterval { interval, without_estimate })
-    };
-    Some((0..estimates.len()).map(interval).collect())
-}
-
-/// BCa ends from replicates, estimate and jackknife values with how often each occurs: quantiles at
-/// Phi(z0 + (z0 + z) / (1 - a (z0 + z))), with z0 = Phi^-1 of the share of replicates below the estimate (those equal to
-/// it count half).
-pub(super) fn bca_interval(
-    mut replicates: Vec<f64>,
-    estimate: f64,
-    jackknife: &[(f64, u64)],
-) -> Option<Interval> {
-    replicates.sort_by(f64::total_cmp);
-    let below = replicates.iter().filter(|&&r| r < estimate).count() as f64;
-    let same = replicates.iter().filter(|&&r| r == estimate).count() as f64;
-    let share = (below + 0.5 * same) / replicates.len() as f64;
-    if !(share > 0.0 && share < 1.0) {
-        return None;
-    }
-    let n: f64 = jackknife.iter().map(|&(_, count)| count as f64).sum();
-    let mean = jackknife.iter().map(|&(value, count)| value * count as f64).sum::<f64>() / n;
-    let moment =
-        |power: i32| jackknife.iter().map(|&(v, count)| count as f64 * (mean - v).powi(power)).sum::<f64>();
-    if moment(2) == 0.0 {
-        return None;
-    }
-    let acceleration = moment(3) / (6.0 * moment(2).powf(1.5));
-    let normal = Normal::standard();
-    let bias = normal.inverse_cdf(share);
-    let end = |level: f64| {
-        let z = bias + normal.inverse_cdf(level);
-        quantile(&replicates, normal.cdf(bias + z / (1.0 - acceleration * z)))
-    };
-    Some(Interval { low: end(0.5 - LEVEL / 2.0), high: end(0.5 + LEVEL / 2.0) })
-}
-
-/// The percentile interval of a statistic of participants: quantiles of the replicates. For
-/// statistics whose jackknife says nothing of their spread, such as a median. `None` if the statistic or more than half of
+/// The percentile interval of a statistic of participants, of whom there are `counts[k]` of kind k; the statistic is given
+/// how many it is to take of each. Quantiles of the replicates, for statistics without a standard error, such as a median. `None` if the statistic or more than half of
 /// the resamples have no estimate.
 pub fn percentile(
     counts: &[u64],
@@ -152,7 +78,7 @@ pub fn percentile(
 
 /// The studentised (bootstrap-t) interval: estimate - q s, where q are quantiles of (replicate - estimate) / its own
 /// standard error and s is the estimate's (Davison and Hinkley 1997, section 2.4). `statistic` gives estimate and standard
-/// error. `None` as for [`bca`], or if a standard error is not above zero in more than half of the resamples.
+/// error. `None` if the statistic or more than half of the resamples have none, or none above zero.
 pub fn studentised(
     counts: &[u64],
     resampling: Resampling,

@@ -7,6 +7,7 @@ use super::participants::Participants;
 use super::separation::{Separation, separation};
 use super::side::side_design;
 use super::side_separation::side_separation;
+use super::simulation::davidson;
 use crate::interval::{Interval, LEVEL};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -62,6 +63,8 @@ pub struct WorthFit {
     pub ln_theta: Option<f64>,
     /// The left side's bonus in log-odds, if the model has one.
     pub side: Option<f64>,
+    /// A bonus of the left side that was taken as known, in log-odds: 0 but for [`fit_given_side`].
+    pub given_side: f64,
     /// Log-likelihood of the answers at the estimates, without multinomial constants. For Bradley-Terry a tie is half a
     /// win and half a loss, so that its value is comparable with that of no model that keeps ties.
     pub log_likelihood: f64,
@@ -81,6 +84,19 @@ pub struct WorthFit {
 /// # Errors
 /// See [`FitError`].
 pub fn fit(model: Model, pairs: &Pairs) -> Result<WorthFit, FitError> {
+    fit_with(model, pairs, 0.0)
+}
+
+/// Fits Davidson's model, as [`fit`], if everybody likes the left side by so many log-odds (the right, below zero). What that
+/// leaves of the worths does not depend on whether the design can tell sides from items.
+///
+/// # Errors
+/// See [`FitError`].
+pub fn fit_given_side(pairs: &Pairs, left: f64) -> Result<WorthFit, FitError> {
+    fit_with(Model::Davidson, pairs, left)
+}
+
+fn fit_with(model: Model, pairs: &Pairs, given_side: f64) -> Result<WorthFit, FitError> {
     if pairs.items < 2 || pairs.answers() == 0.0 {
         return Err(FitError::Nothing);
     }
@@ -105,14 +121,17 @@ pub fn fit(model: Model, pairs: &Pairs) -> Result<WorthFit, FitError> {
         _ => Penalty::None,
     };
     let fitted = match penalty {
-        Penalty::None => estimate(model, pairs, pairs, penalty),
-        _ => estimate(model, &pairs.with_half_wins(), pairs, penalty),
+        Penalty::None => estimate(Layout::of(model, pairs, given_side), pairs, pairs, penalty),
+        _ => {
+            let more = pairs.with_half_wins();
+            estimate(Layout::of(model, &more, given_side), &more, pairs, penalty)
+        }
     };
     fitted.ok_or(FitError::Unsettled)
 }
 
-fn estimate(model: Model, fitted: &Pairs, answered: &Pairs, penalty: Penalty) -> Option<WorthFit> {
-    let layout = Layout::of(model, fitted);
+fn estimate(layout: Layout, fitted: &Pairs, answered: &Pairs, penalty: Penalty) -> Option<WorthFit> {
+    let model = layout.model;
     let maximum = maximise(layout.start(), |at| layout.likelihood(fitted, at))?;
     let at = maximum.at;
     let tie = layout.tie().map(|tie| at[tie]);
@@ -123,6 +142,7 @@ fn estimate(model: Model, fitted: &Pairs, answered: &Pairs, penalty: Penalty) ->
         ln_nu: davidson.then(|| tie.unwrap_or(f64::NEG_INFINITY)),
         ln_theta: (model == Model::RaoKupper).then(|| tie.unwrap_or(0.0)),
         side: layout.side().map(|side| at[side]),
+        given_side: layout.given_side,
         log_likelihood: layout.likelihood(answered, &at).value,
         penalty,
         covariance: maximum.covariance,
@@ -134,6 +154,23 @@ impl WorthFit {
     /// Whether half a win each way was added.
     pub fn penalised(&self) -> bool {
         self.penalty != Penalty::None
+    }
+
+    /// The chances of left, tie and right for items shown so; Bradley and Terry's model knows no ties.
+    ///
+    /// # Panics
+    /// If there is no such item.
+    pub fn chances(&self, left: usize, right: usize) -> [f64; 3] {
+        let side = self.side.unwrap_or(0.0) + self.given_side;
+        let ahead = self.log_worths[left] - self.log_worths[right] + side;
+        match self.ln_theta {
+            None => davidson(ahead, self.ln_nu.map_or(0.0, f64::exp)),
+            Some(eta) => {
+                let [wins, losses] = [ahead - eta, -ahead - eta].map(|z| 1.0 / (1.0 + (-z).exp()));
+                // (e^{2 eta} - 1) F(u - eta) F(-u - eta), where 1 less both would cancel.
+                [wins, (2.0 * eta).exp_m1() * wins * losses, losses]
+            }
+        }
     }
 
     /// Standard error of l_item - l_other under a covariance of the parameters.
@@ -202,17 +239,26 @@ pub fn clustered_covariance(fit: &WorthFit, participants: &Participants) -> Opti
         return None;
     }
     let all = participants.sum(&participants.counts);
-    let layout = Layout::of(fit.model, &all);
+    let layout = Layout::of(fit.model, &all, fit.given_side);
     let bread = inverse(&layout.likelihood(&all, &fit.parameters).information)?;
+    // A participant's gradient adds up what each answer has: few kinds of answers, many participants.
+    let influence = |&pair: &(usize, usize)| {
+        layout.scores(pair, &fit.parameters).map(|score| super::newton::times(&bread, &score))
+    };
+    let influences: Vec<[Vec<f64>; 3]> = participants.shown().iter().map(influence).collect();
     let size = fit.parameters.len();
     let mut covariance = vec![vec![0.0; size]; size];
-    for (kind, &count) in participants.counts.iter().enumerate() {
-        let score = layout.likelihood(&participants.of_kind(kind), &fit.parameters).gradient;
-        let influence = super::newton::times(&bread, &score);
-        for i in 0..size {
-            for j in 0..size {
-                covariance[i][j] += m / (m - 1.0) * count as f64 * influence[i] * influence[j];
+    let mut own = vec![0.0; size];
+    for (answers, count) in participants.of_kinds() {
+        own.fill(0.0);
+        for (counts, of_pair) in answers.iter().zip(&influences) {
+            for (&times, of_answer) in counts.iter().zip(of_pair).filter(|(times, _)| **times > 0) {
+                own.iter_mut().zip(of_answer).for_each(|(sum, x)| *sum += f64::from(times) * x);
             }
+        }
+        let weight = m / (m - 1.0) * count as f64;
+        for (row, x) in covariance.iter_mut().zip(&own) {
+            row.iter_mut().zip(&own).for_each(|(cell, y)| *cell += weight * x * y);
         }
     }
     Some(covariance)

@@ -16,10 +16,12 @@
 
 mod ballot;
 pub mod bootstrap;
+mod closeness;
 mod equivalence;
 mod exchange;
 mod fit;
 mod friedman;
+mod goodness;
 pub mod interval;
 mod kendall;
 mod krippendorff;
@@ -34,24 +36,29 @@ mod participants;
 mod power_law;
 mod rank_correlation;
 mod regression;
+mod scale;
 mod score;
 mod screening;
 mod separation;
 mod share;
 mod side;
+mod side_bound;
 mod side_separation;
 mod sign_flip;
 pub mod sign_test;
 pub mod simulation;
+mod tipping;
 
 #[cfg(test)]
 mod golden;
 
 pub use ballot::{Answer, DeclaredBallot, Outcome, Preference, ShownBallot};
+pub use closeness::{Closeness, closeness};
 pub use equivalence::{Equivalence, MARGIN, equivalence};
 pub use exchange::{Split, exchange};
-pub use fit::{FitError, Penalty, WorthFit, clustered_covariance, fit, has_spread};
+pub use fit::{FitError, Penalty, WorthFit, clustered_covariance, fit, fit_given_side, has_spread};
 pub use friedman::{ChiSquareTest, friedman};
+pub use goodness::{FittedPair, Goodness, goodness};
 pub use kendall::{Agreement, Triads, agreement, outcome_counts, triads, zeta, zetas};
 pub use krippendorff::{Alpha, Metric, alpha, alpha_with_interval};
 pub use model::Model;
@@ -64,10 +71,13 @@ pub use participants::Participants;
 pub use power_law::{PowerLaw, power_law};
 pub use rank_correlation::spearman;
 pub use regression::{Coefficient, Regression, regression};
+pub use scale::{Difference, NoOmnibus, Omnibus, Scale, Spread, jod, preferred, scale};
 pub use score::{ScoreGroup, ScoreTest};
 pub use screening::{Circumstances, Flag, Protocol, Screening, screening, screening_with};
 pub use separation::{Separation, separation};
 pub use share::{ClusteredShare, clustered_share};
 pub use side::{Side, SideDesign, side_design};
+pub use side_bound::{SideBound, side_bound};
 pub use side_separation::side_separation;
 pub use sign_flip::{RATIO_LIMIT, SignFlip, sign_flip, sign_flip_of_counts};
+pub use tipping::{FARTHEST_TIP, Tip, Tipping, tipping};

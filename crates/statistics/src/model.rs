@@ -48,11 +48,14 @@ pub(super) struct Layout {
     pub(super) items: usize,
     /// Without a single tie the tie parameter is at its limit, and is not estimated.
     pub(super) ties: bool,
+    /// A bonus of the left side that is taken as known, in log-odds.
+    pub(super) given_side: f64,
 }
 
 impl Layout {
-    pub(super) fn of(model: Model, pairs: &Pairs) -> Self {
-        Self { model, items: pairs.items, ties: model != Model::BradleyTerry && pairs.ties() > 0.0 }
+    pub(super) fn of(model: Model, pairs: &Pairs, given_side: f64) -> Self {
+        let ties = model != Model::BradleyTerry && pairs.ties() > 0.0;
+        Self { model, items: pairs.items, ties, given_side }
     }
 
     /// Index of ln nu or eta.
@@ -90,6 +93,16 @@ impl Layout {
         sum
     }
 
+    /// The gradient that one answer has, for left, tie and right of a pair; zero for a tie where there was none.
+    pub(super) fn scores(&self, (left, right): (usize, usize), parameters: &[f64]) -> [Vec<f64>; 3] {
+        [0, 1, 2].map(|outcome| {
+            let mut answers = [0.0; 3];
+            answers[outcome] = f64::from(outcome != 1 || self.ties || self.model == Model::BradleyTerry);
+            let one = Pairs { items: self.items, pairs: vec![Pair { left, right, answers }] };
+            self.likelihood(&one, parameters).gradient
+        })
+    }
+
     /// Derivative of l_left - l_right + delta by the parameters.
     fn difference(&self, pair: &Pair) -> Vec<f64> {
         let mut x = vec![0.0; self.parameters()];
@@ -107,13 +120,14 @@ impl Layout {
 
     /// Davidson and Bradley-Terry.
     fn add_weights(&self, sum: &mut Curvature, pair: &Pair, parameters: &[f64]) {
-        add_log_linear(sum, &self.difference(pair), self.tie(), pair.answers, parameters);
+        let x = self.difference(pair);
+        add_log_linear(sum, &x, self.given_side, self.tie(), pair.answers, parameters);
     }
 
     /// Rao and Kupper: a logistic cut in three at -eta and eta.
     fn add_threshold(&self, sum: &mut Curvature, pair: &Pair, parameters: &[f64], tie: usize) {
         let x = self.difference(pair);
-        let u: f64 = x.iter().zip(parameters).map(|(x, p)| x * p).sum();
+        let u = self.given_side + x.iter().zip(parameters).map(|(x, p)| x * p).sum::<f64>();
         let eta = parameters[tie];
         let towards = |sign: f64| {
             let mut d: Vec<f64> = x.iter().map(|x| sign * x).collect();
@@ -164,12 +178,13 @@ fn softplus(z: f64) -> f64 {
     z.max(0.0) + (-z.abs()).exp().ln_1p()
 }
 
-/// Adds answers `[left, tie, right]` with weights e^{u/2} : nu : e^{-u/2}, u = x'parameters and ln nu the parameter at
+/// Adds answers `[left, tie, right]` with weights e^{u/2} : nu : e^{-u/2}, u = x'parameters + given and ln nu the parameter at
 /// `tie`: an exponential family, so the information is n times a covariance. Without `tie` there is no third outcome, and a
 /// tie counts as half an answer for each side.
 pub(super) fn add_log_linear(
     sum: &mut Curvature,
     x: &[f64],
+    given: f64,
     tie: Option<usize>,
     answers: [f64; 3],
     parameters: &[f64],
@@ -188,7 +203,9 @@ pub(super) fn add_log_linear(
         None => counts.iter_mut().for_each(|count| *count += 0.5 * ties),
     }
     let dot = |feature: &Vec<f64>| -> f64 { feature.iter().zip(parameters).map(|(f, p)| f * p).sum() };
-    let logs: Vec<f64> = features.iter().map(dot).collect();
+    let mut logs: Vec<f64> = features.iter().map(dot).collect();
+    logs[0] += 0.5 * given;
+    logs[1] -= 0.5 * given;
     // Beside the likeliest outcome, whose own chance is then 1 less what is small: a thousand million answers of it make
     // every digit of its logarithm count.
     let likeliest = (0..logs.len()).fold(0, |best, k| if logs[k] > logs[best] { k } else { best });

@@ -30,6 +30,8 @@ pub(super) struct Maximum {
 
 /// How often to step at most. A maximum at log-odds u is some u / 2 steps away, and the last few double the digits.
 const MOST_STEPS: usize = 400;
+/// How far to go in one step, in log-odds: farther off, the curvature is nothing like here.
+const LONGEST: f64 = 3.0;
 /// By how much of its size a sum of many logarithms may be lower through rounding alone.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// The step, beside the parameter, from which one step more leaves rounding alone.
@@ -48,8 +50,10 @@ pub(super) fn maximise(start: Vec<f64>, likelihood: impl Fn(&[f64]) -> Curvature
     let mut here = likelihood(&at);
     for _ in 0..MOST_STEPS {
         let covariance = inverse(&here.information)?;
-        let step = times(&covariance, &here.gradient);
+        let mut step = times(&covariance, &here.gradient);
         let gain: f64 = step.iter().zip(&here.gradient).map(|(s, g)| s * g).sum();
+        let longest = step.iter().map(|s| s.abs()).fold(0.0, f64::max);
+        step.iter_mut().for_each(|s| *s /= (longest / LONGEST).max(1.0));
         let forward = |part: f64| -> Vec<f64> { at.iter().zip(&step).map(|(a, s)| a + part * s).collect() };
         let short = at.iter().zip(&step).all(|(a, s)| s.abs() <= SHORT * (1.0 + a.abs()));
         let unseen = ROUNDING * here.value.abs();

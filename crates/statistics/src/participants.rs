@@ -58,6 +58,21 @@ impl Participants {
         self.patterns.len()
     }
 
+    /// How many items there are, those that nobody was shown included.
+    pub fn items(&self) -> usize {
+        self.items
+    }
+
+    /// The ordered pairs that anyone was shown, ascending.
+    pub(super) fn shown(&self) -> &[(usize, usize)] {
+        &self.shown
+    }
+
+    /// Every kind: its answers `[left, tie, right]` to each pair shown, and how many participants there are of it.
+    pub(super) fn of_kinds(&self) -> impl Iterator<Item = (&[[u32; 3]], u64)> {
+        self.patterns.iter().map(Vec::as_slice).zip(self.counts.iter().copied())
+    }
+
     /// The answers of one participant of a kind.
     ///
     /// # Panics

@@ -65,7 +65,7 @@ pub fn regression<A: Answer>(covariates: &[Option<Vec<f64>>], ballots: &[A]) -> 
         let mut sum = Curvature::zero(size);
         for (x, answers) in rows.iter().zip(&answers) {
             if let Some(x) = x {
-                add_log_linear(&mut sum, x, tie, *answers, at);
+                add_log_linear(&mut sum, x, 0.0, tie, *answers, at);
             }
         }
         sum
@@ -79,7 +79,7 @@ pub fn regression<A: Answer>(covariates: &[Option<Vec<f64>>], ballots: &[A]) -> 
         let mut answer = [0.0; 3];
         answer[outcome] = 1.0;
         if let Some(x) = &rows[question] {
-            add_log_linear(&mut one, x, tie, answer, &at);
+            add_log_linear(&mut one, x, 0.0, tie, answer, &at);
         }
         one.gradient
     };

@@ -155,4 +155,6 @@ pub fn normal(stream: &mut impl Rng) -> f64 {
 }
 
 #[cfg(test)]
+mod coverage;
+#[cfg(test)]
 mod tests;

@@ -6,14 +6,15 @@ use crate::ballots::BallotGroup;
 use crate::hypotheses::{Hypothesis, Subject};
 use design::contrast::{Factor, Level, Over};
 use design::{Method, Study};
-use statistics::{FARTHEST_TIP, Participants, SideDesign, Tip, Tipping, Pairs, side_design, tipping};
+use statistics::{FARTHEST_TIP, Pairs, Participants, SideDesign, Tip, Tipping, side_design, tipping};
 
 /// Beyond so many different patterns of answers it takes minutes.
 const MOST_PATTERNS: usize = 5_000;
 
 /// Said after a result that holds; empty where sides cannot have made it, and where nothing can be said.
 pub(super) fn sentence(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> String {
-    let Some((group, [first, second])) = evidence.study.and_then(|study| of(study, evidence, hypothesis)) else {
+    let Some((group, [first, second])) = evidence.study.and_then(|study| of(study, evidence, hypothesis))
+    else {
         return String::new();
     };
     let items = group.items.len();

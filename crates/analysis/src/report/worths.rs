@@ -120,7 +120,9 @@ fn misfits(evidence: &Evidence<'_>, level: f64) -> Vec<Finding> {
                 .map(|o| (pair.answers[o] - pair.fitted[o]).powi(2) / pair.fitted[o])
                 .sum::<f64>()
         };
-        let Some(worst) = (0..test.pairs.len()).max_by(|&a, &b| miss(a).total_cmp(&miss(b))) else { continue };
+        let Some(worst) = (0..test.pairs.len()).max_by(|&a, &b| miss(a).total_cmp(&miss(b))) else {
+            continue;
+        };
         let pair = &test.pairs[worst];
         let shown = |of: [f64; 3], decimals| of.map(|n| number(n, decimals)).join(" : ");
         let text = format!(

@@ -18,16 +18,15 @@ pub(crate) struct GroupScale<'a> {
 
 /// The scale of every group.
 pub(crate) fn scales(groups: &[BallotGroup]) -> Vec<GroupScale<'_>> {
-    let of = |group| {
-        let BallotGroup { items, ballots, .. } = group;
-        let participants = Participants::of(items.len(), ballots);
+    fn of(group: &BallotGroup) -> GroupScale<'_> {
+        let participants = Participants::of(group.items.len(), &group.ballots);
         GroupScale { group, scale: scale(&participants, 0), participants }
-    };
+    }
     groups.par_iter().map(of).collect()
 }
 
 /// `scale`, `differences` and `fit`: positions of items, differences of every two, and what the models miss.
-pub(super) fn tables(scales: &[GroupScale<'_>]) -> [Table; 3] {
+pub(crate) fn tables(scales: &[GroupScale<'_>]) -> [Table; 3] {
     [positions(scales), differences(scales), fits(scales)]
 }
 
@@ -65,7 +64,9 @@ fn positions(scales: &[GroupScale<'_>]) -> Table {
             row.extend(in_every_unit(position, place == scale.reference));
             let of = omnibus.filter(|_| place == 0);
             row.push(Cell::number(of.map(|of: Omnibus| of.f), 3));
-            row.push(of.map_or(Cell::Missing, |of| Cell::text(format!("{}, {}", of.degrees[0], of.degrees[1]))));
+            row.push(
+                of.map_or(Cell::Missing, |of| Cell::text(format!("{}, {}", of.degrees[0], of.degrees[1]))),
+            );
             row.push(Cell::p(of.map(|of| of.p), 5));
             table.push(row);
         }

@@ -148,6 +148,23 @@ fn clustered_errors_as_sandwich_has_them() {
 }
 
 #[test]
+fn a_given_side_is_the_estimated_one_where_it_is_the_same() {
+    let estimated = fit(Model::DavidsonSide, &both_orders()).unwrap();
+    let given = fit_given_side(&both_orders(), estimated.side.unwrap()).unwrap();
+    assert_eq!((given.side, given.given_side), (None, estimated.side.unwrap()));
+    close(given.log_likelihood, estimated.log_likelihood, 1e-12);
+    given.log_worths.iter().zip(&estimated.log_worths).for_each(|(a, b)| close(*a, *b, 1e-12));
+    for (left, right) in ORDERED {
+        let chances = given.chances(left, right);
+        close(chances.iter().sum::<f64>(), 1.0, 1e-15);
+        (0..3).for_each(|o| close(chances[o], estimated.chances(left, right)[o], 1e-12));
+    }
+    // Rao and Kupper's of two items: the observed shares (36, 8, 10 of 54).
+    let two = fit(Model::RaoKupper, &Pairs::new(2, [(0, 1, [36., 8., 10.])])).unwrap();
+    two.chances(0, 1).into_iter().zip([36., 8., 10.]).for_each(|(p, n)| close(p, n / 54.0, 1e-12));
+}
+
+#[test]
 fn what_cannot_be_answered_says_why() {
     let two = |answers| Pairs::new(2, [(0, 1, answers)]);
     assert_eq!(fit(Model::Davidson, &two([0., 0., 0.])), Err(FitError::Nothing));
@@ -264,11 +281,11 @@ proptest! {
         let judged = separation(&pairs);
         prop_assume!(judged != Separation::Disconnected && pairs.ties() < pairs.answers());
         for model in [Model::Davidson, Model::RaoKupper] {
-            let found = estimate(model, &pairs, &pairs, Penalty::None).is_some();
+            let found = estimate(Layout::of(model, &pairs, 0.0), &pairs, &pairs, Penalty::None).is_some();
             prop_assert_eq!(found, judged != Separation::Separated, "{:?} {:?}", model, judged);
         }
         if side_design(&pairs).objection().is_none() {
-            let found = estimate(Model::DavidsonSide, &pairs, &pairs, Penalty::None).is_some();
+            let found = estimate(Layout::of(Model::DavidsonSide, &pairs, 0.0), &pairs, &pairs, Penalty::None).is_some();
             let side = side_separation(&pairs);
             prop_assert_eq!(found, judged != Separation::Separated && side.is_none(), "{:?} {:?}", side, judged);
         }
@@ -287,6 +304,13 @@ proptest! {
             let fit = fit(model, &pairs);
             let items = judged == Separation::Separated;
             prop_assert_eq!(fit.as_ref().map(|fit| fit.penalised()), Ok(items), "{:?} {:?}", model, fit);
+        }
+        for left in [-5.0, 0.3, 5.0] {
+            let given = fit_given_side(&pairs, left).map(|fit| fit.penalised());
+            prop_assert_eq!(given, Ok(judged == Separation::Separated), "{}", left);
+        }
+        if side_design(&pairs).objection().is_none() {
+            prop_assert!(fit(Model::DavidsonSide, &pairs).is_ok());
         }
     }
 
