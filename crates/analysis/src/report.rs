@@ -348,7 +348,7 @@ impl Press {
             return;
         }
         let sorted = preference::findings(evidence);
-        let mut holds = sides::caution(evidence);
+        let mut holds = if sorted.holds.is_empty() { Vec::new() } else { sides::caution(evidence) };
         holds.extend(sorted.holds);
         self.section("holds", "What holds", holds);
         self.section("depends", "What depends on what", sorted.depends);

@@ -10,6 +10,7 @@
 //!   times that it appears at one place and at another among the forms of its block.
 //! - Comparisons appear equally often to within one. Where [`FormsSection::max_questions`] is less than there are to
 //!   ask, comparisons are dealt into blocks whose sizes differ by at most one; a participant is asked one block.
+//! - Blocks do not tie pairs to people: of each pair of methods one block has as many comparisons as another, to within one.
 //! - Within a form, a method is on the left as often as on the right, to within one, and so is each side of two methods
 //!   that meet on several objects.
 //! - A repeat shows its comparison the other way round, half a form away; in shuffled order too. As listed, repeats and then
@@ -20,6 +21,10 @@
 //!
 //! # Not guaranteed
 //!
+//! - That somebody is asked enough for every [contrast](crate::contrast), such as the same pair of methods on two objects. Blocks
+//!   are searched for such that as few interactions as can be are left without, then as few differences between objects; then
+//!   levels and groups are as even over blocks as can be, and blocks have whole triads: all pairs of three methods on one
+//!   object. The linter says what blocks are too small for.
 //! - Sides of two methods over blocks: with a multiple of twice as many participants as there are blocks they are even; with others
 //!   they are as even as a search finds, and the linter says where they are not.
 //! - Which question follows which: neighbours in a form are neighbours in most forms, in either order. Sources: a cyclic
@@ -29,6 +34,7 @@
 mod file;
 mod order;
 mod sides;
+mod split;
 mod spread;
 
 pub use file::{FormEntry, FormFile, KeyEntry, Stimulus};
@@ -102,7 +108,7 @@ impl<'a> Questionnaire<'a> {
     /// The questionnaire of a study; `None` if it plans no forms or compares nothing.
     pub fn of(study: &'a Study) -> Option<Self> {
         let section = study.file.forms.as_ref().filter(|_| !study.comparisons.is_empty())?;
-        let split = split(study, section);
+        let split = blocks(study, section);
         let repeated = repeated(study, section, &split);
         let controls = controls(study, section);
         let swapped = swapped(study, section, &split);
@@ -201,16 +207,13 @@ impl<'a> Questionnaire<'a> {
     }
 }
 
-/// The comparisons of each block. Sorted by group and object before they are dealt, so that blocks share both alike.
-fn split(study: &Study, section: &FormsSection) -> Vec<Vec<usize>> {
+/// The comparisons of each block, ascending.
+fn blocks(study: &Study, section: &FormsSection) -> Vec<Vec<usize>> {
     let room = (section.max_questions - section.controls - section.repeats) as usize;
-    let count = study.comparisons.len().div_ceil(room);
-    let mut sorted: Vec<usize> = (0..study.comparisons.len()).collect();
-    sorted.sort_by_key(|&i| (study.comparisons[i].group, study.comparisons[i].object));
-    let mut blocks = vec![Vec::new(); count];
-    sorted.into_iter().enumerate().for_each(|(i, comparison)| blocks[i % count].push(comparison));
-    blocks.iter_mut().for_each(|block: &mut Vec<usize>| block.sort_unstable());
-    blocks
+    match study.comparisons.len().div_ceil(room) {
+        1 => vec![(0..study.comparisons.len()).collect()],
+        count => split::split(study, count, &mut random(study.file.study.seed, &[BLOCKS])),
+    }
 }
 
 /// Which of each block's comparisons its first form shows the other way round than listed.
@@ -284,6 +287,7 @@ const CONTROLS: usize = 2;
 const CIRCLE: usize = 3;
 const SHUFFLED: usize = 4;
 const REPEATS: usize = 5;
+const BLOCKS: usize = 6;
 
 fn random(seed: u64, parts: &[usize]) -> Pcg64 {
     // FNV-1a: any fixed mixing will do, as long as it is ours and never changes.

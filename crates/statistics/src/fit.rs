@@ -1,9 +1,8 @@
 //! Maximum likelihood estimates of a model of paired comparison, with their covariance.
 
 use super::model::{Layout, Model};
-use super::newton::{Matrix, inverse, maximise, quadratic};
+use super::newton::{Matrix, maximise, quadratic};
 use super::pairs::Pairs;
-use super::participants::Participants;
 use super::separation::{Separation, separation};
 use super::side::side_design;
 use super::side_separation::side_separation;
@@ -73,7 +72,7 @@ pub struct WorthFit {
     /// Parameters in the order of `covariance`: worths of items 1.., then ln nu or ln theta if there was a tie, then side.
     pub parameters: Vec<f64>,
     /// Inverse of the exact information at the estimates: right if all answers are independent, which the answers of one
-    /// participant are not. See [`clustered_covariance`].
+    /// participant are not. See [`clustered_covariance`](crate::clustered_covariance).
     pub covariance: Matrix,
 }
 
@@ -226,42 +225,6 @@ impl WorthFit {
 /// Whether a clustered standard error is more than the rounding of zero, beside the one that takes answers as independent.
 pub fn has_spread(clustered: f64, independent: f64) -> bool {
     clustered > 1e-6 * independent
-}
-
-/// The sandwich covariance with participants as clusters: m/(m-1) H^-1 (sum of s s') H^-1, where s is one participant's
-/// gradient and H the information of the unpenalised answers (Liang and Zeger 1986, Biometrika 73:13).
-///
-/// `None` with fewer than two participants, for a penalised fit (whose gradients do not add up to zero), or if H is
-/// singular.
-pub fn clustered_covariance(fit: &WorthFit, participants: &Participants) -> Option<Matrix> {
-    let m = participants.number() as f64;
-    if m < 2.0 || fit.penalised() {
-        return None;
-    }
-    let all = participants.sum(&participants.counts);
-    let layout = Layout::of(fit.model, &all, fit.given_side);
-    let bread = inverse(&layout.likelihood(&all, &fit.parameters).information)?;
-    // A participant's gradient adds up what each answer has: few kinds of answers, many participants.
-    let influence = |&pair: &(usize, usize)| {
-        layout.scores(pair, &fit.parameters).map(|score| super::newton::times(&bread, &score))
-    };
-    let influences: Vec<[Vec<f64>; 3]> = participants.shown().iter().map(influence).collect();
-    let size = fit.parameters.len();
-    let mut covariance = vec![vec![0.0; size]; size];
-    let mut own = vec![0.0; size];
-    for (answers, count) in participants.of_kinds() {
-        own.fill(0.0);
-        for (counts, of_pair) in answers.iter().zip(&influences) {
-            for (&times, of_answer) in counts.iter().zip(of_pair).filter(|(times, _)| **times > 0) {
-                own.iter_mut().zip(of_answer).for_each(|(sum, x)| *sum += f64::from(times) * x);
-            }
-        }
-        let weight = m / (m - 1.0) * count as f64;
-        for (row, x) in covariance.iter_mut().zip(&own) {
-            row.iter_mut().zip(&own).for_each(|(cell, y)| *cell += weight * x * y);
-        }
-    }
-    Some(covariance)
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! All items on one scale: worths, every difference of two with its interval and test, and one test of all.
 
-use super::fit::{FitError, WorthFit, clustered_covariance, fit, has_spread};
+use super::fit::{FitError, WorthFit, fit, has_spread};
 use super::model::Model;
 use super::multiplicity::holm;
 use super::newton::{Matrix, inverse, quadratic};
 use super::participants::Participants;
+use super::sandwich::clustered_covariance;
 use crate::interval::{Interval, t_half_width};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 

@@ -109,7 +109,8 @@ impl Steps {
     /// The sign of a d that is allowed with 2 tau = 1.
     fn allowed(&self, items: usize) -> Option<i64> {
         // As fractions (p, q); nothing is known at first.
-        let (mut low, mut high): (Option<(i64, i64)>, Option<(i64, i64)>) = (None, None);
+        let mut low: Option<(i64, i64)> = None;
+        let mut high: Option<(i64, i64)> = None;
         let mut tried = (0, 1);
         loop {
             let Some(Circle { a, b }) = self.circle(items, Tie::Within, tried.0, tried.1) else {

@@ -3,8 +3,9 @@
 //! Where a method always stood on the right, people who like the right look like people who like the method. No analysis
 //! tells them apart, but one can ask how far such a liking would have to go.
 
-use super::fit::{clustered_covariance, fit_given_side, has_spread};
+use super::fit::{fit_given_side, has_spread};
 use super::participants::Participants;
+use super::sandwich::Clusters;
 use crate::interval::Interval;
 
 /// No liking beyond this is looked at, in log-odds: at 5 a side wins 99.3 % of the decided answers about equal items.
@@ -43,10 +44,10 @@ pub struct Tipping {
 /// # Panics
 /// If there is no such item.
 pub fn tipping(participants: &Participants, item: usize, other: usize) -> Option<Tipping> {
-    let all = participants.sum(&participants.counts);
+    let clusters = Clusters::of(participants);
     let interval = |left: f64| -> Option<Interval> {
-        let fit = fit_given_side(&all, left).ok()?;
-        let clustered = clustered_covariance(&fit, participants)?;
+        let fit = fit_given_side(&clusters.all, left).ok()?;
+        let clustered = clusters.covariance(&fit)?;
         let [se, independent] =
             [&clustered, &fit.covariance].map(|covariance| fit.standard_error(covariance, item, other));
         let known = has_spread(se, independent);

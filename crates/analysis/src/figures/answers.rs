@@ -18,9 +18,9 @@ pub(super) fn per_question(study: &Study, tally: &Tally, sides_differ: bool) -> 
         .filter(|(_, questions): &(usize, Vec<usize>)| !questions.is_empty())
         .collect();
     let legend = [
-        (Swatch::Area(Fill::plain(LEFT)), "the one on the left of its row preferred".to_owned()),
+        (Swatch::Area(Fill::plain(LEFT)), "left of the row preferred".to_owned()),
         (Swatch::Area(Fill::plain(NONE)), "no preference".to_owned()),
-        (Swatch::Area(Fill::plain(RIGHT)), "the one on the right preferred".to_owned()),
+        (Swatch::Area(Fill::plain(RIGHT)), "right of the row preferred".to_owned()),
     ];
     let height = HEADING * blocks.len() as f64 + ROW * study.comparisons.len() as f64;
     let (mut canvas, mut y) = canvas_with_legend(&legend, height);

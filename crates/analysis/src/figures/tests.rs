@@ -53,7 +53,7 @@ fn every_figure_is_there_and_sound() {
         ("aspect_ratio", vec!["mean aspect ratio", "10", "777", "sp: simple cubic, edge collapse"]),
         ("stage_times", vec!["sampling", "bunny, without sampling", "time, s"]),
         ("aspect_ratio_distributions", vec!["longest / shortest edge", "published ratio", "1.5"]),
-        ("answers", vec!["Q1", "Q27", "as_sp", "left preferred", "18"]),
+        ("answers", vec!["Q1", "Q27", "as_sp", "left of the row preferred", "18"]),
         ("preference_objects", vec!["B: clustering within body-centred", "largest possible"]),
         ("preference_overall", vec!["0.340", "1.062", "from arrangement groups", "published"]),
         ("factor_share", vec!["groups B, S: at most 2/3", "si in S", "wins / appearances"]),

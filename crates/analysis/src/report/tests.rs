@@ -86,6 +86,7 @@ fn the_papers_answers() {
         "open",
         "worths",
         "unanswerable",
+        "declared",
         "bearing",
         "checks",
         "prediction",
@@ -103,13 +104,17 @@ fn the_papers_answers() {
     assert!(holds.contains(
         &"Integrated clustering was preferred to edge collapse: 67 answers against 18, 23 without preference. Mean score 0.45 \
           (95 % t interval 0.30 to 0.61, 18 participants); exact sign-flip test, p = 0.000092, p = 0.00037 after Holm's \
-          correction for 4 tests."
+          correction for 4 tests. A liking for the right side of 0.86 log-odds, which takes 70 % of decided answers between \
+          equals, would undo it. It depends on the object (Friedman's test over objects, p = 0.0064 after Holm's correction)."
             .into()
     ), "{holds:#?}");
     assert!(holds.contains(
         &"The body-centred lattice was preferred to the simple cubic lattice: 84 answers against 56, 22 without preference. \
           Mean score 0.17 (95 % t interval 0.06 to 0.29, 18 participants); exact sign-flip test, p = 0.0094, p = 0.0094 after \
-          Holm's correction for 4 tests. It depends on the object, the sphere above all: see below."
+          Holm's correction for 4 tests. With one correction over all tests it does not hold (p = 0.22). A liking for the left side \
+          of 0.11 log-odds, which takes 53 % of decided answers between equals, would undo it. It depends on the object \
+          (Friedman's test over objects, p = 0.00019 after Holm's correction). Without the sphere it is not shown: mean score \
+          \u{2212}0.10 (95 % t interval \u{2212}0.28 to 0.08, 18 participants); p = 0.30."
             .into()
     ), "{holds:#?}");
     let open = texts(&report, "open");
@@ -121,14 +126,10 @@ fn the_papers_answers() {
             .into()
     ), "{open:#?}");
     let depends = texts(&report, "depends");
-    assert!(depends.contains(
-        &"How much the body-centred lattice is preferred to the simple cubic lattice differs. On the sphere: 44 answers against \
-          5, 5 without preference, mean score 0.72. Elsewhere: 40 answers against 51, 17 without preference, mean score \
-          \u{2212}0.10. The difference holds: exact sign-flip test, p = 0.000046, p = 0.00041 after Holm's correction for 9 \
-          tests. Without the sphere the overall preference is gone: mean score \u{2212}0.10 (95 % t interval \u{2212}0.28 to \
-          0.08, 18 participants); p = 0.30."
-            .into()
-    ), "{depends:#?}");
+    let differs = "How much the body-centred lattice is preferred to the simple cubic lattice differs. On the sphere: 44 answers \
+                   against 5, 5 without preference, mean score 0.72. On the asteroid: 18 answers against 27, 9 without preference, mean score \
+                   \u{2212}0.17. The difference holds: exact sign-flip test, ";
+    assert!(depends.iter().any(|text| text.starts_with(differs)), "{depends:#?}");
     let factors = texts(&report, "factors");
     assert!(
         factors[1].ends_with(
@@ -155,14 +156,15 @@ fn the_papers_answers() {
     );
     let checks = texts(&report, "checks");
     assert!(
-        checks[0].starts_with("1 of 18 participants broke a rule of screening that is declared beforehand")
+        checks[0].starts_with("1 of 18 participants broke a rule of screening (1 by answering against the others). Nobody is left out")
             && checks[0]
                 .contains("Not judged, because nothing of the kind is recorded: controls, repeats, times."),
         "{checks:#?}"
     );
     assert!(
-        checks[1]
-            .starts_with("Participant 16 broke a rule by answering against the others: without them, 1 of 25 declared tests comes"),
+        checks[1].starts_with(
+            "Participant 16 broke a rule by answering against the others: without them, 1 of 43 tests comes"
+        ),
         "{checks:#?}"
     );
     assert!(checks.iter().any(|text| text

@@ -100,15 +100,16 @@ fn table(rows: &[Hypothesis]) -> Table {
     ];
     table.print_in_blocks(&blocks);
     table.notes.push(
-        "p: exact sign-flip test over participants, two-sided; net is answers for the first minus answers for the second. \
-         Adjusted within the family: Holm, for single questions Benjamini and Hochberg. Mean score: a participant's net over \
-         the questions answered, \u{2212}1 to 1; interactions are differences of two mean scores, \u{2212}2 to 2, of those who \
-         answered all of their questions. From and to: t interval at 95 % over participants, or, where all have one score, the \
-         means that make this at least 2.5 % probable; BCa and studentised: 2000 resamples of participants; all are cut at what \
-         scores can be. Equivalence: two one-sided t tests of a mean score within 0.2 of zero, which is 60 answers to 40, \
-         adjusted in the same way. Conclusion: at 5 % of both adjusted p; a large p alone is open, not equal. p without one: \
-         range when each participant in turn is left out. Binomial and trinomial treat all answers as independent and are \
-         there for comparison; they hold for single questions only."
+        "p: exact sign-flip test of participants' scores, two-sided. A score is the mean of a participant's answers, 1 for the \
+         first and \u{2212}1 for the second; of differences it is the mean over one part less the mean over the other, \u{2212}2 to 2, \
+         of those who answered something of both. Net: answers for the first minus answers for the second. Adjusted within the \
+         family: Holm, for single questions Benjamini and Hochberg; over all: Holm over every test but those of single \
+         questions. From and to: t interval at 95 % over participants, or, where all have one score, the means that make this \
+         at least 2.5 % probable; studentised: 2000 resamples of participants; all are cut at what scores can be. Equivalence: \
+         two one-sided t tests of a mean score within the margin of zero (0.2 if nothing else is declared: 60 answers to 40), \
+         adjusted in the same way. Conclusion: at the study's level of both adjusted p; a large p alone is open, not equal. p \
+         without one: range when each participant in turn is left out. Binomial and trinomial treat all answers as independent \
+         and are there for comparison; they hold for single questions only."
             .into(),
     );
     table

@@ -28,9 +28,10 @@ fn metrics(prediction: &Prediction) -> Table {
             ("pairs_won", "won by the better"),
             ("pairs_drawn", "drawn"),
             ("pairs_won_share", "Share of decided pairs"),
-            ("pairs_won_low", "BCa from"),
-            ("pairs_won_high", "BCa to"),
-            ("better_right", "Better on the right"),
+            ("pairs_won_low", "from"),
+            ("pairs_won_high", "to"),
+            ("better_right", "Answers with the better on the right"),
+            ("showings", "of"),
             ("unit", "Unit"),
             ("coefficient", "Log-odds a unit"),
             ("coefficient_se", "SE"),
@@ -84,7 +85,7 @@ fn metrics(prediction: &Prediction) -> Table {
     table.notes.push(
         "Metrics are of the meshes that were shown. Share of decided: answers for the side with the better value over all \
          answers but no preference; t interval at 95 % over participants. p: exact sign-flip test over participants, adjusted \
-         by Holm over the metrics. A pair is won by the side with more answers; BCa: 2000 resamples of participants. Log-odds: \
+         by Holm over the metrics. A pair is won by the side with more answers; its interval: percentiles of 2000 resamples of participants. Log-odds: \
          Davidson's model with the metric's difference for the worths, in units of the root mean square of the differences \
          (differences of ratios and angles, logarithms of quotients for the rest); standard error, t interval and p clustered \
          on participants. Left-out: each object predicted from a fit to the others; the constant knows the share of ties and \
@@ -118,6 +119,7 @@ fn metrics(prediction: &Prediction) -> Table {
                 "pairs_won_low",
                 "pairs_won_high",
                 "better_right",
+                "showings",
             ],
         ),
         (

@@ -54,7 +54,7 @@ pub struct AnalysisSection {
     pub first_answer: Option<Date>,
     /// Whether answers were known when this section was fixed, whatever the dates say.
     pub answers_known: bool,
-    /// Level of tests, after correction; 1 less it is the confidence of intervals. 0.0001 to 0.5.
+    /// Level of tests, after correction; 0.0001 to 0.5. Intervals are at 95 % whatever it is.
     pub level: f64,
     /// Mean score up to which two things count as liked alike; above 0, below 1.
     pub margin: f64,

@@ -281,3 +281,27 @@ fn repeats_favour_no_method_no_contrast_and_no_object() {
         }
     }
 }
+
+/// Forms that people may have answered. Digests are FNV-1a of the forms as text, taken before comparisons of several blocks were
+/// dealt by a search.
+#[test]
+fn forms_of_one_block_are_what_they_always_were() {
+    let known = [
+        ("balanced.toml", 2_918_996_585_394_782_393),
+        ("two-methods.toml", 10_534_533_877_068_325_237),
+        ("paper.toml", 13_967_142_664_581_063_407),
+    ];
+    for (name, digest) in known {
+        let study = crate::study::tests::load(name);
+        let forms = Questionnaire::of(&study).unwrap().planned();
+        let text: String = forms
+            .iter()
+            .flat_map(|form| &form.trials)
+            .map(|t| format!("{:?} {} {} {}\n", t.role, t.question, t.left, t.right))
+            .collect();
+        let found = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |state, byte| {
+            (state ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
+        });
+        assert_eq!(found, digest, "{name}");
+    }
+}

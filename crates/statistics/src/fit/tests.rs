@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Outcome, ShownBallot, Side, golden};
+use crate::{Outcome, Participants, ShownBallot, Side, clustered_covariance, golden};
 use proptest::prelude::*;
 
 #[track_caller]
@@ -123,28 +123,6 @@ fn two_items_in_closed_form() {
     let threshold = fit(Model::RaoKupper, &pairs).unwrap();
     close(-threshold.log_worths[1], 1.087_375_860_742_08, 1e-12);
     close(threshold.ln_theta.unwrap().exp(), 1.483_239_697_419_133, 1e-12);
-}
-
-#[test]
-fn clustered_errors_as_sandwich_has_them() {
-    // R, sandwich 3.0-2: glm(y ~ factor(answer) + x2 + x3 + t - 1, poisson) with a row an answer and outcome;
-    // vcovCL(m, cluster = participant, type = "HC0", cadjust = TRUE).
-    let study = golden::study();
-    let ballots = golden::clusterings(&study, None);
-    let participants = Participants::of(3, &ballots);
-    assert_eq!(participants.number(), 18);
-    let fitted = fit(Model::Davidson, &Pairs::of(3, &ballots)).unwrap();
-    let covariance = clustered_covariance(&fitted, &participants).unwrap();
-    close(fitted.standard_error(&covariance, 1, 0), 0.409_735_500_836_181_8, 1e-9);
-    close(fitted.standard_error(&covariance, 0, 2), 0.542_410_510_133_580_2, 1e-9);
-    close(covariance[0][1], 0.207_142_499_724_814_55, 1e-9);
-    close(covariance[2][2].sqrt(), 0.292_205_606_375_258_3, 1e-6);
-    let difference = covariance[0][0] + covariance[1][1] - 2.0 * covariance[0][1];
-    close(fitted.standard_error(&covariance, 2, 1), difference.sqrt(), 1e-12);
-    // t(17) at 0.975 is 2.1098155778331806 (scipy.stats.t.ppf).
-    let interval = fitted.clustered_interval(&covariance, 18, 2, 0);
-    close(interval.high - fitted.log_worths[2], 2.109_815_577_833_180_6 * 0.542_410_510_133_580_2, 1e-8);
-    assert_eq!(clustered_covariance(&fitted, &Participants::of(3, &ballots[..1])), None);
 }
 
 #[test]

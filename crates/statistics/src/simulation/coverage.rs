@@ -21,7 +21,8 @@ enum Asked {
 
 /// What a participant was asked, of all that could be.
 fn asked(ballots: Vec<ShownBallot>, of: Asked) -> Vec<ShownBallot> {
-    let in_block = |b: &ShownBallot| (b.question() % 15 + b.question() / 15 + b.participant()) % 3 == 0;
+    let in_block =
+        |b: &ShownBallot| (b.question() % 15 + b.question() / 15 + b.participant()).is_multiple_of(3);
     match of {
         Asked::Everything => ballots,
         Asked::ABlock => ballots.into_iter().filter(in_block).collect(),

@@ -28,7 +28,7 @@ fn a_study_without_the_section_has_the_defaults() {
 fn every_key_is_read() {
     let section = with(
         "[analysis]\ndeclared = 2026-11-21\nfirst_answer = \"2026-12-01\"\nanswers_known = false\nlevel = 0.01\nmargin = 0.3\n\
-         families = \"one\"\nprimary = [\"B-S\", \"B-S within U\"]\n\
+         families = \"one\"\nprimary = [\"U-I\", \"U-I sphere\"]\n\
          exclude = [\"one-sided\", \"controls\", \"repeats\", \"time\", \"odd\"]",
     );
     let expected = AnalysisSection {
@@ -38,7 +38,7 @@ fn every_key_is_read() {
         level: 0.01,
         margin: 0.3,
         families: FamilyRule::One,
-        primary: vec!["B-S".into(), "B-S within U".into()],
+        primary: vec!["U-I".into(), "U-I sphere".into()],
         exclude: vec![
             Exclusion::OneSided,
             Exclusion::Controls,
@@ -92,7 +92,9 @@ fn what_cannot_be_meant_is_refused() {
         let error = with(&format!("[analysis]\n{key}")).map(|_| ()).unwrap_err().to_string();
         assert!(error.contains(told) && error.contains("two-methods.toml"), "{key}: {error}");
     }
-    assert!(with(&format!("[analysis]\nprimary = [\"{}\"]", "ü".repeat(64))).is_ok());
+    // Letters, not bytes: long enough, though no contrast is called so.
+    let letters = with(&format!("[analysis]\nprimary = [\"{}\"]", "ü".repeat(64))).unwrap_err();
+    assert!(letters.to_string().contains("ü: is not a contrast of this study"), "{letters}");
 }
 
 #[test]
