@@ -12,6 +12,10 @@ use crate::study::Study;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
+/// Objects up to which each is held against each other one: 190 pairs. Of more, correction would leave nothing, and what is to
+/// be known is whether they differ at all.
+pub const PAIRED_OBJECTS: usize = 20;
+
 /// What two methods may differ in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Factor {
@@ -36,8 +40,8 @@ pub enum Family {
     Objects(Factor),
     /// Whether a preference depends on the other factor: differences of two contrasts of [`Groups`](Self::Groups).
     Interactions,
-    /// Whether it depends on the object: differences of two contrasts of [`Objects`](Self::Objects). To be read after a test
-    /// over all objects.
+    /// Whether it depends on the object: differences of two contrasts of [`Objects`](Self::Objects), where there are at most
+    /// [`PAIRED_OBJECTS`]. To be read after a test over all objects.
     ObjectPairs(Factor),
 }
 
@@ -263,13 +267,17 @@ fn of_pair(study: &Study, questions: &[Question], levels: [Level; 2], others: &[
         }
     }
 
-    let on = |object: usize| where_(&|q| q.object == object);
-    for (i, first) in study.file.objects.iter().enumerate() {
-        add(Family::Objects(factor), first.name.clone(), Over::Object(i), vec![on(i)]);
-        for (j, second) in study.file.objects.iter().enumerate().skip(i + 1) {
-            let scope = format!("{} - {}", first.name, second.name);
-            let over = Over::ObjectDifference(i, j);
-            add(Family::ObjectPairs(factor), scope, over, vec![on(i), on(j)]);
+    let on: Vec<(usize, &str, BTreeMap<usize, i64>)> = (study.file.objects.iter().enumerate())
+        .map(|(i, object)| (i, object.name.as_str(), where_(&|q| q.object == i)))
+        .filter(|(.., part)| !part.is_empty())
+        .collect();
+    for (n, (i, name, part)) in on.iter().enumerate() {
+        add(Family::Objects(factor), (*name).to_owned(), Over::Object(*i), vec![part.clone()]);
+        let others = if on.len() <= PAIRED_OBJECTS { &on[n + 1..] } else { &[] };
+        for (j, other, second) in others {
+            let over = Over::ObjectDifference(*i, *j);
+            let parts = vec![part.clone(), second.clone()];
+            add(Family::ObjectPairs(factor), format!("{name} - {other}"), over, parts);
         }
     }
     found

@@ -5,6 +5,7 @@
 //! the question's wording, of who answers, or of whether the stimuli show what they should.
 
 mod names;
+mod reach;
 mod stimuli;
 
 use crate::config::{OrderRule, SideRule};
@@ -13,6 +14,7 @@ use crate::method::Method;
 use crate::study::{Comparison, Study};
 use std::collections::{BTreeMap, BTreeSet};
 
+pub use reach::{Reach, reach};
 pub use stimuli::{EXPOSURE_TOLERANCE, StimulusFacts, lint_stimuli};
 
 /// What the linter looks for.
@@ -94,12 +96,12 @@ impl Rule {
                 "Everybody is asked in the same order: what comes late is judged by tired or practised eyes."
             }
             Self::UntestableComparison => {
-                "A comparison's methods differ in both arrangement and clustering: no contrast is about it, and a liking \
-                 can be put down to neither."
+                "No form asks about both parts of a difference, such as one pair of methods on two objects: nobody's answers tell \
+                 whether the preference depends on it."
             }
             Self::NotEnoughParticipants => {
                 "Even if all planned participants agree, the exact sign-flip test with Holm's correction cannot reach \
-                 5 %."
+                 analysis.level."
             }
             Self::NamesReveal => {
                 "Ids, texts, file names, sizes or metadata tell participants which configuration they see."
@@ -124,8 +126,8 @@ impl Rule {
             Self::NoControls => "forms.controls = 2 or more",
             Self::NoRepeats => "forms.repeats = 2 or more",
             Self::OrderFixed => "forms.order = \"latin-square\"",
-            Self::UntestableComparison => "compare methods that differ in one of the two",
-            Self::NotEnoughParticipants => "plan more participants, or fewer contrasts",
+            Self::UntestableComparison => "a larger forms.max_questions, or fewer comparisons",
+            Self::NotEnoughParticipants => "plan more participants, or fewer comparisons",
             Self::NamesReveal => {
                 "take the name out of what tells it: forms.names = \"code-names\", another question id or text, files made anew"
             }
@@ -139,7 +141,7 @@ impl Rule {
 pub struct Fault {
     /// Which rule found it.
     pub rule: Rule,
-    /// Where: a group, a contrast, a question, a file, a key.
+    /// Where: a group, two methods, a family, a question, a file, a key.
     pub place: String,
     /// The numbers.
     pub evidence: String,
@@ -161,9 +163,6 @@ impl Fault {
         }
     }
 }
-
-/// Level that [`Rule::NotEnoughParticipants`] asks for.
-pub const LEVEL: f64 = 0.05;
 
 /// The faults of a study's forms, in the order of [`Rule::ALL`]. None for a study that asks nobody.
 pub fn lint(study: &Study) -> Vec<Fault> {
@@ -188,16 +187,15 @@ pub fn lint(study: &Study) -> Vec<Fault> {
         let evidence = format!("{} forms, one order", forms.len());
         faults.push(Fault { rule: Rule::OrderFixed, place: "forms.order".into(), evidence });
     }
-    faults.extend(showings.untestable(study));
-    faults.extend(showings.participants());
+    faults.extend(reach::faults(study, section.participants as usize));
     faults.extend(names::names(study, section));
     faults
 }
 
 /// Two methods of one group, the lower first.
-type Contrast = (usize, Method, Method);
+type MethodPair = (usize, Method, Method);
 
-fn contrast_of(comparison: &Comparison) -> Contrast {
+fn method_pair(comparison: &Comparison) -> MethodPair {
     let (left, right) = (comparison.left.method, comparison.right.method);
     (comparison.group, left.min(right), left.max(right))
 }
@@ -214,10 +212,8 @@ fn side_rule([one, other]: [u64; 2]) -> Option<Rule> {
 /// How often what was shown, over all planned forms. Comparisons only: controls and repeats are there to check answers.
 struct Showings {
     group_ids: Vec<String>,
-    /// For each contrast: how often its lower method was on the left and on the right.
-    sides: BTreeMap<Contrast, [u64; 2]>,
-    /// For each contrast: the participants who are asked about it.
-    asked: BTreeMap<Contrast, BTreeSet<usize>>,
+    /// For each pair: how often its lower method was on the left and on the right.
+    sides: BTreeMap<MethodPair, [u64; 2]>,
     /// For each comparison: how often it was shown as listed and swapped.
     comparisons: Vec<[u64; 2]>,
 }
@@ -226,13 +222,12 @@ impl Showings {
     fn of(study: &Study, forms: &[Form]) -> Self {
         let group_ids = study.groups.iter().map(|group| group.id.clone()).collect();
         let comparisons = vec![[0; 2]; study.comparisons.len()];
-        let mut showings = Self { group_ids, sides: BTreeMap::new(), asked: BTreeMap::new(), comparisons };
+        let mut showings = Self { group_ids, sides: BTreeMap::new(), comparisons };
         for form in forms {
             for Trial { role, comparison, left, .. } in &form.trials {
                 let (Role::Comparison, Some(comparison)) = (role, *comparison) else { continue };
-                let contrast = contrast_of(&study.comparisons[comparison]);
-                showings.sides.entry(contrast).or_default()[usize::from(left.method != contrast.1)] += 1;
-                showings.asked.entry(contrast).or_default().insert(form.participant);
+                let pair = method_pair(&study.comparisons[comparison]);
+                showings.sides.entry(pair).or_default()[usize::from(left.method != pair.1)] += 1;
                 let swapped = *left != study.comparisons[comparison].left;
                 showings.comparisons[comparison][usize::from(swapped)] += 1;
             }
@@ -240,17 +235,17 @@ impl Showings {
         showings
     }
 
-    fn name(&self, (group, a, b): &Contrast) -> String {
+    fn name(&self, (group, a, b): &MethodPair) -> String {
         format!("{a} against {b} in group {}", self.group_ids[*group])
     }
 
-    /// Sides over a contrast's questions together, and within each: single questions and objects are tested too. One fault a
-    /// contrast, the graver. A multiple of `even` participants makes sides even, if the forms balance them at all.
+    /// Sides over a pair's questions together, and within each: single questions and objects are tested too. One fault a
+    /// pair, the graver. A multiple of `even` participants makes sides even, if the forms balance them at all.
     fn sides(&self, study: &Study, even: Option<usize>) -> Vec<Fault> {
         let mut faults = Vec::new();
-        for (contrast, &counts) in &self.sides {
+        for (pair, &counts) in &self.sides {
             let of = self.comparisons.iter().zip(&study.comparisons);
-            let own = of.filter(|(_, comparison)| contrast_of(comparison) == *contrast);
+            let own = of.filter(|(_, comparison)| method_pair(comparison) == *pair);
             let questions: Vec<(&str, Option<Rule>)> =
                 own.map(|(&counts, comparison)| (comparison.question.as_str(), side_rule(counts))).collect();
             let Some(rule) = questions.iter().filter_map(|(_, rule)| *rule).chain(side_rule(counts)).min()
@@ -258,7 +253,7 @@ impl Showings {
                 continue;
             };
             let [left, right] = counts;
-            let mut evidence = format!("{} on the left {left} times, on the right {right} times", contrast.1);
+            let mut evidence = format!("{} on the left {left} times, on the right {right} times", pair.1);
             let found: Vec<&str> =
                 questions.iter().filter(|(_, of)| *of == Some(rule)).map(|(q, _)| *q).collect();
             if side_rule(counts) != Some(rule) {
@@ -269,7 +264,7 @@ impl Showings {
             if let Some(even) = even {
                 evidence += &format!("; a multiple of {even} participants makes them even");
             }
-            faults.push(Fault { rule, place: self.name(contrast), evidence });
+            faults.push(Fault { rule, place: self.name(pair), evidence });
         }
         faults.sort_by_key(|fault| fault.rule);
         faults
@@ -331,37 +326,6 @@ impl Showings {
                     place: format!("group {}", group.id),
                     evidence,
                 });
-            }
-        }
-        faults
-    }
-
-    /// One fault a pair of methods.
-    fn untestable(&self, study: &Study) -> Vec<Fault> {
-        let both = |(_, a, b): &&Contrast| a.arrangement != b.arrangement && a.clustering != b.clustering;
-        let fault = |contrast: &Contrast| {
-            let own = study.comparisons.iter().filter(|comparison| contrast_of(comparison) == *contrast);
-            let questions: Vec<&str> = own.map(|comparison| comparison.question.as_str()).collect();
-            let evidence = format!("in no contrast: {}", questions.join(" "));
-            Fault { rule: Rule::UntestableComparison, place: self.name(contrast), evidence }
-        };
-        self.sides.keys().filter(both).map(fault).collect()
-    }
-
-    /// All agreeing, one of the 2^m sign patterns and its opposite are as extreme: p = 2^(1-m). Holm multiplies the smallest
-    /// of the family's p by the number of contrasts.
-    fn participants(&self) -> Vec<Fault> {
-        let contrasts = self.asked.len();
-        let mut faults = Vec::new();
-        for (contrast, asked) in &self.asked {
-            let count = i32::try_from(asked.len()).unwrap_or(i32::MAX);
-            let best = (2f64.powi(1 - count) * contrasts as f64).min(1.0);
-            if best > LEVEL {
-                let [people, tests] = [(asked.len(), "participant"), (contrasts, "contrast")]
-                    .map(|(number, word)| format!("{number} {word}{}", if number == 1 { "" } else { "s" }));
-                let evidence = format!("{people}, {tests}: p is at least {best:.4}");
-                let place = self.name(contrast);
-                faults.push(Fault { rule: Rule::NotEnoughParticipants, place, evidence });
             }
         }
         faults

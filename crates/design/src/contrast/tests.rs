@@ -126,6 +126,17 @@ fn three_arrangements_interact_in_pairs() {
 }
 
 #[test]
+fn of_many_objects_no_two_are_held_against_each_other() {
+    let pairs = |objects: usize| {
+        let asked: Vec<(usize, &str, &str)> = (0..objects).map(|o| (o, "bu", "bi")).collect();
+        let all = contrasts(&design("b", "ui", objects, &asked));
+        assert_eq!(of(&all, Family::Objects(Factor::Clustering)).len(), objects);
+        of(&all, Family::ObjectPairs(Factor::Clustering)).len()
+    };
+    assert_eq!([pairs(2), pairs(PAIRED_OBJECTS), pairs(PAIRED_OBJECTS + 1)], [1, 190, 0]);
+}
+
+#[test]
 fn methods_that_differ_in_both_factors_are_tested_as_methods() {
     let asked = [(0, "bu", "si"), (1, "si", "bu"), (1, "bi", "su"), (0, "bu", "bi")];
     let all = contrasts(&design("bs", "ui", 2, &asked));
