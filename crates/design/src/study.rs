@@ -105,6 +105,18 @@ impl Study {
     /// # Errors
     /// As for [`Study::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, ConfigError> {
+        Self::checked(text, path, None)
+    }
+
+    /// As [`Study::parse`], of a study that is in no file: nothing is read, and the CPU is `target`, whatever the text says.
+    ///
+    /// # Errors
+    /// As for [`Study::load`], with `study.toml` as the file; and if the text names files.
+    pub fn in_memory(text: &str, target: CpuProfile) -> Result<Self, ConfigError> {
+        Self::checked(text, Path::new("study.toml"), Some(target))
+    }
+
+    fn checked(text: &str, path: &Path, target: Option<CpuProfile>) -> Result<Self, ConfigError> {
         let file: StudyFile = parse_toml(text, path)?;
         let checker = Checker { file: path };
         check_sections(&checker, &file)?;
@@ -116,8 +128,10 @@ impl Study {
         check_forms(&checker, &file, &configurations)?;
         file.analysis.check(&checker)?;
 
-        let target_path = checker.existing("benchmark.target", &file.benchmark.target)?;
-        let target = CpuProfile::load(&target_path)?;
+        let target = match target {
+            Some(target) => target,
+            None => CpuProfile::load(&checker.existing("benchmark.target", &file.benchmark.target)?)?,
+        };
         let responses = match &file.responses {
             Some(ResponsesSection { file: Some(written), .. }) => {
                 Some(checker.existing("responses.file", written)?)
