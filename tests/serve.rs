@@ -2,20 +2,20 @@
 
 mod fixture;
 mod http;
+mod server;
 
 use fixture::Fixture;
 use http::{get, post, raw};
 use serde_json::{Value, json};
+use server::{Server, TOKEN, answer, begin};
 use std::collections::BTreeMap;
-use std::io::{BufRead, BufReader, Write};
+use std::io::Write;
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-
-const TOKEN: &str = "a-token-for-this-test";
 
 /// The quick study asked as in configs/balanced.toml, bundled.
 fn bundled() -> Fixture {
@@ -28,64 +28,8 @@ fn bundled() -> Fixture {
     fixture
 }
 
-struct Server {
-    child: Child,
-    address: SocketAddr,
-}
-
-impl Server {
-    fn start(fixture: &Fixture, port: u16) -> Self {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_isostudy"))
-            .arg("serve")
-            .arg(fixture.config())
-            .arg("--out")
-            .arg(fixture.out())
-            .arg("--answers")
-            .arg(fixture.folder().join("answers"))
-            .args(["--port", &port.to_string(), "--admin-token", TOKEN])
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
-        let line = lines.find(|line| line.starts_with("questionnaire")).expect("it listens");
-        let address = line.split("http://").nth(1).unwrap().trim_end_matches('/').parse().unwrap();
-        // Nobody reads the rest, and a full pipe must not stop the server.
-        std::thread::spawn(move || lines.for_each(drop));
-        Self { child, address }
-    }
-
-    fn kill(&mut self) {
-        self.child.kill().unwrap();
-        self.child.wait().unwrap();
-    }
-}
-
-impl Drop for Server {
-    fn drop(&mut self) {
-        drop(self.child.kill());
-        drop(self.child.wait());
-    }
-}
-
 fn free_port() -> u16 {
     TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
-}
-
-fn begin(address: SocketAddr) -> Value {
-    let (status, body) = post(address, "/api/sessions", "{}").unwrap();
-    assert_eq!(status, 200, "{body}");
-    serde_json::from_str(&body).unwrap()
-}
-
-fn answer(session: &Value, question: usize, choice: &str) -> String {
-    let form = &session["form"];
-    let first = form["training"].as_array().unwrap().len() + 1;
-    json!({
-        "token": session["token"], "order": first + question, "stimulus": form["questions"][question],
-        "choice": choice, "rt_ms": 1500,
-    })
-    .to_string()
 }
 
 /// Every answer there is: participant and place to choice.

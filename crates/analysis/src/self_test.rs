@@ -6,9 +6,11 @@
 
 mod defects;
 mod rates;
+mod truths;
 
 pub use defects::{Defect, Planted, planted};
 pub use rates::{Rate, rates};
+pub use truths::{truths, wrong_cells};
 
 use crate::audit::{Finding, Probe};
 use crate::table::{Cell, Table};
