@@ -1,6 +1,6 @@
 //! Does the analysis find what is there, and nothing else? Tried on simulated studies whose truth is known.
 //!
-//! [`probes`] plants one defect at a time and counts which [probes](crate::audit) speak up; [`rates`] counts how often tests
+//! [`truths`] plants what people prefer, and holds every number of every table against a second computation. [`probes`] plants one defect at a time and counts which [probes](crate::audit) speak up; [`rates`] counts how often tests
 //! reject what is true and how often intervals cover it. Study s draws from its own stream of the seed, and only whole
 //! numbers are added up: the same seed gives the same counts on any number of threads.
 
@@ -87,8 +87,16 @@ pub fn probes(studies: u64, seed: u64) -> Vec<Hits> {
     Defect::ALL.into_iter().map(hits).collect()
 }
 
-/// Everything, as two tables, `self_test_probes` and `self_test_rates`, and whether all is as it has to be.
-pub fn self_test(studies: u64, seed: u64) -> ([Table; 2], bool) {
+/// Everything, as three tables, `self_test_truths`, `self_test_probes` and `self_test_rates`, and whether all is as it has to
+/// be. Truths are planted in studies of one size, whatever the number of simulated ones.
+pub fn self_test(studies: u64, seed: u64) -> (Vec<Table>, bool) {
+    let (planted, right) = truths();
+    let ([probes, rates], sound) = simulated(studies, seed);
+    (vec![planted, probes, rates], right && sound)
+}
+
+/// Probes and rates.
+fn simulated(studies: u64, seed: u64) -> ([Table; 2], bool) {
     let (hits, rates) = (probes(studies, seed), rates(studies, seed));
     let sound = hits.iter().all(|h| Probe::ALL.iter().all(|&p| h.sound(p))) && rates.iter().all(Rate::sound);
     ([probe_table(&hits, studies, seed), rate_table(&rates, seed)], sound)

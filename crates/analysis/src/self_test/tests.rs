@@ -16,7 +16,7 @@ fn every_probe_finds_its_defect_and_no_other() {
 fn the_same_on_any_number_of_threads() {
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let ([probes, rates], _) = pool.install(|| self_test(12, 4));
+        let ([probes, rates], _) = pool.install(|| simulated(12, 4));
         (probes.to_csv(), rates.to_csv())
     };
     let one = run(1);

@@ -62,3 +62,6 @@ fn table(all: &[Outcome]) -> Table {
     ));
     table
 }
+
+#[cfg(test)]
+mod tests;

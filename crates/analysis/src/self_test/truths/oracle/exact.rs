@@ -187,3 +187,6 @@ fn steps(number: u64, resting: f64, far: u64) -> f64 {
     let beyond = |place: usize| place.abs_diff(middle) as u64 >= far;
     (0..at.len()).filter(|&place| beyond(place)).map(|place| at[place]).sum::<f64>().min(1.0)
 }
+
+#[cfg(test)]
+mod tests;
