@@ -1,7 +1,7 @@
 //! What the models say: all items on one scale, and how well the models fit.
 
 use super::finding::{Finding, Standing};
-use super::words::{capital, counted, interval, list, number, p};
+use super::words::{counted, interval, list, number, p};
 use super::{Block, Evidence};
 use crate::tables::scale::GroupScale;
 use statistics::{Difference, Model, Pairs, Scale, fit, goodness};
@@ -92,7 +92,7 @@ fn one_scale(of: &GroupScale<'_>, scale: &Scale, level: f64) -> Vec<Finding> {
             }
             format!(
                 " {} stands highest, but is not told from {}: difference in log-odds and its 95 % interval.",
-                capital(best),
+                best,
                 list(&named)
             )
         }
@@ -146,7 +146,9 @@ fn misfits(evidence: &Evidence<'_>, level: f64) -> Vec<Finding> {
 /// What the scale says of two items that were compared, to stand beside their direct comparison; nothing where it says no
 /// more than that.
 pub(super) fn beside(evidence: &Evidence<'_>, group: &str, items: [&str; 2], shown: bool) -> String {
-    let Some(of) = evidence.scales.iter().find(|of| of.group.name == group) else { return String::new() };
+    // Of two items alone the scale knows nothing that their direct comparison does not.
+    let several = |of: &&GroupScale<'_>| of.group.name == group && of.group.items.len() > 2;
+    let Some(of) = evidence.scales.iter().find(several) else { return String::new() };
     let Ok(scale) = &of.scale else { return String::new() };
     let place = |name: &str| of.group.items.iter().position(|item| item == name);
     let Some((a, b)) = place(items[0]).zip(place(items[1])) else { return String::new() };
