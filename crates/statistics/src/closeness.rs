@@ -14,7 +14,7 @@ pub struct Closeness {
     pub p: Option<f64>,
 }
 
-/// Vuong's test (1989, Econometrica 57:307, section 5) of two fitted models with equally many parameters, neither of which
+/// Vuong's test (1989, Econometrica 57:307) of two fitted models with equally many parameters, neither of which
 /// is a case of the other, such as Davidson's and Rao and Kupper's; participants are the observations.
 ///
 /// `None` for fewer than two participants, for a penalised fit, and for models that do not give every answer a chance

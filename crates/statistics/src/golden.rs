@@ -1,4 +1,4 @@
-//! The study's 18 x 27 answers against the golden numbers of STATISTICS 3.12, each to its printed digit.
+//! The paper's 18 x 27 answers against the values of docs/statistics.md, each to its printed digit.
 
 use super::*;
 use design::{Arrangement, Clustering, Study};
@@ -99,7 +99,8 @@ fn davidson_of_the_clusterings() {
 
 #[test]
 fn side_term_by_likelihood_ratio() {
-    // STATISTICS 1.2: 0.09 (B), 2.08 (S), 0.12 (pooled).
+    // R 4.2.2: deviance(g) - deviance(update(g, . ~ . + s)), g <- glm(y ~ factor(answer) + X + tie - 1, poisson), s = 1/2, 0,
+    // -1/2 for left, none, right.
     let study = study();
     for (of, want) in
         [(Some(Arrangement::BodyCentred), "0.09"), (Some(Arrangement::SimpleCubic), "2.08"), (None, "0.12")]
@@ -140,7 +141,7 @@ fn triads_of_the_clusterings() {
 
 #[test]
 fn one_respondent_answers_against_the_others() {
-    // STATISTICS 1.5: row 16 agrees on 0.37, everyone else on 0.64 to 0.95; 19 left against 8 right.
+    // NumPy: the share of decided answers with the sign of the others' sum, where that is not 0.
     let screened = screening(&ballots(&study()));
     let shares: Vec<f64> = screened.iter().map(|s| s.agreement().unwrap()).collect();
     prints(shares[15], "0.37");

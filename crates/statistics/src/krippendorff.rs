@@ -40,7 +40,7 @@ pub fn alpha(questions: &[[u64; 3]], metric: Metric) -> Option<f64> {
 
 /// [`alpha`] with an interval for what so many more people of the kind would show: alpha -+ t s on m - 1 degrees of freedom,
 /// s the jackknife's standard error over the m participants (Efron and Tibshirani 1993, *An Introduction to the
-/// Bootstrap*, section 11.5). All questions are the same for everybody, so it speaks of other people, not of other questions.
+/// Bootstrap*, chapter 11). All questions are the same for everybody, so it speaks of other people, not of other questions.
 ///
 /// The bootstrap does not serve: resamples have people more than once, who agree with themselves, and alpha rises.
 ///

@@ -2,6 +2,7 @@
 //!
 //! Takes answers: as they were shown ([`ShownBallot`]) where sides matter, about items ([`DeclaredBallot`]) where they do not.
 //! Each function says in its signature which it takes. Knows nothing of studies, files, tables or plots.
+//! `docs/statistics.md` has each statistic's formula, source, limits and a value with the call that gave it.
 //!
 //! # Guarantees
 //! - Participants are what is independent; answers of one participant are not. [`sign_flip`] assumes nothing else.

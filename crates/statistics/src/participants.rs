@@ -3,9 +3,8 @@
 //! Models see of a participant only how often each pair came out how. Among a hundred thousand people few such patterns
 //! are distinct, so what has to be done for everyone (gradients, resamples, leaving one out) is done for each pattern.
 
-use super::ballot::{Outcome, ShownBallot};
+use super::ballot::ShownBallot;
 use super::pairs::{Pair, Pairs};
-use std::collections::BTreeMap;
 
 /// The distinct patterns of answers, and how many participants have each.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,28 +22,28 @@ impl Participants {
     /// Everyone with a ballot about two different items. The order of ballots does not matter.
     pub fn of(items: usize, ballots: &[ShownBallot]) -> Self {
         let useful = |b: &&ShownBallot| b.left() != b.right();
-        let mut sorted: Vec<(usize, usize, usize, Outcome)> = ballots
-            .iter()
-            .filter(useful)
-            .map(|b| (b.participant(), b.left(), b.right(), b.outcome()))
-            .collect();
-        sorted.sort_unstable();
+        let mut own: Vec<&ShownBallot> = ballots.iter().filter(useful).collect();
+        // Files have one participant after the other: then there is nothing to sort.
+        own.sort_by_key(|b| b.participant());
         let mut shown: Vec<(usize, usize)> = Vec::new();
-        for &(_, left, right, _) in &sorted {
-            if let Err(place) = shown.binary_search(&(left, right)) {
-                shown.insert(place, (left, right));
+        for pair in own.iter().map(|b| (b.left(), b.right())) {
+            if let Err(place) = shown.binary_search(&pair) {
+                shown.insert(place, pair);
             }
         }
-        let mut counts: BTreeMap<Vec<[u32; 3]>, u64> = BTreeMap::new();
-        for of in sorted.chunk_by(|a, b| a.0 == b.0) {
+        let pattern = |of: &[&ShownBallot]| {
             let mut pattern = vec![[0; 3]; shown.len()];
-            for &(_, left, right, outcome) in of {
-                let place = shown.binary_search(&(left, right)).expect("collected above");
-                pattern[place][outcome.index()] += 1;
+            for b in of {
+                let place = shown.binary_search(&(b.left(), b.right())).expect("collected above");
+                pattern[place][b.outcome().index()] += 1;
             }
-            *counts.entry(pattern).or_default() += 1;
-        }
-        let (patterns, counts) = counts.into_iter().unzip();
+            pattern
+        };
+        let mut all: Vec<Vec<[u32; 3]>> =
+            own.chunk_by(|a, b| a.participant() == b.participant()).map(pattern).collect();
+        all.sort_unstable();
+        let (patterns, counts) =
+            all.chunk_by(|a, b| a == b).map(|alike| (alike[0].clone(), alike.len() as u64)).unzip();
         Self { items, shown, patterns, counts }
     }
 
@@ -104,7 +103,7 @@ impl Participants {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::golden;
+    use crate::{Outcome, golden};
 
     #[test]
     fn patterns_add_up_to_the_ballots() {

@@ -66,7 +66,7 @@ impl Difference {
 }
 
 /// Log-odds as just-objectionable differences: 1 where three in four decided answers prefer the better (Perez-Ortiz and
-/// Mantiuk 2017, arXiv:1712.03686, section 2; pwcmp). They take a normal distribution of judgements, the models here a
+/// Mantiuk 2017, arXiv:1712.03686; pwcmp). They take a normal distribution of judgements, the models here a
 /// logistic one, so that the two scales agree at 0 and at 1 and bend apart beyond. Ends of intervals go the same way.
 pub fn jod(log_odds: f64) -> f64 {
     log_odds / 3.0_f64.ln()

@@ -115,7 +115,8 @@ fn rao_kupper_as_a_direct_maximum_in_r() {
 
 #[test]
 fn two_items_in_closed_form() {
-    // STATISTICS 3.4 and 3.6: Davidson ln(36/10) = 1.2809, nu = 8 / sqrt(360) = 0.4216; Rao-Kupper 1.0874, theta 1.4832.
+    // Davidson ln(36/10) = 1.2809, nu = 8 / sqrt(360) = 0.4216; Rao-Kupper, whose odds of winning are P / (1 - P):
+    // ln(36 * 44 / (10 * 18)) / 2 = 1.0874, theta = sqrt(18 * 44 / (36 * 10)) = 1.4832.
     let pairs = Pairs::new(2, [(0, 1, [36., 8., 10.])]);
     let davidson = fit(Model::Davidson, &pairs).unwrap();
     close(-davidson.log_worths[1], 1.280_933_845_462_064, 1e-12);

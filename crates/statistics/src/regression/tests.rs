@@ -64,7 +64,7 @@ fn with_ties_as_a_log_linear_model_has_it() {
 
 #[test]
 fn two_items_are_the_saturated_davidson_model() {
-    // 36 : 8 : 10 (STATISTICS 3.4): ln 3.6 = 1.2809, nu = 8 / sqrt(360) = 0.4216.
+    // 36 : 8 : 10: ln 3.6 = 1.2809, nu = 8 / sqrt(360) = 0.4216.
     let answer = |participant: usize, outcome| ShownBallot::new(participant, 0, [0, 1], outcome);
     let counts = [(36, Outcome::Left), (8, Outcome::Tie), (10, Outcome::Right)];
     let ballots: Vec<ShownBallot> =

@@ -8,7 +8,7 @@ fn close(got: f64, want: f64) {
 
 #[test]
 fn binomial_as_scipy_has_it() {
-    // SciPy 1.17.1: binomtest(14, 18).pvalue and so on; statement of STATISTICS 3.3 on 10 decided answers.
+    // SciPy 1.17.1: binomtest(14, 18).pvalue and so on.
     close(binomial(14, 4), 0.030_883_789_062_5);
     close(binomial(84, 56), 0.022_154_955_980_559_547);
     close(binomial(0, 7), 0.015_625);
