@@ -59,7 +59,7 @@ fn holes_are_loops() {
 
 #[test]
 fn a_fin_is_one_duplicate_one_fold_and_one_non_manifold_edge() {
-    // FACTS of the published meshes: every fin adds 1 to the Euler characteristic and no non-manifold vertex.
+    // Published meshes: every fin adds 1 to the Euler characteristic and no non-manifold vertex.
     let mut fin = cube();
     fin.positions.push([0.5, -1.0, 0.0].into());
     fin.triangles.extend([[0, 1, 8], [1, 0, 8]]);

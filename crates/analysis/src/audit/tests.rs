@@ -25,14 +25,14 @@ fn the_papers_answers() {
     assert_eq!(found(Probe::SwappedKey).finding, Finding::NotAnswerable);
     let odd = found(Probe::OddRespondent);
     assert_eq!(odd.finding, Finding::Found);
-    // STATISTICS 1.5.
+    // Counted apart from this program.
     assert_eq!(
         odd.evidence,
         "respondent 16 agrees with the others' majority on 37 %; everybody else on 64 to 95 %"
     );
     let object = found(Probe::ObjectInteraction);
     assert_eq!(object.finding, Finding::Found);
-    // STATISTICS 1.4: 44 against 5 of 54 on the sphere, 40 against 51 of 108 on the others.
+    // Counted by hand: 44 against 5 of 54 on the sphere, 40 against 51 of 108 on the others.
     assert!(object.evidence.contains("(arrangement) on sphere: mean"), "{object:?}");
     assert_eq!(found(Probe::CopiedRows).finding, Finding::NotFound);
     assert_eq!(found(Probe::Separation).finding, Finding::NotFound);

@@ -8,7 +8,7 @@ fn counted(study: &Study) -> Tally {
 
 #[test]
 fn the_twelve_group_factors() {
-    // FACTS 9 and STATISTICS 1.1: wins, ties and answers, inverted from the published table and counted anew in numpy.
+    // Wins, ties and answers, inverted from the published table and counted anew in numpy.
     let study = fixture::study();
     let want = [
         ("B", "bu", 17, 19, 162),
@@ -56,7 +56,7 @@ fn the_six_sums_and_five_margins() {
 
 #[test]
 fn wins_per_object() {
-    // Added up by hand from the wins per question of FACTS 9; the rest to 54 are ties.
+    // Added up by hand from the wins per question as published; the rest to 54 are ties.
     let study = fixture::study();
     let tally = counted(&study);
     let names: Vec<&str> = study.file.objects.iter().map(|o| o.name.as_str()).collect();
@@ -84,7 +84,7 @@ fn direct_contests_of_arrangements() {
         let contest = contests.iter().find(|c| c.object == object && c.group == group).unwrap();
         (contest.body_centred, contest.none, contest.simple_cubic)
     };
-    // STATISTICS 1.3, 1.4 and 3.12.
+    // Counted by hand.
     assert_eq!(find(None, None), (84, 22, 56));
     assert_eq!(find(Some(0), None), (44, 5, 5));
     let (asteroid, bunny) = (find(Some(1), None), find(Some(2), None));
@@ -98,7 +98,7 @@ fn pooled_sides_and_pairs() {
     let tally = counted(&study);
     let sum = |of: fn(&crate::QuestionCount) -> u64| tally.questions.iter().map(of).sum::<u64>();
     assert_eq!((sum(|q| q.left), sum(|q| q.none), sum(|q| q.right)), (144, 49, 293));
-    // STATISTICS 3.12: first / none / second, pooled over objects.
+    // Counted by hand: first / none / second, pooled over objects.
     let pair = |left: &str, right: &str| {
         let shown =
             |c: &design::Comparison| c.left.method.to_string() == left && c.right.method.to_string() == right;

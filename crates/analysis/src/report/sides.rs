@@ -7,8 +7,8 @@ use crate::audit::{Finding as Verdict, Probe};
 use crate::table::Table;
 use design::contrast::{Level, Over, contrasts};
 use statistics::{
-    Model, Pairs, Participants, Separation, ShownBallot, SideDesign, clustered_covariance, fit, has_spread,
-    separation, side_design,
+    Model, Pairs, Participants, Separation, ShownBallot, Side, SideBound, SideDesign, clustered_covariance,
+    fit, has_spread, separation, side_bound, side_design,
 };
 use std::collections::BTreeMap;
 
@@ -157,8 +157,18 @@ fn estimate(name: &str, ballots: &[ShownBallot], items: usize) -> Option<String>
     if separation(&pairs) != Separation::None {
         return None;
     }
-    let fitted = fit(Model::DavidsonSide, &pairs).ok().filter(|fit| !fit.penalised())?;
     let participants = Participants::of(items, ballots);
+    if let Some(SideBound { side, at_least }) = side_bound(&participants) {
+        let side = match side {
+            Side::Left => "left",
+            Side::Right => "right",
+        };
+        return Some(format!(
+            "at least {} for the {side}, without an upper bound, in group {name}",
+            number(at_least, 2)
+        ));
+    }
+    let fitted = fit(Model::DavidsonSide, &pairs).ok().filter(|fit| !fit.penalised())?;
     let covariance = clustered_covariance(&fitted, &participants)?;
     let place = fitted.parameters.len() - 1;
     let side = fitted.side?;

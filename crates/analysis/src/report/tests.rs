@@ -99,7 +99,7 @@ fn the_papers_answers() {
         report.lead[0],
         "18 participants gave 486 answers to 27 questions about 3 objects (sphere, asteroid and bunny)."
     );
-    // The numbers are STATISTICS 3.12's.
+    // The numbers are those of docs/statistics.md.
     let holds = texts(&report, "holds");
     assert!(holds.contains(
         &"Integrated clustering was preferred to edge collapse: 67 answers against 18, 23 without preference. Mean score 0.45 \

@@ -175,7 +175,7 @@ mod tests {
             (of("left_out"), of("respondents"), of("mean")),
             ("1".into(), "16".into(), "0.173".into())
         );
-        // p without 16 is one end of the leave-one-out range or inside it: STATISTICS 3.12, 0.0063 to 0.0188.
+        // p without 16 is one end of the leave-one-out range or inside it: docs/statistics.md, 0.0063 to 0.0188.
         let Cell::P(p, _) = cell(&table, &["odd", "B-S", "all"], "p_without") else { panic!("no p") };
         assert!((0.0062..0.0189).contains(&p), "{p}");
         let kept: Vec<DeclaredBallot> =

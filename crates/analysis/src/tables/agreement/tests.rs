@@ -25,7 +25,7 @@ fn the_papers_participants() {
 
 #[test]
 fn respondent_sixteen_stands_out() {
-    // STATISTICS 1.5.
+    // Counted apart from this program.
     let study = fixture::study();
     let table = respondents(&ballots(&study, &fixture::answers(&study)), &Protocol::default());
     assert_eq!(table.rows.len(), 18);

@@ -21,7 +21,7 @@ fn the_papers_tests() {
         assert_eq!(found.len(), 1, "{start:?}");
         move |name: &str| found[0][header.iter().position(|h| *h == name).unwrap()].clone()
     };
-    // STATISTICS 3.12.
+    // docs/statistics.md.
     let overall = shown(&["pooled", "B-S", "all"]);
     let want = [
         ("first", "84"),
