@@ -278,10 +278,9 @@ fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
         ));
     }
     lead.extend(
-        evidence
-            .study
-            .and_then(|study| asked::instruction(study))
-            .map(|instruction| format!("What they were asked: {instruction}")),
+        evidence.study.and_then(|study| asked::instruction(study)).map(|instruction| {
+            format!("What they were asked: {}.", instruction.trim_end_matches(|c| c == '.'))
+        }),
     );
     lead.extend(evidence.assumptions.iter().cloned());
     lead.push(

@@ -11,6 +11,8 @@ use statistics::ScoreTest;
 
 /// So many comparisons that too few people lean on are told one by one, more of them together.
 const APART: usize = 3;
+/// Open dependences named at most; the table of tests has all.
+const NAMED: usize = 4;
 
 /// Blocks of three sections.
 #[derive(Default)]
@@ -262,7 +264,11 @@ fn dependences(evidence: &Evidence<'_>) -> Vec<Block> {
         }
     }
     if let Some(smallest) = open.iter().map(|h| h.adjusted).min_by(f64::total_cmp) {
-        let names: Vec<String> = open.iter().map(|h| names::hypothesis(evidence, h)).collect();
+        let mut names: Vec<String> =
+            open.iter().take(NAMED).map(|h| names::hypothesis(evidence, h)).collect();
+        if open.len() > NAMED {
+            names.push(format!("{} more", open.len() - NAMED));
+        }
         let text = format!(
             "For {} no difference was shown: {} (exact sign-flip tests, smallest corrected {}). That is not to say that there is \
              none.",
