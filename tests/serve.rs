@@ -89,7 +89,8 @@ fn what_is_not_meant_well_changes_nothing() {
     assert_eq!(status("/api/answers", &format!("{{\"token\":\"{}\"}}", "x".repeat(10_000))), 413);
     assert_eq!(status("/api/sessions", r#"{"prolific_pid":"<script>"}"#), 422);
     assert_eq!(status("/api/sessions", r#"{"ip":"1.2.3.4"}"#), 422);
-    let plain = "POST /api/answers HTTP/1.1\r\nhost: x\r\ncontent-length: 2\r\nconnection: close\r\n\r\n{}";
+    let plain =
+        "POST /api/answers HTTP/1.1\r\nhost: localhost\r\ncontent-length: 2\r\nconnection: close\r\n\r\n{}";
     assert_eq!(raw(at, plain.as_bytes()).unwrap().0, 415);
 
     // Files that are nobody's.
@@ -129,7 +130,7 @@ fn a_slow_client_is_cut_off_and_holds_up_nobody() {
     let fixture = bundled();
     let server = Server::start(&fixture, 0);
     let mut slow = TcpStream::connect(server.address).unwrap();
-    slow.write_all(b"POST /api/answers HTTP/1.1\r\nhost: x\r\n").unwrap();
+    slow.write_all(b"POST /api/answers HTTP/1.1\r\nhost: localhost\r\n").unwrap();
     let session = begin(server.address);
     assert_eq!(post(server.address, "/api/answers", &answer(&session, 0, "NP")).unwrap().0, 200);
     // The server gives up after ten seconds; the client would wait for a minute.

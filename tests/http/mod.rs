@@ -22,14 +22,14 @@ pub(crate) fn raw(address: SocketAddr, request: &[u8]) -> io::Result<Reply> {
 
 pub(crate) fn get(address: SocketAddr, path: &str, token: &str) -> io::Result<Reply> {
     let head = format!(
-        "GET {path} HTTP/1.1\r\nhost: here\r\nauthorization: Bearer {token}\r\nconnection: close\r\n\r\n"
+        "GET {path} HTTP/1.1\r\nhost: localhost\r\nauthorization: Bearer {token}\r\nconnection: close\r\n\r\n"
     );
     raw(address, head.as_bytes())
 }
 
 pub(crate) fn post(address: SocketAddr, path: &str, body: &str) -> io::Result<Reply> {
     let head = format!(
-        "POST {path} HTTP/1.1\r\nhost: here\r\ncontent-type: application/json\r\ncontent-length: {}\r\nconnection: close\r\n\r\n",
+        "POST {path} HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ncontent-length: {}\r\nconnection: close\r\n\r\n",
         body.len()
     );
     raw(address, &[head.as_bytes(), body.as_bytes()].concat())

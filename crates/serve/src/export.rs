@@ -82,13 +82,21 @@ pub fn lines<'a>(given: &'a [Given], key: &'a [KeyEntry]) -> Result<Vec<Line<'a>
     given.iter().map(line).collect()
 }
 
-/// Lines as CSV with a header, `\n` at the ends.
+/// Lines as CSV with a header, `\n` at the ends, and no formula to a spreadsheet: names come from files that a participant has had
+/// in hand.
 pub fn csv<T: Serialize>(lines: &[T], header: &[&str]) -> String {
-    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-    let written =
-        writer.write_record(header).and_then(|()| lines.iter().try_for_each(|line| writer.serialize(line)));
-    written.expect("memory takes everything");
-    String::from_utf8(writer.into_inner().expect("memory takes everything")).expect("texts are UTF-8")
+    let writer = || csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    let write = || -> Result<String, Box<dyn std::error::Error>> {
+        let (mut plain, mut safe) = (writer(), writer());
+        lines.iter().try_for_each(|line| plain.serialize(line))?;
+        safe.write_record(header)?;
+        let plain = plain.into_inner()?;
+        for record in csv::ReaderBuilder::new().has_headers(false).from_reader(&plain[..]).records() {
+            safe.write_record(record?.iter().map(|cell| responses::escape(cell).into_owned()))?;
+        }
+        Ok(String::from_utf8(safe.into_inner()?)?)
+    };
+    write().expect("memory takes everything, and texts are UTF-8")
 }
 
 /// The columns of [`Line`].
@@ -106,3 +114,22 @@ pub const HEADER: [&str; 12] = [
     "role",
     "stimulus",
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_becomes_a_formula_and_everything_comes_back() {
+        let names = ["=1+1", "+1", "-2", "@SUM(A1)", "'quoted'", "plain", "a,b", "two\nlines", "\"q\""];
+        let rows: Vec<_> = names.iter().map(|name| (name, 812)).collect();
+        let text = csv(&rows, &["participant", "rt_ms"]);
+        assert!(text.starts_with(
+            "participant,rt_ms\n'=1+1,812\n'+1,812\n'-2,812\n'@SUM(A1),812\n''quoted',812\nplain,812\n"
+        ));
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let back: Vec<String> =
+            reader.records().map(|row| responses::unescape(&row.unwrap()[0]).to_owned()).collect();
+        assert_eq!(back, names);
+    }
+}

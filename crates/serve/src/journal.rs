@@ -2,11 +2,15 @@
 //!
 //! Changes are made in batches: what arrives while one is being synced goes into the next, and each is answered after its
 //! batch was committed (write-ahead log, `synchronous = FULL`). A process that is killed loses nothing that was answered.
+//! Where a file is gone or was cut between two runs, `count` tells: it holds how much there was.
 //!
-//! Somebody is written down with the first answer; until then a form dealt is known in memory alone. Both files, and the folder
+//! Somebody is written down with the first answer; until then a form dealt is known in memory alone. All files, and the folder
 //! if it is made here, are their owner's alone. One process changes them at a time (`lock`); others may read meanwhile.
 
+mod copy;
 mod files;
+mod place;
+mod seal;
 mod summary;
 mod thread;
 mod waiting;
@@ -15,13 +19,16 @@ mod waiting;
 mod tests;
 
 pub use files::{Kept, kept};
+pub use seal::Held;
 pub use summary::Summary;
-pub use thread::{Handle, Unsaved, start};
+pub use thread::{Handle, Keeper, Unsaved, start};
 
 use crate::export::Given;
 use crate::record::{Answer, Choice, Identifiers, Refusal, check, first_place};
 use design::forms::{FormEntry, FormFile};
+use place::Place;
 use rusqlite::{Connection, params};
+use seal::{Seal, Sealed};
 use serde::Serialize;
 use std::collections::HashMap;
 use std::fs::File;
@@ -82,6 +89,44 @@ pub enum JournalError {
         /// The folder.
         path: PathBuf,
     },
+    /// There is less than there was.
+    #[error(
+        "{path}: holds {found}, and held {before} when a server last wrote to it. A file was removed, cut or put back from an \
+         older copy. Keep a copy of the folder and look for a better one, or accept the loss with --accept-loss"
+    )]
+    Lost {
+        /// The folder.
+        path: PathBuf,
+        /// What there is.
+        found: Held,
+        /// What there was.
+        before: Held,
+    },
+    /// What tells how much there was cannot be read.
+    #[error(
+        "{path}: the file `count` is damaged, so nobody can tell whether answers are missing; {found} are there. If that is \
+         right, start with --accept-loss"
+    )]
+    Damaged {
+        /// The folder.
+        path: PathBuf,
+        /// What there is.
+        found: Held,
+    },
+    /// The thread that keeps the answers has ended, which is a fault of the program.
+    #[error(
+        "the thread that saves answers has ended; what was acknowledged is saved, start the server again"
+    )]
+    Ended,
+}
+
+/// What to do where a folder holds less than it did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Loss {
+    /// Do not go on.
+    Refuse,
+    /// Go on with what there is.
+    Accept,
 }
 
 /// What a participant is dealt.
@@ -116,6 +161,9 @@ pub struct Journal {
     by_token: HashMap<String, usize>,
     by_identifiers: HashMap<Identifiers, usize>,
     waiting: Waiting,
+    held: Held,
+    seal: Seal,
+    place: Place,
     /// Held as long as the journal is.
     _lock: File,
 }
@@ -132,12 +180,20 @@ impl Journal {
     ///
     /// # Errors
     /// [`JournalError`].
-    pub fn open(folder: &Path, file: &FormFile, digest: &str) -> Result<Self, JournalError> {
-        let files::Opened { answers, identities, lock } = files::open(folder)?;
-        match files::study(&answers).map_err(|e| files::error(folder, e))? {
+    pub fn open(folder: &Path, file: &FormFile, digest: &str, loss: Loss) -> Result<Self, JournalError> {
+        let failed = |source| JournalError::Folder { path: folder.into(), source };
+        let database = |source| files::error(folder, source);
+        let lock = files::lock(folder)?;
+        let (seal, sealed) = Seal::open(folder).map_err(failed)?;
+        // SQLite throws away the log of a database that is gone, and with it what may still be saved.
+        if files::is_gone(folder) {
+            compare(folder, Held::default(), sealed, loss)?;
+        }
+        let files::Opened { answers, identities } = files::open(folder)?;
+        match files::study(&answers).map_err(database)? {
             None => {
                 let add = "INSERT INTO study VALUES (?1, ?2)";
-                answers.execute(add, params![file.study, digest]).map_err(|e| files::error(folder, e))?;
+                answers.execute(add, params![file.study, digest]).map_err(database)?;
             }
             Some((found, version)) if found != file.study || version != digest => {
                 return Err(JournalError::OtherStudy { path: folder.into(), found, version });
@@ -153,25 +209,72 @@ impl Journal {
             by_token: HashMap::new(),
             by_identifiers: HashMap::new(),
             waiting: Waiting::default(),
+            held: Held::default(),
+            seal,
+            place: Place::default(),
             _lock: lock,
         };
-        journal.load()?;
+        let nobodys = journal.read().map_err(database)?;
+        // Whatever SQLite makes beside its files it has made by now.
+        journal.place = Place::of(folder);
         let planned = journal.forms.len();
-        match journal.people.iter().map(|person| person.form).max() {
-            Some(form) if form > planned => {
-                Err(JournalError::FewerForms { path: folder.into(), form, planned })
-            }
-            _ => Ok(journal),
+        if let Some(form) =
+            journal.people.iter().map(|person| person.form).max().filter(|form| *form > planned)
+        {
+            return Err(JournalError::FewerForms { path: folder.into(), form, planned });
         }
+        let whole = compare(folder, journal.held, sealed, loss)?;
+        files::may_tidy(&journal.answers)
+            .and_then(|()| files::may_tidy(&journal.identities))
+            .map_err(database)?;
+        // After a loss they may be all that is left of somebody.
+        if whole {
+            journal.forget(&nobodys).map_err(database)?;
+        }
+        journal.seal().and_then(|()| journal.seal.sync()).map_err(failed)?;
+        Ok(journal)
     }
 
-    /// Reads what is on disk into memory; whoever is not there still waits.
-    fn load(&mut self) -> Result<(), JournalError> {
+    /// How much there is on disk.
+    pub fn held(&self) -> Held {
+        self.held
+    }
+
+    /// Writes down how much there is, for whoever opens the folder next.
+    fn seal(&mut self) -> std::io::Result<()> {
+        self.seal.write(self.held)
+    }
+
+    /// Takes back what was not committed, and reads again what was; whoever is not there still waits.
+    fn roll_back(&mut self) -> Result<(), JournalError> {
+        for database in [&self.answers, &self.identities] {
+            if !database.is_autocommit() {
+                drop(database.execute_batch("ROLLBACK"));
+            }
+        }
         self.waiting.turned_back();
-        self.read().map_err(|e| files::error(&self.folder, e))
+        let nobodys = self.read().map_err(|e| files::error(&self.folder, e))?;
+        let waits = |name: &String| self.waiting.iter().any(|newcomer| newcomer.name == *name);
+        let committed: Vec<String> = nobodys.into_iter().filter(waits).collect();
+        // Where that fails, the disk is full, say, they are written again with the first answer, or removed at the next start.
+        drop(self.forget(&committed));
+        Ok(())
     }
 
-    fn read(&mut self) -> rusqlite::Result<()> {
+    /// Removes the identifiers of those who have answered nothing.
+    fn forget(&self, names: &[String]) -> rusqlite::Result<()> {
+        if names.is_empty() {
+            return Ok(());
+        }
+        let transaction = self.identities.unchecked_transaction()?;
+        for name in names {
+            transaction.execute("DELETE FROM identities WHERE participant = ?1", [name])?;
+        }
+        transaction.commit()
+    }
+
+    /// Reads what is on disk into memory. Returns names with identifiers and without an answer.
+    fn read(&mut self) -> rusqlite::Result<Vec<String>> {
         self.people.clear();
         self.by_token.clear();
         self.by_identifiers.clear();
@@ -206,14 +309,19 @@ impl Journal {
         }
         let by_name: HashMap<&str, usize> =
             self.people.iter().enumerate().map(|(i, person)| (person.name.as_str(), i)).collect();
-        let mut found = HashMap::new();
+        let (mut found, mut nobodys) = (HashMap::new(), Vec::new());
+        self.held = Held { participants: self.people.len() as u64, ..Held::default() };
         for (name, identifiers) in files::identities(&self.identities)? {
             if let Some(&person) = by_name.get(name.as_str()) {
                 found.insert(identifiers, person);
+                self.held.identities += 1;
+            } else {
+                nobodys.push(name);
             }
         }
         self.by_identifiers = found;
-        Ok(())
+        self.held.answers = self.people.iter().map(|person| person.choices.len() as u64).sum();
+        Ok(nobodys)
     }
 
     /// Deals one of the forms with the fewest participants to somebody new, which one by chance, so that forms do not tell
@@ -248,7 +356,7 @@ impl Journal {
             since_ms: now_ms,
         };
         let dealt = self.welcome(&newcomer);
-        self.waiting.add(newcomer);
+        self.waiting.add(newcomer)?;
         Ok(dealt)
     }
 
@@ -276,7 +384,11 @@ impl Journal {
         let Some(newcomer) = self.waiting.take(token) else { return Ok(()) };
         let Newcomer { name, token, form, identifiers, since_ms } = newcomer;
         if !identifiers.is_empty() {
-            // There already if the batch was not written the first time.
+            // One transaction, and one sync, for all of a batch.
+            if !self.answers.is_autocommit() && self.identities.is_autocommit() {
+                self.identities.execute_batch("BEGIN IMMEDIATE")?;
+            }
+            // There already if it could not be removed after the answers' part of a batch failed.
             let add = "INSERT OR REPLACE INTO identities VALUES (?1, ?2, ?3, ?4)";
             let Identifiers { prolific_pid, study_id, session_id } = identifiers;
             self.identities.execute(add, params![name, prolific_pid, study_id, session_id])?;
@@ -295,7 +407,9 @@ impl Journal {
             finished: false,
         });
         self.by_token.insert(token.clone(), place);
+        self.held.participants += 1;
         if !identifiers.is_empty() {
+            self.held.identities += 1;
             self.by_identifiers.insert(identifiers.clone(), place);
         }
         Ok(())
@@ -345,6 +459,7 @@ impl Journal {
         self.answers.prepare_cached(touch)?.execute(params![person.number, now_ms])?;
         person.choices.push(answer.choice);
         person.last_ms = now_ms;
+        self.held.answers += 1;
         Ok(Ok(()))
     }
 
@@ -384,6 +499,19 @@ impl Journal {
     /// If SQLite fails.
     pub fn identities(&self) -> rusqlite::Result<Vec<(String, Identifiers)>> {
         files::identities(&self.identities)
+    }
+}
+
+/// Whether there is as much as there was; an error where there is less and the loss is not accepted.
+fn compare(folder: &Path, found: Held, sealed: Sealed, loss: Loss) -> Result<bool, JournalError> {
+    let path = folder.into();
+    match sealed {
+        Sealed::Held(before) if found.lacks(&before) && loss == Loss::Refuse => {
+            Err(JournalError::Lost { path, found, before })
+        }
+        Sealed::Damaged if loss == Loss::Refuse => Err(JournalError::Damaged { path, found }),
+        Sealed::Held(before) => Ok(!found.lacks(&before)),
+        Sealed::Nothing | Sealed::Damaged => Ok(false),
     }
 }
 

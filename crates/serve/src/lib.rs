@@ -15,10 +15,11 @@
 pub mod download;
 pub mod export;
 pub mod journal;
+mod log;
 pub mod page;
 pub mod record;
 mod server;
 pub mod share;
 
 pub use journal::random_hex;
-pub use server::{ServeError, Settings, serve};
+pub use server::{Limits, NoPublicUrl, PublicUrl, ServeError, Settings, serve};

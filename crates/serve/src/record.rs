@@ -84,6 +84,9 @@ pub enum Refusal {
     /// As many as can be.
     #[error("the study is full")]
     Full,
+    /// As many as can be have begun and not answered.
+    #[error("too many people have begun and not answered yet; try again in some minutes")]
+    Crowded,
 }
 
 impl Refusal {
@@ -99,6 +102,7 @@ impl Refusal {
             Self::TooLong => "too-long",
             Self::BadIdentifier(_) => "bad-identifier",
             Self::Full => "full",
+            Self::Crowded => "crowded",
         }
     }
 }

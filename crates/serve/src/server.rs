@@ -1,23 +1,32 @@
 //! The server: HTTP on a socket, the page, the stimuli, and what the page may ask.
 
+mod addresses;
 mod admin;
 mod api;
+mod connections;
+mod host;
 mod limits;
+mod pace;
 
-use crate::journal::{self, Handle, Journal, JournalError};
+pub use host::{NoPublicUrl, PublicUrl};
+pub use limits::Limits;
+
+use crate::journal::{self, Handle, Held, Journal, JournalError, Loss};
 use crate::page::{self, forms_js};
+use addresses::{Budgets, Peer};
 use axum::Router;
-use axum::body::Body;
+use axum::body::{Body, Bytes};
 use axum::extract::{Path as Matched, State};
-use axum::http::{HeaderName, HeaderValue, StatusCode, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use design::forms::{FormFile, KeyEntry};
 use std::collections::BTreeSet;
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
 use std::sync::Arc;
-use tokio::net::TcpListener;
+use std::sync::atomic::AtomicU64;
+use std::time::Duration;
 use tower_http::set_header::SetResponseHeaderLayer;
 
 /// What is served, and where.
@@ -39,6 +48,13 @@ pub struct Settings {
     pub admin_token: String,
     /// A code or an `https://` address for those who have finished.
     pub completion: Option<String>,
+    /// Where participants reach the server, if not at the address where it listens. There is a proxy on this machine then, which tells
+    /// whose requests it hands on.
+    pub public_url: Option<PublicUrl>,
+    /// What a client may cost.
+    pub limits: Limits,
+    /// What to do where there are fewer answers than there were.
+    pub loss: Loss,
 }
 
 /// Why the server did not run, or stopped.
@@ -66,18 +82,37 @@ pub enum ServeError {
 struct Shared {
     settings: Settings,
     journal: Handle,
-    forms_js: String,
+    forms_js: Bytes,
     stimuli: BTreeSet<String>,
+    /// New sessions of an address; `None` for any number.
+    sessions: Option<Budgets>,
+    /// Wrong researcher's tokens of an address.
+    tries: Budgets,
+    wrong_tokens: AtomicU64,
 }
+
+impl Shared {
+    /// Whoever sent a request.
+    fn client(&self, peer: Peer, headers: &HeaderMap) -> IpAddr {
+        addresses::client(peer, headers, self.settings.public_url.is_some())
+    }
+}
+
+/// In what time an address may begin as many sessions again.
+const SESSIONS_BACK: Duration = Duration::from_secs(100);
+/// Wrong tokens at once, and in what time they come back.
+const TRIES: (u32, Duration) = (10, Duration::from_secs(5));
+/// Bytes of a stimulus that are read at a time.
+const CHUNK: usize = 16 << 10;
 
 type Site = State<Arc<Shared>>;
 
 /// Serves until the process is told to stop (interrupt or terminate), then answers what has arrived and returns. `ready` is
-/// called with the address once it listens.
+/// called with the address once it listens, and with how much the folder of answers holds.
 ///
 /// # Errors
-/// [`ServeError`].
-pub fn serve(settings: Settings, ready: impl FnOnce(SocketAddr)) -> Result<(), ServeError> {
+/// [`ServeError`]; also when answers can no longer be kept, in which case whatever was acknowledged is on disk.
+pub fn serve(settings: Settings, ready: impl FnOnce(SocketAddr, Held)) -> Result<(), ServeError> {
     let stimuli: BTreeSet<String> = settings
         .file
         .forms
@@ -91,20 +126,32 @@ pub fn serve(settings: Settings, ready: impl FnOnce(SocketAddr)) -> Result<(), S
             return Err(ServeError::Stimulus(path));
         }
     }
-    let journal = Journal::open(&settings.answers, &settings.file, &settings.digest)?;
+    let journal = Journal::open(&settings.answers, &settings.file, &settings.digest, settings.loss)?;
+    let held = journal.held();
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
-    let (handle, keeper) = journal::start(journal);
-    let address = settings.address;
-    let forms_js = forms_js(&settings.file, &settings.digest, true);
-    let shared = Arc::new(Shared { settings, journal: handle, forms_js, stimuli });
+    let (handle, mut keeper) = journal::start(journal);
+    let Settings { address, limits, .. } = settings;
+    let forms_js = Bytes::from(forms_js(&settings.file, &settings.digest, true));
+    let most = limits.sessions_per_address;
+    let sessions = (most > 0).then(|| Budgets::new(most, SESSIONS_BACK));
+    let tries = Budgets::new(TRIES.0, TRIES.1);
+    let shared = Arc::new(Shared {
+        settings,
+        journal: handle,
+        forms_js,
+        stimuli,
+        sessions,
+        tries,
+        wrong_tokens: AtomicU64::new(0),
+    });
     let served = runtime.block_on(async {
-        let listener = TcpListener::bind(address).await?;
-        ready(listener.local_addr()?);
-        limits::run(listener, site(shared)).await
+        let listener = limits::listen(address)?;
+        ready(listener.local_addr()?, held);
+        limits::run(listener, site(shared), limits.stalled, keeper.ended()).await
     });
     // Tasks hold ways to the journal; without them its thread ends, with everything on disk.
     drop(runtime);
-    drop(keeper.join());
+    keeper.join()?;
     served.map_err(|source| ServeError::Socket { address, source })
 }
 
@@ -126,6 +173,7 @@ fn site(shared: Arc<Shared>) -> Router {
         .route("/{name}", get(|Matched(name): Matched<String>, site: Site| async move { file(&name, &site) }))
         .route("/stimuli/{name}", get(stimulus));
     limits::limited(asked.merge(pages))
+        .layer(axum::middleware::from_fn_with_state(Arc::clone(&shared), host::check))
         .layer(fixed("x-content-type-options", "nosniff"))
         .layer(fixed("referrer-policy", "no-referrer"))
         .layer(fixed(
@@ -165,7 +213,7 @@ async fn stimulus(Matched(name): Matched<String>, site: Site) -> Response {
         Err(_) => StatusCode::NOT_FOUND.into_response(),
         Ok(file) => {
             let length = file.metadata().await.map(|data| data.len()).unwrap_or_default();
-            let body = Body::from_stream(tokio_util::io::ReaderStream::with_capacity(file, 1 << 16));
+            let body = Body::from_stream(tokio_util::io::ReaderStream::with_capacity(file, CHUNK));
             let headers = [
                 (header::CONTENT_TYPE, HeaderValue::from_static("image/gif")),
                 (header::CONTENT_LENGTH, HeaderValue::from(length)),

@@ -1,16 +1,19 @@
 //! The files: `answers.sqlite`, `identities.sqlite`, and `lock`.
 
 use super::JournalError;
+use super::copy::Copied;
 use crate::export::Given;
 use crate::record::{Answer, Choice, Identifiers};
+use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags};
 use std::fs::{DirBuilder, File, OpenOptions, Permissions};
 use std::os::unix::fs::{DirBuilderExt, OpenOptionsExt, PermissionsExt};
 use std::path::Path;
 use std::time::Duration;
 
-const ANSWERS: &str = "answers.sqlite";
-const IDENTITIES: &str = "identities.sqlite";
+pub(super) const ANSWERS: &str = "answers.sqlite";
+pub(super) const IDENTITIES: &str = "identities.sqlite";
+pub(super) const LOCK: &str = "lock";
 
 const ANSWERS_SCHEMA: &str = "
     CREATE TABLE IF NOT EXISTS study (name TEXT NOT NULL, digest TEXT NOT NULL);
@@ -26,20 +29,30 @@ const IDENTITIES_SCHEMA: &str = "
     CREATE TABLE IF NOT EXISTS identities (
         participant TEXT PRIMARY KEY, prolific_pid TEXT, study_id TEXT, session_id TEXT) WITHOUT ROWID;";
 
-/// The files of a journal, which this process alone may change.
+/// Makes a folder if it is not there, and takes it for this process: two servers on one file would each know half of the
+/// participants.
+pub(super) fn lock(folder: &Path) -> Result<File, JournalError> {
+    let failed = |source| JournalError::Folder { path: folder.into(), source };
+    DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(failed)?;
+    let lock = owned(&folder.join(LOCK)).map_err(failed)?;
+    lock.try_lock().map_err(|_| JournalError::InUse { path: folder.into() })?;
+    Ok(lock)
+}
+
+/// Whether there is no database, or an empty one.
+pub(super) fn is_gone(folder: &Path) -> bool {
+    std::fs::metadata(folder.join(ANSWERS)).map_or(true, |found| found.len() == 0)
+}
+
+/// The databases of a journal.
 pub(super) struct Opened {
     pub(super) answers: Connection,
     pub(super) identities: Connection,
-    pub(super) lock: File,
 }
 
-/// Opens the files in a folder, and makes what is not there.
+/// Opens the databases in a folder, and makes what is not there. Until [`may_tidy`] the log of a damaged database stays as it is.
 pub(super) fn open(folder: &Path) -> Result<Opened, JournalError> {
     let failed = |source| JournalError::Folder { path: folder.into(), source };
-    DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(failed)?;
-    let lock = owned(&folder.join("lock")).map_err(failed)?;
-    // Two servers on one file would each know half of the participants.
-    lock.try_lock().map_err(|_| JournalError::InUse { path: folder.into() })?;
     let database = |name: &str, schema: &str| {
         let path = folder.join(name);
         // What SQLite puts beside it gets the same permissions.
@@ -47,6 +60,7 @@ pub(super) fn open(folder: &Path) -> Result<Opened, JournalError> {
         let open = || -> rusqlite::Result<Connection> {
             let connection = Connection::open(&path)?;
             connection.busy_timeout(Duration::from_millis(500))?;
+            connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
             connection.pragma_update(None, "journal_mode", "WAL")?;
             connection.pragma_update(None, "synchronous", "FULL")?;
             connection.execute_batch(schema)?;
@@ -54,14 +68,21 @@ pub(super) fn open(folder: &Path) -> Result<Opened, JournalError> {
         };
         open().map_err(|source| error(folder, source))
     };
-    let answers = database(ANSWERS, ANSWERS_SCHEMA)?;
-    let identities = database(IDENTITIES, IDENTITIES_SCHEMA)?;
-    Ok(Opened { answers, identities, lock })
+    Ok(Opened {
+        answers: database(ANSWERS, ANSWERS_SCHEMA)?,
+        identities: database(IDENTITIES, IDENTITIES_SCHEMA)?,
+    })
+}
+
+/// Nothing is missing: the log may be merged into the database, and removed, when it is closed.
+pub(super) fn may_tidy(database: &Connection) -> rusqlite::Result<()> {
+    database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, false).map(drop)
 }
 
 /// A file that nobody else may read, made if it is not there.
-fn owned(path: &Path) -> std::io::Result<File> {
-    let file = OpenOptions::new().write(true).create(true).truncate(false).mode(0o600).open(path)?;
+pub(super) fn owned(path: &Path) -> std::io::Result<File> {
+    let file =
+        OpenOptions::new().read(true).write(true).create(true).truncate(false).mode(0o600).open(path)?;
     file.set_permissions(Permissions::from_mode(0o600))?;
     Ok(file)
 }
@@ -125,25 +146,43 @@ pub struct Kept {
     pub given: Vec<Given>,
 }
 
-/// The answers to a study in a folder, whether or not a server is at work there. Nothing is changed.
+/// The answers to a study in a folder, whether or not a server is at work there, on media that cannot be written to as well.
+/// Nothing is changed.
 ///
 /// # Errors
 /// [`JournalError`]; [`JournalError::OtherStudy`] only for another study, not for another version of this one.
 pub fn kept(folder: &Path, study: &str) -> Result<Kept, JournalError> {
-    let read = || {
-        let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-        let mut connection = Connection::open_with_flags(folder.join(ANSWERS), flags)?;
-        connection.busy_timeout(Duration::from_secs(5))?;
-        connection.pragma_update(None, "query_only", true)?;
-        // One moment of a file that a server may be writing to.
-        let moment = connection.transaction()?;
-        Ok((self::study(&moment)?, given(&moment)?))
-    };
-    let (found, given) = read().map_err(|source| error(folder, source))?;
+    let (found, given) = match read(folder) {
+        // SQLite reads a log only where it may write beside it.
+        Err(error) if cannot_write(&error) => {
+            let failed = |source| JournalError::Folder { path: folder.into(), source };
+            let copy = Copied::of(folder).map_err(failed)?;
+            read(copy.folder())
+        }
+        found => found,
+    }
+    .map_err(|source| error(folder, source))?;
     match found {
         Some((found, version)) if found != study => {
             Err(JournalError::OtherStudy { path: folder.into(), found, version })
         }
         found => Ok(Kept { digest: found.map(|(_, digest)| digest).unwrap_or_default(), given }),
     }
+}
+
+type Found = (Option<(String, String)>, Vec<Given>);
+
+fn read(folder: &Path) -> rusqlite::Result<Found> {
+    let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let mut connection = Connection::open_with_flags(folder.join(ANSWERS), flags)?;
+    connection.busy_timeout(Duration::from_secs(5))?;
+    connection.pragma_update(None, "query_only", true)?;
+    // One moment of a file that a server may be writing to.
+    let moment = connection.transaction()?;
+    Ok((study(&moment)?, given(&moment)?))
+}
+
+fn cannot_write(error: &rusqlite::Error) -> bool {
+    use rusqlite::ErrorCode::{CannotOpen, PermissionDenied, ReadOnly};
+    matches!(error.sqlite_error_code(), Some(CannotOpen | PermissionDenied | ReadOnly))
 }

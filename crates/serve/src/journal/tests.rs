@@ -43,7 +43,7 @@ fn answer(order: u32, stimulus: &str, choice: Choice) -> Answer {
 #[test]
 fn answers_survive_and_repeats_change_nothing() {
     let folder = tempdir().unwrap();
-    let mut journal = Journal::open(folder.path(), &file(1), "d").unwrap();
+    let mut journal = Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap();
     let dealt = journal.begin(nobody(), 1).unwrap();
     assert_eq!((dealt.form.form, dealt.answered), (1, 0));
     let token = dealt.token.clone();
@@ -63,7 +63,7 @@ fn answers_survive_and_repeats_change_nothing() {
     let before = journal.given().unwrap();
     drop(journal);
 
-    let mut journal = Journal::open(folder.path(), &file(1), "d").unwrap();
+    let mut journal = Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap();
     assert_eq!(journal.given().unwrap(), before);
     assert_eq!(journal.state(&token).unwrap(), Dealt { answered: 2, ..dealt.clone() });
     assert_eq!(journal.state("f00"), Err(Refusal::UnknownToken));
@@ -97,7 +97,7 @@ fn key(forms: usize) -> Vec<design::forms::KeyEntry> {
 #[test]
 fn times_are_told_by_question() {
     let folder = tempdir().unwrap();
-    let mut journal = Journal::open(folder.path(), &file(2), "d").unwrap();
+    let mut journal = Journal::open(folder.path(), &file(2), "d", Loss::Refuse).unwrap();
     let key = key(2);
     for now in 0..2 {
         let dealt = journal.begin(nobody(), now).unwrap();
@@ -119,7 +119,7 @@ const LATE: u32 = crate::record::LONGEST_MS + 1;
 #[test]
 fn forms_are_dealt_evenly_even_when_people_give_up() {
     let folder = tempdir().unwrap();
-    let mut journal = Journal::open(folder.path(), &file(5), "d").unwrap();
+    let mut journal = Journal::open(folder.path(), &file(5), "d", Loss::Refuse).unwrap();
     let mut dealt = [0_u32; 5];
     for n in 0..23 {
         let one = journal.begin(nobody(), n).unwrap();
@@ -144,7 +144,7 @@ fn forms_are_dealt_evenly_even_when_people_give_up() {
 #[test]
 fn a_panels_people_come_back_and_are_kept_apart() {
     let folder = tempdir().unwrap();
-    let mut journal = Journal::open(folder.path(), &file(3), "d").unwrap();
+    let mut journal = Journal::open(folder.path(), &file(3), "d", Loss::Refuse).unwrap();
     let first = journal.begin(of_panel("s1"), 1).unwrap();
     assert_eq!(journal.begin(of_panel("s1"), 1).unwrap(), first, "before the first answer too");
     first_answer(&mut journal, &first, 2);
@@ -158,7 +158,7 @@ fn a_panels_people_come_back_and_are_kept_apart() {
         assert_eq!(journal.begin(of_panel(bad), 5), Err(Refusal::BadIdentifier("SESSION_ID")), "{bad}");
     }
     drop(journal);
-    let mut journal = Journal::open(folder.path(), &file(3), "d").unwrap();
+    let mut journal = Journal::open(folder.path(), &file(3), "d", Loss::Refuse).unwrap();
     assert_eq!(journal.begin(of_panel("s1"), 6).unwrap().token, first.token);
     assert_eq!(journal.identities().unwrap().len(), 2);
     drop(journal);
@@ -169,10 +169,16 @@ fn a_panels_people_come_back_and_are_kept_apart() {
 #[test]
 fn one_process_and_one_study_at_a_time() {
     let folder = tempdir().unwrap();
-    let journal = Journal::open(folder.path(), &file(1), "d").unwrap();
-    assert!(matches!(Journal::open(folder.path(), &file(1), "d"), Err(JournalError::InUse { .. })));
+    let journal = Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap();
+    assert!(matches!(
+        Journal::open(folder.path(), &file(1), "d", Loss::Refuse),
+        Err(JournalError::InUse { .. })
+    ));
     drop(journal);
-    assert!(matches!(Journal::open(folder.path(), &file(1), "e"), Err(JournalError::OtherStudy { .. })));
+    assert!(matches!(
+        Journal::open(folder.path(), &file(1), "e", Loss::Refuse),
+        Err(JournalError::OtherStudy { .. })
+    ));
 }
 
 /// Forms are numbered in the order of a study file's Latin square; who was dealt which must not tell who came first.
@@ -180,7 +186,7 @@ fn one_process_and_one_study_at_a_time() {
 fn forms_do_not_tell_who_came_when() {
     let first = || {
         let folder = tempdir().unwrap();
-        let mut journal = Journal::open(folder.path(), &file(50), "d").unwrap();
+        let mut journal = Journal::open(folder.path(), &file(50), "d", Loss::Refuse).unwrap();
         (0..50).map(|now| journal.begin(nobody(), now).unwrap().form.form).collect::<Vec<_>>()
     };
     let (one, other) = (first(), first());
@@ -196,18 +202,21 @@ fn forms_do_not_tell_who_came_when() {
 #[test]
 fn whoever_only_looks_leaves_nothing_and_takes_no_place() {
     let folder = tempdir().unwrap();
-    let mut journal = Journal::open(folder.path(), &file(3), "d").unwrap();
-    for now in 0..30_000 {
+    let mut journal = Journal::open(folder.path(), &file(3), "d", Loss::Refuse).unwrap();
+    let early = journal.begin(nobody(), 0).unwrap();
+    for now in 0..12_000 {
         journal.begin(nobody(), now).unwrap();
     }
-    assert!(journal.waiting.iter().count() <= 10_000 && journal.people.is_empty());
+    assert!(journal.people.is_empty());
+    first_answer(&mut journal, &early, 12_000);
+    assert_eq!(journal.people.len(), 1, "whoever came first is not forgotten for those who came later");
     let dealt = journal.begin(of_panel("s1"), 30_001).unwrap();
     assert_eq!(journal.finish(&dealt.token, 30_002).unwrap(), Err(Refusal::Unfinished(3)));
     let wrong = answer(2, "x", Choice::L);
     assert_eq!(journal.answer(&dealt.token, &wrong, 30_002).unwrap(), Err(Refusal::OtherStimulus(2)));
-    assert!(journal.people.is_empty() && journal.identities().unwrap().is_empty());
+    assert!(journal.people.len() == 1 && journal.identities().unwrap().is_empty());
     first_answer(&mut journal, &dealt, 30_003);
-    assert_eq!((journal.people.len(), journal.given().unwrap().len()), (1, 1));
+    assert_eq!((journal.people.len(), journal.given().unwrap().len()), (2, 2));
     assert_eq!(journal.state(&dealt.token).unwrap().answered, 1);
 }
 
@@ -215,18 +224,41 @@ fn whoever_only_looks_leaves_nothing_and_takes_no_place() {
 #[test]
 fn more_participants_may_be_planned_later() {
     let folder = tempdir().unwrap();
-    let mut journal = Journal::open(folder.path(), &file(3), "d").unwrap();
+    let mut journal = Journal::open(folder.path(), &file(3), "d", Loss::Refuse).unwrap();
     for now in 0..3 {
         let dealt = journal.begin(nobody(), now).unwrap();
         first_answer(&mut journal, &dealt, now);
     }
     drop(journal);
-    let mut journal = Journal::open(folder.path(), &file(5), "d").unwrap();
+    let mut journal = Journal::open(folder.path(), &file(5), "d", Loss::Refuse).unwrap();
     assert_eq!(journal.given().unwrap().len(), 3);
     assert!(journal.begin(nobody(), 4).unwrap().form.form > 3);
     drop(journal);
-    let fewer = Journal::open(folder.path(), &file(2), "d").map(|_| ()).unwrap_err();
+    let fewer = Journal::open(folder.path(), &file(2), "d", Loss::Refuse).map(|_| ()).unwrap_err();
     assert!(matches!(fewer, JournalError::FewerForms { form: 3, planned: 2, .. }), "{fewer}");
+}
+
+/// What a server leaves behind that is killed after so many people gave one answer each; every second is of a panel.
+fn killed(people: usize) -> tempfile::TempDir {
+    let folder = tempdir().unwrap();
+    let (handle, keeper) = start(Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap());
+    let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
+    for person in 0..people {
+        let change = handle.change(move |journal| {
+            let identifiers = if person % 2 == 0 { nobody() } else { of_panel(&format!("s{person}")) };
+            let dealt = journal.begin(identifiers, 1).unwrap();
+            journal.answer(&dealt.token, &answer(2, "a1", Choice::L), 2)
+        });
+        runtime.block_on(change).unwrap().unwrap();
+    }
+    let image = tempdir().unwrap();
+    for entry in std::fs::read_dir(folder.path()).unwrap() {
+        let path = entry.unwrap().path();
+        std::fs::copy(&path, image.path().join(path.file_name().unwrap())).unwrap();
+    }
+    drop(handle);
+    keeper.join().unwrap();
+    image
 }
 
 #[test]
@@ -234,7 +266,7 @@ fn answers_can_be_read_while_a_server_has_them_and_by_nobody_else() {
     use std::os::unix::fs::PermissionsExt;
     let above = tempdir().unwrap();
     let folder = above.path().join("answers/trial");
-    let mut journal = Journal::open(&folder, &file(1), "d").unwrap();
+    let mut journal = Journal::open(&folder, &file(1), "d", Loss::Refuse).unwrap();
     let dealt = journal.begin(of_panel("s1"), 1).unwrap();
     first_answer(&mut journal, &dealt, 2);
     let found = kept(&folder, "trial").unwrap();
@@ -258,7 +290,7 @@ fn answers_can_be_read_while_a_server_has_them_and_by_nobody_else() {
 #[test]
 fn a_failed_batch_leaves_nothing_behind() {
     let folder = tempdir().unwrap();
-    let (handle, keeper) = start(Journal::open(folder.path(), &file(1), "d").unwrap());
+    let (handle, keeper) = start(Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap());
     let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
     let dealt =
         runtime.block_on(handle.change(|journal| Ok(journal.begin(of_panel("s"), 1)))).unwrap().unwrap();
@@ -269,6 +301,8 @@ fn a_failed_batch_leaves_nothing_behind() {
     });
     assert_eq!(runtime.block_on(fails), Err(Unsaved));
     assert_eq!(runtime.block_on(handle.change(|journal| journal.given())).unwrap(), []);
+    let known = runtime.block_on(handle.change(|journal| journal.identities())).unwrap();
+    assert_eq!(known, [], "nobody's identifiers are kept without an answer");
     let again = runtime.block_on(handle.change(|journal| Ok(journal.begin(of_panel("s"), 1)))).unwrap();
     assert_eq!(again.unwrap().token, dealt.token, "whoever sent it is still known");
     let token = dealt.token;
@@ -276,6 +310,151 @@ fn a_failed_batch_leaves_nothing_behind() {
     assert_eq!(runtime.block_on(kept), Ok(Ok(())));
     drop(handle);
     keeper.join().unwrap();
-    let journal = Journal::open(folder.path(), &file(1), "d").unwrap();
+    let journal = Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap();
     assert_eq!(journal.given().unwrap()[0].answer.choice, Choice::R);
+}
+
+/// SQLite starts without a word on a database whose log was removed or cut.
+#[test]
+fn lost_answers_are_noticed_at_the_start() {
+    type Damage = fn(&Path);
+    let damages: [(&str, Damage); 7] = [
+        ("log removed", |folder| std::fs::remove_file(folder.join("answers.sqlite-wal")).unwrap()),
+        ("log cut in half", |folder| {
+            let log =
+                std::fs::OpenOptions::new().write(true).open(folder.join("answers.sqlite-wal")).unwrap();
+            log.set_len(log.metadata().unwrap().len() / 2).unwrap();
+        }),
+        ("log overwritten", |folder| {
+            let mut log = std::fs::read(folder.join("answers.sqlite-wal")).unwrap();
+            let middle = log.len() / 2;
+            log[middle..middle + 64].fill(b'x');
+            std::fs::write(folder.join("answers.sqlite-wal"), log).unwrap();
+        }),
+        ("database removed", |folder| std::fs::remove_file(folder.join("answers.sqlite")).unwrap()),
+        ("database emptied", |folder| std::fs::write(folder.join("answers.sqlite"), "").unwrap()),
+        ("identities removed", |folder| {
+            std::fs::remove_file(folder.join("identities.sqlite")).unwrap();
+            std::fs::remove_file(folder.join("identities.sqlite-wal")).unwrap();
+        }),
+        ("count overwritten", |folder| std::fs::write(folder.join("count"), "many").unwrap()),
+    ];
+    let open = |folder: &Path, loss| Journal::open(folder, &file(1), "d", loss);
+    let whole = killed(30);
+    assert_eq!(
+        open(whole.path(), Loss::Refuse).unwrap().held(),
+        Held { answers: 30, participants: 30, identities: 15 }
+    );
+    for (what, damage) in damages {
+        let folder = killed(30);
+        damage(folder.path());
+        let log = || std::fs::read(folder.path().join("answers.sqlite-wal")).unwrap_or_default();
+        let before = log();
+        for _ in 0..2 {
+            let refused = open(folder.path(), Loss::Refuse).map(|journal| journal.held()).unwrap_err();
+            assert!(
+                matches!(refused, JournalError::Lost { .. } | JournalError::Damaged { .. }),
+                "{what}: {refused}"
+            );
+            assert!(refused.to_string().contains("--accept-loss"), "{what}: {refused}");
+        }
+        assert!(before.is_empty() || log() == before, "{what}: the log is left as it is");
+        let held = open(folder.path(), Loss::Accept).unwrap().held();
+        assert_eq!(
+            open(folder.path(), Loss::Refuse).unwrap().held(),
+            held,
+            "{what}: what is left is counted anew"
+        );
+    }
+}
+
+/// A folder from before there was a count, and one whose server was killed before it wrote it.
+#[test]
+fn more_than_was_counted_is_no_loss() {
+    let folder = killed(3);
+    std::fs::remove_file(folder.path().join("count")).unwrap();
+    assert_eq!(Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap().held().answers, 3);
+    let mut seal = seal::Seal::open(folder.path()).unwrap().0;
+    seal.write(Held { answers: 2, participants: 2, identities: 0 }).unwrap();
+    assert_eq!(Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap().held().answers, 3);
+}
+
+/// A kill between the two commits leaves identifiers without an answer.
+#[test]
+fn identifiers_without_an_answer_are_removed() {
+    let folder = killed(4);
+    let add = || {
+        let database = Connection::open(folder.path().join("identities.sqlite")).unwrap();
+        database.execute("INSERT INTO identities VALUES ('f00', '5f9', '61a', 's9')", []).unwrap();
+    };
+    let known = |loss| {
+        let journal = Journal::open(folder.path(), &file(1), "d", loss).unwrap();
+        journal.identities().unwrap().len()
+    };
+    add();
+    assert_eq!(known(Loss::Refuse), 2);
+    add();
+    std::fs::remove_file(folder.path().join("answers.sqlite")).unwrap();
+    assert_eq!(known(Loss::Accept), 3, "after a loss they are all that is left of somebody");
+}
+
+/// Removed, put back, and replaced by a copy while the server runs.
+#[test]
+fn a_folder_that_is_gone_takes_no_answers() {
+    let above = tempdir().unwrap();
+    let [folder, aside] = ["answers", "aside"].map(|name| above.path().join(name));
+    let (handle, keeper) = start(Journal::open(&folder, &file(1), "d", Loss::Refuse).unwrap());
+    let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
+    let look = || runtime.block_on(handle.change(|journal| journal.given().map(|given| given.len())));
+    assert_eq!(look(), Ok(0));
+    std::fs::rename(&folder, &aside).unwrap();
+    assert_eq!(look(), Err(Unsaved));
+    std::fs::rename(&aside, &folder).unwrap();
+    assert_eq!(look(), Ok(0));
+    for name in ["answers.sqlite", "answers.sqlite-wal", "identities.sqlite", "identities.sqlite-wal", "lock"]
+    {
+        let [there, gone] = [folder.join(name), above.path().join("gone")];
+        std::fs::rename(&there, &gone).unwrap();
+        assert_eq!(look(), Err(Unsaved), "{name} removed");
+        std::fs::copy(&gone, &there).unwrap();
+        assert_eq!(look(), Err(Unsaved), "{name} replaced");
+        std::fs::rename(&gone, &there).unwrap();
+        assert_eq!(look(), Ok(0), "{name} back");
+    }
+    drop(handle);
+    keeper.join().unwrap();
+}
+
+#[test]
+fn whoever_waits_for_the_threads_end_learns_of_it() {
+    let folder = tempdir().unwrap();
+    let (handle, mut keeper) = start(Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap());
+    let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
+    let wrong = handle.change(|_| -> rusqlite::Result<()> { panic!("as this test wants") });
+    assert_eq!(runtime.block_on(wrong), Err(Unsaved));
+    runtime.block_on(keeper.ended());
+    assert!(matches!(keeper.join(), Err(JournalError::Ended)));
+}
+
+/// Where nothing can be written SQLite reads no log; root can write everywhere, so the copy is looked at by itself too.
+#[test]
+fn answers_are_read_where_nothing_can_be_written() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = killed(5);
+    std::fs::remove_file(folder.path().join("answers.sqlite-shm")).unwrap();
+    let copied = copy::Copied::of(folder.path()).unwrap();
+    let path = copied.folder().to_owned();
+    assert_eq!(kept(&path, "trial").unwrap().given.len(), 5, "the log is copied too");
+    assert!(!path.join("identities.sqlite").exists());
+    drop(copied);
+    assert!(!path.exists());
+
+    let mode = |path: &Path, mode| std::fs::set_permissions(path, PermissionsExt::from_mode(mode)).unwrap();
+    let paths: Vec<PathBuf> =
+        std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.iter().for_each(|path| mode(path, 0o400));
+    mode(folder.path(), 0o500);
+    let found = kept(folder.path(), "trial").map(|kept| kept.given.len());
+    mode(folder.path(), 0o700);
+    assert_eq!(found.unwrap(), 5);
 }

@@ -1,12 +1,16 @@
 //! The one thread that has the journal.
 
-use super::Journal;
-use std::sync::mpsc::{Receiver, Sender, channel};
+use super::{Journal, JournalError};
+use crate::log;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
+use std::time::Duration;
 use tokio::sync::oneshot;
 
 /// Most changes in one batch.
 const BATCH: usize = 512;
+/// How often the folder is looked at when nobody answers.
+const LOOK: Duration = Duration::from_millis(500);
 
 /// What is said after the batch was committed.
 type Reply = Box<dyn FnOnce() + Send>;
@@ -42,36 +46,131 @@ impl Handle {
     }
 }
 
-/// Gives the journal to a thread, which ends, with everything on disk, when all handles are gone.
-pub fn start(journal: Journal) -> (Handle, JoinHandle<()>) {
-    let (work, waiting) = channel();
-    (Handle { work }, std::thread::spawn(move || keep(journal, &waiting)))
+/// The thread that has the journal.
+#[derive(Debug)]
+pub struct Keeper {
+    thread: JoinHandle<Result<(), JournalError>>,
+    ended: oneshot::Receiver<()>,
 }
 
-fn keep(mut journal: Journal, waiting: &Receiver<Work>) {
-    while let Ok(first) = waiting.recv() {
-        let batch = std::iter::once(first).chain(std::iter::from_fn(|| waiting.try_recv().ok())).take(BATCH);
-        match commit(&mut journal, batch.collect()) {
-            Ok(replies) => replies.into_iter().for_each(|reply| reply()),
+impl Keeper {
+    /// Waits until the thread ends, for whatever reason.
+    pub async fn ended(&mut self) {
+        // Nothing is ever sent: the other side is dropped, by a panic too.
+        drop((&mut self.ended).await);
+    }
+
+    /// Waits for the thread's end, which comes when all handles are gone.
+    ///
+    /// # Errors
+    /// If it ended for another reason, after which nothing was acknowledged.
+    pub fn join(self) -> Result<(), JournalError> {
+        self.thread.join().unwrap_or(Err(JournalError::Ended))
+    }
+}
+
+/// Gives the journal to a thread, which ends, with everything on disk, when all handles are gone.
+pub fn start(journal: Journal) -> (Handle, Keeper) {
+    let (work, waiting) = channel();
+    let (alive, ended) = oneshot::channel();
+    let thread = std::thread::spawn(move || {
+        let _alive: oneshot::Sender<()> = alive;
+        keep(journal, &waiting)
+    });
+    (Handle { work }, Keeper { thread, ended })
+}
+
+fn keep(mut journal: Journal, waiting: &Receiver<Work>) -> Result<(), JournalError> {
+    let mut trouble = Trouble::default();
+    loop {
+        let first = match waiting.recv_timeout(LOOK) {
+            Ok(first) => Some(first),
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => {
+                trouble.seal(journal.seal().and_then(|()| journal.seal.sync()));
+                return Ok(());
+            }
+        };
+        let more = std::iter::from_fn(|| waiting.try_recv().ok());
+        let batch: Vec<Work> = first.into_iter().chain(more).take(BATCH).collect();
+        // Whoever waits learns that nothing was saved since the replies are gone.
+        if trouble.missing(&journal) || batch.is_empty() {
+            continue;
+        }
+        let before = journal.held;
+        match commit(&mut journal, batch) {
+            Ok(replies) => {
+                if journal.held != before {
+                    trouble.saved();
+                }
+                trouble.seal(journal.seal());
+                replies.into_iter().for_each(|reply| reply());
+            }
             Err(error) => {
-                // Whoever waits learns of it since the replies are gone. Memory must know no more than the disk does.
-                eprintln!("answers could not be saved: {error}");
-                if !journal.answers.is_autocommit() {
-                    drop(journal.answers.execute_batch("ROLLBACK"));
-                }
-                if let Err(error) = journal.load() {
-                    eprintln!("the answers cannot be read any more: {error}");
-                    return;
-                }
+                trouble.unsaved(&error);
+                // Memory must know no more than the disk does.
+                journal.roll_back()?;
             }
         }
     }
 }
 
+/// The identities first: an answer is never there without the identifiers of who gave it, and identifiers without an answer,
+/// which a kill between the two leaves, are removed when the journal is opened.
 fn commit(journal: &mut Journal, batch: Vec<Work>) -> rusqlite::Result<Vec<Reply>> {
     journal.answers.execute_batch("BEGIN IMMEDIATE")?;
     let replies = batch.into_iter().map(|work| work(journal)).collect::<rusqlite::Result<Vec<_>>>()?;
+    if !journal.identities.is_autocommit() {
+        journal.identities.execute_batch("COMMIT")?;
+    }
     journal.answers.execute_batch("COMMIT")?;
     journal.waiting.arrived();
     Ok(replies)
+}
+
+/// What is wrong, so that each trouble is told once, and its end too.
+#[derive(Default)]
+struct Trouble {
+    missing: bool,
+    unsaved: Option<String>,
+    seal: Option<String>,
+}
+
+impl Trouble {
+    /// Whether what is open is no longer what the folder shows.
+    fn missing(&mut self, journal: &Journal) -> bool {
+        let missing = journal.place.missing();
+        match missing {
+            Some(path) if !self.missing => log::note(format!(
+                "{}: removed or replaced while the server runs; no answer is taken until it is back",
+                path.display()
+            )),
+            None if self.missing => log::note("the folder of answers is back; answers are taken again"),
+            _ => {}
+        }
+        self.missing = missing.is_some();
+        self.missing
+    }
+
+    fn unsaved(&mut self, error: &rusqlite::Error) {
+        let error = error.to_string();
+        if self.unsaved.as_ref() != Some(&error) {
+            log::note(format!("answers cannot be saved: {error}"));
+            self.unsaved = Some(error);
+        }
+    }
+
+    fn saved(&mut self) {
+        if self.unsaved.take().is_some() {
+            log::note("answers are saved again");
+        }
+    }
+
+    fn seal(&mut self, written: std::io::Result<()>) {
+        let error = written.err().map(|error| error.to_string());
+        if let Some(error) = error.as_ref().filter(|_| self.seal != error) {
+            log::note(format!("the count of answers could not be written: {error}"));
+        }
+        self.seal = error;
+    }
 }

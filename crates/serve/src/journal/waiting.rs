@@ -1,11 +1,12 @@
 //! People who were dealt a form and have answered nothing yet. They are in memory alone: who only looks leaves no trace, and
 //! whoever asks for forms without end fills nothing.
 
-use crate::record::Identifiers;
-use std::collections::VecDeque;
+use super::GIVEN_UP_MS;
+use crate::record::{Identifiers, Refusal};
+use std::collections::HashMap;
 
-/// Most who wait at a time; of more, those who came first are forgotten, and have to begin again.
-const MOST: usize = 10_000;
+/// Most who wait at a time: 40 MB. Of more, who comes last is refused; nobody is forgotten within two hours.
+const MOST: usize = 100_000;
 
 /// Somebody who was dealt a form.
 pub(super) struct Newcomer {
@@ -16,34 +17,47 @@ pub(super) struct Newcomer {
     pub(super) since_ms: i64,
 }
 
-/// Those who wait, in the order in which they came.
-#[derive(Default)]
+/// Those who wait, by token.
 pub(super) struct Waiting {
-    people: VecDeque<Newcomer>,
+    most: usize,
+    people: HashMap<String, Newcomer>,
     /// Whose first answer is not on disk yet.
     arriving: Vec<Newcomer>,
 }
 
+impl Default for Waiting {
+    fn default() -> Self {
+        Self { most: MOST, people: HashMap::new(), arriving: Vec::new() }
+    }
+}
+
 impl Waiting {
+    /// Those who wait, in no order.
     pub(super) fn iter(&self) -> impl Iterator<Item = &Newcomer> {
-        self.people.iter()
+        self.people.values()
     }
 
-    pub(super) fn add(&mut self, newcomer: Newcomer) {
-        if self.people.len() == MOST {
-            self.people.pop_front();
+    /// # Errors
+    /// If too many wait, of whom none has given up.
+    pub(super) fn add(&mut self, newcomer: Newcomer) -> Result<(), Refusal> {
+        if self.people.len() >= self.most {
+            self.people.retain(|_, one| newcomer.since_ms - one.since_ms < GIVEN_UP_MS);
         }
-        self.people.push_back(newcomer);
+        if self.people.len() >= self.most {
+            return Err(Refusal::Crowded);
+        }
+        self.people.insert(newcomer.token.clone(), newcomer);
+        Ok(())
     }
 
     pub(super) fn by_token(&self, token: &str) -> Option<&Newcomer> {
-        self.people.iter().find(|newcomer| newcomer.token == token)
+        self.people.get(token)
     }
 
     /// Somebody whose first answer has come, until [`Waiting::arrived`] or [`Waiting::turned_back`].
     pub(super) fn take(&mut self, token: &str) -> Option<&Newcomer> {
-        let place = self.people.iter().position(|newcomer| newcomer.token == token)?;
-        self.arriving.extend(self.people.remove(place));
+        let newcomer = self.people.remove(token)?;
+        self.arriving.push(newcomer);
         self.arriving.last()
     }
 
@@ -54,6 +68,34 @@ impl Waiting {
 
     /// First answers could not be written; whoever gave one still waits.
     pub(super) fn turned_back(&mut self) {
-        self.people.extend(self.arriving.drain(..));
+        self.people.extend(self.arriving.drain(..).map(|newcomer| (newcomer.token.clone(), newcomer)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_too_many_the_last_is_refused_and_the_first_never_forgotten() {
+        let newcomer = |token: usize, since_ms| Newcomer {
+            name: String::new(),
+            token: token.to_string(),
+            form: 1,
+            identifiers: Identifiers::default(),
+            since_ms,
+        };
+        let mut waiting = Waiting { most: 3, ..Waiting::default() };
+        let mut add = |token, since_ms| waiting.add(newcomer(token, since_ms));
+        assert!((0..3).all(|token| add(token, token as i64).is_ok()));
+        assert_eq!(add(3, GIVEN_UP_MS - 1), Err(Refusal::Crowded));
+        // The first two have given up.
+        assert_eq!(add(4, GIVEN_UP_MS + 1), Ok(()));
+        let mut left: Vec<&str> = waiting.iter().map(|one| one.token.as_str()).collect();
+        left.sort_unstable();
+        assert_eq!(left, ["2", "4"]);
+        assert!(waiting.take("2").is_some() && waiting.by_token("2").is_none());
+        waiting.turned_back();
+        assert!(waiting.by_token("2").is_some());
     }
 }

@@ -1,14 +1,15 @@
 //! What the page asks.
 
 use super::Site;
+use super::addresses::Peer;
 use crate::journal::{Dealt, Unsaved};
 use crate::record::{Answer, Identifiers, Refusal};
-use axum::Json;
 use axum::extract::rejection::JsonRejection;
-use axum::http::StatusCode;
+use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use axum::{Extension, Json};
 use serde::{Deserialize, Serialize};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 /// Why a request was not done; nothing has changed.
 pub(super) enum Failure {
@@ -19,6 +20,8 @@ pub(super) enum Failure {
     Unauthorised,
     /// The key does not fit the answers.
     Key(crate::export::OtherStudy),
+    /// What there is too much of, and when to try again.
+    TooMany(&'static str, Duration),
 }
 
 impl IntoResponse for Failure {
@@ -32,9 +35,16 @@ impl IntoResponse for Failure {
                         StatusCode::CONFLICT
                     }
                     Refusal::Full => StatusCode::FORBIDDEN,
+                    Refusal::Crowded => StatusCode::SERVICE_UNAVAILABLE,
                     _ => StatusCode::UNPROCESSABLE_ENTITY,
                 };
                 return (status, [("isostudy-refusal", refusal.id())], refusal.to_string()).into_response();
+            }
+            Self::TooMany(what, wait) => {
+                let seconds = wait.as_secs_f64().ceil().max(1.0) as u64;
+                let text = format!("{what}; try again in {seconds} s");
+                let headers = [(header::RETRY_AFTER, seconds.to_string())];
+                return (StatusCode::TOO_MANY_REQUESTS, headers, text).into_response();
             }
             Self::Unsaved(unsaved) => (StatusCode::SERVICE_UNAVAILABLE, unsaved.to_string()),
             Self::Malformed(rejection) => (rejection.status(), rejection.body_text()),
@@ -70,8 +80,18 @@ pub(super) fn now_ms() -> i64 {
 }
 
 /// `POST /api/sessions`: a form for somebody.
-pub(super) async fn begin(site: Site, asked: Asked<Identifiers>) -> Result<Json<Dealt>, Failure> {
+pub(super) async fn begin(
+    site: Site,
+    Extension(peer): Extension<Peer>,
+    headers: HeaderMap,
+    asked: Asked<Identifiers>,
+) -> Result<Json<Dealt>, Failure> {
     let Json(identifiers) = asked?;
+    if let Some(sessions) = &site.sessions {
+        let taken = sessions.take(site.client(peer, &headers), 0, Instant::now());
+        let many = "too many people begin from this address at once";
+        taken.map_err(|wait| Failure::TooMany(many, wait))?;
+    }
     Ok(Json(site.journal.change(move |journal| Ok(journal.begin(identifiers, now_ms()))).await??))
 }
 

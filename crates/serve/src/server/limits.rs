@@ -1,28 +1,59 @@
 //! What a client may cost: bytes, time, connections.
 
+use super::addresses::Peer;
+use super::connections::Connections;
+use super::pace::Paced;
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::http::StatusCode;
+use hyper::Request;
+use hyper::body::Incoming;
 use hyper::server::conn::http1;
+use hyper::service::Service;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::server::graceful::GracefulShutdown;
 use hyper_util::service::TowerToHyperService;
+use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::io;
-use std::sync::Arc;
+use std::net::SocketAddr;
 use std::time::Duration;
-use tokio::net::TcpListener;
+use tokio::net::{TcpListener, TcpSocket};
 use tokio::signal::unix::{SignalKind, signal};
-use tokio::sync::Semaphore;
 use tower_http::timeout::TimeoutLayer;
 
 /// Largest body of a request; an answer takes 150 bytes.
 const BODY: usize = 4096;
-/// Longest time for the head of a request, and for all of one.
+/// Longest time for the head of a request, and for all of one but writing its response.
 const PATIENCE: Duration = Duration::from_secs(10);
 /// How long a stopping server waits for what has begun.
 const GRACE: Duration = Duration::from_secs(5);
-/// Connections at a time; more wait.
-const CONNECTIONS: usize = 2048;
+/// Connections at a time, where the system allows as many files; for one more, one that is stuck or silent ends.
+const CONNECTIONS: usize = 4096;
+/// Files of a connection: its socket, and the stimulus that it is sent.
+const FILES: usize = 2;
+/// Files of everything else.
+const OTHER_FILES: usize = 64;
+/// Most bytes of a head, and of a response that wait in memory for a client to take them.
+const BUFFER: usize = 16 << 10;
+/// Most bytes that wait in the kernel for a client. Between machines it would begin with less, within one with 2.5 MB.
+const KERNEL_BUFFER: u32 = 256 << 10;
+/// Most clients that wait to be let in.
+const BACKLOG: u32 = 4096;
+
+/// What may be set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// How long a client may take nothing of a response that waits for it.
+    pub stalled: Duration,
+    /// New sessions of one address at once, and in each further 100 seconds; 0 for any number.
+    pub sessions_per_address: u32,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { stalled: Duration::from_secs(30), sessions_per_address: 1000 }
+    }
+}
 
 pub(super) fn limited<S: Clone + Send + Sync + 'static>(router: Router<S>) -> Router<S> {
     router
@@ -30,39 +61,91 @@ pub(super) fn limited<S: Clone + Send + Sync + 'static>(router: Router<S>) -> Ro
         .layer(TimeoutLayer::with_status_code(StatusCode::REQUEST_TIMEOUT, PATIENCE))
 }
 
-/// Serves until an interrupt or a terminate signal.
-pub(super) async fn run(listener: TcpListener, router: Router) -> io::Result<()> {
+/// A socket whose connections have bounded buffers.
+pub(super) fn listen(address: SocketAddr) -> io::Result<TcpListener> {
+    let socket = if address.is_ipv4() { TcpSocket::new_v4() } else { TcpSocket::new_v6() }?;
+    socket.set_reuseaddr(true)?;
+    // What is accepted has it too.
+    socket.set_send_buffer_size(KERNEL_BUFFER)?;
+    socket.bind(address)?;
+    socket.listen(BACKLOG)
+}
+
+/// Connections for which there are files; asks for more files where they are few.
+fn places() -> usize {
+    let needed = (CONNECTIONS * FILES + OTHER_FILES) as u64;
+    let Rlimit { current, maximum } = getrlimit(Resource::Nofile);
+    let wanted = maximum.map_or(needed, |most| most.min(needed));
+    if current.is_some_and(|current| current < wanted) {
+        // Refused: then there are as many as there were.
+        let _ = setrlimit(Resource::Nofile, Rlimit { current: Some(wanted), maximum });
+    }
+    let files = getrlimit(Resource::Nofile).current.unwrap_or(needed).min(needed) as usize;
+    (files.saturating_sub(OTHER_FILES) / FILES).max(1)
+}
+
+/// Hands on requests with the address that they come from.
+struct From<S> {
+    inner: S,
+    peer: Peer,
+}
+
+impl<S: Service<Request<Incoming>>> Service<Request<Incoming>> for From<S> {
+    type Response = S::Response;
+    type Error = S::Error;
+    type Future = S::Future;
+
+    fn call(&self, mut request: Request<Incoming>) -> S::Future {
+        request.extensions_mut().insert(self.peer);
+        self.inner.call(request)
+    }
+}
+
+/// Serves until an interrupt or a terminate signal, or until `ended` does.
+pub(super) async fn run(
+    listener: TcpListener,
+    router: Router,
+    stalled: Duration,
+    ended: impl Future<Output = ()>,
+) -> io::Result<()> {
     let (mut interrupt, mut terminate) = (signal(SignalKind::interrupt())?, signal(SignalKind::terminate())?);
-    let places = Arc::new(Semaphore::new(CONNECTIONS));
+    let connections = Connections::new(places());
     let graceful = GracefulShutdown::new();
+    tokio::pin!(ended);
     loop {
-        let place = Arc::clone(&places).acquire_owned();
         let accepted = async {
-            let place = place.await.expect("never closed");
-            (listener.accept().await, place)
+            let (stream, address) = listener.accept().await?;
+            Ok::<_, io::Error>((stream, address.ip(), connections.enter(address.ip()).await))
         };
-        let (stream, place) = tokio::select! {
-            (accepted, place) = accepted => match accepted {
-                Ok((stream, _)) => (stream, place),
-                // Too many open files, say: those that are open will close.
+        let (stream, address, guest) = tokio::select! {
+            accepted = accepted => match accepted {
+                Ok(accepted) => accepted,
                 Err(_) => {
-                    tokio::time::sleep(Duration::from_millis(100)).await;
+                    // Too many open files, say, of other programs.
+                    connections.end_one();
+                    tokio::time::sleep(Duration::from_millis(10)).await;
                     continue;
                 }
             },
             _ = interrupt.recv() => break,
             _ = terminate.recv() => break,
+            () = &mut ended => break,
         };
-        let service = TowerToHyperService::new(router.clone());
+        let service = From { inner: TowerToHyperService::new(router.clone()), peer: Peer(address) };
+        let stream = Paced::new(stream, guest.pace.clone(), stalled);
         let connection = http1::Builder::new()
             .timer(TokioTimer::new())
             .header_read_timeout(PATIENCE)
+            .max_buf_size(BUFFER)
             .serve_connection(TokioIo::new(stream), service);
         let connection = graceful.watch(connection);
         tokio::spawn(async move {
-            // An error here is a client that went away.
-            drop(connection.await);
-            drop(place);
+            tokio::select! {
+                // An error here is a client that went away.
+                _ = connection => {}
+                () = guest.pace.cut.notified() => {}
+            }
+            drop(guest);
         });
     }
     drop(listener);
