@@ -7,12 +7,12 @@ mod server;
 use fixture::Fixture;
 use http::{get, post, raw};
 use serde_json::{Value, json};
-use server::{Server, TOKEN, answer, begin};
+use server::{Server, TOKEN, answer, begin, command};
 use std::collections::BTreeMap;
-use std::io::Write;
+use std::io::{BufRead, BufReader, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -268,4 +268,68 @@ fn serving_keeps_the_bundles_videos() {
     assert_eq!(videos(), 56);
     drop(Server::start(&fixture, 0));
     assert_eq!(videos(), 56);
+}
+
+/// The log is on a full disk from the start.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_server_that_cannot_say_a_word_serves() {
+    let fixture = bundled();
+    let port = free_port();
+    let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
+    let child = command(&fixture, port).stderr(full).spawn().unwrap();
+    let address = SocketAddr::from(([127, 0, 0, 1], port));
+    let server = Server { child, address };
+    let listens = (0..600).any(|_| {
+        std::thread::sleep(Duration::from_millis(50));
+        TcpStream::connect(address).is_ok()
+    });
+    assert!(listens);
+    let session = begin(server.address);
+    assert_eq!(post(server.address, "/api/answers", &answer(&session, 0, "L")).unwrap().0, 200);
+}
+
+/// What a server says when it starts: how much it holds, and that something is missing.
+#[test]
+fn a_server_counts_its_answers() {
+    let fixture = bundled();
+    let mut server = Server::start(&fixture, 0);
+    let session = begin(server.address);
+    for question in 0..3 {
+        assert_eq!(post(server.address, "/api/answers", &answer(&session, question, "L")).unwrap().0, 200);
+    }
+    server.kill();
+    std::fs::remove_file(fixture.folder().join("answers/answers.sqlite-wal")).unwrap();
+    let output = command(&fixture, 0).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(2) && said.contains("3 answers of 1 participant"), "{said}");
+    let mut child = command(&fixture, 0).arg("--accept-loss").stderr(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
+    let holds = lines.find(|line| line.starts_with("holds")).expect("it says so");
+    assert!(holds.ends_with(" 0 answers of 0 participants"), "{holds}");
+    drop(Server { child, address: SocketAddr::from(([127, 0, 0, 1], 0)) });
+}
+
+/// A download that was changed on its way, and what a spreadsheet makes of what is made from it.
+#[test]
+fn a_download_brings_no_formula() {
+    let fixture = bundled();
+    let server = Server::start(&fixture, 0);
+    let form = &begin(server.address)["form"];
+    let (number, order) = (&form["form"], form["training"].as_array().unwrap().len() + 1);
+    let stimulus = form["questions"][0].as_str().unwrap();
+    let [download, out] = ["download.csv", "answers.csv"].map(|name| fixture.folder().join(name));
+    let row =
+        format!("participant,form,order,stimulus,choice,rt_ms\n=1+1,{number},{order},{stimulus},NP,812\n");
+    std::fs::write(&download, row).unwrap();
+    let collect = |download: &Path| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
+        command.arg("collect").arg(fixture.config()).arg(download).arg("--out").arg(&out).output().unwrap()
+    };
+    assert!(collect(&download).status.success());
+    let text = std::fs::read_to_string(&out).unwrap();
+    assert!(text.lines().nth(1).unwrap().starts_with("'=1+1,"), "{text}");
+    let refused = collect(Path::new("/dev/null"));
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(refused.status.code() == Some(2) && said == "isostudy: /dev/null: not a file\n", "{said}");
 }

@@ -329,6 +329,34 @@ fn analyse_prints_the_papers_numbers() {
     assert_eq!(overall.lines().count(), 7);
 }
 
+/// A device that ends at once, in place of those that never do and of pipes that nobody writes to.
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_is_not_read() {
+    let fixture = Fixture::new();
+    let study = fixture.config();
+    let (study, null) = (study.to_str().unwrap(), "/dev/null");
+    let out = fixture.out().to_str().unwrap();
+    let link = fixture.folder().join("device.ply");
+    std::os::unix::fs::symlink(null, &link).unwrap();
+    let link = link.to_str().unwrap();
+    let refused: [&[&str]; 8] = [
+        &["validate", null],
+        &["convert", null, "--to", "long", "--out", out],
+        &["convert", study, "--to", "long", "--mapping", null, "--out", out],
+        &["analyse", null, "--out", out],
+        &["analyse", study, "--responses", null, "--out", out],
+        &["bench", "import", null, "--source", "x", "--iterations", "1", "--threads", "1", "--out", out],
+        &["bench", "compare", null, null],
+        &["extract", "--mesh", link, "--out", out],
+    ];
+    for words in refused {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy")).args(words).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && said.ends_with(": not a file\n"), "{words:?}: {said}");
+    }
+}
+
 #[test]
 fn answers_that_do_not_fit_are_refused_with_their_place() {
     let fixture = Fixture::new();

@@ -20,8 +20,9 @@ fn main() {
         let folder = root.join("crates").join(room);
         println!("cargo::rerun-if-changed={}", folder.join("src").display());
         let mut files = Vec::new();
-        for path in
-            shared.iter().cloned().chain([folder.join("src"), folder.join("page"), folder.join("Cargo.toml")])
+        // Only one room has a page, and the command's own pages are among its sources.
+        let page = Some(folder.join("page")).filter(|page| page.is_dir());
+        for path in shared.iter().cloned().chain([folder.join("src"), folder.join("Cargo.toml")]).chain(page)
         {
             collect(&path, &mut files);
         }
@@ -41,14 +42,14 @@ fn main() {
         let mut parts = Vec::new();
         for file in files {
             parts.push(file.strip_prefix(&root).unwrap_or(&file).to_string_lossy().into_owned().into_bytes());
-            parts.push(std::fs::read(&file).unwrap_or_default());
+            parts.push(read(&file));
         }
         let parts: Vec<&[u8]> = parts.iter().map(Vec::as_slice).collect();
         println!("cargo::rustc-env=ISOSTUDY_ROOM_{}={:016x}", room.to_uppercase(), digest(&parts));
     }
     let pages = ["page/index.html", "pipeline/page.rs", "page/report.html", "pipeline/report.rs"];
     let pages = pages.map(|path| root.join("crates/cli/src").join(path));
-    let text = pages.map(|path| std::fs::read(path).unwrap_or_default()).concat();
+    let text = pages.map(|path| read(&path)).concat();
     println!("cargo::rustc-env=ISOSTUDY_ROOM_PAGE={:016x}", digest(&[&text]));
     name_commit(&root);
 }
@@ -74,6 +75,12 @@ fn name_commit(root: &Path) {
     {
         println!("cargo::rerun-if-changed={}", log.display());
     }
+}
+
+/// A source that is not there would leave its results for up to date for ever: no build without it.
+fn read(path: &Path) -> Vec<u8> {
+    std::fs::read(path)
+        .unwrap_or_else(|error| panic!("{}, a source that is digested: {error}", path.display()))
 }
 
 fn collect(path: &Path, files: &mut Vec<PathBuf>) {

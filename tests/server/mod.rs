@@ -10,25 +10,22 @@ use std::process::{Child, Command, Stdio};
 pub(crate) const TOKEN: &str = "a-token-for-this-test";
 
 pub(crate) struct Server {
-    child: Child,
+    pub(crate) child: Child,
     pub(crate) address: SocketAddr,
+}
+
+/// `isostudy serve`.
+pub(crate) fn command(fixture: &Fixture, port: u16) -> Command {
+    let mut command = fixture.command("serve");
+    command.arg("--answers").arg(fixture.folder().join("answers")).stdout(Stdio::null());
+    command.args(["--port", &port.to_string(), "--admin-token", TOKEN, "--with-faults"]);
+    command
 }
 
 impl Server {
     /// Answers are kept in the fixture's folder `answers`.
     pub(crate) fn start(fixture: &Fixture, port: u16) -> Self {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_isostudy"))
-            .arg("serve")
-            .arg(fixture.config())
-            .arg("--out")
-            .arg(fixture.out())
-            .arg("--answers")
-            .arg(fixture.folder().join("answers"))
-            .args(["--port", &port.to_string(), "--admin-token", TOKEN, "--with-faults"])
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut child = command(fixture, port).stderr(Stdio::piped()).spawn().unwrap();
         let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
         let line = lines.find(|line| line.starts_with("questionnaire")).expect("it listens");
         let address = line.split("http://").nth(1).unwrap().trim_end_matches('/').parse().unwrap();

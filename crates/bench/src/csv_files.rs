@@ -4,22 +4,42 @@ use crate::profile::compare_profile;
 use design::record::{BenchRun, BenchSample};
 use serde::Serialize;
 
+/// The columns of a sample.
+const SAMPLE: [&str; 12] = [
+    "id",
+    "sitting",
+    "iteration",
+    "place",
+    "allocation_s",
+    "sampling_s",
+    "vertex_s",
+    "geometry_s",
+    "clustering_s",
+    "normals_s",
+    "total_s",
+    "reference_s",
+];
+/// The columns of a property.
+const PROPERTY: [&str; 4] = ["property", "target", "machine", "matches"];
+
 /// Every sample in the order measured, a line each, under the column names of
 /// [`BenchSample`](design::record::BenchSample). Numbers are written so that they read back unchanged.
+/// Without samples the names stand alone.
 pub fn samples_csv(samples: &[BenchSample]) -> String {
-    table(samples)
+    table(samples, &SAMPLE)
 }
 
 /// What is known of the machine, a property a line: `property,target,machine,matches`, the last `true`, `false` or,
 /// where nothing is asked, empty. The rules are those of [`compare_profile`].
 pub fn machine_csv(run: &BenchRun) -> String {
-    table(&compare_profile(&run.target, &run.machine))
+    table(&compare_profile(&run.target, &run.machine), &PROPERTY)
 }
 
 /// # Panics
 /// Never: records are flat, and neither serialising them nor writing to memory can fail.
-fn table<T: Serialize>(rows: &[T]) -> String {
-    let mut writer = csv::Writer::from_writer(Vec::new());
+fn table<T: Serialize>(rows: &[T], header: &[&str]) -> String {
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    writer.write_record(header).expect("memory can be written to");
     for row in rows {
         writer.serialize(row).expect("a flat record has a line");
     }
@@ -42,6 +62,7 @@ mod tests {
         let samples: Vec<BenchSample> =
             csv::Reader::from_reader(text.as_bytes()).deserialize().collect::<Result<_, _>>().unwrap();
         assert_eq!(samples, run.samples);
+        assert_eq!(samples_csv(&[]), format!("{header}\n"), "no samples are no empty file");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Files of answers: what a study or the command line declares about them, reading, and converting.
 
 use crate::args::{Convert, ReadingRules, Target, TieRule};
+use crate::input;
 use anyhow::{Context, Result, bail};
 use design::Study;
 use design::config::ResponsesSection;
@@ -18,6 +19,7 @@ pub(crate) fn of_study(study: &Study) -> Result<Option<Reading>> {
     if !mapping.pairs.is_empty() {
         bail!("the mapping has `pairs`; the questions are the comparisons of {}", study.path.display());
     }
+    input::regular(path)?;
     Ok(Some(responses::read(path, Some(&Plan::of_study(study)), &mapping)?))
 }
 
@@ -34,6 +36,7 @@ pub(crate) fn without_study(path: &Path, section: &ResponsesSection) -> Result<(
             Some(plan.map_err(|id| anyhow::anyhow!("pairs: question {id} is declared twice"))?)
         }
     };
+    input::regular(path)?;
     Ok((responses::read(path, plan.as_ref(), &mapping)?, plan))
 }
 
@@ -43,6 +46,7 @@ pub(crate) fn without_study(path: &Path, section: &ResponsesSection) -> Result<(
 /// If the mapping cannot be read.
 pub(crate) fn section(rules: &ReadingRules, study: Option<&Study>) -> Result<ResponsesSection> {
     let declared = || study.and_then(|study| study.file.responses.clone()).unwrap_or_default();
+    rules.mapping.as_deref().map_or(Ok(()), input::regular)?;
     let mut section = rules.mapping.as_deref().map_or_else(|| Ok(declared()), ResponsesSection::load)?;
     if rules.format.is_some() {
         section.format.clone_from(&rules.format);
@@ -54,11 +58,11 @@ pub(crate) fn section(rules: &ReadingRules, study: Option<&Study>) -> Result<Res
 pub(crate) fn announce(report: &Report) {
     const SHOWN: usize = 20;
     let said = report.to_string();
-    said.lines().take(1 + SHOWN).for_each(|line| eprintln!("{line}"));
+    said.lines().take(1 + SHOWN).for_each(|line| tell!("{line}"));
     let (repaired, rejected) = (report.count(Kind::Repaired), report.count(Kind::Rejected));
     if !report.remarks.is_empty() {
         let all = number_of(report.remarks.len() as u64, "remark");
-        eprintln!("{}: {all}: {repaired} repaired, {rejected} rejected", report.file.display());
+        tell!("{}: {all}: {repaired} repaired, {rejected} rejected", report.file.display());
     }
 }
 
@@ -74,7 +78,7 @@ fn number_of(count: u64, noun: &str) -> String {
 pub(crate) fn convert(arguments: &Convert) -> Result<()> {
     let (reading, names) = match &arguments.study {
         Some(path) => {
-            let mut study = Study::load(path)?;
+            let mut study = input::study(path)?;
             study.file.responses = Some(section(&arguments.reading, Some(&study))?);
             study.responses = Some(arguments.input.clone());
             let names = Plan::of_study(&study).short_names().to_vec();
@@ -103,24 +107,24 @@ pub(crate) fn convert(arguments: &Convert) -> Result<()> {
     crate::store::write_whole(&arguments.out, &text)?;
     let out = arguments.out.display();
     let (rows, ties_read) = (number_of(written.rows, "row"), number_of(written.ties, "answer"));
-    eprintln!("{out}: {rows}; {ties_read} without preference");
+    tell!("{out}: {rows}; {ties_read} without preference");
     if written.ties > 0 && arguments.to == Target::Pwcmp {
         match ties {
             Ties::Split => {
-                eprintln!("{out}: each of them is one win each way, and weighs twice as much as another")
+                tell!("{out}: each of them is one win each way, and weighs twice as much as another")
             }
-            Ties::Drop => eprintln!("{out}: they are left out"),
+            Ties::Drop => tell!("{out}: they are left out"),
             Ties::Refuse => {}
         }
     }
     for (left_out, which) in [(written.controls, "controls"), (written.repeats, "repeats")] {
         if left_out > 0 {
             let answers = number_of(left_out, "answer");
-            eprintln!("{out}: left out: {answers} to {which}, which are no comparisons of their own");
+            tell!("{out}: left out: {answers} to {which}, which are no comparisons of their own");
         }
     }
     if !answers.sides_recorded {
-        eprintln!("{out}: sides were not recorded: which item comes first means nothing");
+        tell!("{out}: sides were not recorded: which item comes first means nothing");
     }
     Ok(())
 }

@@ -102,6 +102,15 @@ pub(crate) struct Serve {
     /// Port to listen on; 0 takes a free one
     #[arg(long, value_name = "PORT", default_value_t = 8080)]
     pub(crate) port: u16,
+    /// Where participants reach the server, behind a web server on this machine or under a name, such as https://study.example.org
+    #[arg(long, value_name = "URL")]
+    pub(crate) public_url: Option<serve::PublicUrl>,
+    /// People of one address that may begin at once, and in each further 100 seconds; 0 for any number
+    #[arg(long, value_name = "N", default_value_t = serve::Limits::default().sessions_per_address)]
+    pub(crate) sessions_per_address: u32,
+    /// Start although the folder holds fewer answers than it did
+    #[arg(long)]
+    pub(crate) accept_loss: bool,
     /// What the researcher's page asks for, at least 12 characters [default: a new one, printed]
     #[arg(long, value_name = "TOKEN", env = "ISOSTUDY_ADMIN_TOKEN", hide_env_values = true)]
     pub(crate) admin_token: Option<String>,

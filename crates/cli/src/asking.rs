@@ -3,13 +3,13 @@
 use crate::args::{Bundle, Collect, Deidentify, Run, Serve};
 use crate::pipeline::forms_digest;
 use crate::questionnaire::{files_of, fit_to_show};
-use crate::{Outcome, counted, load, no_forms, say, store, video, with_pipeline};
+use crate::{Outcome, counted, input, load, no_forms, say, store, video, with_pipeline};
 use anyhow::{Context, Result, bail};
 use design::Study;
 use design::forms::{FormFile, KeyEntry, Questionnaire};
 use serve::export::{self, Given, HEADER};
-use serve::journal;
-use serve::{Settings, download, share};
+use serve::journal::{self, Loss};
+use serve::{Limits, Settings, download, share};
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -82,9 +82,7 @@ fn make_bundle(run: &Run, videos: Videos, with_faults: bool) -> Result<Option<Pa
             if before == 0 && videos == Videos::Kept || kept.len() < pairs.len() { Vec::new() } else { kept };
         if kept.is_empty() && before > 0 {
             let why = if videos == Videos::Kept { "they show other pairs" } else { "not asked for" };
-            eprintln!(
-                "{before} videos are removed from the bundle, {why}; `isostudy bundle --mp4` makes them"
-            );
+            tell!("{before} videos are removed from the bundle, {why}; `isostudy bundle --mp4` makes them");
         }
         pipeline.bundle(&forms, &pairs, &kept)?;
         made = Some(out.to_owned());
@@ -122,16 +120,24 @@ pub(crate) fn serve(arguments: &Serve) -> Result<Outcome> {
         file,
         key,
         digest,
+        public_url: arguments.public_url.clone(),
+        limits: Limits { sessions_per_address: arguments.sessions_per_address, ..Limits::default() },
+        loss: if arguments.accept_loss { Loss::Accept } else { Loss::Refuse },
     };
     let answers = settings.answers.clone();
-    serve::serve(settings, |address| {
-        eprintln!("questionnaire   http://{address}/");
-        eprintln!("researcher      http://{address}/researcher");
-        if arguments.admin_token.is_none() {
-            eprintln!("token           {admin_token}");
+    serve::serve(settings, |address, held| {
+        let reached = arguments.public_url.as_ref().map_or(format!("http://{address}"), ToString::to_string);
+        tell!("questionnaire   {reached}/");
+        tell!("researcher      {reached}/researcher");
+        if arguments.public_url.is_some() {
+            tell!("listens on      http://{address}/");
         }
-        eprintln!("answers         {}", answers.display());
-        eprintln!("Ctrl-C stops it; nothing that was acknowledged is lost.");
+        if arguments.admin_token.is_none() {
+            tell!("token           {admin_token}");
+        }
+        tell!("answers         {}", answers.display());
+        tell!("holds           {held}");
+        tell!("Ctrl-C stops it; nothing that was acknowledged is lost.");
     })?;
     Ok(Outcome::Sound)
 }
@@ -141,12 +147,13 @@ pub(crate) fn serve(arguments: &Serve) -> Result<Outcome> {
 /// # Errors
 /// If a file cannot be read or contradicts another, or the study is not the one that was answered.
 pub(crate) fn collect(arguments: &Collect) -> Result<()> {
-    let study = Study::load(&arguments.study)?;
+    let study = input::study(&arguments.study)?;
     let (file, key, _) = forms(&study)?;
     let mut all: BTreeMap<(String, u32), Given> = BTreeMap::new();
     let mut again = 0;
     for path in &arguments.downloads {
         let place = || path.display().to_string();
+        input::regular(path)?;
         let text = std::fs::read_to_string(path).with_context(place)?;
         let given = download::read(&text, &file.study).with_context(place)?;
         export::lines(&given, &key).with_context(place)?;
@@ -156,7 +163,7 @@ pub(crate) fn collect(arguments: &Collect) -> Result<()> {
     store::write_whole(&arguments.out, lines(&given, &key)?.as_bytes())?;
     let repeated = if again > 0 { format!("; {again} came twice") } else { String::new() };
     let people = counted(participants(&given) as u64, "participant");
-    eprintln!("{} of {people}{repeated}", counted(given.len() as u64, "answer"));
+    tell!("{} of {people}{repeated}", counted(given.len() as u64, "answer"));
     say(&arguments.out.display().to_string())
 }
 
@@ -165,7 +172,7 @@ pub(crate) fn collect(arguments: &Collect) -> Result<()> {
 /// # Errors
 /// If the answers cannot be read, or the files not be written.
 pub(crate) fn deidentify(arguments: &Deidentify) -> Result<()> {
-    let study = Study::load(&arguments.study)?;
+    let study = input::study(&arguments.study)?;
     let (file, key, digest) = forms(&study)?;
     let folder = answers_folder(&study, arguments.answers.as_ref());
     if !folder.join("answers.sqlite").is_file() {
@@ -173,7 +180,7 @@ pub(crate) fn deidentify(arguments: &Deidentify) -> Result<()> {
     }
     let kept = journal::kept(&folder, &file.study)?;
     if kept.digest != digest {
-        eprintln!("the study file was changed since the first answer; the codebook says what it says now");
+        tell!("the study file was changed since the first answer; the codebook says what it says now");
     }
     let given = share::deidentified(&kept.given);
     std::fs::create_dir_all(&arguments.out).with_context(|| arguments.out.display().to_string())?;

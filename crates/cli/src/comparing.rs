@@ -2,7 +2,7 @@
 
 use crate::args::{Compare, Format, Import};
 use crate::store::write_whole;
-use crate::{Outcome, counted, run_file, say};
+use crate::{Outcome, counted, input, run_file, say};
 use analysis::timing::{self, Comparison, Limits};
 use anyhow::{Context, Result, bail};
 use design::machine::CpuProfile;
@@ -95,9 +95,13 @@ fn missing_in_b<'a>(a: &BenchRun, comparison: &'a Comparison) -> Vec<&'a Configu
 
 /// Writes the run that a table of means makes.
 pub(crate) fn import(arguments: &Import) -> Result<()> {
+    input::regular(&arguments.table)?;
     let rows = read_benchmark(&arguments.table)?;
     let machine = match &arguments.machine {
-        Some(path) => CpuProfile::load(path)?,
+        Some(path) => {
+            input::regular(path)?;
+            CpuProfile::load(path)?
+        }
         None => CpuProfile::parse(PAPERS_MACHINE, Path::new("configs/cpu/i7-11700.toml"))?,
     };
     let run = bench::import(&rows, &arguments.source, arguments.iterations, arguments.threads, &machine)

@@ -2,9 +2,9 @@
 
 use crate::args::Distance;
 use crate::subject::Fields;
-use crate::{mesh_file, say, significant, subject};
+use crate::{input, mesh_file, say, significant, subject};
 use anyhow::{Context, Result, bail};
-use design::{Arrangement, Study};
+use design::Arrangement;
 use extract::{Execution, ExtractSettings, Lattice, ScalarField};
 use mesh::metro::{Amount, Deviation, Metro, Sampling, Surface};
 use serde::Serialize;
@@ -51,7 +51,7 @@ fn to_mesh(arguments: &Distance, a: &Surface, path: &Path, sampling: &Sampling) 
 
 /// Against the isosurface of a study's object, in the object's volume.
 fn to_object(arguments: &Distance, a: &Surface, id: &str, sampling: &Sampling) -> Result<Metro> {
-    let study = Study::load(&arguments.study)?;
+    let study = input::study(&arguments.study)?;
     let objects = &study.file.objects;
     let Some(index) = objects.iter().position(|object| object.id == id) else {
         let known: Vec<&str> = objects.iter().map(|object| object.id.as_str()).collect();

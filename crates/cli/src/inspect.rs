@@ -3,17 +3,17 @@
 use crate::args::Inspect;
 use crate::records::mesh_record;
 use crate::subject::Fields;
-use crate::{machine, say, subject};
+use crate::{input, machine, say, subject};
 use analysis::Panel;
 use anyhow::{Context, Result, bail};
 use bench::StageSeconds;
+use design::ConfigurationId;
 use design::record::Purpose;
-use design::{ConfigurationId, Study};
 use extract::{Execution, extract};
 
 /// Prints the panel.
 pub(crate) fn inspect(arguments: &Inspect) -> Result<()> {
-    let study = Study::load(&arguments.study)?;
+    let study = input::study(&arguments.study)?;
     let id: ConfigurationId = arguments.id.parse().with_context(|| arguments.id.clone())?;
     let Some(configuration) = study.configurations.iter().find(|configuration| configuration.id == id) else {
         let known: Vec<String> = study.configurations.iter().map(|c| c.id.to_string()).collect();

@@ -1,10 +1,14 @@
 //! The `isostudy` command: arguments, files, progress and exit codes. What is computed is computed in the rooms.
 
+#[macro_use]
+mod tell;
+
 mod answers;
 mod args;
 mod asking;
 mod comparing;
 mod distance;
+mod input;
 mod inspect;
 mod machine;
 mod manifest;
@@ -42,10 +46,24 @@ fn main() -> ExitCode {
         Ok(Outcome::Sound) => ExitCode::SUCCESS,
         Ok(Outcome::CheckFailed) => ExitCode::from(CHECK_FAILED),
         Err(error) => {
-            eprintln!("isostudy: {error:#}");
+            // The exit code tells where nothing can be written.
+            tell!("isostudy: {}", told(&error));
             ExitCode::from(INPUT_ERROR)
         }
     }
+}
+
+/// An error and its causes; one that has told its cause itself does not tell it twice.
+fn told(error: &anyhow::Error) -> String {
+    let mut text = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if text.is_empty() {
+            text = cause;
+        } else if !text.ends_with(&cause) {
+            text.push_str(&format!(": {cause}"));
+        }
+    }
+    text
 }
 
 /// How work that could be done came out.
@@ -140,7 +158,7 @@ fn with_page(run: &Run, work: impl FnOnce(&mut Pipeline<'_>) -> Result<Vec<Strin
     let mut outcome = Outcome::Sound;
     with_pipeline(run, |pipeline, out| {
         for difference in work(pipeline)? {
-            eprintln!("differs from what was published: {difference}");
+            tell!("differs from what was published: {difference}");
             outcome = Outcome::CheckFailed;
         }
         say(&out.join("index.html").display().to_string())
@@ -197,7 +215,7 @@ fn self_test(arguments: &Analyse) -> Result<Outcome> {
         }
     }
     if !sound {
-        eprintln!("self-test failed: see the rows that say NO");
+        tell!("self-test failed: see the rows that say NO");
     }
     Ok(if sound { Outcome::Sound } else { Outcome::CheckFailed })
 }
@@ -209,7 +227,7 @@ fn analyse(arguments: &Analyse) -> Result<()> {
     if !is_study {
         return analyse_without_study(arguments, input);
     }
-    let mut study = Study::load(input)?;
+    let mut study = input::study(input)?;
     if arguments.responses.is_some() {
         // Published numbers are about the answers that were published.
         study.published = Published::default();
@@ -247,7 +265,7 @@ fn analyse_without_study(arguments: &Analyse, path: &Path) -> Result<()> {
     let store = Store::open(&out, false)?;
     let tables = pipeline::write_without_study(path, &section, &reading, &store)?;
     store.remove_retired()?;
-    let digest = store::sha256(&std::fs::read(path).with_context(|| path.display().to_string())?);
+    let digest = store::sha256(&input::bytes(path)?);
     manifest::write(&manifest::Subject { name: &name, sha256: digest, seed: None }, &store)?;
     for table in tables.iter().filter(|table| ["tests", "worths"].contains(&table.name.as_str())) {
         say(&table.to_markdown())?;
@@ -279,7 +297,7 @@ fn validate(path: &Path) -> Result<()> {
 
 /// Reads and checks a study and everything it names: lattices and memory, mesh files, answers.
 fn load(path: &Path) -> Result<Study> {
-    let study = Study::load(path)?;
+    let study = input::study(path)?;
     subject::check_lattices(&study, bench::read_machine().memory_bytes)?;
     subject::check_mesh_files(&study)?;
     if let Some(reading) = answers::of_study(&study)?.filter(|reading| !reading.report.remarks.is_empty()) {

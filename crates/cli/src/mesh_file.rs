@@ -38,9 +38,9 @@ fn format_among(path: &Path, known: &[MeshFormat]) -> Result<MeshFormat> {
 pub(crate) fn read(path: &Path) -> Result<TriangleMesh> {
     let read = || {
         let format = format_to_read(path)?;
+        // Opening a pipe waits until somebody writes to it.
+        ensure!(std::fs::metadata(path)?.is_file(), "not a file");
         let file = File::open(path)?;
-        // A device or a pipe may never end.
-        ensure!(file.metadata()?.is_file(), "not a file");
         Ok(format.read(file)?)
     };
     read().with_context(|| path.display().to_string())

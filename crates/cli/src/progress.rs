@@ -64,9 +64,9 @@ impl Step {
         self.bar.finish_and_clear();
         let (name, redone) = (self.name, self.redone.into_inner());
         if redone == 0 {
-            eprintln!("{name:14} {:>3} up to date", self.items);
+            tell!("{name:14} {:>3} up to date", self.items);
         } else {
-            eprintln!(
+            tell!(
                 "{name:14} {redone:>3} of {} made, {:.1} s",
                 self.items,
                 self.began.elapsed().as_secs_f64()

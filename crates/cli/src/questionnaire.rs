@@ -4,7 +4,7 @@
 use crate::args::{Check, Power};
 use crate::pipeline::MadeWith;
 use crate::progress::Step;
-use crate::{Outcome, counted, default_folder, say, store};
+use crate::{Outcome, counted, default_folder, input, say, store};
 use analysis::power::{Assumptions, power as simulated};
 use anyhow::{Context, Result, ensure};
 use design::lint::{Fault, Rule, StimulusFacts, lint, lint_stimuli};
@@ -28,13 +28,13 @@ struct FaultEntry<'a> {
 /// # Errors
 /// If the study or an animation cannot be read.
 pub(crate) fn check(arguments: &Check) -> Result<Outcome> {
-    let study = Study::load(&arguments.study)?;
+    let study = input::study(&arguments.study)?;
     forms_of(&study)?;
     let mut faults = lint(&study);
     let results = arguments.results.clone().unwrap_or_else(|| default_folder(&study));
     match stimulus_faults(&study, &results)? {
         Some(found) => faults.extend(found),
-        None => eprintln!(
+        None => tell!(
             "no animations in {}: {} not judged; `isostudy pairs` makes them",
             results.display(),
             Rule::StimuliDiffer.id()
@@ -71,9 +71,9 @@ pub(crate) fn fit_to_show(study: &Study, results: Option<&Path>, allowed: bool) 
     if faults.is_empty() {
         return Ok(true);
     }
-    eprintln!("{}", faults_text(study, &faults));
+    tell!("{}", faults_text(study, &faults));
     if !allowed {
-        eprintln!("nothing is bundled: mend the faults, or go on with --with-faults");
+        tell!("nothing is bundled: mend the faults, or go on with --with-faults");
     }
     Ok(allowed)
 }
@@ -113,7 +113,7 @@ pub(crate) fn rules() -> Result<()> {
 /// # Errors
 /// If the study cannot be read or has no forms, or a file cannot be written.
 pub(crate) fn power(arguments: &Power) -> Result<()> {
-    let study = Study::load(&arguments.study)?;
+    let study = input::study(&arguments.study)?;
     let planned = forms_of(&study)?.participants as usize;
     let mut participants: Vec<usize> = arguments.participants.iter().map(|&n| n as usize).collect();
     if participants.is_empty() {
@@ -189,7 +189,7 @@ fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Vec<Fault>>> 
         .unzip();
     let outdated = current.iter().filter(|&&current| !current).count();
     if outdated > 0 {
-        eprintln!(
+        tell!(
             "{outdated} of {} in {} were made with other settings than the study file has now and are judged as \
              they are; `isostudy pairs` makes them anew",
             counted(files.len() as u64, "animation"),

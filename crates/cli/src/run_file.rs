@@ -1,5 +1,6 @@
 //! A benchmark run read back, and checked before anything is made of it.
 
+use crate::input;
 use anyhow::{Context, Result, bail};
 use design::record::BenchRun;
 use serde::Deserialize;
@@ -14,7 +15,7 @@ struct Versioned {
 /// Reads a run. Errors name the file and the place in it.
 pub(crate) fn read(path: &Path) -> Result<BenchRun> {
     let name = || path.display().to_string();
-    let text = std::fs::read(path).with_context(name)?;
+    let text = input::bytes(path)?;
     let Versioned { schema } = serde_json::from_slice(&text).with_context(name)?;
     if schema != BenchRun::SCHEMA {
         bail!("{}: schema = {schema}: this version reads {}", name(), BenchRun::SCHEMA);

@@ -124,6 +124,7 @@
       // Whatever else goes wrong between here and the server may pass.
       error.final = error.refusal !== null || [400, 413, 415, 422].includes(response.status);
       error.conflict = error.final && response.status === 409;
+      error.busy = response.status === 429;
       throw error;
     }
     return response.json();
@@ -248,7 +249,7 @@
         await start(form);
       } catch (error) {
         begin.disabled = false;
-        say(error.final ? error.message : 'No connection to the study. Please try again.');
+        say(error.final || error.busy ? error.message : 'No connection to the study. Please try again.');
       }
     });
     show(...parts, make('div', { className: 'row' }, begin));

@@ -10,6 +10,9 @@
 //! - An answer is acknowledged after it was committed and synced to disk, never before. Sent again, it changes nothing.
 //! - Whoever begins gets one of the forms with the fewest participants, by chance, not counting those who gave up.
 //! - Nothing is written down of those who have answered nothing.
+//! - The server goes on or ends, and says which: without a log, on a full disk, and with its folder gone. Fewer answers than there
+//!   were are noticed at the start.
+//! - What one client costs is bounded, in memory, in connections and in sessions; nobody who has begun is forgotten for others.
 //! - No address, agent or other trace of a participant is kept but the identifiers of a panel, which are in a file of their own.
 
 pub mod download;

@@ -22,7 +22,7 @@ pub fn deidentified(given: &[Given]) -> Vec<Given> {
 
 /// What the columns of the shared answers mean, in Markdown. The digests are of the forms when the first answer came, and now.
 pub fn codebook(file: &FormFile, (then, now): (&str, &str), participants: usize, answers: usize) -> String {
-    let [left, none, right] = &file.choices;
+    let [left, none, right] = file.choices.each_ref().map(|text| escaped(text));
     let changed = if then == now {
         String::new()
     } else {
@@ -49,12 +49,27 @@ pub fn codebook(file: &FormFile, (then, now): (&str, &str), participants: usize,
          | `stimulus` | code name of the animation | |\n",
         answers = count(answers, "answer"),
         participants = count(participants, "participant"),
-        title = file.title,
+        title = escaped(&file.title),
         study = file.study,
         forms = file.forms.len(),
-        prompt = file.prompt,
+        prompt = escaped(&file.prompt),
         loop_ms = file.loop_ms,
     )
+}
+
+/// Without what Markdown would read as mark-up, as a table's row or as HTML.
+fn escaped(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '\\' | '|' | '_' | '*' | '`' | '[' | ']' => plain.extend(['\\', letter]),
+            '&' => plain.push_str("&amp;"),
+            '<' => plain.push_str("&lt;"),
+            '\n' | '\r' => plain.push(' '),
+            _ => plain.push(letter),
+        }
+    }
+    plain
 }
 
 #[cfg(test)]
@@ -74,5 +89,26 @@ mod tests {
             shared.iter().map(|g| (g.participant.as_str(), g.answer.order)).collect();
         assert_eq!(found, [("p1", 1), ("p2", 1), ("p3", 1), ("p3", 2)]);
         assert!(shared.iter().all(|g| g.form == 1 && g.answer.rt_ms == 900));
+    }
+
+    #[test]
+    fn a_text_of_the_study_is_no_mark_up() {
+        let texts = ["Left | a", "[None](http://example.org)", "Right"];
+        let file = FormFile {
+            schema: 1,
+            study: "trial".into(),
+            title: "<script> & *stars*".into(),
+            prompt: "Which\nof two?".into(),
+            choices: texts.map(Into::into),
+            consent: String::new(),
+            instructions: String::new(),
+            loop_ms: 100,
+            page_scale: 1,
+            forms: Vec::new(),
+        };
+        let text = codebook(&file, ("d", "d"), 1, 1);
+        assert!(text.contains("&lt;script> &amp; \\*stars\\*"), "{text}");
+        assert!(text.contains("Left \\| a, `NP` \\[None\\](http://example.org), `R` Right"), "{text}");
+        assert!(text.contains("answer to \"Which of two?\""), "{text}");
     }
 }

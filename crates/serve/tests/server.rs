@@ -1,4 +1,8 @@
 //! A server as its clients and its folder meet it: in a process of its own, over sockets, with files that change under it.
+//!
+//! Linux alone: what a process has open is looked up in `/proc`, and other addresses of the machine are called from.
+
+#![cfg(target_os = "linux")]
 
 #[path = "../../../tests/http/mod.rs"]
 mod http;

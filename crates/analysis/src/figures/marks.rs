@@ -16,17 +16,33 @@ enum Shape {
     Cross,
 }
 
-/// A shape, filled or hollow.
+/// What is inside a shape.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Filling {
+    Full,
+    Hollow,
+    /// Hollow, with a dot.
+    Dotted,
+    /// Full, with a hole.
+    Holed,
+}
+
+/// A shape and its filling.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Mark {
     shape: Shape,
-    filled: bool,
+    filling: Filling,
 }
 
 impl Mark {
     /// The mark of the n-th of several things; after six they begin again.
     pub(super) fn nth(n: usize, filled: bool) -> Self {
-        Self { shape: SHAPES[n % SHAPES.len()], filled }
+        Self::of(n, if filled { Filling::Full } else { Filling::Hollow })
+    }
+
+    /// As [`Mark::nth`], of more than two kinds.
+    pub(super) fn of(n: usize, filling: Filling) -> Self {
+        Self { shape: SHAPES[n % SHAPES.len()], filling }
     }
 
     pub(super) fn draw(self, canvas: &mut Canvas, (x, y): (f64, f64)) {
@@ -60,8 +76,14 @@ impl Mark {
         // White-edged, so that marks on top of each other stay apart.
         canvas.polygon(outline(6.2), WHITE);
         canvas.polygon(outline(5.0), BLACK);
-        if !self.filled {
-            canvas.polygon(outline(3.2), WHITE);
+        match self.filling {
+            Filling::Full => {}
+            Filling::Hollow => canvas.polygon(outline(3.2), WHITE),
+            Filling::Dotted => {
+                canvas.polygon(outline(3.2), WHITE);
+                canvas.polygon(outline(1.6), BLACK);
+            }
+            Filling::Holed => canvas.polygon(outline(2.0), WHITE),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::legend::Swatch;
-use super::marks::Mark;
+use super::marks::{Filling, Mark};
 use super::scatter::Scatter;
 use super::{Draft, Figure, WIDTH, canvas_with_legend, style};
 use crate::inputs::AnalysisError;
@@ -49,10 +49,16 @@ fn fewest(sweep: &Sweep) -> u32 {
     sweep.points.iter().map(|point| point.threads).min().unwrap_or(1)
 }
 
-/// Filled for body-centred, hollow for simple cubic; a shape each clustering.
+/// A filling for each arrangement, a shape for each clustering.
 fn mark(study: &Study, method: Method) -> Mark {
     let n = study.file.clusterings.iter().position(|c| *c == method.clustering).unwrap_or(0);
-    Mark::nth(n, method.arrangement == Arrangement::BodyCentred)
+    let filling = match method.arrangement {
+        Arrangement::BodyCentred => Filling::Full,
+        Arrangement::SimpleCubic => Filling::Hollow,
+        Arrangement::FiveTetrahedra => Filling::Dotted,
+        Arrangement::FaceCentred => Filling::Holed,
+    };
+    Mark::of(n, filling)
 }
 
 fn legend(study: &Study) -> Vec<(Swatch, String)> {
@@ -243,6 +249,36 @@ fn quality(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
 mod tests {
     use super::*;
     use crate::fixture;
+
+    /// Every method of every arrangement there is, in the legend and in the plot.
+    #[test]
+    fn no_two_methods_share_a_mark() {
+        use design::Clustering;
+        let arrangements = [
+            Arrangement::BodyCentred,
+            Arrangement::SimpleCubic,
+            Arrangement::FiveTetrahedra,
+            Arrangement::FaceCentred,
+        ];
+        let clusterings = [Clustering::None, Clustering::Integrated, Clustering::EdgeCollapse];
+        let mut study = fixture::study();
+        study.file.clusterings = clusterings.to_vec();
+        let drawn = |method: Method| {
+            let mut canvas = super::super::canvas::Canvas::new(20.0, 20.0);
+            mark(&study, method).draw(&mut canvas, (10.0, 10.0));
+            canvas.to_svg("mark").unwrap()
+        };
+        let mut marks = std::collections::BTreeMap::new();
+        for arrangement in arrangements {
+            for clustering in clusterings {
+                let method = Method { arrangement, clustering };
+                if let Some(other) = marks.insert(drawn(method), method) {
+                    panic!("{} and {} look the same", other.label(), method.label());
+                }
+            }
+        }
+        assert_eq!(marks.len(), 12);
+    }
 
     #[test]
     fn every_figure_is_drawn_within_its_frame() {

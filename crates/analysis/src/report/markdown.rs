@@ -6,7 +6,7 @@ use crate::table::markdown::escape;
 impl Report {
     /// GitHub-flavoured Markdown; figures are links to `figures/<name>.svg` beside it.
     pub fn to_markdown(&self) -> String {
-        let mut text = format!("# {}\n", self.title);
+        let mut text = format!("# {}\n", escape(&self.title));
         for paragraph in &self.lead {
             text.push_str(&format!("\n{}\n", escape(paragraph)));
         }

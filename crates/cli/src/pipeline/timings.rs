@@ -5,13 +5,13 @@ use crate::args::Worker;
 use crate::progress::Step;
 use crate::store::{Inputs, Stamp, remove_if_there, sha256, write_whole};
 use crate::subject::Fields;
-use crate::{machine, rooms, run_file, subject};
+use crate::{input, machine, rooms, run_file, subject};
 use analysis::timing;
 use anyhow::{Context, Result, bail};
 use bench::{BenchError, Entry, Plan, ProcessExecutor, Subject};
 use design::machine::Machine;
 use design::record::{BenchRun, Purpose};
-use design::{Configuration, ConfigurationId, Study};
+use design::{Configuration, ConfigurationId};
 use std::fs::File;
 use std::io::Write;
 use std::process::Command;
@@ -200,7 +200,7 @@ impl Pipeline<'_> {
 /// The measuring process: answers requests on standard input until there are no more.
 pub(crate) fn measure(arguments: &Worker) -> Result<()> {
     let pinned = if arguments.pin { bench::pin(arguments.threads) } else { None };
-    let study = Study::load(&arguments.study)?;
+    let study = input::study(&arguments.study)?;
     if sha256(&std::fs::read(&study.path)?) != arguments.sha256 {
         bail!("{} was changed while the benchmark ran", study.path.display());
     }

@@ -7,6 +7,7 @@ use std::sync::Mutex;
 use std::task::{Context, Poll, ready};
 use std::time::{Duration, Instant};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::net::TcpStream;
 use tokio::sync::Notify;
 use tokio::time::Sleep;
 
@@ -43,8 +44,21 @@ impl Pace {
     }
 }
 
+/// A stream that can be left without waiting for what was written to it.
+pub(super) trait Abort {
+    /// Has the kernel throw away what the client has not taken, once the stream is dropped.
+    fn abort(&self);
+}
+
+impl Abort for TcpStream {
+    fn abort(&self) {
+        // Refused: then the kernel keeps the bytes for some minutes, as it would by itself.
+        drop(self.set_zero_linger());
+    }
+}
+
 /// A stream whose writes fail once nothing was taken for a while.
-pub(super) struct Paced<S> {
+pub(super) struct Paced<S: Abort> {
     stream: S,
     pace: Arc<Pace>,
     patience: Duration,
@@ -52,7 +66,15 @@ pub(super) struct Paced<S> {
     blocked: Option<Pin<Box<Sleep>>>,
 }
 
-impl<S> Paced<S> {
+impl<S: Abort> Drop for Paced<S> {
+    fn drop(&mut self) {
+        if self.blocked.is_some() {
+            self.stream.abort();
+        }
+    }
+}
+
+impl<S: Abort> Paced<S> {
     pub(super) fn new(stream: S, pace: Arc<Pace>, patience: Duration) -> Self {
         Self { stream, pace, patience, blocked: None }
     }
@@ -75,7 +97,7 @@ impl<S> Paced<S> {
     }
 }
 
-impl<S: AsyncRead + Unpin> AsyncRead for Paced<S> {
+impl<S: AsyncRead + Abort + Unpin> AsyncRead for Paced<S> {
     fn poll_read(
         mut self: Pin<&mut Self>,
         context: &mut Context<'_>,
@@ -87,7 +109,7 @@ impl<S: AsyncRead + Unpin> AsyncRead for Paced<S> {
     }
 }
 
-impl<S: AsyncWrite + Unpin> AsyncWrite for Paced<S> {
+impl<S: AsyncWrite + Abort + Unpin> AsyncWrite for Paced<S> {
     fn poll_write(
         mut self: Pin<&mut Self>,
         context: &mut Context<'_>,
@@ -123,6 +145,10 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Paced<S> {
 mod tests {
     use super::*;
     use tokio::io::{AsyncReadExt, AsyncWriteExt};
+
+    impl Abort for tokio::io::DuplexStream {
+        fn abort(&self) {}
+    }
 
     fn run<T>(work: impl Future<Output = T>) -> T {
         tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap().block_on(work)

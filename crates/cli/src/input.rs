@@ -1,0 +1,34 @@
+//! Files that are named to be read. A device or a pipe may never end, or never begin.
+
+use anyhow::{Context, Result, bail};
+use design::Study;
+use std::path::Path;
+
+/// What is there must be a file; that it is not there at all its reader says.
+///
+/// # Errors
+/// If it is a folder, a device or a pipe. The path is named.
+pub(crate) fn regular(path: &Path) -> Result<()> {
+    match std::fs::metadata(path) {
+        Ok(found) if !found.is_file() => bail!("{}: not a file", path.display()),
+        _ => Ok(()),
+    }
+}
+
+/// What a file holds.
+///
+/// # Errors
+/// If it is no file, or cannot be read. The path is named.
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>> {
+    regular(path)?;
+    std::fs::read(path).with_context(|| path.display().to_string())
+}
+
+/// A study, and what it names.
+///
+/// # Errors
+/// If it is no file, or something in it is wrong.
+pub(crate) fn study(path: &Path) -> Result<Study> {
+    regular(path)?;
+    Ok(Study::load(path)?)
+}
