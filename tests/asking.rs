@@ -248,8 +248,8 @@ fn the_smallest_study_is_sound_and_says_its_power() {
         let rows = table.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
         rows.filter(|row| row[5] == n && row[4] == "0.77").map(|row| row[6].parse().unwrap()).collect()
     };
-    // Two contrasts, all answers and within the only lattice, and two questions.
-    assert_eq!(powers("6").len(), 4);
+    // Three contrasts, all answers and each of two objects, and two questions.
+    assert_eq!(powers("6").len(), 5);
     assert!(powers("6").iter().zip(powers("48")).all(|(few, many)| few + 0.3 < many), "{table}");
     assert!(out.path().join("power.png").is_file() && out.path().join("power.svg").is_file());
     for (wrong, place) in

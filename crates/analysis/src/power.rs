@@ -1,28 +1,28 @@
 //! How likely a study is to find a preference that is there, before anyone is asked.
 //!
 //! The study's own forms are answered by simulated people, and each study is tested as [`statistics`](statistics)
-//! tests a real one: exact sign-flip over participants, two-sided at 5 %, with and without adjustment in its family.
-//! What is found must be what was assumed: a rejection in favour of the wrong one is none.
+//! tests a real one: exact sign-flip over participants, two-sided at the study's level, with and without adjustment in its
+//! family. Contrasts and families are those of the analysis. What is found must be what was assumed: a rejection in favour of
+//! the wrong one is none.
 //!
 //! In every contrast the first property is ahead by the same number of logits. Each person deviates by an own amount for
-//! each arrangement and each clustering, and so does each object, for everybody; two properties' deviations differ by the
-//! given standard deviation. The tests are about the study's own objects: a preference that is there on these alone is
+//! each arrangement, each clustering and each method that is compared as one, and so does each object, for everybody; two
+//! properties' deviations differ by the given standard deviation. The tests are about the study's own objects: a preference that is there on these alone is
 //! found as well. Answers follow Davidson's model. Controls, repeats and training are left out, as in the tests.
 
+mod scores;
 #[cfg(test)]
 mod tests;
 
 use design::Study;
-use design::contrast::{Contrast, Family, Level, contrasts};
+use design::contrast::{Contrast, Level, Over, PRIMARY, contrasts, families};
 use design::forms::{Questionnaire, Role};
 use rand::Rng;
 use rayon::prelude::*;
+use scores::weights;
 use statistics::simulation::{davidson, draw, normal, stream};
-use statistics::{Outcome, benjamini_hochberg, holm, sign_flip_of_counts};
+use statistics::{Outcome, SignFlip, benjamini_hochberg, holm, sign_flip_of_counts};
 use std::collections::BTreeMap;
-
-/// Level of the tests.
-const ALPHA: f64 = 0.05;
 
 /// What is assumed of people, and what is simulated.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,6 +62,8 @@ pub struct Power {
     pub power: f64,
     /// The same, adjusted in its family: Holm's adjustment, for single questions Benjamini and Hochberg's.
     pub adjusted: f64,
+    /// Level of the tests.
+    pub level: f64,
     /// Studies simulated.
     pub studies: u64,
 }
@@ -83,26 +85,40 @@ struct Target {
     family: &'static str,
     contrast: String,
     scope: String,
-    /// Question index to weight.
-    weights: BTreeMap<usize, i64>,
+    /// Questions about it.
+    questions: usize,
+    /// By block what is asked about it: question and weight. Weighted answers add up to a participant's score, in a unit that
+    /// makes every score whole.
+    weights: Vec<Vec<(usize, i64)>>,
+    /// Whether its power is told. Differences are simulated for the sake of their family alone: one share for all contrasts
+    /// means that there are none.
+    told: bool,
 }
 
-/// A question that differs in one property.
+/// Targets whose p values are corrected together, which follow one another.
+struct Correction {
+    size: usize,
+    of: fn(&[f64]) -> Vec<f64>,
+}
+
+/// A question: what it compares.
 #[derive(Clone, Copy)]
 struct Question {
     object: usize,
-    /// Its two properties, by index; the first is the one assumed to be ahead.
+    /// Its two levels, by index; the first is the one assumed to be ahead.
     levels: [usize; 2],
     /// 1 if the first is on the left as listed, -1 if on the right.
     sign: i64,
 }
 
 struct Setting {
+    /// Level of the tests.
+    level: f64,
     targets: Vec<Target>,
-    /// By question; `None` if two properties differ, which no contrast is about.
-    questions: Vec<Option<Question>>,
-    /// Questions by participant.
-    forms: Vec<Vec<usize>>,
+    corrections: Vec<Correction>,
+    questions: Vec<Question>,
+    /// Questions by block. Participants are dealt blocks in turn.
+    blocks: Vec<Vec<usize>>,
     levels: usize,
     objects: usize,
 }
@@ -116,7 +132,7 @@ struct Setting {
 pub fn power(study: &Study, assumptions: &Assumptions, done: &(dyn Fn() + Sync)) -> Option<Vec<Power>> {
     let numbers = &assumptions.participants;
     assert!(numbers.is_sorted() && numbers.first().is_some_and(|&least| least > 0));
-    let setting = Setting::of(study, *numbers.last()?)?;
+    let setting = Setting::of(study)?;
     let places = numbers.len() * setting.targets.len();
     let mut all = Vec::new();
     for (place, &share) in assumptions.shares.iter().enumerate() {
@@ -134,17 +150,20 @@ pub fn power(study: &Study, assumptions: &Assumptions, done: &(dyn Fn() + Sync))
             })
             .reduce(|| vec![[0; 2]; places], add);
         let share_of = |count: u64| count as f64 / assumptions.studies as f64;
-        for (target, rejected) in setting.targets.iter().zip(rejected.chunks(numbers.len())) {
+        let told =
+            setting.targets.iter().zip(rejected.chunks(numbers.len())).filter(|(target, _)| target.told);
+        for (target, rejected) in told {
             for (&participants, &[plain, adjusted]) in numbers.iter().zip(rejected) {
                 all.push(Power {
                     family: target.family,
                     contrast: target.contrast.clone(),
                     scope: target.scope.clone(),
-                    questions: target.weights.len(),
+                    questions: target.questions,
                     participants,
                     share,
                     power: share_of(plain),
                     adjusted: share_of(adjusted),
+                    level: setting.level,
                     studies: assumptions.studies,
                 });
             }
@@ -154,16 +173,18 @@ pub fn power(study: &Study, assumptions: &Assumptions, done: &(dyn Fn() + Sync))
 }
 
 impl Setting {
-    fn of(study: &Study, participants: usize) -> Option<Self> {
+    fn of(study: &Study) -> Option<Self> {
         let questionnaire = Questionnaire::of(study)?;
-        let form = |participant| {
-            let asked = questionnaire.form(participant).trials.into_iter();
+        let block = |block| {
+            let asked = questionnaire.form(block).trials.into_iter();
             asked.filter(|t| t.role == Role::Comparison).filter_map(|t| t.comparison).collect()
         };
+        let blocks: Vec<Vec<usize>> = (0..questionnaire.blocks()).map(block).collect();
         let all = contrasts(study);
         let mut levels: Vec<Level> = Vec::new();
-        let mut questions = vec![None; study.comparisons.len()];
-        for contrast in all.iter().filter(|contrast| contrast.family == Family::Pooled) {
+        let mut questions = vec![Question { object: 0, levels: [0; 2], sign: 1 }; study.comparisons.len()];
+        // Every question is in one of these.
+        for contrast in all.iter().filter(|contrast| contrast.over == Over::All) {
             let place = contrast.levels.map(|level| {
                 levels.iter().position(|&known| known == level).unwrap_or_else(|| {
                     levels.push(level);
@@ -172,13 +193,45 @@ impl Setting {
             });
             for (&question, &sign) in &contrast.weights {
                 let object = study.comparisons[question].object;
-                questions[question] = Some(Question { object, levels: place, sign });
+                questions[question] = Question { object, levels: place, sign };
             }
         }
+        let (mut targets, mut corrections) = (Vec::new(), Vec::new());
+        for family in families(&all, &study.file.analysis) {
+            let members: Vec<&Contrast> = family.members.iter().map(|&i| &all[i]).collect();
+            if members.iter().all(|contrast| contrast.is_difference()) {
+                continue;
+            }
+            corrections.push(Correction { size: members.len(), of: holm });
+            targets.extend(members.into_iter().map(|contrast| Target {
+                family: if family.name == PRIMARY { PRIMARY } else { contrast.family.code() },
+                contrast: contrast.name.clone(),
+                scope: contrast.scope.clone(),
+                questions: contrast.weights.len(),
+                weights: weights(study, contrast, &blocks),
+                told: !contrast.is_difference(),
+            }));
+        }
+        corrections.push(Correction { size: questions.len(), of: benjamini_hochberg });
+        targets.extend(study.comparisons.iter().enumerate().map(|(q, comparison)| {
+            let own = |block: &Vec<usize>| {
+                block.contains(&q).then_some((q, questions[q].sign)).into_iter().collect()
+            };
+            Target {
+                family: QUESTIONS,
+                contrast: format!("{}-{}", comparison.left.method, comparison.right.method),
+                scope: comparison.question.clone(),
+                questions: 1,
+                weights: blocks.iter().map(own).collect(),
+                told: true,
+            }
+        }));
         Some(Self {
-            targets: targets(study, all, &questions),
+            level: study.file.analysis.level,
+            targets,
+            corrections,
             questions,
-            forms: (0..participants).map(form).collect(),
+            blocks,
             levels: levels.len(),
             objects: study.file.objects.len(),
         })
@@ -187,95 +240,69 @@ impl Setting {
     /// One simulated study: by target and number of participants, whether p and adjusted p reject.
     fn study(&self, share: f64, assumptions: &Assumptions, random: &mut impl Rng) -> Vec<[u64; 2]> {
         let ahead = (share / (1.0 - share)).ln();
+        let numbers = &assumptions.participants;
+        let people = numbers.last().copied().unwrap_or(0);
         let mut deviations = |sd: f64, count: usize| -> Vec<f64> {
             // Two independent deviations of sd / sqrt(2) differ by sd.
             (0..count).map(|_| sd / std::f64::consts::SQRT_2 * normal(random)).collect()
         };
         let of_objects = deviations(assumptions.object_sd, self.objects * self.levels);
-        let of_people = deviations(assumptions.person_sd, self.forms.len() * self.levels);
-        let numbers = &assumptions.participants;
-        let mut p = vec![(1.0, false); numbers.len() * self.targets.len()];
-        // By target: how many participants have each difference.
+        let of_people = deviations(assumptions.person_sd, people * self.levels);
+        let mut rejected = vec![[0; 2]; numbers.len() * self.targets.len()];
+        // By target: how many participants have each score.
         let mut counts: Vec<BTreeMap<i64, u64>> = vec![BTreeMap::new(); self.targets.len()];
-        let mut signs = vec![None; self.questions.len()];
+        let mut signs = vec![0; self.questions.len()];
         let mut place = 0;
-        for (participant, form) in self.forms.iter().enumerate() {
-            signs.fill(None);
-            for &question in form {
-                let Some(Question { object, levels: [a, b], sign }) = self.questions[question] else {
-                    continue;
-                };
+        for participant in 0..people {
+            let block = participant % self.blocks.len();
+            for &question in &self.blocks[block] {
+                let Question { object, levels: [a, b], sign } = self.questions[question];
                 let [person, object] = [(&of_people, participant), (&of_objects, object)].map(|(of, i)| {
                     let own = &of[i * self.levels..(i + 1) * self.levels];
                     own[a] - own[b]
                 });
                 let outcome = draw(davidson(ahead + person + object, assumptions.ties), random);
-                signs[question] = Some(sign * Outcome::sign(outcome));
+                signs[question] = sign * Outcome::sign(outcome);
             }
             for (target, counts) in self.targets.iter().zip(&mut counts) {
-                let answered = target.weights.iter().filter_map(|(&q, weight)| Some(weight * signs[q]?));
-                let (answers, difference) = answered.fold((0, 0), |(n, sum), signed| (n + 1, sum + signed));
-                if answers > 0 {
-                    *counts.entry(difference).or_default() += 1;
+                let asked = &target.weights[block];
+                if !asked.is_empty() {
+                    let score = asked.iter().map(|&(question, weight)| weight * signs[question]).sum();
+                    *counts.entry(score).or_default() += 1;
                 }
             }
             while numbers.get(place) == Some(&(participant + 1)) {
-                for (target, counts) in counts.iter().enumerate() {
-                    let test = sign_flip_of_counts(counts);
+                let test =
+                    |counts: &BTreeMap<i64, u64>| (!counts.is_empty()).then(|| sign_flip_of_counts(counts));
+                let tests: Vec<Option<SignFlip>> = counts.iter().map(test).collect();
+                let p: Vec<Option<f64>> = tests.iter().map(|test| test.map(|test| test.p())).collect();
+                let adjusted = self.adjusted(&p);
+                for (target, test) in tests.into_iter().enumerate() {
                     // For the wrong one: it takes its place in the adjustment, and is not counted.
-                    let wrong = ahead * (test.net as f64) < 0.0;
-                    p[target * numbers.len() + place] = (test.p(), wrong);
+                    let wrong = test.is_none_or(|test| ahead * (test.net as f64) < 0.0);
+                    let found = |p: Option<f64>| u64::from(p.is_some_and(|p| p <= self.level && !wrong));
+                    rejected[target * numbers.len() + place] = [p[target], adjusted[target]].map(found);
                 }
                 place += 1;
             }
         }
-        self.rejected(&p, numbers.len())
+        rejected
     }
 
-    /// Of each p, and whether it speaks for the wrong one: whether it is a find, unadjusted and adjusted.
-    fn rejected(&self, p: &[(f64, bool)], numbers: usize) -> Vec<[u64; 2]> {
-        let found = |p: f64, wrong: bool| u64::from(p <= ALPHA && !wrong);
-        let mut rejected: Vec<[u64; 2]> = p.iter().map(|&(p, wrong)| [found(p, wrong), 0]).collect();
-        for place in 0..numbers {
-            let mut begin = 0;
-            for family in self.targets.chunk_by(|a, b| a.family == b.family) {
-                let members = (begin..begin + family.len()).map(|target| target * numbers + place);
-                let of_family: Vec<f64> = members.clone().map(|i| p[i].0).collect();
-                let adjusted = if family[0].family == QUESTIONS {
-                    benjamini_hochberg(&of_family)
-                } else {
-                    holm(&of_family)
-                };
-                members.zip(adjusted).for_each(|(i, adjusted)| rejected[i][1] = found(adjusted, p[i].1));
-                begin += family.len();
-            }
+    /// p by target, adjusted within each correction. What nobody was asked is not among the tests.
+    fn adjusted(&self, p: &[Option<f64>]) -> Vec<Option<f64>> {
+        let mut adjusted = vec![None; p.len()];
+        let mut begin = 0;
+        for correction in &self.corrections {
+            let members = begin..begin + correction.size;
+            let tested: Vec<(usize, f64)> = members.filter_map(|target| Some((target, p[target]?))).collect();
+            let of_tested = (correction.of)(&tested.iter().map(|&(_, p)| p).collect::<Vec<_>>());
+            tested.iter().zip(of_tested).for_each(|(&(target, _), p)| adjusted[target] = Some(p));
+            begin += correction.size;
         }
-        rejected
+        adjusted
     }
 }
 
 /// The family of single questions.
 pub(crate) const QUESTIONS: &str = "questions";
-
-/// The contrasts but interactions, for which one share for all contrasts would mean that there are none; then each question.
-fn targets(study: &Study, contrasts: Vec<Contrast>, questions: &[Option<Question>]) -> Vec<Target> {
-    let of_contrast = |c: Contrast| Target {
-        family: c.family.code(),
-        contrast: c.name,
-        scope: c.scope,
-        weights: c.weights,
-    };
-    let kept = contrasts.into_iter().filter(|contrast| contrast.family != Family::Interactions);
-    let mut targets: Vec<Target> = kept.map(of_contrast).collect();
-    for (q, question) in questions.iter().enumerate() {
-        let Some(Question { sign, .. }) = question else { continue };
-        let comparison = &study.comparisons[q];
-        targets.push(Target {
-            family: QUESTIONS,
-            contrast: format!("{}-{}", comparison.left.method, comparison.right.method),
-            scope: comparison.question.clone(),
-            weights: BTreeMap::from([(q, *sign)]),
-        });
-    }
-    targets
-}

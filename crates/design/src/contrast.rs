@@ -173,6 +173,20 @@ impl Contrast {
     pub fn counts(&self, answered: impl Fn(usize) -> bool) -> bool {
         self.parts.iter().all(|part| part.keys().any(|&question| answered(question)))
     }
+
+    /// What else a question is about, as a number: in differences like is held against like first. Between values of the other
+    /// factor that is the object; between objects it is the value of the other factor.
+    pub fn stratum(&self, study: &Study, question: usize) -> usize {
+        let comparison = &study.comparisons[question];
+        let Method { arrangement, clustering } = comparison.left.method;
+        let place = match (self.over, self.levels[0].factor()) {
+            (Over::Difference(..), _) => Some(comparison.object),
+            (_, Factor::Clustering) => study.file.arrangements.iter().position(|&a| a == arrangement),
+            (_, Factor::Arrangement) => study.file.clusterings.iter().position(|&c| c == clustering),
+            (_, Factor::Method) => None,
+        };
+        place.unwrap_or(0)
+    }
 }
 
 /// A question, seen by the factor in which its methods differ.

@@ -54,8 +54,12 @@ pub fn power_figure(assumptions: &Assumptions, all: &[Power]) -> Result<Figure, 
 fn over(family: &str) -> &str {
     match family {
         "pooled" => "all answers",
+        "methods" => "methods that differ in both",
         "groups" => "within one lattice or clustering",
-        "objects" => "one object",
+        "objects" => "lattices on one object",
+        "objects-clustering" => "clusterings on one object",
+        "objects-method" => "methods on one object",
+        "primary" => "primary contrasts",
         _ => "one question alone",
     }
 }

@@ -1,7 +1,13 @@
 use super::*;
 use crate::fixture;
-use design::config::FormsSection;
+use crate::hypotheses;
+use design::config::{FamilyRule, FormsSection};
+use rand::RngExt;
 use statistics::simulation::Population;
+use statistics::{DeclaredBallot, Preference};
+
+/// Level of the tests of these studies.
+const ALPHA: f64 = 0.05;
 
 /// The paper's 27 comparisons, dealt to participants with sides balanced.
 fn study() -> Study {
@@ -138,4 +144,100 @@ fn what_is_found_is_what_was_assumed() {
     }
     let certain = Power { power: 1.0, adjusted: 0.0, studies: 10, ..all[0].clone() };
     assert!(certain.errors().into_iter().all(|error| error > 0.05 && error < 0.15), "{:?}", certain.errors());
+}
+
+/// A study is tested as the analysis tests it: the same contrasts, families, scores and p, whatever people answer.
+#[test]
+fn power_and_analysis_test_the_same() {
+    let mut random = stream(5, 0);
+    for (max_questions, rule, primary) in [
+        (27, FamilyRule::ByKind, ""),
+        (27, FamilyRule::One, "B-S"),
+        (9, FamilyRule::ByKind, "U-I within B"),
+        (9, FamilyRule::One, "B-S U - I"),
+        (7, FamilyRule::One, ""),
+        (4, FamilyRule::One, "U-P sphere - bunny"),
+    ] {
+        let mut study = study();
+        study.file.forms.as_mut().unwrap().max_questions = max_questions;
+        study.file.analysis.families = rule;
+        study.file.analysis.primary =
+            Some(primary.to_owned()).filter(|name| !name.is_empty()).into_iter().collect();
+        let setting = Setting::of(&study).unwrap();
+        for people in [2, 5, 14] {
+            let mut ballots = Vec::new();
+            let mut counts: Vec<BTreeMap<i64, u64>> = vec![BTreeMap::new(); setting.targets.len()];
+            for person in 0..people {
+                let block = person % setting.blocks.len();
+                let mut signs = vec![0; setting.questions.len()];
+                for &question in &setting.blocks[block] {
+                    let preference = [Preference::First, Preference::Neither, Preference::Second]
+                        [random.random_range(0..3)];
+                    signs[question] = preference.sign();
+                    ballots.push(DeclaredBallot::new(person, question, [0, 1], preference));
+                }
+                for (target, counts) in setting.targets.iter().zip(&mut counts) {
+                    let asked = &target.weights[block];
+                    if !asked.is_empty() {
+                        *counts
+                            .entry(asked.iter().map(|&(q, weight)| weight * signs[q]).sum())
+                            .or_default() += 1;
+                    }
+                }
+            }
+            ballots.sort_by_key(|ballot| (ballot.question(), ballot.participant()));
+            let tests = counts.iter().map(|of| (!of.is_empty()).then(|| sign_flip_of_counts(of).p()));
+            let p: Vec<Option<f64>> = tests.collect();
+            let adjusted = setting.adjusted(&p);
+            let analysed = hypotheses::of_study(&study, &ballots);
+            let told = setting.targets.iter().filter(|target| target.told).count();
+            let plain = analysed.iter().filter(|of| !of.scope.contains(" - "));
+            assert_eq!(told, plain.count(), "{max_questions} {rule:?}");
+            for (i, target) in setting.targets.iter().enumerate() {
+                let same = |of: &&hypotheses::Hypothesis| {
+                    (of.family.as_str(), &of.contrast, &of.scope)
+                        == (target.family, &target.contrast, &target.scope)
+                };
+                let of = analysed.iter().find(same).unwrap();
+                let name = format!("{} {} {} of {people}", target.family, target.contrast, target.scope);
+                let expected = of.is_tested().then(|| of.test.sign_flip.p());
+                assert_eq!(p[i], expected, "{name}");
+                assert_eq!(adjusted[i], expected.map(|_| of.adjusted), "{name}");
+            }
+        }
+    }
+}
+
+/// Questions that differ in both letters are contrasts of their own, and count as in the analysis.
+#[test]
+fn methods_that_differ_in_both_factors_have_power_too() {
+    let mut study = study();
+    for comparison in &mut study.comparisons {
+        if comparison.group == 2 {
+            comparison.left.method.clustering = design::Clustering::Integrated;
+        }
+    }
+    let all = power(&study, &assumptions(100), &|| ()).unwrap();
+    let families: Vec<&str> = all.iter().map(|power| power.family).collect();
+    assert!(["methods", "objects-method"].iter().all(|family| families.contains(family)), "{families:?}");
+    let questions = all.iter().filter(|power| power.family == QUESTIONS).count();
+    assert_eq!(questions, 27 * 2 * 3);
+}
+
+#[test]
+fn a_stricter_study_finds_less() {
+    let mut study = study();
+    let sum = |study: &Study| -> [f64; 2] {
+        let all = power(study, &assumptions(200), &|| ()).unwrap();
+        [
+            all.iter().map(|p| p.power).sum(),
+            all.iter().filter(|p| p.family != QUESTIONS).map(|p| p.adjusted).sum(),
+        ]
+    };
+    let usual = sum(&study);
+    study.file.analysis.families = FamilyRule::One;
+    let one_family = sum(&study);
+    assert!(one_family[0] == usual[0] && one_family[1] < usual[1], "{usual:?} {one_family:?}");
+    study.file.analysis.level = 0.005;
+    assert!(sum(&study)[0] < usual[0]);
 }

@@ -70,9 +70,11 @@ fn by_participants(assumptions: &Assumptions, all: &[Power]) -> Table {
         cells.extend(row.iter().map(|p| Cell::text(format!("{:.2} ({:.2})", p.power, p.adjusted))));
         table.push(cells);
     }
+    let level =
+        all.first().map_or_else(String::new, |power| format!("{} %", (1e6 * power.level).round() / 1e4));
     let largest = all.iter().flat_map(Power::errors).fold(0.0, f64::max);
     table.notes.push(format!(
-        "Exact sign-flip test over participants at 5 %, two-sided; {} simulated studies a share, Monte-Carlo standard error at \
+        "Exact sign-flip test over participants at {level}, two-sided; {} simulated studies a share, Monte-Carlo standard error at \
          most {largest:.3}. Assumed: in every contrast the first is chosen in this share of decided answers by a person who \
          does not deviate; differences between people have standard deviation {} logits, between objects {}; Davidson's tie \
          parameter {}. Rejections in favour of the other do not count. Objects are taken as they are: \
