@@ -7,13 +7,18 @@
 //! What a design cannot show is said to be not answerable, with the reason; it is never taken for the absence of a defect.
 
 mod copies;
+mod dealt;
 mod interaction;
+mod labels;
 mod side;
 mod stimuli;
 mod swapped;
+mod turned;
+
+pub use dealt::Dealt;
 
 use crate::ballots::BallotGroup;
-use statistics::{Pairs, Separation, ShownBallot, oddness, screening, separation};
+use statistics::{Circumstances, Pairs, Separation, ShownBallot, oddness, screening, separation};
 use stimuli::Stimuli;
 
 /// A probe speaks up at this p, adjusted for all that it looks at.
@@ -55,6 +60,18 @@ impl Probe {
             Self::CopiedRows => "copied-rows",
             Self::SwappedKey => "swapped-key",
             Self::ObjectInteraction => "object-interaction",
+            Self::Separation => "separation",
+        }
+    }
+
+    /// The name in print.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Side => "side",
+            Self::OddRespondent => "outlying respondent",
+            Self::CopiedRows => "copied rows",
+            Self::SwappedKey => "wrong key",
+            Self::ObjectInteraction => "object interaction",
             Self::Separation => "separation",
         }
     }
@@ -122,6 +139,10 @@ pub struct Audited<'a> {
     pub objects: &'a [String],
     /// Whether left and right are sides.
     pub sides_recorded: bool,
+    /// When and how fast each answer was given, one a ballot in the same order, or none at all.
+    pub circumstances: &'a [Circumstances],
+    /// What the study knows of sides, if there is a study.
+    pub dealt: Option<&'a Dealt<'a>>,
 }
 
 /// Why nothing about sides can be seen.
@@ -130,14 +151,15 @@ const NO_SIDES: &str = "the file does not say which item was on which side";
 /// Runs every probe.
 ///
 /// # Panics
-/// If a ballot's question has no scene or name, or a scene no name.
+/// If a ballot's question has no scene or name, or a scene no name; if there are circumstances, but not one a ballot.
 pub fn audit(audited: &Audited<'_>) -> Vec<Report> {
-    let stimuli = Stimuli::of(audited.ballots, audited.scenes);
-    let (swapped, suspects) = swapped::probe(audited, &stimuli);
+    let labels = labels::look(audited);
+    let stimuli = Stimuli::of(audited.ballots, audited.scenes, &labels.suspects);
+    let (swapped, suspects) = swapped::probe(audited, labels, &stimuli);
     vec![
         side::probe(audited, &stimuli, &suspects),
         odd_respondent(audited.ballots),
-        copies::probe(audited.ballots),
+        copies::probe(audited.ballots, audited.circumstances),
         swapped,
         interaction::probe(audited, &suspects),
         separated(audited.groups),

@@ -1,6 +1,6 @@
 //! Everything that was answered, controls and repeats included, and how: what screening and probes look at.
 
-use crate::audit::Audited;
+use crate::audit::{Audited, Dealt};
 use crate::ballots::{BallotGroup, is_asked, method_of_item, outcome};
 use design::Study;
 use responses::{Answer, Responses};
@@ -20,6 +20,8 @@ pub struct Recorded<'a> {
     objects: Vec<String>,
     sides_recorded: bool,
     shown_ms: Option<f64>,
+    /// What the study knows of sides, where the file tells them itself.
+    dealt: Option<Dealt<'a>>,
 }
 
 impl<'a> Recorded<'a> {
@@ -29,7 +31,7 @@ impl<'a> Recorded<'a> {
     ///
     /// # Panics
     /// If the answers were read for another study.
-    pub fn of_study(study: &Study, answers: &Responses, ballots: &'a [ShownBallot]) -> Self {
+    pub fn of_study(study: &'a Study, answers: &'a Responses, ballots: &'a [ShownBallot]) -> Self {
         let mut order: Vec<&Answer> = answers.answers.iter().collect();
         order.sort_by_key(|answer| answer.question);
         let items = method_of_item(study, answers);
@@ -48,6 +50,7 @@ impl<'a> Recorded<'a> {
         let declared = study.file.responses.as_ref().and_then(|section| section.shown_s);
         Self {
             ballots,
+            dealt: Dealt::of(study, answers, &order),
             circumstances: circumstances(order.into_iter()),
             scenes: answers.questions.iter().map(|question| object(question.left)).collect(),
             questions: answers.questions.iter().map(|question| question.id.clone()).collect(),
@@ -79,6 +82,7 @@ impl<'a> Recorded<'a> {
             objects,
             sides_recorded: answers.sides_recorded,
             shown_ms: shown_s.map(|seconds| 1000.0 * seconds),
+            dealt: None,
         }
     }
 
@@ -106,6 +110,8 @@ impl<'a> Recorded<'a> {
             questions: &self.questions,
             objects: &self.objects,
             sides_recorded: self.sides_recorded,
+            circumstances: &self.circumstances,
+            dealt: self.dealt.as_ref(),
         }
     }
 }

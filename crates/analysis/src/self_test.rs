@@ -6,13 +6,15 @@
 
 mod defects;
 mod rates;
+mod studies;
 mod truths;
 
 pub use defects::{Defect, Planted, planted};
 pub use rates::{Rate, rates};
+pub use studies::Design;
 pub use truths::{truths, wrong_cells};
 
-use crate::audit::{Finding, Probe};
+use crate::audit::{Finding, Probe, Report};
 use crate::table::{Cell, Table};
 use rayon::prelude::*;
 
@@ -24,10 +26,14 @@ pub const OTHERS_AT_MOST: f64 = 0.02;
 /// How often each probe spoke up on studies with one defect.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hits {
+    /// How the studies were dealt.
+    pub design: Design,
     /// The defect.
     pub defect: Defect,
     /// In the order of [`Probe::ALL`].
     pub found: [u64; 6],
+    /// In how many studies a probe could not tell.
+    pub unanswerable: [u64; 6],
     /// How many studies.
     pub studies: u64,
 }
@@ -35,18 +41,30 @@ pub struct Hits {
 impl Hits {
     /// Share of studies in which a probe spoke up.
     pub fn share(&self, probe: Probe) -> f64 {
-        let place = Probe::ALL.iter().position(|&p| p == probe).expect("one of all");
-        self.found[place] as f64 / self.studies as f64
+        self.found[place(probe)] as f64 / self.studies as f64
     }
 
-    /// Whether a probe did on these studies what it has to, with [`allowance`] if they are few.
+    /// Whether a probe could tell in none of these studies.
+    pub fn never_answerable(&self, probe: Probe) -> bool {
+        self.unanswerable[place(probe)] == self.studies
+    }
+
+    /// Whether a probe did on these studies what it has to, with [`allowance`] if they are few. A probe that says of every
+    /// study that it cannot tell has not failed, nor has one that finds its own defect less often where answers are too few.
     pub fn sound(&self, probe: Probe) -> bool {
         let (own, others) = probe_limits(self.studies);
         match self.defect.probe() == Some(probe) {
-            true => self.share(probe) >= own,
+            true => {
+                let asked = self.defect.is_told_by(self.design) && !self.never_answerable(probe);
+                !asked || self.share(probe) >= own
+            }
             false => self.share(probe) <= others,
         }
     }
+}
+
+fn place(probe: Probe) -> usize {
+    Probe::ALL.iter().position(|&p| p == probe).expect("one of all")
 }
 
 /// Three standard errors of a share counted in so many studies.
@@ -66,25 +84,27 @@ fn probe_limits(studies: u64) -> (f64, f64) {
     (own.max(0.0), (OTHERS_AT_MOST + allowance(OTHERS_AT_MOST, studies)).min(1.0))
 }
 
-/// Plants every defect in so many studies each.
+/// Plants every defect in every design, each in a tenth of so many studies.
 pub fn probes(studies: u64, seed: u64) -> Vec<Hits> {
-    let one = |defect: Defect, study: u64| {
-        let reports = planted(defect, seed, study).audit();
-        let found = |probe: &Probe| {
-            let spoke = |r: &crate::audit::Report| r.probe == *probe && r.finding == Finding::Found;
-            u64::from(reports.iter().any(spoke))
-        };
-        Probe::ALL.each_ref().map(found)
+    let rows = Design::ALL.into_iter().flat_map(|design| Defect::ALL.map(|defect| (design, defect)));
+    rows.filter(|&(design, defect)| defect.is_planted(design))
+        .map(|(design, defect)| probes_of(design, defect, studies.div_ceil(10), seed))
+        .collect()
+}
+
+fn probes_of(design: Design, defect: Defect, studies: u64, seed: u64) -> Hits {
+    let one = |study: u64| seen(&planted(defect, design, seed, study).audit());
+    let add = |a: [[u64; 6]; 2], b: [[u64; 6]; 2]| [0, 1].map(|k| std::array::from_fn(|i| a[k][i] + b[k][i]));
+    let [found, unanswerable] = (0..studies).into_par_iter().map(one).reduce(|| [[0; 6]; 2], add);
+    Hits { design, defect, found, unanswerable, studies }
+}
+
+/// By probe, whether it spoke up, and whether it could not tell.
+fn seen(reports: &[Report]) -> [[u64; 6]; 2] {
+    let came_out = |finding: Finding| {
+        Probe::ALL.map(|probe| u64::from(reports.iter().any(|r| r.probe == probe && r.finding == finding)))
     };
-    let add = |mut a: [u64; 6], b: [u64; 6]| {
-        a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
-        a
-    };
-    let hits = |defect: Defect| {
-        let found = (0..studies).into_par_iter().map(|study| one(defect, study)).reduce(|| [0; 6], add);
-        Hits { defect, found, studies }
-    };
-    Defect::ALL.into_iter().map(hits).collect()
+    [came_out(Finding::Found), came_out(Finding::NotAnswerable)]
 }
 
 /// Everything, as three tables, `self_test_truths`, `self_test_probes` and `self_test_rates`, and whether all is as it has to
@@ -99,31 +119,32 @@ pub fn self_test(studies: u64, seed: u64) -> (Vec<Table>, bool) {
 fn simulated(studies: u64, seed: u64) -> ([Table; 2], bool) {
     let (hits, rates) = (probes(studies, seed), rates(studies, seed));
     let sound = hits.iter().all(|h| Probe::ALL.iter().all(|&p| h.sound(p))) && rates.iter().all(Rate::sound);
-    ([probe_table(&hits, studies, seed), rate_table(&rates, seed)], sound)
+    ([probe_table(&hits, seed), rate_table(&rates, seed)], sound)
 }
 
-fn probe_table(hits: &[Hits], studies: u64, seed: u64) -> Table {
-    let mut columns = vec![("defect".to_owned(), "Planted".to_owned())];
-    columns.extend(Probe::ALL.iter().map(|p| (p.code().replace('-', "_"), p.code().replace('-', " "))));
-    columns.push(("passed".into(), "Passed".into()));
+fn probe_table(hits: &[Hits], seed: u64) -> Table {
+    let mut columns =
+        vec![("design".to_owned(), "Design".to_owned()), ("defect".to_owned(), "Planted".to_owned())];
+    columns.extend(Probe::ALL.iter().map(|p| (p.code().replace('-', "_"), p.label().to_owned())));
+    columns.extend([("studies".into(), "Studies".into()), ("passed".into(), "Passed".into())]);
     let columns: Vec<(&str, &str)> = columns.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect();
     let mut table =
         Table::new("self_test_probes", "Share of studies in which each probe speaks up", &columns);
     for of in hits {
-        let mut row = vec![Cell::text(of.defect.label())];
-        row.extend(Probe::ALL.iter().map(|&probe| Cell::Number(of.share(probe), 4)));
+        let mut row = vec![Cell::text(of.design.label()), Cell::text(of.defect.label())];
+        row.extend(Probe::ALL.iter().map(|&probe| match of.never_answerable(probe) {
+            true => Cell::text("not answerable"),
+            false => Cell::Number(of.share(probe), 4),
+        }));
+        row.push(Cell::count(of.studies));
         row.push(Cell::text(verdict(Probe::ALL.iter().all(|&probe| of.sound(probe)))));
         table.push(row);
     }
-    let (own, others) = probe_limits(studies);
-    let few = match studies < FULL {
-        true => format!("; with three standard errors for so few studies, {own:.4} and {others:.4}"),
-        false => String::new(),
-    };
     table.notes.push(format!(
-        "{studies} simulated studies a row, seed {seed}; {}. Passed: at least {OWN_AT_LEAST} on the probe's own defect, at most \
-         {OTHERS_AT_MOST} elsewhere{few}.",
-        defects::DESCRIPTION
+        "Seed {seed}; {}. Passed: at least {OWN_AT_LEAST} on the probe's own defect, at most {OTHERS_AT_MOST} elsewhere; with three \
+         standard errors of counting where a row has fewer than {FULL} studies. {}",
+        defects::DESCRIPTION,
+        defects::TOO_FEW
     ));
     table
 }

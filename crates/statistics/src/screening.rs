@@ -45,10 +45,16 @@ pub struct Screening {
     pub controls: u64,
     /// Of these, how many decided for a side nonetheless.
     pub controls_decided: u64,
+    /// Of the controls that were decided, how many went left.
+    pub controls_left: u64,
+    /// Whether every item that the participant decided about stood on both sides in these answers.
+    pub items_on_both_sides: bool,
     /// Answers that repeat an earlier one about the same two items in the same scene, in either order of sides, both decided.
     pub repeats: u64,
     /// Of these, how many chose the other item.
     pub repeats_opposite: u64,
+    /// Of the repeats, how many had the sides swapped.
+    pub repeats_swapped: u64,
     /// Answers whose time is known.
     pub timed: u64,
     /// Sum of these times in milliseconds.
@@ -61,7 +67,7 @@ pub struct Screening {
 /// preferred.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Flag {
-    /// Ten decided answers or more, all for the same side.
+    /// Ten decided answers or more, all for the same side, where that is no preference: see [`Screening::tells_sides`].
     OneSided,
     /// Two controls decided or more, and more than half of them.
     Controls,
@@ -107,11 +113,29 @@ impl Screening {
         (self.repeats > 0).then(|| 1.0 - self.repeats_opposite as f64 / self.repeats as f64)
     }
 
+    /// Whether choosing one side throughout could be told from preferring what stood there. It could if
+    /// - every item that the participant decided about stood on the left in some of these answers and on the right in others,
+    ///   so that no order of the items has the same side ahead in all of them; or
+    /// - two repeats or more were decided that had the sides swapped, so that the same side means the other item; or
+    /// - two controls or more were decided, where there is nothing else to prefer, all for that same side.
+    ///
+    /// Who agrees on everything where sides go with items chooses one side throughout, and is not careless for it.
+    pub fn tells_sides(&self) -> bool {
+        let [left, _, right] = self.answers;
+        let same_side =
+            if left >= right { self.controls_left } else { self.controls_decided - self.controls_left };
+        let by_controls = self.controls_decided >= 2 && same_side == self.controls_decided;
+        self.items_on_both_sides || self.repeats_swapped >= 2 || by_controls
+    }
+
     /// The rules broken.
     pub fn flags(&self, protocol: &Protocol<'_>) -> Vec<Flag> {
         let [left, _, right] = self.answers;
         let breaks = |flag: &Flag| match flag {
-            Flag::OneSided => !protocol.sides_unknown && left + right >= 10 && left.min(right) == 0,
+            Flag::OneSided => {
+                let one_side = left + right >= 10 && left.min(right) == 0;
+                one_side && !protocol.sides_unknown && self.tells_sides()
+            }
             Flag::Controls => self.controls_decided >= 2 && 2 * self.controls_decided > self.controls,
             Flag::Repeats => self.repeats_opposite >= 2 && 2 * self.repeats_opposite > self.repeats,
             Flag::Time => {
@@ -161,6 +185,7 @@ pub fn screening_with(ballots: &[ShownBallot], protocol: &Protocol<'_>) -> Vec<S
             if ballot.left() == ballot.right() {
                 seen.controls += 1;
                 seen.controls_decided += sign.unsigned_abs();
+                seen.controls_left += u64::from(sign > 0);
                 continue;
             }
             seen.answers[ballot.outcome().index()] += 1;
@@ -172,7 +197,12 @@ pub fn screening_with(ballots: &[ShownBallot], protocol: &Protocol<'_>) -> Vec<S
                 seen.agreeing += u64::from(others.signum() == own);
             }
         }
-        seen.count_repeats(places.iter().map(|&i| &ballots[i]), protocol.scenes);
+        let decided = || {
+            let own = places.iter().map(|&i| &ballots[i]);
+            own.filter(|b| b.left() != b.right() && b.outcome() != Outcome::Tie)
+        };
+        seen.items_on_both_sides = on_both_sides(decided());
+        seen.count_repeats(decided(), protocol.scenes);
         seen
     };
     let same = |a: &usize, b: &usize| ballots[*a].participant() == ballots[*b].participant();
@@ -186,26 +216,36 @@ pub fn screening_with(ballots: &[ShownBallot], protocol: &Protocol<'_>) -> Vec<S
 
 impl Screening {
     /// Decided answers about the same items in the same scene, each against the one before.
-    fn count_repeats<'a>(&mut self, own: impl Iterator<Item = &'a ShownBallot>, scenes: &[usize]) {
+    fn count_repeats<'a>(&mut self, decided: impl Iterator<Item = &'a ShownBallot>, scenes: &[usize]) {
         // Without scenes every question is its own.
         let scene = |b: &ShownBallot| {
             (scenes.get(b.question()).copied(), if scenes.is_empty() { b.question() } else { 0 })
         };
         let chosen = |b: &ShownBallot| if b.outcome() == Outcome::Left { b.left() } else { b.right() };
-        let decided = own.filter(|b| b.left() != b.right() && b.outcome() != Outcome::Tie);
         let mut shown: Vec<_> = decided
-            .map(|b| (scene(b), b.left().min(b.right()), b.left().max(b.right()), chosen(b)))
+            .map(|b| ((scene(b), b.left().min(b.right()), b.left().max(b.right())), b.left(), chosen(b)))
             .collect();
         // Stable: the order of presentation stays within each.
-        shown.sort_by_key(|&(scene, low, high, _)| (scene, low, high));
-        for pair in shown.windows(2) {
-            let [(scene, low, high, item), (next_scene, next_low, next_high, next)] = [pair[0], pair[1]];
-            if (scene, low, high) == (next_scene, next_low, next_high) {
+        shown.sort_by_key(|&(pair, ..)| pair);
+        for two in shown.windows(2) {
+            let [(pair, left, item), (next_pair, next_left, next)] = [two[0], two[1]];
+            if pair == next_pair {
                 self.repeats += 1;
                 self.repeats_opposite += u64::from(item != next);
+                self.repeats_swapped += u64::from(left != next_left);
             }
         }
     }
+}
+
+/// Whether there are items, and all of them stood on both sides.
+fn on_both_sides<'a>(decided: impl Iterator<Item = &'a ShownBallot>) -> bool {
+    let (mut left, mut right): (Vec<usize>, Vec<usize>) = decided.map(|b| (b.left(), b.right())).unzip();
+    for items in [&mut left, &mut right] {
+        items.sort_unstable();
+        items.dedup();
+    }
+    !left.is_empty() && left == right
 }
 
 #[cfg(test)]

@@ -14,14 +14,20 @@ struct Comparison {
     p: f64,
 }
 
+/// The questions on an object and those on the others, the smaller set first: what makes a comparison another one.
+type Compared = [Vec<usize>; 2];
+
 /// For each group, pair of items and object: each participant's answers on the object against those on the others, by the
-/// permutation test within participants ([`exchange`]); Holm over all. Questions with a suspect key are left out.
+/// permutation test within participants ([`exchange`]); Holm over all. Questions with a suspect key are left out. What holds
+/// the same answers against the same others is one comparison: one object against the other of two, or a pair that
+/// two groups have.
 pub(super) fn probe(audited: &Audited<'_>, suspects: &BTreeSet<usize>) -> Report {
     let mut all: Vec<Comparison> = Vec::new();
+    let mut known = BTreeSet::new();
     for group in audited.groups {
         for first in 0..group.items.len() {
             for second in first + 1..group.items.len() {
-                all.extend(compare(audited, suspects, group, (first, second)));
+                all.extend(compare(audited, suspects, group, (first, second), &mut known));
             }
         }
     }
@@ -51,11 +57,12 @@ fn compare(
     suspects: &BTreeSet<usize>,
     group: &BallotGroup,
     (first, second): (usize, usize),
+    known: &mut BTreeSet<Compared>,
 ) -> Vec<Comparison> {
     let scenes = audited.objects.len();
     // By participant and scene: answers for the first, neither, for the second.
     let mut seen: Vec<[u64; 3]> = Vec::new();
-    let mut shown = vec![false; scenes];
+    let mut shown: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); scenes];
     for ballot in group.ballots.iter().filter(|b| !suspects.contains(&b.question())) {
         let outcome = match (ballot.left(), ballot.right()) {
             sides if sides == (first, second) => ballot.outcome(),
@@ -68,11 +75,19 @@ fn compare(
             seen.resize((ballot.participant() + 1) * scenes, [0; 3]);
         }
         seen[place][outcome.index()] += 1;
-        shown[scene] = true;
+        shown[scene].insert(ballot.question());
     }
     let add = |a: [u64; 3], b: &[u64; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
     let mean = |of: [u64; 3]| (of[0] as f64 - of[2] as f64) / of.iter().sum::<u64>() as f64;
     let of_scene = |scene: usize| {
+        let others = (0..scenes).filter(|&other| other != scene);
+        let mut compared =
+            [shown[scene].iter().copied().collect(), others.flat_map(|s| shown[s].clone()).collect()];
+        compared.iter_mut().for_each(|questions: &mut Vec<usize>| questions.sort_unstable());
+        compared.sort_unstable();
+        if !known.insert(compared) {
+            return None;
+        }
         let split = |of: &[[u64; 3]]| Split { own: of[scene], all: of.iter().fold([0; 3], add) };
         let rest = |of: &Split| [0, 1, 2].map(|o| of.all[o] - of.own[o]);
         let mut splits: Vec<Split> = seen.chunks(scenes).map(split).collect();
@@ -86,6 +101,6 @@ fn compare(
         let name = format!("{items} ({}) on {}", group.name, audited.objects[scene]);
         (m > 0.0).then(|| Comparison { name, means, p: exchange(&splits) })
     };
-    let several = shown.iter().filter(|&&shown| shown).count() > 1;
-    (0..scenes).filter(|&scene| several && shown[scene]).filter_map(of_scene).collect()
+    let several = shown.iter().filter(|shown| !shown.is_empty()).count() > 1;
+    (0..scenes).filter(|&scene| several && !shown[scene].is_empty()).filter_map(of_scene).collect()
 }

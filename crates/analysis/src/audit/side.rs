@@ -51,7 +51,7 @@ pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSe
 /// left side. Two orders were fitted, hence m - 2 degrees of freedom.
 fn pull(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSet<usize>) -> Option<(usize, f64, f64)> {
     let middles: BTreeMap<usize, f64> = stimuli
-        .in_both_orders(1.0)
+        .in_both_orders()
         .map(|(place, s)| (place, 0.5 * (s.orders[0].mean() + s.orders[1].mean())))
         .collect();
     let mut sums: Vec<(f64, f64)> = Vec::new();
@@ -63,7 +63,7 @@ fn pull(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSet<usize>) ->
         }
         let towards = if ballot.left() < ballot.right() { 1.0 } else { -1.0 };
         let (sum, n) = &mut sums[ballot.participant()];
-        *sum += towards * (for_lower(ballot) - middle);
+        *sum += towards * (for_lower(ballot) as f64 - middle);
         *n += 1.0;
     }
     let scores: Vec<f64> = sums.into_iter().filter(|&(_, n)| n > 0.0).map(|(sum, n)| sum / n).collect();

@@ -1,24 +1,27 @@
 //! The same two items in the same scene, seen in either order of sides.
 
 use statistics::ShownBallot;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Answers to one stimulus in one order of sides, for its lower item: 1 chosen, 0 tie, -1 the other chosen.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+/// Answers to one stimulus in one order of sides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Answers {
-    pub(super) n: f64,
-    sum: f64,
-    squares: f64,
+    /// For the lower item.
+    pub(super) chosen: u64,
+    /// For neither.
+    ties: u64,
+    /// For the other item.
+    pub(super) other: u64,
 }
 
 impl Answers {
-    pub(super) fn mean(&self) -> f64 {
-        self.sum / self.n
+    pub(super) fn n(&self) -> u64 {
+        self.chosen + self.ties + self.other
     }
 
-    /// Variance of the mean, with two answers' worth of doubt added, so that unanimity is not certainty.
-    pub(super) fn variance_of_mean(&self) -> f64 {
-        (self.squares - self.sum * self.sum / self.n + 2.0) / (self.n * self.n)
+    /// 1 where all chose the lower item, -1 where all chose the other.
+    pub(super) fn mean(&self) -> f64 {
+        (self.chosen as f64 - self.other as f64) / self.n() as f64
     }
 }
 
@@ -31,17 +34,6 @@ pub(super) struct Stimulus {
     pub(super) orders: [Answers; 2],
 }
 
-impl Stimulus {
-    /// Mean for the lower item on the left less that on the right: twice the pull of the left side.
-    pub(super) fn pull(&self) -> f64 {
-        self.orders[0].mean() - self.orders[1].mean()
-    }
-
-    pub(super) fn variance_of_pull(&self) -> f64 {
-        self.orders[0].variance_of_mean() + self.orders[1].variance_of_mean()
-    }
-}
-
 /// Every stimulus that was answered; controls are none.
 pub(super) struct Stimuli {
     places: BTreeMap<(usize, usize, usize), usize>,
@@ -49,9 +41,11 @@ pub(super) struct Stimuli {
 }
 
 impl Stimuli {
-    pub(super) fn of(ballots: &[ShownBallot], scenes: &[usize]) -> Self {
+    /// The answers to all questions but those that are `left_out`.
+    pub(super) fn of(ballots: &[ShownBallot], scenes: &[usize], left_out: &BTreeSet<usize>) -> Self {
         let mut stimuli = Self { places: BTreeMap::new(), all: Vec::new() };
-        for ballot in ballots.iter().filter(|b| b.left() != b.right()) {
+        let compares = |b: &&ShownBallot| b.left() != b.right() && !left_out.contains(&b.question());
+        for ballot in ballots.iter().filter(compares) {
             let next = stimuli.all.len();
             let place = *stimuli.places.entry(key(ballot, scenes)).or_insert(next);
             if place == next {
@@ -62,10 +56,11 @@ impl Stimuli {
                 stimulus.questions.push(ballot.question());
             }
             let answers = &mut stimulus.orders[usize::from(ballot.left() > ballot.right())];
-            let x = for_lower(ballot);
-            answers.n += 1.0;
-            answers.sum += x;
-            answers.squares += x * x;
+            match for_lower(ballot) {
+                1 => answers.chosen += 1,
+                0 => answers.ties += 1,
+                _ => answers.other += 1,
+            }
         }
         stimuli
     }
@@ -75,9 +70,9 @@ impl Stimuli {
         self.places.get(&key(ballot, scenes)).copied()
     }
 
-    /// Those seen in both orders, at least so often in each.
-    pub(super) fn in_both_orders(&self, least: f64) -> impl Iterator<Item = (usize, &Stimulus)> {
-        self.all.iter().enumerate().filter(move |(_, s)| s.orders.iter().all(|order| order.n >= least))
+    /// Those seen in both orders.
+    pub(super) fn in_both_orders(&self) -> impl Iterator<Item = (usize, &Stimulus)> {
+        self.all.iter().enumerate().filter(|(_, s)| s.orders.iter().all(|order| order.n() > 0))
     }
 }
 
@@ -85,8 +80,8 @@ fn key(ballot: &ShownBallot, scenes: &[usize]) -> (usize, usize, usize) {
     (scenes[ballot.question()], ballot.left().min(ballot.right()), ballot.left().max(ballot.right()))
 }
 
-/// 1 if the lower item was chosen, -1 if the other.
-pub(super) fn for_lower(ballot: &ShownBallot) -> f64 {
-    let sign = ballot.outcome().sign() as f64;
+/// 1 if the lower item was chosen, 0 if none, -1 if the other.
+pub(super) fn for_lower(ballot: &ShownBallot) -> i64 {
+    let sign = ballot.outcome().sign();
     if ballot.left() < ballot.right() { sign } else { -sign }
 }

@@ -1,60 +1,59 @@
 //! Were the sides of a stimulus mixed up in the key?
 //!
-//! A key that names the wrong side turns the answers to one stimulus file round. Where the same pair was shown in both
-//! orders of sides, from two files, the two then contradict each other, and more than a general pull of one side explains.
+//! Two things happen. The key names the sides of a file the wrong way round: all answers to it are then labelled in the other
+//! order, which [`labels`] tell. Or the answers to it were turned and the labels were not: then the two orders of the pair
+//! contradict each other, by more than a general pull of one side explains, which [`turned`] tells.
 
+use super::labels::Labels;
 use super::stimuli::{Stimuli, Stimulus};
-use super::{ALARM, Audited, Probe, Report, list};
-use crate::digits::number;
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use super::turned::{Judged, judge};
+use super::{ALARM, Audited, Finding, Probe, Report, list};
+use crate::digits::{counted, number};
 use std::collections::BTreeSet;
 
-/// Answers in each order below which a stimulus is not judged.
-const FEWEST_ANSWERS: f64 = 5.0;
-/// Stimuli in both orders below which the general pull of a side cannot be told from one wrong key.
-const FEWEST_STIMULI: usize = 4;
-
-/// The report, and the questions whose key is suspect.
-///
-/// For each stimulus the left side's pull is compared with the mean of the others', as t; p times the number of stimuli.
-/// Suspect is only who, the others' pull taken off, has the two orders choose different items.
-pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli) -> (Report, BTreeSet<usize>) {
+/// The report, and the questions whose answers may be about another order of sides than they say: those of which the probe
+/// speaks up, and those that are merely doubtful, since neither a side nor an object is to be blamed for what may be the key's.
+/// `stimuli` are without those whose labels contradict.
+pub(super) fn probe(audited: &Audited<'_>, labels: Labels, stimuli: &Stimuli) -> (Report, BTreeSet<usize>) {
     if !audited.sides_recorded {
         return (Report::not_answerable(Probe::SwappedKey, super::NO_SIDES), BTreeSet::new());
     }
-    let judged: Vec<&Stimulus> = stimuli.in_both_orders(FEWEST_ANSWERS).map(|(_, s)| s).collect();
-    if judged.len() < FEWEST_STIMULI {
-        let reason =
-            "fewer than four pairs were seen in both orders of sides: a wrong key looks like a preference";
-        return (Report::not_answerable(Probe::SwappedKey, reason), BTreeSet::new());
+    let judged = judge(stimuli);
+    let orders = judged.as_deref().unwrap_or_default();
+    let found: Vec<&Stimulus> =
+        orders.iter().filter(|of| of.adjusted < ALARM).map(|of| of.stimulus).collect();
+    let doubtful = orders.iter().filter(|of| of.is_doubtful()).flat_map(|of| of.stimulus.questions.iter());
+    let suspects: BTreeSet<usize> = labels.suspects.iter().chain(doubtful).copied().collect();
+    let mut evidence = labels.found;
+    let certain = !evidence.is_empty();
+    if !found.is_empty() {
+        let each: Vec<String> = found.iter().map(|s| contradiction(audited, s)).collect();
+        evidence.push(format!("two orders contradict each other. {}", list(&each)));
     }
-    let n = judged.len() as f64;
-    let (pulls, variances) = judged
-        .iter()
-        .fold((0.0, 0.0), |(pulls, variances), s| (pulls + s.pull(), variances + s.variance_of_pull()));
-    let p = |s: &Stimulus| {
-        let others = (pulls - s.pull()) / (n - 1.0);
-        let variance = s.variance_of_pull() + (variances - s.variance_of_pull()) / ((n - 1.0) * (n - 1.0));
-        let contradict = (s.orders[0].mean() - 0.5 * others) * (s.orders[1].mean() + 0.5 * others) < 0.0;
-        let degrees = s.orders[0].n + s.orders[1].n - 2.0;
-        let t = ((s.pull() - others) / variance.sqrt()).abs();
-        let two_sided = 2.0 * StudentsT::new(0.0, 1.0, degrees).expect("ten answers or more").sf(t);
-        if contradict { (n * two_sided).min(1.0) } else { 1.0 }
-    };
-    let all: Vec<(f64, &Stimulus)> = judged.iter().map(|s| (p(s), *s)).collect();
-    let least = all.iter().map(|(p, _)| *p).fold(1.0, f64::min);
-    let found: Vec<&Stimulus> = all.iter().filter(|(p, _)| *p < ALARM).map(|(_, s)| *s).collect();
-    let name = |s: &&Stimulus| {
-        let questions: Vec<String> = s.questions.iter().map(|&q| audited.questions[q].clone()).collect();
-        let [one, other] = s.orders.map(|order| number(order.mean(), 2));
-        format!("{}: mean {one} for an item on the left, {other} for it on the right", questions.join("/"))
-    };
-    let evidence = match found.is_empty() {
-        true => format!("the two orders of {} pairs agree", judged.len()),
-        false => {
-            format!("two orders contradict each other. {}", list(&found.iter().map(name).collect::<Vec<_>>()))
+    evidence.extend(labels.remarks);
+    match &judged {
+        Some(all) if found.is_empty() => {
+            evidence.push(format!("the two orders of {} agree", counted(all.len(), "pair")));
         }
-    };
-    let suspects = found.iter().flat_map(|s| s.questions.iter().copied()).collect();
-    (Report::tested(Probe::SwappedKey, least, evidence), suspects)
+        Some(_) => {}
+        None if labels.looked => {
+            evidence.push(format!("whether answers were turned cannot be told, because {FEW}"))
+        }
+        None => {
+            let reason = format!("{FEW}: a wrong key looks like a preference");
+            return (Report::not_answerable(Probe::SwappedKey, &reason), suspects);
+        }
+    }
+    let p = judged.map(|all: Vec<Judged<'_>>| all.iter().map(|of| of.adjusted).fold(1.0, f64::min));
+    let p = if certain { None } else { p };
+    let finding = if certain || p.is_some_and(|p| p < ALARM) { Finding::Found } else { Finding::NotFound };
+    (Report { probe: Probe::SwappedKey, finding, p, evidence: evidence.join("; ") }, suspects)
+}
+
+const FEW: &str = "fewer than four pairs were seen in both orders of sides";
+
+fn contradiction(audited: &Audited<'_>, stimulus: &Stimulus) -> String {
+    let questions: Vec<String> = stimulus.questions.iter().map(|&q| audited.questions[q].clone()).collect();
+    let [one, other] = stimulus.orders.map(|order| number(order.mean(), 2));
+    format!("{}: mean {one} for an item on the left, {other} for it on the right", questions.join("/"))
 }

@@ -94,9 +94,12 @@ fn rules_by_hand() {
         repeats_opposite,
         ..Screening::default()
     };
-    assert_eq!(of([10, 3, 0], 0, 0).flags(&Protocol::default()), [Flag::OneSided]);
+    let telling = |answers| Screening { items_on_both_sides: true, ..of(answers, 0, 0) };
+    assert_eq!(telling([10, 3, 0]).flags(&Protocol::default()), [Flag::OneSided]);
+    assert_eq!(telling([9, 3, 0]).flags(&Protocol::default()), []);
+    assert_eq!(of([10, 3, 0], 0, 0).flags(&Protocol::default()), []);
     let no_sides = Protocol { sides_unknown: true, ..Protocol::default() };
-    assert_eq!(of([10, 3, 0], 0, 0).flags(&no_sides), []);
+    assert_eq!(telling([10, 3, 0]).flags(&no_sides), []);
     assert_eq!(of([0, 0, 9], 0, 0).flags(&Protocol::default()), []);
     assert_eq!(of([20, 0, 1], 4, 2).flags(&Protocol::default()), []);
     assert_eq!(of([20, 0, 1], 3, 2).flags(&Protocol::default()), [Flag::Repeats]);
@@ -116,4 +119,35 @@ fn agreement_is_about_items_where_sides_were_swapped() {
     };
     let all: Vec<ShownBallot> = (0..5).map(ballot).collect();
     assert!(screening(&all).iter().all(|s| s.agreement() == Some(1.0)));
+}
+
+/// Whether pressing left at each of these pairs, all on one object, breaks the rule of one side.
+fn left_throughout(pairs: &[[usize; 2]]) -> bool {
+    let left = |(question, items): (usize, &[usize; 2])| ShownBallot::new(0, question, *items, Outcome::Left);
+    let ballots: Vec<ShownBallot> = pairs.iter().enumerate().map(left).collect();
+    let scenes = vec![0; pairs.len()];
+    let protocol = Protocol { scenes: &scenes, ..Protocol::default() };
+    screening_with(&ballots, &protocol)[0].flags(&protocol).contains(&Flag::OneSided)
+}
+
+#[test]
+fn who_prefers_what_always_stood_there_is_not_careless() {
+    let agreed = [[0, 1]; 12];
+    assert!(!left_throughout(&agreed));
+    // 0 before 2 before 1: an order that has the left side ahead, although 2 stood on both sides.
+    assert!(!left_throughout(&[[[0, 1]; 4], [[0, 2]; 4], [[2, 1]; 4]].concat()));
+    // Every item on both sides: no order does.
+    assert!(left_throughout(&[[[0, 1]; 6], [[1, 0]; 6]].concat()));
+    assert!(left_throughout(&[[[0, 1]; 4], [[1, 2]; 4], [[2, 0]; 4]].concat()));
+    // Repeats of two pairs with the sides swapped, though item 9 stood on the right alone; one is not enough.
+    let beside = |repeats: &[[usize; 2]]| [&agreed[..8], &[[2, 3], [4, 5], [0, 9]], repeats].concat();
+    assert!(!left_throughout(&beside(&[])));
+    assert!(!left_throughout(&beside(&[[3, 2]])));
+    assert!(left_throughout(&beside(&[[3, 2], [5, 4]])));
+    // Two controls decided for the same side; one, or one to each side, says nothing.
+    assert!(!left_throughout(&beside(&[[7, 7]])));
+    assert!(left_throughout(&beside(&[[7, 7], [7, 7]])));
+    let torn =
+        Screening { answers: [12, 0, 0], controls_decided: 2, controls_left: 1, ..Screening::default() };
+    assert!(!torn.tells_sides());
 }
