@@ -100,6 +100,9 @@ fn main() -> Result<(), Failure> {
         (readers.join(), said)
     });
     let opened = opened.map_err(|_| "a thread failed")?;
-    println!("{opened} connections opened; forms: {} dealt, {} refused, {} without a reply", said[0], said[1], said[2]);
+    println!(
+        "{opened} connections opened; forms: {} dealt, {} refused, {} without a reply",
+        said[0], said[1], said[2]
+    );
     Ok(())
 }

@@ -304,7 +304,7 @@ fn answers_without_a_study() {
     let side = texts(&report, "unanswerable");
     assert_eq!(side, ["Over all questions 15 answers went left, 12 right and 3 to neither."]);
     assert!(report.to_markdown().starts_with("# Trees\n\n10 participants gave 30 answers to 3 questions.\n"));
-    let titled = report_of_groups("<b> [x](y) *\n# z", &groups(&answers), &[], &[]);
+    let titled = report_of("<b> [x](y) *\n# z", &groups(&answers), &[]);
     assert!(
         titled.to_markdown().starts_with("# &lt;b> \\[x\\](y) \\* # z\n\n10 participants"),
         "a title is no mark-up"
