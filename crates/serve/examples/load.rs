@@ -46,7 +46,16 @@ fn participant(
     let stream = TcpStream::connect(address)?;
     stream.set_nodelay(true)?;
     let mut stream = BufReader::new(stream);
-    let session: Value = serde_json::from_str(&post(&mut stream, "/api/sessions", "{}")?)?;
+    let dealt = loop {
+        match post(&mut stream, "/api/sessions", "{}") {
+            // As the page says to whoever begins when too many do.
+            Err(failure) if failure.to_string().contains(" 429 ") => {
+                std::thread::sleep(Duration::from_secs(1))
+            }
+            dealt => break dealt?,
+        }
+    };
+    let session: Value = serde_json::from_str(&dealt)?;
     let form = &session["form"];
     let first = form["training"].as_array().map_or(0, Vec::len) + 1;
     for (place, stimulus) in form["questions"].as_array().into_iter().flatten().enumerate() {

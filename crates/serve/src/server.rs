@@ -7,6 +7,7 @@ mod connections;
 mod host;
 mod limits;
 mod pace;
+mod stimuli;
 
 pub use host::{NoPublicUrl, PublicUrl};
 pub use limits::Limits;
@@ -27,6 +28,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;
+use tokio::sync::Semaphore;
 use tower_http::set_header::SetResponseHeaderLayer;
 
 /// What is served, and where.
@@ -84,6 +86,7 @@ struct Shared {
     journal: Handle,
     forms_js: Bytes,
     stimuli: BTreeSet<String>,
+    turns: Arc<Semaphore>,
     /// New sessions of an address; `None` for any number.
     sessions: Option<Budgets>,
     /// Wrong researcher's tokens of an address.
@@ -102,8 +105,6 @@ impl Shared {
 const SESSIONS_BACK: Duration = Duration::from_secs(100);
 /// Wrong tokens at once, and in what time they come back.
 const TRIES: (u32, Duration) = (10, Duration::from_secs(5));
-/// Bytes of a stimulus that are read at a time.
-const CHUNK: usize = 16 << 10;
 
 type Site = State<Arc<Shared>>;
 
@@ -140,6 +141,7 @@ pub fn serve(settings: Settings, ready: impl FnOnce(SocketAddr, Held)) -> Result
         journal: handle,
         forms_js,
         stimuli,
+        turns: stimuli::turns(),
         sessions,
         tries,
         wrong_tokens: AtomicU64::new(0),
@@ -171,7 +173,7 @@ fn site(shared: Arc<Shared>) -> Router {
     let pages = Router::new()
         .route("/", get(|| async { page_file("index.html") }))
         .route("/{name}", get(|Matched(name): Matched<String>, site: Site| async move { file(&name, &site) }))
-        .route("/stimuli/{name}", get(stimulus));
+        .route("/stimuli/{name}", get(stimuli::stimulus));
     limits::limited(asked.merge(pages))
         .layer(axum::middleware::from_fn_with_state(Arc::clone(&shared), host::check))
         .layer(fixed("x-content-type-options", "nosniff"))
@@ -201,25 +203,4 @@ fn page_file(name: &str) -> Response {
 
 fn typed(mime: &'static str, text: impl Into<Body>) -> Response {
     ([(header::CONTENT_TYPE, mime), (header::CACHE_CONTROL, "no-cache")], text.into()).into_response()
-}
-
-/// A stimulus by its code name: names are looked up, never joined to a path.
-async fn stimulus(Matched(name): Matched<String>, site: Site) -> Response {
-    let Some(code) = name.strip_suffix(".gif").and_then(|code| site.stimuli.get(code)) else {
-        return StatusCode::NOT_FOUND.into_response();
-    };
-    let path = site.settings.stimuli.join(format!("{code}.gif"));
-    match tokio::fs::File::open(&path).await {
-        Err(_) => StatusCode::NOT_FOUND.into_response(),
-        Ok(file) => {
-            let length = file.metadata().await.map(|data| data.len()).unwrap_or_default();
-            let body = Body::from_stream(tokio_util::io::ReaderStream::with_capacity(file, CHUNK));
-            let headers = [
-                (header::CONTENT_TYPE, HeaderValue::from_static("image/gif")),
-                (header::CONTENT_LENGTH, HeaderValue::from(length)),
-                (header::CACHE_CONTROL, HeaderValue::from_static("private, max-age=86400")),
-            ];
-            (headers, body).into_response()
-        }
-    }
 }

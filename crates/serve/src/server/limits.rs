@@ -35,8 +35,10 @@ const FILES: usize = 2;
 const OTHER_FILES: usize = 64;
 /// Most bytes of a head, and of a response that wait in memory for a client to take them.
 const BUFFER: usize = 16 << 10;
-/// Most bytes that wait in the kernel for a client. Between machines it would begin with less, within one with 2.5 MB.
-const KERNEL_BUFFER: u32 = 256 << 10;
+/// Most bytes that wait in the kernel to be sent to a client. All sockets of a system share its memory, which a few thousand clients
+/// that do not read would else fill with 400 KB and more each: everybody's answers stopped for minutes.
+#[cfg(target_os = "linux")]
+const UNSENT: u32 = 16 << 10;
 /// Most clients that wait to be let in.
 const BACKLOG: u32 = 4096;
 
@@ -65,8 +67,9 @@ pub(super) fn limited<S: Clone + Send + Sync + 'static>(router: Router<S>) -> Ro
 pub(super) fn listen(address: SocketAddr) -> io::Result<TcpListener> {
     let socket = if address.is_ipv4() { TcpSocket::new_v4() } else { TcpSocket::new_v6() }?;
     socket.set_reuseaddr(true)?;
-    // What is accepted has it too.
-    socket.set_send_buffer_size(KERNEL_BUFFER)?;
+    // What is accepted has it too. Bytes on their way do not count, so that nobody who reads is slowed down.
+    #[cfg(target_os = "linux")]
+    socket2::SockRef::from(&socket).set_tcp_notsent_lowat(UNSENT)?;
     socket.bind(address)?;
     socket.listen(BACKLOG)
 }
