@@ -24,16 +24,6 @@ fn stimuli_say_nothing_about_what_they_show() {
     }
 }
 
-/// The quick study asked as in configs/balanced.toml.
-fn balanced() -> Fixture {
-    let fixture = Fixture::new();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let text = std::fs::read_to_string(root.join("configs/balanced.toml")).unwrap();
-    let forms = &text[text.find("[forms]").unwrap()..];
-    fixture.edit_with(|study| format!("{study}\n{forms}"));
-    fixture
-}
-
 #[test]
 fn a_design_is_judged_before_anyone_answers() {
     let check = |study: &str, arguments: &[&str]| {
@@ -48,7 +38,7 @@ fn a_design_is_judged_before_anyone_answers() {
             String::from_utf8(output.stderr).unwrap(),
         )
     };
-    let fixture = balanced();
+    let fixture = Fixture::balanced();
     let (config, out) = (fixture.config(), fixture.out().to_str().unwrap());
     let (code, said, _) = check(config.to_str().unwrap(), &["--results", out]);
     assert!(code == Some(0) && said.ends_with(": no faults\n"), "{said}");
@@ -96,7 +86,7 @@ fn a_design_is_judged_before_anyone_answers() {
 /// What participants are given is judged, and the camera that each side was really made with.
 #[test]
 fn finished_files_are_judged() {
-    let fixture = balanced();
+    let fixture = Fixture::balanced();
     fixture.succeed("bundle", &[]);
     let faults = || -> Vec<(String, String, String)> {
         let output = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"))
@@ -142,7 +132,7 @@ fn finished_files_are_judged() {
 /// Animations of an older study file are judged, and said to be that.
 #[test]
 fn outdated_animations_are_said_to_be() {
-    let fixture = balanced();
+    let fixture = Fixture::balanced();
     fixture.succeed("pairs", &[]);
     let check = || {
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
@@ -168,7 +158,7 @@ fn outdated_animations_are_said_to_be() {
 /// The published designs need no mesh to be judged, which a fresh clone has not got.
 #[test]
 fn a_design_is_judged_without_meshes() {
-    let fixture = balanced();
+    let fixture = Fixture::balanced();
     fixture.edit("solid.obj", "nothing.obj");
     let run = |verb: &str, words: &[&str]| {
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
@@ -184,7 +174,7 @@ fn a_design_is_judged_without_meshes() {
 /// Faults are said and nothing is bundled, unless they are accepted; a study without forms is named.
 #[test]
 fn a_faulty_design_is_not_bundled() {
-    let fixture = balanced();
+    let fixture = Fixture::balanced();
     fixture.edit("sides = \"balanced\"", "sides = \"as-listed\"");
     for verb in ["bundle", "serve"] {
         let Run { code, stderr, .. } = fixture.run(verb, &[]);
@@ -206,7 +196,7 @@ fn a_faulty_design_is_not_bundled() {
 #[test]
 fn the_contact_sheet_keeps_proportions() {
     let height = |edit: bool| {
-        let fixture = balanced();
+        let fixture = Fixture::balanced();
         if edit {
             fixture.edit_with(|text| {
                 let line = text.lines().find(|line| line.starts_with("height = ")).unwrap();
@@ -263,7 +253,7 @@ fn the_smallest_study_is_sound_and_says_its_power() {
 /// What can be told of a file without looking at its pictures tells nothing of what it shows.
 #[test]
 fn a_bundle_tells_nothing_of_the_key() {
-    let fixture = balanced();
+    let fixture = Fixture::balanced();
     fixture.succeed("bundle", &[]);
     let bundle = fixture.out().join("bundle");
     let made = files(&bundle);
@@ -388,7 +378,7 @@ fn a_video_has_twice_the_size_of_its_turntables_says_its_colours_and_is_the_same
 #[cfg(unix)]
 #[test]
 fn a_bundles_videos_tell_nothing_either() {
-    let fixture = balanced();
+    let fixture = Fixture::balanced();
     let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncksum > \"$last\"\n\
         head -c $(($$ % 50)) /dev/zero >> \"$last\"\n";
     let path = fixture.with_ffmpeg(script);

@@ -19,11 +19,7 @@ use std::time::Duration;
 
 /// The quick study asked as in configs/balanced.toml, bundled.
 fn bundled() -> Fixture {
-    let fixture = Fixture::new();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let text = std::fs::read_to_string(root.join("configs/balanced.toml")).unwrap();
-    let forms = text[text.find("[forms]").unwrap()..].to_owned();
-    fixture.edit_with(|study| format!("{study}\n{forms}"));
+    let fixture = Fixture::balanced();
     fixture.succeed("bundle", &[]);
     fixture
 }

@@ -70,17 +70,6 @@ fn mostly_better(shown: &Row) -> &'static str {
     }
 }
 
-/// The quick study asked as in configs/balanced.toml, in forms of so many questions.
-fn balanced(most: u32) -> Fixture {
-    let fixture = Fixture::new();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let text = std::fs::read_to_string(root.join("configs/balanced.toml")).unwrap();
-    let forms = text[text.find("[forms]").unwrap()..].to_owned();
-    fixture.edit_with(|study| format!("{study}\n{forms}"));
-    fixture.edit("max_questions = 32", &format!("max_questions = {most}"));
-    fixture
-}
-
 /// Tables that do not depend on who is called what, nor on times.
 const TABLES: [&str; 11] = [
     "answer_counts",
@@ -202,7 +191,8 @@ fn serve(fixture: &Fixture, key: &[Row], people: usize) -> (PathBuf, PathBuf) {
 }
 
 fn every_way_in(most: u32, asked: usize) {
-    let fixture = balanced(most);
+    let fixture = Fixture::balanced();
+    fixture.edit("max_questions = 32", &format!("max_questions = {most}"));
     let (study, folder) = (fixture.config(), fixture.folder().to_owned());
     let key = key(&study, &folder.join("forms"));
     let forms: Vec<Vec<&Row>> =

@@ -1,5 +1,7 @@
 //! A server of a questionnaire, for as long as a test needs it.
 
+#![allow(dead_code, reason = "each test takes what it needs")]
+
 use crate::fixture::Fixture;
 use crate::http::post;
 use serde_json::{Value, json};

@@ -32,13 +32,13 @@ fn the_test_is_about_the_scores_that_are_estimated() {
 #[test]
 fn differences_need_an_answer_to_both_parts() {
     let answers = [
-        (0, false, 1),
-        (0, false, 1),
-        (0, true, -1),
-        (1, false, 1),
-        (2, true, 1),
-        (3, false, 0),
-        (3, true, 1),
+        (0, 0, false, 1),
+        (0, 0, false, 1),
+        (0, 0, true, -1),
+        (1, 0, false, 1),
+        (2, 0, true, 1),
+        (3, 0, false, 0),
+        (3, 0, true, 1),
     ];
     let test = ScoreTest::of_difference(answers);
     assert_eq!((test.counts, test.groups), (None, vec![group(-1, 1, 1), group(2, 1, 1)]));
