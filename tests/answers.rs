@@ -111,7 +111,7 @@ fn controls_repeats_and_times_are_screened_and_change_nothing_else() {
     assert_eq!(rules.into_iter().collect::<Vec<_>>(), ["any", "controls", "odd", "repeats", "time"]);
     let report = std::fs::read_to_string(fixture.out().join("report.md")).unwrap();
     for said in [
-        "4 of 18 participants broke a rule of screening that is declared beforehand (1 by deciding between equals, 1 by choosing \
+        "4 of 18 participants broke a rule of screening (1 by deciding between equals, 1 by choosing \
          otherwise when asked again, 1 by answering faster than anybody can look and 1 by answering against the others)",
         "Participant 3 broke a rule by deciding between equals: without them, ",
         "Participants 3, 5, 7, 16 broke some rule: without them, ",

@@ -74,7 +74,7 @@ fn football_with_home_advantage_as_gnm_has_it() {
     };
     assert!(header("worths").starts_with("group,item,model,log_worth,se,"), "{}", header("worths"));
     assert!(header("models").starts_with("group,model,log_likelihood,ln_nu,side,"), "{}", header("models"));
-    assert_eq!((worths.len() / 11, models.len() / 11, tests.len() / 24), (80, 4, 190));
+    assert_eq!((worths.len() / 8, models.len() / 11, tests.len() / 23), (80, 4, 190));
 
     let near = |cell: &str, want: f64, tolerance: f64| {
         let got: f64 = cell.parse().unwrap();

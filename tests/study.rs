@@ -340,6 +340,8 @@ fn what_is_no_file_is_not_read() {
     let link = fixture.folder().join("device.ply");
     std::os::unix::fs::symlink(null, &link).unwrap();
     let link = link.to_str().unwrap();
+    let surface = fixture.folder().join("surface.ply");
+    let surface = surface.to_str().unwrap();
     let refused: [&[&str]; 8] = [
         &["validate", null],
         &["convert", null, "--to", "long", "--out", out],
@@ -348,7 +350,7 @@ fn what_is_no_file_is_not_read() {
         &["analyse", study, "--responses", null, "--out", out],
         &["bench", "import", null, "--source", "x", "--iterations", "1", "--threads", "1", "--out", out],
         &["bench", "compare", null, null],
-        &["extract", "--mesh", link, "--out", out],
+        &["extract", "--mesh", link, "--out", surface],
     ];
     for words in refused {
         let output = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy")).args(words).output().unwrap();

@@ -53,7 +53,7 @@ fn planted_defects_are_found_with_their_place() {
     assert!(evidence(Defect::None { preferences: false, side: 8 }, Probe::Side).contains("to the left"));
     assert!(evidence(Defect::OddRespondent, Probe::OddRespondent).starts_with("respondent 8 agrees"));
     assert!(evidence(Defect::CopiedRows, Probe::CopiedRows).starts_with("respondents 5, 17 gave the same"));
-    assert!(evidence(Defect::TurnedAnswers, Probe::SwappedKey).contains("Q2:"));
+    assert!(evidence(Defect::TurnedAnswers, Probe::SwappedKey).contains("Q2/Q2-r: mean"));
     let times = evidence(Defect::CopiedTimes, Probe::CopiedRows);
     let want = "to the millisecond, respondents 5 and 17 took the same time for 32 of 32 answers; no two of 36 people gave";
     assert!(times.starts_with(want), "{times}");
@@ -75,19 +75,22 @@ fn a_wrong_key_is_named() {
         assert_eq!((found.finding, found.p), (Finding::Found, None), "{found:?}");
         found.evidence
     };
-    let one = "answers are labelled in the other order of sides than their forms show (Q2: 18 of 18 answers)";
-    assert!(evidence(Defect::OneFile, Design::Latin).starts_with(one));
-    assert!(evidence(Defect::OneFile, Design::Shuffled).starts_with(one));
-    let both = "answers are labelled in the other order of sides than their forms show (Q2: 18 of 18 answers, Q2: 18 of 18 answers)";
-    assert!(evidence(Defect::BothFiles, Design::Latin).starts_with(both));
     // The pair is asked again: half of a file's answers are to the question, half to its repeat.
-    let again =
-        "answers are labelled in the other order of sides than their forms show (Q1/Q1-r: 36 of 36 answers)";
-    assert!(evidence(Defect::OneFile, Design::TwoMethods).starts_with(again));
+    let file = |question| format!("{question}/{question}-r: 36 of 36 answers");
+    let labelled = "answers are labelled in the other order of sides than their forms show";
+    let one = format!("{labelled} ({})", file("Q2"));
+    assert!(evidence(Defect::OneFile, Design::Latin).starts_with(&one));
+    assert!(
+        evidence(Defect::OneFile, Design::TwoMethods).starts_with(&format!("{labelled} ({})", file("Q1")))
+    );
+    let both = format!("{labelled} ({}, {})", file("Q2"), file("Q2"));
+    assert!(evidence(Defect::BothFiles, Design::Latin).starts_with(&both));
+    let shuffled = evidence(Defect::OneFile, Design::Shuffled);
+    assert!(shuffled.starts_with(&one), "{shuffled}");
     let coded =
-        "the sides contradict what the code name shows in 1 of 54 files (Q2: 18 of 18 answers to file ";
+        "the sides contradict what the code name shows in 1 of 56 files (Q2/Q2-r: 36 of 36 answers to file ";
     let found = evidence(Defect::CodeName, Design::Latin);
-    assert!(found.starts_with(coded) && found.contains(one), "{found}");
+    assert!(found.starts_with(coded) && found.contains(&one), "{found}");
 }
 
 #[test]
@@ -160,12 +163,12 @@ fn a_wrong_key_is_found_in_the_file_that_people_have() {
         (report(&reports, Probe::SwappedKey).clone(), report(&reports, Probe::ObjectInteraction).finding)
     };
     let (sound, _) = found(&file(false));
-    let both = "the code names of 54 files agree with the sides; the sides are those of the forms; the two orders of 27 pairs agree";
+    let both = "the code names of 56 files agree with the sides; the sides are those of the forms; the two orders of 27 pairs agree";
     assert_eq!((sound.finding, sound.evidence.as_str()), (Finding::NotFound, both));
     let rows = file(true);
     let (wrong, object) = found(&rows);
     assert_eq!((wrong.finding, object), (Finding::Found, Finding::NotFound), "{wrong:?}");
-    assert!(wrong.evidence.contains("(Q1: 18 of 18 answers)"), "{wrong:?}");
+    assert!(wrong.evidence.contains("show (Q1"), "{wrong:?}");
     let without_codes = rows.lines().map(|row| row.rsplit_once(',').unwrap().0.to_owned() + "\n");
     let (wrong, object) = found(&without_codes.collect::<String>());
     assert_eq!((wrong.finding, object), (Finding::Found, Finding::NotFound), "{wrong:?}");

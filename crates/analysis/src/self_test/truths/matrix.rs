@@ -13,7 +13,6 @@ use crate::table::Table;
 use crate::tables::tables;
 use design::Study;
 use design::forms::Role;
-use rayon::prelude::*;
 use responses::{Choice, Responses};
 use std::collections::BTreeMap;
 
@@ -39,7 +38,8 @@ pub(super) fn run(people: usize) -> Vec<Outcome> {
         .flat_map(|design| Truth::ALL.map(|truth| (design, truth)))
         .filter(|(design, truth)| is_tried(design, *truth))
         .collect();
-    all.into_par_iter().map(|(design, truth)| one(&design, truth, people)).collect()
+    // One after the other: what each of them does goes on several threads, and must not wait inside another.
+    all.into_iter().map(|(design, truth)| one(&design, truth, people)).collect()
 }
 
 /// One truth on one design, by every way that is open.
