@@ -63,8 +63,8 @@ const BUDGET: usize = 40_000_000;
 
 /// The comparisons of `count` blocks, ascending.
 ///
-/// Sizes of blocks differ by at most one, and so does the number of each pair of methods in one block and another, and of each
-/// group: a list sorted by group and pair is dealt in turn, and exchanges never undo that. The rest is searched for.
+/// Sizes of blocks differ by at most one, and so does the number of each pair of methods in one block and another: a list sorted
+/// by group and pair is dealt in turn, and exchanges never undo that. The rest is searched for, aim by aim.
 pub(super) fn split(study: &Study, count: usize, random: &mut Pcg64) -> Vec<Vec<usize>> {
     let mut search = Search::of(study, count);
     let mut best: Option<(Missed, Vec<usize>)> = None;
