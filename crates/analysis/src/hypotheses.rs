@@ -3,7 +3,7 @@
 use crate::ballots::BallotGroup;
 use design::Study;
 use design::config::AnalysisSection;
-use design::contrast::{Contrast, Factor, Level, Over, PRIMARY, contrasts, families};
+use design::contrast::{Contrast, Level, Over, PRIMARY, contrasts, families};
 use rayon::prelude::*;
 use statistics::{DeclaredBallot, MARGIN, ScoreTest, benjamini_hochberg, holm};
 
@@ -231,34 +231,19 @@ pub(crate) fn of_contrasts(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hyp
 pub(crate) fn test(study: &Study, contrast: &Contrast, ballots: &[DeclaredBallot]) -> ScoreTest {
     let part = |place: usize| {
         contrast.parts[place].iter().flat_map(move |(&question, &sign)| {
+            let stratum = contrast.stratum(study, question);
             of_one(ballots, question)
                 .iter()
-                .map(move |b| (b.participant(), question, sign * b.preference().sign()))
+                .map(move |b| (b.participant(), stratum, sign * b.preference().sign()))
         })
     };
     if !contrast.is_difference() {
         return ScoreTest::of(part(0).map(|(person, _, sign)| (person, sign)));
     }
-    let stratum = |question: usize| {
-        let comparison = &study.comparisons[question];
-        let method = comparison.left.method;
-        match (contrast.over, contrast.levels[0].factor()) {
-            (Over::Difference(..), _) => comparison.object,
-            (_, Factor::Clustering) => {
-                study.file.arrangements.iter().position(|&a| a == method.arrangement).unwrap_or(0)
-            }
-            (_, Factor::Arrangement) => {
-                study.file.clusterings.iter().position(|&c| c == method.clustering).unwrap_or(0)
-            }
-            (_, Factor::Method) => 0,
-        }
-    };
     let both = [false, true].into_iter().flat_map(|second| {
-        part(usize::from(second)).map(move |(person, question, sign)| (person, question, second, sign))
+        part(usize::from(second)).map(move |(person, stratum, sign)| (person, stratum, second, sign))
     });
-    ScoreTest::of_difference(
-        both.map(|(person, question, second, sign)| (person, stratum(question), second, sign)),
-    )
+    ScoreTest::of_difference(both)
 }
 
 fn of_questions(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hypothesis> {

@@ -164,7 +164,7 @@ fn the_papers_answers() {
     );
     assert!(
         checks[1].starts_with(
-            "Participant 16 broke a rule by answering against the others: without them, 1 of 43 tests comes"
+            "Participant 16 broke a rule by answering against the others: without them, 2 of 43 tests come"
         ),
         "{checks:#?}"
     );

@@ -176,7 +176,10 @@ fn scores(tally: &Tally, factor: &GroupFactor, object: usize) -> Vec<f64> {
         }
     }
     let answered = wins.into_iter().zip(answers).filter(|(_, answers)| *answers > 0);
-    answered.map(|(wins, answers)| wins as f64 / answers as f64).collect()
+    let mut scores: Vec<f64> = answered.map(|(wins, answers)| wins as f64 / answers as f64).collect();
+    // Sums of doubles depend on their order, and people come in any.
+    scores.sort_by(f64::total_cmp);
+    scores
 }
 
 fn contests(study: &Study, tally: &Tally) -> Option<Table> {

@@ -3,7 +3,6 @@
 use crate::ballots::BallotGroup;
 use crate::table::{Cell, Table};
 use rayon::prelude::*;
-use statistics::interval::Interval;
 use statistics::{
     Difference, FitError, Model, Omnibus, Pairs, Participants, Scale, closeness, fit, goodness, jod,
     preferred, scale,
@@ -61,7 +60,7 @@ fn positions(scales: &[GroupScale<'_>]) -> Table {
                 Cell::text(&group.items[place]),
                 Cell::text(&group.items[scale.reference]),
             ];
-            row.extend(in_every_unit(position, place == scale.reference));
+            row.extend(in_every_unit(position));
             let of = omnibus.filter(|_| place == 0);
             row.push(Cell::number(of.map(|of: Omnibus| of.f), 3));
             row.push(
@@ -82,23 +81,14 @@ fn positions(scales: &[GroupScale<'_>]) -> Table {
 }
 
 /// Log worth, JOD and chance, each with its interval.
-fn in_every_unit(of: &Difference, reference: bool) -> Vec<Cell> {
-    let interval = of.spread.map(|spread| spread.interval);
-    let end = |f: fn(f64) -> f64, end: fn(Interval) -> f64| interval.map(|i| f(end(i)));
-    let (low, high): (fn(Interval) -> f64, fn(Interval) -> f64) = (|i| i.low, |i| i.high);
-    let same: fn(f64) -> f64 = |x| x;
-    let known = |value: f64| if reference { Some(value) } else { Some(value).filter(|v| v.is_finite()) };
-    vec![
-        Cell::of_sum(known(of.log_odds), 3),
-        Cell::of_sum(end(same, low), 3),
-        Cell::of_sum(end(same, high), 3),
-        Cell::of_sum(known(of.jod()), 3),
-        Cell::of_sum(end(jod, low), 3),
-        Cell::of_sum(end(jod, high), 3),
-        Cell::number(known(of.preferred()), 3),
-        Cell::number(end(preferred, low), 3),
-        Cell::number(end(preferred, high), 3),
-    ]
+fn in_every_unit(of: &Difference) -> Vec<Cell> {
+    let units: [fn(f64) -> f64; 3] = [|log_odds| log_odds, jod, preferred];
+    let ends = of.spread.map(|spread| [spread.interval.low, spread.interval.high]);
+    let cells = |unit: fn(f64) -> f64| {
+        let [low, high] = [0, 1].map(|end| Cell::of_sum(ends.map(|ends| unit(ends[end])), 3));
+        [Cell::of_sum(Some(unit(of.log_odds)), 3), low, high]
+    };
+    units.into_iter().flat_map(cells).collect()
 }
 
 fn differences(scales: &[GroupScale<'_>]) -> Table {
@@ -130,7 +120,7 @@ fn differences(scales: &[GroupScale<'_>]) -> Table {
                 Cell::text(&group.items[of.first]),
                 Cell::text(&group.items[of.second]),
             ];
-            row.extend(in_every_unit(of, false));
+            row.extend(in_every_unit(of));
             row.push(Cell::p(of.spread.map(|spread| spread.p), 5));
             row.push(Cell::p(of.spread.map(|spread| spread.adjusted), 4));
             table.push(row);

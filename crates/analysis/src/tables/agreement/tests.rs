@@ -50,7 +50,11 @@ fn of_many_participants_those_who_break_a_rule_are_printed() {
                 Outcome::Right
             }
         };
-        (0..10).map(move |question| ShownBallot::new(participant, question, [0, 1], outcome(question)))
+        // Each pair is seen in both orders, so that a side can be told from a liking.
+        (0..10).map(move |question| {
+            let sides = if question % 4 < 2 { [0, 1] } else { [1, 0] };
+            ShownBallot::new(participant, question, sides, outcome(question))
+        })
     };
     let ballots: Vec<ShownBallot> = (0..201).flat_map(of).collect();
     let table = respondents(&ballots, &Protocol::default());

@@ -130,7 +130,7 @@ fn the_earlier_day_of_a_first_answer_counts() {
 #[test]
 fn the_papers_choices_were_made_when_its_answers_were_known() {
     let section = load("paper.toml").file.analysis;
-    let declared = day("2026-11-21");
+    let declared = day("2026-11-22");
     assert_eq!(section.declaration(None), Declaration::AfterAnswers { declared, first_answer: None });
     // What its published comparisons rest on.
     let choices = AnalysisSection { declared: None, answers_known: false, ..section };

@@ -124,16 +124,29 @@ fn names(oracle: &Oracle<'_>) -> Vec<String> {
     names
 }
 
+/// The group of all methods, where no group of the study hangs alone.
+const ALL: &str = "all";
+
+/// Every method of a group, lattice by lattice.
+fn methods(oracle: &Oracle<'_>) -> Vec<String> {
+    let crossed = oracle.lattices.iter().flat_map(|lattice| {
+        oracle.clusterings.iter().map(move |clustering| format!("{lattice}{clustering}"))
+    });
+    crossed.filter(|method| oracle.groups.iter().any(|(_, members)| members.contains(method))).collect()
+}
+
 /// Names of a group's items as tables have them, and every answer about them. `None` if nobody knows such a group.
 fn contests(oracle: &Oracle<'_>, group: &str) -> Option<(Vec<String>, Vec<Contest>)> {
     let upper = |letters: &[char]| letters.iter().map(|letter| letter.to_uppercase().to_string()).collect();
     let items: Vec<String> = match group {
         "clustering" => upper(&oracle.clusterings),
         "arrangement" => upper(&oracle.lattices),
+        ALL => methods(oracle),
         _ => oracle.groups.iter().find(|(id, _)| id == group)?.1.clone(),
     };
     let own = oracle.comparisons().filter(|(question, _)| match group {
         "clustering" | "arrangement" => question.compared.factor == group,
+        ALL => true,
         _ => question.group == group,
     });
     let contest = |given: &Given| {
