@@ -64,7 +64,12 @@ pub fn alpha_with_interval(ballots: &[DeclaredBallot], metric: Metric) -> Option
     };
     let left_out: Option<Vec<f64>> =
         sorted.chunk_by(|a, b| a.participant() == b.participant()).map(without).collect();
-    Some(Alpha { value, interval: left_out.and_then(|left_out| jackknife(value, &left_out)) })
+    let interval = left_out.and_then(|mut left_out| {
+        // Sums of doubles depend on their order, and people come in any.
+        left_out.sort_by(f64::total_cmp);
+        jackknife(value, &left_out)
+    });
+    Some(Alpha { value, interval })
 }
 
 fn jackknife(value: f64, left_out: &[f64]) -> Option<Interval> {
