@@ -278,9 +278,10 @@ fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
         ));
     }
     lead.extend(
-        evidence.study.and_then(|study| asked::instruction(study)).map(|instruction| {
-            format!("What they were asked: {}.", instruction.trim_end_matches(|c| c == '.'))
-        }),
+        evidence
+            .study
+            .and_then(|study| asked::instruction(study))
+            .map(|instruction| format!("What they were asked: {}.", instruction.trim_end_matches('.'))),
     );
     lead.extend(evidence.assumptions.iter().cloned());
     lead.push(

@@ -194,13 +194,13 @@ fn contrasts(
         }
     }
     // Of a difference the test is at the end.
-    if let (true, Some(levels), [a, b]) = (finding.text.starts_with("How much"), &first, &scopes[..]) {
-        if let Some(of) = find(levels, &format!("{a} - {b}")) {
-            let row = format!("{section}: {}", finding.text);
-            tested(hypotheses, of, &finding.text, &row, compared);
-            let holds = of.conclusion().is_none_or(|said| said.starts_with("differs"));
-            compared.check(holds, ["report", &row, "standing"], "holds", format!("{:?}", of.conclusion()));
-        }
+    if let (true, Some(levels), [a, b]) = (finding.text.starts_with("How much"), &first, &scopes[..])
+        && let Some(of) = find(levels, &format!("{a} - {b}"))
+    {
+        let row = format!("{section}: {}", finding.text);
+        tested(hypotheses, of, &finding.text, &row, compared);
+        let holds = of.conclusion().is_none_or(|said| said.starts_with("differs"));
+        compared.check(holds, ["report", &row, "standing"], "holds", format!("{:?}", of.conclusion()));
     }
 }
 

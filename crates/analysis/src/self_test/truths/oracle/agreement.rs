@@ -82,8 +82,11 @@ fn alpha(counts: &[[u64; 3]]) -> Option<f64> {
     (all > 0.0 && all - by_chance > 1e-9).then(|| (alike - by_chance) / (all - by_chance))
 }
 
+/// Chi-square, its degrees of freedom and p.
+type Test = (f64, f64, f64);
+
 /// Kendall's u, and its test: chi-square, degrees and p.
-fn kendall(counts: &[[u64; 3]]) -> Option<(f64, Option<(f64, f64, f64)>)> {
+fn kendall(counts: &[[u64; 3]]) -> Option<(f64, Option<Test>)> {
     let judges: u64 = counts[0].iter().sum();
     if judges < 2 || counts.iter().any(|own| own.iter().sum::<u64>() != judges) {
         return None;
