@@ -184,12 +184,18 @@ impl ScoreTest {
         self.groups.iter().map(|group| p[&units.whole(group)]).collect()
     }
 
-    /// Studentised bootstrap interval for the mean score, resampling participants.
+    /// Studentised bootstrap interval for the mean score, resampling participants. `None` below [`FEWEST_RESAMPLED`].
     pub fn studentised(&self, resampling: Resampling) -> Option<BootstrapInterval> {
+        if self.participants() < FEWEST_RESAMPLED {
+            return None;
+        }
         let (scores, counts) = kinds(&self.scores());
         studentised(&counts, resampling, |weights| mean_and_error(&scores, weights))
     }
 }
+
+/// Fewer participants are not resampled: at 95 % the studentised interval covered 79 % with four of them and 88 % with six.
+pub const FEWEST_RESAMPLED: usize = 10;
 
 /// Enough to order any two fractions of sums of answers.
 const WIDE: i128 = 1 << 60;

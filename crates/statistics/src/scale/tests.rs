@@ -130,3 +130,22 @@ fn what_cannot_be_tested_says_why() {
     let apart = [answer(0, 0, 1, Outcome::Left), answer(0, 2, 3, Outcome::Left)];
     assert_eq!(scale(&Participants::of(4, &apart), 0), Err(FitError::Disconnected));
 }
+
+#[test]
+fn a_liking_for_a_side_does_not_make_differences_small() {
+    // Nobody differs from anybody, so that nothing else makes them small.
+    let plan = Plan::round_robin(3, 4);
+    let population = Population { worths: vec![0.0, 0.5, 1.0], side: 2.5, ..Population::indifferent(3, 0.0) };
+    let participants = Participants::of(3, &simulate(&plan, &population, 2000, &mut stream(9, 0)));
+    let found = scale(&participants, 0).unwrap();
+    assert_eq!(found.fit.model, Model::DavidsonSide);
+    for (position, worth) in found.positions.iter().zip([0.0, 0.5, 1.0]) {
+        close(position.log_odds, worth, 0.05);
+    }
+    let plain = fit(Model::Davidson, &participants.sum(&participants.counts)).unwrap();
+    assert!(plain.log_worths[2] < 0.6, "{:?}", plain.log_worths);
+    // Sides as listed tell no side.
+    let listed = Plan { counterbalanced: false, ..plan };
+    let participants = Participants::of(3, &simulate(&listed, &population, 50, &mut stream(9, 0)));
+    assert_eq!(scale(&participants, 0).unwrap().fit.model, Model::Davidson);
+}
