@@ -13,10 +13,12 @@ pub struct BallotGroup {
     pub items: Vec<String>,
     /// The answers; `left` and `right` are indices into `items`.
     pub ballots: Vec<ShownBallot>,
+    /// By question, the object on which it shows its items; empty where a study or nobody says it.
+    pub objects: Vec<String>,
 }
 
-/// Every answer to a study's questions, question by question, with the sides as they were shown; items are methods in the
-/// study's order. Controls and repeats, which check answers and are none of the study's comparisons, are left out.
+/// Every answer to a study's questions, question by question, with the sides as they were shown, or as the study lists them
+/// where the file does not say; items are methods in the study's order. Controls and repeats, which check answers and are none of the study's comparisons, are left out.
 ///
 /// # Panics
 /// If the answers were read for another study.
@@ -27,16 +29,25 @@ pub fn ballots(study: &Study, answers: &Responses) -> Vec<ShownBallot> {
         .iter()
         .filter(|answer| is_asked(study, answer))
         .map(|answer| {
-            ShownBallot::new(
+            let ballot = ShownBallot::new(
                 answer.participant as usize,
                 answer.question as usize,
                 [items[answer.left as usize], items[answer.right as usize]],
                 outcome(answer.choice),
-            )
+            );
+            let listed = answer.left == answers.questions[answer.question as usize].left;
+            if answers.sides_recorded || listed { ballot } else { turned(&ballot) }
         })
         .collect();
     ballots.sort_by_key(|ballot| ballot.question());
     ballots
+}
+
+/// The same answer with the sides exchanged: where a file does not say which item was on which side, nobody may take the
+/// order in which it names them for one.
+pub(crate) fn turned(ballot: &ShownBallot) -> ShownBallot {
+    let sides = [ballot.right(), ballot.left()];
+    ShownBallot::new(ballot.participant(), ballot.question(), sides, ballot.outcome().swapped())
 }
 
 /// The same answers, in the same order, about the methods of each question: first the one that the study lists on the left,
@@ -83,7 +94,8 @@ pub fn ballot_groups(study: &Study, ballots: &[ShownBallot]) -> Vec<BallotGroup>
             let place = |method| group.members.iter().position(|&m| m == method);
             let own = ballots.iter().filter(|b| study.comparisons[b.question()].group == g);
             let items = group.members.iter().map(Method::to_string).collect();
-            BallotGroup { name: group.id.clone(), items, ballots: relabel(own, |item| place(methods[item])) }
+            let ballots = relabel(own, |item| place(methods[item]));
+            BallotGroup { name: group.id.clone(), items, ballots, objects: Vec::new() }
         })
         .collect();
     let one_group = |ballots: &[ShownBallot]| {
@@ -96,13 +108,13 @@ pub fn ballot_groups(study: &Study, ballots: &[ShownBallot]) -> Vec<BallotGroup>
     let place = |item: usize| clusterings.iter().position(|&c| c == methods[item].clustering);
     let items = clusterings.iter().map(|c| code(c.code())).collect();
     let pooled = relabel(ballots.iter().filter(same), place);
-    let clustering = BallotGroup { name: "clustering".into(), items, ballots: pooled };
+    let clustering = BallotGroup { name: "clustering".into(), items, ballots: pooled, objects: Vec::new() };
     let arrangements = &study.file.arrangements;
     let same = |b: &&ShownBallot| methods[b.left()].clustering == methods[b.right()].clustering;
     let place = |item: usize| arrangements.iter().position(|&a| a == methods[item].arrangement);
     let items = arrangements.iter().map(|a| code(a.code())).collect();
     let pooled = relabel(ballots.iter().filter(same), place);
-    let arrangement = BallotGroup { name: "arrangement".into(), items, ballots: pooled };
+    let arrangement = BallotGroup { name: "arrangement".into(), items, ballots: pooled, objects: Vec::new() };
     groups.extend([clustering, arrangement].into_iter().filter(|group| !one_group(&group.ballots)));
     groups.extend(all_methods(study, ballots));
     groups.retain(|group| !group.ballots.is_empty());
@@ -133,6 +145,7 @@ fn all_methods(study: &Study, ballots: &[ShownBallot]) -> Option<BallotGroup> {
         name: ALL_METHODS.into(),
         items: items.iter().map(Method::to_string).collect(),
         ballots: own,
+        objects: Vec::new(),
     })
 }
 

@@ -1,11 +1,13 @@
 //! Every hypothesis that is tested, with p adjusted within its family.
 
 use crate::ballots::BallotGroup;
+use crate::omnibus;
 use design::Study;
 use design::config::AnalysisSection;
 use design::contrast::{Contrast, Level, Over, PRIMARY, contrasts, families};
 use rayon::prelude::*;
 use statistics::{DeclaredBallot, MARGIN, ScoreTest, benjamini_hochberg, holm};
+use std::collections::BTreeSet;
 
 /// How p values of a family are adjusted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,8 +50,14 @@ pub(crate) enum Conclusion {
     DiffersWithinMargin,
     /// If there is one, it is smaller than the margin.
     Equal,
+    /// The mean is smaller than the margin, and the preference depends on the object: opposite ones may have such a mean.
+    AveragesOut,
     /// Neither can be said.
     Open,
+    /// No outcome of so few participants who lean one way or the other could have shown anything.
+    TooFew,
+    /// Nobody leans one way or the other.
+    NobodyLeans,
     /// Nobody has a score: nobody answered what it is about.
     NotTested,
 }
@@ -60,7 +68,10 @@ impl Conclusion {
             Self::Differs => "differs",
             Self::DiffersWithinMargin => "differs, within the margin",
             Self::Equal => "equal within the margin",
+            Self::AveragesOut => "averages out",
             Self::Open => "open",
+            Self::TooFew => "too few",
+            Self::NobodyLeans => "nobody leans",
             Self::NotTested => "not tested",
         }
     }
@@ -99,7 +110,18 @@ pub(crate) enum Subject {
     /// One question of the study, by index.
     Question(usize),
     /// Two items of a group.
-    Items { group: String, first: String, second: String },
+    Items { group: String, first: String, second: String, on: On },
+}
+
+/// The objects on which two items of a group are compared.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum On {
+    /// All of them.
+    All,
+    /// One.
+    Object(String),
+    /// The first rather than the second: whether the preference differs.
+    Difference([String; 2]),
 }
 
 /// One hypothesis, tested.
@@ -124,6 +146,8 @@ pub(crate) struct Hypothesis {
     /// The name of what p is corrected with, and how many hypotheses of that were tested.
     pub(crate) corrected_with: String,
     pub(crate) family_size: usize,
+    /// Whether the same preference was shown to depend on the object.
+    by_object: bool,
     pub(crate) rules: Rules,
 }
 
@@ -141,6 +165,7 @@ impl Hypothesis {
             adjustment: Adjustment::Holm,
             corrected_with: String::new(),
             family_size: 1,
+            by_object: false,
             rules,
         }
     }
@@ -154,11 +179,19 @@ impl Hypothesis {
         let level = self.rules.level;
         match (self.adjusted <= level, self.equivalence.is_some_and(|p| p <= level)) {
             _ if !self.is_tested() => Conclusion::NotTested,
+            _ if self.test.leaning() == 0 => Conclusion::NobodyLeans,
+            _ if self.least_possible() > level => Conclusion::TooFew,
             (true, false) => Conclusion::Differs,
             (true, true) => Conclusion::DiffersWithinMargin,
+            (false, true) if self.by_object => Conclusion::AveragesOut,
             (false, true) => Conclusion::Equal,
             (false, false) => Conclusion::Open,
         }
+    }
+
+    /// The smallest p that any answers of those who lean one way or the other could have.
+    pub(crate) fn least_possible(&self) -> f64 {
+        2.0_f64.powi(1 - self.test.leaning() as i32)
     }
 
     /// Whether a preference was shown.
@@ -169,6 +202,17 @@ impl Hypothesis {
     /// Whether it is about one question alone, which is exploratory.
     pub(crate) fn is_question(&self) -> bool {
         matches!(self.subject, Subject::Question(_))
+    }
+
+    /// Whether it is about the difference of two preferences.
+    pub(crate) fn is_difference(&self) -> bool {
+        match &self.subject {
+            Subject::Contrast { over, .. } => {
+                matches!(over, Over::Difference(..) | Over::ObjectDifference(..))
+            }
+            Subject::Items { on, .. } => matches!(on, On::Difference(_)),
+            Subject::Question(_) => false,
+        }
     }
 
     /// Whether two hypotheses are the same one, tested on different answers.
@@ -221,7 +265,37 @@ pub(crate) fn of_contrasts(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hyp
     let first = |h: &Hypothesis| h.family != PRIMARY;
     all.sort_by_key(first);
     adjust_over_all(&mut all);
+    mark_by_object(study, ballots, &mut all);
     all
+}
+
+/// Marks what compares two levels on all objects where their preference was shown to depend on the object.
+fn mark_by_object(study: &Study, ballots: &[DeclaredBallot], all: &mut [Hypothesis]) {
+    // Nothing else asks.
+    if all.iter().all(|h| h.conclusion() != Conclusion::Equal) {
+        return;
+    }
+    let omnibus = omnibus::tests(study, ballots);
+    let depends: Vec<[Level; 2]> = contrasts_of(all)
+        .filter(|(h, levels, over)| {
+            let differ = matches!(over, Over::ObjectDifference(..)) && h.adjusted <= h.rules.level;
+            differ || omnibus::depends_on_object(&omnibus, *levels, h.rules.level).is_some()
+        })
+        .map(|(_, levels, _)| levels)
+        .collect();
+    for hypothesis in all {
+        if let Subject::Contrast { levels, over: Over::All | Over::Within(_) } = hypothesis.subject {
+            hypothesis.by_object = depends.contains(&levels);
+        }
+    }
+}
+
+/// Every contrast that was tested.
+pub(crate) fn contrasts_of(all: &[Hypothesis]) -> impl Iterator<Item = (&Hypothesis, [Level; 2], Over)> {
+    all.iter().filter(|h| h.is_tested()).filter_map(|h| match h.subject {
+        Subject::Contrast { levels, over } => Some((h, levels, over)),
+        _ => None,
+    })
 }
 
 /// The test of one contrast.
@@ -267,34 +341,101 @@ fn of_one(ballots: &[DeclaredBallot], question: usize) -> &[DeclaredBallot] {
     &ballots[below(question)..below(question + 1)]
 }
 
-/// Every pair of items that was compared, group by group; the group is the family.
+/// Every pair of items that was compared, group by group; the group is the family. Where a pair was shown on several objects,
+/// the same on each object, and the difference between every two objects: each kind a family of its own.
 pub(crate) fn of_groups(groups: &[BallotGroup]) -> Vec<Hypothesis> {
     let mut all = Vec::new();
     for group in groups {
-        let mut family = Vec::new();
-        for (i, first) in group.items.iter().enumerate() {
-            for (j, second) in group.items.iter().enumerate().skip(i + 1) {
-                let about_both = |b: &&statistics::ShownBallot| {
-                    (b.left(), b.right()) == (i, j) || (b.left(), b.right()) == (j, i)
-                };
-                let own = group.ballots.iter().filter(about_both).map(|b| b.declared(i));
-                let test = ScoreTest::of(own.map(|b| (b.participant(), b.preference().sign())));
-                if test.participants() > 0 {
-                    let (first, second) = (first.clone(), second.clone());
-                    let contrast = format!("{first}-{second}");
-                    let subject = Subject::Items { group: group.name.clone(), first, second };
-                    let mut of = Hypothesis::new(contrast, "all", subject, test, Rules::default());
-                    of.family = group.name.clone();
-                    of.corrected_with = group.name.clone();
-                    family.push(of);
-                }
+        let [mut pooled, mut on_each, mut between] = [const { Vec::new() }; 3];
+        for i in 0..group.items.len() {
+            for j in i + 1..group.items.len() {
+                let pair = Pair::of(group, [i, j]);
+                pooled.extend(pair.pooled());
+                on_each.extend(pair.on_each());
+                between.extend(pair.between());
             }
         }
-        adjust(&mut family.iter_mut().collect::<Vec<_>>(), Adjustment::Holm);
-        all.extend(family);
+        let families = [("", &mut pooled), (" on objects", &mut on_each), (" between objects", &mut between)];
+        for (kind, family) in families {
+            for of in family.iter_mut() {
+                of.family = format!("{}{kind}", group.name);
+                of.corrected_with.clone_from(&of.family);
+            }
+            adjust(&mut family.iter_mut().collect::<Vec<_>>(), Adjustment::Holm);
+        }
+        for of in &mut pooled {
+            let differs =
+                |other: &Hypothesis| other.contrast == of.contrast && other.adjusted <= other.rules.level;
+            of.by_object = between.iter().any(differs);
+        }
+        all.extend(pooled.into_iter().chain(on_each).chain(between));
     }
     adjust_over_all(&mut all);
     all
+}
+
+/// The answers about two items of a group.
+struct Pair<'a> {
+    group: &'a BallotGroup,
+    items: [usize; 2],
+    ballots: Vec<DeclaredBallot>,
+    /// The objects on which they were shown, where the file says them; none of fewer than two.
+    objects: Vec<&'a str>,
+}
+
+impl<'a> Pair<'a> {
+    fn of(group: &'a BallotGroup, items: [usize; 2]) -> Self {
+        let [i, j] = items;
+        let about_both = |b: &&statistics::ShownBallot| [(i, j), (j, i)].contains(&(b.left(), b.right()));
+        let ballots: Vec<DeclaredBallot> =
+            group.ballots.iter().filter(about_both).map(|b| b.declared(i)).collect();
+        let mut objects: Vec<&str> = Vec::new();
+        if !group.objects.is_empty() {
+            let names: BTreeSet<&str> =
+                ballots.iter().map(|b| group.objects[b.question()].as_str()).collect();
+            objects = names.into_iter().filter(|name| !name.is_empty()).collect();
+        }
+        if objects.len() < 2 {
+            objects.clear();
+        }
+        Self { group, items, ballots, objects }
+    }
+
+    fn object(&self, ballot: &DeclaredBallot) -> &str {
+        &self.group.objects[ballot.question()]
+    }
+
+    fn tested(&self, scope: &str, on: On, test: ScoreTest) -> Option<Hypothesis> {
+        let [first, second] = self.items.map(|item| self.group.items[item].clone());
+        let contrast = format!("{first}-{second}");
+        let subject = Subject::Items { group: self.group.name.clone(), first, second, on };
+        (test.participants() > 0).then(|| Hypothesis::new(contrast, scope, subject, test, Rules::default()))
+    }
+
+    fn pooled(&self) -> Option<Hypothesis> {
+        let test = ScoreTest::of(self.ballots.iter().map(|b| (b.participant(), b.preference().sign())));
+        self.tested("all", On::All, test)
+    }
+
+    fn on_each(&self) -> impl Iterator<Item = Hypothesis> {
+        self.objects.iter().filter_map(|&object| {
+            let own = self.ballots.iter().filter(|b| self.object(b) == object);
+            let test = ScoreTest::of(own.map(|b| (b.participant(), b.preference().sign())));
+            self.tested(object, On::Object(object.into()), test)
+        })
+    }
+
+    fn between(&self) -> impl Iterator<Item = Hypothesis> {
+        let pairs = (0..self.objects.len()).flat_map(|a| (a + 1..self.objects.len()).map(move |b| [a, b]));
+        pairs.filter_map(|pair| {
+            let [one, other] = pair.map(|place| self.objects[place]);
+            let own = self.ballots.iter().filter(|b| [one, other].contains(&self.object(b)));
+            let test = ScoreTest::of_difference(
+                own.map(|b| (b.participant(), 0, self.object(b) == other, b.preference().sign())),
+            );
+            self.tested(&format!("{one} - {other}"), On::Difference([one.into(), other.into()]), test)
+        })
+    }
 }
 
 /// Adjusts the p of one family; what nobody answered is not among its tests.

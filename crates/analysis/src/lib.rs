@@ -25,6 +25,7 @@ mod hypotheses;
 mod inputs;
 mod leave_one_out;
 mod mesh_set;
+mod omnibus;
 mod panel;
 pub mod power;
 mod prediction;

@@ -30,10 +30,10 @@ use crate::ballots::BallotGroup;
 use crate::figures::Figure;
 use crate::hypotheses::{self, Hypothesis, Rules};
 use crate::inputs::Inputs;
+use crate::omnibus::{self, Omnibus};
 use crate::prediction::Prediction;
 use crate::recorded::Recorded;
 use crate::table::Table;
-use crate::tables::omnibus::{self, Omnibus};
 use crate::tables::scale::{self, GroupScale};
 use design::Study;
 use responses::Responses;
@@ -93,11 +93,15 @@ struct Evidence<'a> {
     asked: usize,
     /// How many people are left out, by a rule that the study declares.
     excluded: usize,
+    /// Whether the file says which item was on which side.
+    sides_recorded: bool,
     /// What was assumed of the answers' file, in sentences.
     assumptions: Vec<String>,
     groups: &'a [BallotGroup],
     hypotheses: &'a [Hypothesis],
     omnibus: Vec<Omnibus>,
+    /// Whether the probes found that people favour a side.
+    side_favoured: bool,
     /// The items of each group on one scale.
     scales: Vec<GroupScale<'a>>,
 }
@@ -111,10 +115,12 @@ impl<'a> Evidence<'a> {
             scenes: Vec::new(),
             asked: 0,
             excluded: 0,
+            sides_recorded: true,
             assumptions: Vec::new(),
             groups: &[],
             hypotheses: &[],
             omnibus: Vec::new(),
+            side_favoured: false,
             scales: Vec::new(),
         };
         let Some(answered) = answers else { return nothing };
@@ -126,6 +132,7 @@ impl<'a> Evidence<'a> {
             scenes: recorded.protocol().scenes.to_vec(),
             asked: asked::asked(study, answered),
             excluded: answered.excluded.len(),
+            sides_recorded: answered.responses.sides_recorded,
             assumptions: answered.responses.assumptions(),
             groups: &answered.groups,
             hypotheses: &answered.hypotheses,
@@ -182,7 +189,8 @@ const PAPER: [(&str, bool); 8] = [
 /// The report of a study. `tables` and `figures` are those made from the same inputs; each is printed once.
 pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Report {
     let study = inputs.study;
-    let evidence = Evidence::of_study(study, inputs.answers);
+    let evidence =
+        Evidence { side_favoured: sides::is_favoured(tables), ..Evidence::of_study(study, inputs.answers) };
     let mut press = Press::new(tables, figures);
     let mut paper = Vec::new();
     for (name, at_once) in PAPER {
@@ -228,11 +236,13 @@ pub fn report_of_groups(
         scenes: recorded.protocol().scenes.to_vec(),
         asked: 0,
         excluded: 0,
+        sides_recorded: answers.sides_recorded,
         assumptions: answers.assumptions(),
         shown: &shown,
         groups,
         hypotheses: &hypotheses,
         omnibus: Vec::new(),
+        side_favoured: sides::is_favoured(tables),
         scales: scale::scales(groups),
     };
     let mut press = Press::new(tables, figures);
@@ -243,6 +253,12 @@ pub fn report_of_groups(
 fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
     let (people, questions) = (evidence.participants(), evidence.questions());
     let answers = evidence.shown.len();
+    if answers == 0 && evidence.excluded > 0 {
+        return vec![format!(
+            "Nothing is said about preference: {} answered, and all broke a rule whose breakers the study leaves out.",
+            counted(evidence.excluded, "participant")
+        )];
+    }
     if answers == 0 {
         let controls = tables.iter().find(|table| table.name == "respondents").map_or(0, checks::controls);
         return vec![match controls {
@@ -281,7 +297,7 @@ fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
         evidence
             .study
             .and_then(|study| asked::instruction(study))
-            .map(|instruction| format!("What they were asked: {}.", instruction.trim_end_matches('.'))),
+            .map(|instruction| format!("What they were asked: {instruction}")),
     );
     lead.extend(evidence.assumptions.iter().cloned());
     lead.push(
@@ -348,10 +364,12 @@ impl Press {
             return;
         }
         let sorted = preference::findings(evidence);
-        let mut holds = if sorted.holds.is_empty() { Vec::new() } else { sides::caution(evidence) };
-        holds.extend(sorted.holds);
-        self.section("holds", "What holds", holds);
-        self.section("depends", "What depends on what", sorted.depends);
+        let cautioned = |blocks: Vec<Block>| match blocks.is_empty() {
+            true => blocks,
+            false => sides::caution(evidence).into_iter().chain(blocks).collect(),
+        };
+        self.section("holds", "What holds", cautioned(sorted.holds));
+        self.section("depends", "What depends on what", cautioned(sorted.depends));
         self.add_figures(&["object_interaction"]);
         self.section("open", "What stays open", sorted.open);
         self.section("worths", "Worths on one scale", worths::findings(evidence));

@@ -58,7 +58,7 @@ impl Hits {
                 let asked = self.defect.is_told_by(self.design) && !self.never_answerable(probe);
                 !asked || self.share(probe) >= own
             }
-            false => self.share(probe) <= others,
+            false => self.share(probe) <= others || self.defect.may_be_seen_by(probe),
         }
     }
 }

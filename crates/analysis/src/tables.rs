@@ -9,7 +9,7 @@ pub(crate) mod contrasts;
 mod design;
 mod mesh_quality;
 pub(crate) mod models;
-pub(crate) mod omnibus;
+mod omnibus;
 pub(crate) mod power;
 mod prediction;
 pub(crate) mod preferences;
@@ -32,7 +32,7 @@ pub fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
     tables.extend(benchmark::asteroid(inputs));
     tables.extend(design::questionnaire(inputs.study));
     if let Some(answers) = inputs.answers {
-        tables.extend(answers::answers(inputs.study, &answers.responses));
+        tables.extend(answers::answers(inputs.study, &answers.responses, &answers.excluded));
         tables.push(answers::counts(inputs.study, &answers.tally, answers.sides_differ()));
         tables.extend(preferences::all(inputs.study, &answers.tally));
         tables.extend(statistics(inputs, answers));
@@ -58,11 +58,15 @@ fn statistics(inputs: &Inputs<'_>, answers: &Answered) -> Vec<Table> {
     };
     let recorded = Recorded::of_study(study, &answers.responses, &everyone);
     let (models, ([respondents, screened], audited)) = rayon::join(
-        || models::model_tables(groups),
+        || models::model_tables(groups, answers.responses.sides_recorded),
         || {
             rayon::join(
                 || {
-                    let respondents = agreement::respondents(recorded.ballots(), &recorded.protocol());
+                    let respondents = agreement::respondents(
+                        recorded.ballots(),
+                        &recorded.protocol(),
+                        answers.excluded.len(),
+                    );
                     [respondents, screened::of_study(study, answers, &recorded)]
                 },
                 || audit::audit_table(&probes::audit(&recorded.audited(probed))),

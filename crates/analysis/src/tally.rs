@@ -29,7 +29,7 @@ impl QuestionCount {
 /// All answers, counted by respondent, object, group and chosen method.
 #[derive(Debug, Clone)]
 pub struct Tally {
-    /// How many people answered.
+    /// How many people the answers are of, those without a counted answer included.
     pub respondents: usize,
     /// Counts above zero, ordered by respondent, object, group and method (no preference first).
     pub rows: Vec<TallyRow>,
@@ -53,18 +53,20 @@ pub struct MethodCount {
 }
 
 /// How many answers of one respondent, in one group's questions on one object, went to one method.
+///
+/// Kept in 20 bytes, since there may be millions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TallyRow {
     /// Row of the respondent, from 0.
-    pub respondent: usize,
+    pub respondent: u32,
     /// Index of the object.
-    pub object: usize,
+    pub object: u32,
     /// Index of the comparison group.
-    pub group: usize,
+    pub group: u32,
     /// The method chosen; `None` is no preference.
     pub chosen: Option<Method>,
     /// How many answers.
-    pub answers: u64,
+    pub answers: u32,
 }
 
 impl Tally {
@@ -95,13 +97,17 @@ impl Tally {
         let methods = study.methods();
         let row = |same: &[Choice]| {
             let (respondent, object, group, method) = same[0];
-            let (respondent, object, group) = (respondent as usize, object as usize, group as usize);
             let chosen = method.map(|method| methods[method as usize]);
-            TallyRow { respondent, object, group, chosen, answers: same.len() as u64 }
+            TallyRow { respondent, object, group, chosen, answers: same.len() as u32 }
         };
         let rows = chosen.chunk_by(|a, b| a == b).map(row).collect();
         let methods = by_method(study, &questions).expect("columns of numbers, all of one length");
         Self { respondents: answers.participants.len(), rows, questions, methods }
+    }
+
+    /// How many people have an answer in the counts.
+    pub fn people(&self) -> usize {
+        self.rows.chunk_by(|a, b| a.respondent == b.respondent).count()
     }
 
     /// The number of answers in the counts that `holds` picks.

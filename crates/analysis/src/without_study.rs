@@ -1,12 +1,12 @@
 //! Tables of answers that no study file explains: items, groups and questions are what the answers name.
 
-use crate::ballots::{BallotGroup, outcome};
+use crate::ballots::{BallotGroup, outcome, turned};
 use crate::recorded::Recorded;
 use crate::table::{Cell, Table};
 use crate::{audit, tables};
 use responses::{Answer, Responses};
+use statistics::ShownBallot;
 use statistics::interval;
-use statistics::{Model, ShownBallot};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Every table about answers that no study explains: `answer_counts`, `tests`, `worths`, `models`, `respondents`, `screened`
@@ -14,20 +14,10 @@ use std::collections::{BTreeMap, BTreeSet};
 /// question shows lasts, in seconds.
 pub fn answer_tables(answers: &Responses, groups: &[BallotGroup], shown_s: Option<f64>) -> Vec<Table> {
     let mut tables = vec![counts(answers), tables::contrasts::pair_tests(groups)];
-    for mut table in tables::models::model_tables(groups) {
-        if !answers.sides_recorded {
-            let model = table.columns.iter().position(|column| column.name == "model");
-            let side = Cell::text(Model::DavidsonSide.code());
-            table.rows.retain(|row| model.is_none_or(|model| row[model] != side));
-            let note =
-                "Side: not answerable here, because the file does not say which item was on which side.";
-            table.notes.push(note.into());
-        }
-        tables.push(table);
-    }
+    tables.extend(tables::models::model_tables(groups, answers.sides_recorded));
     tables.extend(tables::scale::tables(&tables::scale::scales(groups)));
     let recorded = Recorded::without_study(answers, shown_s);
-    tables.push(tables::agreement::respondents(recorded.ballots(), &recorded.protocol()));
+    tables.push(tables::agreement::respondents(recorded.ballots(), &recorded.protocol(), 0));
     tables.push(tables::screened::screened_pair_tests(groups, &recorded));
     tables.push(tables::audit::audit_table(&audit::audit(&recorded.audited(groups))));
     tables.retain(|table| !table.rows.is_empty());
@@ -47,6 +37,7 @@ pub fn open_groups(answers: &Responses, reference: Option<&str>) -> Vec<BallotGr
         members.entry(&names[answer.question as usize]).or_default().extend([answer.left, answer.right]);
     }
     let name = |&item: &u32| answers.items[item as usize].clone();
+    let objects: Vec<String> = answers.questions.iter().map(|question| question.object.clone()).collect();
     let mut places: BTreeMap<&str, BTreeMap<u32, usize>> = BTreeMap::new();
     let mut groups: BTreeMap<&str, BallotGroup> = BTreeMap::new();
     for (group, items) in members {
@@ -55,13 +46,18 @@ pub fn open_groups(answers: &Responses, reference: Option<&str>) -> Vec<BallotGr
         items.sort_by_key(|item| Some(name(item).as_str()) != reference);
         places.insert(group, items.iter().enumerate().map(|(place, &item)| (item, place)).collect());
         let items = items.iter().map(name).collect();
-        groups.insert(group, BallotGroup { name: group.into(), items, ballots: Vec::new() });
+        groups.insert(
+            group,
+            BallotGroup { name: group.into(), items, ballots: Vec::new(), objects: objects.clone() },
+        );
     }
     for answer in answers.answers.iter().filter(asked) {
         let group = names[answer.question as usize].as_str();
         let sides = [answer.left, answer.right].map(|item| places[group][&item]);
         let (participant, question) = (answer.participant as usize, answer.question as usize);
         let ballot = ShownBallot::new(participant, question, sides, outcome(answer.choice));
+        let ordered = answers.sides_recorded || sides[0] < sides[1];
+        let ballot = if ordered { ballot } else { turned(&ballot) };
         groups.get_mut(group).expect("a member's group").ballots.push(ballot);
     }
     groups.into_values().collect()

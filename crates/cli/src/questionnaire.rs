@@ -136,7 +136,7 @@ pub(crate) fn power(arguments: &Power) -> Result<()> {
     let found = simulated(&study, &assumptions, &|| step.tick(1)).unwrap_or_default();
     step.count_all(true);
     step.end();
-    ensure!(!found.is_empty(), "{}: no comparison differs in one property alone", study.path.display());
+    ensure!(!found.is_empty(), "{}: there is no comparison to simulate", study.path.display());
 
     let tables = analysis::power_tables(&assumptions, &found);
     let figure = analysis::power_figure(&assumptions, &found)?;

@@ -21,7 +21,8 @@ const PARTNERS: usize = 100;
 /// Sameness has to exceed this many times what chance makes of the overlaps, which are extrapolated.
 const ALLOWANCE: f64 = 3.0;
 
-/// The least p of these, times their number. Of answers, among people who saw the same questions on the same sides:
+/// The least p of these, times their number. Of answers, among people who saw the same questions on the same sides and did not
+/// press one button throughout:
 /// - how many pairs gave the same answers, against the number that chance makes of how much rows overlap, three times
 ///   over, as Poisson;
 /// - how improbable the least probable of these rows is: the number of pairs times the chance that somebody gives that
@@ -115,8 +116,11 @@ struct Seen {
 impl Seen {
     fn of(rows: &Rows) -> Self {
         let sorted = &rows.ballots;
-        let mut people: Vec<&Range<usize>> =
-            rows.people.iter().filter(|of| of.len() >= FEWEST_ANSWERS).collect();
+        // Who presses one button throughout gives the row of everybody who does, which is no copy of it.
+        let varies =
+            |of: &Range<usize>| sorted[of.clone()].windows(2).any(|two| two[0].outcome() != two[1].outcome());
+        let judged = |of: &&Range<usize>| of.len() >= FEWEST_ANSWERS && varies(of);
+        let mut people: Vec<&Range<usize>> = rows.people.iter().filter(judged).collect();
         let form = |of: &Range<usize>| sorted[of.clone()].iter().map(|b| (b.question(), b.left(), b.right()));
         let row = |of: &Range<usize>| sorted[of.clone()].iter().map(|b| b.outcome());
         // Stable: people of one form stay in their order.

@@ -6,6 +6,9 @@ use crate::digits::{counted, number};
 use statistics::{Split, exchange, holm};
 use std::collections::BTreeSet;
 
+/// One person's answers are no sample of what people think.
+const FEWEST_PEOPLE: usize = 2;
+
 /// One pair of items in one group, on one object against the others.
 struct Comparison {
     name: String,
@@ -32,7 +35,7 @@ pub(super) fn probe(audited: &Audited<'_>, suspects: &BTreeSet<usize>) -> Report
         }
     }
     if all.is_empty() {
-        let reason = "no pair of items was shown to the same people on more than one object";
+        let reason = "no two people were shown the same pair of items on more than one object";
         return Report::not_answerable(Probe::ObjectInteraction, reason);
     }
     let adjusted = holm(&all.iter().map(|c| c.p).collect::<Vec<_>>());
@@ -45,7 +48,18 @@ pub(super) fn probe(audited: &Audited<'_>, suspects: &BTreeSet<usize>) -> Report
     let found: Vec<String> = order.iter().filter(|&&i| adjusted[i] < ALARM).map(name).collect();
     let evidence = match found.is_empty() {
         true => {
-            format!("{}; the largest difference is {}", counted(all.len(), "comparison"), name(&order[0]))
+            let size = |i: &usize| (all[*i].means[0] - all[*i].means[1]).abs();
+            let largest = (0..all.len()).max_by(|a, b| size(a).total_cmp(&size(b)).then(b.cmp(a)));
+            match largest.filter(|i| size(i) > 0.0) {
+                Some(largest) => {
+                    format!(
+                        "{}; the largest difference is {}",
+                        counted(all.len(), "comparison"),
+                        name(&largest)
+                    )
+                }
+                None => format!("{}; none differs", counted(all.len(), "comparison")),
+            }
         }
         false => list(&found),
     };
@@ -99,7 +113,7 @@ fn compare(
         ];
         let items = [first, second].map(|item| group.items[item].as_str()).join("-");
         let name = format!("{items} ({}) on {}", group.name, audited.objects[scene]);
-        (m > 0.0).then(|| Comparison { name, means, p: exchange(&splits) })
+        (splits.len() >= FEWEST_PEOPLE).then(|| Comparison { name, means, p: exchange(&splits) })
     };
     let several = shown.iter().filter(|shown| !shown.is_empty()).count() > 1;
     (0..scenes).filter(|&scene| several && !shown[scene].is_empty()).filter_map(of_scene).collect()

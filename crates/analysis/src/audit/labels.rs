@@ -99,7 +99,7 @@ impl Labels {
     }
 
     fn hold_against_forms(&mut self, audited: &Audited<'_>, dealt: &Dealt<'_>) {
-        let files = by_form(audited, dealt);
+        let (files, others) = by_form(audited, dealt);
         let judged = || files.values().filter(|of| of.answers >= FEWEST_OF_FILE);
         let (wrong, right): (Vec<_>, Vec<_>) = judged().partition(|of| 2 * of.contradicting > of.answers);
         let agreeing: u64 = right.iter().map(|of| of.answers - of.contradicting).sum();
@@ -107,7 +107,7 @@ impl Labels {
         if agreeing < FEWEST_AGREEING {
             return;
         }
-        if RARE * stray > agreeing || wrong.len() > right.len() {
+        if RARE * stray > agreeing || wrong.len() > most_wrong(wrong.len() + right.len()) {
             self.remarks.push("the sides are not those of the forms that the study deals".into());
             return;
         }
@@ -121,7 +121,17 @@ impl Labels {
                 "answers are labelled in the other order of sides than their forms show ({})",
                 list(&wrong.iter().map(name).collect::<Vec<_>>())
             )),
-            true => self.remarks.push("the sides are those of the forms".into()),
+            true if others.is_empty() => self.remarks.push("the sides are those of the forms".into()),
+            true => {}
+        }
+        if !others.is_empty() {
+            let numbers: Vec<String> =
+                others.iter().map(|participant| (participant + 1).to_string()).collect();
+            self.found.push(format!(
+                "the sides are those of another form than the file names for {} {}",
+                if others.len() == 1 { "respondent" } else { "respondents" },
+                list(&numbers)
+            ));
         }
         if stray > 0 {
             let answers = counted(stray as usize, "single answer");
@@ -132,9 +142,16 @@ impl Labels {
     }
 }
 
+/// Of so many files, how many may be labelled in the other order before the forms are taken for those of another study: one in
+/// four; of a few files, half.
+fn most_wrong(files: usize) -> usize {
+    if files < 8 { files / 2 } else { files / 4 }
+}
+
 /// By file, how many answers are labelled otherwise than the form shows that the participant's labels fit best. Where two forms
-/// fit alike, the file's own form number decides; without one the participant is left out.
-fn by_form(audited: &Audited<'_>, dealt: &Dealt<'_>) -> BTreeMap<Shown, Counted> {
+/// fit alike, the file's own form number decides; without one the participant is left out. And the participants whose labels
+/// fit another form better than the one that the file names.
+fn by_form(audited: &Audited<'_>, dealt: &Dealt<'_>) -> (BTreeMap<Shown, Counted>, Vec<usize>) {
     let sheets = dealt.sheets();
     let people = audited.ballots.iter().map(|b| b.participant() + 1).max().unwrap_or(0);
     // By participant and sheet: labels that agree less those that do not, and less those that it does not ask.
@@ -155,6 +172,12 @@ fn by_form(audited: &Audited<'_>, dealt: &Dealt<'_>) -> BTreeMap<Shown, Counted>
         }
     };
     let fitting: Vec<Option<usize>> = (0..people).map(fitting).collect();
+    let fits_other = |&participant: &usize| {
+        let own = &fits[participant * sheets.len()..][..sheets.len()];
+        let both = fitting[participant].zip(dealt.said(participant));
+        both.is_some_and(|(best, said)| own[best] > own[said] && own[best] > 0)
+    };
+    let others = (0..people).filter(fits_other).collect();
     let mut files: BTreeMap<Shown, Counted> = BTreeMap::new();
     for ballot in audited.ballots.iter().filter(|b| b.left() != b.right()) {
         let sheet = fitting[ballot.participant()];
@@ -164,5 +187,5 @@ fn by_form(audited: &Audited<'_>, dealt: &Dealt<'_>) -> BTreeMap<Shown, Counted>
             files.entry(file).or_default().add(ballot.question(), contradicts);
         }
     }
-    files
+    (files, others)
 }

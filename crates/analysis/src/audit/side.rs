@@ -1,7 +1,7 @@
 //! Is one side chosen whatever it shows?
 
 use super::stimuli::{Stimuli, for_lower};
-use super::{Audited, Probe, Report};
+use super::{ALARM, Audited, Probe, Report};
 use crate::digits::counted;
 use statistics::ScoreTest;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -31,9 +31,19 @@ pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSe
     }
     if let (Some([left, none, right]), false) = (controls.counts, controls.participants() == 0) {
         evidence.push(format!("controls: {left} left, {none} none, {right} right"));
-        p.push(controls.sign_flip.p());
+        // Fewer people could not show anything, whatever they chose.
+        if 2.0_f64.powi(1 - controls.participants() as i32) < ALARM {
+            p.push(controls.sign_flip.p());
+        }
     }
     match p.len() {
+        0 if !evidence.is_empty() => Report::not_answerable(
+            Probe::Side,
+            &format!(
+                "too few people answered controls, and no pair was seen in both orders ({})",
+                evidence.join("; ")
+            ),
+        ),
         0 => Report::not_answerable(
             Probe::Side,
             "no pair was seen in both orders of sides and there are no controls: side goes with what was shown on it",

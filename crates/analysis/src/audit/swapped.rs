@@ -39,8 +39,10 @@ pub(super) fn probe(audited: &Audited<'_>, labels: Labels, stimuli: &Stimuli) ->
         None if labels.looked => {
             evidence.push(format!("whether answers were turned cannot be told, because {FEW}"))
         }
+        None if certain => {}
         None => {
-            let reason = format!("{FEW}: a wrong key looks like a preference");
+            let remarks: Vec<String> = evidence.iter().map(|remark| format!("; {remark}")).collect();
+            let reason = format!("{FEW}: a wrong key looks like a preference{}", remarks.concat());
             return (Report::not_answerable(Probe::SwappedKey, &reason), suspects);
         }
     }

@@ -122,6 +122,48 @@ fn a_key_is_not_blamed_for_other_things() {
 }
 
 #[test]
+fn a_form_that_the_file_misnames_is_found() {
+    let mut sound = planted(Defect::None { preferences: true, side: 0 }, Design::Latin, 4, 0);
+    assert_eq!(of_key(&sound).finding, Finding::NotFound);
+    // Forms 3 and 4 show the sides the other way round from each other.
+    sound.responses.participants[2].form = Some("4".into());
+    let found = of_key(&sound);
+    assert_eq!((found.finding, found.p), (Finding::Found, None));
+    let want = "the sides are those of another form than the file names for respondent 3";
+    assert!(found.evidence.starts_with(want), "{found:?}");
+    assert!(!found.evidence.contains("the sides are those of the forms;"), "{found:?}");
+}
+
+#[test]
+fn who_presses_one_button_is_no_copy() {
+    let report_of = |study| {
+        let reports = planted(Defect::PressingLeft, Design::Latin, 3, study).audit();
+        report(&reports, Probe::CopiedRows).clone()
+    };
+    let found = (0..20).filter(|&study| report_of(study).finding == Finding::Found).count();
+    assert_eq!(found, 0);
+    // Unanimous people give the same rows by what they all think, and six who press left change nothing about it.
+    let ballot = |person: usize, question: usize| {
+        let outcome = if person < 6 || question % 2 == 0 { Outcome::Left } else { Outcome::Right };
+        statistics::ShownBallot::new(person, question, [0, 1], outcome)
+    };
+    let ballots: Vec<_> =
+        (0..36).flat_map(|person| (0..27).map(move |question| ballot(person, question))).collect();
+    assert_eq!(copies::probe(&ballots, &[]).finding, Finding::NotFound);
+}
+
+#[test]
+fn one_person_shows_nothing() {
+    let mut one = planted(Defect::None { preferences: true, side: 0 }, Design::Latin, 4, 0);
+    one.responses.answers.retain(|answer| answer.participant == 0);
+    one.responses.participants.truncate(1);
+    let reports = one.audit();
+    for probe in [Probe::Side, Probe::ObjectInteraction] {
+        assert_eq!(report(&reports, probe).finding, Finding::NotAnswerable, "{:?}", report(&reports, probe));
+    }
+}
+
+#[test]
 fn form_numbers_decide_where_sides_do_not() {
     // Of two pairs one is labelled the other way round throughout: each form fits as well as its mirror image.
     let mut both = planted(Defect::BothFiles, Design::TwoMethods, 4, 0);
@@ -273,6 +315,7 @@ fn without_a_decision_there_are_no_worths_to_be_penalised() {
         name: name.into(),
         items: ["a", "b"].map(String::from).into(),
         ballots: outcomes.iter().enumerate().map(|(i, &o)| ShownBallot::new(i, 0, [0, 1], o)).collect(),
+        objects: Vec::new(),
     };
     let (none, both) = (group("none", &[Outcome::Tie; 3]), group("both", &[Outcome::Left, Outcome::Right]));
     let found = separated(std::slice::from_ref(&none));

@@ -21,7 +21,7 @@ fn legend_of(study: &Study) -> Vec<(Swatch, String)> {
 
 pub(super) fn per_object(study: &Study, tally: &Tally) -> Draft {
     let mut legend = legend_of(study);
-    legend.push((Swatch::Whisker, "95 % t interval over respondents".into()));
+    legend.push((Swatch::Whisker, "95 % interval over respondents".into()));
     legend.push((Swatch::Dashes, "largest possible".into()));
     let rows = rows_of_groups(study);
     let (mut canvas, top) = canvas_with_legend(&legend, ROW * rows.len() as f64);

@@ -7,7 +7,7 @@ use super::marks::Mark;
 use super::{Draft, canvas_with_legend};
 use crate::ballots::BallotGroup;
 use crate::digits::number;
-use statistics::{Model, Pairs, Participants, clustered_covariance, fit};
+use statistics::{Pairs, Participants, clustered_covariance, fit_on_one_scale};
 
 pub(super) fn draft(groups: &[BallotGroup]) -> Option<Draft> {
     let blocks: Vec<Block> = groups.iter().filter_map(block).collect();
@@ -23,7 +23,7 @@ pub(super) fn draft(groups: &[BallotGroup]) -> Option<Draft> {
     let (low, high) = forest::range(&blocks, 0.0);
     let axis = Axis::spanning(low, high);
     forest::draw(&mut canvas, &blocks, &axis, "log worth", 0.0, top);
-    let caption = "Worths by Davidson's model: log-odds of being preferred to the group's first item. Intervals take participants \
+    let caption = "Worths by Davidson's model, with a bonus for a side where pairs were shown in both orders: log-odds of being preferred to the group's first item. Intervals take participants \
                    as clusters; where answers separate the items, half a win each way was added and no interval is given."
         .into();
     Some(Draft { name: "worths", caption, canvas })
@@ -31,7 +31,7 @@ pub(super) fn draft(groups: &[BallotGroup]) -> Option<Draft> {
 
 fn block(group: &BallotGroup) -> Option<Block> {
     let items = group.items.len();
-    let fitted = fit(Model::Davidson, &Pairs::of(items, &group.ballots)).ok()?;
+    let fitted = fit_on_one_scale(&Pairs::of(items, &group.ballots)).ok()?;
     let participants = Participants::of(items, &group.ballots);
     let covariance = clustered_covariance(&fitted, &participants);
     let row = |(item, name): (usize, &String)| {

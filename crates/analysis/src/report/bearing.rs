@@ -3,7 +3,7 @@
 use super::finding::{Finding, Standing};
 use super::words::{counted, interval, list, number, p, percent};
 use super::{Block, Evidence, names};
-use crate::hypotheses::{ALPHA, Hypothesis};
+use crate::hypotheses::Hypothesis;
 use crate::leave_one_out::WithoutOne;
 use statistics::{
     DeclaredBallot, Metric, Screening, Triads, agreement, alpha_with_interval, outcome_counts, screening,
@@ -46,7 +46,7 @@ fn unanimity(evidence: &Evidence<'_>) -> Finding {
     };
     let kendall = agreement(&counts).and_then(|found| found.test.map(|test| (found.u, test)));
     let Some((u, test)) = kendall else { return Finding::new(Standing::Noted, text) };
-    let verdict = match test.p <= ALPHA {
+    let verdict = match test.p <= evidence.rules().level {
         true => "People agree more than chance would have it",
         false => "That people agree more than chance would have it is not shown",
     };
@@ -84,9 +84,10 @@ fn consistency(evidence: &Evidence<'_>) -> Option<Finding> {
         return None;
     }
     let chance = Binomial::new(0.25, sum.decided).expect("a chance and a number").cdf(sum.strict_cycles);
-    let (standing, verdict) = match chance <= ALPHA {
-        true => (Standing::Holds, "People contradict themselves less than chance would have them"),
-        false => (Standing::Open, "That people contradict themselves less than chance would is not shown"),
+    // One person's triads hang together, so that this is no result about people.
+    let verdict = match chance <= evidence.rules().level {
+        true => "People contradict themselves less than answers by chance would",
+        false => "That people contradict themselves less than answers by chance would is not shown",
     };
     let weak = match sum.weak_cycles {
         1 => "1 more is".into(),
@@ -96,13 +97,13 @@ fn consistency(evidence: &Evidence<'_>) -> Option<Finding> {
     let decided = if sum.decided == 1 { "1 was".into() } else { format!("{} were", sum.decided) };
     let text = format!(
         "{verdict}: of {} of three items, {decided} decided throughout, and {cycles} in a circle; answers by chance would \
-         give {} (a quarter; one-sided binomial test, {}). {weak} two wins closed by no preference, which need not be a \
+         give {} (a quarter; one-sided binomial test as if triads were independent, {}). {weak} two wins closed by no preference, which need not be a \
          contradiction.",
         counted(sum.all as usize, "triad"),
         number(sum.cycles_by_chance(), 1),
         p(chance)
     );
-    Some(Finding::new(standing, text))
+    Some(Finding::new(Standing::Noted, text))
 }
 
 /// What is tested of a study or its groups; single questions are exploratory.
@@ -186,6 +187,16 @@ fn odd_ones(evidence: &Evidence<'_>) -> Vec<Finding> {
         );
         return vec![Finding::new(Standing::Noted, text)];
     }
+    // Where most are, the majorities are by an answer or two, and tell nobody apart.
+    if 2 * odd.len() > judged.len() {
+        let text = format!(
+            "Agreement tells nobody apart: {} of {} side with the majority of the others less often than against it, so majorities \
+             are thin.",
+            odd.len(),
+            counted(judged.len(), "participant")
+        );
+        return vec![Finding::new(Standing::Noted, text)];
+    }
     let one = |(s, share): &(&Screening, f64)| {
         format!("{} ({} of {}, {})", s.participant + 1, s.agreeing, s.comparable, percent(*share))
     };
@@ -233,6 +244,7 @@ fn without(evidence: &Evidence<'_>, left_out: &[usize]) -> Finding {
     let whom = if left_out.len() == 1 { "this participant" } else { "these participants" };
     let tests = counted(pairs.len(), "test");
     let text = match changed.is_empty() {
+        _ if pairs.is_empty() => format!("Without {whom} there is nothing to test."),
         true => format!("Without {whom}, none of the {tests} comes out otherwise."),
         false => format!(
             "Without {whom}, {} of the {tests} {} out otherwise: {}. Everything else in this report is with {}.",
@@ -250,7 +262,7 @@ fn single_questions(evidence: &Evidence<'_>) -> Option<Finding> {
     let holding: Vec<&str> = all.iter().filter(|h| h.differs()).map(|h| h.scope.as_str()).collect();
     let asked = all.iter().filter(|h| h.test.participants() > 0).count();
     let bare = |h: &&&Hypothesis| match h.test.counts {
-        Some([a, _, b]) => sign_test::binomial(a, b) <= ALPHA,
+        Some([a, _, b]) => sign_test::binomial(a, b) <= h.rules.level,
         None => false,
     };
     let names = match holding.is_empty() {

@@ -6,7 +6,7 @@ use super::words::{counted, list, p as p_value};
 use super::{Block, Evidence, names};
 use crate::audit::Finding as Probed;
 use crate::table::{Cell, Table};
-use statistics::Flag;
+use statistics::{Flag, screening};
 use std::collections::BTreeMap;
 
 /// Tests named at most.
@@ -48,7 +48,20 @@ fn screened(evidence: &Evidence<'_>, respondents: &Table) -> Finding {
     };
     let rules: Vec<String> = Flag::ALL.iter().filter_map(rule).collect();
     let kinds = [("controls", "control"), ("repeats", "repeat"), ("timed", "timed answer")];
-    let (mut judged, mut absent) = (vec!["one-sidedness".to_owned(), "agreement".to_owned()], Vec::new());
+    let (mut judged, mut absent) = (Vec::new(), Vec::new());
+    let seen = screening(evidence.shown);
+    let of = |rule: &str, number: usize| match number {
+        n if n == seen.len() => rule.to_owned(),
+        n => format!("{rule} of {}", counted(n, "participant")),
+    };
+    match seen.iter().filter(|of| of.tells_sides() && of.answers[0] + of.answers[2] >= 10).count() {
+        0 => absent.push("one-sidedness"),
+        n => judged.push(of("one-sidedness", n)),
+    }
+    match seen.iter().filter(|of| of.odd_p.is_some()).count() {
+        0 => absent.push("agreement"),
+        n => judged.push(of("agreement", n)),
+    }
     for (name, noun) in kinds {
         match sum(respondents, name) {
             0 => absent.push(if name == "timed" { "times" } else { name }),
@@ -61,19 +74,16 @@ fn screened(evidence: &Evidence<'_>, respondents: &Table) -> Finding {
     };
     let which = if rules.is_empty() { String::new() } else { format!(" ({})", list(&rules)) };
     let mut text = format!(
-        "{who} a rule of screening{which}. {}. Judged: {}.",
+        "{who} a rule of screening{which}. {}.{}",
         match evidence.excluded {
             0 => "Nobody is left out of any other part of this report".to_owned(),
             1 => "1 of them is left out of every other part of this report".to_owned(),
             n => format!("{n} of them are left out of every other part of this report"),
         },
-        list(&judged)
+        if judged.is_empty() { String::new() } else { format!(" Judged: {}.", list(&judged)) }
     );
     if !absent.is_empty() {
-        text.push_str(&format!(
-            " Not judged, because nothing of the kind is recorded: {}.",
-            absent.join(", ")
-        ));
+        text.push_str(&format!(" Not judged, because the answers do not tell: {}.", list(&absent)));
     }
     Finding::new(Standing::Noted, text)
 }

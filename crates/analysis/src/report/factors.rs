@@ -118,7 +118,7 @@ fn difference(study: &Study, factors: &[GroupFactor], evidence: &Evidence<'_>) -
         .filter(|&g| shared(study, g).is_some())
         .filter_map(|g| factors.iter().find(|f| f.group == g).map(|f| f.share.ties))
         .sum();
-    if members(first) != members(second) || ties == 0 {
+    if members(first) != members(second) || ties == 0 || a == b {
         return None;
     }
     let by_ties = half(first, false) - half(second, false);
@@ -149,7 +149,12 @@ fn is_arrangement(level: Level) -> bool {
 
 /// Who has the largest sum: over all, by wins over appearances, and on each object. A first place may be shared.
 fn favourite(study: &Study, tally: &Tally, factors: &[GroupFactor]) -> Option<String> {
-    let (methods, sum) = largest(overall(study, factors))?;
+    let sums = overall(study, factors);
+    let compared = sums.len();
+    let (methods, sum) = largest(sums)?;
+    if methods.len() == compared {
+        return Some(format!("All methods have the same sum, {}.", number(sum.value(), 3)));
+    }
     let shares = study.methods().into_iter().filter_map(|m| {
         let own: Vec<&GroupFactor> = factors.iter().filter(|f| f.method == m).collect();
         let (wins, shown) = own.iter().fold((0, 0), |(w, n), f| (w + f.share.wins, n + f.appearances));

@@ -62,28 +62,6 @@ impl Finding {
             Subject::Items { .. } => name.to_owned(),
             _ => capital(name),
         };
-        let leaning = test.leaning();
-        if leaning == 0 {
-            let text = format!(
-                "{} against {second}{scope}: nobody leans either way ({}), so no test has anything to work on.",
-                opening(first),
-                against(counts)
-            );
-            return Self::new(Standing::TooFew, text);
-        }
-        let least = 2.0_f64.powi(1 - leaning as i32);
-        if least > hypothesis.rules.level {
-            let lean = if leaning == 1 { "leans" } else { "lean" };
-            let text = format!(
-                "{} against {second}{scope} is not decided: {}. {} {lean} one way or the other, and no outcome of so \
-                 few is significant (exact sign-flip test, smallest possible {}).",
-                opening(first),
-                against(counts),
-                capital(&counted(leaning, "participant")),
-                p(least)
-            );
-            return Self::new(Standing::TooFew, text);
-        }
         let towards_first = test.mean >= 0.0;
         let [winner, loser] = if towards_first { [first, second] } else { [second, first] };
         let [a, ties, b] = counts;
@@ -102,10 +80,11 @@ impl Finding {
             Conclusion::DiffersWithinMargin => {
                 let text = format!(
                     "{} was preferred to {loser}{scope}, but by little: {}. {score}; {tested}. The mean lies within \
-                     {margin} of none ({}).",
+                     {margin} of none ({}).{}",
                     opening(winner),
                     against(turned),
-                    equivalence(hypothesis)
+                    equivalence(hypothesis),
+                    over_all(hypothesis)
                 );
                 Self::new(Standing::Holds, text)
             }
@@ -120,6 +99,39 @@ impl Finding {
                     equivalence(hypothesis)
                 );
                 Self::new(Standing::Equal, text)
+            }
+            // A mean of opposite preferences says nothing about any object.
+            Conclusion::AveragesOut => {
+                let text = format!(
+                    "{} and {second}{scope} average out within the margin of {margin}: {}. {}; {}; {tested}. That does not \
+                     say that they are liked alike.",
+                    opening(first),
+                    against(counts),
+                    self::score(test, true),
+                    equivalence(hypothesis)
+                );
+                Self::new(Standing::Open, text)
+            }
+            Conclusion::NobodyLeans => {
+                let text = format!(
+                    "{} against {second}{scope}: nobody leans either way ({}), so no test has anything to work on.",
+                    opening(first),
+                    against(counts)
+                );
+                Self::new(Standing::Open, text)
+            }
+            Conclusion::TooFew => {
+                let leaning = test.leaning();
+                let lean = if leaning == 1 { "leans" } else { "lean" };
+                let text = format!(
+                    "{} against {second}{scope} is not decided: {}. {} {lean} one way or the other, and no outcome of so \
+                     few is significant (exact sign-flip test, smallest possible {}).",
+                    opening(first),
+                    against(counts),
+                    capital(&counted(leaning, "participant")),
+                    p(hypothesis.least_possible())
+                );
+                Self::new(Standing::TooFew, text)
             }
             Conclusion::Open | Conclusion::NotTested => {
                 let alone = match test.sign_flip.p() <= hypothesis.rules.level {
@@ -173,7 +185,7 @@ fn equivalence(hypothesis: &Hypothesis) -> String {
 }
 
 /// What one correction over all tests makes of a result, where that is another.
-fn over_all(hypothesis: &Hypothesis) -> String {
+pub(super) fn over_all(hypothesis: &Hypothesis) -> String {
     match hypothesis.adjusted_over_all {
         Some(over_all) if over_all > hypothesis.rules.level => {
             format!(" With one correction over all tests it does not hold ({}).", p(over_all))

@@ -1,7 +1,7 @@
 //! What things are called in a sentence.
 
 use super::Evidence;
-use crate::hypotheses::{Hypothesis, Subject};
+use crate::hypotheses::{Hypothesis, On, Subject};
 use design::contrast::{Level, Over};
 use design::{Arrangement, Clustering, Method, Study};
 
@@ -52,6 +52,15 @@ pub(super) fn in_group(evidence: &Evidence<'_>, group: &str) -> String {
     if evidence.groups.len() > 1 { format!(" in group {group}") } else { String::new() }
 }
 
+/// The objects on which two items are compared, with a space before it; nothing for all of them.
+pub(super) fn on_object(on: &On) -> String {
+    match on {
+        On::All => String::new(),
+        On::Object(object) => format!(" on {object}"),
+        On::Difference([one, other]) => format!(" on {one} rather than on {other}"),
+    }
+}
+
 /// What is compared with what, and where: `edge collapse against no clustering on the simple cubic lattice`.
 pub(super) fn hypothesis(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> String {
     match (&hypothesis.subject, evidence.study) {
@@ -59,8 +68,8 @@ pub(super) fn hypothesis(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> St
             let [first, second] = levels.map(level);
             format!("{first} against {second}{}", self::over(study, *over))
         }
-        (Subject::Items { first, second, group }, _) => {
-            format!("{first} against {second}{}", in_group(evidence, group))
+        (Subject::Items { first, second, group, on }, _) => {
+            format!("{first} against {second}{}{}", on_object(on), in_group(evidence, group))
         }
         _ => format!("question {}", hypothesis.scope),
     }

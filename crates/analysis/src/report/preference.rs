@@ -1,10 +1,10 @@
 //! What was preferred to what: sorted by what holds, what depends on something else, and what is open.
 
-use super::finding::{Finding, Standing, score, tested};
+use super::finding::{Finding, Standing, over_all, score, tested};
 use super::words::{against, capital, counted, list, number, p};
 use super::{Block, Evidence, names, tipping, worths};
-use crate::hypotheses::{Conclusion, Hypothesis, Subject};
-use crate::tables::omnibus::{Asked, Omnibus};
+use crate::hypotheses::{self, Conclusion, Hypothesis, On, Subject};
+use crate::omnibus::{self, Asked, Omnibus};
 use design::Study;
 use design::contrast::{Factor, Level, Over, contrasts};
 use statistics::ScoreTest;
@@ -35,12 +35,14 @@ impl Sorted {
     fn add(&mut self, evidence: &Evidence<'_>, hypothesis: &Hypothesis, finding: Finding) {
         match finding.standing {
             Standing::Holds | Standing::Equal => self.holds.push(Block::Finding(finding)),
-            Standing::TooFew => self.too_few.push(TooFew {
-                place: self.open.len() + self.too_few.len(),
-                finding,
-                name: names::hypothesis(evidence, hypothesis),
-                leaning: hypothesis.test.leaning(),
-            }),
+            _ if matches!(hypothesis.conclusion(), Conclusion::TooFew | Conclusion::NobodyLeans) => {
+                self.too_few.push(TooFew {
+                    place: self.open.len() + self.too_few.len(),
+                    finding,
+                    name: names::hypothesis(evidence, hypothesis),
+                    leaning: hypothesis.test.leaning(),
+                });
+            }
             _ => self.open.push(Block::Finding(finding)),
         }
     }
@@ -73,7 +75,8 @@ impl Sorted {
                 ),
             }
         );
-        self.open.push(Block::Finding(Finding::new(Standing::TooFew, text)));
+        let standing = if most == 0 { Standing::Open } else { Standing::TooFew };
+        self.open.push(Block::Finding(Finding::new(standing, text)));
         self
     }
 }
@@ -87,16 +90,7 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
     let mut sorted = Sorted::default();
     let level = evidence.rules().level;
     let Some(study) = evidence.study else {
-        for hypothesis in evidence.hypotheses {
-            if let Subject::Items { group, first, second } = &hypothesis.subject {
-                let scope = names::in_group(evidence, group);
-                let mut finding = Finding::of_preference(hypothesis, first, second, &scope);
-                let shown = hypothesis.differs();
-                finding.text.push_str(&worths::beside(evidence, group, [first, second], shown));
-                sorted.add(evidence, hypothesis, finding);
-            }
-        }
-        return sorted.fold(evidence.hypotheses.len(), level);
+        return of_items(evidence, sorted, level);
     };
     sorted.holds.extend(levels_differ(evidence));
     let mut by_object = Vec::new();
@@ -106,13 +100,10 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
         match over {
             Over::Difference(..) | Over::ObjectDifference(..) => {}
             Over::Object(_) => {
-                by_object.push(Block::Finding(Finding::of_preference(hypothesis, &first, &second, &scope)));
+                by_object.push(Block::Finding(preference(evidence, hypothesis, &first, &second, &scope)));
             }
             Over::All | Over::Within(_) => {
-                let mut finding = Finding::of_preference(hypothesis, &first, &second, &scope);
-                if finding.standing == Standing::Holds {
-                    finding.text.push_str(&tipping::sentence(evidence, hypothesis));
-                }
+                let mut finding = preference(evidence, hypothesis, &first, &second, &scope);
                 if let Some(shown) = depends_on_object(evidence, levels) {
                     caution(study, evidence, &mut finding, hypothesis, &shown);
                 }
@@ -126,19 +117,77 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
     sorted.fold(pooled.count(), level)
 }
 
+/// Of answers without a study.
+fn of_items(evidence: &Evidence<'_>, mut sorted: Sorted, level: f64) -> Sorted {
+    let (mut pooled, mut by_object) = (0, Vec::new());
+    for hypothesis in evidence.hypotheses {
+        let Subject::Items { group, first, second, on } = &hypothesis.subject else { continue };
+        let scope = format!("{}{}", names::on_object(on), names::in_group(evidence, group));
+        match on {
+            On::All => {
+                pooled += 1;
+                let mut finding = preference(evidence, hypothesis, first, second, &scope);
+                finding.text.push_str(&worths::beside(
+                    evidence,
+                    group,
+                    [first, second],
+                    hypothesis.differs(),
+                ));
+                let between = evidence.hypotheses.iter().filter(|of| {
+                    let same = matches!(&of.subject, Subject::Items { group: own, on: On::Difference(_), .. } if own == group);
+                    same && of.contrast == hypothesis.contrast && of.adjusted <= level
+                });
+                let clearest = between.min_by(|a, b| a.test.sign_flip.ln_p.total_cmp(&b.test.sign_flip.ln_p));
+                if let Some(clearest) = clearest {
+                    let shown = tested(clearest);
+                    finding.text.push_str(&format!(" The preference depends on the object ({shown})."));
+                }
+                sorted.add(evidence, hypothesis, finding);
+            }
+            On::Object(_) => {
+                by_object.push(Block::Finding(preference(evidence, hypothesis, first, second, &scope)));
+            }
+            On::Difference(_) => {}
+        }
+    }
+    sorted.depends.extend(dependences(evidence));
+    sorted.depends.append(&mut by_object);
+    sorted.fold(pooled, level)
+}
+
+/// What one test of a preference says, and what a liking for a side means for it.
+fn preference(
+    evidence: &Evidence<'_>,
+    hypothesis: &Hypothesis,
+    first: &str,
+    second: &str,
+    scope: &str,
+) -> Finding {
+    let mut finding = Finding::of_preference(hypothesis, first, second, scope);
+    match finding.standing {
+        Standing::Holds => finding.text.push_str(&tipping::sentence(evidence, hypothesis)),
+        Standing::Equal if evidence.side_favoured => {
+            finding.standing = Standing::Open;
+            finding.text = finding.text.replace(" are liked alike, within", " average out within");
+            finding.text.push_str(
+                " People favour a side, and who answers by the side hides what is preferred. So that does not say that they \
+                 are liked alike.",
+            );
+        }
+        _ => {}
+    }
+    finding
+}
+
 /// Every contrast that was tested.
 fn contrasts_of<'a>(evidence: &'a Evidence<'_>) -> impl Iterator<Item = (&'a Hypothesis, [Level; 2], Over)> {
-    evidence.hypotheses.iter().filter(|h| h.is_tested()).filter_map(|h| match h.subject {
-        Subject::Contrast { levels, over } => Some((h, levels, over)),
-        _ => None,
-    })
+    hypotheses::contrasts_of(evidence.hypotheses)
 }
 
 /// What shows that a preference depends on the object, in words; `None` if nothing does.
 fn depends_on_object(evidence: &Evidence<'_>, levels: [Level; 2]) -> Option<String> {
     let level = evidence.rules().level;
-    let omnibus = evidence.omnibus.iter().find(|of| of.asked == Asked::ByObject(levels));
-    if let Some(of) = omnibus.filter(|of| of.adjusted <= level) {
+    if let Some(of) = omnibus::depends_on_object(&evidence.omnibus, levels, level) {
         return Some(format!("Friedman's test over objects, {} after Holm's correction", p(of.adjusted)));
     }
     let pairs = contrasts_of(evidence).filter(|(h, l, over)| {
@@ -161,16 +210,6 @@ fn caution(
         Standing::Holds => {
             finding.text.push_str(&format!(" It depends on the object ({shown})."));
             finding.text.push_str(&without_one_object(study, evidence, hypothesis));
-        }
-        // A mean of opposite preferences says nothing about any object.
-        Standing::Equal => {
-            *finding = Finding::new(
-                Standing::Open,
-                finding.text.replace(" are liked alike, within the margin", " average out within the margin"),
-            );
-            finding.text.push_str(&format!(
-                " That does not say that they are liked alike: the preference depends on the object ({shown})."
-            ));
         }
         Standing::Open | Standing::TooFew => {
             finding.text.push_str(&format!(" The preference depends on the object ({shown})."));
@@ -241,27 +280,22 @@ fn levels_differ(evidence: &Evidence<'_>) -> Vec<Block> {
 
 /// Interactions: one that holds is told with its parts, those that do not in one sentence.
 fn dependences(evidence: &Evidence<'_>) -> Vec<Block> {
-    let Some(study) = evidence.study else { return Vec::new() };
     let mut blocks = Vec::new();
     let mut open: Vec<&Hypothesis> = Vec::new();
-    for (hypothesis, levels, over) in contrasts_of(evidence) {
-        let parts = match over {
-            Over::Difference(a, b) => [Over::Within(a), Over::Within(b)],
-            Over::ObjectDifference(a, b) => [Over::Object(a), Over::Object(b)],
-            _ => continue,
-        };
-        if !hypothesis.differs() {
-            open.push(hypothesis);
-            continue;
+    let mut untold = 0;
+    for hypothesis in evidence.hypotheses.iter().filter(|of| of.is_tested() && of.is_difference()) {
+        match hypothesis.conclusion() {
+            Conclusion::TooFew | Conclusion::NobodyLeans => {
+                untold += 1;
+                continue;
+            }
+            _ if !hypothesis.differs() => {
+                open.push(hypothesis);
+                continue;
+            }
+            _ => {}
         }
-        let found = parts.map(|part| {
-            contrasts_of(evidence)
-                .find(|(_, l, o)| *l == levels && *o == part)
-                .map(|(part_of, ..)| (names::over(study, part), &part_of.test))
-        });
-        if let [Some((at_a, a)), Some((at_b, b))] = &found {
-            blocks.push(Block::Finding(dependence(hypothesis, levels, (at_a, a), (at_b, b))));
-        }
+        blocks.extend(dependence(evidence, hypothesis).map(Block::Finding));
     }
     if let Some(smallest) = open.iter().map(|h| h.adjusted).min_by(f64::total_cmp) {
         let mut names: Vec<String> =
@@ -281,16 +315,22 @@ fn dependences(evidence: &Evidence<'_>) -> Vec<Block> {
         );
         blocks.push(Block::Finding(Finding::new(Standing::Open, text)));
     }
+    if untold > 0 {
+        let dependences = match untold {
+            1 => "1 dependence".into(),
+            n => format!("{n} dependences"),
+        };
+        let text = format!(
+            "{dependences} could not have been shown: too few people lean one way or the other for any outcome to be significant."
+        );
+        blocks.push(Block::Finding(Finding::new(Standing::TooFew, text)));
+    }
     blocks
 }
 
-fn dependence(
-    hypothesis: &Hypothesis,
-    levels: [Level; 2],
-    (here, own): (&str, &ScoreTest),
-    (there, rest): (&str, &ScoreTest),
-) -> Finding {
-    let [first, second] = levels.map(names::level);
+/// A difference that holds, with the two preferences that differ. `None` if one of them was not tested.
+fn dependence(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> Option<Finding> {
+    let ([first, second], [(here, own), (there, rest)]) = parts(evidence, hypothesis)?;
     let part = |place: &str, test: &ScoreTest| {
         format!(
             "{}: {}, mean score {}",
@@ -304,12 +344,47 @@ fn dependence(
         _ => "",
     };
     let text = format!(
-        "How much {first} is preferred to {second} differs. {}. {}. The difference holds: {}.{within}",
-        part(here, own),
-        part(there, rest),
-        tested(hypothesis)
+        "How much {first} is preferred to {second} differs. {}. {}. The difference holds: {}.{within}{}",
+        part(&here, own),
+        part(&there, rest),
+        tested(hypothesis),
+        over_all(hypothesis)
     );
-    Finding::new(Standing::Holds, text)
+    Some(Finding::new(Standing::Holds, text))
+}
+
+/// What two preferences are called, and where each of them is, with its test.
+type Parts<'a> = ([String; 2], [(String, &'a ScoreTest); 2]);
+
+/// The two preferences that a difference is of.
+fn parts<'a>(evidence: &'a Evidence<'_>, hypothesis: &Hypothesis) -> Option<Parts<'a>> {
+    let test_of = |subject: Subject| {
+        evidence.hypotheses.iter().find(|of| of.is_tested() && of.subject == subject).map(|of| &of.test)
+    };
+    match (&hypothesis.subject, evidence.study) {
+        (Subject::Contrast { levels, over }, Some(study)) => {
+            let (a, b) = match *over {
+                Over::Difference(a, b) => (Over::Within(a), Over::Within(b)),
+                Over::ObjectDifference(a, b) => (Over::Object(a), Over::Object(b)),
+                _ => return None,
+            };
+            let part = |over| {
+                Some((names::over(study, over), test_of(Subject::Contrast { levels: *levels, over })?))
+            };
+            Some((levels.map(names::level), [part(a)?, part(b)?]))
+        }
+        (Subject::Items { group, first, second, on: On::Difference(objects) }, _) => {
+            let part = |object: &String| {
+                let on = On::Object(object.clone());
+                let place = format!("{}{}", names::on_object(&on), names::in_group(evidence, group));
+                let [group, first, second] = [group, first, second].map(String::clone);
+                Some((place, test_of(Subject::Items { group, first, second, on })?))
+            };
+            let [a, b] = objects;
+            Some(([first.clone(), second.clone()], [part(a)?, part(b)?]))
+        }
+        _ => None,
+    }
 }
 
 fn lower(text: &str) -> String {

@@ -2,7 +2,7 @@
 
 use super::finding::{Finding, Standing};
 use super::words::{capital, counted, interval, list, number, p as p_value};
-use super::{Block, Evidence, names};
+use super::{Block, Evidence, asked, names};
 use crate::audit::{Finding as Verdict, Probe};
 use crate::table::Table;
 use design::contrast::{Level, Over, contrasts};
@@ -35,8 +35,23 @@ impl Probed {
     }
 }
 
-/// What stands before the results where sides and methods go together.
+/// Whether the probes found that people favour a side.
+pub(super) fn is_favoured(tables: &[Table]) -> bool {
+    Probed::of(tables.iter().find(|table| table.name == "audit")).is_some_and(|probe| probe.found)
+}
+
+/// What stands before results: what people were asked, and that sides and methods go together where they do.
 pub(super) fn caution(evidence: &Evidence<'_>) -> Vec<Block> {
+    let asked = evidence.study.and_then(asked::instruction).map(|instruction| {
+        Block::Text(format!("People answered this question, and results are about it alone: {instruction}"))
+    });
+    asked.into_iter().chain(sides_and_methods(evidence)).collect()
+}
+
+fn sides_and_methods(evidence: &Evidence<'_>) -> Vec<Block> {
+    if !evidence.sides_recorded {
+        return Vec::new();
+    }
     let items = evidence.shown.iter().map(|b| b.left().max(b.right()) + 1).max().unwrap_or(0);
     let both = |ballots: &[ShownBallot], items| {
         side_design(&Pairs::of(items, ballots)) == SideDesign::Counterbalanced
@@ -71,6 +86,11 @@ pub(super) fn findings(evidence: &Evidence<'_>, audit: Option<&Table>) -> Vec<Bl
 }
 
 fn side(evidence: &Evidence<'_>, probe: Option<Probed>) -> Vec<Finding> {
+    if !evidence.sides_recorded {
+        let text = "Whether people favour a side is not answerable here, because the file does not say which item was on \
+                    which side.";
+        return vec![Finding::new(Standing::NotAnswerable, text)];
+    }
     let mut counts = [0_u64; 3];
     evidence.shown.iter().for_each(|b| counts[b.outcome().index()] += 1);
     let [left, none, right] = counts;

@@ -29,7 +29,12 @@ fn groups(answers: &[(usize, usize, usize, Outcome)]) -> Vec<BallotGroup> {
         ShownBallot::new(participant, left + right - 1, [left, right], outcome)
     };
     let items = ["oak", "elm", "ash"].map(String::from).into();
-    vec![BallotGroup { name: "trees".into(), items, ballots: answers.iter().map(ballot).collect() }]
+    vec![BallotGroup {
+        name: "trees".into(),
+        items,
+        ballots: answers.iter().map(ballot).collect(),
+        objects: Vec::new(),
+    }]
 }
 
 fn choice(outcome: Outcome) -> Choice {
@@ -42,7 +47,7 @@ fn choice(outcome: Outcome) -> Choice {
 
 /// The report of these groups' answers, which are about one object.
 fn report_of(title: &str, groups: &[BallotGroup], tables: &[Table]) -> Report {
-    let mut answers = Responses::default();
+    let mut answers = Responses { sides_recorded: true, ..Responses::default() };
     for group in groups {
         answers.items.extend(group.items.iter().cloned());
         for ballot in &group.ballots {
@@ -159,7 +164,7 @@ fn the_papers_answers() {
     assert!(
         checks[0].starts_with("1 of 18 participants broke a rule of screening (1 by answering against the others). Nobody is left out")
             && checks[0]
-                .contains("Not judged, because nothing of the kind is recorded: controls, repeats, times."),
+                .contains("Judged: agreement. Not judged, because the answers do not tell: one-sidedness, controls, repeats and times."),
         "{checks:#?}"
     );
     assert!(
@@ -192,7 +197,7 @@ fn a_planted_effect_holds_whoever_stands_left() {
          after Holm's correction for 4 tests."
     );
     let found = of(&said, "open", "9 of 13 comparisons");
-    assert_eq!(found.standing, Standing::TooFew);
+    assert_eq!(found.standing, Standing::Open);
     assert_eq!(
         found.text,
         "9 of 13 comparisons are not decided: no clustering against integrated clustering, no clustering against edge \
@@ -330,7 +335,7 @@ fn no_answers_at_all() {
     assert!(report.sections.is_empty());
     let control = |participant| ShownBallot::new(participant, 0, [0, 0], Left);
     let protocol = statistics::Protocol::default();
-    let respondents = crate::tables::agreement::respondents(&[control(0), control(1)], &protocol);
+    let respondents = crate::tables::agreement::respondents(&[control(0), control(1)], &protocol, 0);
     let report = report_of("Controls", &[], &[respondents]);
     assert_eq!(
         report.lead,
@@ -343,4 +348,128 @@ fn no_answers_at_all() {
     let tables = crate::tables(&inputs);
     let report = super::report(&inputs, &tables, &[]);
     assert_eq!(report.sections.iter().map(|s| s.id).collect::<Vec<_>>(), ["tables"]);
+}
+
+/// Forty people, oak over elm on one object and elm over oak on the other.
+fn opposite_on_two_objects() -> Vec<BallotGroup> {
+    let ballot =
+        |person: usize, question: usize, outcome| ShownBallot::new(person, question, [0, 1], outcome);
+    let both = (0..40).flat_map(|person| [ballot(person, 0, Left), ballot(person, 1, Right)]);
+    // Two people are of another mind on one of them, so that scores differ.
+    let ballots = both
+        .map(|b| if b.participant() < 2 && b.question() == 0 { ballot(b.participant(), 0, Tie) } else { b });
+    vec![BallotGroup {
+        name: "trees".into(),
+        items: ["oak", "elm"].map(String::from).into(),
+        ballots: ballots.collect(),
+        objects: ["garden", "street"].map(String::from).into(),
+    }]
+}
+
+#[test]
+fn opposite_preferences_are_not_liked_alike_without_a_study_either() {
+    let groups = opposite_on_two_objects();
+    let report = report_of("Trees", &groups, &[]);
+    // 38 people score 0 and two -1/2: the mean is -0.025.
+    let all =
+        texts(&report, "holds").into_iter().chain(texts(&report, "open")).collect::<Vec<_>>().join("\n");
+    assert!(!all.contains("liked alike,") && all.contains("The preference depends on the object"), "{all}");
+    let depends = texts(&report, "depends");
+    let starts = [
+        "How much oak is preferred to elm differs. On garden: 38 answers against 0, 2 without preference, mean score 0.95. On \
+         street: 0 answers against 40",
+        "oak was preferred to elm on garden",
+        "elm was preferred to oak on street",
+    ];
+    for (text, start) in depends.iter().zip(starts) {
+        assert!(text.starts_with(start), "{depends:#?}");
+    }
+    let table = crate::pair_tests(&groups);
+    let rows: Vec<String> = table.shown_rows().iter().map(|row| row[..3].join(" ")).collect();
+    let want = [
+        "trees oak-elm all",
+        "trees on objects oak-elm garden",
+        "trees on objects oak-elm street",
+        "trees between objects oak-elm garden \u{2212} street",
+    ];
+    assert_eq!(rows.iter().map(|row| row.replace(" - ", " \u{2212} ")).collect::<Vec<_>>(), want);
+}
+
+#[test]
+fn items_that_differ_by_rounding_stand_alike() {
+    // Everybody takes the left, and every pair is shown in both orders: nothing differs.
+    let answers: Vec<_> = (0..12)
+        .flat_map(|person| [(0, 1), (1, 2), (0, 2)].map(|pair| (person, pair)))
+        .flat_map(|(person, (a, b))| [(person, a, b, Left), (person, b, a, Left)])
+        .collect();
+    let report = report_of("Trees", &groups(&answers), &[]);
+    let worths = texts(&report, "worths").join("\n");
+    assert!(worths.contains("All stand alike.") && !worths.contains("highest"), "{worths}");
+}
+
+#[test]
+fn a_liking_for_a_side_is_no_equality() {
+    // Forty people take the left; ten of them are once undecided, so that somebody leans.
+    let mut answers = Vec::new();
+    for person in 0..40 {
+        for (question, (a, b)) in [(0, 1), (1, 0), (0, 1), (1, 0)].into_iter().enumerate() {
+            let chosen = if person % 4 == 0 && question == person / 4 % 4 { Tie } else { Left };
+            answers.push((person, a, b, chosen));
+        }
+    }
+    let groups = groups(&answers);
+    let tables = [a_side_was_found()];
+    let without = texts(&report_of("Trees", &groups, &[]), "holds").join("\n");
+    assert!(without.contains("liked alike, within the margin"), "{without}");
+    let report = report_of("Trees", &groups, &tables);
+    assert!(!texts(&report, "holds").join("\n").contains("liked alike"));
+    let open = texts(&report, "open").join("\n");
+    assert!(
+        open.contains("average out within the margin") && open.contains("People favour a side"),
+        "{open}"
+    );
+}
+
+/// A table of probes in which a side was found.
+fn a_side_was_found() -> Table {
+    let report = crate::audit::Report {
+        probe: crate::audit::Probe::Side,
+        finding: crate::audit::Finding::Found,
+        p: Some(0.001),
+        evidence: "controls: 20 left, 1 none, 2 right".into(),
+    };
+    crate::audit_table(&[report])
+}
+
+#[test]
+fn who_is_left_out_is_left_out_everywhere() {
+    let mut study = fixture::study();
+    study.file.analysis.exclude = vec![design::config::Exclusion::Odd];
+    let answered = Answered::of(&study, fixture::answers(&study)).unwrap();
+    let inputs = Inputs { study: &study, meshes: &[], bench: None, answers: Some(&answered) };
+    let (tables, figures) = (crate::tables(&inputs), crate::figures(&inputs).unwrap());
+    let named = |name: &str| tables.iter().find(|table| table.name == name).unwrap();
+    let columns: Vec<&str> = named("answers").columns.iter().map(|column| column.name.as_str()).collect();
+    assert!(columns.len() == 18 && !columns.contains(&"respondent_16"), "{columns:?}");
+    assert_eq!(named("respondents").rows.len(), 18);
+    let answers = figures.iter().find(|figure| figure.name == "answers").unwrap();
+    assert!(answers.caption.starts_with("Answers of 17 participants"), "{}", answers.caption);
+    let text = report(&inputs, &tables, &figures).to_markdown();
+    for wrong in ["nobody is left out", "Nobody is left out", "is with everybody", "18 participants gave"] {
+        assert!(!text.contains(wrong), "{wrong}");
+    }
+    assert!(text.contains("17 participants gave 459 answers"), "{text}");
+    // A rule that takes everybody.
+    study.file.analysis.exclude = vec![design::config::Exclusion::Time];
+    let mut hasty = fixture::answers(&study);
+    hasty.answers.iter_mut().for_each(|answer| answer.rt_ms = Some(10.0));
+    let answered = Answered::of(&study, hasty).unwrap();
+    let inputs = Inputs { study: &study, meshes: &[], bench: None, answers: Some(&answered) };
+    let lead = report(&inputs, &crate::tables(&inputs), &[]).lead;
+    assert_eq!(
+        lead,
+        [
+            "Nothing is said about preference: 18 participants answered, and all broke a rule whose breakers the study leaves out."
+        ]
+    );
 }

@@ -2,30 +2,34 @@
 
 use super::Evidence;
 use super::words::number;
-use crate::ballots::BallotGroup;
 use crate::hypotheses::{Hypothesis, Subject};
 use design::contrast::{Factor, Level, Over};
 use design::{Method, Study};
-use statistics::{FARTHEST_TIP, Pairs, Participants, SideDesign, Tip, Tipping, side_design, tipping};
+use statistics::{
+    FARTHEST_TIP, Pairs, Participants, ShownBallot, SideDesign, Tip, Tipping, side_design, tipping,
+};
 
 /// Beyond so many different patterns of answers it takes minutes.
 const MOST_PATTERNS: usize = 5_000;
+/// Of so many people nearly all have patterns of their own.
+const MOST_PEOPLE: usize = 50_000;
 
 /// Said after a result that holds; empty where sides cannot have made it, and where nothing can be said.
 pub(super) fn sentence(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> String {
-    let Some((group, [first, second])) = evidence.study.and_then(|study| of(study, evidence, hypothesis))
-    else {
+    let Subject::Contrast { levels, over } = hypothesis.subject else { return String::new() };
+    let Some(study) = evidence.study.filter(|_| hypothesis.test.participants() <= MOST_PEOPLE) else {
         return String::new();
     };
-    let items = group.items.len();
-    if side_design(&Pairs::of(items, &group.ballots)) == SideDesign::Counterbalanced {
+    let mut items: Vec<Level> = levels.to_vec();
+    let ballots = about(study, evidence.shown, over, &mut items);
+    if side_design(&Pairs::of(items.len(), &ballots)) == SideDesign::Counterbalanced {
         return String::new();
     }
-    let participants = Participants::of(items, &group.ballots);
+    let participants = Participants::of(items.len(), &ballots);
     if participants.kinds() > MOST_PATTERNS {
         return String::new();
     }
-    let Some(Tipping { left, right }) = tipping(&participants, first, second) else { return String::new() };
+    let Some(Tipping { left, right }) = tipping(&participants, 0, 1) else { return String::new() };
     match (left, right) {
         (Tip::At(at), _) => undone("left", at),
         (_, Tip::At(at)) => undone("right", at),
@@ -44,36 +48,39 @@ fn undone(side: &str, at: f64) -> String {
     )
 }
 
-/// The group in which the two levels of a contrast are items, and their places.
-fn of<'e>(
-    study: &Study,
-    evidence: &'e Evidence<'_>,
-    hypothesis: &Hypothesis,
-) -> Option<(&'e BallotGroup, [usize; 2])> {
-    let Subject::Contrast { levels, over } = hypothesis.subject else { return None };
-    let item = |level: Level| match (over, level) {
-        (Over::Within(Level::Arrangement(arrangement)), Level::Clustering(clustering)) => {
-            Some(Method { arrangement, clustering }.to_string())
+/// The answers about levels of the same factor as `items`, which grow by those that others are compared with, everything else
+/// equal; as far as a contrast goes.
+fn about(study: &Study, shown: &[ShownBallot], over: Over, items: &mut Vec<Level>) -> Vec<ShownBallot> {
+    let factor = items[0].factor();
+    let level = |method: Method| match factor {
+        Factor::Clustering => Level::Clustering(method.clustering),
+        Factor::Arrangement => Level::Arrangement(method.arrangement),
+        Factor::Method => Level::Method(method),
+    };
+    let rest = |method: Method| match factor {
+        Factor::Clustering => Some(Level::Arrangement(method.arrangement)),
+        Factor::Arrangement => Some(Level::Clustering(method.clustering)),
+        Factor::Method => None,
+    };
+    let methods = study.methods();
+    let mut place = |level: Level| {
+        items.iter().position(|&known| known == level).unwrap_or_else(|| {
+            items.push(level);
+            items.len() - 1
+        })
+    };
+    let mut own = Vec::new();
+    for ballot in shown {
+        let [left, right] = [ballot.left(), ballot.right()].map(|item| methods[item]);
+        let meant = match over {
+            Over::All => true,
+            Over::Within(level) => rest(left) == Some(level),
+            Over::Object(object) => study.comparisons[ballot.question()].object == object,
+            Over::Difference(..) | Over::ObjectDifference(..) => false,
+        };
+        if meant && rest(left) == rest(right) {
+            own.push(ballot.with_items([place(level(left)), place(level(right))]));
         }
-        (Over::Within(Level::Clustering(clustering)), Level::Arrangement(arrangement)) => {
-            Some(Method { arrangement, clustering }.to_string())
-        }
-        (Over::All, Level::Method(method)) => Some(method.to_string()),
-        (Over::All, level) => Some(level.code()),
-        _ => None,
-    };
-    let names = [item(levels[0])?, item(levels[1])?];
-    let pooled = match levels[0].factor() {
-        Factor::Clustering => "clustering",
-        Factor::Arrangement => "arrangement",
-        Factor::Method => "all",
-    };
-    let wanted = |group: &&BallotGroup| match over {
-        Over::All => group.name == pooled,
-        _ => study.groups.iter().any(|own| own.id == group.name),
-    };
-    evidence.groups.iter().filter(wanted).find_map(|group| {
-        let place = |name: &String| group.items.iter().position(|item| item == name);
-        Some((group, [place(&names[0])?, place(&names[1])?]))
-    })
+    }
+    own
 }

@@ -6,6 +6,9 @@ use super::{Block, Evidence};
 use crate::tables::scale::GroupScale;
 use statistics::{Difference, Model, Pairs, Scale, fit, goodness};
 
+/// Log-odds that differ by less differ by rounding.
+const ALIKE: f64 = 1e-9;
+
 /// Pairs and items named at most.
 const NAMED: usize = 5;
 
@@ -29,14 +32,14 @@ fn one_scale(of: &GroupScale<'_>, scale: &Scale, level: f64) -> Vec<Finding> {
     let name = &of.group.name;
     let mut found = Vec::new();
     match scale.omnibus {
-        Ok(test) if test.p <= level => {
+        Ok(test) if of.omnibus_adjusted.unwrap_or(test.p) <= level => {
             let text = format!(
                 "The {} of group {name} are not all liked alike: F = {} on {} and {} degrees of freedom, {}.",
                 counted(of.group.items.len(), "item"),
                 number(test.f, 2),
                 test.degrees[0],
                 test.degrees[1],
-                p(test.p)
+                corrected(of, test.p)
             );
             found.push(Finding::new(Standing::Holds, text));
         }
@@ -47,7 +50,7 @@ fn one_scale(of: &GroupScale<'_>, scale: &Scale, level: f64) -> Vec<Finding> {
                 number(test.f, 2),
                 test.degrees[0],
                 test.degrees[1],
-                p(test.p)
+                corrected(of, test.p)
             );
             found.push(Finding::new(Standing::Open, text));
         }
@@ -56,10 +59,25 @@ fn one_scale(of: &GroupScale<'_>, scale: &Scale, level: f64) -> Vec<Finding> {
             found.push(Finding::new(Standing::NotAnswerable, text));
         }
     }
+    if scale.fit.penalised() {
+        let text = format!(
+            "On one scale of group {name} no difference can be tested, because some items never won against the others, or a side \
+             always did. The positions in the tables come from half a win added each way."
+        );
+        found.push(Finding::new(Standing::NotAnswerable, text));
+        return found;
+    }
     let told = scale.differences.iter().filter(|of| of.spread.is_some_and(|s| s.adjusted <= level)).count();
+    let at = |item: usize| scale.positions[item].log_odds;
     let mut order: Vec<usize> = (0..of.group.items.len()).collect();
-    order.sort_by(|&a, &b| scale.positions[b].log_odds.total_cmp(&scale.positions[a].log_odds));
-    let Some((&first, rest)) = order.split_first() else { return found };
+    order.sort_by(|&a, &b| at(b).total_cmp(&at(a)));
+    let Some(&first) = order.first() else { return found };
+    // What differs by rounding alone stands in the order of the items.
+    let mut highest: Vec<usize> =
+        order.iter().copied().filter(|&item| at(first) - at(item) < ALIKE).collect();
+    highest.sort_unstable();
+    let rest: Vec<usize> = order.into_iter().filter(|item| !highest.contains(item)).collect();
+    let first = highest[0];
     let between = |a: usize, b: usize| {
         scale.differences.iter().find(|of| (of.first, of.second) == (a.min(b), a.max(b)))
     };
@@ -82,8 +100,10 @@ fn one_scale(of: &GroupScale<'_>, scale: &Scale, level: f64) -> Vec<Finding> {
             ))
         })
         .collect();
-    let best = &of.group.items[first];
+    let best = list(&highest.iter().map(|&item| of.group.items[item].clone()).collect::<Vec<_>>());
+    let (stands, is) = if highest.len() == 1 { ("stands", "is") } else { ("stand", "are") };
     let next = match open.len() {
+        0 if rest.is_empty() => " All stand alike.".into(),
         0 => String::new(),
         _ => {
             let mut named: Vec<String> = open.iter().take(NAMED).cloned().collect();
@@ -91,8 +111,7 @@ fn one_scale(of: &GroupScale<'_>, scale: &Scale, level: f64) -> Vec<Finding> {
                 named.push(format!("{} more", open.len() - NAMED));
             }
             format!(
-                " {} stands highest, but is not told from {}: difference in log-odds and its 95 % interval.",
-                best,
+                " {best} {stands} highest, but {is} not told from {}: difference in log-odds and its 95 % interval.",
                 list(&named)
             )
         }
@@ -103,6 +122,14 @@ fn one_scale(of: &GroupScale<'_>, scale: &Scale, level: f64) -> Vec<Finding> {
     );
     found.push(Finding::new(Standing::Noted, text));
     found
+}
+
+/// The p of a group's omnibus test, and with the correction for as many groups as have one.
+fn corrected(of: &GroupScale<'_>, alone: f64) -> String {
+    match of.omnibus_adjusted.filter(|&adjusted| adjusted > alone) {
+        Some(adjusted) => format!("{}, {} after Holm's correction over groups", p(alone), p(adjusted)),
+        None => p(alone),
+    }
 }
 
 /// Groups whose answers Davidson's model does not reproduce, and the pair that it misses most.
@@ -128,7 +155,7 @@ fn misfits(evidence: &Evidence<'_>, level: f64) -> Vec<Finding> {
         let text = format!(
             "Davidson's model does not reproduce the answers of group {}: deviance {} on {} degrees of freedom, {} as if answers \
              were independent. It misses {} against {} most, with {} answers (first, neither, second) where it expects {}. The \
-             intervals above allow for that; its own standard errors do not.",
+             intervals of the scale allow for that; its own standard errors do not.",
             of.group.name,
             number(test.deviance, 1),
             test.degrees,

@@ -49,11 +49,13 @@ pub enum Defect {
     ObjectInteraction,
     /// One method is chosen always.
     Separation,
+    /// Every sixth respondent presses left throughout, among others with preferences.
+    PressingLeft,
 }
 
 impl Defect {
     /// The studies without a defect, then every defect.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::None { preferences: false, side: 0 },
         Self::None { preferences: true, side: 0 },
         Self::None { preferences: false, side: 8 },
@@ -71,12 +73,13 @@ impl Defect {
         Self::TurnedAnswers,
         Self::ObjectInteraction,
         Self::Separation,
+        Self::PressingLeft,
     ];
 
     /// The probe that has to find it.
     pub fn probe(self) -> Option<Probe> {
         match self {
-            Self::None { side: 0, .. } => None,
+            Self::None { side: 0, .. } | Self::PressingLeft => None,
             Self::None { .. } => Some(Probe::Side),
             Self::OddRespondent => Some(Probe::OddRespondent),
             Self::CopiedRows | Self::CopiedTimes => Some(Probe::CopiedRows),
@@ -105,7 +108,14 @@ impl Defect {
             Self::TurnedAnswers => "answers to one file turned".into(),
             Self::ObjectInteraction => "object interaction".into(),
             Self::Separation => "separation".into(),
+            Self::PressingLeft => "six respondents press left throughout".into(),
         }
+    }
+
+    /// Whether a probe that speaks up is right to, though the defect is not its own: some respondents with a side and no preference
+    /// of their own are a side, and outlying.
+    pub(super) fn may_be_seen_by(self, probe: Probe) -> bool {
+        self == Self::PressingLeft && matches!(probe, Probe::Side | Probe::OddRespondent)
     }
 
     /// Whether so many answers are enough to find it, dealt like this.
@@ -177,6 +187,10 @@ pub fn planted(defect: Defect, design: Design, seed: u64, study: u64) -> Planted
             let sides = mixed_up(dealt);
             let of_file = responses.answers.iter_mut().filter(|answer| [answer.left, answer.right] == sides);
             of_file.for_each(|answer| answer.choice = answer.choice.swapped());
+        }
+        Defect::PressingLeft => {
+            let careless = responses.answers.iter_mut().filter(|answer| answer.participant % 6 == 3);
+            careless.for_each(|answer| answer.choice = Choice::Left);
         }
         _ => {}
     }

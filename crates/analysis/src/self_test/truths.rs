@@ -64,4 +64,6 @@ fn table(all: &[Outcome]) -> Table {
 }
 
 #[cfg(test)]
+mod coverage;
+#[cfg(test)]
 mod tests;

@@ -100,10 +100,15 @@ fn consistency(study: &Study, ballots: &[DeclaredBallot]) -> (Triads, (u64, f64)
 const MANY: usize = 200;
 
 /// One row a participant: what careless answering would show in.
-pub(crate) fn respondents(ballots: &[ShownBallot], protocol: &Protocol<'_>) -> Table {
+///
+/// So many of them are `excluded` from every other table.
+pub(crate) fn respondents(ballots: &[ShownBallot], protocol: &Protocol<'_>, excluded: usize) -> Table {
     let mut table = Table::new(
         "respondents",
-        "Screening of participants; nobody is left out",
+        match excluded {
+            0 => "Screening of participants; nobody is left out",
+            _ => "Screening of all participants, those who are left out included",
+        },
         &[
             ("respondent", "Respondent"),
             ("left", "Left"),
@@ -163,7 +168,7 @@ pub(crate) fn respondents(ballots: &[ShownBallot], protocol: &Protocol<'_>) -> T
     }
     table.notes.push(format!(
         "Controls and repeats are counted here, and nowhere else. Agreement: share of the decided answers that side with the majority of the others' decided answers, where they have \
-         one. Longest run: of one side. Repeats: the same pair again, both times decided. Rules, declared beforehand: \
+         one. Longest run: of one side. Repeats: the same pair again, both times decided. Rules, fixed in the program: \
          one-sided (ten decided answers or more, all on one side), controls (two or more decided, and more than half), \
          repeats (two or more for the other item, and more than half), time (all timed answers together took less than what they show lasts{}), odd (agrees on \
          less than half, and so much less than the others that p, with Bonferroni's correction and an allowance of 5, is \

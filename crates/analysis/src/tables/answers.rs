@@ -6,12 +6,15 @@ use crate::tally::Tally;
 use design::Study;
 use responses::Responses;
 use statistics::interval;
+use std::collections::BTreeSet;
 
 /// More respondents than this make no table that anybody reads; the answers are in their file.
 const MOST_COLUMNS: usize = 200;
 
 /// One row a question, one column a respondent (appendix D); what was not answered is missing. None for a crowd.
-pub(super) fn answers(study: &Study, answers: &Responses) -> Option<Table> {
+///
+/// Who is `excluded` has no column.
+pub(super) fn answers(study: &Study, answers: &Responses, excluded: &BTreeSet<usize>) -> Option<Table> {
     if answers.participants.len() > MOST_COLUMNS {
         return None;
     }
@@ -20,7 +23,8 @@ pub(super) fn answers(study: &Study, answers: &Responses) -> Option<Table> {
         "Answers: L left, NP no preference, R right; one column a respondent",
         &[("question", "Question")],
     );
-    let respondents = 1..=answers.participants.len();
+    let counts = |participant: &usize| !excluded.contains(participant);
+    let respondents = (0..answers.participants.len()).filter(counts).map(|i| i + 1);
     table
         .columns
         .extend(respondents.map(|i| Column { name: format!("respondent_{i}"), heading: i.to_string() }));
@@ -32,9 +36,8 @@ pub(super) fn answers(study: &Study, answers: &Responses) -> Option<Table> {
     }
     for (comparison, said) in study.comparisons.iter().zip(said) {
         let mut row = vec![Cell::text(&comparison.question)];
-        row.extend(
-            said.into_iter().map(|cell| if cell.is_empty() { Cell::Missing } else { Cell::text(cell) }),
-        );
+        let own = said.into_iter().enumerate().filter(|(participant, _)| counts(participant));
+        row.extend(own.map(|(_, cell)| if cell.is_empty() { Cell::Missing } else { Cell::text(cell) }));
         table.push(row);
     }
     let turned = |a: &responses::Answer| a.left != answers.questions[a.question as usize].left;

@@ -12,14 +12,21 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 ///
 /// What a model cannot estimate has no row in `worths`, and its reason in `models`. Nothing but ballots is needed, so that
 /// answers without a study file have the same tables.
-pub fn model_tables(groups: &[BallotGroup]) -> [Table; 2] {
+///
+/// Without `sides_recorded` nobody knows what stood on which side, and there is no model with a side.
+pub fn model_tables(groups: &[BallotGroup], sides_recorded: bool) -> [Table; 2] {
     let (mut worths, mut models) = (empty_worths(), empty_models());
+    if !sides_recorded {
+        let note = "Side: not answerable here, because the file does not say which item was on which side.";
+        worths.notes.push(note.into());
+        models.notes.push(note.into());
+    }
     for group in groups {
         let items = group.items.len();
         let pairs = Pairs::of(items, &group.ballots);
         let participants = Participants::of(items, &group.ballots);
         let plain = fit(Model::Davidson, &pairs).ok();
-        for model in Model::ALL {
+        for model in Model::ALL.into_iter().filter(|&model| sides_recorded || model != Model::DavidsonSide) {
             let fitted = fit(model, &pairs);
             models.push(model_row(group, &pairs, model, fitted.as_ref(), plain.as_ref()));
             if let Ok(fitted) = &fitted {
@@ -111,8 +118,10 @@ fn model_row(
     plain: Option<&WorthFit>,
 ) -> Vec<Cell> {
     let of = fitted.ok();
+    // Without a bound there is nothing to estimate, whatever half a win makes of it.
+    let side = of.filter(|fit| fit.penalty != Penalty::SideSeparated);
     let side_index = |fit: &WorthFit| fit.side.map(|_| fit.parameters.len() - 1);
-    let side_error = of.and_then(|fit| side_index(fit).map(|i| fit.covariance[i][i].sqrt()));
+    let side_error = side.and_then(|fit| side_index(fit).map(|i| fit.covariance[i][i].sqrt()));
     let ratio = match (of, plain) {
         (Some(fit), Some(plain)) if fit.side.is_some() && !fit.penalised() && !plain.penalised() => {
             Some(2.0 * (fit.log_likelihood - plain.log_likelihood).max(0.0))
@@ -129,7 +138,7 @@ fn model_row(
         Cell::text(model.code()),
         Cell::number(of.map(|fit| fit.log_likelihood), 4),
         Cell::number(of.and_then(|fit| fit.ln_nu).filter(|nu| nu.is_finite()), 4),
-        Cell::number(of.and_then(|fit| fit.side), 4),
+        Cell::number(side.and_then(|fit| fit.side), 4),
         Cell::number(side_error, 4),
         Cell::p(ratio.map(|ratio| one.sf(ratio)), 4),
         Cell::number(of.and_then(|fit| fit.ln_theta), 4),

@@ -3,9 +3,9 @@
 use crate::digits::counted;
 use crate::preference::{self, GroupFactor, Margin};
 use crate::table::{Cell, Column, Table};
-use crate::tally::Tally;
+use crate::tally::{Tally, TallyRow};
 use design::{Method, Study};
-use statistics::interval::{Interval, t_over_respondents};
+use statistics::interval::{Interval, t_over_respondents, wilson};
 
 pub(super) fn all(study: &Study, tally: &Tally) -> Vec<Table> {
     let factors = preference::group_factors(study, tally, |_| true);
@@ -65,11 +65,18 @@ fn overall(study: &Study, factors: &[GroupFactor]) -> Table {
         table.push(vec![Cell::text(method), Cell::Number(sum.value(), 3)]);
     }
     table.parts = vec![grid(study, &overall)];
-    table.notes.push(
-        "A sum adds factors of different scale. The clustering groups' part of an arrangement's mean is the same \
-         for any outcome but for ties, so it says nothing about arrangements."
-            .into(),
-    );
+    let mut note = "A sum adds factors of different scale.".to_owned();
+    let of_one_lattice = |group: &&design::Group| {
+        let first = group.members.first().map(|method| method.arrangement);
+        group.members.iter().all(|method| Some(method.arrangement) == first)
+    };
+    if study.groups.iter().filter(of_one_lattice).count() > 1 {
+        note.push_str(
+            " The clustering groups' part of an arrangement's mean is the same for any outcome but for ties, so it says \
+             nothing about arrangements.",
+        );
+    }
+    table.notes.push(note);
     table
 }
 
@@ -152,34 +159,41 @@ fn objects(study: &Study, tally: &Tally) -> Table {
         }
     }
     table.notes.push(
-        "From and to: t interval at 95 % over respondents, each person's factor counting as one observation; cut at \
-         0 and at the largest possible factor."
+        "From and to: interval at 95 % over respondents, each person's factor counting as one observation. Wilson's where \
+         each gave one answer, else the t interval, cut at 0 and at the largest possible factor."
             .into(),
     );
     table
 }
 
-/// The t interval over respondents of a method's factor in a group on one object, cut at 0 and at its cap.
+/// The interval of a method's factor in a group on one object, over respondents: Wilson's where each of them gave one answer,
+/// which is one in so many for the method; else the t interval of their own factors, cut at 0 and at its cap. `None` for
+/// fewer than two respondents.
 pub(crate) fn interval(tally: &Tally, factor: &GroupFactor, object: usize) -> Option<Interval> {
-    let cut = |end: f64| end.clamp(0.0, factor.cap().value());
-    t_over_respondents(&scores(tally, factor, object))
-        .map(|i| Interval { low: cut(i.low), high: cut(i.high) })
-}
-
-/// Each respondent's own factor of a method in a group on one object, of those who answered any of its questions.
-fn scores(tally: &Tally, factor: &GroupFactor, object: usize) -> Vec<f64> {
-    let (mut wins, mut answers) = (vec![0; tally.respondents], vec![0; tally.respondents]);
-    for row in tally.rows.iter().filter(|row| row.group == factor.group && row.object == object) {
-        answers[row.respondent] += row.answers;
-        if row.chosen == Some(factor.method) {
-            wins[row.respondent] += row.answers;
-        }
+    let own = wins_of_answers(tally, factor, object);
+    if own.len() > 1 && own.iter().all(|&[_, answers]| answers == 1) {
+        return wilson(own.iter().map(|&[wins, _]| u64::from(wins)).sum(), own.len() as u64);
     }
-    let answered = wins.into_iter().zip(answers).filter(|(_, answers)| *answers > 0);
-    let mut scores: Vec<f64> = answered.map(|(wins, answers)| wins as f64 / answers as f64).collect();
+    let mut scores: Vec<f64> =
+        own.into_iter().map(|[wins, answers]| f64::from(wins) / f64::from(answers)).collect();
     // Sums of doubles depend on their order, and people come in any.
     scores.sort_by(f64::total_cmp);
-    scores
+    t_over_respondents(&scores).map(|interval| interval.cut(0.0, factor.cap().value()))
+}
+
+/// By respondent who answered any of a group's questions on one object: answers for a method, and answers.
+fn wins_of_answers(tally: &Tally, factor: &GroupFactor, object: usize) -> Vec<[u32; 2]> {
+    let mut own = vec![[0; 2]; tally.respondents];
+    let asked = |row: &&TallyRow| (row.group as usize, row.object as usize) == (factor.group, object);
+    for row in tally.rows.iter().filter(asked) {
+        let [wins, answers] = &mut own[row.respondent as usize];
+        *answers += row.answers;
+        if row.chosen == Some(factor.method) {
+            *wins += row.answers;
+        }
+    }
+    own.retain(|&[_, answers]| answers > 0);
+    own
 }
 
 fn contests(study: &Study, tally: &Tally) -> Option<Table> {

@@ -4,7 +4,7 @@ use crate::ballots::BallotGroup;
 use crate::table::{Cell, Table};
 use rayon::prelude::*;
 use statistics::{
-    Difference, FitError, Model, Omnibus, Pairs, Participants, Scale, closeness, fit, goodness, jod,
+    Difference, FitError, Model, Omnibus, Pairs, Participants, Scale, closeness, fit, goodness, holm, jod,
     preferred, scale,
 };
 
@@ -13,15 +13,22 @@ pub(crate) struct GroupScale<'a> {
     pub(crate) group: &'a BallotGroup,
     pub(crate) participants: Participants,
     pub(crate) scale: Result<Scale, FitError>,
+    /// p of the omnibus test by Holm over the groups that have one.
+    pub(crate) omnibus_adjusted: Option<f64>,
 }
 
 /// The scale of every group.
 pub(crate) fn scales(groups: &[BallotGroup]) -> Vec<GroupScale<'_>> {
     fn of(group: &BallotGroup) -> GroupScale<'_> {
         let participants = Participants::of(group.items.len(), &group.ballots);
-        GroupScale { group, scale: scale(&participants, 0), participants }
+        GroupScale { group, scale: scale(&participants, 0), participants, omnibus_adjusted: None }
     }
-    groups.par_iter().map(of).collect()
+    let mut scales: Vec<GroupScale<'_>> = groups.par_iter().map(of).collect();
+    let omnibus = |of: &GroupScale<'_>| of.scale.as_ref().ok().and_then(|scale| scale.omnibus.ok());
+    let tested: Vec<usize> = (0..scales.len()).filter(|&i| omnibus(&scales[i]).is_some()).collect();
+    let p: Vec<f64> = tested.iter().filter_map(|&i| omnibus(&scales[i])).map(|of| of.p).collect();
+    tested.into_iter().zip(holm(&p)).for_each(|(i, p)| scales[i].omnibus_adjusted = Some(p));
+    scales
 }
 
 /// `scale`, `differences` and `fit`: positions of items, differences of every two, and what the models miss.
@@ -49,9 +56,11 @@ fn positions(scales: &[GroupScale<'_>]) -> Table {
             ("f", "F"),
             ("degrees", "Degrees"),
             ("p", "p of no difference"),
+            ("p_adjusted", "p adjusted"),
+            ("model", "Model"),
         ],
     );
-    for GroupScale { group, scale, .. } in scales {
+    for GroupScale { group, scale, omnibus_adjusted, .. } in scales {
         let Ok(scale) = scale else { continue };
         let omnibus = scale.omnibus.ok();
         for (place, position) in scale.positions.iter().enumerate() {
@@ -67,17 +76,28 @@ fn positions(scales: &[GroupScale<'_>]) -> Table {
                 of.map_or(Cell::Missing, |of| Cell::text(format!("{}, {}", of.degrees[0], of.degrees[1]))),
             );
             row.push(Cell::p(of.map(|of| of.p), 5));
+            row.push(Cell::p(of.and(*omnibus_adjusted), 4));
+            row.push(Cell::text(model(scale)));
             table.push(row);
         }
     }
     table.notes.push(
-        "Davidson's model on all answers of the group. Log worth: log-odds of being preferred to the reference, ties aside. JOD: \
+        "Davidson's model on all answers of the group, with a bonus for a side where pairs were shown in both orders (davidson-side): \
+         a liking for a side would else make worths too small. Half a win added: the answers separate items or a side, so that half a \
+         win each way was added to every pair; positions are then no estimates, and have no interval. Log worth: log-odds of being preferred to the reference, ties aside. JOD: \
          just-objectionable differences, 1 where three in four prefer the one (log worth over ln 3; Perez-Ortiz and Mantiuk \
          2017). Preferred: the chance of being preferred to the reference in a decided answer. From and to: t interval at 95 % \
-         with participants as clusters. F: Hotelling's test that all items are worth the same."
+         with participants as clusters. F: Hotelling's test that all items are worth the same; its p \
+         adjusted by Holm over the groups."
             .into(),
     );
     table
+}
+
+/// The model's name, and whether it was given half a win each way.
+fn model(scale: &Scale) -> String {
+    let added = if scale.fit.penalised() { ", half a win added" } else { "" };
+    format!("{}{added}", scale.fit.model.code())
 }
 
 /// Log worth, JOD and chance, each with its interval.
@@ -110,6 +130,7 @@ fn differences(scales: &[GroupScale<'_>]) -> Table {
             ("preferred_high", "to"),
             ("p", "p"),
             ("p_adjusted", "p adjusted"),
+            ("model", "Model"),
         ],
     );
     for GroupScale { group, scale, .. } in scales {
@@ -123,11 +144,12 @@ fn differences(scales: &[GroupScale<'_>]) -> Table {
             row.extend(in_every_unit(of));
             row.push(Cell::p(of.spread.map(|spread| spread.p), 5));
             row.push(Cell::p(of.spread.map(|spread| spread.adjusted), 4));
+            row.push(Cell::text(model(scale)));
             table.push(row);
         }
     }
     table.notes.push(
-        "From Davidson's model on all answers of the group, those to other pairs included; the direct tests of a pair are in the \
+        "From the model of the table of scales, on all answers of the group, those to other pairs included; the direct tests of a pair are in the \
          table of tests. p: t test with participants as clusters; adjusted by Holm over the pairs of the group. Intervals are \
          for one difference each."
             .into(),

@@ -128,8 +128,8 @@ fn screened(
     ];
     table.print_in_blocks(&blocks);
     table.notes.push(
-        "For each rule that somebody broke, the same tests without them; the rules are under the table of respondents. Every \
-         other table is with everybody."
+        "For each rule that somebody broke, the same tests without them; the rules are under the table of respondents. Both \
+         halves are about all participants, also where other tables leave some out."
             .into(),
     );
     table

@@ -39,8 +39,8 @@ struct Twins {
     common: Vec<Timed>,
 }
 
-/// A question and its time in milliseconds.
-type Timed = (u32, i64);
+/// A question and its time in milliseconds; longer ones than 49 days are as long as that.
+type Timed = (u32, u32);
 
 /// Every two people with nearly all times in common; `None` unless two people have enough times.
 ///
@@ -82,7 +82,7 @@ pub(super) fn look(rows: &Rows) -> Option<Seen> {
 fn times(rows: &Rows, of: &Range<usize>) -> Vec<Timed> {
     let Some(known) = rows.circumstances.get(of.clone()) else { return Vec::new() };
     let time = |(ballot, known): (&statistics::ShownBallot, &statistics::Circumstances)| {
-        Some((ballot.question() as u32, known.rt_ms?.round() as i64))
+        Some((ballot.question() as u32, known.rt_ms?.round() as u32))
     };
     let mut times: Vec<Timed> = rows.ballots[of.clone()].iter().zip(known).filter_map(time).collect();
     times.dedup_by_key(|(question, _)| *question);
@@ -102,8 +102,8 @@ fn candidates(timed: &[Vec<Timed>]) -> BTreeSet<[u32; 2]> {
 
 fn twins(timed: &[Vec<Timed>], people: [u32; 2]) -> Option<Twins> {
     let [a, b] = people.map(|of| &timed[of as usize]);
-    let other: HashMap<u32, i64> = b.iter().copied().collect();
-    let both: Vec<(Timed, i64)> =
+    let other: HashMap<u32, u32> = b.iter().copied().collect();
+    let both: Vec<(Timed, u32)> =
         a.iter().filter_map(|&(question, time)| Some(((question, time), *other.get(&question)?))).collect();
     let common: Vec<Timed> =
         both.iter().filter(|((_, time), other)| time == other).map(|(time, _)| *time).collect();

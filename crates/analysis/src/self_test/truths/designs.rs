@@ -38,7 +38,7 @@ const PAPER: [Group; 5] = [
 ];
 
 /// The paper's methods on three objects, 27 questions, sides balanced.
-const FULL: Design = Design {
+pub(super) const FULL: Design = Design {
     name: "balanced, Latin square",
     arrangements: TWO,
     clusterings: &["none", "integrated", "edge-collapse"],

@@ -13,7 +13,7 @@ use crate::table::Table;
 use crate::tables::tables;
 use design::Study;
 use design::forms::Role;
-use responses::{Choice, Responses};
+use responses::{Choice, Plan, Responses};
 use std::collections::BTreeMap;
 
 /// One truth on one design.
@@ -46,13 +46,14 @@ pub(super) fn run(people: usize) -> Vec<Outcome> {
 pub(super) fn one(design: &Design, truth: Truth, people: usize) -> Outcome {
     let number = truth.people(people);
     let study = design.study(number.max(people));
+    let plan = Plan::of_study(&study);
     let given = answers(&study, truth, number);
     let oracle = Oracle::of(&study, &given);
     let mut compared = Compared::default();
     let routes: Vec<Route> = Route::ALL.into_iter().filter(|route| route.is_open(&study)).collect();
     let mut read: Vec<(Route, Responses)> = Vec::new();
     for &route in &routes {
-        let answers = route.read(&study, &given);
+        let answers = route.read(&study, &plan, &given);
         let why = answers.as_ref().err().cloned().unwrap_or_default();
         compared.check(answers.is_ok(), ["file", route.name(), ""], why, "answers");
         read.extend(answers.ok().map(|answers| (route, answers)));

@@ -232,7 +232,7 @@ fn worth(method: &str) -> f64 {
     0.6 * place("upic", 1) + 0.25 * place("sbfm", 0)
 }
 
-fn normal(random: &mut Pcg64) -> f64 {
+pub(super) fn normal(random: &mut Pcg64) -> f64 {
     // The sum of twelve is close enough, and as easy to see.
     (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0
 }

@@ -62,45 +62,44 @@ impl Route {
     }
 
     /// Reads the answers this way. The words are why it was not possible.
-    pub(super) fn read(self, study: &Study, given: &[Given]) -> Result<Responses, String> {
+    pub(super) fn read(self, study: &Study, plan: &Plan, given: &[Given]) -> Result<Responses, String> {
         let name = |given: &Given| format!("p{:04}", given.person + 1);
         match self {
-            Self::Long => parse(&long(&EVERYTHING, given, name), study, &Mapping::default()),
+            Self::Long => parse(&long(&EVERYTHING, given, name), plan, &Mapping::default()),
             Self::Shuffled => {
                 let mut rows = given.to_vec();
                 // By code name first, which is an order that has nothing to do with anything.
                 rows.sort_by_key(|g| (g.shown.stimulus.clone(), (g.person * 7919) % 1009, g.shown.order));
-                parse(&long(&EVERYTHING, &rows, name), study, &Mapping::default())
+                parse(&long(&EVERYTHING, &rows, name), plan, &Mapping::default())
             }
             Self::Converted => {
-                let read = Self::Long.read(study, given)?;
+                let read = Self::Long.read(study, plan, given)?;
                 let mut text = Vec::new();
                 responses::write_long(&read, &mut text).map_err(|error| error.to_string())?;
                 let text = String::from_utf8(text).map_err(|error| error.to_string())?;
-                parse(&text, study, &Mapping::default())
+                parse(&text, plan, &Mapping::default())
             }
             Self::ByCodeName => {
                 let columns = ["participant", "order", "question", "choice", "rt_ms", "stimulus"];
-                parse(&long(&columns, given, name), study, &Mapping::default())
+                parse(&long(&columns, given, name), plan, &Mapping::default())
             }
             Self::ByForm => {
                 let columns = ["participant", "form", "order", "question", "choice", "rt_ms"];
-                parse(&long(&columns, given, name), study, &Mapping::default())
+                parse(&long(&columns, given, name), plan, &Mapping::default())
             }
-            Self::Wide => parse(&wide(study, given, "participant,form", name), study, &Mapping::default()),
-            Self::WideAsListed => parse(&wide(study, given, "participant", name), study, &Mapping::default()),
+            Self::Wide => parse(&wide(study, given, "participant,form", name), plan, &Mapping::default()),
+            Self::WideAsListed => parse(&wide(study, given, "participant", name), plan, &Mapping::default()),
             Self::Export => {
                 let own = given.iter().filter(|given| given.shown.role == Role::Comparison);
                 let (text, mapping) = export(study, &own.cloned().collect::<Vec<_>>());
-                parse(&text, study, &mapping)
+                parse(&text, plan, &mapping)
             }
         }
     }
 }
 
-fn parse(text: &str, study: &Study, mapping: &Mapping) -> Result<Responses, String> {
-    let (path, plan) = (Path::new("answers.csv"), Plan::of_study(study));
-    let reading = responses::parse(text.as_bytes(), path, Some(&plan), mapping);
+fn parse(text: &str, plan: &Plan, mapping: &Mapping) -> Result<Responses, String> {
+    let reading = responses::parse(text.as_bytes(), Path::new("answers.csv"), Some(plan), mapping);
     reading.map(|reading| reading.responses).map_err(|error| error.to_string())
 }
 

@@ -190,7 +190,7 @@ fn contrasts(
         scopes.push(scope.trim_start_matches("within ").to_owned());
         if !finding.text.starts_with("How much") && ["holds", "open", "depends"].contains(&section) {
             tested(hypotheses, of, said.after, &row, compared);
-            standing(hypotheses, of, finding, &row, compared);
+            standing(of, finding, &row, compared);
         }
     }
     // Of a difference the test is at the end.
@@ -238,29 +238,12 @@ fn is_rounded(said: &str, want: Range) -> bool {
 }
 
 /// Whether a statement stands as its test has it.
-fn standing(
-    hypotheses: &[Hypothesis],
-    of: &Hypothesis,
-    finding: &Finding,
-    row: &str,
-    compared: &mut Compared,
-) {
-    let [_, leaning] = of.people();
+fn standing(of: &Hypothesis, finding: &Finding, row: &str, compared: &mut Compared) {
     let Some(conclusion) = of.conclusion() else { return };
-    let differ = |sign: f64| {
-        hypotheses.iter().any(|other| {
-            other.family.starts_with("objects")
-                && other.levels == of.levels
-                && other.conclusion().is_some_and(|said| said.starts_with("differs"))
-                && other.mean() * sign > 0.0
-        })
-    };
-    let opposite = of.scope == "all" && differ(1.0) && differ(-1.0);
     let want: &[&str] = match conclusion {
-        _ if 2.0_f64.powi(1 - leaning as i32) > 0.05 => &["too few"],
+        "too few" => &["too few"],
         "differs" | "differs, within the margin" => &["holds"],
-        // Opposite preferences on two objects are no liking alike.
-        "equal within the margin" if opposite => &["open"],
+        // A liking for a side hides what is liked.
         "equal within the margin" => &["equal", "open"],
         _ => &["open"],
     };

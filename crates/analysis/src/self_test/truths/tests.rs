@@ -10,7 +10,7 @@ use super::sentences::compare_sentences;
 use crate::report::Block;
 use crate::table::{Cell, Table};
 use design::Study;
-use responses::{Choice, Responses};
+use responses::{Choice, Plan, Responses};
 use std::collections::BTreeSet;
 
 #[test]
@@ -30,7 +30,7 @@ fn every_cell_is_right() {
 fn planted(design: &Design, truth: Truth) -> (Study, Vec<Given>, Responses) {
     let study = design.study(36);
     let given = answers(&study, truth, 36);
-    let read = Route::Long.read(&study, &given).unwrap();
+    let read = Route::Long.read(&study, &Plan::of_study(&study), &given).unwrap();
     (study, given, read)
 }
 

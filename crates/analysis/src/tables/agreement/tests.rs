@@ -27,7 +27,7 @@ fn the_papers_participants() {
 fn respondent_sixteen_stands_out() {
     // Counted apart from this program.
     let study = fixture::study();
-    let table = respondents(&ballots(&study, &fixture::answers(&study)), &Protocol::default());
+    let table = respondents(&ballots(&study, &fixture::answers(&study)), &Protocol::default(), 0);
     assert_eq!(table.rows.len(), 18);
     let row = &table.shown_rows()[15];
     assert_eq!(row[..4], ["16", "19", "0", "8"]);
@@ -57,7 +57,7 @@ fn of_many_participants_those_who_break_a_rule_are_printed() {
         })
     };
     let ballots: Vec<ShownBallot> = (0..201).flat_map(of).collect();
-    let table = respondents(&ballots, &Protocol::default());
+    let table = respondents(&ballots, &Protocol::default(), 0);
     assert_eq!((table.rows.len(), table.printed()[0].rows.len()), (201, 1));
     assert_eq!(table.printed()[0].shown_rows()[0][0], "8");
     assert!(table.rows[7].last().unwrap().in_full().contains("one-sided"));

@@ -1,6 +1,6 @@
 use super::*;
 use crate::fixture;
-use crate::tables::omnibus::{self, Asked};
+use crate::omnibus::{self, Asked};
 use statistics::{DeclaredBallot, Outcome, ShownBallot};
 
 fn rows(table: &Table, start: &str) -> Vec<String> {
@@ -93,6 +93,7 @@ fn every_compared_pair_is_tested_whatever_the_side() {
             ballot(3, 1, 0, Right),
             ballot(0, 2, 1, Left),
         ],
+        objects: Vec::new(),
     };
     let table = pair_tests(&[group]);
     // Differences 1, 1, 0, 1: two of eight patterns. scipy.stats.t.interval(.95, 3, mean, sem) of them: -0.0456, 1.5456, which no mean score reaches.

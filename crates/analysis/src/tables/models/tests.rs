@@ -28,12 +28,12 @@ fn two_items(rows: &[&str]) -> BallotGroup {
             ballots.push(ShownBallot::new(participant, question, [0, 1], outcome));
         }
     }
-    BallotGroup { name: "two".into(), items: vec!["a".into(), "b".into()], ballots }
+    BallotGroup { name: "two".into(), items: vec!["a".into(), "b".into()], ballots, objects: Vec::new() }
 }
 
 #[test]
 fn what_is_not_answerable_is_said_and_not_numbered() {
-    let [worths, models] = model_tables(&[two_items(&["LLN", "LRN", "RLL"])]);
+    let [worths, models] = model_tables(&[two_items(&["LLN", "LRN", "RLL"])], true);
     let side = [("model", "davidson-side")];
     assert_eq!(cell(&models, &side, "side"), Cell::Missing);
     let remark = cell(&models, &side, "remark").in_full();
@@ -44,7 +44,7 @@ fn what_is_not_answerable_is_said_and_not_numbered() {
 
 #[test]
 fn separated_answers_are_marked_and_have_no_interval() {
-    let [worths, models] = model_tables(&[two_items(&["LLL", "LLN"])]);
+    let [worths, models] = model_tables(&[two_items(&["LLL", "LLN"])], true);
     let davidson = [("model", "davidson")];
     assert_eq!(cell(&models, &davidson, "penalised"), Cell::text("yes"));
     let b = [("item", "b"), ("model", "davidson")];
@@ -55,14 +55,14 @@ fn separated_answers_are_marked_and_have_no_interval() {
 
 #[test]
 fn degenerate_groups_are_stated_results() {
-    let all_ties = model_tables(&[two_items(&["NN", "N"])]);
+    let all_ties = model_tables(&[two_items(&["NN", "N"])], true);
     assert!(all_ties[0].rows.is_empty());
     assert!(all_ties[1].rows.iter().all(|row| row[10].in_full().contains("every answer was no preference")));
-    let one_person = model_tables(&[two_items(&["LRN"])]);
+    let one_person = model_tables(&[two_items(&["LRN"])], true);
     let b = [("item", "b"), ("model", "davidson")];
     close(cell(&one_person[0], &b, "log_worth"), 0.0);
     assert_eq!(cell(&one_person[0], &b, "clustered_se"), Cell::Missing);
-    assert!(model_tables(&[]).iter().all(|table| table.rows.is_empty()));
+    assert!(model_tables(&[], true).iter().all(|table| table.rows.is_empty()));
 }
 
 #[test]
@@ -70,7 +70,7 @@ fn a_worth_that_rests_on_one_tie_has_no_error_of_clusters() {
     let mut group = two_items(&["L", "R", "", "L"]);
     group.items.push("c".into());
     group.ballots.push(ShownBallot::new(2, 1, [0, 2], Outcome::Tie));
-    let [worths, _] = model_tables(&[group]);
+    let [worths, _] = model_tables(&[group], true);
     let of = |item: &str, column: &str| cell(&worths, &[("item", item), ("model", "davidson")], column);
     for column in ["clustered_se", "low", "high"] {
         assert_eq!(of("c", column), Cell::Missing, "{column}");

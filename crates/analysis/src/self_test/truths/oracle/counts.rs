@@ -177,7 +177,10 @@ fn objects(oracle: &Oracle<'_>) -> Expected {
                     (!won.is_empty()).then(|| wins / won.len() as f64)
                 };
                 let factors: Vec<f64> = oracle.comparisons.iter().filter_map(factor).collect();
-                let ends = t_interval(&factors).map(|ends| ends.map(|end| end.clamp(0.0, won.cap())));
+                let ends = match won.answers == factors.len() as u64 && factors.len() > 1 {
+                    true => Some(score_interval(won.wins as f64, won.answers as f64)),
+                    false => t_interval(&factors).map(|ends| ends.map(|end| end.clamp(0.0, won.cap()))),
+                };
                 table.push(
                     [object, group, method],
                     vec![
@@ -220,4 +223,22 @@ fn arrangements(oracle: &Oracle<'_>) -> Expected {
         }
     }
     table
+}
+
+/// The shares that are at most 1.96 of their own standard errors from what was seen, by halving.
+fn score_interval(wins: f64, answers: f64) -> [f64; 2] {
+    let seen = wins / answers;
+    let far =
+        |share: f64| (seen - share).abs() > 1.959_963_984_540_054 * (share * (1.0 - share) / answers).sqrt();
+    [0.0, 1.0].map(|end| {
+        let (mut out, mut inside) = (end, seen);
+        if !far(end) {
+            return end;
+        }
+        for _ in 0..200 {
+            let middle = 0.5 * (out + inside);
+            if far(middle) { out = middle } else { inside = middle }
+        }
+        inside
+    })
 }

@@ -4,6 +4,7 @@ use super::exact::{
     Ratio, add, benjamini_hochberg, binomial, common_divisor, equivalence, holm, interval, mean, minus,
     ratio, sign_flip, trinomial, value,
 };
+use super::omnibus::by_object;
 use super::{Compares, Expected, Oracle, Question, Want};
 use std::collections::BTreeMap;
 
@@ -46,6 +47,8 @@ pub(in crate::self_test::truths) struct Hypothesis {
     pub(in crate::self_test::truths) adjusted: Range,
     over_all: Option<Range>,
     equivalence: Option<f64>,
+    /// Whether the preference was shown to depend on the object; `None` where rounding of p may decide.
+    by_object: Option<bool>,
     /// Question by sign, and by which part of a difference.
     parts: Vec<BTreeMap<usize, i64>>,
 }
@@ -64,11 +67,6 @@ impl Hypothesis {
         [self.scores.len(), self.scores.iter().filter(|score| score.0 != 0).count()]
     }
 
-    pub(in crate::self_test::truths) fn mean(&self) -> f64 {
-        let sum = self.scores.iter().fold((0, 1), |sum, score| add(sum, *score));
-        if self.scores.is_empty() { 0.0 } else { value(sum) / self.scores.len() as f64 }
-    }
-
     /// What can be concluded; `None` where rounding of p may decide.
     pub(in crate::self_test::truths) fn conclusion(&self) -> Option<&'static str> {
         let differs = match self.adjusted {
@@ -76,8 +74,13 @@ impl Hypothesis {
             Range { low, .. } if low > LEVEL => false,
             _ => return None,
         };
-        Some(match (differs, self.equivalence.is_some_and(|p| p <= LEVEL)) {
+        let [_, leaning] = self.people();
+        let equal = self.equivalence.is_some_and(|p| p <= LEVEL);
+        Some(match (differs, equal) {
             _ if !self.is_tested() => "not tested",
+            _ if leaning == 0 => "nobody leans",
+            _ if 2.0_f64.powi(1 - leaning as i32) > LEVEL => "too few",
+            (false, true) if self.by_object? => "averages out",
             (true, false) => "differs",
             (true, true) => "differs, within the margin",
             (false, true) => "equal within the margin",
@@ -97,10 +100,32 @@ pub(in crate::self_test::truths) fn hypotheses(oracle: &Oracle<'_>) -> Vec<Hypot
     let tested: Vec<usize> = (0..all.len()).filter(|&i| all[i].is_tested()).collect();
     let p: Vec<Range> = tested.iter().map(|&i| all[i].p).collect();
     tested.iter().zip(Range::adjusted(&p, holm)).for_each(|(&i, p)| all[i].over_all = Some(p));
+    mark_by_object(oracle, &mut all);
     let mut single: Vec<Hypothesis> = (0..oracle.questions.len()).map(|q| of_question(oracle, q)).collect();
     correct(&mut single.iter_mut().collect::<Vec<_>>(), benjamini_hochberg);
     all.extend(single);
     all
+}
+
+/// Whether Friedman's test over objects, or a pair of objects, shows that a preference depends on the object.
+fn mark_by_object(oracle: &Oracle<'_>, all: &mut [Hypothesis]) {
+    let omnibus = by_object(oracle);
+    let pairs: Vec<([String; 2], Range)> = all
+        .iter()
+        .filter(|of| of.family.starts_with("object-pairs") && of.is_tested())
+        .map(|of| (of.levels.clone(), of.adjusted))
+        .collect();
+    for of in all.iter_mut() {
+        let objects = of.family.starts_with("object") || of.parts.len() > 1;
+        let own = || pairs.iter().filter(|(levels, _)| *levels == of.levels);
+        let ranked = omnibus.iter().any(|(levels, p)| *levels == of.levels && *p <= LEVEL);
+        of.by_object = match () {
+            () if objects => Some(false),
+            () if ranked || own().any(|(_, p)| p.high <= LEVEL) => Some(true),
+            () if own().any(|(_, p)| p.low <= LEVEL) => None,
+            () => Some(false),
+        };
+    }
 }
 
 /// Corrects a family; what nobody answered is no test of it.
@@ -269,6 +294,7 @@ fn tested(
         adjusted: Range { low: 1.0, high: 1.0 },
         over_all: None,
         equivalence: None,
+        by_object: Some(false),
         family,
         scope,
         scores,

@@ -35,6 +35,21 @@ pub(super) fn expected(oracle: &Oracle<'_>) -> Expected {
     table
 }
 
+/// By pair of values, p of the test over objects, corrected.
+pub(super) fn by_object(oracle: &Oracle<'_>) -> Vec<([String; 2], f64)> {
+    let mut asked = Vec::new();
+    for factor in ["clustering", "arrangement", "method"] {
+        for pair in pairs(oracle, factor) {
+            let rows = by(oracle, factor, &pair, |q| oracle.questions[q].object_name.clone());
+            let complete: Vec<Vec<Ratio>> =
+                rows.into_iter().filter_map(|row| row.into_iter().collect()).collect();
+            asked.extend(friedman(&complete).map(|(.., p)| (pair, p)));
+        }
+    }
+    let adjusted = holm(&asked.iter().map(|(_, p)| *p).collect::<Vec<_>>());
+    asked.into_iter().zip(adjusted).map(|((pair, _), p)| (pair, p)).collect()
+}
+
 /// Adds tests that are corrected together.
 fn add(table: &mut Expected, asked: Vec<(String, String, Rows)>) {
     let tested = asked.into_iter().filter_map(|(question, scores, rows)| {
