@@ -8,7 +8,7 @@ use crate::plan::Plan;
 use crate::report::{Kind, Report};
 use crate::value::{Answer, Participant, Question, StimulusId};
 use design::forms::Role;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
 mod finish;
@@ -86,6 +86,8 @@ pub(crate) struct Collector<'a> {
     nameless: Vec<Range<u32>>,
     /// Whether a place in the order makes a second answer one to a second showing.
     pub(crate) shown_again: bool,
+    /// Whether the file may give places in an order.
+    pub(crate) ordered: bool,
     questions: Vec<Question>,
     by_pair: HashMap<([u32; 5], Role), u32>,
     /// The first question with an id, and its row.
@@ -94,6 +96,11 @@ pub(crate) struct Collector<'a> {
     labels: Index,
     pub(crate) items: Index,
     stimuli: Index,
+    /// Code names that the study lacks, with the first place of each.
+    unknown_stimuli: BTreeMap<StimulusId, Place>,
+    sittings: Index,
+    /// The sitting of each answer, where a won and a lost row are a tie.
+    sitting_of: Vec<u32>,
     answers: Vec<Answer>,
     /// The row of each answer; no file that is read has as many rows as there are numbers.
     rows: Vec<u32>,
@@ -120,6 +127,7 @@ impl<'a> Collector<'a> {
             unnamed: Vec::new(),
             nameless: Vec::new(),
             shown_again: true,
+            ordered: false,
             questions: plan.map_or(Vec::new(), |plan| plan.questions().to_vec()),
             by_pair: HashMap::new(),
             by_id_alone: HashMap::new(),
@@ -127,6 +135,9 @@ impl<'a> Collector<'a> {
             labels: Index::default(),
             items,
             stimuli: Index::default(),
+            unknown_stimuli: BTreeMap::new(),
+            sittings: Index::default(),
+            sitting_of: Vec::new(),
             answers: Vec::new(),
             rows: Vec::new(),
             missing: None,
@@ -289,9 +300,21 @@ impl<'a> Collector<'a> {
         &self.questions[question as usize].id
     }
 
-    /// The id of a code name.
-    pub(crate) fn stimulus(&mut self, name: &str) -> Option<StimulusId> {
-        (!name.is_empty()).then(|| StimulusId::new(self.stimuli.number(name)))
+    /// The id of a code name; `unknown` is its place if the study lacks it.
+    pub(crate) fn stimulus(&mut self, name: &str, unknown: Option<Place>) -> Option<StimulusId> {
+        if name.is_empty() {
+            return None;
+        }
+        let id = StimulusId::new(self.stimuli.number(name));
+        if let Some(place) = unknown {
+            self.unknown_stimuli.entry(id).or_insert(place);
+        }
+        Some(id)
+    }
+
+    /// The sitting of the answer that comes next.
+    pub(crate) fn sitting(&mut self, name: &str) {
+        self.sitting_of.push(self.sittings.number(name));
     }
 
     pub(crate) fn answer(&mut self, answer: Answer, row: u64) {

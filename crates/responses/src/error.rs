@@ -311,8 +311,12 @@ pub enum Fault {
     },
     /// One answer twice.
     #[error(
-        "row {row}: {participant} has already answered {question} with the same sides in row {first}; give `order` if it was shown \
-         twice, or declare `duplicates`"
+        "row {row}: {participant} has already answered {question} with the same sides in row {first}; {}",
+        if *ordered {
+            "give `order` if it was shown twice, or declare `duplicates`"
+        } else {
+            "declare `duplicates` to keep the first or the last"
+        }
     )]
     DuplicateAnswer {
         /// The second row.
@@ -323,6 +327,8 @@ pub enum Fault {
         participant: String,
         /// The question.
         question: String,
+        /// Whether the format has a column for the place in the session.
+        ordered: bool,
     },
     /// A participant with two forms.
     #[error("row {row}: participant {participant} has form \"{form}\" here and \"{first}\" before")]

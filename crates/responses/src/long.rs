@@ -1,6 +1,6 @@
 //! The long format: one row an answer, or, with a `count`, one row for several people's.
 
-use crate::collect::{Collector, Ids, Place, Reply};
+use crate::collect::{Collector, Ids, MOST_COUNTED, Place, Reply};
 use crate::error::{Fault, shorten};
 use crate::escape::unescape;
 use crate::format::Format;
@@ -11,12 +11,15 @@ use crate::records::{Record, is_blank, trim};
 use crate::report::{Kind, Report};
 use crate::sides::SidesSource;
 use crate::source::Source;
-use crate::value::{Answer, Responses};
+use crate::value::{Answer, Responses, StimulusId};
 use crate::words::{is_na, normalise};
+use std::borrow::Cow;
+use std::num::IntErrorKind;
 
 mod columns;
 
 pub(crate) use columns::{Columns, Rule};
+pub use columns::{LONG_COLUMNS, LONG_NEEDED};
 
 /// Whether a header has the columns that nothing else has.
 pub(crate) fn is_long(header: &[String]) -> bool {
@@ -38,8 +41,9 @@ pub(crate) fn read(
 ) -> Result<Responses, Fault> {
     let columns = Columns::of(header, header_row, plan.is_some(), report)?;
     let ids = if columns.question.is_some() { Ids::OnePair } else { Ids::MadeUp };
-    let rule = Rule { sides_recorded: true, escaped: true, every_row: true, ids };
-    read_columns(source, (header_row, header.len()), columns, rule, plan, mapping, report)
+    let rule =
+        Rule { sides_recorded: true, escaped: true, every_row: true, ordered: true, split_ties: false, ids };
+    read_columns(source, (header_row, header), columns, rule, plan, mapping, report)
 }
 
 /// Reads every row under a header whose columns are known.
@@ -48,7 +52,7 @@ pub(crate) fn read(
 /// See [`Fault`].
 pub(crate) fn read_columns(
     source: &Source<'_>,
-    (header_row, width): (u64, usize),
+    (header_row, header): (u64, &[String]),
     columns: Columns,
     rule: Rule,
     plan: Option<&Plan>,
@@ -57,9 +61,9 @@ pub(crate) fn read_columns(
 ) -> Result<Responses, Fault> {
     let sides = columns.source(rule, plan, header_row)?;
     let mut collector = Collector::new(plan, mapping, report);
-    collector.naming = rule.ids;
+    (collector.naming, collector.ordered) = (rule.ids, rule.ordered);
     let mut rows =
-        Rows { columns, rule, sides, plan, collector, width, run: 0, last_trial: None, passed_over: 0 };
+        Rows { columns, rule, sides, plan, collector, header, run: 0, last_trial: None, passed_over: 0 };
     let (mut end, mut blank) = (header_row + 1, None::<(u64, u64)>);
     source.each(|record| {
         if record.row <= header_row {
@@ -90,7 +94,7 @@ pub(crate) struct Rows<'a> {
     pub(crate) sides: SidesSource,
     pub(crate) plan: Option<&'a Plan>,
     pub(crate) collector: Collector<'a>,
-    width: usize,
+    header: &'a [String],
     /// Participants so far, where the trials' numbers tell them apart.
     run: u32,
     last_trial: Option<u32>,
@@ -99,7 +103,7 @@ pub(crate) struct Rows<'a> {
 
 impl Rows<'_> {
     fn row(&mut self, record: &Record<'_>, counted: bool) -> Result<(), Fault> {
-        let (expected, found) = (self.width, record.cells.len());
+        let (expected, found) = (self.header.len(), record.cells.len());
         let beyond = record.cells.iter().skip(expected).any(|cell| !is_blank(cell));
         if beyond || (found < expected && counted) {
             return Err(Fault::CellCount { row: record.row, expected, found });
@@ -128,21 +132,23 @@ impl Rows<'_> {
         let named = id.map(|id| self.collector.participant(id, form, row)).transpose()?;
         let Some((question, [left, right])) = self.asked(record, asked, form)? else { return Ok(()) };
         let place = Place { row, column: self.columns.choice };
-        let choice = match self.collector.reply(record.cell(self.columns.choice), place, asked) {
+        let asked = match asked {
+            "" => Cow::Owned(self.collector.id_of(question).to_owned()),
+            asked => Cow::Borrowed(asked),
+        };
+        let choice = match self.collector.reply(record.cell(self.columns.choice), place, &asked) {
             Reply::Choice(choice) => choice,
             Reply::Unknown => return Ok(()),
             Reply::Blank => {
-                let asked = if asked.is_empty() { self.collector.id_of(question) } else { asked };
                 let action =
-                    format!("{} left {} unanswered", shorten(id.unwrap_or("nobody")), shorten(asked));
+                    format!("{} left {} unanswered", shorten(id.unwrap_or("nobody")), shorten(&asked));
                 self.collector.report.row(Kind::Noted, row, action);
                 return Ok(());
             }
         };
         let order = self.columns.order.and_then(|column| self.number(record, column));
         let rt_ms = self.columns.rt_ms.and_then(|column| self.time(record, column));
-        let stimulus = self.name(record, self.columns.stimulus, "stimulus")?;
-        let stimulus = self.collector.stimulus(stimulus);
+        let stimulus = self.stimulus(record)?;
         let of = |participant: u32| Answer {
             order,
             rt_ms,
@@ -150,7 +156,13 @@ impl Rows<'_> {
             ..Answer::new(participant, question, [left, right], choice)
         };
         match named {
-            Some(participant) => self.collector.answer(of(participant), row),
+            Some(participant) => {
+                if self.rule.split_ties {
+                    let sitting = self.columns.sitting.map_or("", |column| self.text(record, column));
+                    self.collector.sitting(sitting);
+                }
+                self.collector.answer(of(participant), row);
+            }
             None => {
                 let first = self.collector.nameless(count, form, row)?;
                 let mut answer = of(first);
@@ -165,11 +177,27 @@ impl Rows<'_> {
         Ok(())
     }
 
+    /// The code name in a row; one that the study lacks is remembered with its place.
+    fn stimulus(&mut self, record: &Record<'_>) -> Result<Option<StimulusId>, Fault> {
+        let Some(column) = self.columns.stimulus else { return Ok(None) };
+        let name = self.name(record, Some(column), "stimulus")?;
+        let unknown = self.plan.is_some_and(|plan| plan.has_codes() && plan.code(name).is_none());
+        let place = Place { row: record.row, column };
+        Ok(self.collector.stimulus(name, unknown.then_some(place)))
+    }
+
     /// How many answers a row stands for.
     fn count(&self, record: &Record<'_>) -> Result<u32, Fault> {
         let Some(column) = self.columns.count else { return Ok(1) };
         let cell = self.text(record, column);
-        cell.parse().map_err(|_| self.refuse(record, column, "count", "must be a whole number of answers"))
+        let limit = match cell.parse::<u64>() {
+            Ok(count) if count <= MOST_COUNTED => return Ok(count as u32),
+            Err(error) if *error.kind() != IntErrorKind::PosOverflow => {
+                "must be a whole number of answers".into()
+            }
+            _ => format!("must be at most {MOST_COUNTED}, the most answers that are read"),
+        };
+        Err(self.refuse(record, column, "count", limit))
     }
 
     /// Who answered; `None` is somebody else in every row.
@@ -236,6 +264,7 @@ impl Rows<'_> {
         Ok(cell)
     }
 
+    /// A fault of a cell, named by the column's title; `name` is for columns without.
     pub(crate) fn refuse(
         &self,
         record: &Record<'_>,
@@ -244,7 +273,9 @@ impl Rows<'_> {
         limit: impl Into<String>,
     ) -> Fault {
         let (row, cell) = (record.row, shorten(record.cell(column)));
-        Fault::Cell { row, column: column + 1, name: name.into(), cell, limit: limit.into() }
+        let title = self.header.get(column).map_or("", |title| trim(title));
+        let name = if title.is_empty() { name.into() } else { shorten(title) };
+        Fault::Cell { row, column: column + 1, name, cell, limit: limit.into() }
     }
 
     /// A whole number; anything else is rejected and listed.

@@ -1,7 +1,9 @@
 //! pwcmp's comparisons: one row an answer, `observer, session, scene, condition_A, condition_B, is_A_selected`.
 //!
 //! The format names no questions: a question is a scene with a pair. It does not say which condition was on the left, so sides
-//! are not recorded. The session is the form where an observer has one alone. Source: M. Perez-Ortiz and R. Mantiuk, "A practical guide and
+//! are not recorded. The session is the form where an observer has one alone. There are no ties: where an observer has one won and
+//! one lost row with the same conditions, scene and session, both are one answer without preference, as
+//! [`Ties::Split`](crate::Ties::Split) writes it. Source: M. Perez-Ortiz and R. Mantiuk, "A practical guide and
 //! software for analysing pairwise comparison experiments" (2017), and the examples of their pwcmp.
 
 use crate::collect::Ids;
@@ -69,13 +71,21 @@ pub(crate) fn read(
         choice: needed(SELECTED.into_iter().find_map(find), "is_A_selected")?,
         object: find("scene"),
         form,
+        sitting: find("session"),
         ..Columns::default()
     };
     let mut own = mapping.clone();
     let [first, second] = ["1", "0"].map(|word| [word.to_owned()]);
     own.words.declare([&first, &[], &second]).expect("two words");
-    let rule = long::Rule { sides_recorded: false, escaped: true, every_row: true, ids: Ids::MadeUp };
-    long::read_columns(source, (*row, header.len()), columns, rule, plan, &own, report)
+    let rule = long::Rule {
+        sides_recorded: false,
+        escaped: true,
+        every_row: true,
+        ordered: false,
+        split_ties: true,
+        ids: Ids::MadeUp,
+    };
+    long::read_columns(source, (*row, header), columns, rule, plan, &own, report)
 }
 
 /// What sessions say.

@@ -159,6 +159,13 @@ pub(crate) fn read_table(
     if sides.is_none() {
         report.row(Kind::Noted, *row, "trials do not say what was left and right: taken from the study");
     }
-    let rows = long::Rule { sides_recorded: true, escaped: false, every_row: false, ids: Ids::OnePair };
-    long::read_columns(source, (*row, header.len()), columns, rows, plan, mapping, report)
+    let rows = long::Rule {
+        sides_recorded: true,
+        escaped: false,
+        every_row: false,
+        ordered: true,
+        split_ties: false,
+        ids: Ids::OnePair,
+    };
+    long::read_columns(source, (*row, header), columns, rows, plan, mapping, report)
 }

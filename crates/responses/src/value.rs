@@ -1,7 +1,7 @@
 //! Answers, read and checked: one value an answer, whatever file they came from.
 
 use crate::choice::Choice;
-use crate::error::number_of;
+use crate::error::{number_of, shorten};
 use crate::sides::SidesSource;
 use design::forms::Role;
 use std::num::NonZeroU32;
@@ -36,6 +36,19 @@ pub struct Responses {
     pub stimuli: Vec<String>,
     /// Answers whose participant the file does not name. Each of them has a participant of its own.
     pub without_participant: u64,
+    /// Answers whose code name the study does not have; `None` if it has all, if there is no study, or if it has none itself.
+    pub unknown_stimuli: Option<UnknownStimuli>,
+}
+
+/// Answers with a code name in the `stimulus` column that the study does not have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct UnknownStimuli {
+    /// The first such name, an id of [`Responses::stimuli`].
+    pub first: StimulusId,
+    /// Its row in the file.
+    pub row: u64,
+    /// How many answers have such a name.
+    pub answers: u64,
 }
 
 /// Somebody who answered.
@@ -145,14 +158,31 @@ impl Responses {
         answer.stimulus.map(|id| self.stimuli[id.place()].as_str())
     }
 
-    /// What was assumed where the file does not say it, as sentences for a report: how sides are known, and whether
-    /// participants are.
+    /// Whether the file names nobody, so that each answer counts as another person's. Nothing can be said then of answers that
+    /// somebody did not give, nor of anything else within a person.
+    pub fn names_nobody(&self) -> bool {
+        !self.answers.is_empty() && self.without_participant == self.answers.len() as u64
+    }
+
+    /// What was assumed where the file does not say it, as sentences for a report: how sides are known, whether
+    /// participants are, and whether the study knows the code names.
     pub fn assumptions(&self) -> Vec<String> {
         let mut said = vec![self.sides.sentence().to_owned()];
         if self.without_participant > 0 {
             let answers = number_of(self.without_participant as usize, "answer");
             said.push(format!(
                 "The file names no participant for {answers}. Each of them counts as the answer of another person."
+            ));
+        }
+        if let Some(UnknownStimuli { first, row, answers }) = self.unknown_stimuli {
+            let of = match answers {
+                1 => "The code name of 1 answer is".to_owned(),
+                n => format!("The code names of {n} answers are"),
+            };
+            let name = shorten(&self.stimuli[first.place()]);
+            said.push(format!(
+                "{of} not in this study; the first is \"{name}\" in row {row}. The sides of such answers were not checked by code \
+                 name."
             ));
         }
         said

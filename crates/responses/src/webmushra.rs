@@ -59,6 +59,13 @@ pub(crate) fn read(
     let words = [&list("correct"), &list("undecided"), &list("incorrect")];
     own.words.declare(words.map(Vec::as_slice)).expect("three words");
     own.words.declare_blank("unknown");
-    let rows = long::Rule { sides_recorded: false, escaped: false, every_row: true, ids: Ids::OnePair };
-    long::read_columns(source, (*row, header.len()), columns, rows, plan, &own, report)
+    let rows = long::Rule {
+        sides_recorded: false,
+        escaped: false,
+        every_row: true,
+        ordered: false,
+        split_ties: false,
+        ids: Ids::OnePair,
+    };
+    long::read_columns(source, (*row, header), columns, rows, plan, &own, report)
 }

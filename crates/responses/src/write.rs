@@ -12,7 +12,7 @@ pub enum Ties {
     /// Refuse to write.
     #[default]
     Refuse,
-    /// Write one win each way. A tie then weighs as much as two answers.
+    /// Write one win each way. A tie then weighs as much as two answers, though not where [`read`](crate::read) reads it again.
     Split,
     /// Leave them out.
     Drop,
@@ -35,7 +35,9 @@ pub struct Written {
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The format has no ties.
-    #[error("{format} has no answers without preference, and there are {ties}: split or drop them")]
+    #[error(
+        "{format} has no answers without preference, and there are {ties}: give `--ties split` or `--ties drop`"
+    )]
     Ties {
         /// The format.
         format: &'static str,
@@ -47,7 +49,23 @@ pub enum WriteError {
     Io(#[from] csv::Error),
 }
 
-/// `participant,form,order,question,object,group,left,right,choice,rt_ms,role,stimulus`: everything, with the sides as they were
+/// Columns of the long format as it is written.
+pub const LONG_WRITTEN: [&str; 12] = [
+    "participant",
+    "form",
+    "order",
+    "question",
+    "object",
+    "group",
+    "left",
+    "right",
+    "choice",
+    "rt_ms",
+    "role",
+    "stimulus",
+];
+
+/// The columns of [`LONG_WRITTEN`]: everything, with the sides as they were
 /// shown; controls and repeats are marked by their role. Cells that a spreadsheet would run as a formula are escaped; reading the
 /// file gives the same answers.
 ///
@@ -55,20 +73,7 @@ pub enum WriteError {
 /// If `out` cannot be written to.
 pub fn write_long(responses: &Responses, out: impl Write) -> Result<Written, WriteError> {
     let mut writer = csv::Writer::from_writer(out);
-    writer.write_record([
-        "participant",
-        "form",
-        "order",
-        "question",
-        "object",
-        "group",
-        "left",
-        "right",
-        "choice",
-        "rt_ms",
-        "role",
-        "stimulus",
-    ])?;
+    writer.write_record(LONG_WRITTEN)?;
     let mut written = Written::default();
     for answer in &responses.answers {
         let participant = &responses.participants[answer.participant as usize];

@@ -1,6 +1,7 @@
 //! What is checked, numbered and named once every answer is there.
 
 use super::{Collector, Ids, Place};
+use crate::choice::Choice;
 use crate::error::{Fault, shorten};
 use crate::mapping::Duplicates;
 use crate::name;
@@ -8,7 +9,7 @@ use crate::natural;
 use crate::plan::REPEAT;
 use crate::report::Kind;
 use crate::sides::SidesSource;
-use crate::value::{Answer, Responses};
+use crate::value::{Answer, Responses, UnknownStimuli};
 use design::forms::Role;
 use std::collections::{HashMap, HashSet};
 
@@ -49,6 +50,7 @@ impl Collector<'_> {
             };
             self.report.row(Kind::Noted, header_row, format!("{of} read as that of another person"));
         }
+        self.join_split_ties();
         self.check_repeats()?;
         if self.answers.is_empty() {
             return Err(Fault::NoAnswers { row: end });
@@ -58,6 +60,7 @@ impl Collector<'_> {
             self.sort_items();
         }
         self.name_pairs();
+        let unknown_stimuli = self.unknown_stimuli();
         Ok(Responses {
             participants: self.participants,
             questions: self.questions,
@@ -67,6 +70,7 @@ impl Collector<'_> {
             sides,
             stimuli: self.stimuli.names,
             without_participant,
+            unknown_stimuli,
         })
     }
 
@@ -81,6 +85,65 @@ impl Collector<'_> {
         self.questions.iter_mut().flat_map(|q| [&mut q.left, &mut q.right]).for_each(renumber);
         self.answers.iter_mut().flat_map(|a| [&mut a.left, &mut a.right]).for_each(renumber);
         self.items.names = order.iter().map(|&item| names[item as usize].clone()).collect();
+    }
+
+    /// Makes one answer without preference of a won and a lost row of one sitting, as formats without ties have it.
+    /// This comes before `duplicates`, which would make each tie a win of whatever is in its first or last row.
+    fn join_split_ties(&mut self) {
+        if self.sitting_of.is_empty() {
+            return;
+        }
+        let key = |i: u32| {
+            let Answer { participant, question, left, .. } = self.answers[i as usize];
+            (participant, question, left, self.sitting_of[i as usize])
+        };
+        let mut sorted: Vec<u32> = (0..self.answers.len() as u32).collect();
+        sorted.sort_by_key(|&i| key(i));
+        let mut halves: Vec<[u32; 2]> = Vec::new();
+        for same in sorted.chunk_by(|&a, &b| key(a) == key(b)) {
+            if let &[first, second] = same
+                && self.answers[first as usize].choice != Choice::NoPreference
+                && self.answers[first as usize].choice == self.answers[second as usize].choice.swapped()
+            {
+                halves.push([first, second]);
+            }
+        }
+        halves.sort_unstable();
+        let Some(&first) = halves.first() else { return };
+        let [row, other] = first.map(|i| u64::from(self.rows[i as usize]));
+        let more = match halves.len() - 1 {
+            0 => String::new(),
+            1 => ", and so is 1 more pair of rows".into(),
+            more => format!(", and so are {more} more pairs of rows"),
+        };
+        let action =
+            format!("won and lost, here and in row {other}: read as one answer without preference{more}");
+        self.report.row(Kind::Noted, row, action);
+        let mut kept = vec![true; self.answers.len()];
+        for [first, second] in halves.into_iter().map(|half| half.map(|i| i as usize)) {
+            self.answers[first].choice = Choice::NoPreference;
+            kept[second] = false;
+        }
+        let (mut of_answer, mut of_row) = (kept.iter(), kept.iter());
+        self.answers.retain(|_| *of_answer.next().expect("one an answer"));
+        self.rows.retain(|_| *of_row.next().expect("one an answer"));
+    }
+
+    /// Answers with code names that the study lacks.
+    fn unknown_stimuli(&mut self) -> Option<UnknownStimuli> {
+        let of = |answer: &Answer| answer.stimulus.filter(|id| self.unknown_stimuli.contains_key(id));
+        let mut unknown = self.answers.iter().filter_map(of);
+        let first = unknown.next()?;
+        let answers = 1 + unknown.count() as u64;
+        let Place { row, column } = self.unknown_stimuli[&first];
+        let more = match answers {
+            1 => String::new(),
+            2 => "; 1 more answer has such a name".into(),
+            n => format!("; {} more answers have such names", n - 1),
+        };
+        let name = &self.stimuli.names[first.place()];
+        self.report.cell(Kind::Noted, row, column, name, format!("not a code name of this study{more}"));
+        Some(UnknownStimuli { first, row, answers })
     }
 
     /// Nobody answers a question twice, unless it was shown twice or the other way round.
@@ -109,6 +172,7 @@ impl Collector<'_> {
                         first,
                         participant: shorten(&self.participants[participant as usize].id),
                         question: shorten(&self.questions[question as usize].id),
+                        ordered: self.ordered,
                     });
                 }
                 Duplicates::First => same[0],

@@ -8,8 +8,8 @@ use crate::report::{Kind, Report};
 use crate::sides::SidesSource;
 use crate::words::normalise;
 
-/// Columns that are read; others are noted.
-const NAMES: [&str; 13] = [
+/// Columns that the long format may have; others are noted and not read.
+pub const LONG_COLUMNS: [&str; 13] = [
     "participant",
     "question",
     "left",
@@ -24,6 +24,8 @@ const NAMES: [&str; 13] = [
     "stimulus",
     "count",
 ];
+/// How many of them, from the first on, a file needs that has neither a study nor a `count`.
+pub const LONG_NEEDED: usize = 5;
 
 /// Where the columns of a file with one row an answer are.
 #[derive(Debug, Clone, Default)]
@@ -48,6 +50,8 @@ pub(crate) struct Columns {
     pub(crate) stimulus: Option<usize>,
     /// How many people gave this answer.
     pub(crate) count: Option<usize>,
+    /// When somebody answered; it only tells repeats from split ties.
+    pub(crate) sitting: Option<usize>,
 }
 
 /// What differs between formats with one row an answer.
@@ -59,6 +63,10 @@ pub(crate) struct Rule {
     pub(crate) escaped: bool,
     /// Whether every row is an answer; otherwise those with a question.
     pub(crate) every_row: bool,
+    /// Whether there is a column for the place in the session.
+    pub(crate) ordered: bool,
+    /// Whether a won and a lost row are a tie.
+    pub(crate) split_ties: bool,
     /// What an id means where there is no study.
     pub(crate) ids: Ids,
 }
@@ -70,12 +78,12 @@ impl Columns {
         with_plan: bool,
         report: &mut Report,
     ) -> Result<Self, Fault> {
-        let mut at = [None; NAMES.len()];
+        let mut at = [None; LONG_COLUMNS.len()];
         for (column, title) in header.iter().enumerate() {
-            match NAMES.iter().position(|name| *name == normalise(title)) {
+            match LONG_COLUMNS.iter().position(|name| *name == normalise(title)) {
                 Some(name) => {
                     if let Some(first) = at[name].replace(column) {
-                        let name = NAMES[name].into();
+                        let name = LONG_COLUMNS[name].into();
                         return Err(Fault::DuplicateColumn { column: column + 1, first: first + 1, name });
                     }
                 }
@@ -128,6 +136,7 @@ impl Columns {
             role,
             stimulus,
             count,
+            sitting: None,
         })
     }
 

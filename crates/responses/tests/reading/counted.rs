@@ -78,7 +78,7 @@ fn who_is_named_answers_once() {
         twice.starts_with("x.csv: row 2, column 6 (count): \"2\" must be 1 where a participant is named"),
         "{twice}"
     );
-    for count in ["", "-1", "1.5", "many", "4294967296"] {
+    for count in ["", "-1", "1.5", "many"] {
         let refused = open(&text.replace("right,2", &format!("right,{count}"))).unwrap_err();
         let want = format!("x.csv: row 3, column 6 (count): \"{count}\" must be a whole number of answers");
         assert_eq!(refused, want);
@@ -107,6 +107,23 @@ fn counts_have_a_limit() {
     let refused = open(&rows(responses::MOST_COUNTED)).unwrap_err();
     assert_eq!(refused, "x.csv: row 3: 10001000 answers so far, by their counts; at most 10000000 are read");
     assert_eq!(choices(&open(&rows(99_000)).unwrap()), [1000, 0, 99_000]);
+    // However large a whole number is, it is one.
+    for count in ["10000001", "4000000000", "4294967296", "99999999999", "100000000000000000000"] {
+        let refused = open(&format!("left,right,choice,count\nA,B,left,{count}\n")).unwrap_err();
+        let limit = "must be at most 10000000, the most answers that are read";
+        assert_eq!(refused, format!("x.csv: row 2, column 4 (count): \"{count}\" {limit}"));
+    }
+}
+
+#[test]
+fn whether_anybody_is_named_can_be_told() {
+    let names_nobody = |text: &str| open(text).unwrap().responses.names_nobody();
+    assert!(names_nobody("left,right,choice,count\nA,B,left,30\nA,B,right,1\n"));
+    assert!(names_nobody("participant,question,left,right,choice,count\n,q,A,B,left,2\n"));
+    assert!(names_nobody("model_a,model_b,winner\nm1,m2,a\n"));
+    assert!(!names_nobody("participant,question,left,right,choice,count\n,q,A,B,left,2\np,q,A,B,left,1\n"));
+    assert!(!names_nobody("participant,question,left,right,choice\np,q,A,B,left\n"));
+    assert!(!responses::Responses::default().names_nobody());
 }
 
 /// Ten million answers, the most there may be.

@@ -76,6 +76,19 @@ fn roles_are_read_and_checked() {
 }
 
 #[test]
+fn bad_cells_are_named_by_their_column_or_question() {
+    let pwcmp = |row: &str| {
+        open(&format!("observer,session,scene,condition_A,condition_B,is_A_selected\n{row}\n")).unwrap_err()
+    };
+    assert!(
+        pwcmp("p,1,Hall,T,F,x").starts_with("x.csv: row 2, column 6 (Hall: F-T): \"x\" is not an answer")
+    );
+    assert_eq!(pwcmp("p,1,Hall,,F,1"), "x.csv: row 2, column 4 (condition_A): \"\" must not be empty");
+    let arenakit = open("model_a,model_b,winner\nm1,m2,x\n").unwrap_err();
+    assert!(arenakit.starts_with("x.csv: row 2, column 3 (m1-m2): \"x\" is not an answer"), "{arenakit}");
+}
+
+#[test]
 fn code_names_are_kept_with_the_answers() {
     let text = "participant,question,left,right,choice,stimulus\np,Q,A,B,left,tani\np,R,A,C,left,\nq,Q,B,A,left,kobu\n\
         r,Q,A,B,left,tani\n";

@@ -288,6 +288,52 @@ fn code_names_that_contradict_are_refused() {
 }
 
 #[test]
+fn code_names_that_the_study_lacks_are_told() {
+    let study = study("balanced.toml", &[]);
+    let key = key(&study);
+    let columns = "participant,form,order,question,left,right,choice,stimulus";
+    let known = read(&long(columns, &key), &study).unwrap();
+    assert!(known.responses.unknown_stimuli.is_none() && known.report.count(responses::Kind::Noted) > 0);
+    let said = known.responses.assumptions().len();
+
+    let foreign: Vec<KeyEntry> =
+        key.iter().map(|entry| KeyEntry { stimulus: "zzzz".into(), ..entry.clone() }).collect();
+    let reading = read(&long(columns, &foreign), &study).unwrap();
+    let answers = reading.responses.answers.len();
+    let unknown = reading.responses.unknown_stimuli.unwrap();
+    assert_eq!(unknown.answers, answers as u64);
+    let assumptions = reading.responses.assumptions();
+    assert_eq!(assumptions.len(), said + 1);
+    let row = unknown.row;
+    assert_eq!(
+        assumptions[said],
+        format!(
+            "The code names of {answers} answers are not in this study; the first is \"zzzz\" in row {row}. The sides of such \
+             answers were not checked by code name."
+        )
+    );
+    let want =
+        format!("{row}:8 noted: not a code name of this study; {} more answers have such names", answers - 1);
+    assert!(remarks(&reading).contains(&want), "{want}");
+
+    // One among others, after rows that are no answers; without a study, no name is unknown.
+    let one =
+        "participant,question,left,right,choice,stimulus\np,Q1,ss_bu,ss_bi,,aaaa\np,Q1,ss_bu,ss_bi,L,zzzz\n";
+    let reading = read(one, &study).unwrap();
+    assert_eq!(remarks(&reading).last().unwrap(), "3:6 noted: not a code name of this study");
+    assert!(
+        reading.responses.assumptions()[said].starts_with("The code name of 1 answer is not in this study; ")
+    );
+    assert!(
+        parse_with(&one.replace("ss_bu,ss_bi", "a,b"), &Mapping::default())
+            .unwrap()
+            .responses
+            .unknown_stimuli
+            .is_none()
+    );
+}
+
+#[test]
 fn trials_without_sides_are_read_by_form() {
     let study = study("two-methods.toml", &[]);
     let key = key(&study);

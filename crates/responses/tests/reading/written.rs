@@ -63,6 +63,7 @@ fn pwcmp_has_no_ties() {
     let (answers, names) = (&reading.responses, plan().short_names().to_vec());
     let refused = responses::write_pwcmp(answers, &names, Ties::Refuse, Vec::new()).unwrap_err();
     assert!(matches!(refused, WriteError::Ties { ties: 1, .. }), "{refused}");
+    assert!(refused.to_string().ends_with(": give `--ties split` or `--ties drop`"), "{refused}");
     let split = text(|out| {
         let written = responses::write_pwcmp(answers, &names, Ties::Split, out).unwrap();
         assert_eq!((written.rows, written.ties, written.controls), (6, 1, 1));
@@ -238,4 +239,67 @@ fn pwcmp_comes_back_without_sides() {
     );
     let other = crate::sides::read(&text_of.replace("Window", "Sphere"), &study).unwrap_err();
     assert_eq!(other, "x.csv: row 2: not one question of this study compares T and F on Sphere");
+}
+
+#[test]
+fn split_ties_come_back_as_one_answer_each() {
+    let study = crate::sides::study("two-methods.toml", &[]);
+    let (mut reading, names) =
+        (pressed_left(&study), responses::Plan::of_study(&study).short_names().to_vec());
+    for (answer, i) in reading.responses.answers.iter_mut().zip(0..) {
+        answer.choice = responses::Choice::ALL[i % 3];
+    }
+    let split = text(|out| {
+        responses::write_pwcmp(&reading.responses, &names, Ties::Split, out).unwrap();
+    });
+    let comparisons: Vec<String> = said(&reading)
+        .into_iter()
+        .filter(|said| !said.contains("-r ") && !said.contains("control"))
+        .collect();
+    let ties = comparisons.iter().filter(|said| said.contains('=')).count();
+    assert!(ties > 5 && split.lines().count() == 1 + comparisons.len() + ties);
+    let again = crate::sides::read(&split, &study).unwrap();
+    assert_eq!(said(&again), comparisons);
+    let [remark] = &crate::study::remarks(&again)[..] else { panic!("{:?}", again.report.remarks) };
+    assert!(remark.ends_with(&format!(", and so are {} more pairs of rows", ties - 1)), "{remark}");
+    // Nor does the order of rows matter.
+    let mut rows: Vec<&str> = split.lines().skip(1).collect();
+    rows.sort_unstable();
+    let sorted = format!("{}\n{}\n", split.lines().next().unwrap(), rows.join("\n"));
+    let mut of_sorted = said(&crate::sides::read(&sorted, &study).unwrap());
+    let mut comparisons = comparisons;
+    of_sorted.sort_unstable();
+    comparisons.sort_unstable();
+    assert_eq!(of_sorted, comparisons);
+}
+
+#[test]
+fn only_a_won_and_a_lost_row_of_one_sitting_are_a_tie() {
+    let of = |rows: &[&str]| {
+        let header = "observer,session,scene,condition_A,condition_B,is_A_selected";
+        let text = format!("{header}\n{}\n", rows.join("\n"));
+        responses::parse(text.as_bytes(), std::path::Path::new("x.csv"), None, &Mapping::default())
+            .map_err(|error| error.to_string())
+    };
+    let tie = of(&["p,1,Hall,T,F,1", "q,1,Hall,T,F,1", "p,1,Hall,T,F,0"]).unwrap();
+    assert_eq!(said(&tie), ["p Hall: F-T T=F", "q Hall: F-T T<F"]);
+    assert_eq!(
+        crate::study::remarks(&tie),
+        ["2 noted: won and lost, here and in row 4: read as one answer without preference"]
+    );
+    // Another scene, or the other condition first, is another showing.
+    let two = of(&["p,1,Hall,T,F,1", "p,1,Sea,T,F,0", "p,1,Hall,F,T,1"]).unwrap();
+    assert_eq!(said(&two), ["p Hall: F-T T<F", "p Sea: F-T T>F", "p Hall: F-T F<T"]);
+    // What was said again, or in another session, is no half of a tie. There is no `order` to tell such rows apart.
+    for rows in [
+        &["p,1,Hall,T,F,1", "p,1,Hall,T,F,1"][..],
+        &["p,1,Hall,T,F,1", "p,1,Hall,T,F,0", "p,1,Hall,T,F,0"],
+        &["p,1,Hall,T,F,1", "p,2,Hall,T,F,0"],
+    ] {
+        assert_eq!(
+            of(rows).unwrap_err(),
+            "x.csv: row 3: p has already answered Hall: F-T with the same sides in row 2; declare `duplicates` to keep the first \
+             or the last"
+        );
+    }
 }
