@@ -148,3 +148,46 @@ fn the_same_without_a_study() {
     let run = analyse(&[path, "--mapping", mapping, "--out", folder]);
     assert!(run.code == Some(2) && run.stderr.contains("shown_s = -4"), "{}", run.stderr);
 }
+
+#[test]
+fn help_names_every_format_and_column() {
+    let help = |command: &str| {
+        let output = Command::new(env!("CARGO_BIN_EXE_isostudy")).args([command, "--help"]).output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let (analyse, convert) = (help("analyse"), help("convert"));
+    for help in [&analyse, &convert] {
+        assert!(help.contains(&responses::Format::names()), "{help}");
+    }
+    for column in responses::LONG_COLUMNS {
+        let named = [", ", " ", ". "].iter().any(|end| analyse.contains(&format!(" {column}{end}")));
+        assert!(named, "{column}: {analyse}");
+    }
+    assert!(convert.contains(&format!("long: {}", responses::LONG_WRITTEN.join(", "))), "{convert}");
+}
+
+#[test]
+fn what_is_written_for_pwcmp_is_read_again() {
+    let fixture = Fixture::new();
+    let answers = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../study/paper/responses.csv");
+    let file = |name: &str| fixture.folder().join(name);
+    let convert = |from: &Path, more: &[&str], to: &Path| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
+        command.arg("convert").arg(from).arg("--study").arg(fixture.config()).args(more).arg("--out").arg(to);
+        let output = command.output().unwrap();
+        (output.status.success(), String::from_utf8(output.stderr).unwrap())
+    };
+    let (split, again, straight) = (file("split.csv"), file("again.csv"), file("straight.csv"));
+    let (done, said) = convert(&answers, &["--to", "pwcmp"], &split);
+    assert!(!done && said.contains("give `--ties split` or `--ties drop`"), "{said}");
+    for (from, more, to) in [
+        (&answers, &["--to", "pwcmp", "--ties", "split"][..], &split),
+        (&split, &["--to", "arenakit"], &again),
+        (&answers, &["--to", "arenakit"], &straight),
+    ] {
+        let (done, said) = convert(from, more, to);
+        assert!(done, "{said}");
+    }
+    assert_eq!(std::fs::read_to_string(again).unwrap(), std::fs::read_to_string(straight).unwrap());
+}

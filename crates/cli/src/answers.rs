@@ -111,7 +111,7 @@ pub(crate) fn convert(arguments: &Convert) -> Result<()> {
     if written.ties > 0 && arguments.to == Target::Pwcmp {
         match ties {
             Ties::Split => {
-                tell!("{out}: each of them is one win each way, and weighs twice as much as another")
+                tell!("{out}: each of them is one win each way; other programs may weigh it as two answers")
             }
             Ties::Drop => tell!("{out}: they are left out"),
             Ties::Refuse => {}

@@ -1,6 +1,7 @@
 //! The command line.
 
 use crate::source::SourceArguments;
+use clap::builder::PossibleValuesParser;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -320,9 +321,7 @@ fn not_negative(text: &str) -> Result<f64, String> {
 
 #[derive(Debug, Args)]
 pub(crate) struct Analyse {
-    /// Study file, such as configs/paper.toml, or a file of answers without a study: columns participant, question, left,
-    /// right, choice and optionally object, group, form, order, rt_ms
-    #[arg(required_unless_present = "self_test")]
+    #[arg(required_unless_present = "self_test", help = analysed())]
     pub(crate) input: Option<PathBuf>,
     /// Answers to read instead of the study's own: its table, the long format, or a questionnaire's export
     #[arg(long, value_name = "FILE")]
@@ -353,12 +352,22 @@ pub(crate) struct SelfTest {
     pub(crate) threads: u32,
 }
 
+/// What may be analysed, with the columns that are read.
+fn analysed() -> String {
+    let (needed, others) = responses::LONG_COLUMNS.split_at(responses::LONG_NEEDED);
+    format!(
+        "Study file, such as configs/paper.toml, or a file of answers without a study: columns {} and optionally {}. A row with \
+         a count stands for so many people, whom it does not name",
+        needed.join(", "),
+        others.join(", ")
+    )
+}
+
 /// How a file of answers is read, where that differs from what the study declares.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct ReadingRules {
-    /// Format of the answers [default: detected]: table, long, google-forms, microsoft-forms, qualtrics, limesurvey,
-    /// surveymonkey, jspsych, jatos, webmushra, redcap
-    #[arg(long, value_name = "NAME")]
+    /// Format of the answers [default: detected]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(responses::Format::ALL.map(responses::Format::name)))]
     pub(crate) format: Option<String>,
     /// TOML file with the keys of a study's [responses]: question columns, synonyms, pairs
     #[arg(long, value_name = "FILE")]
@@ -387,7 +396,7 @@ pub(crate) struct Convert {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Target {
-    /// participant, form, order, question, object, left, right, choice, rt_ms
+    #[value(help = responses::LONG_WRITTEN.join(", "))]
     Long,
     /// model_a, model_b, winner, item_id, voter_id
     Arenakit,
