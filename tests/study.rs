@@ -39,6 +39,16 @@ fn a_study_makes_everything_once_and_then_nothing() {
     assert_eq!(files(fixture.out()), made);
 }
 
+/// Where half of the people see another file than the one on the page, the page says so.
+#[test]
+fn the_page_says_where_sides_differ() {
+    let fixture = Fixture::balanced();
+    fixture.succeed("study", &[]);
+    let page = String::from_utf8(files(fixture.out())["index.html"].clone()).unwrap();
+    assert!(page.contains("Pairs, as the study lists them") && !page.contains("as shown to respondents"));
+    assert!(page.contains("Half of the people see the sides of a pair exchanged, in a file of its own."));
+}
+
 /// One file, no request, headings in order, everything labelled, and text that stands out from what is behind it.
 #[test]
 fn the_report_can_be_read_alone() {
@@ -76,6 +86,7 @@ fn the_report_can_be_read_alone() {
     }
     let gallery = String::from_utf8(made["index.html"].clone()).unwrap();
     assert!(gallery.contains("href=\"report.html\"") && page.contains("href=\"index.html\""));
+    assert!(gallery.contains("Pairs, as shown to respondents") && !gallery.contains("exchanged"));
     let markdown = String::from_utf8(made["report.md"].clone()).unwrap();
     assert!(markdown.contains("\n## What holds\n") && markdown.contains("](figures/worths.svg)"));
 }

@@ -6,6 +6,7 @@ use crate::progress::Step;
 use crate::rooms;
 use crate::store::{Inputs, Stamp};
 use anyhow::{Context, Result};
+use design::config::SideRule;
 use design::{Comparison, Configuration, Study};
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
@@ -45,6 +46,8 @@ impl Pipeline<'_> {
         environment.add_template("index.html", TEMPLATE)?;
         let tables: Vec<TableEntry> = self.read_contents(TABLE_CONTENTS)?;
         let figures: Vec<FigureEntry> = self.read_contents(FIGURE_CONTENTS)?;
+        let forms = self.study.file.forms.as_ref();
+        let sides_differ = forms.is_some_and(|forms| forms.sides != SideRule::AsListed);
         let text = environment.get_template("index.html")?.render(context! {
             study => Serde(&self.study.file.study),
             stills => Serde(&self.study.file.stills),
@@ -52,6 +55,7 @@ impl Pipeline<'_> {
             figures => Serde(&figures),
             turntables => Serde(&turntable_cards(self.study)),
             pairs => Serde(&pair_cards(self.study)),
+            sides_differ => sides_differ,
             objects => Serde(&self.study.file.objects),
             turntable => Serde(&self.study.file.turntable),
             version => env!("CARGO_PKG_VERSION"),
