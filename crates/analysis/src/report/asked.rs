@@ -10,9 +10,12 @@ pub(super) fn instruction(study: &Study) -> Option<&str> {
     of_answers.or_else(|| study.file.forms.as_ref().map(|forms| forms.prompt.as_str()))
 }
 
-/// The comparisons on the forms of those who count. Whose form is not known was asked what was answered, where questions are
+/// The comparisons on the forms of those who count. Where the file names nobody, what was asked is what was answered. Whose form is not known was asked what was answered, where questions are
 /// dealt into blocks, and everything elsewhere.
 pub(super) fn asked(study: &Study, answered: &Answered) -> usize {
+    if answered.responses.names_nobody() {
+        return answered.shown.len();
+    }
     let mut given = vec![0; answered.responses.participants.len()];
     answered.shown.iter().for_each(|ballot| given[ballot.participant()] += 1);
     let questionnaire = Questionnaire::of(study).filter(|of| of.blocks() > 1);

@@ -28,7 +28,11 @@ fn of_study(study: &Study, evidence: &Evidence<'_>) -> Finding {
             "The study does not say when its analysis was fixed, so nothing rules out that it was fitted to the answers.".into()
         }
         Declaration::BeforeAnswers { declared, first_answer } => {
-            format!("The analysis was fixed on {declared}, and the first answer was given on {first_answer}.")
+            let same_day = match declared == first_answer {
+                true => " Nothing says which of the two came first on that day.",
+                false => "",
+            };
+            format!("The analysis was fixed on {declared}, and the first answer was given on {first_answer}.{same_day}")
         }
         Declaration::AfterAnswers { declared, first_answer: Some(first) } => format!(
             "The analysis was fixed on {declared}, after the first answer of {first}. Its choices could have been fitted to the answers."
@@ -53,9 +57,10 @@ fn of_study(study: &Study, evidence: &Evidence<'_>) -> Finding {
         _ => {
             let rules: Vec<&str> = section.exclude.iter().map(|rule| rule.code()).collect();
             format!(
-                "Left out: those who broke one of the rules {}, {}.",
-                list(&rules),
-                counted(evidence.excluded, "participant")
+                "Left out: {} who broke {} {}.",
+                counted(evidence.excluded, "participant"),
+                if rules.len() == 1 { "the rule" } else { "one of the rules" },
+                list(&rules)
             )
         }
     };
@@ -73,7 +78,7 @@ fn over_all(evidence: &Evidence<'_>) -> Option<Finding> {
     let holding: Vec<&&Hypothesis> = tested.iter().filter(|h| h.differs()).collect();
     let lost: Vec<&&&Hypothesis> =
         holding.iter().filter(|h| h.adjusted_over_all.is_some_and(|p| p > h.rules.level)).collect();
-    if holding.is_empty() {
+    if holding.is_empty() || tested.len() < 2 {
         return None;
     }
     let results = counted(holding.len(), "result");
