@@ -147,6 +147,7 @@ mod placement;
 mod sampling;
 mod settings;
 mod split;
+mod spot;
 mod stored;
 mod sweep;
 mod tetrahedra;

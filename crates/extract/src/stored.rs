@@ -9,7 +9,7 @@ use mesh::TriangleMesh;
 use crate::edges::EdgeTable;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
 use crate::field::{Kept, ScalarField};
-use crate::lattice::{Coordinates, Lattice, Layout};
+use crate::lattice::{Border, Coordinates, Lattice, Layout};
 use crate::level::Level;
 use crate::normals::vertex_normals;
 use crate::placement::{self, CrossingPlacer};
@@ -38,7 +38,7 @@ pub(crate) fn extract(
 
     let mut kept = Kept::default();
     let field = field.prepared(&mut kept).unwrap_or(field);
-    let coordinates = Coordinates::sampled(lattice, &layout, settings.positions)?;
+    let coordinates = Coordinates::sampled(lattice, &layout, settings.positions, Border::of(settings))?;
     sample(field, &layout, &coordinates, execution, &mut samples)?;
     let sampling = clock.lap();
 

@@ -14,12 +14,13 @@ use crate::clusters::Clusters;
 use crate::edges::EdgeTable;
 use crate::guard::{Class, Guard};
 use crate::lattice::{
-    ALL_DIRECTIONS, Arrangement, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout,
+    ALL_DIRECTIONS, Arrangement, Border, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout,
     PADDING_LAYERS, members,
 };
 use crate::memory::filled;
 use crate::placement::{CrossingPlacer, Surroundings};
 use crate::settings::{Clustering, ExtractSettings, Topology};
+use crate::spot::{Apart, linear_ratio};
 
 /// One byte a sample point, 1 inside, with room at both ends so that every step to a neighbour stays in it.
 #[derive(Debug)]
@@ -64,6 +65,7 @@ pub(crate) struct VertexStage<'a> {
     samples: &'a [f32],
     settings: &'a ExtractSettings,
     ties: Ties,
+    apart: Apart,
     sides: &'a mut Sides,
     edges: &'a mut EdgeTable,
     positions: Vec<Vec3>,
@@ -88,6 +90,7 @@ impl<'a> VertexStage<'a> {
             samples,
             settings,
             ties: Ties::of(settings.topology),
+            apart: Apart::new(lattice, settings.topology),
             sides,
             edges,
             positions: Vec::new(),
@@ -108,7 +111,8 @@ impl<'a> VertexStage<'a> {
         most_vertices: u32,
     ) -> Result<(Vec<Vec3>, Vec<Vec3>, u64), ExtractError> {
         self.sides.fill(self.samples, self.settings.isovalue);
-        let coordinates = Coordinates::measured(self.lattice, layout, self.settings.positions)?;
+        let coordinates =
+            Coordinates::measured(self.lattice, layout, self.settings.positions, Border::of(self.settings))?;
         let mut active = filled(layout.grid()[0], 0)?;
         for (layer, &z) in coordinates.z().iter().enumerate() {
             let kind = layout.kind(layer);
@@ -120,7 +124,11 @@ impl<'a> VertexStage<'a> {
                 for column in (0..nx).filter(|&i| active[i] != 0) {
                     let incident = layout.incident(kind, [column, row, layer]);
                     let position = Vec3::new(coordinates.x(kind)[column], coordinates.y(kind)[row], z);
-                    self.visit(first + column, position, steps, incident)?;
+                    let place = [column, row, layer];
+                    let offsets = &self.directions.offsets;
+                    let ways = (!coordinates.is_regular(place))
+                        .then(|| coordinates.ways(layout, place, incident, offsets));
+                    self.visit(first + column, position, steps, incident, ways)?;
                     if self.positions.len() > most_vertices as usize {
                         return Err(ExtractError::TooManyVertices { limit: most_vertices });
                     }
@@ -138,13 +146,14 @@ impl<'a> VertexStage<'a> {
         position: Vec3,
         steps: &[isize; DIRECTIONS],
         incident: DirectionSet,
+        ways: Option<[Vec3; DIRECTIONS]>,
     ) -> Result<(), TryReserveError> {
         let inside = self.sides.is_inside(point);
         let value = self.samples[point];
         let difference = self.settings.isovalue - value;
         let mut crossing = 0;
         let mut near = 0;
-        let mut offsets = [Vec3::ZERO; DIRECTIONS];
+        let mut ratios = [0.0; DIRECTIONS];
         for direction in members(incident) {
             let neighbour = point.strict_add_signed(steps[direction]);
             if self.sides.is_inside(neighbour) == inside {
@@ -157,17 +166,19 @@ impl<'a> VertexStage<'a> {
                 continue;
             }
             near |= 1 << direction;
-            let ratio = difference / (neighbour_value - value);
-            // Samples that are not numbers, or two infinities, say nothing about the place.
-            let ratio = if ratio.is_finite() { ratio } else { 0.5 };
-            offsets[direction] = self.edge_vector(direction) * ratio;
+            ratios[direction] = linear_ratio(difference, value, neighbour_value);
         }
         self.edges.set_crossing(point, crossing);
         self.crossing_ends += u64::from(crossing.count_ones());
         let clusters = self.clusters(crossing, near, incident);
         self.positions.try_reserve(clusters.sets().len())?;
+        if clusters.sets().len() > 1 {
+            for direction in members(near) {
+                ratios[direction] = self.apart.ratio(direction, ratios[direction]);
+            }
+        }
         for &cluster in clusters.sets() {
-            self.place(point, position, cluster, &offsets);
+            self.place(point, position, cluster, &ratios, ways.as_ref());
         }
         if let Some(placer) = self.placer {
             let mut neighbours = [f32::NAN; DIRECTIONS];
@@ -175,7 +186,7 @@ impl<'a> VertexStage<'a> {
                 let neighbour = point.strict_add_signed(steps[direction]);
                 neighbours[direction] = self.samples[neighbour] - self.settings.isovalue;
             }
-            let around = Surroundings { position, difference: -difference, neighbours };
+            let around = Surroundings { position, difference: -difference, neighbours, ways };
             self.targets.try_reserve(clusters.sets().len())?;
             self.targets.extend(clusters.sets().iter().map(|&cluster| placer.place(&around, cluster)));
         }
@@ -200,13 +211,22 @@ impl<'a> VertexStage<'a> {
         }
     }
 
-    /// One vertex at the unweighted mean of the cluster's crossings, clamped to the box.
-    fn place(&mut self, point: usize, position: Vec3, cluster: DirectionSet, offsets: &[Vec3; DIRECTIONS]) {
+    /// One vertex at the unweighted mean of the cluster's crossings, clamped to the box. `ways` lead to the neighbours
+    /// where not all are as far as the spacing says.
+    fn place(
+        &mut self,
+        point: usize,
+        position: Vec3,
+        cluster: DirectionSet,
+        ratios: &[f32; DIRECTIONS],
+        ways: Option<&[Vec3; DIRECTIONS]>,
+    ) {
         // What goes beyond a number is an error when the point is done.
         let vertex = self.positions.len() as u32;
         let mut sum = Vec3::ZERO;
         for direction in members(cluster) {
-            sum += offsets[direction] + position;
+            let way = ways.map_or_else(|| self.edge_vector(direction), |ways| ways[direction]);
+            sum += way * ratios[direction] + position;
             self.edges.set_vertex(point, direction, vertex);
         }
         let bounds = self.lattice.bounds();

@@ -20,7 +20,7 @@ const PASSES: usize = 3;
 /// - its ends have more than two common neighbours, or are two corners of a tetrahedron (the link condition: the
 ///   collapse would change the topology or fold two triangles onto each other);
 /// - both ends lie on the boundary; with one on it, that end stays where it is;
-/// - a triangle would turn away from the mean normal of those that are there now.
+/// - a triangle would turn away from the mean normal of those that are there now, or lose its area.
 ///
 /// Normals are compared with the mean and not each with its own, because slivers have normals of noise. What gets
 /// rid of slivers is the choice of three places and the later passes: with midpoints and one pass the evaluation's
@@ -290,13 +290,14 @@ impl Surface {
         sum
     }
 
-    /// The worst triangle of the patch with its corners moved to `place`; `None` if one would turn away.
+    /// The worst triangle of the patch with its corners moved to `place`; `None` if one would turn away or lose its area.
     fn worst_shape(&self, place: Vec3, mean_normal: DVec3) -> Option<f64> {
         let place = place.as_dvec3();
         self.patch.iter().try_fold(f64::INFINITY, |worst, corner| {
             let area = corner.doubled_area(place);
             let least = LEAST_COSINE * mean_normal.length() * area.length();
-            (area.dot(mean_normal) >= least).then(|| worst.min(corner.shape(place)))
+            let shape = corner.shape(place);
+            (area.dot(mean_normal) >= least && shape > 0.0).then(|| worst.min(shape))
         })
     }
 }

@@ -9,7 +9,7 @@ use super::{Class, Guard};
 use crate::clusters::Clusters;
 use crate::edges::EdgeTable;
 use crate::fields::{FAMILIES, Family, Volume, image};
-use crate::lattice::{Coordinates, DIRECTIONS, Layout, members};
+use crate::lattice::{Border, Coordinates, DIRECTIONS, Layout, members};
 use crate::settings::{Clustering, Execution, ExtractSettings, Positions, Topology};
 use crate::survey::survey;
 use crate::triangles::triangulate;
@@ -56,7 +56,7 @@ fn stages_of(
     let settings = ExtractSettings { clustering, topology: Topology::Guarded, ..Default::default() };
     let layout = Layout::new(lattice);
     let mut samples = vec![0.0; layout.len()];
-    let coordinates = Coordinates::sampled(lattice, &layout, Positions::Indexed).unwrap();
+    let coordinates = Coordinates::sampled(lattice, &layout, Positions::Indexed, Border::OnBox).unwrap();
     sampling::sample(field, &layout, &coordinates, &Execution { threads: 1 }, &mut samples).unwrap();
     let (mut sides, mut edges) = (Sides::new(&layout), EdgeTable::new(layout.len()));
     VertexStage::new(lattice, &samples, &settings, None, &mut sides, &mut edges)

@@ -2,9 +2,33 @@
 
 use std::collections::TryReserveError;
 
-use super::{Lattice, Layout, PointKind};
+use glam::Vec3;
+
+use super::{DIRECTIONS, DirectionSet, Lattice, Layout, Offset, PointKind, members};
 use crate::memory::{collected, with_room};
-use crate::settings::Positions;
+use crate::settings::{ExtractSettings, Positions, Topology};
+
+/// A last cube that the box cuts off is at least this share of the spacing thick; the one before it gives way.
+const LEAST_CUBE: f32 = 0.25;
+
+/// Where the outermost points of a lattice lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Border {
+    /// Up to a cube beyond the box, as published; vertices there are flattened onto it.
+    BeyondBox,
+    /// On the box: the tetrahedra fill it and nothing else.
+    OnBox,
+}
+
+impl Border {
+    /// The published rules keep their samples, and so do positions that repeat the original's rounding.
+    pub(crate) fn of(settings: &ExtractSettings) -> Self {
+        match (settings.topology, settings.positions) {
+            (Topology::Guarded, Positions::Indexed) => Self::OnBox,
+            (Topology::Published, _) | (_, Positions::Accumulated { .. }) => Self::BeyondBox,
+        }
+    }
+}
 
 /// Coordinates of every sample point. An axis does not depend on the others but for the kind of the layer.
 #[derive(Debug, Clone)]
@@ -15,6 +39,9 @@ pub(crate) struct Coordinates {
     y: [Vec<f32>; 2],
     /// Of each layer.
     z: Vec<f32>,
+    /// Along each axis, the first place, and one past the last, of the points whose lattice edges are all as long as the
+    /// spacing says.
+    regular: [[usize; 2]; 3],
 }
 
 impl Coordinates {
@@ -23,9 +50,10 @@ impl Coordinates {
         lattice: &Lattice,
         layout: &Layout,
         positions: Positions,
+        border: Border,
     ) -> Result<Self, TryReserveError> {
         match positions {
-            Positions::Indexed => Self::indexed(lattice, layout),
+            Positions::Indexed => Self::indexed(lattice, layout, border),
             Positions::Accumulated { chunks } => Self::accumulated(lattice, layout, chunks as usize),
         }
     }
@@ -36,9 +64,10 @@ impl Coordinates {
         lattice: &Lattice,
         layout: &Layout,
         positions: Positions,
+        border: Border,
     ) -> Result<Self, TryReserveError> {
         match positions {
-            Positions::Indexed => Self::indexed(lattice, layout),
+            Positions::Indexed => Self::indexed(lattice, layout, border),
             Positions::Accumulated { .. } => {
                 let z = axes(lattice, layout)[2];
                 let layers = (0..layout.grid()[2]).map(|i| i as f32 * z.layer_step + z.first_layer);
@@ -62,17 +91,71 @@ impl Coordinates {
         &self.z
     }
 
+    /// From a point to the neighbours that the lattice has, as they lie.
+    pub(crate) fn ways(
+        &self,
+        layout: &Layout,
+        point: [usize; 3],
+        incident: DirectionSet,
+        offsets: &[Offset; DIRECTIONS],
+    ) -> [Vec3; DIRECTIONS] {
+        let mut ways = [Vec3::ZERO; DIRECTIONS];
+        members(incident).for_each(|d| ways[d] = self.way(layout, point, offsets[d]));
+        ways
+    }
+
+    fn way(&self, layout: &Layout, [x, y, z]: [usize; 3], offset: Offset) -> Vec3 {
+        let kind = layout.kind(z);
+        let [along, rows, layers] = layout.hop(kind, offset);
+        let [to_x, to_y, to_z] =
+            [(x, along), (y, rows), (z, layers)].map(|(from, step)| from.strict_add_signed(step));
+        let there = layout.kind(to_z);
+        Vec3::new(
+            self.x(there)[to_x] - self.x(kind)[x],
+            self.y(there)[to_y] - self.y(kind)[y],
+            self.z[to_z] - self.z[z],
+        )
+    }
+
+    /// Whether all lattice edges of a point are as long as the spacing says: always but next to the box, where points lie
+    /// on it.
+    #[inline]
+    pub(crate) fn is_regular(&self, point: [usize; 3]) -> bool {
+        (0..3).all(|axis| self.is_regular_along(axis, point[axis]))
+    }
+
+    /// The same as far as one axis goes.
+    #[inline]
+    pub(crate) fn is_regular_along(&self, axis: usize, i: usize) -> bool {
+        (self.regular[axis][0]..self.regular[axis][1]).contains(&i)
+    }
+
     /// `min + n * spacing`, `n` whole for corners and half for centres: one rounding of the product, one of the sum,
-    /// and nothing carried along.
-    fn indexed(lattice: &Lattice, layout: &Layout) -> Result<Self, TryReserveError> {
-        Self::per_axis(lattice, layout, |axis, kind, i| {
+    /// and nothing carried along. With a border on the box, none beyond it ([`Lattice::coordinate_on_box`]).
+    fn indexed(lattice: &Lattice, layout: &Layout, border: Border) -> Result<Self, TryReserveError> {
+        let coordinates = Self::per_axis(lattice, layout, |axis, kind, i| {
             let i = axis.origin + i;
-            let cells = match kind {
-                PointKind::Centre => i as f32 - 0.5,
-                PointKind::Corner => i as f32,
+            let halves = match kind {
+                PointKind::Centre => 2 * i as i64 - 1,
+                PointKind::Corner => 2 * i as i64,
             };
-            axis.min + cells * axis.spacing
-        })
+            match border {
+                Border::BeyondBox => axis.min + (halves as f32 * 0.5) * axis.spacing,
+                Border::OnBox => lattice.coordinate_on_box(axis.number, halves),
+            }
+        })?;
+        let regular = match border {
+            Border::BeyondBox => ALL_REGULAR,
+            Border::OnBox => axes(lattice, layout).map(|axis| {
+                let (first, end) = lattice.regular_points(axis.number);
+                let place = |i: usize| i.saturating_sub(axis.origin);
+                match axis.number {
+                    2 => [place(first), place(end)].map(|i| i * axis.layers_a_cell),
+                    _ => [place(first), place(end)],
+                }
+            }),
+        };
+        Ok(Self { regular, ..coordinates })
     }
 
     /// Running addition along each axis; z starts anew in every chunk of layers, one a sampling thread of the
@@ -103,7 +186,8 @@ impl Coordinates {
                 position += axes[2].layer_step;
             }
         }
-        Ok(Self { x: running(axes[0], nx)?, y: running(axes[1], ny)?, z })
+        let (x, y) = (running(axes[0], nx)?, running(axes[1], ny)?);
+        Ok(Self { x, y, z, regular: ALL_REGULAR })
     }
 
     fn per_axis(
@@ -115,7 +199,45 @@ impl Coordinates {
         let [nx, ny, nz] = layout.grid();
         let line = |axis: Axis, n: usize| both_kinds(|kind| collected((0..n).map(|i| at(axis, kind, i))));
         let layer = |i: usize| at(z, layout.kind(i), i / z.layers_a_cell);
-        Ok(Self { x: line(x, nx)?, y: line(y, ny)?, z: collected((0..nz).map(layer))? })
+        let (x, y, z) = (line(x, nx)?, line(y, ny)?, collected((0..nz).map(layer))?);
+        Ok(Self { x, y, z, regular: ALL_REGULAR })
+    }
+}
+
+/// Nothing is next to the box.
+const ALL_REGULAR: [[usize; 2]; 3] = [[0, usize::MAX]; 3];
+
+impl Lattice {
+    /// Of the point so many half cells along an axis of the whole lattice: `min + halves / 2 * spacing`, and nothing
+    /// outside of the box. Outermost points lie on it; where the spacing does not divide the box, the last cube is
+    /// thinner.
+    pub(crate) fn coordinate_on_box(&self, axis: usize, halves: i64) -> f32 {
+        let (min, max, spacing) = (self.bounds.min[axis], self.bounds.max[axis], self.spacing);
+        let cells = i64::from(self.whole[axis]);
+        let even = |halves: i64| min + (halves as f32 * 0.5) * spacing;
+        let corner = |i: i64| match cells - i {
+            _ if i <= 0 => min,
+            ..=0 => max,
+            1 => even(2 * i).min(max - LEAST_CUBE * spacing),
+            _ => even(2 * i),
+        };
+        if halves <= 0 {
+            min
+        } else if halves >= 2 * cells {
+            max
+        } else if halves % 2 == 0 {
+            corner(halves / 2)
+        } else if halves + 1 == 2 * cells {
+            even(halves).min(0.5 * corner(cells - 1) + 0.5 * max)
+        } else {
+            even(halves)
+        }
+    }
+
+    /// Corners, or centres, of the whole lattice along an axis whose neighbours are where the spacing says: from the first
+    /// up to, without, the end.
+    pub(crate) fn regular_points(&self, axis: usize) -> (usize, usize) {
+        (2, (self.whole[axis] as usize).saturating_sub(2))
     }
 }
 
@@ -127,6 +249,8 @@ fn both_kinds<T, E>(of: impl Fn(PointKind) -> Result<T, E>) -> Result<[T; 2], E>
 /// What fixes the coordinates along an axis.
 #[derive(Debug, Clone, Copy)]
 struct Axis {
+    /// 0 to 2.
+    number: usize,
     min: f32,
     spacing: f32,
     /// The first cell of a window; positions by addition have none.
@@ -150,13 +274,13 @@ fn axes(lattice: &Lattice, layout: &Layout) -> [Axis; 3] {
     let spacing = lattice.spacing();
     let half_layers = layout.kind(0) == PointKind::Centre;
     let min = lattice.bounds().min.to_array();
-    [0, 1, 2].map(|axis| {
-        let (min, origin) = (min[axis], lattice.origin()[axis] as usize);
+    [0, 1, 2].map(|number| {
+        let (min, origin) = (min[number], lattice.origin()[number] as usize);
         if half_layers {
             let half = spacing / 2.0;
-            Axis { min, spacing, origin, first_layer: min - half, layer_step: half, layers_a_cell: 2 }
+            Axis { number, min, spacing, origin, first_layer: min - half, layer_step: half, layers_a_cell: 2 }
         } else {
-            Axis { min, spacing, origin, first_layer: min, layer_step: spacing, layers_a_cell: 1 }
+            Axis { number, min, spacing, origin, first_layer: min, layer_step: spacing, layers_a_cell: 1 }
         }
     })
 }
@@ -178,7 +302,8 @@ mod tests {
     #[test]
     fn indexed_corners_end_on_the_box_and_hold_the_origin() {
         let (lattice, layout) = evaluation();
-        let coordinates = Coordinates::sampled(&lattice, &layout, Positions::Indexed).unwrap();
+        let coordinates =
+            Coordinates::sampled(&lattice, &layout, Positions::Indexed, Border::BeyondBox).unwrap();
         let corners = coordinates.x(PointKind::Corner);
         assert_eq!((corners[0], corners[25], corners[50]), (-1.0, 0.0, 1.0));
         assert_eq!((coordinates.z()[1], coordinates.z()[51], coordinates.z()[101]), (-1.0, 0.0, 1.0));
@@ -188,9 +313,13 @@ mod tests {
     #[test]
     fn accumulation_drifts_and_restarts_with_each_chunk() {
         let (lattice, layout) = evaluation();
-        let one = Coordinates::sampled(&lattice, &layout, Positions::Accumulated { chunks: 1 }).unwrap();
-        let many = Coordinates::sampled(&lattice, &layout, Positions::Accumulated { chunks: 16 }).unwrap();
-        let exact = Coordinates::sampled(&lattice, &layout, Positions::Indexed).unwrap();
+        let one =
+            Coordinates::sampled(&lattice, &layout, Positions::Accumulated { chunks: 1 }, Border::BeyondBox)
+                .unwrap();
+        let many =
+            Coordinates::sampled(&lattice, &layout, Positions::Accumulated { chunks: 16 }, Border::BeyondBox)
+                .unwrap();
+        let exact = Coordinates::sampled(&lattice, &layout, Positions::Indexed, Border::BeyondBox).unwrap();
         assert_eq!(many.z().len(), 103);
         assert_ne!(one.z(), many.z());
         let drift =
@@ -203,8 +332,16 @@ mod tests {
     #[test]
     fn more_chunks_than_layers_leave_all_to_the_last() {
         let (lattice, layout) = evaluation();
-        let many = Coordinates::sampled(&lattice, &layout, Positions::Accumulated { chunks: 1000 }).unwrap();
-        let one = Coordinates::sampled(&lattice, &layout, Positions::Accumulated { chunks: 1 }).unwrap();
+        let many = Coordinates::sampled(
+            &lattice,
+            &layout,
+            Positions::Accumulated { chunks: 1000 },
+            Border::BeyondBox,
+        )
+        .unwrap();
+        let one =
+            Coordinates::sampled(&lattice, &layout, Positions::Accumulated { chunks: 1 }, Border::BeyondBox)
+                .unwrap();
         assert_eq!(many.z(), one.z());
     }
 }

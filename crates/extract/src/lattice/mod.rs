@@ -7,7 +7,7 @@ mod directions;
 mod layout;
 
 pub use cell_box::CellBox;
-pub(crate) use coordinates::Coordinates;
+pub(crate) use coordinates::{Border, Coordinates};
 pub(crate) use directions::{ALL_DIRECTIONS, DIRECTIONS, DirectionSet, Directions, Offset, members};
 pub(crate) use layout::{Layout, PADDING_LAYERS, PointKind};
 

@@ -21,6 +21,8 @@ pub(crate) struct Surroundings {
     pub(crate) difference: f32,
     /// The same at the neighbours; not a number where there is none.
     pub(crate) neighbours: [f32; DIRECTIONS],
+    /// The ways there, where they are not all as long as the spacing says.
+    pub(crate) ways: Option<[Vec3; DIRECTIONS]>,
 }
 
 /// Places the vertices of clusters.
@@ -60,7 +62,7 @@ impl<'a> CrossingPlacer<'a> {
 
     /// The mean of a cluster's crossings, weighted if the settings say so, clamped to the box.
     pub(crate) fn place(&self, around: &Surroundings, cluster: DirectionSet) -> Vec3 {
-        let crossings = || members(cluster).map(|d| self.edges[d] * self.ratio(around, d));
+        let crossings = || members(cluster).map(|d| self.edge(around, d) * self.ratio(around, d));
         let mean = || crossings().sum::<DVec3>() / f64::from(cluster.count_ones());
         let offset = match self.planes.filter(|_| cluster.count_ones() > 1) {
             None => mean(),
@@ -79,7 +81,11 @@ impl<'a> CrossingPlacer<'a> {
     /// How far along its edge a crossing is.
     fn ratio(&self, around: &Surroundings, direction: usize) -> f64 {
         let ends = [around.difference, around.neighbours[direction]];
-        crossing_ratio(self.level, around.position, self.edges[direction], ends)
+        crossing_ratio(self.level, around.position, self.edge(around, direction), ends)
+    }
+
+    fn edge(&self, around: &Surroundings, direction: usize) -> DVec3 {
+        around.ways.map_or(self.edges[direction], |ways| ways[direction].as_dvec3())
     }
 }
 

@@ -126,7 +126,7 @@ mod tests {
     fn surroundings(arrangement: Arrangement, f: impl Fn(DVec3) -> f64) -> Surroundings {
         let offsets = arrangement.directions().offsets;
         let at = |offset: [i8; 3]| f(DVec3::from_array(offset.map(f64::from)) * 0.01) as f32;
-        Surroundings { position: Vec3::ZERO, difference: at([0; 3]), neighbours: offsets.map(at) }
+        Surroundings { position: Vec3::ZERO, difference: at([0; 3]), neighbours: offsets.map(at), ways: None }
     }
 
     #[test]

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use self::cut::Cut;
 use self::points::Points;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes};
-use crate::lattice::Lattice;
+use crate::lattice::{Border, Lattice};
 use crate::level::Level;
 use crate::memory::filled;
 use crate::normals::vertex_normals;
@@ -51,7 +51,7 @@ pub(crate) fn extract(
     };
     let cut = Cut::of(lattice.arrangement());
     let out_of_memory = |_| ExtractError::OutOfMemory { bytes: lattice.memory_bytes() };
-    let coordinates = Coordinates::new(lattice, &cut).map_err(out_of_memory)?;
+    let coordinates = Coordinates::new(lattice, &cut, Border::of(settings)).map_err(out_of_memory)?;
     let mut called = Vec::new();
     let mut points = Points::new(lattice, &cut).map_err(out_of_memory)?;
     if matches!(source, Source::Field(_)) {
@@ -122,13 +122,20 @@ struct Coordinates {
 }
 
 impl Coordinates {
-    /// `min + n * spacing`, `n` whole or half: one rounding of the product and one of the sum.
-    fn new(lattice: &Lattice, cut: &Cut) -> Result<Self, std::collections::TryReserveError> {
+    /// `min + n * spacing`, `n` whole or half: one rounding of the product and one of the sum. With a border on the box,
+    /// none beyond it.
+    fn new(lattice: &Lattice, cut: &Cut, border: Border) -> Result<Self, std::collections::TryReserveError> {
         let (min, first) = (lattice.bounds().min.to_array(), lattice.first_stored());
         let grid = lattice.stored_grid();
         let axis = |axis: usize| {
             let step = 1.0 / cut.steps_a_cell as f32;
-            let at = move |i: u32| min[axis] + ((first[axis] + i) as f32 * step) * lattice.spacing();
+            let at = move |i: u32| match border {
+                Border::BeyondBox => min[axis] + ((first[axis] + i) as f32 * step) * lattice.spacing(),
+                Border::OnBox => {
+                    let halves = i64::from(first[axis] + i) * 2 / cut.steps_a_cell as i64;
+                    lattice.coordinate_on_box(axis, halves)
+                }
+            };
             crate::memory::collected((0..grid[axis] as usize).map(move |i| at(i as u32)))
         };
         Ok(Self { x: axis(0)?, y: axis(1)?, z: axis(2)? })

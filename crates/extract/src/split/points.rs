@@ -7,11 +7,12 @@ use glam::{DVec3, Vec3};
 use super::Coordinates;
 use super::cut::{Cut, Directions, Step};
 use crate::ExtractError;
-use crate::lattice::Lattice;
+use crate::lattice::{Border, Lattice};
 use crate::level::Level;
 use crate::memory::filled;
 use crate::placement::crossing_ratio;
 use crate::settings::{ExtractSettings, Placement};
+use crate::spot::{Apart, linear_ratio};
 use crate::trace::VertexKey;
 use crate::vertices::Ties;
 
@@ -114,7 +115,7 @@ impl<'a> Points<'a> {
     ) -> Result<Vertices, ExtractError> {
         let mut vertices = Vertices::default();
         let placer = Placer::new(self.lattice, self.cut, settings, level);
-        let ties = Ties::of(settings.topology);
+        let (ties, border) = (Ties::of(settings.topology), Border::of(settings));
         let first = self.lattice.first_stored().map(|i| i as usize);
         let strides = [1, self.grid[0] as isize, (self.grid[0] * self.grid[1]) as isize];
         let hops: Vec<isize> = self
@@ -133,6 +134,11 @@ impl<'a> Points<'a> {
                 let here = settings.isovalue - samples[point];
                 let edges =
                     self.cut.edges_of[self.cut.class([0, 1, 2].map(|axis| place[axis] + first[axis]))];
+                let is_regular = border == Border::BeyondBox
+                    || (0..3).all(|axis| {
+                        let (low, end) = self.lattice.regular_points(axis);
+                        (low..end).contains(&((place[axis] + first[axis]) / self.cut.steps_a_cell))
+                    });
                 let record = Record { first: vertices.positions.len() as u32, near: 0 };
                 let mut near = 0;
                 let mut ends = 0;
@@ -151,7 +157,12 @@ impl<'a> Points<'a> {
                     }
                     near |= 1 << direction;
                     let values = [samples[point], samples[neighbour]];
-                    placer.place(coordinates.at(place), direction, values, &mut vertices)?;
+                    let from = coordinates.at(place);
+                    let way = match is_regular {
+                        true => placer.edges[direction],
+                        false => coordinates.at(self.neighbour(place, self.cut.steps[direction])) - from,
+                    };
+                    placer.place(from, (direction, way), values, &mut vertices)?;
                     if let Some(keys) = keys.as_deref_mut() {
                         keys.try_reserve(1)?;
                         keys.push(VertexKey::new(self.lattice.point_number(place), direction));
@@ -194,6 +205,10 @@ impl<'a> Points<'a> {
         }
     }
 
+    fn neighbour(&self, place: [usize; 3], step: Step) -> [usize; 3] {
+        [0, 1, 2].map(|axis| place[axis].strict_add_signed(isize::from(step[axis])))
+    }
+
     fn has_neighbour(&self, place: [usize; 3], step: Step) -> bool {
         (0..3).all(|axis| place[axis].wrapping_add_signed(isize::from(step[axis])) < self.grid[axis])
     }
@@ -203,6 +218,7 @@ impl<'a> Points<'a> {
 struct Placer<'a> {
     lattice: &'a Lattice,
     isovalue: f32,
+    apart: Apart,
     edges: Vec<Vec3>,
     /// Whether the settings want vertices elsewhere, and to find roots with.
     refines: bool,
@@ -216,6 +232,7 @@ impl<'a> Placer<'a> {
         Self {
             lattice,
             isovalue: settings.isovalue,
+            apart: Apart::new(lattice, settings.topology),
             edges: edges.map(|edge| edge * step).collect(),
             // The weighted mean of one crossing is that crossing.
             refines: settings.refine_crossings || settings.placement == Placement::CurvatureWeighted,
@@ -226,20 +243,19 @@ impl<'a> Placer<'a> {
     fn place(
         &self,
         from: Vec3,
-        direction: usize,
+        (direction, way): (usize, Vec3),
         [here, there]: [f32; 2],
         vertices: &mut Vertices,
     ) -> Result<(), TryReserveError> {
         let bounds = self.lattice.bounds();
         let isovalue = self.isovalue;
-        let ratio = (isovalue - here) / (there - here);
-        // Samples that are not numbers, or two infinities, say nothing about the place.
-        let ratio = if ratio.is_finite() { ratio } else { 0.5 };
-        let position = (self.edges[direction] * ratio + from).min(bounds.max).max(bounds.min);
+        // Of the edge alone: a chunk need not know whether the point has other vertices.
+        let ratio = self.apart.ratio(direction, linear_ratio(isovalue - here, here, there));
+        let position = (way * ratio + from).min(bounds.max).max(bounds.min);
         vertices.positions.try_reserve(1)?;
         vertices.positions.push(position);
         if self.refines {
-            let edge = self.edges[direction].as_dvec3();
+            let edge = way.as_dvec3();
             let ratio = crossing_ratio(self.level, from, edge, [here - isovalue, there - isovalue]);
             let target: DVec3 = from.as_dvec3() + edge * ratio;
             vertices.targets.try_reserve(1)?;

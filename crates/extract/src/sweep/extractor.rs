@@ -14,11 +14,12 @@ use super::slab::{Job, Piece, SlabTimes, Workspace, sweep};
 use super::source::Source;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
 use crate::field::Kept;
-use crate::lattice::Lattice;
+use crate::lattice::{Border, Lattice};
 use crate::level::Level;
 use crate::placement::{self, CrossingPlacer};
 use crate::settings::{Clustering, Execution, ExtractSettings, Positions, Topology};
 use crate::split;
+use crate::spot::Apart;
 use crate::stored;
 use crate::trace::Trace;
 
@@ -77,7 +78,7 @@ impl Default for MostVertices {
     }
 }
 
-/// What depends on the lattice alone; the tables on its arrangement only.
+/// What depends on the lattice and its border alone; the tables on its arrangement only.
 struct Plan {
     grid: Grid,
     tables: FaceTables,
@@ -85,14 +86,14 @@ struct Plan {
 
 impl Plan {
     /// The one there is, if it fits.
-    fn new(lattice: &Lattice, before: Option<Self>) -> Result<Self, TryReserveError> {
+    fn new(lattice: &Lattice, border: Border, before: Option<Self>) -> Result<Self, TryReserveError> {
         match before {
-            Some(plan) if plan.grid.lattice == *lattice => Ok(plan),
+            Some(plan) if plan.grid.lattice == *lattice && plan.grid.border == border => Ok(plan),
             Some(plan) if plan.grid.lattice.arrangement() == lattice.arrangement() => {
-                Ok(Self { grid: Grid::new(lattice)?, tables: plan.tables })
+                Ok(Self { grid: Grid::new(lattice, border)?, tables: plan.tables })
             }
             _ => {
-                let grid = Grid::new(lattice)?;
+                let grid = Grid::new(lattice, border)?;
                 let tables = FaceTables::new(&grid);
                 Ok(Self { grid, tables })
             }
@@ -189,8 +190,8 @@ impl Extractor {
             self.kept = kept;
             return result;
         }
-        let plan = Plan::new(lattice, self.plan.take()).map_err(|_| ExtractError::OutOfMemory {
-            bytes: lattice.memory_bytes_for(settings, execution),
+        let plan = Plan::new(lattice, Border::of(settings), self.plan.take()).map_err(|_| {
+            ExtractError::OutOfMemory { bytes: lattice.memory_bytes_for(settings, execution) }
         })?;
         let arrangement = lattice.arrangement();
         let merges = match settings.clustering {
@@ -262,6 +263,7 @@ impl Extractor {
             rule,
             source,
             isovalue: settings.isovalue,
+            apart: Apart::new(&grid.lattice, settings.topology),
             most_vertices: self.most_vertices.0,
             placer: placer.as_ref(),
             traced: self.traced,

@@ -5,7 +5,7 @@ use std::collections::TryReserveError;
 use glam::Vec3A;
 
 use crate::lattice::{
-    Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout, PointKind, Uniform, members,
+    Border, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout, PointKind, Uniform, members,
 };
 use crate::settings::Positions;
 use crate::tetrahedra::{Spoke, spokes};
@@ -18,6 +18,7 @@ pub(super) const LINES: usize = 9;
 #[derive(Debug, Clone)]
 pub(super) struct Grid {
     pub(super) lattice: Lattice,
+    pub(super) border: Border,
     pub(super) layout: Layout,
     pub(super) coordinates: Coordinates,
     pub(super) directions: &'static Directions,
@@ -56,7 +57,7 @@ pub(super) struct Neighbourhood {
 }
 
 impl Grid {
-    pub(super) fn new(lattice: &Lattice) -> Result<Self, TryReserveError> {
+    pub(super) fn new(lattice: &Lattice, border: Border) -> Result<Self, TryReserveError> {
         let layout = Layout::new(lattice);
         let directions = lattice.arrangement().directions();
         let half = lattice.spacing() / 2.0;
@@ -66,7 +67,7 @@ impl Grid {
             Uniform::SimpleCubic => (1, 0),
         };
         Ok(Self {
-            coordinates: Coordinates::sampled(lattice, &layout, Positions::Indexed)?,
+            coordinates: Coordinates::sampled(lattice, &layout, Positions::Indexed, border)?,
             directions,
             size: layout.grid(),
             words: layout.grid()[0].div_ceil(64),
@@ -82,6 +83,7 @@ impl Grid {
             base_offset,
             layout,
             lattice: lattice.clone(),
+            border,
         })
     }
 

@@ -14,6 +14,7 @@ use super::rule::ClusterRule;
 use super::signs::Signs;
 use crate::lattice::{DIRECTIONS, DirectionSet, members};
 use crate::placement::{CrossingPlacer, Surroundings};
+use crate::spot::{Apart, linear_ratio};
 use crate::trace::VertexKey;
 
 /// Samples, by row.
@@ -31,6 +32,7 @@ pub(super) struct PointPass<'a, R> {
     pub(super) samples: Samples<'a>,
     pub(super) signs: &'a Signs,
     pub(super) isovalue: f32,
+    pub(super) apart: Apart,
     /// Places the vertices of the slab's own layers once more.
     pub(super) placer: Option<&'a CrossingPlacer<'a>>,
     /// Whether vertices have more than a position.
@@ -58,6 +60,8 @@ struct Point {
     inside: bool,
     crossing: DirectionSet,
     present: DirectionSet,
+    /// Whether all neighbours are as far as the spacing says.
+    regular: bool,
 }
 
 impl<R: ClusterRule> PointPass<'_, R> {
@@ -105,6 +109,8 @@ impl<R: ClusterRule> PointPass<'_, R> {
             samples[around.line[d]].wrapping_add_signed(around.shift[d])
         });
         let record_start = records.row_start(row, layer);
+        let coordinates = &grid.coordinates;
+        let regular_row = coordinates.is_regular_along(1, row) && coordinates.is_regular_along(2, layer);
         let x = grid.coordinates.x(kind);
         let (y, z) = (grid.coordinates.y(kind)[row], grid.coordinates.z()[layer]);
         lines.visit(grid, |Crossings { word, sides, mut active, differ }| {
@@ -137,7 +143,8 @@ impl<R: ClusterRule> PointPass<'_, R> {
                 }
                 let position = Vec3::new(x[column], y, z);
                 let inside = sides >> bit & 1 != 0;
-                let point = Point { column, row, position, inside, crossing, present };
+                let regular = regular_row && coordinates.is_regular_along(0, column);
+                let point = Point { column, row, position, inside, crossing, present, regular };
                 let record = self.point(
                     &point,
                     samples[0],
@@ -187,11 +194,13 @@ impl<R: ClusterRule> PointPass<'_, R> {
         if near == 0 {
             return Record::new(first, near, crossing, inside, Numbering::One);
         }
-        let place = |cluster: DirectionSet| self.place(point, cluster, value, difference, &there);
+        let place = |cluster: DirectionSet, alone: bool| {
+            self.place(point, layer, cluster, alone, value, difference, &there)
+        };
         if self.rule.is_one(crossing, near, present) {
             placed.numbered += 1;
             if let Some(positions) = positions {
-                positions.push(place(near));
+                positions.push(place(near, true));
                 if self.has_more {
                     self.add_more(point, layer, &[near], row_start, neighbours, placed);
                 }
@@ -202,7 +211,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
         let count = clusters.sets().len();
         placed.numbered += count as u64;
         if let Some(positions) = &mut positions {
-            positions.extend(clusters.sets().iter().map(|&cluster| place(cluster)));
+            positions.extend(clusters.sets().iter().map(|&cluster| place(cluster, count == 1)));
             if self.has_more {
                 self.add_more(point, layer, clusters.sets(), row_start, neighbours, placed);
             }
@@ -240,6 +249,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
             position: point.position,
             difference: difference(row_start + point.column),
             neighbours: [f32::NAN; DIRECTIONS],
+            ways: (!point.regular).then(|| self.ways(point, layer)),
         };
         for d in members(point.present) {
             around.neighbours[d] = difference(neighbours[d].wrapping_add(point.column));
@@ -247,31 +257,61 @@ impl<R: ClusterRule> PointPass<'_, R> {
         placed.targets.extend(clusters.iter().map(|&cluster| placer.place(&around, cluster)));
     }
 
-    /// The unweighted mean of the cluster's crossings, clamped to the box.
+    /// The unweighted mean of the cluster's crossings, clamped to the box; `alone` if the point has no other vertex.
     #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "the body of the innermost loop")]
     fn place(
         &self,
         point: &Point,
+        layer: usize,
         cluster: DirectionSet,
+        alone: bool,
         value: f32,
         difference: f32,
         there: &[f32; 16],
     ) -> Vec3 {
         let (grid, position) = (self.grid, Vec3A::from(point.position));
+        let ratio = |direction: usize| {
+            let ratio = linear_ratio(difference, value, there[direction]);
+            if alone { ratio } else { self.apart.ratio(direction, ratio) }
+        };
+        if !point.regular {
+            return self.place_at_border(point, layer, cluster, ratio);
+        }
         let mut sum = Vec3A::ZERO;
         let mut left = cluster;
         while left != 0 {
             let direction = left.trailing_zeros() as usize & 15;
             left &= left - 1;
-            let ratio = difference / (there[direction] - value);
-            // Samples that are not numbers, or two infinities, say nothing about the place.
-            let ratio = if ratio.is_finite() { ratio } else { 0.5 };
-            sum += grid.edges[direction] * ratio + position;
+            sum += grid.edges[direction] * ratio(direction) + position;
         }
         let mean = sum / cluster.count_ones() as f32;
         let is_inside = mean.cmpgt(grid.low) & mean.cmplt(grid.high);
         let bounds = grid.lattice.bounds();
         if is_inside.all() { Vec3::from(mean) } else { Vec3::from(mean).min(bounds.max).max(bounds.min) }
+    }
+
+    /// The same next to the box.
+    #[cold]
+    #[inline(never)]
+    fn place_at_border(
+        &self,
+        point: &Point,
+        layer: usize,
+        cluster: DirectionSet,
+        ratio: impl Fn(usize) -> f32,
+    ) -> Vec3 {
+        let (ways, bounds) = (self.ways(point, layer), self.grid.lattice.bounds());
+        let mut sum = Vec3::ZERO;
+        for direction in members(cluster) {
+            sum += ways[direction] * ratio(direction) + point.position;
+        }
+        (sum / cluster.count_ones() as f32).min(bounds.max).max(bounds.min)
+    }
+
+    fn ways(&self, point: &Point, layer: usize) -> [Vec3; DIRECTIONS] {
+        let Grid { coordinates, layout, directions, .. } = self.grid;
+        coordinates.ways(layout, [point.column, point.row, layer], point.present, &directions.offsets)
     }
 }
 

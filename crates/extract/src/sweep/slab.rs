@@ -16,6 +16,7 @@ use super::signs::Signs;
 use super::source::Source;
 use crate::ExtractError;
 use crate::placement::CrossingPlacer;
+use crate::spot::Apart;
 use crate::triangles::Triangulation;
 
 /// What all slabs of an extraction share.
@@ -25,6 +26,7 @@ pub(super) struct Job<'a, R> {
     pub(super) rule: &'a R,
     pub(super) source: Source<'a>,
     pub(super) isovalue: f32,
+    pub(super) apart: Apart,
     pub(super) most_vertices: u32,
     pub(super) placer: Option<&'a CrossingPlacer<'a>>,
     /// Whether vertices get keys and triangles the numbers of their cells.
@@ -163,7 +165,8 @@ pub(super) fn sweep<R: ClusterRule>(
             };
             let (signs, placer) = (&workspace.signs, job.placer);
             let has_more = placer.is_some() || job.traced;
-            let pass = PointPass { grid, rule: job.rule, samples, signs, isovalue, placer, has_more };
+            let (rule, apart) = (job.rule, job.apart);
+            let pass = PointPass { grid, rule, samples, signs, isovalue, apart, placer, has_more };
             if layer == own.start {
                 piece.below = placed.numbered;
             }

@@ -7,6 +7,7 @@ use mesh::Bounds;
 use proptest::prelude::*;
 
 use crate::bunny::{BOX, bunny};
+use crate::lattice::{Border, Coordinates, Layout};
 use crate::{
     Arrangement, Asteroid, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor,
     Gyroid, Lattice, MeshDistance, Placement, Positions, ScalarField, Source, Sphere, Topology, stored,
@@ -59,8 +60,8 @@ fn check(field: &dyn ScalarField, lattice: &Lattice, isovalue: f32) {
 
 fn check_with(field: &dyn ScalarField, lattice: &Lattice, all: impl Iterator<Item = ExtractSettings>) {
     let mut extractor = Extractor::new();
-    let samples = all_samples(field, lattice);
     for settings in all {
+        let samples = all_samples(field, lattice, &settings);
         let one = Execution { threads: 1 };
         let expected = stored::extract(field, lattice, &settings, &one, u32::MAX).unwrap();
         for threads in [1, 3] {
@@ -99,9 +100,9 @@ fn placed_settings() -> impl Iterator<Item = ExtractSettings> {
 }
 
 /// What the stored extractor has in memory.
-fn all_samples(field: &dyn ScalarField, lattice: &Lattice) -> Vec<f32> {
-    let layout = crate::lattice::Layout::new(lattice);
-    let coordinates = crate::lattice::Coordinates::sampled(lattice, &layout, Positions::Indexed).unwrap();
+fn all_samples(field: &dyn ScalarField, lattice: &Lattice, settings: &ExtractSettings) -> Vec<f32> {
+    let (layout, border) = (Layout::new(lattice), Border::of(settings));
+    let coordinates = Coordinates::sampled(lattice, &layout, Positions::Indexed, border).unwrap();
     let mut samples = vec![0.0; layout.len()];
     crate::sampling::sample(field, &layout, &coordinates, &Execution { threads: 1 }, &mut samples).unwrap();
     samples

@@ -276,7 +276,21 @@ impl Volume {
 
 impl ScalarField for Volume {
     fn sample(&self, p: Vec3) -> f32 {
-        self.get((p * 2.0).to_array().map(|c| c as i32))
+        let mut place = (p * 2.0).to_array().map(|c| c as i32);
+        // A centre that lies on the box instead of half a cell beyond it.
+        if self.arrangement == Arrangement::BodyCentred && place.iter().any(|c| c % 2 != 0) {
+            let last = 2 * self.cells as i32;
+            place = place.map(|c| {
+                if c == 0 {
+                    -1
+                } else if c == last {
+                    last + 1
+                } else {
+                    c
+                }
+            });
+        }
+        self.get(place)
     }
 }
 
