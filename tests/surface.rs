@@ -171,6 +171,89 @@ fn a_volume_becomes_a_mesh() {
     assert!(said.code == 2 && said.err.contains("short.nrrd: the data ends after 19"), "{}", said.err);
 }
 
+/// Text, so that a header of any steps can be written by hand.
+fn text_volume(folder: &Folder, name: &str, sizes: [usize; 3], geometry: &str, value: impl Fn(usize) -> i32) {
+    let samples: Vec<String> = (0..sizes.iter().product()).map(|i| value(i).to_string()).collect();
+    let [x, y, z] = sizes;
+    let header =
+        format!("NRRD0004\ntype: short\ndimension: 3\nsizes: {x} {y} {z}\nencoding: text\n{geometry}\n\n");
+    folder.write(name, header + &samples.join(" ") + "\n");
+}
+
+#[test]
+fn close_closes_whatever_the_steps_the_box_and_the_lattice() {
+    let folder = Folder::new();
+    let closed = |arguments: &[&str]| {
+        let said = folder.succeed(&[arguments, &["-o", "a.ply", "--quality"]].concat());
+        assert!(said.out.contains("closed manifold"), "{arguments:?}: {}", said.out);
+        assert!(said.out.contains("without area    0 triangles"), "{arguments:?}: {}", said.out);
+        (folder.mesh("a.ply"), said)
+    };
+    // A CT with thick slices.
+    let dark_end = |i: usize| if i == 63 { -1000 } else { 1000 };
+    text_volume(&folder, "ct.nrrd", [4; 3], "spacings: 0.7 0.7 5", dark_end);
+    closed(&["--volume", "ct.nrrd", "--isovalue", "300.5", "--close"]);
+    for z in [1, 2, 3, 5] {
+        text_volume(&folder, "two.nrrd", [4; 3], &format!("spacings: 1 1 {z}"), |_| 2);
+        closed(&["--volume", "two.nrrd", "--isovalue", "0.5", "--close"]);
+    }
+    let body = |i: usize| {
+        let at = [i % 40, i / 40 % 40, i / 1600].map(|i| i as f64);
+        let wave = (0.4 * at[0]).sin() * (0.3 * at[1]).cos() + (0.9 * at[2] + 0.2 * at[0]).sin();
+        (700.0 * wave + 200.0) as i32
+    };
+    for spacings in ["1 1 3", "0.7 0.7 5"] {
+        text_volume(&folder, "body.nrrd", [40, 40, 14], &format!("spacings: {spacings}"), body);
+        for isovalue in ["300.5", "-200.5", "200"] {
+            for side in ["above", "below"] {
+                let isovalue = format!("--isovalue={isovalue}");
+                closed(&["--volume", "body.nrrd", &isovalue, "--close", "--inside", side]);
+            }
+        }
+    }
+    // The box cuts the solid off.
+    text_volume(&folder, "eight.nrrd", [8; 3], "spacings: 1 1 1", |_| 1);
+    let cut = ["--volume", "eight.nrrd", "--isovalue", "0.5"];
+    let bounds = "--bounds=0,0,0,7,7,7";
+    let (block, _) = closed(&[&cut[..], &["--close", bounds]].concat());
+    assert!((block.volume() - 343.0).abs() < 10.0, "{}", block.volume());
+    for arrangement in ["simple-cubic", "five-tetrahedra", "face-centred"] {
+        closed(&[&cut[..], &["--close", "--bounds=1,2,0.5,5.3,6,9", "--arrangement", arrangement]].concat());
+    }
+    // One axis along the diagonal of space: closed without being asked, on fine and coarse lattices.
+    let geometry = "space dimension: 3\nspace origin: (0,0,0)\nspace directions: (0.577350269,0.577350269,0.577350269) \
+                    (0.707106781,-0.707106781,0) (0.408248290,0.408248290,-0.816496581)";
+    text_volume(&folder, "turned.nrrd", [4; 3], geometry, |_| 1);
+    for cells in ["20", "40", "80"] {
+        let (_, said) = closed(&["--volume", "turned.nrrd", "--isovalue", "0.01", "--cells", cells]);
+        assert!(said.err.contains("closed where it leaves it"), "{}", said.err);
+        closed(&[
+            "--volume",
+            "turned.nrrd",
+            "--isovalue",
+            "0.01",
+            "--cells",
+            cells,
+            "--close",
+            "--bounds=0,0,0,1,1,1",
+        ]);
+    }
+}
+
+#[test]
+fn a_terrain_has_no_scraps_at_the_border() {
+    let folder = Folder::new();
+    let terrain =
+        ["--field", "z - 2*sin(x*0.7)*cos(y*0.5)", "--bounds=-8,-8,-4,8,8,4", "-o", "a.ply", "--quality"];
+    for lattice in [["--cells", "64"], ["--spacing", "0.3"]] {
+        for arrangement in ["body-centred", "simple-cubic", "five-tetrahedra", "face-centred"] {
+            let said = folder.succeed(&[&terrain[..], &lattice, &["--arrangement", arrangement]].concat());
+            let one = "; 1 component, Euler characteristic 1, 1 boundary loop";
+            assert!(said.out.contains(one), "{lattice:?} {arrangement}: {}", said.out);
+        }
+    }
+}
+
 #[test]
 fn a_mesh_becomes_another() {
     let folder = Folder::new();

@@ -82,7 +82,7 @@ fn run(command: Command) -> Result<Outcome> {
                 pipeline.all_meshes(only)?;
                 say(&out.join("meshes").display().to_string())
             }),
-            None => surface::extract(&arguments),
+            None => return surface::extract(&arguments),
         },
         Command::Turntable(selection) => with_selection(&selection, |pipeline, only, out| {
             let meshes = pipeline.stimulus_meshes(only)?;

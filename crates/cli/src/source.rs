@@ -5,7 +5,9 @@ use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use design::Arrangement;
 use expression::{Expression, ExpressionError};
-use extract::{Beyond, Holes, Lattice, MeshDistance, MeshFieldError, Negated, ScalarField, VolumeField};
+use extract::{
+    Beyond, Holes, Lattice, MeshDistance, MeshFieldError, Negated, ScalarField, VolumeField, Walled,
+};
 use glam::Vec3;
 use mesh::{Bounds, repair};
 use serde::Serialize;
@@ -43,7 +45,7 @@ pub(crate) struct SourceArguments {
     /// positive inside]
     #[arg(long, value_name = "SIDE", conflicts_with = "mesh")]
     inside: Option<Inside>,
-    /// Close the surface where it leaves the volume
+    /// Close the surface where it leaves the volume, and where --bounds cut it off
     #[arg(long, conflicts_with_all = ["field", "mesh"])]
     close: bool,
     /// Take a mesh with holes: inside is what is seen from behind in most directions
@@ -70,6 +72,8 @@ pub(crate) struct Source {
     pub(crate) inside: Inside,
     pub(crate) bounds: Bounds,
     pub(crate) spacing: f32,
+    /// Whether the surface must have no boundary.
+    pub(crate) is_closed: bool,
     /// The formula or the file.
     pub(crate) name: String,
     /// What is known of its values, for a surface that is not there.
@@ -110,7 +114,8 @@ impl SourceArguments {
         };
         let bounds = self.bounds.unwrap_or(bounds);
         let spacing = self.spacing.unwrap_or_else(|| bounds.spacing_of_cells(self.cells.unwrap_or(CELLS)));
-        Source { field, isovalue, inside, bounds, spacing, name: name.to_owned(), values: String::new() }
+        let (name, values) = (name.to_owned(), String::new());
+        Source { field, isovalue, inside, bounds, spacing, is_closed: false, name, values }
     }
 
     fn of_volume(&self, path: &Path) -> Result<Source> {
@@ -127,8 +132,8 @@ impl SourceArguments {
         let is_turned = !field.is_axis_aligned();
         let mut bounds = field.bounds();
         if self.close || is_turned {
-            field = field.with_beyond(beyond);
-            bounds = bounds.grown(1.5 * field.spacing());
+            field = field.with_beyond(beyond).closing_at(self.isovalue);
+            bounds = field.closing_bounds();
         }
         if is_turned && !self.close {
             eprintln!(
@@ -138,6 +143,9 @@ impl SourceArguments {
         let (low, high) = field.value_range();
         let (step, samples) = (field.spacing(), counts.iter().product::<usize>());
         let mut source = self.source(Box::new(field), Inside::Above, bounds, &path.display().to_string());
+        if self.close || is_turned && self.bounds.is_none() {
+            source = source.closed();
+        }
         source.values = format!("; the volume's samples run from {low} to {high}");
         if self.spacing.is_none() && self.cells.is_none() {
             source.spacing = step;
@@ -210,6 +218,12 @@ fn mesh_field(path: &Path, allow_open: bool) -> Result<(MeshDistance, Bounds)> {
 }
 
 impl Source {
+    /// The same, cut off by the walls of its box: whatever leaves it has a surface there.
+    fn closed(self) -> Self {
+        let field = Box::new(Walled::new(self.field, self.bounds, self.isovalue));
+        Self { field, is_closed: true, ..self }
+    }
+
     /// The lattice to look at it on.
     ///
     /// # Errors
@@ -242,7 +256,7 @@ impl Source {
     }
 }
 
-fn place(p: Vec3) -> String {
+pub(crate) fn place(p: Vec3) -> String {
     format!("[{:?}, {:?}, {:?}]", p.x, p.y, p.z)
 }
 

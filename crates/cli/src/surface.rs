@@ -1,9 +1,9 @@
 //! `isostudy extract` without a study: a formula, a volume or a mesh becomes a surface in a file.
 
 use crate::args::{Run, Selection};
-use crate::source::{Inside, Source, SourceArguments};
+use crate::source::{Inside, Source, SourceArguments, place};
 use crate::store::{write_whole, write_whole_by};
-use crate::{counted, mesh_file, records, say, significant, subject};
+use crate::{Outcome, counted, mesh_file, records, say, significant, subject};
 use anyhow::{Context, Result, bail};
 use clap::{ArgGroup, Args};
 use design::record::{Accuracy, Counts, Distribution, Quality, Topology};
@@ -79,11 +79,11 @@ fn named<T: for<'de> Deserialize<'de>>(text: &str) -> Result<T, String> {
     T::deserialize(name).map_err(|error| error.to_string())
 }
 
-/// Extracts, writes and reports.
+/// Extracts, writes and reports. A surface that was to be closed and is not fails the check.
 ///
 /// # Errors
 /// If the input cannot be read, has no inside, or has no surface there; if a file cannot be written.
-pub(crate) fn extract(arguments: &Extract) -> Result<()> {
+pub(crate) fn extract(arguments: &Extract) -> Result<Outcome> {
     let out = arguments.out.as_deref().context("-o is needed")?;
     let format = mesh_file::format_to_write(out).with_context(|| out.display().to_string())?;
     check_outputs(arguments, out)?;
@@ -119,7 +119,23 @@ pub(crate) fn extract(arguments: &Extract) -> Result<()> {
         say(&if arguments.json { serde_json::to_string_pretty(&report)? } else { report.to_text() })?;
     }
     // With --json standard output is JSON and nothing else.
-    if arguments.json { Ok(()) } else { say(&out.display().to_string()) }
+    if !arguments.json {
+        say(&out.display().to_string())?;
+    }
+    if source.is_closed
+        && let Some(found) = open_edges(&extraction.mesh)
+    {
+        tell!("isostudy: {}: the surface was to be closed and has {found}", out.display());
+        return Ok(Outcome::CheckFailed);
+    }
+    Ok(Outcome::Sound)
+}
+
+/// How many boundary edges a mesh has, and where one of them is; `None` if it has none.
+fn open_edges(mesh: &TriangleMesh) -> Option<String> {
+    let [from, to] = mesh::topology::first_boundary_edge(mesh)?;
+    let edges = mesh::topology::topology(mesh).boundary_edges;
+    Some(format!("{}, one from {} to {}", counted(edges, "boundary edge"), place(from), place(to)))
 }
 
 /// Nothing that was given is written over; and no output over another, since no mesh ends as pictures do.
@@ -267,4 +283,23 @@ fn way(distances: &Distribution) -> String {
 
 fn lost(points: u64) -> String {
     if points == 0 { String::new() } else { format!(", {} without a distance", counted(points, "point")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_open_is_said_with_its_place() {
+        let positions = [[0.0, 0.0, 0.0], [1.5, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1.0]];
+        let mut mesh = TriangleMesh {
+            positions: positions.map(glam::Vec3::from).to_vec(),
+            triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+            ..TriangleMesh::default()
+        };
+        assert_eq!(open_edges(&mesh), None);
+        mesh.triangles.remove(0);
+        let want = "3 boundary edges, one from [0.0, 0.0, 0.0] to [1.5, 0.0, 0.0]";
+        assert_eq!(open_edges(&mesh).as_deref(), Some(want));
+    }
 }

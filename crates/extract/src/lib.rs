@@ -161,7 +161,7 @@ pub use distances::{DistanceError, distances};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
 pub use field::{
     Asteroid, Beyond, Gyroid, Holes, InwardPart, Kept, MeshDistance, MeshFieldError, Negated, ScalarField,
-    Sphere, VolumeField, VolumeFieldError,
+    Sphere, VolumeField, VolumeFieldError, Walled,
 };
 pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};

@@ -81,6 +81,21 @@ pub fn topology(mesh: &TriangleMesh) -> TopologyReport {
     report
 }
 
+/// The ends of an edge with one triangle, of the first triangle that has one; `None` if there is no such edge.
+///
+/// # Panics
+/// As [`topology`].
+pub fn first_boundary_edge(mesh: &TriangleMesh) -> Option<[glam::Vec3; 2]> {
+    let triangles = &mesh.triangles;
+    assert!(triangles.len() <= (u32::MAX / 3) as usize, "corners are numbered in 32 bits");
+    let connectivity = Connectivity::of(triangles);
+    let open = connectivity.edges().filter(|edge| edge.len() == 1).map(|edge| edge[0].corners());
+    let [from, to] = open.min()?;
+    Some(
+        [from, to].map(|corner| mesh.positions[triangles[corner as usize / 3][corner as usize % 3] as usize]),
+    )
+}
+
 fn count_edges(connectivity: &Connectivity, report: &mut TopologyReport) {
     for edge in connectivity.edges() {
         report.edges += 1;

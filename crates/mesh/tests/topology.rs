@@ -4,7 +4,7 @@ mod shapes;
 
 use mesh::TriangleMesh;
 use mesh::quality::quality;
-use mesh::topology::{TopologyReport, topology};
+use mesh::topology::{TopologyReport, first_boundary_edge, topology};
 use proptest::prelude::*;
 use shapes::*;
 
@@ -31,6 +31,20 @@ fn closed_shapes() {
         assert!(report.is_closed_manifold(), "{name}: {report:?}");
         assert!((mesh.volume() / volume - 1.0).abs() < 2e-3, "{name}: {}", mesh.volume());
     }
+}
+
+#[test]
+fn a_boundary_edge_is_one_of_the_hole_and_a_closed_surface_has_none() {
+    let mut open = cube();
+    assert_eq!(first_boundary_edge(&open), None);
+    assert_eq!(first_boundary_edge(&TriangleMesh::default()), None);
+    let hole = open.triangles.remove(7).map(|v| open.positions[v as usize]);
+    let [from, to] = first_boundary_edge(&open).unwrap();
+    assert!(from != to && hole.contains(&from) && hole.contains(&to));
+    // The same edge whatever the order of the triangles after the first that has one.
+    let single = TriangleMesh { triangles: vec![open.triangles[0]], ..open };
+    let [a, b, _] = single.corners(0);
+    assert_eq!(first_boundary_edge(&single), Some([a, b]));
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod negated;
 mod sine;
 mod sphere;
 mod volume;
+mod walled;
 
 pub use asteroid::Asteroid;
 pub use gyroid::Gyroid;
@@ -15,6 +16,7 @@ pub use mesh_distance::{Holes, InwardPart, MeshDistance, MeshFieldError};
 pub use negated::Negated;
 pub use sphere::Sphere;
 pub use volume::{Beyond, VolumeField, VolumeFieldError};
+pub use walled::Walled;
 
 use std::any::Any;
 

@@ -25,6 +25,15 @@ pub enum Beyond {
     Rising,
 }
 
+/// How much the value changes beyond the volume; positive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Fall {
+    /// For each step from sample to sample, along the axis with the most of them.
+    Step(f32),
+    /// For each unit of length.
+    Length(f64),
+}
+
 /// Why samples make no field.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum VolumeFieldError {
@@ -77,8 +86,8 @@ pub struct VolumeField {
     beyond: Beyond,
     /// The least and the greatest sample that is finite.
     value_range: (f32, f32),
-    /// Change of the value for each step beyond the volume; positive.
-    fall: f32,
+    /// How the value changes beyond the volume.
+    fall: Fall,
     ranges: Ranges,
 }
 
@@ -117,7 +126,7 @@ impl VolumeField {
         }
         let ranges =
             Ranges::new(counts, &values).map_err(|_: TryReserveError| VolumeFieldError::OutOfMemory)?;
-        let fall = if high > low { (high - low).min(f32::MAX) } else { 1.0 };
+        let fall = Fall::Step(if high > low { (high - low).min(f32::MAX) } else { 1.0 });
         let value_range = (low, high);
         Ok(Self { counts, values, origin: start, steps: matrix, to_index, beyond, value_range, fall, ranges })
     }
@@ -125,6 +134,28 @@ impl VolumeField {
     /// The same with something else beyond the outermost samples.
     pub fn with_beyond(self, beyond: Beyond) -> Self {
         Self { beyond, ..self }
+    }
+
+    /// The same with a surface that closes round everything beyond `isovalue`, however long the steps are and however the
+    /// grid is turned: beyond the outermost samples the value falls, or rises if that was asked for, with the distance
+    /// from the volume, and no point that is one shortest step ([`spacing`](Self::spacing)) or more away from it is
+    /// inside. [`closing_bounds`](Self::closing_bounds) is a box with room for that.
+    pub fn closing_at(self, isovalue: f32) -> Self {
+        let (low, high) = (f64::from(self.value_range.0), f64::from(self.value_range.1));
+        let (beyond, depth) = match self.beyond {
+            Beyond::Continued | Beyond::Falling => (Beyond::Falling, high - f64::from(isovalue)),
+            Beyond::Rising => (Beyond::Rising, f64::from(isovalue) - low),
+        };
+        let change = depth.max(high - low);
+        // Nothing is inside, or all samples are equal.
+        let change = if change > 0.0 { change } else { 1.0 };
+        Self { beyond, fall: Fall::Length(change / self.shortest_step()), ..self }
+    }
+
+    /// A box that a surface which was closed ([`closing_at`](Self::closing_at)) stays clear of: half a shortest step more
+    /// than it needs.
+    pub fn closing_bounds(&self) -> Bounds {
+        self.bounds().grown(1.5 * self.spacing())
     }
 
     /// The smallest box round all samples; none wider than `f32` can tell from a point.
@@ -141,8 +172,12 @@ impl VolumeField {
 
     /// The shortest distance from sample to sample.
     pub fn spacing(&self) -> f32 {
+        self.shortest_step() as f32
+    }
+
+    fn shortest_step(&self) -> f64 {
         let steps = [self.steps.x_axis, self.steps.y_axis, self.steps.z_axis];
-        steps.iter().map(|step| step.length()).fold(f64::INFINITY, f64::min) as f32
+        steps.iter().map(|step| step.length()).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether the grid's axes are those of space, in any order and direction.
@@ -165,7 +200,12 @@ impl VolumeField {
         let last = DVec3::from_array(self.counts.map(|n| (n - 1) as f64));
         let nearest = index.clamp(DVec3::ZERO, last);
         let value = interpolated(self, nearest);
-        let away = self.fall * (index - nearest).abs().max_element() as f32;
+        let way = index - nearest;
+        let away = match self.fall {
+            Fall::Step(fall) => fall * way.abs().max_element() as f32,
+            // Only a number too large for `f32` is infinite, which is as good as far beyond the isovalue.
+            Fall::Length(fall) => (fall * (self.steps * way).length()) as f32,
+        };
         match self.beyond {
             Beyond::Continued => value,
             Beyond::Falling => value - away,
@@ -254,8 +294,16 @@ impl ScalarField for VolumeField {
             let rounding = least.abs().max(most.abs()) * (SAFE - 1.0);
             (least, most) = (least - rounding, most + rounding);
         }
-        let outside = (low - (centre - half)).max(centre + half - high).max_element();
-        let away = self.fall * outside as f32 * SAFE;
+        let outside = (low - (centre - half)).max(centre + half - high);
+        let away = SAFE
+            * match self.fall {
+                Fall::Step(fall) => fall * outside.max_element() as f32,
+                Fall::Length(fall) => {
+                    let lengths =
+                        [self.steps.x_axis, self.steps.y_axis, self.steps.z_axis].map(DVec3::length);
+                    (fall * outside.dot(DVec3::from_array(lengths))) as f32
+                }
+            };
         match self.beyond {
             Beyond::Continued => {}
             Beyond::Falling => least -= away,
