@@ -15,14 +15,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let volume = volume::read(input.as_ref(), volume::NO_LIMIT)?;
     println!("{:?} samples", volume.counts);
-    // Where the surface leaves the volume it is closed; `Beyond::Continued` lets the lattice's box cut it off.
+    // Where the surface leaves the volume it is closed; without `closing_at` the lattice's box would cut it off.
+    let isovalue = isovalue.parse()?;
     let field =
-        VolumeField::try_new(volume.counts, volume.values, volume.origin, volume.steps, Beyond::Falling)?;
+        VolumeField::try_new(volume.counts, volume.values, volume.origin, volume.steps, Beyond::Falling)?
+            .closing_at(isovalue);
 
     // One cube a sample, over all samples and a little more. Inside is what is brighter than the isovalue.
-    let bounds = field.bounds().grown(1.5 * field.spacing());
-    let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, field.spacing())?;
-    let settings = ExtractSettings { isovalue: isovalue.parse()?, ..ExtractSettings::default() };
+    let lattice = Lattice::try_new(Arrangement::BodyCentred, field.closing_bounds(), field.spacing())?;
+    let settings = ExtractSettings { isovalue, ..ExtractSettings::default() };
     let mut surface = extract(&field, &lattice, &settings, &Execution::default())?.mesh;
 
     // glTF has y up; most scans have z. Turning keeps normals normals.

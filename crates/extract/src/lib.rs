@@ -24,12 +24,19 @@
 //! - Triangles are counter-clockwise seen from outside and have three different vertices; normals point outward.
 //! - The same field, lattice and settings give the same mesh to the byte, on any number of threads. The fields here
 //!   use no platform mathematics, so the mesh is also the same on every machine.
-//! - Vertices lie in the lattice's box.
+//! - Vertices lie in the lattice's box. With [`Topology::Guarded`] and [`Positions::Indexed`], the defaults, so do all
+//!   sample points, and the tetrahedra fill the box and nothing else: outermost points lie on its faces, and where the
+//!   spacing does not divide the box, the last cubes along an axis are thinner. So a surface ends at the box as it would
+//!   end at any cut, and a sheet that crosses the box is one component there too.
 //! - The triangles do not depend on where vertices are placed ([`Placement`], [`ExtractSettings::refine_crossings`]),
 //!   unless edges are collapsed; and beside the mean of interpolated crossings none is turned over.
 //! - With [`Topology::Guarded`], the default, and any [`Clustering`]: whatever the samples, the mesh is an oriented
 //!   2-manifold that uses all its vertices, closed where the surface stays clear of the box. No two triangles have
 //!   the same vertices. Components, genus and boundary loops are those of the unclustered surface. Why: DESIGN.md.
+//! - With the same topology no unclustered triangle is without area, also at samples that equal the isovalue, and no edge
+//!   is collapsed where one would lose its area. A sample that equals the isovalue lies below it by less than any number:
+//!   a vertex that has its place to itself stays there; where there are several, each goes a few units in the last place
+//!   of `f32` along its lattice edge, towards the inside. How far is known from the lattice and the edge alone.
 //! - Unless edges are collapsed, vertices stand in storage order of the sample points they are nearest to (x fastest,
 //!   then y, then z), triangles in that of their cells. Leaving samples out changes nothing, as long as a field keeps
 //!   what it promises.
@@ -41,10 +48,14 @@
 //!
 //! - Anything of that kind with [`Topology::Published`]: integrated clustering keeps well-resolved surfaces manifold
 //!   and breaks others, the edge collapse leaves folded pairs of triangles nearly always.
-//! - A surface that reaches the box is open there, and vertices beyond the box are flattened onto it.
-//! - A sample equal to the isovalue puts all its crossings in one place, as vertices of their own: triangles without
-//!   area. As published, a crossing in the very middle of an edge has a vertex at each end, of which one is used;
-//!   guarded, it belongs to the inside end.
+//! - A surface that reaches the box is open there, unless the field ends at walls ([`Walled`]). A vertex at the boundary is
+//!   the mean of its crossings, and may lie a little inside.
+//! - As published, points lie up to a cube beyond the box: what the surface does there is flattened onto the box, and
+//!   may be scraps of their own. A sample equal to the isovalue puts all its crossings in one place, as vertices of
+//!   their own: triangles without area. A crossing in the very middle of an edge has a vertex at each end, of which one
+//!   is used; guarded, it belongs to the inside end.
+//! - Means of crossings may in principle lie in a line, so that a clustered triangle has no area; it has not been seen
+//!   in guarded meshes.
 //! - Nothing is said about triangles that intersect, and a feature thinner than the spacing can be missed.
 //!
 //! # Where to start
@@ -81,10 +92,10 @@
 //! |---|---|
 //! | isovalue infinite or `NaN` | [`ExtractError::Isovalue`] |
 //! | isovalue that no sample passes, surface between the samples | a mesh without vertices |
-//! | surface through the box | a mesh that is open there, and only there |
+//! | surface through the box | a mesh that is open there, and only there; closed with [`Walled`] |
 //! | spacing zero, negative, infinite, `NaN` | [`LatticeError::Spacing`] |
 //! | spacing too small, too large for `f32` | [`LatticeError::TooManyCells`], [`LatticeError::TooManySamples`], [`LatticeError::OutOfRange`] |
-//! | spacing beyond the box | one cell, which reaches past it |
+//! | spacing beyond the box | one cell; as published it reaches past the box |
 //! | box empty, inverted, infinite, `NaN` | [`LatticeError::Bounds`] |
 //! | samples of another number than the lattice has | [`ExtractError::SampleCount`] |
 //! | a clustering that the arrangement does not have | [`ExtractError::ArrangementClustering`] |

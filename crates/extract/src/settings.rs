@@ -71,13 +71,19 @@ pub enum Topology {
     /// Every crossing belongs to one end of its lattice edge: to the one with the smaller difference from the
     /// isovalue, and to the inside end when they are equal or a difference is not a number. Edges are collapsed
     /// shortest first, onto the midpoint or an end, whichever makes the better triangles, and only where neither the
-    /// topology nor a triangle's side changes; vertices on the boundary stay where they are.
+    /// topology nor a triangle's side changes, and no triangle loses its area; vertices on the boundary stay where they
+    /// are.
+    ///
+    /// Sample points lie on the box or in it, unless positions are accumulated, and vertices of one sample that equals
+    /// the isovalue lie apart: see the crate's front page.
     #[default]
     Guarded,
     /// The published rules, to reproduce published numbers (Costen 2026). Integrated clustering joins surfaces that
     /// pass close to each other; the edge collapse, one pass in order of vertex numbers, folds fins nearly always.
     ///
-    /// A crossing in the middle of its edge belongs to both ends and has two vertices, of which one is used.
+    /// A crossing in the middle of its edge belongs to both ends and has two vertices, of which one is used. Crossings at
+    /// a sample that equals the isovalue lie in its place. Outermost sample points lie where the spacing puts them, up
+    /// to a cube beyond the box.
     Published,
 }
 

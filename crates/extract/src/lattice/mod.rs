@@ -26,7 +26,9 @@ use crate::settings::Clustering;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Arrangement {
     /// Cube corners and cube centres: congruent tetrahedra, twelve a cube, after Chan & Purisima (1998). One layer
-    /// of centres lies outside each face of the box, half a cube away.
+    /// of centres belongs to each face of the box. As published it lies half a cube outside, so that pyramids stand on the
+    /// box and a surface can enter one and leave it again, a scrap by itself; otherwise the layer lies on the face,
+    /// where the halves of the tetrahedra end.
     BodyCentred,
     /// Cube corners only: six tetrahedra a cube round its main diagonal (Kuhn's split).
     SimpleCubic,
@@ -94,7 +96,8 @@ pub(crate) enum Uniform {
 /// A box filled with cubes of one size, and an arrangement of sample points in it.
 ///
 /// `cells = ceil((max - min) / spacing)` on each axis, evaluated in `f32`; when it does not divide evenly the
-/// lattice reaches past `max`. Nothing is allocated until [`extract`](crate::extract) runs, so a caller can look
+/// lattice reaches past `max` as published; otherwise the last cubes are thinner, though not below a quarter, which
+/// those before them give up. Nothing is allocated until [`extract`](crate::extract) runs, so a caller can look
 /// at [`memory_bytes`](Self::memory_bytes) and refuse.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lattice {

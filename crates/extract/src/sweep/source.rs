@@ -11,7 +11,8 @@ pub enum Source<'a> {
     ///
     /// Body-centred lattices stack half-layers in z, centres first, each with `x + 2` points a row and `y + 2`
     /// rows, where `x` and `y` are the cells along the axes. Layers of corners leave the last row and column unused.
-    /// Face-centred lattices are a grid of half cells, `2x + 1` points a row, of which the middles of cube edges are
+    /// The outermost points lie on the box, as everywhere with guarded topology: samples for the published one lie where
+    /// the spacing puts them, centres half a cube beyond. Face-centred lattices are a grid of half cells, `2x + 1` points a row, of which the middles of cube edges are
     /// unused; the others a grid of corners.
     Samples(&'a [f32]),
 }
