@@ -2,7 +2,7 @@
 //!
 //! Both uniform extractors take these steps in this order, so that their meshes agree to the byte.
 
-use crate::lattice::Lattice;
+use crate::lattice::{DIRECTIONS, Lattice};
 use crate::settings::Topology;
 
 /// How far from its sample point a crossing is at least, in steps of `f32` at the box's farthest coordinate: enough that
@@ -11,13 +11,38 @@ const LEAST_STEPS: f32 = 16.0;
 /// The same as a share of the lattice edge is never more than this, however coarse `f32` is there.
 const MOST_SHARE: f32 = 0.125;
 
+/// What other vertices a crossing's sample point has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Company {
+    /// None, but the crossing's own.
+    Alone,
+    /// One for each of its crossings.
+    Singles,
+    /// Some of several crossings.
+    Merged,
+}
+
+impl Company {
+    #[inline]
+    pub(crate) fn of(vertices: usize, crossings: u32) -> Self {
+        match vertices {
+            0 | 1 => Self::Alone,
+            _ if vertices == crossings as usize => Self::Singles,
+            _ => Self::Merged,
+        }
+    }
+}
+
 /// How a crossing in the very place of a sample is displaced along its edge, so that vertices of one sample stay apart.
 ///
 /// A sample that equals the isovalue is outside, and the crossings at it all lie in its place. Symbolically it lies below
 /// the isovalue by less than any number. A vertex that has the place to itself stays in it; where there are several, each
 /// crossing goes a little along its edge, towards the inside. How far is known from the lattice and the direction
-/// alone, so that chunks, slabs and all ways of extraction agree. Directions differ, so that means of some cannot meet
-/// others.
+/// alone, so that chunks, slabs and all ways of extraction agree.
+///
+/// Crossings that are vertices each go by the same share of their edges. Three of a tetrahedron then make its face in
+/// small. On all four arrangements the normal of such a face lies between its edges, so that in a linear field it is not
+/// turned over, cubes that the box cuts thin aside. With merged ones among them directions differ, so that the mean of some cannot meet the line of others.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Apart {
     least: f32,
@@ -37,29 +62,28 @@ impl Apart {
         Self { least }
     }
 
-    /// The share of the edge in `direction` at which a crossing lies that is at `ratio`, among others of its point.
+    /// The share of the edge in `direction` at which a crossing lies that linear interpolation puts at `ratio`.
     #[inline(always)]
-    pub(crate) fn ratio(self, direction: usize, ratio: f32) -> f32 {
-        ratio.max(self.least * spread(direction))
+    pub(crate) fn ratio(self, company: Company, direction: usize, ratio: f32) -> f32 {
+        match company {
+            Company::Alone => ratio,
+            Company::Singles => ratio.max(self.least),
+            Company::Merged => ratio.max(self.least * SPREAD[direction % DIRECTIONS]),
+        }
     }
 }
 
-/// From 1 to 2, and no two directions' sums agree (multiples of the golden ratio).
-#[inline(always)]
-fn spread(direction: usize) -> f32 {
-    const fn spreads() -> [f32; 32] {
-        let mut spreads = [0.0; 32];
-        let mut d = 0;
-        while d < 32 {
-            let multiple = 0.618_034 * (d + 1) as f32;
-            spreads[d] = 1.0 + (multiple - multiple as u32 as f32);
-            d += 1;
-        }
-        spreads
+/// From 1 to 2, and generic: the parts of the golden ratio's multiples beyond whole numbers.
+static SPREAD: [f32; DIRECTIONS] = {
+    let mut spread = [0.0; DIRECTIONS];
+    let mut d = 0;
+    while d < DIRECTIONS {
+        let multiple = 0.618_034 * (d + 1) as f32;
+        spread[d] = 1.0 + (multiple - multiple as u32 as f32);
+        d += 1;
     }
-    static SPREADS: [f32; 32] = spreads();
-    SPREADS[direction % 32]
-}
+    spread
+};
 
 /// The share of its edge at which linear interpolation puts a crossing. `difference` is the isovalue less the value here.
 #[inline(always)]
@@ -67,4 +91,58 @@ pub(crate) fn linear_ratio(difference: f32, here: f32, there: f32) -> f32 {
     let ratio = difference / (there - here);
     // Samples that are not numbers, or two infinities, say nothing about the place.
     if ratio.is_finite() { ratio } else { 0.5 }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::lattice::Arrangement;
+    use crate::tetrahedra::spokes;
+    use glam::{DMat3, DVec3};
+    use mesh::Bounds;
+
+    /// Whether the normal of the face of three edges' far ends is a sum of the edges, none of them taken away.
+    pub(crate) fn normal_lies_between(edges: [DVec3; 3]) -> bool {
+        let [a, b, c] = edges;
+        let normal = DMat3::from_cols(a, b, c).transpose().inverse() * DVec3::ONE;
+        (DMat3::from_cols(a, b, c).inverse() * normal).cmpge(DVec3::splat(-1e-12)).all()
+    }
+
+    #[test]
+    fn a_small_face_at_a_sample_faces_where_the_tetrahedron_does() {
+        for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
+            let offsets = &arrangement.directions().offsets;
+            for tetrahedron in spokes(arrangement).iter().flat_map(|spoke| &spoke.ring) {
+                let others =
+                    tetrahedron.corners.map(|d| DVec3::from_array(offsets[usize::from(d)].map(f64::from)));
+                let corners = [DVec3::ZERO, others[0], others[1], others[2]];
+                for from in 0..4 {
+                    let edges = [1, 2, 3].map(|k| corners[(from + k) % 4] - corners[from]);
+                    assert!(normal_lies_between(edges), "{arrangement} {corners:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_displacement_is_small_and_can_be_told_from_none() {
+        for (min, max, spacing) in
+            [(-1.0, 1.0, 0.04), (-1.0, 1.0, 0.004), (999.0, 1001.0, 0.1), (0.0, 3.0, 1.0)]
+        {
+            let bounds = Bounds { min: glam::Vec3::splat(min), max: glam::Vec3::splat(max) };
+            let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, spacing).unwrap();
+            let apart = Apart::new(&lattice, Topology::Guarded);
+            for company in [Company::Singles, Company::Merged] {
+                for direction in 0..DIRECTIONS {
+                    let way = apart.ratio(company, direction, 0.0) * spacing;
+                    let steps = way / (max * f32::EPSILON);
+                    assert!((15.0..=33.0).contains(&steps), "{steps}");
+                    assert_eq!(apart.ratio(company, direction, 0.4), 0.4);
+                }
+            }
+            assert_eq!(apart.ratio(Company::Alone, 0, 0.0), 0.0);
+            let published = Apart::new(&lattice, Topology::Published);
+            assert_eq!(published.ratio(Company::Singles, 0, 0.0), 0.0);
+        }
+    }
 }

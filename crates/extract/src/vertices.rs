@@ -20,7 +20,7 @@ use crate::lattice::{
 use crate::memory::filled;
 use crate::placement::{CrossingPlacer, Surroundings};
 use crate::settings::{Clustering, ExtractSettings, Topology};
-use crate::spot::{Apart, linear_ratio};
+use crate::spot::{Apart, Company, linear_ratio};
 
 /// One byte a sample point, 1 inside, with room at both ends so that every step to a neighbour stays in it.
 #[derive(Debug)]
@@ -172,10 +172,9 @@ impl<'a> VertexStage<'a> {
         self.crossing_ends += u64::from(crossing.count_ones());
         let clusters = self.clusters(crossing, near, incident);
         self.positions.try_reserve(clusters.sets().len())?;
-        if clusters.sets().len() > 1 {
-            for direction in members(near) {
-                ratios[direction] = self.apart.ratio(direction, ratios[direction]);
-            }
+        let company = Company::of(clusters.sets().len(), near.count_ones());
+        for direction in members(near) {
+            ratios[direction] = self.apart.ratio(company, direction, ratios[direction]);
         }
         for &cluster in clusters.sets() {
             self.place(point, position, cluster, &ratios, ways.as_ref());

@@ -12,7 +12,7 @@ use crate::level::Level;
 use crate::memory::filled;
 use crate::placement::crossing_ratio;
 use crate::settings::{ExtractSettings, Placement};
-use crate::spot::{Apart, linear_ratio};
+use crate::spot::{Apart, Company, linear_ratio};
 use crate::trace::VertexKey;
 use crate::vertices::Ties;
 
@@ -250,7 +250,7 @@ impl<'a> Placer<'a> {
         let bounds = self.lattice.bounds();
         let isovalue = self.isovalue;
         // Of the edge alone: a chunk need not know whether the point has other vertices.
-        let ratio = self.apart.ratio(direction, linear_ratio(isovalue - here, here, there));
+        let ratio = self.apart.ratio(Company::Singles, direction, linear_ratio(isovalue - here, here, there));
         let position = (way * ratio + from).min(bounds.max).max(bounds.min);
         vertices.positions.try_reserve(1)?;
         vertices.positions.push(position);

@@ -6,6 +6,7 @@ use glam::Vec3;
 use mesh::Bounds;
 
 use super::cut::{Cut, Step, turn};
+use crate::spot::tests::normal_lies_between;
 use crate::{Arrangement, Lattice};
 
 const BOTH: [Arrangement; 2] = [Arrangement::FiveTetrahedra, Arrangement::FaceCentred];
@@ -115,6 +116,21 @@ fn counts_are_the_formulas() {
             assert_eq!(count(2), lattice.needed_edges(), "{arrangement:?} {cells:?} edges");
             assert_eq!(count(4), lattice.tetrahedra(), "{arrangement:?} {cells:?} tetrahedra");
             assert_eq!(count(1) + count(3), count(2) + count(4) + 1, "a ball");
+        }
+    }
+}
+
+/// So that a sample that equals the isovalue turns no triangle over ([`crate::spot::Apart`]).
+#[test]
+fn normals_of_faces_lie_between_the_edges_that_lead_there() {
+    for arrangement in BOTH {
+        let cut = Cut::of(arrangement);
+        for corners in (0..2).flat_map(|parity| tetrahedra_at(&cut, [parity, 0, 0]).collect::<Vec<_>>()) {
+            let corners = corners.map(|corner| glam::DVec3::from_array(corner.map(f64::from)));
+            for from in 0..4 {
+                let edges = [1, 2, 3].map(|k| corners[(from + k) % 4] - corners[from]);
+                assert!(normal_lies_between(edges), "{arrangement} {corners:?}");
+            }
         }
     }
 }

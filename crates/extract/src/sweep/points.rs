@@ -14,7 +14,7 @@ use super::rule::ClusterRule;
 use super::signs::Signs;
 use crate::lattice::{DIRECTIONS, DirectionSet, members};
 use crate::placement::{CrossingPlacer, Surroundings};
-use crate::spot::{Apart, linear_ratio};
+use crate::spot::{Apart, Company, linear_ratio};
 use crate::trace::VertexKey;
 
 /// Samples, by row.
@@ -194,13 +194,13 @@ impl<R: ClusterRule> PointPass<'_, R> {
         if near == 0 {
             return Record::new(first, near, crossing, inside, Numbering::One);
         }
-        let place = |cluster: DirectionSet, alone: bool| {
-            self.place(point, layer, cluster, alone, value, difference, &there)
+        let place = |cluster: DirectionSet, company: Company| {
+            self.place(point, layer, cluster, company, value, difference, &there)
         };
         if self.rule.is_one(crossing, near, present) {
             placed.numbered += 1;
             if let Some(positions) = positions {
-                positions.push(place(near, true));
+                positions.push(place(near, Company::Alone));
                 if self.has_more {
                     self.add_more(point, layer, &[near], row_start, neighbours, placed);
                 }
@@ -209,9 +209,10 @@ impl<R: ClusterRule> PointPass<'_, R> {
         }
         let clusters = self.rule.partition(crossing, near, present);
         let count = clusters.sets().len();
+        let company = Company::of(count, near.count_ones());
         placed.numbered += count as u64;
         if let Some(positions) = &mut positions {
-            positions.extend(clusters.sets().iter().map(|&cluster| place(cluster, count == 1)));
+            positions.extend(clusters.sets().iter().map(|&cluster| place(cluster, company)));
             if self.has_more {
                 self.add_more(point, layer, clusters.sets(), row_start, neighbours, placed);
             }
@@ -257,7 +258,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
         placed.targets.extend(clusters.iter().map(|&cluster| placer.place(&around, cluster)));
     }
 
-    /// The unweighted mean of the cluster's crossings, clamped to the box; `alone` if the point has no other vertex.
+    /// The unweighted mean of the cluster's crossings, clamped to the box.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "the body of the innermost loop")]
     fn place(
@@ -265,15 +266,14 @@ impl<R: ClusterRule> PointPass<'_, R> {
         point: &Point,
         layer: usize,
         cluster: DirectionSet,
-        alone: bool,
+        company: Company,
         value: f32,
         difference: f32,
         there: &[f32; 16],
     ) -> Vec3 {
         let (grid, position) = (self.grid, Vec3A::from(point.position));
         let ratio = |direction: usize| {
-            let ratio = linear_ratio(difference, value, there[direction]);
-            if alone { ratio } else { self.apart.ratio(direction, ratio) }
+            self.apart.ratio(company, direction, linear_ratio(difference, value, there[direction]))
         };
         if !point.regular {
             return self.place_at_border(point, layer, cluster, ratio);
