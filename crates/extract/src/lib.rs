@@ -54,7 +54,7 @@
 //!   may be scraps of their own. A sample equal to the isovalue puts all its crossings in one place, as vertices of
 //!   their own: triangles without area. A crossing in the very middle of an edge has a vertex at each end, of which one
 //!   is used; guarded, it belongs to the inside end.
-//! - Means of crossings can lie in a line, so that a triangle between clusters has no area: of 27,000 volumes of noise with
+//! - Means of crossings can lie in a line, so that a triangle between clusters has no area: of 40,000 volumes of noise with
 //!   few levels one had one such triangle; scans of whole numbers had none.
 //! - Nothing is said about triangles that intersect, and a feature thinner than the spacing can be missed.
 //!
