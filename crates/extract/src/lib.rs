@@ -83,8 +83,8 @@
 //! With [`Positions::Indexed`] the lattice is streamed: a few layers in memory, then the mesh; slabs of layers on
 //! several threads; samples taken only where the field does not rule the surface out ([`ScalarField::slope`]), or
 //! given ([`Source::Samples`]). An [`Extractor`] keeps its buffers from one volume to the next. With
-//! [`Positions::Accumulated`], for comparison with the published evaluation, all samples and edges are stored. So are
-//! the samples of the arrangements that are cut cube by cube, of which every point is sampled.
+//! [`Positions::Accumulated`], for comparison with the published evaluation, all samples and edges are stored. The
+//! arrangements that are cut cube by cube are streamed by an extractor of their own.
 //!
 //! # Odd input
 //!

@@ -33,6 +33,32 @@ fn limits() {
     memory_running_out_is_an_error();
     wherever_memory_runs_out_there_is_an_error();
     a_long_row_takes_what_crosses();
+    lattices_cut_by_cubes_take_what_they_say();
+}
+
+/// Of a lattice of which a sixtieth would be too much if it were stored.
+fn lattices_cut_by_cubes_take_what_they_say() {
+    let settings = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    let sphere: &dyn ScalarField = &Sphere { radius: 0.8 };
+    for arrangement in [Arrangement::FiveTetrahedra, Arrangement::FaceCentred] {
+        let fine = Lattice::try_new(arrangement, bounds, 1.0 / 128.0).unwrap();
+        for threads in [1, 2] {
+            let execution = Execution { threads };
+            let run = || extract::extract(sphere, &fine, &settings, &execution);
+            let counts = run().unwrap().counts;
+            let bytes = fine.memory_bytes_for(&settings, &execution);
+            assert!(
+                60 * bytes < threads as u64 * 3 * fine.memory_bytes(),
+                "{bytes} of {}",
+                fine.memory_bytes()
+            );
+            assert_eq!(within(MB / 4, run).unwrap_err(), ExtractError::OutOfMemory { bytes });
+            // Vectors double as they grow, and those of slabs are joined.
+            let mesh = 4 * (counts.vertex_bytes + counts.index_bytes);
+            assert!(within(bytes as usize + mesh as usize + MB, run).is_ok(), "{arrangement:?}");
+        }
+    }
 }
 
 /// With many amounts from too little to enough on top of what the lattice takes, so that one request after another is

@@ -21,6 +21,7 @@ fn allocations() {
     the_second_volume_of_a_size_allocates_nothing();
     given_samples_allocate_nothing_either();
     an_extractor_holds_what_the_lattice_says();
+    a_lattice_cut_by_cubes_takes_what_it_says();
 }
 
 fn cube() -> Bounds {
@@ -114,5 +115,18 @@ fn an_extractor_holds_what_the_lattice_says() {
         let held = (change.bytes_allocated - change.bytes_deallocated) as f64;
         let told = lattice.sweep_bytes(1) as f64;
         assert!(held > 0.98 * told && held < 1.1 * told, "{arrangement:?}: {held} bytes, {told} told");
+    }
+}
+
+/// The same of the extractor that keeps no buffers: what it has had.
+fn a_lattice_cut_by_cubes_takes_what_it_says() {
+    for arrangement in [Arrangement::FiveTetrahedra, Arrangement::FaceCentred] {
+        let lattice = Lattice::try_new(arrangement, cube(), 0.01).unwrap();
+        let settings = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
+        let nothing: &dyn ScalarField = &Sphere { radius: -1.0 };
+        let region = Region::new(ALLOCATOR);
+        extract::extract(nothing, &lattice, &settings, &ONE).unwrap();
+        let (taken, told) = (region.change().bytes_allocated as f64, lattice.sweep_bytes(1) as f64);
+        assert!(taken > 0.98 * told && taken < 1.1 * told, "{arrangement:?}: {taken} bytes, {told} told");
     }
 }

@@ -89,7 +89,8 @@ impl Lattice {
     /// records and scratch. With indexed positions it is [`sweep_bytes`](Self::sweep_bytes), far less;
     /// [`memory_bytes_for`](Self::memory_bytes_for) chooses. The mesh comes on top.
     ///
-    /// Arrangements whose points differ in their edges are never streamed: samples, sides and one number a point.
+    /// Arrangements whose points differ in their edges have no accumulated positions; of them this is what storing would
+    /// take: samples, sides and one number a point.
     pub fn memory_bytes(&self) -> u64 {
         if self.arrangement.uniform().is_none() {
             return self.stored_samples() * (BYTES_PER_SAMPLE + BYTES_PER_SIDE + BYTES_PER_RECORD_NUMBER);
@@ -101,12 +102,11 @@ impl Lattice {
 
     /// What streaming extraction (indexed positions) of a field holds of the lattice at a time on `threads` threads: a
     /// few layers of samples, sign bits and point records each, and what is known of tiles of two by two columns; and
-    /// the coordinates along each axis, once. The mesh comes on top. Arrangements that cannot be streamed hold
-    /// [`memory_bytes`](Self::memory_bytes).
+    /// the coordinates along each axis, once. The mesh comes on top.
     pub fn sweep_bytes(&self, threads: u64) -> u64 {
         let [x, y, z] = self.stored_grid().map(u64::from);
         if self.arrangement.uniform().is_none() {
-            return self.memory_bytes();
+            return self.split_bytes(threads);
         }
         // Layers that a lattice edge can reach.
         let reach = match self.arrangement {
@@ -119,6 +119,24 @@ impl Lattice {
         let tiles = x.div_ceil(2) * y.div_ceil(2) * BYTES_PER_TILE;
         let rows = y * ((3 * reach + 1) * samples_and_signs + (2 * reach + 1) * records);
         threads * (rows + tiles + x * BYTES_PER_COLUMN) + (2 * (x + y) + z) * BYTES_PER_COORDINATE
+    }
+
+    /// The same where points differ in their edges. Rows of bits have a word more at either end; tiles have two cells
+    /// along a side; records are those of crossings, which come on top like the mesh.
+    fn split_bytes(&self, threads: u64) -> u64 {
+        let [x, y, z] = self.stored_grid().map(u64::from);
+        // Layers that a lattice edge can reach, and columns of coordinates that are there once more.
+        let (reach, again) = match self.arrangement {
+            Arrangement::FaceCentred => (2, x),
+            _ => (1, 0),
+        };
+        let words = x.div_ceil(64);
+        // Of samples, whether they were taken, sides and crossings.
+        let in_sight = x * BYTES_PER_SAMPLE + 3 * 8 * (words + 2) + BYTES_PER_SIDE;
+        let starts = words * BYTES_PER_RECORD_NUMBER;
+        let tiles = x.div_ceil(2 * reach) * y.div_ceil(2 * reach) * BYTES_PER_TILE;
+        let rows = y * ((3 * reach + 1) * in_sight + (reach + 1) * starts);
+        threads * (rows + tiles + x * BYTES_PER_COLUMN) + (x + y + z + again) * BYTES_PER_COORDINATE
     }
 
     /// Bytes of the stored samples.

@@ -16,6 +16,9 @@ pub(super) struct Cut {
     pub(super) steps_a_cell: usize,
     /// The points of a cube that its tetrahedra use, from its lowest corner.
     pub(super) corners: Vec<Step>,
+    /// Those of them, by number, of which one has a crossing where the cube has: every edge of the cube has an end
+    /// there, or else their edges in the cube lead to all its points and to no other cube's.
+    pub(super) telling: Vec<usize>,
     /// The tetrahedra of a cube whose indices have an even sum, and of one with an odd sum.
     pub(super) tetrahedra: [Vec<CutTetrahedron>; 2],
     /// From a point to its neighbours. In order of storage, so that the first half leads back.
@@ -64,8 +67,14 @@ impl Cut {
         }
         steps.sort_unstable_by_key(|&[x, y, z]| (z, y, x));
         steps.dedup();
-        let mut cut =
-            Self { steps_a_cell, corners: Vec::new(), tetrahedra: [vec![], vec![]], steps, edges_of: [0; 8] };
+        let mut cut = Self {
+            steps_a_cell,
+            corners: Vec::new(),
+            telling: Vec::new(),
+            tetrahedra: [vec![], vec![]],
+            steps,
+            edges_of: [0; 8],
+        };
         for (parity, corners) in corners.into_iter().enumerate() {
             cut.corners.extend(corners.iter().flatten());
             cut.tetrahedra[parity] = corners.into_iter().map(|corners| cut.tetrahedron(corners)).collect();
@@ -85,6 +94,11 @@ impl Cut {
         }
         cut.corners.sort_unstable();
         cut.corners.dedup();
+        cut.telling = match cut.corners.iter().position(|&corner| corner == [1; 3]) {
+            // The centre of a cube of two steps.
+            Some(centre) if steps_a_cell == 2 => vec![centre],
+            _ => (0..cut.corners.len()).collect(),
+        };
         cut
     }
 

@@ -1,232 +1,227 @@
-//! The points of the lattice: their sides, their crossings, the vertices that belong to them.
+//! Vertex pass: a vertex on every crossing, point by point, and what is remembered of the points for the cells.
 
 use std::collections::TryReserveError;
 
 use glam::{DVec3, Vec3};
 
-use super::Coordinates;
-use super::cut::{Cut, Directions, Step};
-use crate::ExtractError;
-use crate::lattice::{Border, Lattice};
+use super::cut::{Cut, Directions};
+use super::grid::{Grid, LINES};
+use super::rows::{BitRows, is_set};
+use super::sampling::Values;
+use crate::lattice::Lattice;
 use crate::level::Level;
-use crate::memory::filled;
+use crate::memory::{filled, push};
 use crate::placement::crossing_ratio;
 use crate::settings::{ExtractSettings, Placement};
 use crate::spot::{Apart, Company, linear_ratio};
 use crate::trace::VertexKey;
 use crate::vertices::Ties;
 
-/// All points of the lattice, and what is known of those with a crossing.
-pub(super) struct Points<'a> {
-    lattice: &'a Lattice,
-    cut: &'a Cut,
-    grid: [usize; 3],
-    /// 1 inside.
-    sides: Vec<u8>,
-    /// One more than the number of the point's record; 0 is none.
-    record_of: Vec<u32>,
-    records: Vec<Record>,
-}
-
 /// The crossings that belong to a point; their vertices are numbered from `first` on, by direction.
-#[derive(Debug, Clone, Copy)]
-struct Record {
-    first: u32,
-    near: Directions,
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Record {
+    pub(super) first: u32,
+    pub(super) near: Directions,
 }
 
-/// The vertices of all points.
+impl Record {
+    /// The vertex in a direction, if it belongs to this point.
+    pub(super) fn vertex(self, direction: u8) -> Option<u32> {
+        let before = self.near & ((1 << direction) - 1);
+        (self.near >> direction & 1 != 0).then(|| self.first.wrapping_add(before.count_ones()))
+    }
+}
+
+/// A ring of layers of records, one for each point with a crossing.
+pub(super) struct Records {
+    layers: Vec<Layer>,
+}
+
+#[derive(Debug)]
+struct Layer {
+    records: Vec<Record>,
+    /// By word of points, how many records come before its own.
+    starts: Vec<u32>,
+}
+
+impl Records {
+    /// For the layers of a cell.
+    pub(super) fn new(grid: &Grid) -> Result<Self, TryReserveError> {
+        let layer = || -> Result<Layer, TryReserveError> {
+            let starts = filled(grid.words * grid.size[1], 0)?;
+            Ok(Layer { records: Vec::new(), starts })
+        };
+        Ok(Self { layers: (0..=grid.reach()).map(|_| layer()).collect::<Result<_, _>>()? })
+    }
+
+    fn layer(&self, layer: usize) -> &Layer {
+        &self.layers[layer % self.layers.len()]
+    }
+
+    /// The records of a row, by whether its points are active.
+    pub(super) fn row<'a>(
+        &'a self,
+        grid: &Grid,
+        [row, layer]: [usize; 2],
+        active: &'a BitRows,
+    ) -> RecordRow<'a> {
+        let of = self.layer(layer);
+        let starts = &of.starts[row * grid.words..][..grid.words];
+        RecordRow { records: &of.records, starts, active: active.row(row, layer) }
+    }
+}
+
+/// The records of a row.
+#[derive(Clone, Copy)]
+pub(super) struct RecordRow<'a> {
+    records: &'a [Record],
+    starts: &'a [u32],
+    active: &'a [u64],
+}
+
+impl RecordRow<'_> {
+    /// That of the point in a column; one without vertices, if it has no crossing.
+    pub(super) fn at(&self, column: usize) -> Record {
+        let (word, bit) = (column / 64, column % 64);
+        let active = self.active[word + 1];
+        if active >> bit & 1 == 0 {
+            return Record::default();
+        }
+        let before = (active & !(!0 << bit)).count_ones();
+        self.records[(self.starts[word] + before) as usize]
+    }
+}
+
+/// What the pass reads.
+pub(super) struct PointPass<'a> {
+    pub(super) grid: &'a Grid<'a>,
+    pub(super) values: Values<'a>,
+    pub(super) sides: &'a BitRows,
+    pub(super) active: &'a BitRows,
+    pub(super) isovalue: f32,
+    pub(super) ties: Ties,
+    pub(super) placer: &'a Placer<'a>,
+}
+
+/// The vertices of a slab.
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
+    /// How many were numbered, those beyond the slab's own layers too.
+    pub(super) numbered: u64,
     pub(super) positions: Vec<Vec3>,
     /// Where the settings want them, if elsewhere.
     pub(super) targets: Vec<Vec3>,
-    /// Lattice edges that cross the surface.
-    pub(super) crossings: u64,
+    /// Where they are asked for.
+    pub(super) keys: Option<Vec<VertexKey>>,
+    /// Lattice edges that cross the surface, seen from either end.
+    pub(super) crossing_ends: u64,
 }
 
-impl<'a> Points<'a> {
-    pub(super) fn new(lattice: &'a Lattice, cut: &'a Cut) -> Result<Self, TryReserveError> {
-        let grid = lattice.stored_grid().map(|n| n as usize);
-        let len = grid.iter().product();
-        Ok(Self {
-            lattice,
-            cut,
-            grid,
-            sides: filled(len, 0)?,
-            record_of: filled(len, 0)?,
-            records: Vec::new(),
+impl PointPass<'_> {
+    /// Visits a layer. Of a slab's own, vertices are placed; of others, numbered.
+    pub(super) fn layer(
+        &self,
+        layer: usize,
+        is_own: bool,
+        records: &mut Records,
+        vertices: &mut Vertices,
+    ) -> Result<(), TryReserveError> {
+        let ring = records.layers.len();
+        let Layer { records, starts } = &mut records.layers[layer % ring];
+        records.clear();
+        for row in 0..self.grid.size[1] {
+            let active = self.active.row(row, layer);
+            let mut lines = None;
+            for word in 0..self.grid.words {
+                let mut left = active[word + 1];
+                if left == 0 {
+                    continue;
+                }
+                starts[row * self.grid.words + word] = records.len() as u32;
+                let lines = lines.get_or_insert_with(|| self.lines(row, layer));
+                records.try_reserve(left.count_ones() as usize)?;
+                while left != 0 {
+                    let column = 64 * word + left.trailing_zeros() as usize;
+                    left &= left - 1;
+                    records.push(self.point([column, row, layer], lines, is_own, vertices)?);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The sides of the rows that the neighbours of a row's points lie in.
+    fn lines(&self, row: usize, layer: usize) -> [Option<&[u64]>; LINES] {
+        std::array::from_fn(|i| {
+            let line = (i < self.grid.lines.len()).then(|| self.grid.line(i, row, layer)).flatten();
+            line.map(|[y, z]| self.sides.row(y, z))
         })
     }
 
-    /// How many there are.
-    pub(super) fn len(&self) -> usize {
-        self.sides.len()
-    }
-
-    /// Points a row, rows a layer, layers.
-    pub(super) fn grid(&self) -> [usize; 3] {
-        self.grid
-    }
-
-    /// The place of a point in storage.
-    pub(super) fn index(&self, [x, y, z]: [usize; 3]) -> usize {
-        (z * self.grid[1] + y) * self.grid[0] + x
-    }
-
-    /// How much farther a place in a cube is stored than its lowest corner.
-    pub(super) fn step(&self, place: Step) -> usize {
-        self.index(place.map(|i| i as usize))
-    }
-
-    pub(super) fn is_inside(&self, point: usize) -> bool {
-        self.sides[point] != 0
-    }
-
-    /// Inside is a value above the isovalue; equal is outside, and so is `NaN`.
-    pub(super) fn find_sides(&mut self, samples: &[f32], isovalue: f32) {
-        for (side, value) in self.sides.iter_mut().zip(samples) {
-            *side = u8::from(isovalue - value < 0.0);
-        }
-    }
-
-    /// The vertex of a crossing edge: of the end that is stored first, or else of the other.
-    ///
-    /// # Panics
-    /// If neither end has one: the edge does not cross.
-    pub(super) fn vertex(&self, from: usize, direction: u8, to: usize, back: u8) -> u32 {
-        let of = |point: usize, direction: u8| {
-            let record = self.records[self.record_of[point].checked_sub(1)? as usize];
-            let before = record.near & ((1 << direction) - 1);
-            (record.near >> direction & 1 != 0).then(|| record.first.wrapping_add(before.count_ones()))
-        };
-        of(from, direction).or_else(|| of(to, back)).expect("a crossing edge has a vertex at one of its ends")
-    }
-
-    /// Places a vertex on every crossing, point by point.
-    pub(super) fn place(
-        &mut self,
-        samples: &[f32],
-        coordinates: &Coordinates,
-        settings: &ExtractSettings,
-        level: Option<Level>,
-        most_vertices: u32,
-        mut keys: Option<&mut Vec<VertexKey>>,
-    ) -> Result<Vertices, ExtractError> {
-        let mut vertices = Vertices::default();
-        let placer = Placer::new(self.lattice, self.cut, settings, level);
-        let (ties, border) = (Ties::of(settings.topology), Border::of(settings));
-        let first = self.lattice.first_stored().map(|i| i as usize);
-        let strides = [1, self.grid[0] as isize, (self.grid[0] * self.grid[1]) as isize];
-        let hops: Vec<isize> = self
-            .cut
-            .steps
-            .iter()
-            .map(|step| (0..3).map(|axis| isize::from(step[axis]) * strides[axis]).sum())
-            .collect();
-        let mut crossing_ends = 0;
-        let mut mixed = filled(self.grid[0], 0)?;
-        for (z, y) in (0..self.grid[2]).flat_map(|z| (0..self.grid[1]).map(move |y| (z, y))) {
-            self.mark_mixed(y, z, &mut mixed);
-            for x in (0..self.grid[0]).filter(|&x| mixed[x] != 0) {
-                let (place, point) = ([x, y, z], self.index([x, y, z]));
-                let inside = self.is_inside(point);
-                let here = settings.isovalue - samples[point];
-                let edges =
-                    self.cut.edges_of[self.cut.class([0, 1, 2].map(|axis| place[axis] + first[axis]))];
-                let is_regular = border == Border::BeyondBox
-                    || (0..3).all(|axis| {
-                        let (low, end) = self.lattice.regular_points(axis);
-                        (low..end).contains(&((place[axis] + first[axis]) / self.cut.steps_a_cell))
-                    });
-                let record = Record { first: vertices.positions.len() as u32, near: 0 };
-                let mut near = 0;
-                let mut ends = 0;
-                for direction in (0..hops.len()).filter(|d| edges >> d & 1 != 0) {
-                    if !self.has_neighbour(place, self.cut.steps[direction]) {
-                        continue;
-                    }
-                    let neighbour = point.strict_add_signed(hops[direction]);
-                    if self.is_inside(neighbour) == inside {
-                        continue;
-                    }
-                    ends += 1;
-                    let there = settings.isovalue - samples[neighbour];
-                    if !ties.is_near(inside, here, there) {
-                        continue;
-                    }
-                    near |= 1 << direction;
-                    let values = [samples[point], samples[neighbour]];
-                    let from = coordinates.at(place);
-                    let way = match is_regular {
-                        true => placer.edges[direction],
-                        false => coordinates.at(self.neighbour(place, self.cut.steps[direction])) - from,
-                    };
-                    placer.place(from, (direction, way), values, &mut vertices)?;
-                    if let Some(keys) = keys.as_deref_mut() {
-                        keys.try_reserve(1)?;
-                        keys.push(VertexKey::new(self.lattice.point_number(place), direction));
-                    }
-                }
-                if ends > 0 {
-                    crossing_ends += ends;
-                    self.records.try_reserve(1)?;
-                    self.records.push(Record { near, ..record });
-                    self.record_of[point] = self.records.len() as u32;
-                }
-                if vertices.positions.len() > most_vertices as usize {
-                    return Err(ExtractError::TooManyVertices { limit: most_vertices });
-                }
-            }
-        }
-        // Each crossing was seen from both ends.
-        vertices.crossings = crossing_ends / 2;
-        Ok(vertices)
-    }
-
-    /// Marks the points of a row that are not on the side of every point that an edge could lead to.
-    fn mark_mixed(&self, y: usize, z: usize, mixed: &mut [u8]) {
-        let nx = self.grid[0];
-        let here = &self.sides[self.index([0, y, z])..][..nx];
-        mixed.fill(0);
-        for &step in &self.cut.steps {
-            let [dx, dy, dz] = step.map(isize::from);
-            let (ny, nz) = (y.wrapping_add_signed(dy), z.wrapping_add_signed(dz));
-            if ny >= self.grid[1] || nz >= self.grid[2] {
+    fn point(
+        &self,
+        place: [usize; 3],
+        lines: &[Option<&[u64]>; LINES],
+        is_own: bool,
+        vertices: &mut Vertices,
+    ) -> Result<Record, TryReserveError> {
+        let Self { grid, values, isovalue, .. } = *self;
+        let [x, y, z] = place;
+        let inside = is_set(self.sides.row(y, z), x);
+        let value = values.at(place);
+        let here = isovalue - value;
+        let mut record = Record { first: vertices.numbered as u32, near: 0 };
+        let mut left = grid.kind(y, z).edges_of[x % 2];
+        while left != 0 {
+            let direction = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let step = grid.cut.steps[direction];
+            let column = x.wrapping_add_signed(isize::from(step[0]));
+            let Some(line) = lines[grid.line[direction]].filter(|_| column < grid.size[0]) else { continue };
+            if is_set(line, column) == inside {
                 continue;
             }
-            let there = &self.sides[self.index([0, ny, nz])..][..nx];
-            let skip = dx.unsigned_abs().min(nx);
-            let (mine, theirs) = if dx < 0 { (skip, 0) } else { (0, skip) };
-            let pairs = here[mine..].iter().zip(&there[theirs..]);
-            for (mark, (a, b)) in mixed[mine..].iter_mut().zip(pairs) {
-                *mark |= a ^ b;
+            vertices.crossing_ends += u64::from(is_own);
+            let [_, row, layer] =
+                [0, 1, 2].map(|axis| place[axis].wrapping_add_signed(isize::from(step[axis])));
+            let neighbour = values.at([column, row, layer]);
+            let there = isovalue - neighbour;
+            if !self.ties.is_near(inside, here, there) {
+                continue;
+            }
+            record.near |= 1 << direction;
+            vertices.numbered += 1;
+            if !is_own {
+                continue;
+            }
+            let way = grid.way(place, direction, self.placer.edges[direction]);
+            self.placer.place(grid.coordinates.at(place), (direction, way), [value, neighbour], vertices)?;
+            if let Some(keys) = &mut vertices.keys {
+                push(keys, VertexKey::new(grid.lattice.point_number(place), direction))?;
             }
         }
-    }
-
-    fn neighbour(&self, place: [usize; 3], step: Step) -> [usize; 3] {
-        [0, 1, 2].map(|axis| place[axis].strict_add_signed(isize::from(step[axis])))
-    }
-
-    fn has_neighbour(&self, place: [usize; 3], step: Step) -> bool {
-        (0..3).all(|axis| place[axis].wrapping_add_signed(isize::from(step[axis])) < self.grid[axis])
+        Ok(record)
     }
 }
 
 /// Where on its edge a crossing is.
-struct Placer<'a> {
+pub(super) struct Placer<'a> {
     lattice: &'a Lattice,
     isovalue: f32,
     apart: Apart,
-    edges: Vec<Vec3>,
+    pub(super) edges: Vec<Vec3>,
     /// Whether the settings want vertices elsewhere, and to find roots with.
     refines: bool,
     level: Option<Level<'a>>,
 }
 
 impl<'a> Placer<'a> {
-    fn new(lattice: &'a Lattice, cut: &Cut, settings: &ExtractSettings, level: Option<Level<'a>>) -> Self {
+    pub(super) fn new(
+        lattice: &'a Lattice,
+        cut: &Cut,
+        settings: &ExtractSettings,
+        level: Option<Level<'a>>,
+    ) -> Self {
         let step = lattice.spacing() / cut.steps_a_cell as f32;
         let edges = cut.steps.iter().map(|step| Vec3::from_array(step.map(f32::from)));
         Self {
@@ -240,7 +235,7 @@ impl<'a> Placer<'a> {
         }
     }
 
-    fn place(
+    pub(super) fn place(
         &self,
         from: Vec3,
         (direction, way): (usize, Vec3),

@@ -317,7 +317,7 @@ impl Lattice {
 }
 
 /// How many threads there is work for, and how many slabs they share.
-fn threads_and_slabs(execution: &Execution, layers: usize) -> (usize, usize) {
+pub(crate) fn threads_and_slabs(execution: &Execution, layers: usize) -> (usize, usize) {
     let threads = match execution.threads {
         0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
         threads => threads,
@@ -366,7 +366,7 @@ fn sweep_all<R: ClusterRule>(
 }
 
 /// Wall-clock time, divided as the threads spent theirs.
-fn shares(pieces: &[Piece], elapsed: Duration) -> StageTimes {
+pub(crate) fn shares(pieces: &[Piece], elapsed: Duration) -> StageTimes {
     let sum = |of: fn(&SlabTimes) -> Duration| pieces.iter().map(|piece| of(&piece.times)).sum::<Duration>();
     let [sampling, vertex, geometry] = [sum(|t| t.sampling), sum(|t| t.vertex), sum(|t| t.geometry)];
     let all = (sampling + vertex + geometry).as_secs_f64().max(f64::MIN_POSITIVE);
@@ -379,7 +379,7 @@ fn shares(pieces: &[Piece], elapsed: Duration) -> StageTimes {
 
 /// A slab's part of the whole mesh.
 #[derive(Debug, Clone, Copy)]
-struct Seam {
+pub(crate) struct Seam {
     /// Vertices before the slab's own.
     vertices: usize,
     /// Triangles before `head` may touch vertices of the slab below; those from `tail` on, of the slab above.
@@ -388,7 +388,7 @@ struct Seam {
 }
 
 /// Appends all pieces to the first one, with vertex numbers of the whole.
-fn join(pieces: &mut [Piece], most_vertices: u32) -> Result<Vec<Seam>, ExtractError> {
+pub(crate) fn join(pieces: &mut [Piece], most_vertices: u32) -> Result<Vec<Seam>, ExtractError> {
     let (first, rest) = pieces.split_first_mut().expect("there is a slab");
     let mut seams = Vec::new();
     if rest.is_empty() {
@@ -429,7 +429,7 @@ fn join(pieces: &mut [Piece], most_vertices: u32) -> Result<Vec<Seam>, ExtractEr
 
 /// Area-weighted mean normals, as [`vertex_normals`](crate::normals::vertex_normals), to the bit: each vertex adds up
 /// its triangles in their order. With seams, each thread does the vertices of a run of slabs.
-fn make_normals(
+pub(crate) fn make_normals(
     mesh: &mut TriangleMesh,
     seams: Option<&Vec<Seam>>,
     threads: usize,

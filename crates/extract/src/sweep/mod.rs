@@ -26,7 +26,10 @@ mod tiles;
 use std::collections::TryReserveError;
 
 pub use extractor::Extractor;
+pub(crate) use extractor::{join, make_normals, shares, threads_and_slabs};
+pub(crate) use slab::Piece;
 pub use source::Source;
+pub(crate) use tiles::{Known, Span, Tile};
 
 /// Makes a vector `len` long. What it held stays if it is long enough; new room is asked for, not taken.
 fn refill<T: Copy>(vector: &mut Vec<T>, len: usize, value: T) -> Result<(), TryReserveError> {

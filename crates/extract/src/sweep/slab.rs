@@ -48,28 +48,28 @@ pub(super) struct Workspace {
 /// Vertices are numbered from the lowest layer that the slab's triangles can touch, so that the numbers of the whole
 /// surface are these plus a constant, in the layers above and below the slab too.
 #[derive(Debug, Default)]
-pub(super) struct Piece {
+pub(crate) struct Piece {
     /// Of the slab's own layers.
-    pub(super) positions: Vec<Vec3>,
+    pub(crate) positions: Vec<Vec3>,
     /// Where the placer wants them.
-    pub(super) targets: Vec<Vec3>,
-    pub(super) surface: Triangulation,
+    pub(crate) targets: Vec<Vec3>,
+    pub(crate) surface: Triangulation,
     /// Vertices numbered in the layers below the slab.
-    pub(super) below: u64,
-    pub(super) crossing_ends: u64,
+    pub(crate) below: u64,
+    pub(crate) crossing_ends: u64,
     /// Triangles that may touch a vertex below the slab, all before this one.
-    pub(super) head: usize,
+    pub(crate) head: usize,
     /// Triangles that may touch a vertex above the slab, all from this one on.
-    pub(super) tail: usize,
-    pub(super) times: SlabTimes,
+    pub(crate) tail: usize,
+    pub(crate) times: SlabTimes,
 }
 
 /// Time spent in the passes.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct SlabTimes {
-    pub(super) sampling: Duration,
-    pub(super) vertex: Duration,
-    pub(super) geometry: Duration,
+pub(crate) struct SlabTimes {
+    pub(crate) sampling: Duration,
+    pub(crate) vertex: Duration,
+    pub(crate) geometry: Duration,
 }
 
 impl Workspace {

@@ -20,7 +20,7 @@ pub(super) const TILE: usize = 2;
 
 /// What is known of a tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) enum Tile {
+pub(crate) enum Tile {
     #[default]
     Outside,
     Inside,
@@ -32,25 +32,25 @@ pub(super) enum Tile {
 
 /// Neighbouring tiles of one kind.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Span {
-    pub(super) tile: Tile,
-    pub(super) first: u32,
-    pub(super) end: u32,
+pub(crate) struct Span {
+    pub(crate) tile: Tile,
+    pub(crate) first: u32,
+    pub(crate) end: u32,
 }
 
 /// A value, and what it says about points nearby.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Known {
-    pub(super) at: Vec3,
-    pub(super) value: f32,
+pub(crate) struct Known {
+    pub(crate) at: Vec3,
+    pub(crate) value: f32,
     /// At most how fast the field changes from here on.
-    pub(super) slope: f32,
+    pub(crate) slope: f32,
 }
 
 impl Known {
     /// Up to this distance, squared, no point is on the other side; negative or `NaN` if there is none such.
     #[inline]
-    pub(super) fn squared_reach(&self, isovalue: f32) -> f32 {
+    pub(crate) fn squared_reach(&self, isovalue: f32) -> f32 {
         // What a field may be off by rounding: 1e-5 of either value, of which the other is at most
         // |value| + |value - isovalue|.
         let slack = (self.value.abs() + isovalue.abs()) * 4e-5;
@@ -61,7 +61,7 @@ impl Known {
     }
 
     /// The known value for the field, if there is one.
-    pub(super) fn hint(&self) -> Option<(Vec3, f32)> {
+    pub(crate) fn hint(&self) -> Option<(Vec3, f32)> {
         (!self.value.is_nan()).then_some((self.at, self.value))
     }
 }

@@ -1,0 +1,100 @@
+//! A slab of cells, streamed from the bottom up: sides, then crossings and their samples, then vertices, each pass as
+//! many layers behind the one before as a lattice edge can reach; then the triangles of the cells below.
+
+use std::collections::TryReserveError;
+use std::ops::Range;
+use std::time::Instant;
+
+use super::cells::triangulate_layer;
+use super::grid::Grid;
+use super::points::{Placer, PointPass, Records, Vertices};
+use super::sampling::{Samples, Sampling};
+use crate::ExtractError;
+use crate::sweep::{Piece, Source};
+use crate::vertices::Ties;
+
+/// What all slabs of an extraction share.
+pub(super) struct Job<'a> {
+    pub(super) grid: &'a Grid<'a>,
+    pub(super) source: Source<'a>,
+    pub(super) isovalue: f32,
+    pub(super) ties: Ties,
+    pub(super) placer: &'a Placer<'a>,
+    pub(super) most_vertices: u32,
+    /// Whether vertices get keys and triangles the numbers of their cells.
+    pub(super) traced: bool,
+}
+
+/// Buffers of one thread, a few layers each.
+pub(super) struct Workspace {
+    samples: Samples,
+    records: Records,
+}
+
+impl Workspace {
+    pub(super) fn new(grid: &Grid, source: Source) -> Result<Self, TryReserveError> {
+        Ok(Self { samples: Samples::new(grid, source)?, records: Records::new(grid)? })
+    }
+}
+
+/// Extracts the layers `own` of cells: their triangles, and the vertices of their points but for those of the highest
+/// layer, which are the next slab's. Vertices are numbered from the slab's first on, so that the numbers of the whole
+/// surface are these plus a constant.
+pub(super) fn sweep(
+    job: &Job,
+    own: Range<usize>,
+    Workspace { samples, records }: &mut Workspace,
+    piece: &mut Piece,
+) -> Result<(), ExtractError> {
+    let Job { grid, source, isovalue, ties, placer, .. } = *job;
+    let (steps, reach, layers) = (grid.cut.steps_a_cell, grid.reach(), grid.size[2]);
+    let (lowest, highest) = (own.start * steps, own.end * steps);
+    let around = |n: usize| lowest.saturating_sub(n)..layers.min(highest + n + 1);
+    let (placed, sampled, sided) = (around(0), around(reach), around(2 * reach));
+    let sampling = Sampling { grid, source, isovalue };
+    let mut vertices = Vertices { keys: job.traced.then(Vec::new), ..Vertices::default() };
+    piece.surface.trace = job.traced.then(Default::default);
+    let mut last = Instant::now();
+    let mut lap = || {
+        let now = Instant::now();
+        now - std::mem::replace(&mut last, now)
+    };
+    for step in sided.start..=highest + 2 * reach {
+        if sided.contains(&step) {
+            samples.find_sides(sampling, step);
+        }
+        if let Some(layer) = step.checked_sub(reach).filter(|layer| sampled.contains(layer)) {
+            samples.find_crossings(sampling, layer);
+        }
+        piece.times.sampling += lap();
+
+        let Some(layer) = step.checked_sub(2 * reach).filter(|layer| placed.contains(layer)) else {
+            continue;
+        };
+        let (sides, active) = (&samples.sides, &samples.active);
+        let values = samples.values(grid, source);
+        let pass = PointPass { grid, values, sides, active, isovalue, ties, placer };
+        pass.layer(layer, layer < highest || layer + 1 == layers, records, &mut vertices)?;
+        if vertices.numbered > u64::from(job.most_vertices) {
+            return Err(ExtractError::TooManyVertices { limit: job.most_vertices });
+        }
+        piece.times.vertex += lap();
+
+        let Some(cells) = (layer / steps).checked_sub(1).filter(|&z| layer % steps == 0 && own.contains(&z))
+        else {
+            continue;
+        };
+        if cells + 1 == own.end {
+            // Only the highest cells have vertices of the slab above.
+            piece.tail = piece.surface.triangles.len();
+        }
+        triangulate_layer(grid, sides, active, records, cells, &mut piece.surface)?;
+        piece.times.geometry += lap();
+    }
+    (piece.positions, piece.targets) = (vertices.positions, vertices.targets);
+    piece.crossing_ends = vertices.crossing_ends;
+    if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, vertices.keys) {
+        trace.keys = keys;
+    }
+    Ok(())
+}
