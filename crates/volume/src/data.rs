@@ -2,7 +2,7 @@
 
 use std::collections::TryReserveError;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use flate2::bufread::{MultiGzDecoder, ZlibDecoder};
@@ -126,14 +126,19 @@ pub(crate) fn open(path: &Path) -> Result<BufReader<File>, Problem> {
 }
 
 /// Reads the samples, from the data's first byte.
-pub(crate) fn read(mut input: impl BufRead, layout: &Layout) -> Result<Vec<f32>, Problem> {
+pub(crate) fn read(mut input: impl BufRead + Seek, layout: &Layout) -> Result<Vec<f32>, Problem> {
     for _ in 0..layout.skip.lines {
         if input.skip_until(b'\n')? == 0 {
             return Err(Problem::Truncated { got: 0, wanted: layout.samples });
         }
     }
     match layout.encoding {
-        Encoding::Raw => binary(input, layout),
+        Encoding::Raw => {
+            if layout.skip.bytes.is_none() {
+                skip_to_last(&mut input, layout)?;
+            }
+            binary(input, layout)
+        }
         Encoding::Gzip => binary(MultiGzDecoder::new(input), layout),
         Encoding::Zlib => binary(ZlibDecoder::new(input), layout),
         Encoding::Hex => binary(HexDecoder(input), layout),
@@ -148,13 +153,10 @@ fn binary(mut input: impl Read, layout: &Layout) -> Result<Vec<f32>, Problem> {
     let width = layout.kind.bytes();
     // Sizes were checked against the limit, hence no overflow.
     let wanted = layout.samples * width as u64;
-    let input: &mut dyn Read = match layout.skip.bytes {
-        Some(bytes) => {
-            io::copy(&mut (&mut input).take(bytes), &mut io::sink())?;
-            &mut input
-        }
-        None => &mut Tail::of(input, wanted)?,
-    };
+    if let Some(bytes) = layout.skip.bytes {
+        io::copy(&mut (&mut input).take(bytes), &mut io::sink())?;
+    }
+    let input: &mut dyn Read = &mut input;
     let mut values = Vec::new();
     let mut block = vec![0; BLOCK];
     let mut too_large = 0;
@@ -187,9 +189,26 @@ fn none_too_large(count: u64, values: Vec<f32>) -> Result<Vec<f32>, Problem> {
     if count == 0 { Ok(values) } else { Err(Problem::TooLarge { count, samples: values.len() as u64 }) }
 }
 
-/// Grows with what is there: what a header claims may be a lie.
+/// Grows with what is there, since what a header claims may be a lie; and no farther than to what it claims, since that
+/// was held against the limit.
 fn reserve(values: &mut Vec<f32>, more: usize, samples: u64) -> Result<(), Problem> {
-    values.try_reserve(more).map_err(|_: TryReserveError| Problem::OutOfMemory { samples })
+    let needed = values.len() + more;
+    if needed <= values.capacity() {
+        return Ok(());
+    }
+    let claimed = usize::try_from(samples).unwrap_or(usize::MAX);
+    let room = values.capacity().saturating_mul(2).min(claimed).max(needed);
+    let more = room - values.len();
+    values.try_reserve_exact(more).map_err(|_: TryReserveError| Problem::OutOfMemory { samples })
+}
+
+/// Leaves the input where its last samples start, or where it is if it has fewer.
+fn skip_to_last(input: &mut (impl Read + Seek), layout: &Layout) -> io::Result<()> {
+    let here = input.stream_position()?;
+    let end = input.seek(SeekFrom::End(0))?;
+    let wanted = layout.samples * layout.kind.bytes() as u64;
+    input.seek(SeekFrom::Start(here.max(end.saturating_sub(wanted))))?;
+    Ok(())
 }
 
 /// Reads until the buffer is full or the input ends.
@@ -204,28 +223,6 @@ fn fill(input: &mut dyn Read, buffer: &mut [u8]) -> io::Result<usize> {
         }
     }
     Ok(got)
-}
-
-/// The last bytes of an input whose length is not known.
-struct Tail {
-    bytes: io::Cursor<Vec<u8>>,
-}
-
-impl Tail {
-    fn of(mut input: impl Read, wanted: u64) -> io::Result<Self> {
-        let mut bytes = Vec::new();
-        input.read_to_end(&mut bytes)?;
-        let start = bytes.len().saturating_sub(usize::try_from(wanted).unwrap_or(usize::MAX));
-        let mut bytes = io::Cursor::new(bytes);
-        bytes.set_position(start as u64);
-        Ok(Self { bytes })
-    }
-}
-
-impl Read for Tail {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        self.bytes.read(buffer)
-    }
 }
 
 /// Bytes as two digits each, with white space anywhere.

@@ -65,11 +65,17 @@ pub enum Problem {
         sizes: Vec<u64>,
     },
     /// More samples than the limit, or than can be counted.
-    #[error("sizes {sizes:?} make more than the {limit} samples there is room for")]
+    #[error(
+        "sizes {sizes:?} need {}, four bytes a sample, and the limit is {}",
+        needed.map_or_else(|| "more memory than can be counted".to_owned(), |bytes| amount(bytes, f64::ceil) + " of memory"),
+        amount(4 * limit, f64::floor)
+    )]
     TooManySamples {
         /// The sizes as written.
         sizes: Vec<u64>,
-        /// The most there may be.
+        /// The bytes that their samples need, if they can be counted.
+        needed: Option<u64>,
+        /// The most samples there may be.
         limit: u64,
     },
     /// The steps from sample to sample span no space, or are not finite numbers.
@@ -135,6 +141,15 @@ impl Problem {
     pub(crate) fn unsupported(key: &'static str, value: &str, supported: &'static str) -> Self {
         Self::Unsupported { key, value: shortened(value), supported }
     }
+}
+
+/// `1.0 GiB`. What is needed is rounded up and what there is down, lest they look the same.
+fn amount(bytes: u64, rounded: fn(f64) -> f64) -> String {
+    let units = [(1 << 40, "TiB"), (1 << 30, "GiB"), (1 << 20, "MiB"), (1 << 10, "KiB")];
+    let Some((unit, name)) = units.into_iter().find(|(unit, _)| bytes >= *unit) else {
+        return format!("{bytes} bytes");
+    };
+    format!("{:.1} {name}", rounded(bytes as f64 / unit as f64 * 10.0) / 10.0)
 }
 
 /// A value may be anything, and long.

@@ -68,9 +68,10 @@ pub(crate) fn sample_count(sizes: &[u64], limit_bytes: u64) -> Result<u64, Probl
     // Eight bytes a sample in the file, four in memory, must be countable.
     let limit = (limit_bytes / 4).min(isize::MAX as u64 / 8);
     let product = sizes.iter().try_fold(1u64, |product, &size| product.checked_mul(size));
-    product
-        .filter(|&samples| samples <= limit)
-        .ok_or_else(|| Problem::TooManySamples { sizes: sizes.to_vec(), limit })
+    product.filter(|&samples| samples <= limit).ok_or_else(|| {
+        let needed = product.and_then(|samples| samples.checked_mul(4));
+        Problem::TooManySamples { sizes: sizes.to_vec(), needed, limit }
+    })
 }
 
 /// Where samples lie.

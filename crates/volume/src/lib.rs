@@ -77,7 +77,8 @@ pub struct Volume {
 /// are looked for from the header's folder.
 ///
 /// `limit_bytes` bounds the memory for samples, four bytes each; a header that claims more is an error before anything
-/// is read.
+/// is read. While they are read memory grows with the data that is there and never beyond what the header claims, but for
+/// a buffer, and data beyond the claim is an error as soon as it is met: compressed data cannot take more.
 ///
 /// # Errors
 /// [`VolumeError`], with the file, and the line of the header where one is to blame.
