@@ -425,3 +425,110 @@ fn what_cannot_be_done_is_said_in_one_line() {
     assert!(said.code == 2 && said.err.contains("nested deeper than 200 levels"));
     assert_eq!(std::fs::read_dir(folder.0.path()).unwrap().count(), usize::from(cfg!(unix)));
 }
+
+/// A header that claims so many bytes along each axis, as gzip.
+fn claim(side: u32) -> Vec<u8> {
+    format!("NRRD0004\ntype: uchar\ndimension: 3\nsizes: {side} {side} {side}\nencoding: gzip\n\n")
+        .into_bytes()
+}
+
+#[test]
+fn memory_has_a_limit_that_is_named() {
+    let folder = Folder::new();
+    // Four bytes a sample: 27,000 samples of a ball in a cube need 108,000, and what is known of blocks of them.
+    let n = 30u8;
+    let distance = |i: u8| f64::from(i) - f64::from(n - 1) / 2.0;
+    let value = |x: u8, y: u8, z: u8| {
+        let from_centre = [x, y, z].map(|i| distance(i).powi(2)).iter().sum::<f64>().sqrt();
+        if from_centre < 10.0 { b'1' } else { b'0' }
+    };
+    let mut text =
+        format!("NRRD0004\ntype: uchar\ndimension: 3\nsizes: {n} {n} {n}\nencoding: text\n\n").into_bytes();
+    for (z, y, x) in (0..n).flat_map(|z| (0..n).flat_map(move |y| (0..n).map(move |x| (z, y, x)))) {
+        text.extend([value(x, y, z), b' ']);
+    }
+    folder.write("ball.nrrd", text);
+    folder.write("large.nrrd", claim(1000));
+    folder.write("default.nrrd", claim(1100));
+    let of = |name: &'static str, more: &[&'static str]| {
+        [&["--volume", name, "--isovalue", "0.5", "-o", "a.ply"][..], more].concat()
+    };
+    for (arguments, want) in [
+        (
+            of("large.nrrd", &["--memory", "1GiB"]),
+            "large.nrrd: sizes [1000, 1000, 1000] need 3.8 GiB of memory, four bytes a sample, and the limit is 1.0 GiB: \
+             --memory allows no more",
+        ),
+        (of("default.nrrd", &[]), "default.nrrd: sizes [1100, 1100, 1100] need 5.0 GiB of memory"),
+        (of("ball.nrrd", &["--memory", "100kB"]), "ball.nrrd: sizes [30, 30, 30] need 105.5 KiB of memory"),
+        (of("ball.nrrd", &["--memory", "150kB"]), "beside the volume's 0.1 MiB, --memory allows 0.1 MiB"),
+        (
+            ball(&["-o", "a.ply", "--cells", "800", "--memory", "50MB", "--arrangement", "face-centred"])
+                .into_iter()
+                .filter(|&word| word != "--spacing" && word != "0.05")
+                .collect(),
+            "the face-centred lattice needs ",
+        ),
+        (
+            ball(&["-o", "a.ply", "--memory", "lots"]),
+            "`lots` is not an amount of memory such as 4GiB or 500MB",
+        ),
+        (vec!["study.toml", "--memory", "4GiB"], "cannot be used with"),
+    ] {
+        let said = folder.run(&arguments);
+        assert!(said.code == 2 && said.out.is_empty(), "{arguments:?}: {}", said.err);
+        assert!(said.err.contains(want), "{arguments:?}: {}", said.err);
+    }
+    assert!(!folder.path("a.ply").exists());
+    folder.succeed(&of("ball.nrrd", &["--memory", "5MB", "--threads", "1"]));
+}
+
+/// Pipes that nobody writes to, devices that never end, and names that lead to them.
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_not_read() {
+    let folder = Folder::new();
+    for pipe in ["pipe.ply", "pipe.nrrd", "pipe.mha", "pipe.raw", "pipe.toml"] {
+        assert!(Command::new("mkfifo").arg(folder.path(pipe)).status().unwrap().success());
+    }
+    for device in ["zero.obj", "zero.nhdr", "zero.raw"] {
+        std::os::unix::fs::symlink("/dev/zero", folder.path(device)).unwrap();
+    }
+    folder.write("ball.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    let header = |data: &str| {
+        format!("NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: {data}\n")
+    };
+    folder.write("to-pipe.nhdr", header("pipe.raw"));
+    folder.write("to-device.nhdr", header("zero.raw"));
+    let volumes = ["pipe.nrrd", "pipe.mha", "pipe.toml", "zero.nhdr", "to-pipe.nhdr", "to-device.nhdr"];
+    let of_volume = |name| (vec!["extract", "--volume", name, "--isovalue", "0.5", "-o", "a.ply"], name);
+    let of_mesh = |name| (vec!["extract", "--mesh", name, "-o", "a.ply"], name);
+    let meshes = ["pipe.ply", "zero.obj"];
+    let distances = meshes.into_iter().flat_map(|name| {
+        [
+            (vec!["distance", name, "ball.obj"], name),
+            (vec!["distance", "ball.obj", name], name),
+            (vec!["distance", "ball.obj", "--mesh", name], name),
+        ]
+    });
+    let of_volumes = volumes
+        .into_iter()
+        .map(|name| (vec!["distance", "ball.obj", "--volume", name, "--isovalue", "0.5"], name));
+    let all =
+        volumes.map(of_volume).into_iter().chain(meshes.map(of_mesh)).chain(distances).chain(of_volumes);
+    for (words, name) in all {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
+        let output = command.args(&words).current_dir(folder.0.path()).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        let data = match name {
+            "to-pipe.nhdr" => "pipe.raw",
+            "to-device.nhdr" => "zero.raw",
+            _ => name,
+        };
+        assert_eq!(
+            (output.status.code(), &*said),
+            (Some(2), &*format!("isostudy: {data}: not a file\n")),
+            "{words:?}"
+        );
+    }
+}

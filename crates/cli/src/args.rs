@@ -447,7 +447,7 @@ pub(crate) struct Distance {
     /// Mesh: .obj, .ply or .stl
     pub(crate) a: PathBuf,
     /// Mesh to compare it with. The diagonal of its bounding box, or of the isosurface's, is the yardstick
-    #[arg(conflicts_with_all = ["bounds", "spacing", "cells", "isovalue", "inside", "close", "allow_open"])]
+    #[arg(conflicts_with_all = ["bounds", "spacing", "cells", "isovalue", "inside", "close", "allow_open", "memory"])]
     pub(crate) b: Option<PathBuf>,
     /// The isosurface of this object of a study instead; --spacing is the study's for its benchmark if not given
     #[arg(long, value_name = "ID", conflicts_with_all = ["bounds", "cells", "isovalue", "inside", "close", "allow_open"])]

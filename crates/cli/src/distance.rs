@@ -62,7 +62,7 @@ fn to_object(arguments: &Distance, a: &Surface, id: &str, sampling: &Sampling) -
     let lattice = subject::lattice(object, Arrangement::BodyCentred, spacing)
         .with_context(|| format!("--spacing {spacing}"))?;
     let fields = Fields::new(&study);
-    to_isosurface(arguments, a, fields.get(index)?, object.isovalue as f32, &lattice, sampling)
+    to_isosurface(arguments, a, (fields.get(index)?, 0), object.isovalue as f32, &lattice, sampling)
         .with_context(|| format!("{} and {id}", arguments.a.display()))
 }
 
@@ -70,23 +70,24 @@ fn to_object(arguments: &Distance, a: &Surface, id: &str, sampling: &Sampling) -
 fn to_source(arguments: &Distance, a: &Surface, sampling: &Sampling) -> Result<(String, Metro)> {
     let source = arguments.source.read()?.context("something to compare with is needed")?;
     let lattice = source.lattice(Arrangement::BodyCentred)?;
-    let metro = to_isosurface(arguments, a, &*source.field, source.isovalue, &lattice, sampling)
+    let field = (&*source.field, source.held);
+    let metro = to_isosurface(arguments, a, field, source.isovalue, &lattice, sampling)
         .with_context(|| format!("{} and {}", arguments.a.display(), source.name))?;
     Ok((source.name, metro))
 }
 
+/// `held` bytes are the field's.
 fn to_isosurface(
     arguments: &Distance,
     a: &Surface,
-    field: &dyn ScalarField,
+    (field, held): (&dyn ScalarField, u64),
     isovalue: f32,
     lattice: &Lattice,
     sampling: &Sampling,
 ) -> Result<Metro> {
     let execution = Execution { threads: arguments.threads as usize };
-    if let Some(memory) = bench::read_machine().memory_bytes {
-        subject::check_limit(lattice, &ExtractSettings::default(), &execution, memory, "this machine has")?;
-    }
+    let limit = arguments.source.limit();
+    subject::check_limit(lattice, &ExtractSettings::default(), &execution, held, limit)?;
     Ok(extract::distances(a, field, isovalue, lattice, sampling, &execution)?)
 }
 

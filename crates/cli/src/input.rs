@@ -9,8 +9,16 @@ use std::path::Path;
 /// # Errors
 /// If it is a folder, a device or a pipe. The path is named.
 pub(crate) fn regular(path: &Path) -> Result<()> {
+    check(path).with_context(|| path.display().to_string())
+}
+
+/// The same for a reader that names the path itself.
+///
+/// # Errors
+/// If it is a folder, a device or a pipe.
+pub(crate) fn check(path: &Path) -> Result<()> {
     match std::fs::metadata(path) {
-        Ok(found) if !found.is_file() => bail!("{}: not a file", path.display()),
+        Ok(found) if !found.is_file() => bail!("not a file"),
         _ => Ok(()),
     }
 }

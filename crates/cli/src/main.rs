@@ -12,6 +12,7 @@ mod input;
 mod inspect;
 mod machine;
 mod manifest;
+mod memory;
 mod mesh_file;
 mod picture;
 mod pipeline;

@@ -1,6 +1,7 @@
 //! Meshes in files: the format is what the name ends with.
 
-use anyhow::{Context, Result, ensure};
+use crate::input;
+use anyhow::{Context, Result};
 use mesh::{MeshFormat, TriangleMesh};
 use std::fs::File;
 use std::path::Path;
@@ -36,10 +37,9 @@ fn format_among(path: &Path, known: &[MeshFormat]) -> Result<MeshFormat> {
 /// # Errors
 /// If there is none that can be read. The path is named.
 pub(crate) fn read(path: &Path) -> Result<TriangleMesh> {
-    let read = || {
+    let read = || -> Result<TriangleMesh> {
         let format = format_to_read(path)?;
-        // Opening a pipe waits until somebody writes to it.
-        ensure!(std::fs::metadata(path)?.is_file(), "not a file");
+        input::check(path)?;
         let file = File::open(path)?;
         Ok(format.read(file)?)
     };

@@ -1,5 +1,6 @@
 //! Where a surface comes from without a study: a formula, a volume or a mesh; and the lattice it is looked at on.
 
+use crate::memory::{self, Limit};
 use crate::{mesh_file, subject};
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
@@ -51,6 +52,9 @@ pub(crate) struct SourceArguments {
     /// Take a mesh with holes: inside is what is seen from behind in most directions
     #[arg(long, conflicts_with_all = ["field", "volume"])]
     allow_open: bool,
+    /// Most memory for a volume's samples and for the lattice; the mesh comes on top. Such as 500MB or 16GiB
+    #[arg(long, value_name = "SIZE", default_value = memory::DEFAULT, value_parser = memory::size)]
+    memory: u64,
 }
 
 /// Which side of the isovalue is solid.
@@ -76,6 +80,8 @@ pub(crate) struct Source {
     pub(crate) is_closed: bool,
     /// The formula or the file.
     pub(crate) name: String,
+    /// Bytes that a volume's samples take.
+    pub(crate) held: u64,
     /// What is known of its values, for a surface that is not there.
     values: String,
 }
@@ -84,6 +90,11 @@ impl SourceArguments {
     /// The file that is read, if it is one.
     pub(crate) fn file(&self) -> Option<&Path> {
         self.volume.as_deref().or(self.mesh.as_deref())
+    }
+
+    /// What memory there is for it.
+    pub(crate) fn limit(&self) -> Limit {
+        Limit::of(self.memory)
     }
 
     /// What is asked for, if anything is. What had to be done to it is said on standard error.
@@ -115,12 +126,11 @@ impl SourceArguments {
         let bounds = self.bounds.unwrap_or(bounds);
         let spacing = self.spacing.unwrap_or_else(|| bounds.spacing_of_cells(self.cells.unwrap_or(CELLS)));
         let (name, values) = (name.to_owned(), String::new());
-        Source { field, isovalue, inside, bounds, spacing, is_closed: false, name, values }
+        Source { field, isovalue, inside, bounds, spacing, is_closed: false, name, held: 0, values }
     }
 
     fn of_volume(&self, path: &Path) -> Result<Source> {
-        let limit = bench::read_machine().memory_bytes.unwrap_or(volume::NO_LIMIT);
-        let volume::Volume { counts, values, origin, steps } = volume::read(path, limit)?;
+        let volume::Volume { counts, values, origin, steps } = self.limit().read(path)?;
         let name = path.display();
         let mut field = VolumeField::try_new(counts, values, origin, steps, Beyond::Continued)
             .with_context(|| name.to_string())?;
@@ -142,7 +152,9 @@ impl SourceArguments {
         }
         let (low, high) = field.value_range();
         let (step, samples) = (field.spacing(), counts.iter().product::<usize>());
+        let held = field.memory_bytes();
         let mut source = self.source(Box::new(field), Inside::Above, bounds, &path.display().to_string());
+        source.held = held;
         if self.close || is_turned && self.bounds.is_none() {
             source = source.closed();
         }

@@ -1,5 +1,6 @@
 //! From a study's words to the extractor's: fields, lattices, settings. The one place where `design` meets `extract`.
 
+use crate::memory::Limit;
 use crate::mesh_file;
 use crate::store::sha256;
 use anyhow::{Context, Result, bail};
@@ -280,14 +281,14 @@ pub(crate) fn check_memory(
     machine_bytes: Option<u64>,
 ) -> Result<()> {
     let allowed = (study.file.limits.memory_gib * GIB) as u64;
-    let (limit, limit_name) = match machine_bytes {
-        Some(machine) if machine < allowed => (machine, "this machine has"),
-        _ => (allowed, "limits.memory_gib allows"),
+    let limit = match machine_bytes {
+        Some(machine) if machine < allowed => Limit { bytes: machine, name: "this machine has" },
+        _ => Limit { bytes: allowed, name: "limits.memory_gib allows" },
     };
-    check_limit(lattice, settings, execution, limit, limit_name)
+    check_limit(lattice, settings, execution, 0, limit)
 }
 
-/// Checks that what the extractor holds of a lattice is not more than a limit.
+/// Checks that what the extractor holds of a lattice, beside what the field holds already, is not more than a limit.
 ///
 /// # Errors
 /// If it is, naming the limit.
@@ -295,13 +296,15 @@ pub(crate) fn check_limit(
     lattice: &Lattice,
     settings: &ExtractSettings,
     execution: &Execution,
-    limit: u64,
-    limit_name: &str,
+    held: u64,
+    limit: Limit,
 ) -> Result<()> {
     let needed = lattice.memory_bytes_for(settings, execution);
-    if needed > limit {
-        let (needed, limit) = (gibibytes(needed), gibibytes(limit));
-        bail!("the {} lattice needs {needed}, {limit_name} {limit}", lattice.arrangement());
+    if needed.saturating_add(held) > limit.bytes {
+        let (needed, allowed) = (gibibytes(needed), gibibytes(limit.bytes));
+        let beside =
+            if held > 0 { format!(" beside the volume's {}", gibibytes(held)) } else { String::new() };
+        bail!("the {} lattice needs {needed}{beside}, {} {allowed}", lattice.arrangement(), limit.name);
     }
     Ok(())
 }

@@ -30,7 +30,7 @@ Examples:
   isostudy extract configs/paper.toml --only ss_bi")]
 pub(crate) struct Extract {
     /// Study file, such as configs/paper.toml: extract its meshes and measure them
-    #[arg(conflicts_with_all = ["bounds", "spacing", "cells", "isovalue", "inside", "close", "allow_open"])]
+    #[arg(conflicts_with_all = ["bounds", "spacing", "cells", "isovalue", "inside", "close", "allow_open", "memory"])]
     study: Option<PathBuf>,
     #[command(flatten)]
     source: SourceArguments,
@@ -97,9 +97,7 @@ pub(crate) fn extract(arguments: &Extract) -> Result<Outcome> {
     let clustering = subject::clustering(chosen);
     let settings = ExtractSettings { isovalue: source.isovalue, clustering, ..ExtractSettings::default() };
     let execution = Execution { threads: arguments.threads as usize };
-    if let Some(memory) = bench::read_machine().memory_bytes {
-        subject::check_limit(&lattice, &settings, &execution, memory, "this machine has")?;
-    }
+    subject::check_limit(&lattice, &settings, &execution, source.held, arguments.source.limit())?;
     let extraction = extract::extract(&*source.field, &lattice, &settings, &execution)?;
     if extraction.mesh.triangles.is_empty() {
         bail!(source.no_surface());

@@ -191,6 +191,11 @@ impl VolumeField {
         self.value_range
     }
 
+    /// Bytes of the samples and of their ranges.
+    pub fn memory_bytes(&self) -> u64 {
+        (size_of::<f32>() * self.values.capacity() + self.ranges.bytes()) as u64
+    }
+
     /// The value at `p`, with the one at the nearest point of the volume, given in steps.
     fn value(&self, p: Vec3, interpolated: impl Fn(&Self, DVec3) -> f32) -> f32 {
         let index = self.to_index * (p.as_dvec3() - self.origin);

@@ -31,6 +31,11 @@ impl Ranges {
         Ok(Self(levels))
     }
 
+    /// What they take.
+    pub(super) fn bytes(&self) -> usize {
+        self.0.iter().map(|level| size_of::<Range>() * level.bricks.capacity()).sum()
+    }
+
     /// The range of the samples from `first` to `last`, both included, or of some more.
     pub(super) fn of(&self, first: [usize; 3], last: [usize; 3]) -> Option<(f32, f32)> {
         // A brick holds the samples at both of its ends.
