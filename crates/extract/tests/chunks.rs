@@ -147,7 +147,7 @@ fn samples_threads_and_order_do_not_show() {
         let lattice = volume.lattice();
         let sampled = Mutex::new(Vec::new());
         let recorder = Recorder { volume: &volume, places: &sampled };
-        // The whole is sampled in storage order by one thread, where it cannot be streamed; otherwise made here.
+        // All samples of the whole, in storage order.
         let samples = match arrangement {
             Arrangement::BodyCentred => body_centred_samples(&volume),
             _ => storage_samples(&volume),

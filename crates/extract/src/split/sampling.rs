@@ -175,22 +175,10 @@ fn mark_crossings(
         let edges = kind.edges[direction];
         let Some(there) = lines[grid.line[direction]].filter(|_| edges != 0) else { continue };
         let dx = isize::from(dx);
+        // The columns whose neighbours are there.
+        let (first, end) = ((-dx).max(0) as usize, nx.saturating_sub(dx.max(0) as usize));
         for (word, active) in active.iter_mut().enumerate() {
-            *active |= (here[word + 1] ^ shifted(there, word, dx)) & edges & Grid::bits(word, 0, nx);
-        }
-    }
-    // Of the outermost columns, some neighbours are not there: what was seen in their place does not count.
-    let reach = grid.reach();
-    for x in (0..reach).chain(nx.saturating_sub(reach)..nx) {
-        let bit = 1 << (x % 64);
-        active[x / 64] &= !bit;
-        for (direction, &[dx, _, _]) in grid.cut.steps.iter().enumerate() {
-            let there = x.wrapping_add_signed(isize::from(dx));
-            let line = lines[grid.line[direction]].filter(|_| kind.edges[direction] & bit != 0 && there < nx);
-            let differs = |line: &[u64]| super::rows::is_set(line, there) != super::rows::is_set(here, x);
-            if line.is_some_and(differs) {
-                active[x / 64] |= bit;
-            }
+            *active |= (here[word + 1] ^ shifted(there, word, dx)) & edges & Grid::bits(word, first, end);
         }
     }
 }
