@@ -49,7 +49,7 @@ pub enum Defect {
     ObjectInteraction,
     /// One method is chosen always.
     Separation,
-    /// Every sixth respondent presses left throughout, among others with preferences.
+    /// Respondents 4, 9, 14 and so on press left throughout, among others with preferences.
     PressingLeft,
 }
 
@@ -108,7 +108,7 @@ impl Defect {
             Self::TurnedAnswers => "answers to one file turned".into(),
             Self::ObjectInteraction => "object interaction".into(),
             Self::Separation => "separation".into(),
-            Self::PressingLeft => "six respondents press left throughout".into(),
+            Self::PressingLeft => "seven respondents press left throughout".into(),
         }
     }
 
@@ -189,7 +189,7 @@ pub fn planted(defect: Defect, design: Design, seed: u64, study: u64) -> Planted
             of_file.for_each(|answer| answer.choice = answer.choice.swapped());
         }
         Defect::PressingLeft => {
-            let careless = responses.answers.iter_mut().filter(|answer| answer.participant % 6 == 3);
+            let careless = responses.answers.iter_mut().filter(|answer| answer.participant % 5 == 3);
             careless.for_each(|answer| answer.choice = Choice::Left);
         }
         _ => {}
