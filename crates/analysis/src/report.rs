@@ -297,7 +297,7 @@ fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
         evidence
             .study
             .and_then(|study| asked::instruction(study))
-            .map(|instruction| format!("What they were asked: {instruction}")),
+            .map(|instruction| format!("What they were asked: {}", asked::ended(instruction))),
     );
     lead.extend(evidence.assumptions.iter().cloned());
     lead.push(

@@ -10,6 +10,12 @@ pub(super) fn instruction(study: &Study) -> Option<&str> {
     of_answers.or_else(|| study.file.forms.as_ref().map(|forms| forms.prompt.as_str()))
 }
 
+/// A text with a full stop, unless it ends a sentence already.
+pub(super) fn ended(text: &str) -> String {
+    let end = if text.ends_with(['.', '?', '!']) { "" } else { "." };
+    format!("{text}{end}")
+}
+
 /// The comparisons on the forms of those who count. Where the file names nobody, what was asked is what was answered. Whose form is not known was asked what was answered, where questions are
 /// dealt into blocks, and everything elsewhere.
 pub(super) fn asked(study: &Study, answered: &Answered) -> usize {

@@ -43,7 +43,7 @@ pub(super) fn is_favoured(tables: &[Table]) -> bool {
 /// What stands before results: what people were asked, and that sides and methods go together where they do.
 pub(super) fn caution(evidence: &Evidence<'_>) -> Vec<Block> {
     let asked = evidence.study.and_then(asked::instruction).map(|instruction| {
-        Block::Text(format!("People answered this question, and results are about it alone: {instruction}"))
+        Block::Text(format!("Results are about what people were asked: {}", asked::ended(instruction)))
     });
     asked.into_iter().chain(sides_and_methods(evidence)).collect()
 }
