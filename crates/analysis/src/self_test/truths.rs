@@ -58,7 +58,7 @@ fn table(all: &[Outcome]) -> Table {
     table.notes.push(format!(
         "{PEOPLE} people, but for one and 2000. Forms are dealt, answered by somebody of whom it is known what they prefer, written \
          as each kind of file, read and analysed. Compared with a second computation from what stood on the sides and what was \
-         pressed: counts, factors, tests, worths, agreement, screening, and numbers in sentences."
+         pressed: counts, factors, tests, worths, scales, agreement, screening, and numbers in sentences."
     ));
     table
 }

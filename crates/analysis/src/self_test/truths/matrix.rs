@@ -2,7 +2,7 @@
 
 use super::compare::{Compared, Wrong, compare};
 use super::designs::{self, Design};
-use super::oracle::{Oracle, compare_worths, hypotheses};
+use super::oracle::{Oracle, compare_scales, compare_worths, hypotheses};
 use super::people::{Given, Truth, answers};
 use super::routes::Route;
 use super::sentences::compare_sentences;
@@ -110,6 +110,7 @@ impl Made {
             compared.add(compare(&self.tables, &expected));
         }
         compared.add(compare_worths(oracle, &self.tables));
+        compared.add(compare_scales(&self.tables));
         compared.add(compare_sentences(oracle, &hypotheses(oracle), &self.report));
         compared
     }

@@ -14,7 +14,7 @@ mod worths;
 
 pub(super) use agreement::triads;
 pub(super) use hypotheses::{Hypothesis, Range, hypotheses};
-pub(super) use worths::compare_worths;
+pub(super) use worths::{compare_scales, compare_worths};
 
 use super::people::Given;
 use design::Study;

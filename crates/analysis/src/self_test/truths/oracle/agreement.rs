@@ -1,13 +1,18 @@
 //! Agreement of people with each other, and of each with themselves.
 
 use super::{Expected, Given, Oracle, Question, Want};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
 
 pub(super) fn expected(oracle: &Oracle<'_>) -> Expected {
     let columns = &[
         "questions",
         "alpha_nominal",
+        "alpha_nominal_low",
+        "alpha_nominal_high",
+        "alpha_ordinal",
+        "alpha_ordinal_low",
+        "alpha_ordinal_high",
         "kendall_u",
         "chi_square",
         "degrees",
@@ -23,13 +28,9 @@ pub(super) fn expected(oracle: &Oracle<'_>) -> Expected {
     let mut table = Expected::new("agreement", &["scope"], columns);
     for group in [None].into_iter().chain(oracle.groups.iter().map(|(group, _)| Some(group))) {
         let inside = |q: &Question| group.is_none_or(|group| q.group == *group);
-        let counts: Vec<[u64; 3]> = oracle
-            .questions
-            .iter()
-            .filter(|q| inside(q))
-            .map(|of| oracle.score(|q| q.id == of.id, |chosen| chosen == of.left))
-            .filter(|counts| counts.iter().sum::<u64>() > 0)
-            .collect();
+        let everybody = by_person(oracle, inside);
+        let counts: Vec<[u64; 3]> =
+            sums(&everybody).into_iter().filter(|counts| counts.iter().sum::<u64>() > 0).collect();
         if counts.is_empty() {
             continue;
         }
@@ -38,11 +39,21 @@ pub(super) fn expected(oracle: &Oracle<'_>) -> Expected {
         let circles = triads(oracle, inside);
         let Triads { all, decided, strict, weak, tournaments, zeta } = circles;
         let circle = |count: u64| if all > 0 { Want::count(count) } else { Want::Empty };
+        let [nominal, ordinal] = [false, true].map(|ordinal| {
+            let ends = jackknife(&everybody, ordinal);
+            [alpha(&counts, ordinal), ends.map(|ends| ends[0]), ends.map(|ends| ends[1])].map(Want::number)
+        });
+        let ([nominal, nominal_low, nominal_high], [ordinal, ordinal_low, ordinal_high]) = (nominal, ordinal);
         table.push(
             [group.map_or("all", String::as_str)],
             vec![
                 Want::count(counts.len() as u64),
-                Want::number(alpha(&counts)),
+                nominal,
+                nominal_low,
+                nominal_high,
+                ordinal,
+                ordinal_low,
+                ordinal_high,
                 Want::number(kendall.map(|(u, _)| u)),
                 Want::number(test.map(|test| test.0)),
                 Want::number(test.map(|test| test.1)),
@@ -60,9 +71,56 @@ pub(super) fn expected(oracle: &Oracle<'_>) -> Expected {
     table
 }
 
+/// By person who answered any of the questions that are meant, and by these, the answers for the one that is listed left, for
+/// none and for the other.
+fn by_person(oracle: &Oracle<'_>, meant: impl Fn(&Question) -> bool) -> Vec<Vec<[u64; 3]>> {
+    let of_person = |own: &Vec<(usize, &Given)>| {
+        let mut counts = vec![[0; 3]; oracle.questions.len()];
+        for (q, given) in own.iter().filter(|(q, _)| meant(&oracle.questions[*q])) {
+            let chosen =
+                given.chosen().map_or(1, |chosen| if chosen == oracle.questions[*q].left { 0 } else { 2 });
+            counts[*q][chosen] += 1;
+        }
+        counts
+    };
+    let mut all: Vec<Vec<[u64; 3]>> = oracle.comparisons.iter().map(of_person).collect();
+    all.retain(|own| own.iter().any(|counts| *counts != [0; 3]));
+    all
+}
+
+fn sums(people: &[Vec<[u64; 3]>]) -> Vec<[u64; 3]> {
+    let mut sums = vec![[0; 3]; people.first().map_or(0, Vec::len)];
+    for own in people {
+        sums.iter_mut().zip(own).for_each(|(sum, own)| (0..3).for_each(|i| sum[i] += own[i]));
+    }
+    sums
+}
+
+/// The ends of alpha's interval: each person left out in turn, a t quantile of the standard error of that.
+fn jackknife(people: &[Vec<[u64; 3]>], ordinal: bool) -> Option<[f64; 2]> {
+    let all = sums(people);
+    let without = |own: &Vec<[u64; 3]>| {
+        let rest: Vec<[u64; 3]> =
+            all.iter().zip(own).map(|(sum, own)| [0, 1, 2].map(|i| sum[i] - own[i])).collect();
+        alpha(&rest, ordinal)
+    };
+    let left_out: Vec<f64> = people.iter().map(without).collect::<Option<_>>()?;
+    let m = left_out.len() as f64;
+    let mean = left_out.iter().sum::<f64>() / m;
+    let error = ((m - 1.0) / m * left_out.iter().map(|x| (x - mean).powi(2)).sum::<f64>()).sqrt();
+    // Where leaving anybody out changes nothing nobody knows how people differ.
+    if m < 3.0 || error < 1e-12 {
+        return None;
+    }
+    let half = StudentsT::new(0.0, 1.0, m - 1.0).expect("three people or more").inverse_cdf(0.975) * error;
+    let value = alpha(&all, ordinal)?;
+    Some([value - half, value + half].map(|end| end.clamp(-1.0, 1.0)))
+}
+
 /// Krippendorff's, by its coincidences: values are the two items and neither, and which of them is named first says nothing,
-/// so that every question counts in both orders.
-fn alpha(counts: &[[u64; 3]]) -> Option<f64> {
+/// so that every question counts in both orders. Ordinal: neither stands between the two, and values are as far apart as there
+/// are answers from the middle of the one to the middle of the other.
+fn alpha(counts: &[[u64; 3]], ordinal: bool) -> Option<f64> {
     let mut coincidences = [[0.0; 3]; 3];
     for counts in counts.iter().filter(|counts| counts.iter().sum::<u64>() > 1) {
         let [a, t, b] = counts.map(|count| count as f64);
@@ -77,9 +135,17 @@ fn alpha(counts: &[[u64; 3]]) -> Option<f64> {
     }
     let margins = coincidences.map(|row| row.iter().sum::<f64>());
     let all: f64 = margins.iter().sum();
-    let alike: f64 = (0..3).map(|i| coincidences[i][i]).sum();
-    let by_chance: f64 = margins.iter().map(|n| n * (n - 1.0)).sum::<f64>() / (all - 1.0);
-    (all > 0.0 && all - by_chance > 1e-9).then(|| (alike - by_chance) / (all - by_chance))
+    let apart = |i: usize, j: usize| match (ordinal, i.abs_diff(j)) {
+        (_, 0) => 0.0,
+        (false, _) => 1.0,
+        (true, 1) => (0.5 * (margins[i] + margins[j])).powi(2),
+        (true, _) => (0.5 * (margins[0] + margins[2]) + margins[1]).powi(2),
+    };
+    let pairs = || (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
+    let seen: f64 = pairs().map(|(i, j)| coincidences[i][j] * apart(i, j)).sum();
+    let by_chance: f64 =
+        pairs().map(|(i, j)| margins[i] * margins[j] * apart(i, j)).sum::<f64>() / (all - 1.0);
+    (all > 0.0 && by_chance > 1e-9).then(|| 1.0 - seen / by_chance)
 }
 
 /// Chi-square, its degrees of freedom and p.

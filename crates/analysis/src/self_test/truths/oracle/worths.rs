@@ -1,11 +1,13 @@
 //! Worths are not fitted again: the printed ones are put into the likelihood, which has to be what is printed and to be flat
 //! there.
 
+use super::exact::holm;
 use super::{Given, Oracle};
 use crate::self_test::truths::compare::{Cells, Compared};
 use crate::self_test::truths::people::Pressed;
 use crate::table::Table;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
+use std::collections::BTreeMap;
 
 /// Slope of a log-likelihood that counts as none.
 const FLAT: f64 = 2e-3;
@@ -108,6 +110,94 @@ pub(in crate::self_test::truths) fn compare_worths(oracle: &Oracle<'_>, tables: 
         }
     }
     compared
+}
+
+/// Holds the scale of each group, and its differences, against the worths that were tried: positions and ends are those of the
+/// model that is named, units and corrections follow.
+pub(in crate::self_test::truths) fn compare_scales(tables: &[Table]) -> Compared {
+    let mut compared = Compared::default();
+    let all = [Cells::of(tables, "scale"), Cells::of(tables, "differences"), Cells::of(tables, "worths")];
+    let [Some(scale), Some(differences), Some(worths)] = all else { return compared };
+    let near = |got: Option<f64>, want: Option<f64>| match (got, want) {
+        (Some(got), Some(want)) => (got - want).abs() <= 1e-7 * want.abs().max(1.0),
+        (got, want) => got == want,
+    };
+    let worth = |group: &str, model: &str, item: &str, column: &str| {
+        let row = (0..worths.rows()).find(|&row| {
+            let is = |column: &str, what: &str| worths.at(row, column).as_deref() == Some(what);
+            is("group", group) && is("model", model) && is("item", item)
+        });
+        worths.number(row?, column)
+    };
+    for (name, cells) in [("scale", &scale), ("differences", &differences)] {
+        for row in 0..cells.rows() {
+            let text = |column: &str| cells.at(row, column).unwrap_or_default();
+            let (group, model) = (text("group"), text("model"));
+            let model = model.split(',').next().unwrap_or_default();
+            let (label, of, log_odds) = match name {
+                "scale" => {
+                    let item = text("item");
+                    (format!("{group} {item}"), worth(&group, model, &item, "log_worth"), "log_worth")
+                }
+                _ => {
+                    let [first, second] = [text("first"), text("second")];
+                    let of = |item: &str| worth(&group, model, item, "log_worth");
+                    let less = of(&first).zip(of(&second)).map(|(first, second)| first - second);
+                    (format!("{group} {first} {second}"), less, "log_odds")
+                }
+            };
+            let mut check = |column: &str, want: Option<f64>| {
+                let got = cells.number(row, column);
+                compared.check(
+                    near(got, want),
+                    [name, &label, column],
+                    format!("{got:?}"),
+                    format!("{want:?}"),
+                );
+            };
+            check(log_odds, of);
+            if name == "scale" && text("item") != text("reference") {
+                let ends = ["low", "high"].map(|end| worth(&group, model, &text("item"), end));
+                // A penalised model has an interval in the table of worths, which shows what programs print, and none here.
+                if !text("model").contains("added") {
+                    check("low", ends[0]);
+                    check("high", ends[1]);
+                }
+            }
+            for (end, of) in [
+                ("", cells.number(row, log_odds)),
+                ("_low", cells.number(row, "low")),
+                ("_high", cells.number(row, "high")),
+            ] {
+                check(&format!("jod{end}"), of.map(|of| of / 3.0_f64.ln()));
+                check(&format!("preferred{end}"), of.map(|of| 1.0 / (1.0 + (-of).exp())));
+            }
+        }
+        corrections(name, cells, &mut compared);
+    }
+    compared
+}
+
+/// Corrected p: of differences over the pairs of a group, of scales over the groups.
+fn corrections(name: &str, cells: &Cells<'_>, compared: &mut Compared) {
+    let family =
+        |row: usize| if name == "scale" { String::new() } else { cells.at(row, "group").unwrap_or_default() };
+    let mut families: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    for row in (0..cells.rows()).filter(|&row| cells.number(row, "p").is_some()) {
+        families.entry(family(row)).or_default().push(row);
+    }
+    for (group, rows) in families {
+        // A difference without a test counts as one with p = 1.
+        let untested =
+            (0..cells.rows()).filter(|&row| family(row) == group && cells.number(row, "p").is_none());
+        let ones = if name == "scale" { 0 } else { untested.count() };
+        let mut p: Vec<f64> = rows.iter().filter_map(|&row| cells.number(row, "p")).collect();
+        p.extend(std::iter::repeat_n(1.0, ones));
+        for (&row, want) in rows.iter().zip(holm(&p)) {
+            let got = cells.number(row, "p_adjusted").unwrap_or(f64::NAN);
+            compared.check((got - want).abs() < 1e-9, [name, &group, "p_adjusted"], got, want);
+        }
+    }
 }
 
 /// The groups that have answers: the study's, then values pooled where several groups have them.
