@@ -325,6 +325,25 @@ fn a_download_brings_no_formula() {
     assert!(collect(&download).status.success());
     let text = std::fs::read_to_string(&out).unwrap();
     assert!(text.lines().nth(1).unwrap().starts_with("'=1+1,"), "{text}");
+    // A download is not written over, and a file without answers is none.
+    let over = Command::new(env!("CARGO_BIN_EXE_isostudy"))
+        .arg("collect")
+        .arg(fixture.config())
+        .args([&download, Path::new("--out"), &download])
+        .output()
+        .unwrap();
+    assert_eq!(over.status.code(), Some(2));
+    assert!(
+        String::from_utf8_lossy(&over.stderr)
+            .contains("download.csv: is a download; it would be written over")
+    );
+    for nothing in ["", "hello\n", "[1,2]\n"] {
+        let empty = fixture.folder().join("empty.csv");
+        std::fs::write(&empty, nothing).unwrap();
+        let refused = collect(&empty);
+        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(refused.status.code() == Some(2) && said.contains("empty.csv: no answers in it"), "{said}");
+    }
     let refused = collect(Path::new("/dev/null"));
     let said = String::from_utf8(refused.stderr).unwrap();
     assert!(refused.status.code() == Some(2) && said == "isostudy: /dev/null: not a file\n", "{said}");

@@ -220,6 +220,23 @@ fn close_closes_whatever_the_steps_the_box_and_the_lattice() {
     for arrangement in ["simple-cubic", "five-tetrahedra", "face-centred"] {
         closed(&[&cut[..], &["--close", "--bounds=1,2,0.5,5.3,6,9", "--arrangement", arrangement]].concat());
     }
+    // A formula has no end, and a mesh is cut by a box: both are closed by its walls.
+    for arrangement in ["body-centred", "simple-cubic", "five-tetrahedra", "face-centred"] {
+        let (slab, _) = closed(&[
+            "--field",
+            "z",
+            "--bounds=-1,-1,-1,1,1,1",
+            "--cells",
+            "20",
+            "--close",
+            "--arrangement",
+            arrangement,
+        ]);
+        assert!((slab.volume() - 4.0).abs() < 0.5, "{arrangement}: {}", slab.volume());
+    }
+    folder.succeed(&ball(&["-o", "ball.ply"]));
+    let (half, _) = closed(&["--mesh", "ball.ply", "--bounds=0,-2,-2,2,2,2", "--cells", "40", "--close"]);
+    assert!((half.volume() - 2.0 * std::f64::consts::PI / 3.0).abs() < 0.1, "{}", half.volume());
     // One axis along the diagonal of space: closed without being asked, on fine and coarse lattices.
     let geometry = "space dimension: 3\nspace origin: (0,0,0)\nspace directions: (0.577350269,0.577350269,0.577350269) \
                     (0.707106781,-0.707106781,0) (0.408248290,0.408248290,-0.816496581)";
@@ -382,7 +399,6 @@ fn what_cannot_be_done_is_said_in_one_line() {
         (ball(&["-o", "a.xyz"]), "a.xyz: known endings are .obj, .ply, .stl, .glb"),
         (ball(&["-o", "a.ply", "--mesh", "b.ply"]), "cannot be used with"),
         (ball(&["-o", "a.ply", "--force"]), "cannot be used with"),
-        (ball(&["-o", "a.ply", "--close"]), "cannot be used with"),
         (ball(&["-o", "a.ply", "--allow-open"]), "cannot be used with"),
         (ball(&["-o", "a.ply", "--arrangement", "hexagonal"]), "unknown variant `hexagonal`"),
         (vec!["--field", "x +", BALL[2], "-o", "a.ply"], "--field 'x +': column 4: the end where a number"),
@@ -471,7 +487,7 @@ fn memory_has_a_limit_that_is_named() {
         ),
         (
             ball(&["-o", "a.ply", "--memory", "lots"]),
-            "`lots` is not an amount of memory such as 4GiB or 500MB",
+            "`lots` is not an amount of memory such as 4GiB, 500MB or 4096",
         ),
         (vec!["study.toml", "--memory", "4GiB"], "cannot be used with"),
     ] {
@@ -531,4 +547,19 @@ fn pipes_and_devices_are_not_read() {
             "{words:?}"
         );
     }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_cannot_be_said_ends_nothing() {
+    let folder = Folder::new();
+    let turned =
+        "space dimension: 3\nspace origin: (0,0,0)\nspace directions: (0.6,0.8,0) (-0.8,0.6,0) (0,0,1)";
+    text_volume(&folder, "turned.nrrd", [4; 3], turned, |_| 1);
+    let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
+    let words = ["extract", "--volume", "turned.nrrd", "--isovalue", "0.5", "-o", "a.ply"];
+    let ended = command.args(words).current_dir(folder.0.path()).stderr(full).status().unwrap();
+    assert!(ended.success(), "{ended}");
+    assert!(folder.path("a.ply").is_file());
 }

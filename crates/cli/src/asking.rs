@@ -4,7 +4,7 @@ use crate::args::{Bundle, Collect, Deidentify, Run, Serve};
 use crate::pipeline::forms_digest;
 use crate::questionnaire::{files_of, fit_to_show};
 use crate::{Outcome, counted, input, load, no_forms, say, store, video, with_pipeline};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use design::Study;
 use design::forms::{FormFile, KeyEntry, Questionnaire};
 use serve::export::{self, Given, HEADER};
@@ -154,8 +154,14 @@ pub(crate) fn collect(arguments: &Collect) -> Result<()> {
     for path in &arguments.downloads {
         let place = || path.display().to_string();
         input::regular(path)?;
+        ensure!(
+            !input::is_same(path, &arguments.out),
+            "{}: is a download; it would be written over",
+            place()
+        );
         let text = std::fs::read_to_string(path).with_context(place)?;
         let given = download::read(&text, &file.study).with_context(place)?;
+        ensure!(!given.is_empty(), "{}: no answers in it", place());
         export::lines(&given, &key).with_context(place)?;
         again += download::add(&mut all, given).with_context(place)?;
     }

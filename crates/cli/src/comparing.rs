@@ -61,19 +61,19 @@ pub(crate) fn compare(arguments: &Compare) -> Result<Outcome> {
         let (id, a, b) = (&row.id, 1e3 * row.a_s, 1e3 * row.b_s);
         let label = if comparison.across.is_empty() { "" } else { " (not measured alike)" };
         let stage = row.stage.label();
-        eprintln!("regression{label}: {id}, {stage}: {b:.3} ms, {a:.3} ms before");
+        tell!("regression{label}: {id}, {stage}: {b:.3} ms, {a:.3} ms before");
     }
     // What a total's noise hides, a stage shows.
     for stage in Stage::ALL {
         let slower = regressions.iter().filter(|row| row.stage == stage).count();
         if slower > 0 {
             let of = comparison.of_stage(stage).count();
-            eprintln!("{}: slower on {slower} of {}", stage.label(), counted(of as u64, "configuration"));
+            tell!("{}: slower on {slower} of {}", stage.label(), counted(of as u64, "configuration"));
         }
     }
     if let Some((least, most)) = comparison.tellable(Stage::Total) {
         let percent = |ratio: f64| format!("{:.0}", 100.0 * (ratio - 1.0));
-        eprintln!(
+        tell!(
             "totals that grew by less than {} to {} %, by configuration, are not told from noise here",
             percent(least),
             percent(most)
@@ -82,7 +82,7 @@ pub(crate) fn compare(arguments: &Compare) -> Result<Outcome> {
     // A build that drops a configuration must not pass for one that is as fast.
     let missing = missing_in_b(&a, &comparison);
     for id in &missing {
-        eprintln!("missing: {id} is in A and not in B");
+        tell!("missing: {id} is in A and not in B");
     }
     Ok(if regressions.is_empty() && missing.is_empty() { Outcome::Sound } else { Outcome::CheckFailed })
 }

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, bail};
 use design::Study;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What is there must be a file; that it is not there at all its reader says.
 ///
@@ -39,4 +39,18 @@ pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>> {
 pub(crate) fn study(path: &Path) -> Result<Study> {
     regular(path)?;
     Ok(Study::load(path)?)
+}
+
+/// Whether two paths lead to one file, which need not be there.
+pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
+    match (resolved(a), resolved(b)) {
+        (Some(a), Some(b)) => a == b,
+        _ => a == b,
+    }
+}
+
+/// Where a file is or would be, whatever way leads there.
+fn resolved(path: &Path) -> Option<PathBuf> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    path.canonicalize().ok().or_else(|| Some(folder.canonicalize().ok()?.join(path.file_name()?)))
 }

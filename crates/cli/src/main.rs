@@ -1,5 +1,8 @@
 //! The `isostudy` command: arguments, files, progress and exit codes. What is computed is computed in the rooms.
 
+// A line that cannot be written ends nothing: `tell!`.
+#![deny(clippy::print_stderr)]
+
 #[macro_use]
 mod tell;
 

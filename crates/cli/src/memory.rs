@@ -58,7 +58,7 @@ pub(crate) fn size(text: &str) -> Result<u64, String> {
     let bytes = number.trim().parse::<f64>().ok().zip(factor).map(|(number, factor)| number * factor as f64);
     match bytes {
         Some(bytes) if (1.0..u64::MAX as f64).contains(&bytes) => Ok(bytes as u64),
-        _ => Err(format!("`{text}` is not an amount of memory such as 4GiB or 500MB")),
+        _ => Err(format!("`{text}` is not an amount of memory such as 4GiB, 500MB or 4096")),
     }
 }
 

@@ -46,8 +46,8 @@ pub(crate) struct SourceArguments {
     /// positive inside]
     #[arg(long, value_name = "SIDE", conflicts_with = "mesh")]
     inside: Option<Inside>,
-    /// Close the surface where it leaves the volume, and where --bounds cut it off
-    #[arg(long, conflicts_with_all = ["field", "mesh"])]
+    /// Close the surface where it leaves the volume, and where the box cuts it off
+    #[arg(long)]
     close: bool,
     /// Take a mesh with holes: inside is what is seen from behind in most directions
     #[arg(long, conflicts_with_all = ["field", "volume"])]
@@ -108,7 +108,8 @@ impl SourceArguments {
                 anyhow::Error::new(error).context(format!("--field '{shown}'"))
             })?;
             let bounds = self.bounds.context("--bounds is needed")?;
-            return Ok(Some(self.source(Box::new(field), Inside::Below, bounds, formula)));
+            let source = self.source(Box::new(field), Inside::Below, bounds, formula);
+            return Ok(Some(if self.close { source.closed() } else { source }));
         }
         if let Some(path) = &self.volume {
             return self.of_volume(path).map(Some);
@@ -146,9 +147,7 @@ impl SourceArguments {
             bounds = field.closing_bounds();
         }
         if is_turned && !self.close {
-            eprintln!(
-                "{name}: the grid is turned against the axes; the surface is closed where it leaves it"
-            );
+            tell!("{name}: the grid is turned against the axes; the surface is closed where it leaves it");
         }
         let (low, high) = field.value_range();
         let (step, samples) = (field.spacing(), counts.iter().product::<usize>());
@@ -180,7 +179,7 @@ impl SourceArguments {
         let mut source =
             self.source(Box::new(field), Inside::Above, tight.grown(room), &path.display().to_string());
         source.values = format!("; the mesh reaches from {} to {}", place(tight.min), place(tight.max));
-        Ok(source)
+        Ok(if self.close { source.closed() } else { source })
     }
 }
 
@@ -195,7 +194,7 @@ fn mesh_field(path: &Path, allow_open: bool) -> Result<(MeshDistance, Bounds)> {
             Ok(field) => {
                 for part in field.inward_parts(&mesh) {
                     let (min, max) = (place(part.bounds.min), place(part.bounds.max));
-                    eprintln!(
+                    tell!(
                         "{name}: part {} of {}, from {min} to {max}, faces inward and lies in no other: it is left out",
                         part.part + 1,
                         part.parts
@@ -212,16 +211,16 @@ fn mesh_field(path: &Path, allow_open: bool) -> Result<(MeshDistance, Bounds)> {
                 mesh = mesh::weld(&mesh);
                 is_welded = true;
                 if mesh.positions.len() < before {
-                    eprintln!("{name}: {before} vertices at {} places joined", mesh.positions.len());
+                    tell!("{name}: {before} vertices at {} places joined", mesh.positions.len());
                 }
             }
             MeshFieldError::Open { .. } if allow_open => {
-                eprintln!("{name}: {error}");
+                tell!("{name}: {error}");
                 holes = Holes::Span;
             }
             MeshFieldError::Open { .. } => bail!("{name}: {error}; --allow-open takes it nevertheless"),
             MeshFieldError::InsideOut { volume } if volume < 0.0 => {
-                eprintln!("{name}: its triangles face inward: turned round");
+                tell!("{name}: its triangles face inward: turned round");
                 mesh = repair::flip(&mesh);
             }
             error => return Err(error).with_context(|| name.to_string()),

@@ -3,7 +3,7 @@
 use crate::args::{Run, Selection};
 use crate::source::{Inside, Source, SourceArguments, place};
 use crate::store::{write_whole, write_whole_by};
-use crate::{Outcome, counted, mesh_file, records, say, significant, subject};
+use crate::{Outcome, counted, input, mesh_file, records, say, significant, subject};
 use anyhow::{Context, Result, bail};
 use clap::{ArgGroup, Args};
 use design::record::{Accuracy, Counts, Distribution, Quality, Topology};
@@ -138,13 +138,9 @@ fn open_edges(mesh: &TriangleMesh) -> Option<String> {
 
 /// Nothing that was given is written over; and no output over another, since no mesh ends as pictures do.
 fn check_outputs(arguments: &Extract, out: &Path) -> Result<()> {
-    let same = |a: &Path, b: &Path| match (resolved(a), resolved(b)) {
-        (Some(a), Some(b)) => a == b,
-        _ => a == b,
-    };
     let outputs = [Some(out), arguments.picture.as_deref()];
     for output in outputs.into_iter().flatten() {
-        if arguments.source.file().is_some_and(|input| same(input, output)) {
+        if arguments.source.file().is_some_and(|file| input::is_same(file, output)) {
             bail!("{}: is the input; it would be written over", output.display());
         }
     }
@@ -153,12 +149,6 @@ fn check_outputs(arguments: &Extract, out: &Path) -> Result<()> {
         bail!("--picture {}: pictures are .png", picture.display());
     }
     Ok(())
-}
-
-/// Where a file is or would be, whatever way leads there.
-fn resolved(path: &Path) -> Option<PathBuf> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    path.canonicalize().ok().or_else(|| Some(folder.canonicalize().ok()?.join(path.file_name()?)))
 }
 
 fn picture(mesh: &TriangleMesh) -> Result<Vec<u8>> {

@@ -83,7 +83,7 @@ impl Pipeline<'_> {
         let plan = self.sweep_plan(section, cells, threads)?;
         let name = format!("bench/sweep/{cells:04}-{threads}");
         let (journal, key) = (self.store.journal(&name), inputs()?.finish());
-        eprintln!("sweep: {cells} cells per axis, threads: {threads}");
+        tell!("sweep: {cells} cells per axis, threads: {threads}");
         let step = Step::begin("sweep", configurations.len() * plan.iterations as usize, 0);
         let bout = Bout { plan: &plan, configurations, cells: Some(cells) };
         let stamp = self.stage(&name, inputs()?, |writer| {

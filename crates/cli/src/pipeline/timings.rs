@@ -48,7 +48,7 @@ impl Pipeline<'_> {
             && let Some(full) =
                 self.store.peek(stage_name(PlanLength::Full), self.inputs(PlanLength::Full, &machine)?)
         {
-            eprintln!("timings: the full run is up to date and stands for the short one");
+            tell!("timings: the full run is up to date and stands for the short one");
             return Ok(full);
         }
         let plan = self.plan(length)?;
@@ -68,7 +68,7 @@ impl Pipeline<'_> {
                 .write(&format!("{folder}/aa_samples.csv"), bench::samples_csv(&run.aa_samples).as_bytes())?;
             writer.write(&format!("{folder}/machine.csv"), bench::machine_csv(&run).as_bytes())?;
             for warning in timing::warnings(&run) {
-                eprintln!("timings: {warning}");
+                tell!("timings: {warning}");
             }
             Ok(())
         })?;
@@ -157,20 +157,20 @@ impl Pipeline<'_> {
     fn take_up(&self, journal: &std::path::Path, key: &str, bout: &Bout<'_>) -> Result<Vec<Entry>> {
         let Ok(text) = std::fs::read_to_string(journal) else { return Ok(Vec::new()) };
         if self.store.forced() {
-            eprintln!("timings: begun anew, as --force says; an unfinished run is not gone on with");
+            tell!("timings: begun anew, as --force says; an unfinished run is not gone on with");
             return Ok(Vec::new());
         }
         let read = bench::read_journal(&text, key).map_err(BenchError::from);
         match read.and_then(|done| bench::check_journal(bout.plan, &bout.ids(), &done).map(|()| done)) {
             Ok(done) => {
                 if !done.is_empty() {
-                    eprintln!("timings: an unfinished run is gone on with ({} entries)", done.len());
+                    tell!("timings: an unfinished run is gone on with ({} entries)", done.len());
                 }
                 Ok(done)
             }
             Err(error) => {
                 let error = anyhow::Error::from(error);
-                eprintln!("timings: begun anew; {} is not gone on from: {error:#}", journal.display());
+                tell!("timings: begun anew; {} is not gone on from: {error:#}", journal.display());
                 Ok(Vec::new())
             }
         }
