@@ -144,7 +144,7 @@ fn who_presses_one_button_is_no_copy() {
     assert_eq!(found, 0);
     // Unanimous people give the same rows by what they all think, and six who press left change nothing about it.
     let ballot = |person: usize, question: usize| {
-        let outcome = if person < 6 || question % 2 == 0 { Outcome::Left } else { Outcome::Right };
+        let outcome = if person < 6 || question.is_multiple_of(2) { Outcome::Left } else { Outcome::Right };
         statistics::ShownBallot::new(person, question, [0, 1], outcome)
     };
     let ballots: Vec<_> =
