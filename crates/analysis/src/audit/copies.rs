@@ -207,7 +207,11 @@ fn alike<K: Ord>(of: &[&Range<usize>], key: impl Fn(&Range<usize>) -> K) -> Vec<
 }
 
 fn few(expected: f64) -> String {
-    if expected < 0.001 { "none (below 0.001)".into() } else { format!("{expected:.3}") }
+    match expected {
+        few if few < 0.001 => "none (below 0.001)".into(),
+        few if few < 10.0 => format!("{few:.3}"),
+        many => format!("{many:.0}"),
+    }
 }
 
 /// How probable rows of one form are: that they are at every question, people taken as independent, and more as far as
