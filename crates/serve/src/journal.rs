@@ -25,6 +25,7 @@ pub use thread::{Handle, Keeper, Unsaved, start};
 
 use crate::export::Given;
 use crate::record::{Answer, Choice, Identifiers, Refusal, check, first_place};
+use copy::Copied;
 use design::forms::{FormEntry, FormFile};
 use place::Place;
 use rusqlite::{Connection, params};
@@ -102,6 +103,15 @@ pub enum JournalError {
         /// What there was.
         before: Held,
     },
+    /// Files that were open when the server stopped are not where they were.
+    #[error(
+        "{path}: removed or replaced while the server ran, and not back when it stopped. Answers that were acknowledged may be \
+         lost. Look for the folder where it was moved to, or for a copy of it"
+    )]
+    Gone {
+        /// The first of them.
+        path: PathBuf,
+    },
     /// What tells how much there was cannot be read.
     #[error(
         "{path}: the file `count` is damaged, so nobody can tell whether answers are missing; {found} are there. If that is \
@@ -162,6 +172,7 @@ pub struct Journal {
     by_identifiers: HashMap<Identifiers, usize>,
     waiting: Waiting,
     held: Held,
+    uncounted: bool,
     seal: Seal,
     place: Place,
     /// Held as long as the journal is.
@@ -184,12 +195,40 @@ impl Journal {
         let failed = |source| JournalError::Folder { path: folder.into(), source };
         let database = |source| files::error(folder, source);
         let lock = files::lock(folder)?;
-        let (seal, sealed) = Seal::open(folder).map_err(failed)?;
-        // SQLite throws away the log of a database that is gone, and with it what may still be saved.
-        if files::is_gone(folder) {
-            compare(folder, Held::default(), sealed, loss)?;
+        let sealed = Sealed::read(folder).map_err(failed)?;
+        // Whatever SQLite opens it changes: it makes files, begins logs anew and throws away those of a database that is gone. A
+        // folder that is refused stays as it is, so a copy is looked at first.
+        let whole = {
+            let copy = Copied::of(folder, &[files::ANSWERS, files::IDENTITIES])?;
+            let lock = lock.try_clone().map_err(failed)?;
+            let (copied, _) = Self::at(copy.folder(), folder, file, digest, lock)?;
+            compare(folder, copied.held, sealed, loss)?
+        };
+        let (mut journal, nobodys) = Self::at(folder, folder, file, digest, lock)?;
+        journal.uncounted = sealed == Sealed::Nothing && journal.held != Held::default();
+        files::may_tidy(&journal.answers)
+            .and_then(|()| files::may_tidy(&journal.identities))
+            .map_err(database)?;
+        // After a loss they may be all that is left of somebody.
+        if whole {
+            journal.forget(&nobodys).map_err(database)?;
         }
-        let files::Opened { answers, identities } = files::open(folder)?;
+        journal.seal().and_then(|()| journal.seal.sync()).map_err(failed)?;
+        Ok(journal)
+    }
+
+    /// Opens and reads the files in `from`, which messages call `folder`. Returns names with identifiers and without an answer too.
+    fn at(
+        from: &Path,
+        folder: &Path,
+        file: &FormFile,
+        digest: &str,
+        lock: File,
+    ) -> Result<(Self, Vec<String>), JournalError> {
+        let failed = |source| JournalError::Folder { path: folder.into(), source };
+        let database = |source| files::error(folder, source);
+        let files::Opened { answers, identities } = files::open(from, folder)?;
+        let seal = Seal::open(from).map_err(failed)?.0;
         match files::study(&answers).map_err(database)? {
             None => {
                 let add = "INSERT INTO study VALUES (?1, ?2)";
@@ -210,34 +249,31 @@ impl Journal {
             by_identifiers: HashMap::new(),
             waiting: Waiting::default(),
             held: Held::default(),
+            uncounted: false,
             seal,
             place: Place::default(),
             _lock: lock,
         };
         let nobodys = journal.read().map_err(database)?;
         // Whatever SQLite makes beside its files it has made by now.
-        journal.place = Place::of(folder);
+        journal.place = Place::of(from);
         let planned = journal.forms.len();
         if let Some(form) =
             journal.people.iter().map(|person| person.form).max().filter(|form| *form > planned)
         {
             return Err(JournalError::FewerForms { path: folder.into(), form, planned });
         }
-        let whole = compare(folder, journal.held, sealed, loss)?;
-        files::may_tidy(&journal.answers)
-            .and_then(|()| files::may_tidy(&journal.identities))
-            .map_err(database)?;
-        // After a loss they may be all that is left of somebody.
-        if whole {
-            journal.forget(&nobodys).map_err(database)?;
-        }
-        journal.seal().and_then(|()| journal.seal.sync()).map_err(failed)?;
-        Ok(journal)
+        Ok((journal, nobodys))
     }
 
     /// How much there is on disk.
     pub fn held(&self) -> Held {
         self.held
+    }
+
+    /// Whether there were answers and no count of them at the start: nobody can tell whether all are there.
+    pub fn is_uncounted(&self) -> bool {
+        self.uncounted
     }
 
     /// Writes down how much there is, for whoever opens the folder next.

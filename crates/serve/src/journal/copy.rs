@@ -1,26 +1,31 @@
-//! Answers that lie where nothing can be written, such as on a backup: read from a copy.
+//! A folder whose files may not be changed, on a backup, say, or before it is known whether anything is missing: read from a copy.
 
-use super::files::ANSWERS;
-use super::random_hex;
+use super::{JournalError, random_hex};
 use std::fs::{DirBuilder, File};
 use std::io;
 use std::os::unix::fs::DirBuilderExt;
 use std::path::{Path, PathBuf};
 
-/// A copy of a folder's answers, the user's alone, which is removed when it is dropped. Identifiers are not copied.
+/// A copy of a folder's databases, the user's alone, which is removed when it is dropped.
 pub(super) struct Copied(PathBuf);
 
 impl Copied {
-    pub(super) fn of(folder: &Path) -> io::Result<Self> {
+    /// Copies the databases of these names, each with its log.
+    pub(super) fn of(folder: &Path, databases: &[&str]) -> Result<Self, JournalError> {
+        let failed = |path: &Path, source| JournalError::Folder { path: path.into(), source };
         let path = std::env::temp_dir().join(format!("isostudy-{}", random_hex(8)));
-        DirBuilder::new().mode(0o700).create(&path)?;
+        DirBuilder::new().mode(0o700).create(&path).map_err(|e| failed(&path, e))?;
         let copied = Self(path);
-        for name in [ANSWERS.to_owned(), format!("{ANSWERS}-wal")] {
-            // Contents alone: permissions to write are what is missing.
-            match File::open(folder.join(&name)) {
-                Ok(mut from) => drop(io::copy(&mut from, &mut File::create_new(copied.0.join(&name))?)?),
+        for name in databases.iter().flat_map(|name| [(*name).to_owned(), format!("{name}-wal")]) {
+            let (there, here) = (folder.join(&name), copied.0.join(&name));
+            // Contents alone: permissions to write may be what is missing.
+            match File::open(&there) {
+                Ok(mut from) => File::create_new(&here)
+                    .and_then(|mut to| io::copy(&mut from, &mut to))
+                    .map(drop)
+                    .map_err(|e| failed(&here, e))?,
                 Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-                Err(error) => return Err(error),
+                Err(error) => return Err(failed(&there, error)),
             }
         }
         Ok(copied)

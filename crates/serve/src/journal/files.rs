@@ -39,22 +39,18 @@ pub(super) fn lock(folder: &Path) -> Result<File, JournalError> {
     Ok(lock)
 }
 
-/// Whether there is no database, or an empty one.
-pub(super) fn is_gone(folder: &Path) -> bool {
-    std::fs::metadata(folder.join(ANSWERS)).map_or(true, |found| found.len() == 0)
-}
-
 /// The databases of a journal.
 pub(super) struct Opened {
     pub(super) answers: Connection,
     pub(super) identities: Connection,
 }
 
-/// Opens the databases in a folder, and makes what is not there. Until [`may_tidy`] the log of a damaged database stays as it is.
-pub(super) fn open(folder: &Path) -> Result<Opened, JournalError> {
+/// Opens the databases in a folder, which messages call `folder`, and makes what is not there. Until [`may_tidy`] logs are not
+/// removed.
+pub(super) fn open(from: &Path, folder: &Path) -> Result<Opened, JournalError> {
     let failed = |source| JournalError::Folder { path: folder.into(), source };
     let database = |name: &str, schema: &str| {
-        let path = folder.join(name);
+        let path = from.join(name);
         // What SQLite puts beside it gets the same permissions.
         owned(&path).map_err(failed)?;
         let open = || -> rusqlite::Result<Connection> {
@@ -155,8 +151,7 @@ pub fn kept(folder: &Path, study: &str) -> Result<Kept, JournalError> {
     let (found, given) = match read(folder) {
         // SQLite reads a log only where it may write beside it.
         Err(error) if cannot_write(&error) => {
-            let failed = |source| JournalError::Folder { path: folder.into(), source };
-            let copy = Copied::of(folder).map_err(failed)?;
+            let copy = Copied::of(folder, &[ANSWERS])?;
             read(copy.folder())
         }
         found => found,

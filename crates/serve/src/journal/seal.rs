@@ -53,6 +53,25 @@ pub(super) enum Sealed {
     Damaged,
 }
 
+impl Sealed {
+    /// Reads the file, and leaves it as it is.
+    pub(super) fn read(folder: &Path) -> io::Result<Self> {
+        match File::open(folder.join(NAME)) {
+            Ok(mut file) => Self::of(&mut file),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Self::Nothing),
+            Err(error) => Err(error),
+        }
+    }
+
+    fn of(file: &mut File) -> io::Result<Self> {
+        let mut text = Vec::new();
+        // As much as is ever written, and one byte more.
+        let longest = line(&Held::default()).len() as u64 + 1;
+        file.take(longest).read_to_end(&mut text)?;
+        Ok(parse(&text))
+    }
+}
+
 /// The open file.
 pub(super) struct Seal {
     file: File,
@@ -63,11 +82,8 @@ impl Seal {
     /// Opens the file, which is made if it is not there, and reads it.
     pub(super) fn open(folder: &Path) -> io::Result<(Self, Sealed)> {
         let mut file = owned(&folder.join(NAME))?;
-        let mut text = Vec::new();
-        // As much as is ever written, and one byte more.
-        let longest = line(&Held::default()).len() as u64 + 1;
-        (&mut file).take(longest).read_to_end(&mut text)?;
-        Ok((Self { file, written: None }, parse(&text)))
+        let found = Sealed::of(&mut file)?;
+        Ok((Self { file, written: None }, found))
     }
 
     /// Writes what there is over what was there, if it changed. What is written was committed before, so a file that is older than

@@ -442,7 +442,7 @@ fn answers_are_read_where_nothing_can_be_written() {
     use std::os::unix::fs::PermissionsExt;
     let folder = killed(5);
     std::fs::remove_file(folder.path().join("answers.sqlite-shm")).unwrap();
-    let copied = copy::Copied::of(folder.path()).unwrap();
+    let copied = copy::Copied::of(folder.path(), &[files::ANSWERS]).unwrap();
     let path = copied.folder().to_owned();
     assert_eq!(kept(&path, "trial").unwrap().given.len(), 5, "the log is copied too");
     assert!(!path.join("identities.sqlite").exists());
@@ -457,4 +457,61 @@ fn answers_are_read_where_nothing_can_be_written() {
     let found = kept(folder.path(), "trial").map(|kept| kept.given.len());
     mode(folder.path(), 0o700);
     assert_eq!(found.unwrap(), 5);
+}
+
+/// Every file of a folder, by name, to the byte.
+fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut files: Vec<_> = entries
+        .map(|path| (path.file_name().unwrap().to_string_lossy().into_owned(), std::fs::read(&path).unwrap()))
+        .collect();
+    files.sort();
+    files
+}
+
+/// What is left may be all that can be saved.
+#[test]
+fn a_refused_start_leaves_every_file_as_it_is() {
+    let overwrite = |folder: &Path, name: &str| {
+        let mut bytes = std::fs::read(folder.join(name)).unwrap();
+        let middle = bytes.len() / 2;
+        bytes[middle..middle + 64].fill(b'x');
+        std::fs::write(folder.join(name), bytes).unwrap();
+    };
+    let remove = |folder: &Path, names: &[&str]| {
+        names.iter().for_each(|name| drop(std::fs::remove_file(folder.join(name))));
+    };
+    for what in
+        ["log damaged", "log gone", "identities gone", "database gone", "shared memory gone", "other study"]
+    {
+        let folder = killed(30);
+        let folder = folder.path();
+        let mut digest = "d";
+        match what {
+            "log damaged" => overwrite(folder, "answers.sqlite-wal"),
+            "log gone" => remove(folder, &["answers.sqlite-wal", "answers.sqlite-shm"]),
+            "identities gone" => {
+                remove(folder, &["identities.sqlite", "identities.sqlite-wal", "identities.sqlite-shm"]);
+            }
+            "database gone" => remove(folder, &["answers.sqlite", "answers.sqlite-shm"]),
+            "shared memory gone" => {
+                overwrite(folder, "answers.sqlite-wal");
+                remove(folder, &["answers.sqlite-shm", "identities.sqlite-shm"]);
+            }
+            _ => {
+                digest = "e";
+                remove(folder, &["count"]);
+            }
+        }
+        let before = contents(folder);
+        for _ in 0..2 {
+            assert!(Journal::open(folder, &file(1), digest, Loss::Refuse).is_err(), "{what}");
+            let after = contents(folder);
+            let names = |files: &[(String, Vec<u8>)]| {
+                files.iter().map(|(name, bytes)| format!("{name} {}", bytes.len())).collect::<Vec<_>>()
+            };
+            assert_eq!(names(&after), names(&before), "{what}");
+            assert!(after == before, "{what}: bytes differ");
+        }
+    }
 }
