@@ -79,7 +79,8 @@ fn child() {
         fs::write(folder.join("new"), format!("{address} {held}")).unwrap();
         fs::rename(folder.join("new"), &told).unwrap();
     };
-    if serve::serve(settings(&folder, Loss::Refuse), ready).is_err() {
+    if let Err(error) = serve::serve(settings(&folder, Loss::Refuse), ready) {
+        eprintln!("{error}");
         std::process::exit(3);
     }
     std::process::exit(0);
@@ -133,6 +134,11 @@ impl Server {
         post(self.address, "/api/answers", &answer.to_string()).unwrap().0
     }
 
+    fn stop(&self) {
+        use rustix::process::{Pid, Signal, kill_process};
+        kill_process(Pid::from_child(&self.child), Signal::TERM).unwrap();
+    }
+
     /// The exit code, which has to come.
     fn ends(&mut self) -> Option<i32> {
         let ended = (0..600).find_map(|_| {
@@ -180,6 +186,11 @@ fn a_server_without_a_log_saves_again_once_it_can() {
         let other = Connection::open(server.answers().join("answers.sqlite")).unwrap();
         other.execute_batch("BEGIN IMMEDIATE").unwrap();
         assert_eq!(server.answer(&session, 1), 503);
+        assert_eq!(
+            get(server.address, "/api/admin/answers.csv", TOKEN).unwrap().0,
+            200,
+            "nothing is saved for it"
+        );
         other.execute_batch("ROLLBACK").unwrap();
         assert_eq!(server.answer(&session, 1), 200);
         let kept = get(server.address, "/api/admin/answers.csv", TOKEN).unwrap();
@@ -200,15 +211,23 @@ fn a_server_that_cannot_go_on_ends_and_says_so() {
 
 #[test]
 fn a_folder_removed_under_a_server_is_noticed() {
-    let server = Server::start(log);
+    let mut server = Server::start(log);
     let session = server.begin();
     assert_eq!(server.answer(&session, 0), 200);
     fs::remove_dir_all(server.answers()).unwrap();
     assert_eq!(server.answer(&session, 1), 503);
-    for path in ["/api/admin/answers.csv", "/api/admin/summary"] {
-        assert_eq!(get(server.address, path, TOKEN).unwrap().0, 503, "{path}");
+    let (status, said) = post(server.address, "/api/sessions", "{}").unwrap();
+    assert!(status == 503 && said.contains("folder of answers"), "{status} {said}");
+    // The last way to what was answered.
+    for path in ["/api/admin/answers.csv", "/api/admin/identities.csv", "/api/admin/summary"] {
+        assert_eq!(get(server.address, path, TOKEN).unwrap().0, 200, "{path}");
     }
-    assert_eq!(post(server.address, "/api/sessions", "{}").unwrap().0, 503);
+    let kept = get(server.address, "/api/admin/answers.csv", TOKEN).unwrap().1;
+    assert_eq!(kept.lines().count(), 2, "{kept}");
+    server.stop();
+    assert_eq!(server.ends(), Some(3));
+    let log = fs::read_to_string(server.folder.path().join("log")).unwrap();
+    assert!(log.contains("removed or replaced while the server ran"), "{log}");
 }
 
 /// Nobody asks: it is told all the same.

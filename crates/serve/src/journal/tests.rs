@@ -299,7 +299,7 @@ fn a_failed_batch_leaves_nothing_behind() {
         journal.answer(&token, &answer(2, "a1", Choice::L), 2)?.unwrap();
         Err(rusqlite::Error::InvalidQuery)
     });
-    assert_eq!(runtime.block_on(fails), Err(Unsaved));
+    assert_eq!(runtime.block_on(fails), Err(Unsaved::Disk));
     assert_eq!(runtime.block_on(handle.change(|journal| journal.given())).unwrap(), []);
     let known = runtime.block_on(handle.change(|journal| journal.identities())).unwrap();
     assert_eq!(known, [], "nobody's identifiers are kept without an answer");
@@ -408,16 +408,16 @@ fn a_folder_that_is_gone_takes_no_answers() {
     let look = || runtime.block_on(handle.change(|journal| journal.given().map(|given| given.len())));
     assert_eq!(look(), Ok(0));
     std::fs::rename(&folder, &aside).unwrap();
-    assert_eq!(look(), Err(Unsaved));
+    assert_eq!(look(), Err(Unsaved::Missing));
     std::fs::rename(&aside, &folder).unwrap();
     assert_eq!(look(), Ok(0));
     for name in ["answers.sqlite", "answers.sqlite-wal", "identities.sqlite", "identities.sqlite-wal", "lock"]
     {
         let [there, gone] = [folder.join(name), above.path().join("gone")];
         std::fs::rename(&there, &gone).unwrap();
-        assert_eq!(look(), Err(Unsaved), "{name} removed");
+        assert_eq!(look(), Err(Unsaved::Missing), "{name} removed");
         std::fs::copy(&gone, &there).unwrap();
-        assert_eq!(look(), Err(Unsaved), "{name} replaced");
+        assert_eq!(look(), Err(Unsaved::Missing), "{name} replaced");
         std::fs::rename(&gone, &there).unwrap();
         assert_eq!(look(), Ok(0), "{name} back");
     }
@@ -431,7 +431,7 @@ fn whoever_waits_for_the_threads_end_learns_of_it() {
     let (handle, mut keeper) = start(Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap());
     let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
     let wrong = handle.change(|_| -> rusqlite::Result<()> { panic!("as this test wants") });
-    assert_eq!(runtime.block_on(wrong), Err(Unsaved));
+    assert_eq!(runtime.block_on(wrong), Err(Unsaved::Disk));
     runtime.block_on(keeper.ended());
     assert!(matches!(keeper.join(), Err(JournalError::Ended)));
 }
@@ -513,5 +513,33 @@ fn a_refused_start_leaves_every_file_as_it_is() {
             assert_eq!(names(&after), names(&before), "{what}");
             assert!(after == before, "{what}: bytes differ");
         }
+    }
+}
+
+/// The researcher's way to the answers stays open; whoever answers is told that nothing is saved.
+#[test]
+fn answers_are_read_while_their_folder_is_gone() {
+    for gone in ["", "identities.sqlite"] {
+        let above = tempdir().unwrap();
+        let folder = above.path().join("answers");
+        let (handle, keeper) = start(Journal::open(&folder, &file(1), "d", Loss::Refuse).unwrap());
+        let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
+        let answered = handle.change(|journal| {
+            let dealt = journal.begin(of_panel("s1"), 1).unwrap();
+            journal.answer(&dealt.token, &answer(2, "a1", Choice::L), 2)
+        });
+        runtime.block_on(answered).unwrap().unwrap();
+        if gone.is_empty() {
+            std::fs::remove_dir_all(&folder).unwrap();
+        } else {
+            std::fs::remove_file(folder.join(gone)).unwrap();
+        }
+        let begun = runtime.block_on(handle.change(|journal| Ok(journal.begin(nobody(), 3))));
+        assert_eq!(begun.map(drop), Err(Unsaved::Missing), "{gone}");
+        assert_eq!(runtime.block_on(handle.read(|journal| journal.given())).unwrap().len(), 1, "{gone}");
+        assert_eq!(runtime.block_on(handle.read(|journal| journal.identities())).unwrap().len(), 1, "{gone}");
+        drop(handle);
+        let ended = keeper.join().unwrap_err();
+        assert!(matches!(ended, JournalError::Gone { .. }), "{gone}: {ended}");
     }
 }

@@ -2,6 +2,8 @@
 
 use super::{Journal, JournalError};
 use crate::log;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -14,17 +16,33 @@ const LOOK: Duration = Duration::from_millis(500);
 
 /// What is said after the batch was committed.
 type Reply = Box<dyn FnOnce() + Send>;
-type Work = Box<dyn FnOnce(&mut Journal) -> rusqlite::Result<Reply> + Send>;
+type Change = Box<dyn FnOnce(&mut Journal) -> rusqlite::Result<Reply> + Send>;
+type Read = Box<dyn FnOnce(&Journal) -> rusqlite::Result<Reply> + Send>;
 
-/// The disk said no; nothing was changed.
+enum Work {
+    Change(Change),
+    Read(Read),
+}
+
+/// Why something was not done; nothing was changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("the answer could not be saved; try again")]
-pub struct Unsaved;
+pub enum Unsaved {
+    /// What is written now nobody will find again.
+    #[error("the folder of answers was removed or replaced, so nothing can be saved until it is back")]
+    Missing,
+    /// SQLite or the disk said no.
+    #[error("nothing could be saved, and the server's log says why; try again")]
+    Disk,
+    /// SQLite or the disk said no to a reader.
+    #[error("the answers could not be read, and the server's log says why")]
+    Unread,
+}
 
 /// A way to the journal, for any number of tasks.
 #[derive(Debug, Clone)]
 pub struct Handle {
     work: Sender<Work>,
+    missing: Arc<AtomicBool>,
 }
 
 impl Handle {
@@ -37,12 +55,30 @@ impl Handle {
         work: impl FnOnce(&mut Journal) -> rusqlite::Result<T> + Send + 'static,
     ) -> Result<T, Unsaved> {
         let (say, said) = oneshot::channel();
-        let work: Work = Box::new(move |journal| {
+        let work: Change = Box::new(move |journal| {
             let value = work(journal)?;
             Ok(Box::new(move || drop(say.send(value))))
         });
-        self.work.send(work).map_err(|_| Unsaved)?;
-        said.await.map_err(|_| Unsaved)
+        let why = || if self.missing.load(Ordering::Acquire) { Unsaved::Missing } else { Unsaved::Disk };
+        self.work.send(Work::Change(work)).map_err(|_| why())?;
+        said.await.map_err(|_| why())
+    }
+
+    /// Looks something up, on a full disk and in files that were removed too: as long as they are open they can be read.
+    ///
+    /// # Errors
+    /// If it could not be read.
+    pub async fn read<T: Send + 'static>(
+        &self,
+        work: impl FnOnce(&Journal) -> rusqlite::Result<T> + Send + 'static,
+    ) -> Result<T, Unsaved> {
+        let (say, said) = oneshot::channel();
+        let work: Read = Box::new(move |journal| {
+            let value = work(journal)?;
+            Ok(Box::new(move || drop(say.send(value))))
+        });
+        self.work.send(Work::Read(work)).map_err(|_| Unsaved::Unread)?;
+        said.await.map_err(|_| Unsaved::Unread)
     }
 }
 
@@ -63,7 +99,7 @@ impl Keeper {
     /// Waits for the thread's end, which comes when all handles are gone.
     ///
     /// # Errors
-    /// If it ended for another reason, after which nothing was acknowledged.
+    /// If it ended for another reason, after which nothing was acknowledged; or if files are gone, and perhaps what was in them.
     pub fn join(self) -> Result<(), JournalError> {
         self.thread.join().unwrap_or(Err(JournalError::Ended))
     }
@@ -73,51 +109,78 @@ impl Keeper {
 pub fn start(journal: Journal) -> (Handle, Keeper) {
     let (work, waiting) = channel();
     let (alive, ended) = oneshot::channel();
+    let missing = Arc::new(AtomicBool::new(false));
+    let trouble = Trouble { missing: Arc::clone(&missing), ..Trouble::default() };
     let thread = std::thread::spawn(move || {
         let _alive: oneshot::Sender<()> = alive;
-        keep(journal, &waiting)
+        keep(journal, &waiting, trouble)
     });
-    (Handle { work }, Keeper { thread, ended })
+    (Handle { work, missing }, Keeper { thread, ended })
 }
 
-fn keep(mut journal: Journal, waiting: &Receiver<Work>) -> Result<(), JournalError> {
-    let mut trouble = Trouble::default();
+fn keep(mut journal: Journal, waiting: &Receiver<Work>, mut trouble: Trouble) -> Result<(), JournalError> {
     loop {
         let first = match waiting.recv_timeout(LOOK) {
             Ok(first) => Some(first),
             Err(RecvTimeoutError::Timeout) => None,
             Err(RecvTimeoutError::Disconnected) => {
+                if let Some(path) = journal.place.missing() {
+                    return Err(JournalError::Gone { path: path.into() });
+                }
                 trouble.seal(journal.seal().and_then(|()| journal.seal.sync()));
                 return Ok(());
             }
         };
         let more = std::iter::from_fn(|| waiting.try_recv().ok());
-        let batch: Vec<Work> = first.into_iter().chain(more).take(BATCH).collect();
-        // Whoever waits learns that nothing was saved since the replies are gone.
-        if trouble.missing(&journal) || batch.is_empty() {
-            continue;
+        let (mut changes, mut reads) = (Vec::new(), Vec::new());
+        for work in first.into_iter().chain(more).take(BATCH) {
+            match work {
+                Work::Change(change) => changes.push(change),
+                Work::Read(read) => reads.push(read),
+            }
         }
-        let before = journal.held;
-        match commit(&mut journal, batch) {
-            Ok(replies) => {
-                if journal.held != before {
-                    trouble.saved();
+        if trouble.missing(&journal) {
+            // Whoever waits learns that nothing was saved since the replies are gone.
+            changes.clear();
+        }
+        if !changes.is_empty() {
+            change(&mut journal, changes, &mut trouble)?;
+        }
+        for read in reads {
+            match read(&journal) {
+                Ok(reply) => {
+                    trouble.unread = None;
+                    reply();
                 }
-                trouble.seal(journal.seal());
-                replies.into_iter().for_each(|reply| reply());
+                Err(error) => trouble.unread(&error),
             }
-            Err(error) => {
-                trouble.unsaved(&error);
-                // Memory must know no more than the disk does.
-                journal.roll_back()?;
+        }
+    }
+}
+
+/// Makes the changes of a batch and answers them, or none.
+fn change(journal: &mut Journal, batch: Vec<Change>, trouble: &mut Trouble) -> Result<(), JournalError> {
+    let before = journal.held;
+    match commit(journal, batch) {
+        Ok(replies) => {
+            if journal.held != before {
+                trouble.saved();
             }
+            trouble.seal(journal.seal());
+            replies.into_iter().for_each(|reply| reply());
+            Ok(())
+        }
+        Err(error) => {
+            trouble.unsaved(&error);
+            // Memory must know no more than the disk does.
+            journal.roll_back()
         }
     }
 }
 
 /// The identities first: an answer is never there without the identifiers of who gave it, and identifiers without an answer,
 /// which a kill between the two leaves, are removed when the journal is opened.
-fn commit(journal: &mut Journal, batch: Vec<Work>) -> rusqlite::Result<Vec<Reply>> {
+fn commit(journal: &mut Journal, batch: Vec<Change>) -> rusqlite::Result<Vec<Reply>> {
     journal.answers.execute_batch("BEGIN IMMEDIATE")?;
     let replies = batch.into_iter().map(|work| work(journal)).collect::<rusqlite::Result<Vec<_>>>()?;
     if !journal.identities.is_autocommit() {
@@ -131,8 +194,9 @@ fn commit(journal: &mut Journal, batch: Vec<Work>) -> rusqlite::Result<Vec<Reply
 /// What is wrong, so that each trouble is told once, and its end too.
 #[derive(Default)]
 struct Trouble {
-    missing: bool,
+    missing: Arc<AtomicBool>,
     unsaved: Option<String>,
+    unread: Option<String>,
     seal: Option<String>,
 }
 
@@ -140,16 +204,17 @@ impl Trouble {
     /// Whether what is open is no longer what the folder shows.
     fn missing(&mut self, journal: &Journal) -> bool {
         let missing = journal.place.missing();
+        let was = self.missing.swap(missing.is_some(), Ordering::AcqRel);
         match missing {
-            Some(path) if !self.missing => log::note(format!(
-                "{}: removed or replaced while the server runs; no answer is taken until it is back",
+            Some(path) if !was => log::note(format!(
+                "{}: removed or replaced while the server runs; no answer is taken until it is back. Before you stop the server, \
+                 download the answers from the researcher's page",
                 path.display()
             )),
-            None if self.missing => log::note("the folder of answers is back; answers are taken again"),
+            None if was => log::note("the folder of answers is back; answers are taken again"),
             _ => {}
         }
-        self.missing = missing.is_some();
-        self.missing
+        missing.is_some()
     }
 
     fn unsaved(&mut self, error: &rusqlite::Error) {
@@ -157,6 +222,14 @@ impl Trouble {
         if self.unsaved.as_ref() != Some(&error) {
             log::note(format!("answers cannot be saved: {error}"));
             self.unsaved = Some(error);
+        }
+    }
+
+    fn unread(&mut self, error: &rusqlite::Error) {
+        let error = error.to_string();
+        if self.unread.as_ref() != Some(&error) {
+            log::note(format!("answers cannot be read: {error}"));
+            self.unread = Some(error);
         }
     }
 

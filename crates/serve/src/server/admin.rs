@@ -50,7 +50,7 @@ pub(super) async fn summary(
 ) -> Result<Json<Summary>, Failure> {
     authorised(&site, peer, &headers).await?;
     let of = Arc::clone(&site);
-    Ok(Json(site.journal.change(move |journal| journal.summary(now_ms(), &of.settings.key)).await?))
+    Ok(Json(site.journal.read(move |journal| journal.summary(now_ms(), &of.settings.key)).await?))
 }
 
 /// `GET /api/admin/answers.csv`: the long format.
@@ -60,7 +60,7 @@ pub(super) async fn answers(
     headers: HeaderMap,
 ) -> Result<Response, Failure> {
     authorised(&site, peer, &headers).await?;
-    let given = site.journal.change(|journal| journal.given()).await?;
+    let given = site.journal.read(|journal| journal.given()).await?;
     let lines = export::lines(&given, &site.settings.key).map_err(Failure::Key)?;
     Ok(csv(export::csv(&lines, &HEADER)))
 }
@@ -72,7 +72,7 @@ pub(super) async fn identities(
     headers: HeaderMap,
 ) -> Result<Response, Failure> {
     authorised(&site, peer, &headers).await?;
-    let all = site.journal.change(|journal| journal.identities()).await?;
+    let all = site.journal.read(|journal| journal.identities()).await?;
     let rows: Vec<_> =
         all.iter().map(|(name, of)| (name, &of.prolific_pid, &of.study_id, &of.session_id)).collect();
     Ok(csv(export::csv(&rows, &["participant", "PROLIFIC_PID", "STUDY_ID", "SESSION_ID"])))
