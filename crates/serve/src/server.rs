@@ -13,6 +13,7 @@ pub use host::{NoPublicUrl, PublicUrl};
 pub use limits::Limits;
 
 use crate::journal::{self, Handle, Held, Journal, JournalError, Loss};
+use crate::log;
 use crate::page::{self, forms_js};
 use addresses::{Budgets, Peer};
 use axum::Router;
@@ -129,6 +130,13 @@ pub fn serve(settings: Settings, ready: impl FnOnce(SocketAddr, Held)) -> Result
     }
     let journal = Journal::open(&settings.answers, &settings.file, &settings.digest, settings.loss)?;
     let held = journal.held();
+    if journal.is_uncounted() {
+        log::note(format!(
+            "warning: {} holds {held}, but its file `count` is missing or empty, so nobody can tell whether answers are missing; \
+             it is written anew",
+            settings.answers.display()
+        ));
+    }
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     let (handle, mut keeper) = journal::start(journal);
     let Settings { address, limits, .. } = settings;

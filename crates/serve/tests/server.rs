@@ -92,6 +92,24 @@ struct Server {
     address: SocketAddr,
 }
 
+/// Starts a server on a folder, and waits until it listens.
+fn spawn(folder: &Path, errors: impl FnOnce(&Path) -> Stdio) -> (Child, SocketAddr) {
+    let child = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "child", "--nocapture"])
+        .env("SERVE_FOLDER", folder)
+        .stdout(Stdio::null())
+        .stderr(errors(folder))
+        .spawn()
+        .unwrap();
+    let told = folder.join("address");
+    let text = (0..600).find_map(|_| {
+        std::thread::sleep(Duration::from_millis(50));
+        fs::read_to_string(&told).ok()
+    });
+    let text = text.expect("it listens");
+    (child, text.split(' ').next().unwrap().parse().unwrap())
+}
+
 impl Server {
     fn start(errors: impl FnOnce(&Path) -> Stdio) -> Self {
         let folder = tempfile::tempdir().unwrap();
@@ -99,20 +117,8 @@ impl Server {
         for name in ["tani", "q2", "q3", "q4"] {
             fs::write(folder.path().join(format!("stimuli/{name}.gif")), vec![7; STIMULUS]).unwrap();
         }
-        let child = Command::new(std::env::current_exe().unwrap())
-            .args(["--exact", "child", "--nocapture"])
-            .env("SERVE_FOLDER", folder.path())
-            .stdout(Stdio::null())
-            .stderr(errors(folder.path()))
-            .spawn()
-            .unwrap();
-        let told = folder.path().join("address");
-        let text = (0..600).find_map(|_| {
-            std::thread::sleep(Duration::from_millis(50));
-            fs::read_to_string(&told).ok()
-        });
-        let text = text.expect("it listens");
-        Self { folder, child, address: text.split(' ').next().unwrap().parse().unwrap() }
+        let (child, address) = spawn(folder.path(), errors);
+        Self { folder, child, address }
     }
 
     fn answers(&self) -> PathBuf {
@@ -238,6 +244,29 @@ fn a_folder_removed_under_an_idle_server_is_told() {
     until("it is told", || {
         fs::read_to_string(server.folder.path().join("log")).unwrap().contains("no answer is taken")
     });
+}
+
+/// Nobody can tell whether all are there.
+#[test]
+fn answers_without_a_count_are_told_at_the_start() {
+    let mut server = Server::start(log);
+    let session = server.begin();
+    assert_eq!(server.answer(&session, 0), 200);
+    server.stop();
+    assert_eq!(server.ends(), Some(0));
+    let folder = server.folder.path();
+    fs::remove_file(folder.join("answers/count")).unwrap();
+    fs::remove_file(folder.join("address")).unwrap();
+    let (child, address) = spawn(folder, log);
+    server.child = child;
+    until("it is told", || {
+        let log = fs::read_to_string(server.folder.path().join("log")).unwrap();
+        log.contains("warning") && log.contains("holds 1 answer of 1 participant, but")
+    });
+    // Taken away once more, under the server.
+    server.address = address;
+    fs::remove_file(server.answers().join("count")).unwrap();
+    assert_eq!(server.answer(&session, 1), 503);
 }
 
 fn ask_for_stimulus(address: SocketAddr) -> TcpStream {

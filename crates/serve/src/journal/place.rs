@@ -1,6 +1,7 @@
 //! Whether the files that are open are those that the folder shows: what is written to others nobody will find again.
 
 use super::files::{ANSWERS, IDENTITIES, LOCK};
+use super::seal;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
@@ -14,12 +15,14 @@ impl Place {
     /// What the folder shows now; to be asked once all files are open.
     pub(super) fn of(folder: &Path) -> Self {
         let log = |name: &str| format!("{name}-wal");
-        let names = [ANSWERS.into(), log(ANSWERS), IDENTITIES.into(), log(IDENTITIES), LOCK.into()];
+        let others = [LOCK, seal::NAME].map(String::from);
+        let databases = [ANSWERS.into(), log(ANSWERS), IDENTITIES.into(), log(IDENTITIES)];
+        let names = databases.into_iter().chain(others);
         let shown = |name: String| {
             let path = folder.join(name);
             identity(&path).map(|found| (path, found))
         };
-        Self { files: names.into_iter().filter_map(shown).collect() }
+        Self { files: names.filter_map(shown).collect() }
     }
 
     /// The first file that is gone, or is another.

@@ -519,7 +519,7 @@ fn a_refused_start_leaves_every_file_as_it_is() {
 /// The researcher's way to the answers stays open; whoever answers is told that nothing is saved.
 #[test]
 fn answers_are_read_while_their_folder_is_gone() {
-    for gone in ["", "identities.sqlite"] {
+    for gone in ["", "identities.sqlite", "count"] {
         let above = tempdir().unwrap();
         let folder = above.path().join("answers");
         let (handle, keeper) = start(Journal::open(&folder, &file(1), "d", Loss::Refuse).unwrap());
@@ -542,4 +542,16 @@ fn answers_are_read_while_their_folder_is_gone() {
         let ended = keeper.join().unwrap_err();
         assert!(matches!(ended, JournalError::Gone { .. }), "{gone}: {ended}");
     }
+}
+
+#[test]
+fn answers_without_a_count_are_told() {
+    let uncounted =
+        |folder: &Path| Journal::open(folder, &file(1), "d", Loss::Refuse).unwrap().is_uncounted();
+    assert!(!uncounted(tempdir().unwrap().path()), "nothing is there yet");
+    let folder = killed(3);
+    assert!(!uncounted(folder.path()));
+    std::fs::remove_file(folder.path().join("count")).unwrap();
+    assert!(uncounted(folder.path()));
+    assert!(!uncounted(folder.path()), "it was written anew");
 }
