@@ -1,7 +1,7 @@
 //! The files: `answers.sqlite`, `identities.sqlite`, and `lock`.
 
-use super::JournalError;
 use super::copy::Copied;
+use super::{JournalError, seal};
 use crate::export::Given;
 use crate::record::{Answer, Choice, Identifiers};
 use rusqlite::config::DbConfig;
@@ -33,10 +33,27 @@ const IDENTITIES_SCHEMA: &str = "
 /// participants.
 pub(super) fn lock(folder: &Path) -> Result<File, JournalError> {
     let failed = |source| JournalError::Folder { path: folder.into(), source };
+    if std::fs::metadata(folder).is_ok_and(|found| !found.is_dir()) {
+        return Err(failed(std::io::Error::other("not a folder")));
+    }
     DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(failed)?;
+    regular(folder)?;
     let lock = owned(&folder.join(LOCK)).map_err(failed)?;
     lock.try_lock().map_err(|_| JournalError::InUse { path: folder.into() })?;
     Ok(lock)
+}
+
+/// Sees to it that whatever of a journal is there is a file: a pipe would be waited for without end.
+fn regular(folder: &Path) -> Result<(), JournalError> {
+    let beside = |name: &str| ["", "-wal", "-shm"].map(|end| format!("{name}{end}"));
+    let others = [LOCK, seal::NAME].map(String::from);
+    for name in beside(ANSWERS).into_iter().chain(beside(IDENTITIES)).chain(others) {
+        let path = folder.join(name);
+        if std::fs::metadata(&path).is_ok_and(|found| !found.is_file()) {
+            return Err(JournalError::Folder { path, source: std::io::Error::other("not a file") });
+        }
+    }
+    Ok(())
 }
 
 /// The databases of a journal.
@@ -148,6 +165,7 @@ pub struct Kept {
 /// # Errors
 /// [`JournalError`]; [`JournalError::OtherStudy`] only for another study, not for another version of this one.
 pub fn kept(folder: &Path, study: &str) -> Result<Kept, JournalError> {
+    regular(folder)?;
     let (found, given) = match read(folder) {
         // SQLite reads a log only where it may write beside it.
         Err(error) if cannot_write(&error) => {

@@ -555,3 +555,33 @@ fn answers_without_a_count_are_told() {
     assert!(uncounted(folder.path()));
     assert!(!uncounted(folder.path()), "it was written anew");
 }
+
+/// A pipe would be waited for without end.
+#[test]
+fn what_is_no_file_is_refused() {
+    for name in ["count", "lock", "answers.sqlite", "answers.sqlite-wal", "identities.sqlite"] {
+        for kind in ["fifo", "device"] {
+            let folder = tempdir().unwrap();
+            let path = folder.path().join(name);
+            if kind == "fifo" {
+                assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
+            } else {
+                std::os::unix::fs::symlink("/dev/null", &path).unwrap();
+            }
+            let (say, said) = std::sync::mpsc::channel();
+            let opened = folder.path().to_owned();
+            std::thread::spawn(move || {
+                let opened = Journal::open(&opened, &file(1), "d", Loss::Refuse);
+                drop(say.send(opened.map(drop).map_err(|error| error.to_string())));
+            });
+            let said = said.recv_timeout(std::time::Duration::from_secs(10)).expect("it does not wait");
+            let expected = format!("{}: not a file", path.display());
+            assert_eq!(said, Err(expected), "{name} {kind}");
+        }
+    }
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("answers");
+    std::fs::write(&path, "").unwrap();
+    let said = Journal::open(&path, &file(1), "d", Loss::Refuse).map(drop).unwrap_err().to_string();
+    assert_eq!(said, format!("{}: not a folder", path.display()));
+}
