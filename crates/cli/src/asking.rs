@@ -137,7 +137,7 @@ pub(crate) fn serve(arguments: &Serve) -> Result<Outcome> {
         }
         tell!("answers         {}", answers.display());
         tell!("holds           {held}");
-        tell!("Ctrl-C stops it; nothing that was acknowledged is lost.");
+        tell!("Ctrl-C stops it; what was acknowledged is on disk.");
     })?;
     Ok(Outcome::Sound)
 }
