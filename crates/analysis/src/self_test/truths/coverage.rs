@@ -263,7 +263,7 @@ fn print(
 }
 
 #[test]
-#[ignore = "prints tables of simulations that take minutes"]
+#[ignore = "minutes: run by make test-long; prints tables"]
 fn coverage_through_files() {
     for design in [designs::FULL, designs::BLOCKS] {
         for truth in [Truth::Nothing, Truth::Worths] {
