@@ -6,9 +6,10 @@
 use std::time::Instant;
 
 use extract::{
-    Arrangement, Asteroid, Chunk, ChunkExtractor, Clustering, Execution, ExtractSettings, Kept, Lattice,
-    ScalarField, Source, extract, weld_chunks,
+    Arrangement, Chunk, ChunkExtractor, Clustering, Execution, ExtractSettings, Lattice, Source, extract,
+    weld_chunks,
 };
+use field::{Asteroid, Kept, ScalarField};
 use glam::Vec3;
 use mesh::Bounds;
 

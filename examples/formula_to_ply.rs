@@ -7,7 +7,8 @@ use std::error::Error;
 use std::fs::File;
 
 use expression::Expression;
-use extract::{Arrangement, Execution, ExtractSettings, Lattice, Negated, extract};
+use extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+use field::Negated;
 use mesh::{Bounds, glam::Vec3, topology::topology, write_ply};
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -7,7 +7,8 @@ use std::error::Error;
 use std::fs::{File, read};
 use std::path::Path;
 
-use extract::{Arrangement, Execution, ExtractSettings, Extractor, Holes, Lattice, MeshDistance, Source};
+use extract::{Arrangement, Execution, ExtractSettings, Extractor, Lattice, Source};
+use field::{Holes, MeshDistance};
 use mesh::{MeshFormat, quality::quality, weld};
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -6,7 +6,8 @@ use std::env::args;
 use std::error::Error;
 use std::fs::File;
 
-use extract::{Arrangement, Beyond, Execution, ExtractSettings, Lattice, VolumeField, extract};
+use extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+use field::{Beyond, VolumeField};
 use mesh::write_glb;
 
 fn main() -> Result<(), Box<dyn Error>> {

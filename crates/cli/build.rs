@@ -7,8 +7,8 @@ use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const ROOMS: [&str; 9] =
-    ["mesh", "design", "responses", "extract", "raster", "bench", "analysis", "serve", "cli"];
+const ROOMS: [&str; 10] =
+    ["mesh", "design", "responses", "field", "extract", "raster", "bench", "analysis", "serve", "cli"];
 
 fn main() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");

@@ -5,7 +5,8 @@ use crate::load::resident_bytes;
 use crate::reference::Reference;
 use crate::run::{Measurement, PeakBytes};
 use crate::stages::StageSeconds;
-use extract::{Execution, ExtractSettings, Lattice, ScalarField, StageTimes, extract};
+use extract::{Execution, ExtractSettings, Lattice, StageTimes, extract};
+use field::ScalarField;
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::io::{self, BufRead, Write};
@@ -132,7 +133,8 @@ impl Reply {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use extract::{Arrangement, Clustering, Positions, Sphere};
+    use extract::{Arrangement, Clustering, Positions};
+    use field::Sphere;
     use glam::Vec3;
     use mesh::Bounds;
     use std::time::Duration;

@@ -3,6 +3,7 @@
 const MESH: &str = env!("ISOSTUDY_ROOM_MESH");
 const DESIGN: &str = env!("ISOSTUDY_ROOM_DESIGN");
 const RESPONSES: &str = env!("ISOSTUDY_ROOM_RESPONSES");
+const FIELD: &str = env!("ISOSTUDY_ROOM_FIELD");
 const EXTRACT: &str = env!("ISOSTUDY_ROOM_EXTRACT");
 const RASTER: &str = env!("ISOSTUDY_ROOM_RASTER");
 const BENCH: &str = env!("ISOSTUDY_ROOM_BENCH");
@@ -12,11 +13,11 @@ const PAGE: &str = env!("ISOSTUDY_ROOM_PAGE");
 const CLI: &str = env!("ISOSTUDY_ROOM_CLI");
 
 /// What makes meshes.
-pub(crate) const MESHES: &[&str] = &[MESH, EXTRACT, CLI];
+pub(crate) const MESHES: &[&str] = &[MESH, FIELD, EXTRACT, CLI];
 /// What makes pictures of meshes.
 pub(crate) const PICTURES: &[&str] = &[MESH, RASTER, CLI];
 /// What makes timings.
-pub(crate) const TIMINGS: &[&str] = &[MESH, EXTRACT, BENCH, CLI];
+pub(crate) const TIMINGS: &[&str] = &[MESH, FIELD, EXTRACT, BENCH, CLI];
 /// What makes tables, figures and the report.
 pub(crate) const TABLES: &[&str] = &[DESIGN, RESPONSES, ANALYSIS, CLI, PAGE];
 /// What makes the key.

@@ -6,9 +6,8 @@ use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use design::Arrangement;
 use expression::{Expression, ExpressionError};
-use extract::{
-    Beyond, Holes, Lattice, MeshDistance, MeshFieldError, Negated, ScalarField, VolumeField, Walled,
-};
+use extract::Lattice;
+use field::{Beyond, Holes, MeshDistance, MeshFieldError, Negated, ScalarField, VolumeField, Walled};
 use glam::Vec3;
 use mesh::{Bounds, repair};
 use serde::Serialize;

@@ -9,7 +9,8 @@ use design::config::{
 };
 use design::record::Purpose;
 use design::{Arrangement, Clustering, Configuration, Study};
-use extract::{Execution, ExtractSettings, Lattice, ScalarField};
+use extract::{Execution, ExtractSettings, Lattice};
+use field::ScalarField;
 use glam::{DVec3, Vec3};
 use mesh::{Bounds, TriangleMesh};
 use std::path::PathBuf;
@@ -44,12 +45,12 @@ impl<'a> Fields<'a> {
 
 fn make_field(study: &Study, section: &FieldSection) -> Result<Box<dyn ScalarField + Send>> {
     Ok(match section {
-        FieldSection::Sphere { radius } => Box::new(extract::Sphere { radius: *radius as f32 }),
-        FieldSection::Asteroid => Box::new(extract::Asteroid::default()),
+        FieldSection::Sphere { radius } => Box::new(field::Sphere { radius: *radius as f32 }),
+        FieldSection::Asteroid => Box::new(field::Asteroid::default()),
         FieldSection::Mesh { sources } => {
             let (source, path) = present_source(study, sources)?;
             let mesh = read_placed(source, &path).with_context(|| path.display().to_string())?;
-            Box::new(extract::MeshDistance::try_new(&mesh).with_context(|| path.display().to_string())?)
+            Box::new(field::MeshDistance::try_new(&mesh).with_context(|| path.display().to_string())?)
         }
     })
 }

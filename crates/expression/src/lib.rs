@@ -2,7 +2,8 @@
 //!
 //! ```
 //! use expression::Expression;
-//! use extract::{Arrangement, Execution, ExtractSettings, Lattice, Negated, extract};
+//! use extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+//! use field::Negated;
 //! use mesh::{Bounds, glam::Vec3};
 //!
 //! // Negative inside, as distances mostly are: turned round, with the isovalue.
@@ -55,11 +56,11 @@ use std::cell::RefCell;
 use std::fmt;
 use std::str::FromStr;
 
-use extract::ScalarField;
 use fidget_core::Context;
 use fidget_core::eval::{BulkEvaluator, Function, MathFunction, Tape};
 use fidget_core::var::Var;
 use fidget_core::vm::{GenericVmTape, VmFloatSliceEval, VmFunction};
+use field::ScalarField;
 use glam::Vec3;
 use mesh::Bounds;
 

@@ -1,7 +1,8 @@
 //! What formulas mean, what is no formula, and that ranges hold.
 
 use expression::{Expression, ExpressionError};
-use extract::{Arrangement, Execution, ExtractSettings, Lattice, Negated, ScalarField, extract};
+use extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+use field::{Negated, ScalarField};
 use mesh::glam::Vec3;
 use mesh::{Bounds, TriangleMesh};
 use proptest::prelude::*;

@@ -14,9 +14,10 @@ use bunny::{BOX, bunny};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use extract::{
-    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Gyroid, Lattice,
-    MeshDistance, Placement, ScalarField, Source, Sphere, StageTimes,
+    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, Placement, Source,
+    StageTimes,
 };
+use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
 use glam::Vec3;
 use mesh::Bounds;
 

@@ -2,10 +2,8 @@
 //! Arguments: arrangement, cells along an axis, threads, field (`asteroid` or `volume`, a grid of samples of it as fine
 //! as the lattice).
 
-use extract::{
-    Arrangement, Asteroid, Beyond, Clustering, Execution, ExtractSettings, Lattice, ScalarField, VolumeField,
-    extract,
-};
+use extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, extract};
+use field::{Asteroid, Beyond, ScalarField, VolumeField};
 use glam::Vec3;
 use mesh::{Bounds, TriangleMesh};
 

@@ -1,7 +1,8 @@
 //! Best-of-many times of Metro distances between a mesh of half a million triangles and a coarser one of the same
 //! surface. Arguments: samples, repetitions.
 
-use extract::{Arrangement, Asteroid, Execution, ExtractSettings, Lattice, ScalarField, Sphere, extract};
+use extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+use field::{Asteroid, ScalarField, Sphere};
 use glam::Vec3;
 use mesh::Bounds;
 use mesh::metro::{Amount, Sampling, Surface};

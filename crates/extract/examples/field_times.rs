@@ -5,10 +5,8 @@
 mod bunny;
 
 use bunny::{BOX, bunny};
-use extract::{
-    Arrangement, Asteroid, Execution, ExtractSettings, Extraction, Extractor, Gyroid, Lattice, MeshDistance,
-    ScalarField, Source, Sphere,
-};
+use extract::{Arrangement, Execution, ExtractSettings, Extraction, Extractor, Lattice, Source};
+use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
 use glam::Vec3;
 use mesh::Bounds;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -87,7 +85,7 @@ fn main() {
                 }
             }
             let taken = AtomicUsize::new(0);
-            let mut kept = extract::Kept::default();
+            let mut kept = field::Kept::default();
             let prepared = field.prepared(&mut kept);
             let counting = Counting(prepared.unwrap_or(field), &taken);
             extractor.extract(Source::Field(&counting), &lattice, &settings, &execution).unwrap();

@@ -1,7 +1,8 @@
 //! A sphere on a lattice larger than memory, body-centred and integrated, with progress and the most memory used.
 //! Arguments: cells along an axis, threads, radius in a box from -1 to 1.
 
-use extract::{Arrangement, Execution, ExtractSettings, Extractor, Lattice, ScalarField, Source, Sphere};
+use extract::{Arrangement, Execution, ExtractSettings, Extractor, Lattice, Source};
+use field::{ScalarField, Sphere};
 use glam::Vec3;
 use mesh::Bounds;
 use std::io::IsTerminal;

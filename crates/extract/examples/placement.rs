@@ -8,9 +8,10 @@ mod bunny;
 
 use bunny::{BOX, bunny};
 use extract::{
-    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Gyroid, Lattice,
-    MeshDistance, Placement, ScalarField, Source, Sphere, accuracy,
+    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, Placement, Source,
+    accuracy,
 };
+use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
 use glam::Vec3;
 use mesh::Bounds;
 use mesh::quality::quality;

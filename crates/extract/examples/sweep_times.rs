@@ -1,10 +1,8 @@
 //! Best-of-many CPU and stage times of the streaming extractor with samples in memory, for quick comparisons.
 //! Arguments: cells along an axis, repetitions, part of a case's name.
 
-use extract::{
-    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice,
-    ScalarField, Source, Sphere,
-};
+use extract::{Arrangement, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, Source};
+use field::{Asteroid, ScalarField, Sphere};
 use glam::Vec3;
 use mesh::Bounds;
 

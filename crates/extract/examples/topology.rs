@@ -2,10 +2,8 @@
 //!
 //! `cargo run --release -p extract --example topology`
 
-use extract::{
-    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Lattice, ScalarField, Sphere, Topology,
-    extract,
-};
+use extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, Topology, extract};
+use field::{Asteroid, ScalarField, Sphere};
 use glam::Vec3;
 use mesh::quality::{TriangleQuality, quality};
 use mesh::topology::topology;

@@ -7,12 +7,12 @@ use mesh::metro::{AreaSamples, Surface};
 use rayon::prelude::*;
 
 use crate::extraction::ExtractError;
-use crate::field::{Kept, ScalarField};
 use crate::isosurface::{Isosurface, REACH};
 use crate::lattice::Lattice;
 use crate::level::Level;
 use crate::sampling::{SHARE, on_threads};
 use crate::settings::Execution;
+use field::{Kept, ScalarField};
 
 /// Points on a mesh, and on the isosurface.
 const POINTS: u64 = 8_192;

@@ -6,12 +6,12 @@ use mesh::metro::{Foot, Metro, MetroError, Sampling, Surface};
 use thiserror::Error;
 
 use crate::extraction::ExtractError;
-use crate::field::{Kept, ScalarField};
 use crate::isosurface::Isosurface;
 use crate::lattice::Lattice;
 use crate::level::Level;
 use crate::sampling::on_threads;
 use crate::settings::Execution;
+use field::{Kept, ScalarField};
 
 /// Why a mesh and an isosurface cannot be measured against each other.
 #[derive(Debug, Clone, PartialEq, Error)]

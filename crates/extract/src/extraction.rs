@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use mesh::TriangleMesh;
 
-use crate::field::ScalarField;
 use crate::lattice::{Arrangement, Lattice};
 use crate::settings::{Clustering, Execution, ExtractSettings, Placement, Positions};
 use crate::sweep::{Extractor, Source};
 use crate::triangles::Triangulation;
+use field::ScalarField;
 
 /// A surface, what it took and what was seen on the way.
 #[derive(Debug, Clone, Default)]

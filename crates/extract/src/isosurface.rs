@@ -5,10 +5,10 @@ use mesh::Bounds;
 use mesh::metro::Foot;
 
 use crate::extraction::{ExtractError, extract};
-use crate::field::ScalarField;
 use crate::lattice::{Arrangement, Lattice};
 use crate::level::Level;
 use crate::settings::{Clustering, Execution, ExtractSettings};
+use field::ScalarField;
 
 /// How far a surface is looked for, in spacings.
 pub(crate) const REACH: f32 = 3.0;

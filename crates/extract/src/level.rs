@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use crate::bracket::Bracket;
-use crate::field::ScalarField;
+use field::ScalarField;
 
 /// Half the width of a central difference, as a fraction of the spacing: wide against the rounding of a position,
 /// narrow against what a lattice of that spacing can show.

@@ -5,7 +5,8 @@
 //! ([`Clustering`]), and every tetrahedron that is crossed adds one or two triangles.
 //!
 //! ```
-//! use extract::{Arrangement, Execution, ExtractSettings, Lattice, Sphere, extract};
+//! use extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+//! use field::Sphere;
 //! use glam::Vec3;
 //! use mesh::Bounds;
 //!
@@ -48,7 +49,7 @@
 //!
 //! - Anything of that kind with [`Topology::Published`]: integrated clustering keeps well-resolved surfaces manifold
 //!   and breaks others, the edge collapse leaves folded pairs of triangles nearly always.
-//! - A surface that reaches the box is open there, unless the field ends at walls ([`Walled`]). A vertex at the boundary is
+//! - A surface that reaches the box is open there, unless the field ends at walls ([`Walled`](field::Walled)). A vertex at the boundary is
 //!   the mean of its crossings, and may lie a little inside.
 //! - As published, points lie up to a cube beyond the box: what the surface does there is flattened onto the box, and
 //!   may be scraps of their own. A sample equal to the isovalue puts all its crossings in one place, as vertices of
@@ -92,7 +93,7 @@
 //! |---|---|
 //! | isovalue infinite or `NaN` | [`ExtractError::Isovalue`] |
 //! | isovalue that no sample passes, surface between the samples | a mesh without vertices |
-//! | surface through the box | a mesh that is open there, and only there; closed with [`Walled`] |
+//! | surface through the box | a mesh that is open there, and only there; closed with [`Walled`](field::Walled) |
 //! | spacing zero, negative, infinite, `NaN` | [`LatticeError::Spacing`] |
 //! | spacing too small, too large for `f32` | [`LatticeError::TooManyCells`], [`LatticeError::TooManySamples`], [`LatticeError::OutOfRange`] |
 //! | spacing beyond the box | one cell; as published it reaches past the box |
@@ -107,8 +108,8 @@
 //! | more than 2^32 - 1 vertices | [`ExtractError::TooManyVertices`] |
 //!
 //! What grows with the lattice or with the mesh is asked for. Not asked for, so that without it the process ends, are
-//! tables of one size (under 1 MiB, and up to 8 MiB for an [`Asteroid`]), what the threads need to start and to share
-//! work, what a [`MeshDistance`] holds of its mesh, and, with accumulated positions, the pages of the lattice, which was
+//! tables of one size (under 1 MiB, and up to 8 MiB for an [`Asteroid`](field::Asteroid)), what the threads need to start and to share
+//! work, what a [`MeshDistance`](field::MeshDistance) holds of its mesh, and, with accumulated positions, the pages of the lattice, which was
 //! asked for as a whole before. Systems that promise more memory than they have can still end the process.
 //!
 //! A sample that is `NaN` is outside and leaves the crossings round it to the inside end, in the middle of their
@@ -147,7 +148,6 @@ mod collapse;
 mod distances;
 mod edges;
 mod extraction;
-mod field;
 mod guard;
 mod isosurface;
 mod lattice;
@@ -170,10 +170,7 @@ pub use accuracy::{Accuracy, accuracy};
 pub use chunks::{Chunk, ChunkError, ChunkExtractor, WeldError, weld_chunks};
 pub use distances::{DistanceError, distances};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, extract};
-pub use field::{
-    Asteroid, Beyond, Gyroid, Holes, InwardPart, Kept, MeshDistance, MeshFieldError, Negated, ScalarField,
-    Sphere, VolumeField, VolumeFieldError, Walled,
-};
+pub use field::ScalarField;
 pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use sweep::{Extractor, Source};

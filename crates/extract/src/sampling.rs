@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 
 use crate::ExtractError;
-use crate::field::ScalarField;
 use crate::lattice::{Coordinates, Layout};
 use crate::settings::Execution;
+use field::ScalarField;
 
 /// The fewest items that are worth a thread.
 pub(crate) const SHARE: usize = 256;

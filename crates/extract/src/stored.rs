@@ -8,7 +8,6 @@ use mesh::TriangleMesh;
 
 use crate::edges::EdgeTable;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
-use crate::field::{Kept, ScalarField};
 use crate::lattice::{Border, Coordinates, Lattice, Layout};
 use crate::level::Level;
 use crate::normals::vertex_normals;
@@ -17,6 +16,7 @@ use crate::sampling::sample;
 use crate::settings::{Execution, ExtractSettings};
 use crate::triangles::triangulate;
 use crate::vertices::{Sides, VertexStage};
+use field::{Kept, ScalarField};
 
 /// The stages in order, timed and counted. At most `most_vertices` may come of it.
 pub(crate) fn extract(

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use extract::{
-    Accuracy, Arrangement, Asteroid, DistanceError, Execution, ExtractSettings, Lattice, MeshDistance,
-    ScalarField, Sphere, accuracy, distances, extract,
+    Accuracy, Arrangement, DistanceError, Execution, ExtractSettings, Lattice, accuracy, distances, extract,
 };
+use field::{Asteroid, MeshDistance, ScalarField, Sphere};
 use glam::{Vec3, vec3};
 use mesh::metro::{Amount, MetroError, Sampling, Surface, metro};
 use mesh::{Bounds, MeshError, TriangleMesh};
@@ -221,7 +221,7 @@ fn a_field_that_knows_its_surface_gives_what_a_search_gives_and_more() {
     }
     // Beyond three spacings: Negated stands for fields that pass on what another knows.
     let small = sphere_mesh(4).transformed(|p| p * 0.4);
-    let far = measure(&small, &extract::Negated(known), 0.0, 0.1);
+    let far = measure(&small, &field::Negated(known), 0.0, 0.1);
     assert_eq!((far.lost_points, measure(&small, &searched, 0.0, 0.1).lost_points), (0, 8_192));
     assert!((far.distance.min - 0.4).abs() < 1e-3 && (far.distance.max - 0.4).abs() < 1e-3);
 }

@@ -7,9 +7,10 @@ mod survey;
 use std::f64::consts::PI;
 
 use extract::{
-    Arrangement, Asteroid, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor,
-    Gyroid, Lattice, Placement, Positions, ScalarField, Source, Sphere, Topology, accuracy, extract,
+    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Lattice,
+    Placement, Positions, Source, Topology, accuracy, extract,
 };
+use field::{Asteroid, Gyroid, ScalarField, Sphere};
 use fields::{FAMILIES, Family, Volume};
 use glam::Vec3;
 use mesh::Bounds;

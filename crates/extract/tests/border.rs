@@ -3,9 +3,10 @@
 use std::sync::Mutex;
 
 use extract::{
-    Arrangement, ChunkExtractor, Clustering, Execution, ExtractSettings, Gyroid, Lattice, ScalarField,
-    Topology, extract, weld_chunks,
+    Arrangement, ChunkExtractor, Clustering, Execution, ExtractSettings, Lattice, Topology, extract,
+    weld_chunks,
 };
+use field::{Gyroid, ScalarField};
 use glam::Vec3;
 use mesh::topology::topology;
 use mesh::{Bounds, TriangleMesh};

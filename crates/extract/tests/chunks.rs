@@ -6,10 +6,10 @@ mod fields;
 use std::sync::Mutex;
 
 use extract::{
-    Arrangement, Asteroid, CellBox, Chunk, ChunkError, ChunkExtractor, Clustering, Execution, ExtractError,
-    ExtractSettings, Lattice, Placement, Positions, ScalarField, Source, Sphere, Topology, WeldError,
-    extract, weld_chunks,
+    Arrangement, CellBox, Chunk, ChunkError, ChunkExtractor, Clustering, Execution, ExtractError,
+    ExtractSettings, Lattice, Placement, Positions, Source, Topology, WeldError, extract, weld_chunks,
 };
+use field::{Asteroid, ScalarField, Sphere};
 use fields::{FAMILIES, Family, Numbers, Volume};
 use glam::Vec3;
 use mesh::{Bounds, TriangleMesh};

@@ -1,10 +1,8 @@
 //! Surfaces that are asked to be closed are: round a volume whatever its steps and however it is turned, and at the walls
 //! of any box.
 
-use extract::{
-    Arrangement, Asteroid, Beyond, Clustering, Execution, ExtractSettings, Lattice, Negated, ScalarField,
-    Sphere, VolumeField, Walled, extract,
-};
+use extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, extract};
+use field::{Asteroid, Beyond, Negated, ScalarField, Sphere, VolumeField, Walled};
 use glam::{DMat3, DVec3, Vec3};
 use mesh::quality::quality;
 use mesh::topology::{first_boundary_edge, topology};

@@ -2,8 +2,9 @@
 
 use extract::{
     Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Lattice, LatticeError, Positions,
-    ScalarField, Sphere, extract,
+    extract,
 };
+use field::{ScalarField, Sphere};
 use glam::Vec3;
 use mesh::Bounds;
 

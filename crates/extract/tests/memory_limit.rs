@@ -2,9 +2,10 @@
 
 use cap::Cap;
 use extract::{
-    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extractor, Gyroid, Lattice, Placement,
-    Positions, ScalarField, Source, Sphere, Topology,
+    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extractor, Lattice, Placement,
+    Positions, Source, Topology,
 };
+use field::{Gyroid, ScalarField, Sphere};
 use glam::Vec3;
 use mesh::Bounds;
 use std::alloc::System;

@@ -6,10 +6,8 @@ use std::f64::consts::PI;
 use std::thread;
 
 use bunny::{BOX, bunny};
-use extract::{
-    Arrangement, Clustering, Execution, ExtractSettings, Lattice, MeshDistance, MeshFieldError, Positions,
-    ScalarField, Topology, extract,
-};
+use extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, Positions, Topology, extract};
+use field::{MeshDistance, MeshFieldError, ScalarField};
 use glam::{DVec3, Vec3};
 use mesh::topology::topology;
 use mesh::{MeshError, TriangleMesh, repair};

@@ -1,9 +1,10 @@
 //! What the crate's front page says of odd input: an error, or a mesh with a meaning.
 
 use extract::{
-    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Gyroid, Lattice, MeshDistance,
-    Placement, Positions, ScalarField, Sphere, Topology, extract,
+    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Lattice, Placement, Positions, Topology,
+    extract,
 };
+use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
 use glam::Vec3;
 use mesh::topology::topology;
 use mesh::{Bounds, TriangleMesh};

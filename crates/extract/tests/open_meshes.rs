@@ -5,10 +5,8 @@ mod bunny;
 use std::f64::consts::PI;
 
 use bunny::bunny;
-use extract::{
-    Arrangement, Execution, ExtractSettings, Holes, Lattice, MeshDistance, MeshFieldError, ScalarField,
-    extract,
-};
+use extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+use field::{Holes, MeshDistance, MeshFieldError, ScalarField};
 use glam::{DVec3, Vec3};
 use mesh::topology::topology;
 use mesh::{Bounds, MeshError, TriangleMesh, repair};

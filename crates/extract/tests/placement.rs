@@ -3,9 +3,10 @@
 mod fields;
 
 use extract::{
-    Arrangement, Asteroid, Clustering, Execution, ExtractError, ExtractSettings, Extractor, Gyroid, Lattice,
-    MeshDistance, Placement, ScalarField, Source, Sphere, Topology, accuracy, extract,
+    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extractor, Lattice, Placement, Source,
+    Topology, accuracy, extract,
 };
+use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
 use fields::{FAMILIES, Volume};
 use glam::Vec3;
 use mesh::quality::quality;

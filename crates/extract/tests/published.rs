@@ -5,9 +5,9 @@
 use std::collections::HashMap;
 
 use extract::{
-    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Lattice, Positions,
-    ScalarField, Sphere, Topology, extract,
+    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Lattice, Positions, Topology, extract,
 };
+use field::{Asteroid, ScalarField, Sphere};
 use glam::Vec3;
 use mesh::{Bounds, TriangleMesh};
 

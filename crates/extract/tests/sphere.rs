@@ -6,9 +6,9 @@ use std::collections::HashSet;
 use std::f64::consts::PI;
 
 use extract::{
-    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Lattice, Positions, ScalarField, Sphere,
-    Topology, extract,
+    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Lattice, Positions, Topology, extract,
 };
+use field::{ScalarField, Sphere};
 use glam::Vec3;
 use mesh::{Bounds, TriangleMesh};
 use topology::{assert_closed_manifold, directed_sides};
@@ -151,7 +151,7 @@ fn threads_do_not_show() {
         let lattice = Lattice::try_new(arrangement, bounds, 0.09).unwrap();
         for positions in [Positions::Indexed, Positions::Accumulated { chunks: 7 }] {
             let settings = ExtractSettings { positions, ..ExtractSettings::default() };
-            let field = extract::Asteroid::default();
+            let field = field::Asteroid::default();
             let mesh = |threads| extract(&field, &lattice, &settings, &Execution { threads }).unwrap().mesh;
             let bits = |mesh: &TriangleMesh| -> Vec<[u32; 3]> {
                 mesh.positions.iter().chain(&mesh.normals).map(|p| p.to_array().map(f32::to_bits)).collect()

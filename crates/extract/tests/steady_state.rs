@@ -1,9 +1,9 @@
 //! An extractor that has seen a volume of a size allocates nothing for the next one, whatever the field or the samples.
 
 use extract::{
-    Arrangement, Asteroid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Gyroid, Lattice,
-    MeshDistance, ScalarField, Source, Sphere, Topology,
+    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, Source, Topology,
 };
+use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
 use glam::Vec3;
 use mesh::Bounds;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};

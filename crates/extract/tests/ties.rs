@@ -3,10 +3,8 @@
 
 mod fields;
 
-use extract::{
-    Arrangement, Beyond, Clustering, Execution, ExtractSettings, Lattice, ScalarField, Topology, VolumeField,
-    extract,
-};
+use extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, Topology, extract};
+use field::{Beyond, ScalarField, VolumeField};
 use fields::{FAMILIES, Family, Numbers, Volume};
 use glam::Vec3;
 use mesh::quality::quality;

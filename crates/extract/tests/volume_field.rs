@@ -2,10 +2,8 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use extract::{
-    Arrangement, Beyond, Execution, ExtractSettings, Lattice, Negated, ScalarField, VolumeField,
-    VolumeFieldError, extract,
-};
+use extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+use field::{Beyond, Negated, ScalarField, VolumeField, VolumeFieldError};
 use glam::{DMat3, DVec3, Vec3};
 use mesh::topology::topology;
 use mesh::{Bounds, TriangleMesh};

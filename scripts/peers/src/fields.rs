@@ -3,7 +3,7 @@
 //! Measured from Python: 1.0 us a call for the asteroid through ctypes, 17.9 us written in Python, where its noise, which hashes in
 //! single precision, comes out as another surface (up to 0.26 off). So the names are exported, for which Rust wants `unsafe`.
 
-use extract::{Asteroid, ScalarField, Sphere};
+use field::{Asteroid, ScalarField, Sphere};
 use glam::Vec3;
 
 /// The sphere's.

@@ -8,7 +8,7 @@ mod report;
 use anyhow::{Context, Result, bail};
 use bench::{CpuTimes, order};
 use design::machine::Machine;
-use extract::{Asteroid, ScalarField, Sphere};
+use field::{Asteroid, ScalarField, Sphere};
 use glam::Vec3;
 use mesh::TriangleMesh;
 use std::path::PathBuf;

@@ -28,7 +28,8 @@ const NOWHERE: u32 = u32::MAX;
 /// [`Clustering::Integrated`], which regularises triangles without looking farther than a neighbour.
 ///
 /// ```
-/// use extract::{Arrangement, ChunkExtractor, Execution, ExtractSettings, Lattice, ScalarField, Sphere, extract, weld_chunks};
+/// use extract::{Arrangement, ChunkExtractor, Execution, ExtractSettings, Lattice, extract, weld_chunks};
+/// use field::{ScalarField, Sphere};
 /// # use glam::Vec3;
 /// # use mesh::Bounds;
 /// # let bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) };

@@ -14,7 +14,8 @@ use crate::settings::{Clustering, Execution, ExtractSettings, Positions, Topolog
 use crate::survey::survey;
 use crate::triangles::triangulate;
 use crate::vertices::{Sides, VertexStage};
-use crate::{Arrangement, Asteroid, Lattice, ScalarField, sampling};
+use crate::{Arrangement, Lattice, sampling};
+use field::{Asteroid, ScalarField};
 use glam::Vec3;
 use mesh::Bounds;
 

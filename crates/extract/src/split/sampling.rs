@@ -11,9 +11,9 @@ use glam::Vec3;
 use super::grid::{Grid, LINES};
 use super::rows::{BitRows, shifted};
 use super::tiles::Tiles;
-use crate::ScalarField;
 use crate::memory::{filled, with_room};
 use crate::sweep::{Known, Source, Span, Tile};
+use field::ScalarField;
 
 /// Samples taken together near the surface.
 const BATCH: usize = 4;

@@ -5,7 +5,6 @@ use mesh::TriangleMesh;
 use super::cut::{Cut, Step};
 use super::grid::Coordinates;
 use super::points::{Placer, Record, Vertices};
-use crate::ScalarField;
 use crate::extraction::{Counts, Extraction};
 use crate::lattice::{Border, Lattice};
 use crate::level::Level;
@@ -16,6 +15,7 @@ use crate::tetrahedra::{CASES, Case};
 use crate::trace::{Trace, VertexKey};
 use crate::triangles::Triangulation;
 use crate::vertices::Ties;
+use field::ScalarField;
 
 /// What [`super::extract`] gives, and the trace.
 pub(super) fn extract(

@@ -15,9 +15,10 @@ use crate::lattice::Border;
 use crate::spot::tests::normal_lies_between;
 use crate::trace::Trace;
 use crate::{
-    Arrangement, Asteroid, Beyond, CellBox, Clustering, Execution, ExtractError, ExtractSettings, Extraction,
-    Gyroid, Lattice, MeshDistance, Placement, ScalarField, Source, Sphere, Topology, VolumeField,
+    Arrangement, CellBox, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Lattice,
+    Placement, Source, Topology,
 };
+use field::{Asteroid, Beyond, Gyroid, MeshDistance, ScalarField, Sphere, VolumeField};
 
 const BOTH: [Arrangement; 2] = [Arrangement::FiveTetrahedra, Arrangement::FaceCentred];
 

@@ -10,9 +10,9 @@ use glam::Vec3;
 use mesh::Bounds;
 
 use super::grid::Grid;
-use crate::ScalarField;
 use crate::memory::{filled, with_room};
 use crate::sweep::{Known, Span, Tile};
+use field::ScalarField;
 
 /// Columns, rows and layers of a tile for each of a cell.
 pub(crate) const TILE: usize = 2;

@@ -13,7 +13,6 @@ use super::rule::{ClusterRule, Guarded, Published, Unclustered};
 use super::slab::{Job, Piece, SlabTimes, Workspace, sweep};
 use super::source::Source;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
-use crate::field::Kept;
 use crate::lattice::{Border, Lattice};
 use crate::level::Level;
 use crate::placement::{self, CrossingPlacer};
@@ -22,6 +21,7 @@ use crate::split;
 use crate::spot::Apart;
 use crate::stored;
 use crate::trace::Trace;
+use field::Kept;
 
 /// Slabs a thread, so that an uneven surface still keeps all threads busy.
 const SLABS_PER_THREAD: usize = 2;
@@ -36,10 +36,11 @@ type Progress = Box<dyn Fn(usize, usize) + Send + Sync>;
 /// With indexed positions it streams: memory grows with a layer of the lattice and with the mesh. From the second
 /// volume of a size on, with one thread, unless edges are collapsed or vertices placed otherwise than at the mean of
 /// interpolated crossings, [`extract_into`](Self::extract_into) allocates nothing, as long as the surface does not
-/// outgrow those before it; an [`Asteroid`](crate::Asteroid) other than the one before has its tables made again.
+/// outgrow those before it; an [`Asteroid`](field::Asteroid)(field::Asteroid) other than the one before has its tables made again.
 ///
 /// ```
-/// use extract::{Arrangement, Execution, ExtractSettings, Extraction, Extractor, Lattice, ScalarField, Sphere};
+/// use extract::{Arrangement, Execution, ExtractSettings, Extraction, Extractor, Lattice};
+/// use field::{ScalarField, Sphere};
 /// # use glam::Vec3;
 /// # use mesh::Bounds;
 /// # let bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) };

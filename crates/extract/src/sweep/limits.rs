@@ -6,8 +6,9 @@ use mesh::Bounds;
 use super::extractor::MostVertices;
 use crate::{
     Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Lattice,
-    Positions, Source, Sphere,
+    Positions, Source,
 };
+use field::Sphere;
 
 #[test]
 fn more_vertices_than_may_be_are_an_error() {

@@ -14,7 +14,7 @@ use super::grid::Grid;
 use super::points::Samples;
 use super::signs::Signs;
 use super::tiles::{Known, Span, TILE, Tile, Tiles};
-use crate::ScalarField;
+use field::ScalarField;
 
 /// Samples taken together near the surface.
 const BATCH: usize = 4;

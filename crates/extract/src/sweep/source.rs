@@ -1,6 +1,6 @@
 //! Where samples come from: a field that is called, or an array that is there.
 
-use crate::ScalarField;
+use field::ScalarField;
 
 /// What to extract from.
 #[derive(Clone, Copy)]

@@ -9,9 +9,10 @@ use proptest::prelude::*;
 use crate::bunny::{BOX, bunny};
 use crate::lattice::{Border, Coordinates, Layout};
 use crate::{
-    Arrangement, Asteroid, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor,
-    Gyroid, Lattice, MeshDistance, Placement, Positions, ScalarField, Source, Sphere, Topology, stored,
+    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Lattice,
+    Placement, Positions, Source, Topology, stored,
 };
+use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
 
 /// Noise by position. Values are multiples of `1 / levels`; of `odd` points in 64, some are not numbers, some infinite.
 #[derive(Debug, Clone, Copy)]

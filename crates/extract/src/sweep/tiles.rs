@@ -11,9 +11,9 @@ use glam::Vec3;
 use mesh::Bounds;
 
 use super::grid::Grid;
-use crate::ScalarField;
-use crate::field::SAFE;
 use crate::lattice::{PointKind, Uniform};
+use field::SAFE;
+use field::ScalarField;
 
 /// Columns and rows of a tile, and cells in the height of a brick.
 pub(super) const TILE: usize = 2;

@@ -2,7 +2,8 @@
 
 use std::f32::consts::TAU;
 
-use extract::{Arrangement, Lattice, ScalarField};
+use extract::{Arrangement, Lattice};
+use field::ScalarField;
 use glam::Vec3;
 use mesh::Bounds;
 

@@ -1,4 +1,16 @@
 //! Scalar fields: what is sampled.
+//!
+//! A [`ScalarField`] is a real function of space, and says what it knows of itself: how fast it changes, what values a
+//! box can have, where its isosurface is. Solids are above the isovalue.
+//!
+//! | field | value |
+//! |---|---|
+//! | [`Sphere`], [`Asteroid`], [`Gyroid`] | formulas |
+//! | [`MeshDistance`] | the distance to a triangle mesh, positive inside |
+//! | [`VolumeField`] | samples of a regular grid, interpolated |
+//! | [`Negated`], [`Walled`] | another field, turned round or ended at walls |
+//!
+//! No field uses the platform's mathematics: values are the same on every machine.
 
 mod asteroid;
 mod asteroid_table;
@@ -165,5 +177,6 @@ pub(crate) fn has_sound_lengths(bounds: Bounds) -> bool {
     (1e-15..=1e18).contains(&bounds.min.abs().max(bounds.max.abs()).max_element())
 }
 
-/// More than one, by more than the rounding of a sample and of a bound.
-pub(crate) const SAFE: f32 = 1.0 + 2e-5;
+/// More than one, by more than the rounding of a sample and of a bound: what a bound is multiplied by before a sample is left
+/// out on its account.
+pub const SAFE: f32 = 1.0 + 2e-5;
