@@ -36,7 +36,7 @@ type Progress = Box<dyn Fn(usize, usize) + Send + Sync>;
 /// With indexed positions it streams: memory grows with a layer of the lattice and with the mesh. From the second
 /// volume of a size on, with one thread, unless edges are collapsed or vertices placed otherwise than at the mean of
 /// interpolated crossings, [`extract_into`](Self::extract_into) allocates nothing, as long as the surface does not
-/// outgrow those before it; an [`Asteroid`](field::Asteroid)(field::Asteroid) other than the one before has its tables made again.
+/// outgrow those before it; an [`Asteroid`](field::Asteroid) other than the one before has its tables made again.
 ///
 /// ```
 /// use extract::{Arrangement, Execution, ExtractSettings, Extraction, Extractor, Lattice};
