@@ -6,10 +6,8 @@ use std::time::Duration;
 use mesh::TriangleMesh;
 
 use crate::lattice::{Arrangement, Lattice};
-use crate::settings::{Clustering, Execution, ExtractSettings, Placement, Positions};
-use crate::sweep::{Extractor, Source};
+use crate::settings::{Clustering, ExtractSettings, Placement, Positions};
 use crate::triangles::Triangulation;
-use field::ScalarField;
 
 /// A surface, what it took and what was seen on the way.
 #[derive(Debug, Clone, Default)]
@@ -166,23 +164,6 @@ impl From<TryReserveError> for ExtractError {
     fn from(_: TryReserveError) -> Self {
         Self::NoMemoryForMesh
     }
-}
-
-/// Extracts the surface where `field` has the isovalue.
-///
-/// The mesh depends on the field, the lattice and the settings, never on `execution`, to the byte. See the crate's
-/// front page for what it is and what it is not.
-///
-/// # Errors
-/// [`ExtractError`] if the settings are not valid, memory or threads are not to be had, or there are too many
-/// vertices.
-pub fn extract(
-    field: &dyn ScalarField,
-    lattice: &Lattice,
-    settings: &ExtractSettings,
-    execution: &Execution,
-) -> Result<Extraction, ExtractError> {
-    Extractor::new().extract(Source::Field(field), lattice, settings, execution)
 }
 
 pub(crate) fn check(settings: &ExtractSettings, arrangement: Arrangement) -> Result<(), ExtractError> {

@@ -4,7 +4,8 @@ use glam::{DVec3, Vec3};
 use mesh::Bounds;
 use mesh::metro::Foot;
 
-use crate::extraction::{ExtractError, extract};
+use crate::extraction::ExtractError;
+use crate::extractor::extract;
 use crate::lattice::{Arrangement, Lattice};
 use crate::level::Level;
 use crate::settings::{Clustering, Execution, ExtractSettings};

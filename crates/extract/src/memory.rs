@@ -35,3 +35,10 @@ pub(crate) fn with_room<T>(len: usize) -> Result<Vec<T>, TryReserveError> {
     vector.try_reserve_exact(len)?;
     Ok(vector)
 }
+
+/// Makes a vector `len` long. What it held stays if it is long enough; new room is asked for, not taken.
+pub(crate) fn refill<T: Copy>(vector: &mut Vec<T>, len: usize, value: T) -> Result<(), TryReserveError> {
+    vector.try_reserve_exact(len.saturating_sub(vector.len()))?;
+    vector.resize(len, value);
+    Ok(())
+}

@@ -8,14 +8,16 @@ use mesh::TriangleMesh;
 
 use crate::edges::EdgeTable;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
+use crate::finish::finish;
 use crate::lattice::{Border, Coordinates, Lattice, Layout};
 use crate::level::Level;
 use crate::normals::vertex_normals;
-use crate::placement::{self, CrossingPlacer};
+use crate::placement::CrossingPlacer;
 use crate::sampling::sample;
 use crate::settings::{Execution, ExtractSettings};
+use crate::sides::Sides;
 use crate::triangles::triangulate;
-use crate::vertices::{Sides, VertexStage};
+use crate::vertices::VertexStage;
 use field::{Kept, ScalarField};
 
 /// The stages in order, timed and counted. At most `most_vertices` may come of it.
@@ -50,7 +52,7 @@ pub(crate) fn extract(
 
     let mut surface = triangulate(lattice, &layout, &sides, &edges)?;
     let collapsing =
-        placement::finish(Some(level), lattice, settings, execution, &targets, &mut positions, &mut surface)?;
+        finish(Some(level), lattice, settings, execution, &targets, &mut positions, &mut surface)?;
     let clustering = collapsing.unwrap_or_default();
     let geometry = clock.lap() - clustering;
 

@@ -4,9 +4,9 @@ use std::collections::TryReserveError;
 
 use crate::edges::EdgeTable;
 use crate::lattice::{Arrangement, DirectionSet, Lattice, Layout};
+use crate::sides::Sides;
 use crate::tetrahedra::{CASES, Case, Tetrahedron, belongs_to_an_earlier_cell, spokes};
 use crate::trace::Trace;
-use crate::vertices::Sides;
 
 /// The most triangles of a cell: two in each tetrahedron, of which a cell in a lowest corner of the box has 24.
 pub(crate) const MOST_TRIANGLES_A_CELL: usize = 48;

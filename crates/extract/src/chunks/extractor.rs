@@ -7,11 +7,12 @@ use mesh::TriangleMesh;
 use super::chunk::Chunk;
 use crate::collapse::collapse_traced;
 use crate::extraction::{ExtractError, Extraction, check};
+use crate::extractor::Extractor;
 use crate::lattice::{CellBox, Lattice};
 use crate::memory::{collected, filled, push};
 use crate::normals::vertex_normals;
 use crate::settings::{Clustering, Execution, ExtractSettings, Placement, Positions};
-use crate::sweep::{Extractor, Source};
+use crate::source::Source;
 
 /// Of what decides about a surface component, this much is tried at first beyond the chunk.
 const FIRST_MARGIN: u32 = 8;

@@ -12,7 +12,7 @@ const SHARE: f32 = 0.5;
 /// Each vertex half the way to the mean of its neighbours, in the plane through it across its area-weighted normal.
 /// Neighbours are the vertices of its triangles, each counted once a triangle. A vertex on the boundary, or without a
 /// normal, stays.
-pub(super) fn relaxed(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<Vec3>, TryReserveError> {
+pub(crate) fn relaxed(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<Vec3>, TryReserveError> {
     let mut around = filled(positions.len(), Around::default())?;
     for triangle in triangles {
         let [a, b, c] = triangle.map(|v| positions[v as usize]);

@@ -5,6 +5,7 @@ use std::collections::TryReserveError;
 use super::grid::{CORNERS, Grid};
 use super::points::{Record, Records};
 use super::rows::{BitRows, is_set, shifted};
+use crate::bits::between;
 use crate::tetrahedra::{CASES, Case};
 use crate::triangles::Triangulation;
 
@@ -39,7 +40,7 @@ pub(super) fn triangulate_layer(
             let mut left = grid.cut.telling.iter().fold(0, |cells, &corner| {
                 cells | shifted(marks[corner], word, isize::from(corners[corner][0]))
             });
-            left &= grid.lowest_corners & Grid::bits(word, 0, nx * steps);
+            left &= grid.lowest_corners & between(word, 0, nx * steps);
             while left != 0 {
                 let column = 64 * word + left.trailing_zeros() as usize;
                 left &= left - 1;

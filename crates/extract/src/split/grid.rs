@@ -3,10 +3,12 @@
 use std::collections::TryReserveError;
 
 use glam::Vec3;
+use mesh::Bounds;
 
 use super::cut::{Cut, CutEdge, Directions, Step};
 use crate::lattice::{Border, Lattice};
 use crate::memory::collected;
+use crate::tiles::Points;
 
 /// The points of a word in even and in odd columns.
 const EVEN: u64 = 0x5555_5555_5555_5555;
@@ -186,18 +188,31 @@ impl<'a> Grid<'a> {
         let (y, z) = (row.wrapping_add_signed(rows), layer.wrapping_add_signed(layers));
         (y < self.size[1] && z < self.size[2]).then_some([y, z])
     }
-
-    /// The bits of a word whose points lie in columns from `first` up to `end`.
-    pub(super) fn bits(word: usize, first: usize, end: usize) -> u64 {
-        below(end, word) & !below(first, word)
-    }
 }
 
-/// The bits of a word in columns before `end`.
-fn below(end: usize, word: usize) -> u64 {
-    match end.saturating_sub(64 * word) {
-        n if n < 64 => !(!0 << n),
-        _ => !0,
+/// Columns, rows and layers of a tile for each of a cell.
+const TILE: usize = 2;
+
+impl Points for Grid<'_> {
+    fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    fn side(&self) -> usize {
+        TILE * self.cut.steps_a_cell
+    }
+
+    fn depth(&self) -> usize {
+        self.side()
+    }
+
+    fn spacing(&self) -> f32 {
+        self.lattice.spacing()
+    }
+
+    fn bounds(&self, columns: [usize; 2], rows: [usize; 2], layers: [usize; 2]) -> Bounds {
+        let [min, max] = [0, 1].map(|end| self.coordinates.at([columns[end], rows[end], layers[end]]));
+        Bounds { min, max }
     }
 }
 

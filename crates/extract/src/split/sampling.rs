@@ -6,17 +6,14 @@
 
 use std::collections::TryReserveError;
 
-use glam::Vec3;
-
 use super::grid::{Grid, LINES};
 use super::rows::{BitRows, shifted};
-use super::tiles::Tiles;
-use crate::memory::{filled, with_room};
-use crate::sweep::{Known, Source, Span, Tile};
+use crate::bits::{between, set_range};
+use crate::line::{Columns, Every, Gaps, Line};
+use crate::memory::filled;
+use crate::source::Source;
+use crate::tiles::{Points, Span, Tile, Tiles};
 use field::ScalarField;
-
-/// Samples taken together near the surface.
-const BATCH: usize = 4;
 
 /// Where all points of a row are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -44,10 +41,7 @@ struct Called {
     values: Vec<f32>,
     taken: BitRows,
     tiles: Tiles,
-    /// Columns whose samples are to be taken, and what goes with them.
-    columns: Vec<usize>,
-    x: Vec<f32>,
-    found: Vec<f32>,
+    gaps: Gaps,
 }
 
 /// What is sampled, and where.
@@ -178,7 +172,7 @@ fn mark_crossings(
         // The columns whose neighbours are there.
         let (first, end) = ((-dx).max(0) as usize, nx.saturating_sub(dx.max(0) as usize));
         for (word, active) in active.iter_mut().enumerate() {
-            *active |= (here[word + 1] ^ shifted(there, word, dx)) & edges & Grid::bits(word, first, end);
+            *active |= (here[word + 1] ^ shifted(there, word, dx)) & edges & between(word, first, end);
         }
     }
 }
@@ -186,14 +180,11 @@ fn mark_crossings(
 impl Called {
     fn new(grid: &Grid, slots: usize) -> Result<Self, TryReserveError> {
         let [nx, ny, _] = grid.size;
-        Ok(Self {
-            values: filled(nx * ny * slots, 0.0)?,
-            taken: BitRows::new(grid, slots)?,
-            tiles: Tiles::new(grid)?,
-            columns: with_room(nx)?,
-            x: filled(nx, 0.0)?,
-            found: filled(nx, 0.0)?,
-        })
+        let (mut tiles, mut gaps) = (Tiles::default(), Gaps::default());
+        tiles.fit(grid)?;
+        gaps.fit(nx)?;
+        let (values, taken) = (filled(nx * ny * slots, 0.0)?, BitRows::new(grid, slots)?);
+        Ok(Self { values, taken, tiles, gaps })
     }
 
     /// Finds the sides of a row that is not known to lie on one.
@@ -208,19 +199,22 @@ impl Called {
         let grid = sampling.grid;
         let [nx, ny, _] = grid.size;
         let (spans, known) = self.tiles.row(row);
+        let [offset, step] = grid.kind(row, layer).columns;
         let mut line = Line {
-            grid,
             field,
             isovalue: sampling.isovalue,
-            columns: grid.kind(row, layer).columns,
+            columns: Every { offset, step },
+            x: &grid.coordinates.x,
             y: grid.coordinates.y[row],
             z: grid.coordinates.z[layer],
             values: &mut self.values[(layer % slots * ny + row) * nx..][..nx],
             taken: self.taken.row_mut(row, layer),
             sides,
-            found: &mut self.found,
         };
-        line.sample(spans, known, self.tiles.side);
+        // Columns with a point, as if there were no others.
+        let x = if step == 1 { &grid.coordinates.x } else { &grid.columns[offset] };
+        let found = self.gaps.room();
+        line.sample(spans, known, grid.side(), |line, first, end| take_all(line, first, end, x, found));
     }
 
     /// Takes the samples of a row at points with a crossing that have none yet.
@@ -236,158 +230,23 @@ impl Called {
         let places = &grid.coordinates;
         let (y, z) = (places.y[row], places.z[layer]);
         let values = &mut self.values[(layer % slots * ny + row) * nx..][..nx];
-        self.columns.clear();
-        let mut hint = None;
-        for (word, (taken, active)) in self.taken.row_mut(row, layer).iter_mut().zip(active).enumerate() {
-            let mut left = active & !*taken;
-            if left != 0 && hint.is_none() {
-                hint = taken_near(*taken, left.trailing_zeros()).map(|bit| 64 * word + bit as usize);
-            }
-            *taken |= left;
-            while left != 0 {
-                self.columns.push(64 * word + left.trailing_zeros() as usize);
-                left &= left - 1;
-            }
+        self.gaps.clear();
+        for (word, (taken, &active)) in self.taken.row_mut(row, layer).iter_mut().zip(active).enumerate() {
+            self.gaps.note(word, active, taken);
         }
-        let count = self.columns.len();
-        if count == 0 {
-            return;
-        }
-        for (place, &column) in self.x.iter_mut().zip(&self.columns) {
-            *place = places.x[column];
-        }
-        let found = &mut self.found[..count];
-        let hint = hint.map(|column| (Vec3::new(places.x[column], y, z), values[column]));
-        field.sample_row_after(&self.x[..count], y, z, found, hint);
-        for (&column, &value) in self.columns.iter().zip(&*found) {
-            values[column] = value;
-        }
+        self.gaps.fill(field, &places.x, y, z, values);
     }
 }
 
-/// A row of which some parts are known to be on one side.
-struct Line<'a> {
-    grid: &'a Grid<'a>,
-    field: &'a dyn ScalarField,
-    isovalue: f32,
-    /// The first column with a point, and from one to the next.
-    columns: [usize; 2],
-    y: f32,
-    z: f32,
-    values: &'a mut [f32],
-    taken: &'a mut [u64],
-    sides: &'a mut [u64],
-    found: &'a mut [f32],
-}
-
-impl Line<'_> {
-    fn sample(&mut self, spans: &[Span], known: &[Known], side: usize) {
-        for span in spans {
-            let first = span.first as usize * side;
-            let end = self.values.len().min(span.end as usize * side);
-            match span.tile {
-                Tile::Outside => {}
-                Tile::Inside => set_range(self.sides, first, end),
-                Tile::Unknown => self.take_all(first, end),
-                Tile::Mixed => self.run(first, end, known, side),
-            }
-        }
-    }
-
-    /// The columns with a point from `first` up to `end`.
-    fn points(&self, first: usize, end: usize) -> impl Iterator<Item = usize> + use<> {
-        let [offset, step] = self.columns;
-        (offset + first.saturating_sub(offset).next_multiple_of(step)..end).step_by(step)
-    }
-
-    fn take_all(&mut self, first: usize, end: usize) {
-        let [offset, step] = self.columns;
-        let count = self.points(first, end).count();
-        let found = &mut self.found[..count];
-        // Columns with a point, as if there were no others.
-        let start = first.saturating_sub(offset).div_ceil(step);
-        let x = if step == 1 { &self.grid.coordinates.x } else { &self.grid.columns[offset] };
-        self.field.sample_row(&x[start..start + count], self.y, self.z, found);
-        for (k, i) in self.points(first, end).enumerate() {
-            self.values[i] = self.found[k];
-            self.taken[i / 64] |= 1 << (i % 64);
-            self.sides[i / 64] |= u64::from(self.found[k] > self.isovalue) << (i % 64);
-        }
-    }
-
-    /// Goes through mixed tiles. A point whose side the middle of its tile or the sample before it tells has no sample.
-    fn run(&mut self, first: usize, end: usize, known: &[Known], side: usize) {
-        let isovalue = self.isovalue;
-        let tiles = &known[first / side..end.div_ceil(side)];
-        let slope = tiles.iter().fold(0.0, |steepest: f32, tile| steepest.max(tile.slope));
-        let mut before = Known { value: f32::NAN, ..Known::default() };
-        let mut reach = f32::NAN;
-        let mut waiting = Waiting { count: 0, columns: [0; BATCH] };
-        let mut batch = 1;
-        for (k, tile) in tiles.iter().enumerate() {
-            let reach_of_tile = tile.squared_reach(isovalue);
-            let (dy, dz) = (self.y - tile.at.y, self.z - tile.at.z);
-            let across = dy * dy + dz * dz;
-            let from = first + k * side;
-            for i in self.points(from, end.min(from + side)) {
-                let x = self.grid.coordinates.x[i];
-                let (from_tile, from_before) = (x - tile.at.x, x - before.at.x);
-                if from_tile * from_tile + across < reach_of_tile {
-                    self.set_side(i, tile.value > isovalue);
-                } else if from_before * from_before < reach {
-                    self.set_side(i, before.value > isovalue);
-                    batch = 1;
-                } else {
-                    waiting.columns[waiting.count] = i;
-                    waiting.count += 1;
-                    if waiting.count == batch {
-                        before = self.take(&mut waiting, before.hint().or(tile.hint()), slope);
-                        reach = before.squared_reach(isovalue);
-                        // Near the surface it takes them all: some at a time is quicker.
-                        batch = BATCH;
-                    }
-                }
-            }
-        }
-        if waiting.count > 0 {
-            self.take(&mut waiting, before.hint(), slope);
-        }
-    }
-
-    /// Takes the samples that wait; returns the last.
-    fn take(&mut self, waiting: &mut Waiting, hint: Option<(Vec3, f32)>, slope: f32) -> Known {
-        let columns = &waiting.columns[..waiting.count];
-        waiting.count = 0;
-        let places = &self.grid.coordinates.x;
-        let x: [f32; BATCH] = std::array::from_fn(|k| places[columns[k.min(columns.len() - 1)]]);
-        let mut found = [0.0; BATCH];
-        let (x, found) = (&x[..columns.len()], &mut found[..columns.len()]);
-        self.field.sample_row_after(x, self.y, self.z, found, hint);
-        let mut last = Known::default();
-        for ((&i, &x), &value) in columns.iter().zip(x).zip(&*found) {
-            self.values[i] = value;
-            self.taken[i / 64] |= 1 << (i % 64);
-            self.set_side(i, value > self.isovalue);
-            last = Known { at: Vec3::new(x, self.y, self.z), value, slope };
-        }
-        last
-    }
-
-    fn set_side(&mut self, i: usize, is_inside: bool) {
-        self.sides[i / 64] |= u64::from(is_inside) << (i % 64);
-    }
-}
-
-/// Columns to be sampled together.
-struct Waiting {
-    count: usize,
-    columns: [usize; BATCH],
-}
-
-fn set_range(bits: &mut [u64], first: usize, end: usize) {
-    let words = first / 64..end.div_ceil(64);
-    for (word, bits) in words.clone().zip(&mut bits[words]) {
-        *bits |= Grid::bits(word, first, end);
+/// Takes the samples of the columns with a point from `first` up to `end`. `x` has those with a point only.
+fn take_all(line: &mut Line<Every>, first: usize, end: usize, x: &[f32], found: &mut [f32]) {
+    let Every { offset, step } = line.columns;
+    let count = line.columns.points(first, end).count();
+    let start = first.saturating_sub(offset).div_ceil(step);
+    let found = &mut found[..count];
+    line.field.sample_row(&x[start..start + count], line.y, line.z, found);
+    for (i, &value) in line.columns.points(first, end).zip(&*found) {
+        line.keep(i, value);
     }
 }
 
@@ -395,7 +254,7 @@ fn set_range(bits: &mut [u64], first: usize, end: usize) {
 fn state_of(sides: &[u64], used: u64, nx: usize) -> State {
     let (mut any, mut all) = (0, !0);
     for (word, &sides) in sides.iter().enumerate() {
-        let used = used & Grid::bits(word, 0, nx);
+        let used = used & between(word, 0, nx);
         any |= sides & used;
         all &= sides | !used;
     }
@@ -404,10 +263,4 @@ fn state_of(sides: &[u64], used: u64, nx: usize) -> State {
         (_, u64::MAX) => State::Inside,
         _ => State::Mixed,
     }
-}
-
-/// A set bit near another bit.
-fn taken_near(taken: u64, bit: u32) -> Option<u32> {
-    let (below, above) = (taken & !(!0 << bit), taken & (!0 << bit));
-    below.checked_ilog2().or((above != 0).then(|| above.trailing_zeros()))
 }

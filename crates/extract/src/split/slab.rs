@@ -10,7 +10,8 @@ use super::grid::Grid;
 use super::points::{Placer, PointPass, Records, Vertices};
 use super::sampling::{Samples, Sampling};
 use crate::ExtractError;
-use crate::sweep::{Piece, Source};
+use crate::slabs::Piece;
+use crate::source::Source;
 use crate::vertices::Ties;
 
 /// What all slabs of an extraction share.

@@ -6,10 +6,10 @@ use super::cut::{Cut, Step};
 use super::grid::Coordinates;
 use super::points::{Placer, Record, Vertices};
 use crate::extraction::{Counts, Extraction};
+use crate::finish::finish;
 use crate::lattice::{Border, Lattice};
 use crate::level::Level;
 use crate::normals::vertex_normals;
-use crate::placement;
 use crate::settings::{Execution, ExtractSettings};
 use crate::tetrahedra::{CASES, Case};
 use crate::trace::{Trace, VertexKey};
@@ -35,8 +35,7 @@ pub(super) fn extract(
     let mut surface = triangulate(&points, &mut trace);
     let Vertices { mut positions, targets, .. } = vertices;
     let execution = Execution { threads: 1 };
-    placement::finish(Some(level), lattice, settings, &execution, &targets, &mut positions, &mut surface)
-        .unwrap();
+    finish(Some(level), lattice, settings, &execution, &targets, &mut positions, &mut surface).unwrap();
     let normals = vertex_normals(&positions, &surface.triangles).unwrap();
     let mesh = TriangleMesh { positions, normals, triangles: std::mem::take(&mut surface.triangles) };
     let counts = Counts::of(lattice, &mesh, &surface, vertices.crossing_ends / 2);

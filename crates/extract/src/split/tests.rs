@@ -3,6 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
 
 use glam::Vec3;
 use mesh::Bounds;
@@ -12,6 +13,7 @@ use super::grid::Coordinates;
 use super::stored;
 use crate::fields::{FAMILIES, Family, Numbers, Volume};
 use crate::lattice::Border;
+use crate::source::Request;
 use crate::spot::tests::normal_lies_between;
 use crate::trace::Trace;
 use crate::{
@@ -21,6 +23,16 @@ use crate::{
 use field::{Asteroid, Beyond, Gyroid, MeshDistance, ScalarField, Sphere, VolumeField};
 
 const BOTH: [Arrangement; 2] = [Arrangement::FiveTetrahedra, Arrangement::FaceCentred];
+
+fn request<'a>(
+    source: Source<'a>,
+    lattice: &'a Lattice,
+    settings: &'a ExtractSettings,
+    execution: &'a Execution,
+    most_vertices: u32,
+) -> Request<'a> {
+    Request { source, lattice, settings, execution, most_vertices, start: Instant::now() }
+}
 
 fn tetrahedra_at(cut: &Cut, cell: [i8; 3]) -> impl Iterator<Item = [Step; 4]> + '_ {
     let parity = cell.iter().sum::<i8>() as usize % 2;
@@ -162,7 +174,8 @@ fn check(
                 let (mut found, mut found_trace) = (Extraction::default(), Trace::default());
                 let execution = Execution { threads };
                 let kept = Some(&mut found_trace);
-                super::extract(source, lattice, &settings, &execution, u32::MAX, kept, &mut found).unwrap();
+                super::extract(&request(source, lattice, &settings, &execution, u32::MAX), kept, &mut found)
+                    .unwrap();
                 let what = format!("{what:?} {:?} {settings:?} {threads} threads", lattice.arrangement());
                 assert_eq!(found.counts, expected.counts, "{what}");
                 let bits = |points: &[Vec3]| {
@@ -368,7 +381,7 @@ fn more_vertices_than_may_be_are_an_error() {
             let run = |most| {
                 let (mut found, execution) = (Extraction::default(), Execution { threads });
                 let source = Source::Field(&Sphere { radius: 0.8 });
-                super::extract(source, &lattice, &settings, &execution, most, None, &mut found)?;
+                super::extract(&request(source, &lattice, &settings, &execution, most), None, &mut found)?;
                 Ok(found.mesh.positions.len() as u32)
             };
             let all = run(u32::MAX).unwrap();

@@ -2,13 +2,15 @@
 
 use std::collections::TryReserveError;
 
-use glam::Vec3A;
+use glam::{Vec3, Vec3A};
+use mesh::Bounds;
 
 use crate::lattice::{
     Border, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout, PointKind, Uniform, members,
 };
 use crate::settings::Positions;
 use crate::tetrahedra::{Spoke, spokes};
+use crate::tiles::Points;
 use crate::triangles::deciding_edges;
 
 /// The most rows that a point and its neighbours lie in.
@@ -143,6 +145,43 @@ impl Grid {
             }
         }
         result
+    }
+}
+
+/// Columns and rows of a tile, and cells in the height of a brick.
+pub(super) const TILE: usize = 2;
+
+impl Points for Grid {
+    fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    fn side(&self) -> usize {
+        TILE
+    }
+
+    fn depth(&self) -> usize {
+        match self.lattice.arrangement().expect_uniform() {
+            Uniform::BodyCentred => 2 * TILE,
+            Uniform::SimpleCubic => TILE,
+        }
+    }
+
+    fn spacing(&self) -> f32 {
+        self.lattice.spacing()
+    }
+
+    fn bounds(&self, columns: [usize; 2], rows: [usize; 2], layers: [usize; 2]) -> Bounds {
+        // Centres are half a cell lower than corners.
+        let lowest = match self.lattice.arrangement().expect_uniform() {
+            Uniform::BodyCentred => PointKind::Centre,
+            Uniform::SimpleCubic => PointKind::Corner,
+        };
+        let [min, max] = [(0, lowest), (1, PointKind::Corner)].map(|(end, kind)| {
+            let (x, y) = (self.coordinates.x(kind)[columns[end]], self.coordinates.y(kind)[rows[end]]);
+            Vec3::new(x, y, self.coordinates.z()[layers[end]])
+        });
+        Bounds { min, max }
     }
 }
 

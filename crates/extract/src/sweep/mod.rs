@@ -7,33 +7,16 @@
 //! triangle, in the same order: vertices in storage order of their points, triangles cell by cell.
 
 mod crossings;
-mod extractor;
+mod driver;
 mod faces;
 mod grid;
-#[cfg(test)]
-mod limits;
 mod points;
 mod records;
 mod rule;
 mod sampling;
 mod signs;
 mod slab;
-mod source;
 #[cfg(test)]
 mod tests;
-mod tiles;
 
-use std::collections::TryReserveError;
-
-pub use extractor::Extractor;
-pub(crate) use extractor::{join, make_normals, shares, threads_and_slabs};
-pub(crate) use slab::Piece;
-pub use source::Source;
-pub(crate) use tiles::{Known, Span, Tile};
-
-/// Makes a vector `len` long. What it held stays if it is long enough; new room is asked for, not taken.
-fn refill<T: Copy>(vector: &mut Vec<T>, len: usize, value: T) -> Result<(), TryReserveError> {
-    vector.try_reserve_exact(len.saturating_sub(vector.len()))?;
-    vector.resize(len, value);
-    Ok(())
-}
+pub(crate) use driver::{Progress, Sweeper};

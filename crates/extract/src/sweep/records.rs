@@ -5,6 +5,7 @@ use std::collections::TryReserveError;
 use super::grid::Grid;
 use crate::clusters::Clusters;
 use crate::lattice::{DIRECTIONS, DirectionSet, members};
+use crate::memory::refill;
 
 const ALL: u64 = (1 << DIRECTIONS) - 1;
 const NEAR: u32 = 32;
@@ -108,8 +109,8 @@ pub(super) struct Records {
 impl Records {
     pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), TryReserveError> {
         (self.size, self.words, self.slots) = ([grid.size[0], grid.size[1]], grid.words, grid.slots());
-        super::refill(&mut self.records, grid.layer_len() * self.slots, Record::default())?;
-        super::refill(&mut self.active, self.words * self.size[1] * self.slots, 0)?;
+        refill(&mut self.records, grid.layer_len() * self.slots, Record::default())?;
+        refill(&mut self.active, self.words * self.size[1] * self.slots, 0)?;
         self.lists.resize_with(self.slots, Vec::new);
         Ok(())
     }

@@ -7,17 +7,15 @@
 use std::collections::TryReserveError;
 use std::convert::Infallible;
 
-use glam::Vec3;
-
 use super::crossings::{Crossings, Lines};
 use super::grid::Grid;
 use super::points::Samples;
 use super::signs::Signs;
-use super::tiles::{Known, Span, TILE, Tile, Tiles};
+use crate::bits::set_range;
+use crate::line::{All, Gaps, Line};
+use crate::memory::refill;
+use crate::tiles::{Points, Span, Tile, Tiles};
 use field::ScalarField;
-
-/// Samples taken together near the surface.
-const BATCH: usize = 4;
 
 /// What is called, and where.
 #[derive(Clone, Copy)]
@@ -36,10 +34,7 @@ pub(super) struct FieldSamples {
     taken: Vec<u64>,
     tiles: Tiles,
     slots: usize,
-    /// Columns whose samples are to be taken, and what goes with them.
-    columns: Vec<usize>,
-    x: Vec<f32>,
-    found: Vec<f32>,
+    gaps: Gaps,
 }
 
 /// The signs of a layer of given samples.
@@ -55,13 +50,9 @@ pub(super) fn signs_of(grid: &Grid, values: &[f32], isovalue: f32, layer: usize,
 impl FieldSamples {
     pub(super) fn fit(&mut self, grid: &Grid, slots: usize) -> Result<(), TryReserveError> {
         self.slots = slots;
-        super::refill(&mut self.values, grid.layer_len() * slots, 0.0)?;
-        super::refill(&mut self.taken, grid.words * grid.size[1] * slots, 0)?;
-        for buffer in [&mut self.x, &mut self.found] {
-            super::refill(buffer, grid.size[0], 0.0)?;
-        }
-        self.columns.clear();
-        self.columns.try_reserve_exact(grid.size[0])?;
+        refill(&mut self.values, grid.layer_len() * slots, 0.0)?;
+        refill(&mut self.taken, grid.words * grid.size[1] * slots, 0)?;
+        self.gaps.fit(grid.size[0])?;
         self.tiles.fit(grid)
     }
 
@@ -101,9 +92,9 @@ impl FieldSamples {
                 }
                 _ => {
                     taken.fill(0);
-                    let mut line =
-                        Line { pass, x: &x[..points], y, z, values, taken, bits: signs.open(row, layer) };
-                    line.sample(spans, known);
+                    let (x, sides) = (&x[..points], signs.open(row, layer));
+                    let mut line = Line { field, isovalue, columns: All, x, y, z, values, taken, sides };
+                    line.sample(spans, known, grid.side(), take_all);
                     signs.close(row, layer, points);
                 }
             }
@@ -125,147 +116,21 @@ impl FieldSamples {
             let place = layer % self.slots * grid.size[1] + row;
             let taken = &mut self.taken[place * grid.words..][..grid.words];
             let values = &mut self.values[place * grid.size[0]..][..points];
-            self.columns.clear();
-            let mut hint = None;
+            self.gaps.clear();
             let Ok::<(), Infallible>(()) = lines.visit(grid, |Crossings { word, active, .. }| {
-                let mut left = active & !taken[word];
-                if left != 0 && hint.is_none() {
-                    hint = taken_near(taken[word], left.trailing_zeros()).map(|bit| 64 * word + bit as usize);
-                }
-                taken[word] |= left;
-                while left != 0 {
-                    self.columns.push(64 * word + left.trailing_zeros() as usize);
-                    left &= left - 1;
-                }
+                self.gaps.note(word, active, &mut taken[word]);
                 Ok(())
             });
-            let count = self.columns.len();
-            if count == 0 {
-                continue;
-            }
-            for (place, &column) in self.x.iter_mut().zip(&self.columns) {
-                *place = x[column];
-            }
-            let found = &mut self.found[..count];
-            let hint = hint.map(|column| (Vec3::new(x[column], y, z), values[column]));
-            field.sample_row_after(&self.x[..count], y, z, found, hint);
-            for (&column, &value) in self.columns.iter().zip(&*found) {
-                values[column] = value;
-            }
+            self.gaps.fill(field, x, y, z, values);
         }
     }
 }
 
-/// A row of which some parts are known to be on one side.
-struct Line<'a> {
-    pass: FieldPass<'a>,
-    x: &'a [f32],
-    y: f32,
-    z: f32,
-    values: &'a mut [f32],
-    taken: &'a mut [u64],
-    bits: &'a mut [u64],
-}
-
-impl Line<'_> {
-    fn sample(&mut self, spans: &[Span], known: &[Known]) {
-        for span in spans {
-            let (first, end) = (span.first as usize * TILE, self.x.len().min(span.end as usize * TILE));
-            match span.tile {
-                Tile::Outside => {}
-                Tile::Inside => set_bits(self.bits, first, end),
-                Tile::Unknown => {
-                    self.pass.field.sample_row(
-                        &self.x[first..end],
-                        self.y,
-                        self.z,
-                        &mut self.values[first..end],
-                    );
-                    set_bits(self.taken, first, end);
-                    for i in first..end {
-                        self.set_side(i, self.values[i] > self.pass.isovalue);
-                    }
-                }
-                Tile::Mixed => self.run(first, end, known),
-            }
-        }
-    }
-
-    /// Goes through mixed tiles. A point whose side the middle of its tile or the sample before it tells has no sample.
-    fn run(&mut self, first: usize, end: usize, known: &[Known]) {
-        let isovalue = self.pass.isovalue;
-        let tiles = &known[first / TILE..end.div_ceil(TILE)];
-        let slope = tiles.iter().fold(0.0, |steepest: f32, tile| steepest.max(tile.slope));
-        let mut before = Known { value: f32::NAN, ..Known::default() };
-        let mut reach = f32::NAN;
-        let mut waiting = Waiting { count: 0, columns: [0; BATCH] };
-        let mut batch = 1;
-        for (k, tile) in tiles.iter().enumerate() {
-            let reach_of_tile = tile.squared_reach(isovalue);
-            let (dy, dz) = (self.y - tile.at.y, self.z - tile.at.z);
-            let across = dy * dy + dz * dz;
-            for i in first + k * TILE..end.min(first + (k + 1) * TILE) {
-                let (from_tile, from_before) = (self.x[i] - tile.at.x, self.x[i] - before.at.x);
-                if from_tile * from_tile + across < reach_of_tile {
-                    self.set_side(i, tile.value > isovalue);
-                } else if from_before * from_before < reach {
-                    self.set_side(i, before.value > isovalue);
-                    batch = 1;
-                } else {
-                    waiting.columns[waiting.count] = i;
-                    waiting.count += 1;
-                    if waiting.count == batch {
-                        before = self.take(&mut waiting, before.hint().or(tile.hint()), slope);
-                        reach = before.squared_reach(isovalue);
-                        // Near the surface it takes them all: some at a time is quicker.
-                        batch = BATCH;
-                    }
-                }
-            }
-        }
-        if waiting.count > 0 {
-            self.take(&mut waiting, before.hint(), slope);
-        }
-    }
-
-    /// Takes the samples that wait; returns the last.
-    fn take(&mut self, waiting: &mut Waiting, hint: Option<(Vec3, f32)>, slope: f32) -> Known {
-        let columns = &waiting.columns[..waiting.count];
-        waiting.count = 0;
-        let x: [f32; BATCH] = std::array::from_fn(|k| self.x[columns[k.min(columns.len() - 1)]]);
-        let mut found = [0.0; BATCH];
-        let (x, found) = (&x[..columns.len()], &mut found[..columns.len()]);
-        self.pass.field.sample_row_after(x, self.y, self.z, found, hint);
-        let mut last = Known::default();
-        for ((&i, &x), &value) in columns.iter().zip(x).zip(&*found) {
-            self.values[i] = value;
-            self.taken[i / 64] |= 1 << (i % 64);
-            self.set_side(i, value > self.pass.isovalue);
-            last = Known { at: Vec3::new(x, self.y, self.z), value, slope };
-        }
-        last
-    }
-
-    #[inline]
-    fn set_side(&mut self, i: usize, is_inside: bool) {
-        self.bits[i / 64] |= u64::from(is_inside) << (i % 64);
-    }
-}
-
-/// Columns to be sampled together.
-struct Waiting {
-    count: usize,
-    columns: [usize; BATCH],
-}
-
-fn set_bits(bits: &mut [u64], first: usize, end: usize) {
+/// Takes the samples of columns from `first` up to `end`.
+fn take_all(line: &mut Line<All>, first: usize, end: usize) {
+    line.field.sample_row(&line.x[first..end], line.y, line.z, &mut line.values[first..end]);
+    set_range(line.taken, first, end);
     for i in first..end {
-        bits[i / 64] |= 1 << (i % 64);
+        line.set_side(i, line.values[i] > line.isovalue);
     }
-}
-
-/// A set bit near another bit.
-fn taken_near(taken: u64, bit: u32) -> Option<u32> {
-    let (below, above) = (taken & !(!0 << bit), taken & (!0 << bit));
-    below.checked_ilog2().or((above != 0).then(|| above.trailing_zeros()))
 }

@@ -3,6 +3,7 @@
 use glam::Vec4;
 
 use super::grid::Grid;
+use crate::memory::refill;
 
 /// What the points of a row have in common.
 pub(super) const ALL_OUTSIDE: u8 = 0;
@@ -23,8 +24,8 @@ pub(super) struct Signs {
 impl Signs {
     pub(super) fn fit(&mut self, grid: &Grid, slots: usize) -> Result<(), std::collections::TryReserveError> {
         (self.stride, self.rows, self.slots) = (grid.words + 2, grid.size[1], slots);
-        super::refill(&mut self.words, self.stride * self.rows * self.slots, 0)?;
-        super::refill(&mut self.states, self.rows * self.slots, ALL_OUTSIDE)
+        refill(&mut self.words, self.stride * self.rows * self.slots, 0)?;
+        refill(&mut self.states, self.rows * self.slots, ALL_OUTSIDE)
     }
 
     #[inline]

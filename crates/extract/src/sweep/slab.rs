@@ -2,9 +2,7 @@
 //! as many layers behind the one before as a lattice edge can reach.
 
 use std::ops::Range;
-use std::time::{Duration, Instant};
-
-use glam::Vec3;
+use std::time::Instant;
 
 use super::faces::{FaceTables, triangulate_layer};
 use super::grid::Grid;
@@ -13,11 +11,11 @@ use super::records::Records;
 use super::rule::ClusterRule;
 use super::sampling::{FieldPass, FieldSamples, signs_of};
 use super::signs::Signs;
-use super::source::Source;
 use crate::ExtractError;
 use crate::placement::CrossingPlacer;
+use crate::slabs::Piece;
+use crate::source::Source;
 use crate::spot::Apart;
-use crate::triangles::Triangulation;
 
 /// What all slabs of an extraction share.
 pub(super) struct Job<'a, R> {
@@ -43,35 +41,6 @@ pub(super) struct Workspace {
     records: Records,
 }
 
-/// The surface in a slab.
-///
-/// Vertices are numbered from the lowest layer that the slab's triangles can touch, so that the numbers of the whole
-/// surface are these plus a constant, in the layers above and below the slab too.
-#[derive(Debug, Default)]
-pub(crate) struct Piece {
-    /// Of the slab's own layers.
-    pub(crate) positions: Vec<Vec3>,
-    /// Where the placer wants them.
-    pub(crate) targets: Vec<Vec3>,
-    pub(crate) surface: Triangulation,
-    /// Vertices numbered in the layers below the slab.
-    pub(crate) below: u64,
-    pub(crate) crossing_ends: u64,
-    /// Triangles that may touch a vertex below the slab, all before this one.
-    pub(crate) head: usize,
-    /// Triangles that may touch a vertex above the slab, all from this one on.
-    pub(crate) tail: usize,
-    pub(crate) times: SlabTimes,
-}
-
-/// Time spent in the passes.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct SlabTimes {
-    pub(crate) sampling: Duration,
-    pub(crate) vertex: Duration,
-    pub(crate) geometry: Duration,
-}
-
 impl Workspace {
     /// Makes room; keeps what is large enough.
     pub(super) fn fit(
@@ -85,23 +54,6 @@ impl Workspace {
         }
         self.signs.fit(grid, slots)?;
         self.records.fit(grid)
-    }
-}
-
-impl Piece {
-    /// Empty, to be traced or not.
-    fn clear(&mut self, traced: bool) {
-        self.positions.clear();
-        self.targets.clear();
-        self.surface.triangles.clear();
-        let triangles = std::mem::take(&mut self.surface.triangles);
-        let mut trace = traced.then(|| self.surface.trace.take().unwrap_or_default());
-        if let Some(trace) = &mut trace {
-            trace.clear();
-        }
-        self.surface = Triangulation { triangles, trace, ..Triangulation::default() };
-        (self.below, self.crossing_ends, self.head, self.tail) = (0, 0, 0, 0);
-        self.times = SlabTimes::default();
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use mesh::Bounds;
 
-use super::extractor::MostVertices;
+use crate::extractor::MostVertices;
 use crate::{
     Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Lattice,
     Positions, Source,

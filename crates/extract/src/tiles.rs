@@ -1,22 +1,31 @@
 //! Which samples are needed to tell sides: tiles of the lattice that lie on one side of the isovalue take none.
 //!
-//! A brick is a few layers, from side to side of the lattice; it is quartered down to tiles of two by two columns.
+//! A brick is a few layers, from side to side of the lattice; it is quartered down to tiles of two by two cells.
 //! The field says whether a part can be on both sides ([`ScalarField::range`]). In the tiles that are left, each
 //! sample tells the side of the points around it as far as the field's slope there allows.
 
 use std::collections::TryReserveError;
 use std::ops::Range;
 
+use field::{SAFE, ScalarField};
 use glam::Vec3;
 use mesh::Bounds;
 
-use super::grid::Grid;
-use crate::lattice::{PointKind, Uniform};
-use field::SAFE;
-use field::ScalarField;
+use crate::memory::refill;
 
-/// Columns and rows of a tile, and cells in the height of a brick.
-pub(super) const TILE: usize = 2;
+/// Stored points, as tiles need them.
+pub(crate) trait Points {
+    /// Points a row, rows a layer, layers.
+    fn size(&self) -> [usize; 3];
+    /// Columns and rows of a tile.
+    fn side(&self) -> usize;
+    /// Layers of a brick.
+    fn depth(&self) -> usize;
+    /// The distance from cell to cell.
+    fn spacing(&self) -> f32;
+    /// The box of the points in some columns, rows and layers, each `[first, last]`.
+    fn bounds(&self, columns: [usize; 2], rows: [usize; 2], layers: [usize; 2]) -> Bounds;
+}
 
 /// What is known of a tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -68,7 +77,9 @@ impl Known {
 
 /// The tiles of one brick.
 #[derive(Debug, Default)]
-pub(super) struct Tiles {
+pub(crate) struct Tiles {
+    /// Points along a side.
+    side: usize,
     tiles: Vec<Tile>,
     /// By tile, where it is mixed.
     known: Vec<Known>,
@@ -81,39 +92,43 @@ pub(super) struct Tiles {
 }
 
 impl Tiles {
-    pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), TryReserveError> {
-        let [columns, rows] = [grid.size[0], grid.size[1]].map(|points| points.div_ceil(TILE));
+    pub(crate) fn fit(&mut self, points: &impl Points) -> Result<(), TryReserveError> {
+        self.side = points.side();
+        let [columns, rows, _] = points.size().map(|points| points.div_ceil(self.side));
         self.columns = columns;
         self.brick = None;
-        super::refill(&mut self.tiles, columns * rows, Tile::Outside)?;
-        super::refill(&mut self.known, columns * rows, Known::default())?;
+        refill(&mut self.tiles, columns * rows, Tile::Outside)?;
+        refill(&mut self.known, columns * rows, Known::default())?;
         self.spans.clear();
         self.spans.try_reserve_exact(columns * rows)?;
-        super::refill(&mut self.starts, rows + 1, 0)
+        refill(&mut self.starts, rows + 1, 0)
     }
 
     /// The spans that a row of points goes through, and what is known of its mixed tiles.
-    pub(super) fn row(&self, row: usize) -> (&[Span], &[Known]) {
-        let row = row / TILE;
+    pub(crate) fn row(&self, row: usize) -> (&[Span], &[Known]) {
+        let row = row / self.side;
         let known = &self.known[row * self.columns..(row + 1) * self.columns];
         (&self.spans[self.starts[row]..self.starts[row + 1]], known)
     }
 
     /// Makes the tiles those of the brick that `layer` is in.
-    pub(super) fn turn_to(&mut self, layer: usize, grid: &Grid, field: &dyn ScalarField, isovalue: f32) {
-        let depth = match grid.lattice.arrangement().expect_uniform() {
-            Uniform::BodyCentred => 2 * TILE,
-            Uniform::SimpleCubic => TILE,
-        };
+    pub(crate) fn turn_to(
+        &mut self,
+        layer: usize,
+        points: &impl Points,
+        field: &dyn ScalarField,
+        isovalue: f32,
+    ) {
+        let depth = points.depth();
         let brick = layer / depth;
         if self.brick == Some(brick) {
             return;
         }
         self.brick = Some(brick);
-        let layers = brick * depth..grid.size[2].min((brick + 1) * depth);
-        let whole = [grid.size[0], grid.size[1]].map(|points| 0..points.next_multiple_of(TILE));
-        let Self { tiles, known, columns, .. } = self;
-        Search { grid, field, isovalue, layers, tiles, known, columns: *columns }.part(whole, None);
+        let [columns, rows, layers] = points.size();
+        let layers = [brick * depth, layers.min((brick + 1) * depth) - 1];
+        let whole = [columns, rows].map(|points| 0..points.next_multiple_of(self.side));
+        Search { points, field, isovalue, layers, tiles: self }.part(whole, None);
         self.find_spans();
     }
 
@@ -131,19 +146,19 @@ impl Tiles {
     }
 }
 
-struct Search<'a> {
-    grid: &'a Grid,
+struct Search<'a, P> {
+    points: &'a P,
     field: &'a dyn ScalarField,
     isovalue: f32,
-    layers: Range<usize>,
-    tiles: &'a mut [Tile],
-    known: &'a mut [Known],
-    columns: usize,
+    /// The first and the last.
+    layers: [usize; 2],
+    tiles: &'a mut Tiles,
 }
 
-impl Search<'_> {
+impl<P: Points> Search<'_, P> {
     /// Decides the tiles of a part of the brick, in columns and rows; `before` is a value from nearby.
     fn part(&mut self, [columns, rows]: [Range<usize>; 2], before: Option<(Vec3, f32)>) {
+        let side = self.tiles.side;
         let bounds = self.bounds(&columns, &rows);
         let centre = (bounds.min + bounds.max) * 0.5;
         // Some fields can tell without a value, and a field without bounds need not be asked for one.
@@ -157,9 +172,9 @@ impl Search<'_> {
         let tile = match range {
             Some((low, _)) if low > self.isovalue => Tile::Inside,
             Some((_, high)) if high <= self.isovalue => Tile::Outside,
-            _ if columns.len() > TILE || rows.len() > TILE => {
-                for rows in halves(&rows) {
-                    for columns in halves(&columns) {
+            _ if columns.len() > side || rows.len() > side => {
+                for rows in halves(&rows, side) {
+                    for columns in halves(&columns, side) {
                         if !rows.is_empty() && !columns.is_empty() {
                             self.part([columns, rows.clone()], known);
                         }
@@ -169,47 +184,34 @@ impl Search<'_> {
             }
             _ => match self.field.slope(self.with_gaps(bounds)) {
                 Some(slope) => {
-                    let at = rows.start / TILE * self.columns + columns.start / TILE;
-                    self.known[at] = Known { at: centre, value, slope };
+                    let at = rows.start / side * self.tiles.columns + columns.start / side;
+                    self.tiles.known[at] = Known { at: centre, value, slope };
                     Tile::Mixed
                 }
                 None => Tile::Unknown,
             },
         };
-        for row in rows.start / TILE..rows.end / TILE {
-            let start = row * self.columns;
-            self.tiles[start + columns.start / TILE..start + columns.end / TILE].fill(tile);
+        for row in rows.start / side..rows.end / side {
+            let start = row * self.tiles.columns;
+            self.tiles.tiles[start + columns.start / side..start + columns.end / side].fill(tile);
         }
     }
 
     /// The box of the points of a part.
     fn bounds(&self, columns: &Range<usize>, rows: &Range<usize>) -> Bounds {
-        let (size, coordinates) = (self.grid.size, &self.grid.coordinates);
-        // Centres are half a cell lower than corners.
-        let lowest = match self.grid.lattice.arrangement().expect_uniform() {
-            Uniform::BodyCentred => PointKind::Centre,
-            Uniform::SimpleCubic => PointKind::Corner,
-        };
-        let highest = PointKind::Corner;
-        let last = |range: &Range<usize>, size: usize| range.end.min(size) - 1;
-        let (x, y, z) = (last(columns, size[0]), last(rows, size[1]), last(&self.layers, size[2]));
-        let low = [
-            coordinates.x(lowest)[columns.start],
-            coordinates.y(lowest)[rows.start],
-            coordinates.z()[self.layers.start],
-        ];
-        let high = [coordinates.x(highest)[x], coordinates.y(highest)[y], coordinates.z()[z]];
-        Bounds { min: low.into(), max: high.into() }
+        let size = self.points.size();
+        let within = |range: &Range<usize>, size: usize| [range.start, range.end.min(size) - 1];
+        self.points.bounds(within(columns, size[0]), within(rows, size[1]), self.layers)
     }
 
     /// So wide that the boxes of tiles side by side meet.
     fn with_gaps(&self, Bounds { min, max }: Bounds) -> Bounds {
-        let gap = Vec3::X * self.grid.lattice.spacing();
+        let gap = Vec3::X * self.points.spacing();
         Bounds { min: min - gap, max: max + gap }
     }
 }
 
-fn halves(range: &Range<usize>) -> [Range<usize>; 2] {
-    let middle = range.start + (range.len() / 2).next_multiple_of(TILE);
+fn halves(range: &Range<usize>, side: usize) -> [Range<usize>; 2] {
+    let middle = range.start + (range.len() / 2).next_multiple_of(side);
     [range.start..middle, middle..range.end]
 }

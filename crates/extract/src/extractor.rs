@@ -1,0 +1,186 @@
+//! The extractor: which of the three ways a surface is extracted in, and the buffers that stay.
+
+use std::time::Instant;
+
+use field::{Kept, ScalarField};
+use mesh::TriangleMesh;
+
+use crate::extraction::{ExtractError, Extraction, check};
+use crate::lattice::Lattice;
+use crate::placement;
+use crate::settings::{Execution, ExtractSettings, Positions};
+use crate::slabs::threads_and_slabs;
+use crate::source::{Request, Source};
+use crate::split;
+use crate::stored;
+use crate::sweep::{Progress, Sweeper};
+use crate::trace::Trace;
+
+/// An extractor that keeps its buffers, for one surface after another.
+///
+/// With indexed positions it streams: memory grows with a layer of the lattice and with the mesh. From the second
+/// volume of a size on, with one thread, unless edges are collapsed or vertices placed otherwise than at the mean of
+/// interpolated crossings, [`extract_into`](Self::extract_into) allocates nothing, as long as the surface does not
+/// outgrow those before it; an [`Asteroid`](field::Asteroid) other than the one before has its tables made again.
+///
+/// ```
+/// use extract::{Arrangement, Execution, ExtractSettings, Extraction, Extractor, Lattice};
+/// use field::{ScalarField, Sphere};
+/// # use glam::Vec3;
+/// # use mesh::Bounds;
+/// # let bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) };
+/// let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.1)?;
+/// let mut extractor = Extractor::new();
+/// let mut extraction = Extraction::default();
+/// for radius in [0.8, 0.9, 1.0] {
+///     let sphere: &dyn ScalarField = &Sphere { radius };
+///     let (settings, execution) = (ExtractSettings::default(), Execution { threads: 1 });
+///     extractor.extract_into(sphere.into(), &lattice, &settings, &execution, &mut extraction)?;
+///     assert_eq!(extraction.counts.vertices * 2, extraction.counts.triangles + 4);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Default)]
+pub struct Extractor {
+    sweeper: Sweeper,
+    kept: Kept,
+    progress: Option<Box<Progress>>,
+    /// Where the last mesh came from, if `traced`.
+    pub(crate) trace: Trace,
+    pub(crate) traced: bool,
+    pub(crate) most_vertices: MostVertices,
+}
+
+/// How many vertices a mesh may have.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MostVertices(pub(crate) u32);
+
+impl Default for MostVertices {
+    /// What a 32-bit index can name.
+    fn default() -> Self {
+        Self(u32::MAX)
+    }
+}
+
+impl Extractor {
+    /// An extractor without buffers yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Calls `progress` with the layers done and the layers there are, from any of the threads, while extracting.
+    /// Does not apply to accumulated positions.
+    pub fn with_progress(mut self, progress: impl Fn(usize, usize) + Send + Sync + 'static) -> Self {
+        self.progress = Some(Box::new(progress));
+        self
+    }
+
+    /// Extracts a surface, as [`extract`](crate::extract).
+    ///
+    /// # Errors
+    /// As [`extract_into`](Self::extract_into).
+    pub fn extract(
+        &mut self,
+        source: Source,
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        execution: &Execution,
+    ) -> Result<Extraction, ExtractError> {
+        let mut extraction = Extraction::default();
+        self.extract_into(source, lattice, settings, execution, &mut extraction)?;
+        Ok(extraction)
+    }
+
+    /// Extracts a surface into `extraction`, whose vectors are used again. After an error it is empty.
+    ///
+    /// # Errors
+    /// As [`extract`](crate::extract); [`ExtractError::SampleCount`] when given samples are not as many as the
+    /// lattice has, [`ExtractError::SamplesAccumulated`] when they come with accumulated positions,
+    /// [`ExtractError::PlacementNeedsField`] when they come with a placement that calls the field.
+    pub fn extract_into(
+        &mut self,
+        source: Source,
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        execution: &Execution,
+        extraction: &mut Extraction,
+    ) -> Result<(), ExtractError> {
+        let result = self.try_extract_into(source, lattice, settings, execution, extraction);
+        if result.is_err() {
+            let TriangleMesh { positions, normals, triangles } = &mut extraction.mesh;
+            positions.clear();
+            normals.clear();
+            triangles.clear();
+            (extraction.counts, extraction.times) = Default::default();
+        }
+        result
+    }
+
+    fn try_extract_into(
+        &mut self,
+        source: Source,
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        execution: &Execution,
+        extraction: &mut Extraction,
+    ) -> Result<(), ExtractError> {
+        check(settings, lattice.arrangement())?;
+        placement::check(settings, matches!(source, Source::Field(_)))?;
+        if let Source::Samples(samples) = source {
+            let (given, wanted) = (samples.len() as u64, lattice.stored_samples());
+            if given != wanted {
+                return Err(ExtractError::SampleCount { given, wanted });
+            }
+        }
+        if settings.positions != Positions::Indexed {
+            let Source::Field(field) = source else { return Err(ExtractError::SamplesAccumulated) };
+            *extraction = stored::extract(field, lattice, settings, execution, self.most_vertices.0)?;
+            return Ok(());
+        }
+        let start = Instant::now();
+        let prepared = match source {
+            Source::Field(field) => field.prepared(&mut self.kept),
+            Source::Samples(_) => None,
+        };
+        let source = prepared.map_or(source, Source::Field);
+        let most_vertices = self.most_vertices.0;
+        let request = Request { source, lattice, settings, execution, most_vertices, start };
+        let trace = self.traced.then_some(&mut self.trace);
+        if lattice.arrangement().uniform().is_some() {
+            self.sweeper.extract(&request, self.progress.as_deref(), trace, extraction)
+        } else {
+            split::extract(&request, trace, extraction)
+        }
+    }
+}
+
+/// Extracts the surface where `field` has the isovalue.
+///
+/// The mesh depends on the field, the lattice and the settings, never on `execution`, to the byte. See the crate's
+/// front page for what it is and what it is not.
+///
+/// # Errors
+/// [`ExtractError`] if the settings are not valid, memory or threads are not to be had, or there are too many
+/// vertices.
+pub fn extract(
+    field: &dyn ScalarField,
+    lattice: &Lattice,
+    settings: &ExtractSettings,
+    execution: &Execution,
+) -> Result<Extraction, ExtractError> {
+    Extractor::new().extract(Source::Field(field), lattice, settings, execution)
+}
+
+impl Lattice {
+    /// What [`extract`](crate::extract) holds of the lattice at a time with these settings:
+    /// [`memory_bytes`](Self::memory_bytes) or [`sweep_bytes`](Self::sweep_bytes). The mesh comes on top.
+    pub fn memory_bytes_for(&self, settings: &ExtractSettings, execution: &Execution) -> u64 {
+        match settings.positions {
+            Positions::Indexed => {
+                let layers = self.stored_grid()[2] as usize;
+                self.sweep_bytes(threads_and_slabs(execution, layers).0 as u64)
+            }
+            Positions::Accumulated { .. } => self.memory_bytes(),
+        }
+    }
+}

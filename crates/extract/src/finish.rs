@@ -1,0 +1,86 @@
+//! What is done to a mesh after its triangles are made: vertices are moved, edges collapsed.
+
+use std::collections::TryReserveError;
+use std::time::{Duration, Instant};
+
+use glam::Vec3;
+use mesh::Bounds;
+
+use crate::ExtractError;
+use crate::collapse::collapse;
+use crate::lattice::Lattice;
+use crate::level::Level;
+use crate::memory::copied;
+use crate::placement::{Moves, relaxed};
+use crate::sampling::for_each_on_threads;
+use crate::settings::{Execution, ExtractSettings, Placement};
+use crate::triangles::Triangulation;
+
+/// Newton's step is not followed farther than this, in spacings: it is meant for vertices next to the surface.
+const LONGEST_STEP: f32 = 0.5;
+
+/// Moves vertices, collapses edges, moves vertices, as the settings say. `targets` are those of a
+/// [`CrossingPlacer`](crate::placement::CrossingPlacer),
+/// none if there was none. Returns how long the edge collapse took, where there was one.
+///
+/// # Errors
+/// [`ExtractError::Threads`], [`ExtractError::NoMemoryForMesh`].
+pub(crate) fn finish(
+    level: Option<Level>,
+    lattice: &Lattice,
+    settings: &ExtractSettings,
+    execution: &Execution,
+    targets: &[Vec3],
+    positions: &mut Vec<Vec3>,
+    surface: &mut Triangulation,
+) -> Result<Option<Duration>, ExtractError> {
+    let (spacing, bounds) = (lattice.spacing(), lattice.bounds());
+    let level = level.filter(|_| settings.placement.calls_the_field());
+    if targets.is_empty() && level.is_none() {
+        return Ok(timed_collapse(settings, spacing, positions, surface)?);
+    }
+    let mut moves = Moves::start(positions)?;
+    if !targets.is_empty() {
+        moves.advance(positions, targets, &surface.triangles, &bounds)?;
+    }
+    let collapsing = timed_collapse(settings, spacing, positions, surface)?;
+    if collapsing.is_some() {
+        moves = Moves::start(positions)?;
+    }
+    if let Some(level) = level {
+        let mut targets = match settings.placement {
+            Placement::Relaxed => relaxed(positions, &surface.triangles)?,
+            _ => copied(positions)?,
+        };
+        project(&level, &bounds, execution, positions, &mut targets)?;
+        moves.advance(positions, &targets, &surface.triangles, &bounds)?;
+    }
+    Ok(collapsing)
+}
+
+/// Collapses edges if the settings say so, and says how long that took.
+fn timed_collapse(
+    settings: &ExtractSettings,
+    spacing: f32,
+    positions: &mut Vec<Vec3>,
+    surface: &mut Triangulation,
+) -> Result<Option<Duration>, TryReserveError> {
+    let start = Instant::now();
+    Ok(collapse(settings, spacing, positions, surface)?.then(|| start.elapsed()))
+}
+
+/// Takes each target to the isosurface; where there is no way, the vertex's position becomes the target.
+fn project(
+    level: &Level,
+    bounds: &Bounds,
+    execution: &Execution,
+    positions: &[Vec3],
+    targets: &mut [Vec3],
+) -> Result<(), ExtractError> {
+    let longest = LONGEST_STEP * level.spacing;
+    for_each_on_threads(execution, targets, |v, target| {
+        let near = |p: &Vec3| p.distance(positions[v]) <= longest;
+        let there = level.newton(*target, longest).map(|p| p.clamp(bounds.min, bounds.max)).filter(near);
+        *target = there.unwrap_or(positions[v]);
+    })
+}

@@ -1,0 +1,135 @@
+//! The driver: a lattice's plan, its slabs and their buffers, kept from one surface to the next.
+
+use std::collections::TryReserveError;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+use super::faces::FaceTables;
+use super::grid::Grid;
+use super::rule::{ClusterRule, Guarded, Published, Unclustered};
+use super::slab::{Job, Workspace, sweep};
+use crate::extraction::{ExtractError, Extraction};
+use crate::lattice::{Border, Lattice};
+use crate::placement::CrossingPlacer;
+use crate::settings::{Clustering, Topology};
+use crate::slabs::{Piece, assemble, on_slabs, threads_and_slabs};
+use crate::source::Request;
+use crate::spot::Apart;
+use crate::trace::Trace;
+
+/// Told how many layers of how many are done.
+pub(crate) type Progress = dyn Fn(usize, usize) + Send + Sync;
+
+/// A streaming extractor's plan and buffers.
+#[derive(Default)]
+pub(crate) struct Sweeper {
+    plan: Option<Plan>,
+    workspaces: Vec<Workspace>,
+    pieces: Vec<Piece>,
+}
+
+/// What depends on the lattice and its border alone; the tables on its arrangement only.
+struct Plan {
+    grid: Grid,
+    tables: FaceTables,
+}
+
+impl Plan {
+    /// The one there is, if it fits.
+    fn new(lattice: &Lattice, border: Border, before: Option<Self>) -> Result<Self, TryReserveError> {
+        match before {
+            Some(plan) if plan.grid.lattice == *lattice && plan.grid.border == border => Ok(plan),
+            Some(plan) if plan.grid.lattice.arrangement() == lattice.arrangement() => {
+                Ok(Self { grid: Grid::new(lattice, border)?, tables: plan.tables })
+            }
+            _ => {
+                let grid = Grid::new(lattice, border)?;
+                let tables = FaceTables::new(&grid);
+                Ok(Self { grid, tables })
+            }
+        }
+    }
+}
+
+impl Sweeper {
+    /// The stages in order, timed and counted. The trace, if there is one, is that before edges are collapsed.
+    pub(crate) fn extract(
+        &mut self,
+        request: &Request,
+        progress: Option<&Progress>,
+        trace: Option<&mut Trace>,
+        extraction: &mut Extraction,
+    ) -> Result<(), ExtractError> {
+        let Request { lattice, settings, execution, .. } = *request;
+        let plan = Plan::new(lattice, Border::of(settings), self.plan.take()).map_err(|_| {
+            ExtractError::OutOfMemory { bytes: lattice.memory_bytes_for(settings, execution) }
+        })?;
+        let arrangement = lattice.arrangement();
+        let merges = match settings.clustering {
+            Clustering::None | Clustering::EdgeCollapse => false,
+            Clustering::Integrated | Clustering::IntegratedCollapse => true,
+        };
+        let mut run = Run { plan: &plan, request, progress, trace, sweeper: self };
+        let result = match (merges, settings.topology) {
+            (false, Topology::Guarded) => run.by(&Unclustered::<false>, extraction),
+            (false, Topology::Published) => run.by(&Unclustered::<true>, extraction),
+            (true, Topology::Guarded) => run.by(&Guarded::new(arrangement), extraction),
+            (true, Topology::Published) => run.by(&Published::new(arrangement), extraction),
+        };
+        self.plan = Some(plan);
+        result
+    }
+}
+
+/// One extraction, but for the rule.
+struct Run<'a> {
+    plan: &'a Plan,
+    request: &'a Request<'a>,
+    progress: Option<&'a Progress>,
+    trace: Option<&'a mut Trace>,
+    sweeper: &'a mut Sweeper,
+}
+
+impl Run<'_> {
+    fn by<R: ClusterRule>(&mut self, rule: &R, extraction: &mut Extraction) -> Result<(), ExtractError> {
+        let Request { source, settings, execution, most_vertices, start, .. } = *self.request;
+        let Sweeper { workspaces, pieces, .. } = &mut *self.sweeper;
+        let grid = &self.plan.grid;
+        let layers = grid.size[2];
+        let (threads, slabs) = threads_and_slabs(execution, layers);
+        let bytes = grid.lattice.sweep_bytes(threads as u64);
+        workspaces.resize_with(threads, Workspace::default);
+        pieces.resize_with(slabs, Piece::default);
+        for workspace in &mut *workspaces {
+            workspace.fit(grid, source).map_err(|_| ExtractError::OutOfMemory { bytes })?;
+        }
+        // The first piece is written where the whole mesh will be.
+        pieces[0].positions = std::mem::take(&mut extraction.mesh.positions);
+        pieces[0].surface.triangles = std::mem::take(&mut extraction.mesh.triangles);
+        let allocation = start.elapsed();
+
+        let sweeping = Instant::now();
+        let done = AtomicUsize::new(0);
+        let progress = |more: usize| {
+            if let Some(progress) = self.progress {
+                progress(done.fetch_add(more, Ordering::Relaxed) + more, layers);
+            }
+        };
+        let placer = CrossingPlacer::new(&grid.lattice, settings, self.request.level());
+        let job = Job {
+            grid,
+            tables: &self.plan.tables,
+            rule,
+            source,
+            isovalue: settings.isovalue,
+            apart: Apart::new(&grid.lattice, settings.topology),
+            most_vertices,
+            placer: placer.as_ref(),
+            traced: self.trace.is_some(),
+            progress: &progress,
+        };
+        on_slabs(layers, workspaces, pieces, |own, workspace, piece| sweep(&job, own, workspace, piece))?;
+        let times = [allocation, sweeping.elapsed()];
+        assemble(self.request, pieces, threads, times, self.trace.as_deref_mut(), extraction)
+    }
+}
