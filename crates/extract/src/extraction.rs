@@ -20,6 +20,17 @@ pub struct Extraction {
     pub times: StageTimes,
 }
 
+impl Extraction {
+    /// Empties it; its vectors keep their room.
+    pub(crate) fn clear(&mut self) {
+        let TriangleMesh { positions, normals, triangles } = &mut self.mesh;
+        positions.clear();
+        normals.clear();
+        triangles.clear();
+        (self.counts, self.times) = Default::default();
+    }
+}
+
 /// Wall-clock time of each stage. The stages follow each other without a gap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct StageTimes {

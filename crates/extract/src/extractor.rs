@@ -3,7 +3,6 @@
 use std::time::Instant;
 
 use field::{Kept, ScalarField};
-use mesh::TriangleMesh;
 
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::lattice::Lattice;
@@ -107,11 +106,7 @@ impl Extractor {
     ) -> Result<(), ExtractError> {
         let result = self.try_extract_into(source, lattice, settings, execution, extraction);
         if result.is_err() {
-            let TriangleMesh { positions, normals, triangles } = &mut extraction.mesh;
-            positions.clear();
-            normals.clear();
-            triangles.clear();
-            (extraction.counts, extraction.times) = Default::default();
+            extraction.clear();
         }
         result
     }

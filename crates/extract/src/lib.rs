@@ -64,6 +64,7 @@
 //! | to have | take |
 //! |---|---|
 //! | one mesh | [`extract`] |
+//! | a method that somebody else chose | a [`Method`]: read from a file (feature `serde`), or one of the [`presets`] |
 //! | meshes, one after the other | an [`Extractor`], which keeps its buffers |
 //! | terrain that is edited | a [`ChunkExtractor`], and [`Chunk::is_touched_by`]; `examples/dig.rs` digs into an asteroid |
 //! | regular triangles | [`Arrangement::BodyCentred`], [`Clustering::Integrated`], [`Placement::Relaxed`] |
@@ -151,6 +152,7 @@ mod edges;
 mod extraction;
 mod extractor;
 mod finish;
+mod grid;
 mod guard;
 mod isosurface;
 mod lattice;
@@ -159,6 +161,7 @@ mod level;
 mod limits;
 mod line;
 mod memory;
+mod method;
 mod normals;
 mod placement;
 mod sampling;
@@ -182,7 +185,9 @@ pub use distances::{DistanceError, distances};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes};
 pub use extractor::{Extractor, extract};
 pub use field::ScalarField;
+pub use grid::Grid;
 pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
+pub use method::{Method, MethodError, Preset, Promises, Tetrahedra, presets};
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use source::Source;
 pub use trace::VertexKey;

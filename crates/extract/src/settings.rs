@@ -37,6 +37,8 @@ impl Default for ExtractSettings {
 
 /// How vertices are merged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Clustering {
     /// Not at all: one vertex an edge crossing.
     None,
@@ -64,6 +66,8 @@ impl fmt::Display for Clustering {
 
 /// What merging may do to the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Topology {
     /// Whatever the samples, the mesh is an oriented 2-manifold with the components, genus and boundary loops of the
     /// unclustered surface, and no two triangles share all vertices.
@@ -93,6 +97,8 @@ pub enum Topology {
 /// round a vertex would keep less than a tenth of its area, seen along its normal, the vertex stays. So do vertices on
 /// the box. After an edge collapse, vertices start from where that has left them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Placement {
     /// The unweighted mean of the cluster's crossings, as published (Costen 2026).
     #[default]

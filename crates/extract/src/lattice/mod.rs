@@ -24,6 +24,8 @@ use crate::settings::Clustering;
 /// of the others, 18 or 6, and 26, 14 or 6 meet; the rules of integrated clustering say nothing about them, so they
 /// are unclustered or collapsed afterwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Arrangement {
     /// Cube corners and cube centres: congruent tetrahedra, twelve a cube, after Chan & Purisima (1998). One layer
     /// of centres belongs to each face of the box. As published it lies half a cube outside, so that pyramids stand on the

@@ -1,0 +1,167 @@
+//! A method as plain data: everything that decides a mesh, but for the field, the grid and the isovalue.
+
+mod presets;
+mod tetrahedra;
+
+pub use presets::{Preset, presets};
+pub use tetrahedra::Tetrahedra;
+
+use crate::extraction::{ExtractError, Extraction};
+use crate::extractor::Extractor;
+use crate::grid::Grid;
+use crate::lattice::LatticeError;
+use crate::settings::Execution;
+use crate::source::Source;
+
+/// A way to make a mesh. The same method, field, grid and isovalue give the same mesh to the byte, on any number of
+/// threads.
+///
+/// With the feature `serde` it is read and written as a table that says its `kind`, with keys left out for defaults:
+/// `{ kind = "tetrahedra", arrangement = "body-centred", placement = "relaxed" }`. Unknown keys are refused.
+///
+/// ```
+/// use extract::{Arrangement, Execution, Extractor, Grid, Method, Placement, Tetrahedra};
+/// use field::{ScalarField, Sphere};
+/// # use glam::Vec3;
+/// # use mesh::Bounds;
+///
+/// let relaxed = Tetrahedra { placement: Placement::Relaxed, ..Tetrahedra::new(Arrangement::BodyCentred) };
+/// let method = Method::Tetrahedra(relaxed);
+/// let grid = Grid { bounds: Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) }, spacing: 0.1 };
+/// let sphere: &dyn ScalarField = &Sphere { radius: 1.0 };
+/// let (mut extractor, execution) = (Extractor::new(), Execution::default());
+/// let extraction = method.extract(&mut extractor, sphere.into(), &grid, 0.0, &execution)?;
+/// assert!(method.promises().manifold);
+/// assert_eq!(extraction.counts.vertices * 2, extraction.counts.triangles + 4, "genus 0");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "kebab-case"))]
+pub enum Method {
+    /// Regularised marching tetrahedra.
+    Tetrahedra(Tetrahedra),
+}
+
+/// What a method promises of every mesh, whatever the field. A promise that is not made may still hold for a field.
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Promises {
+    /// The mesh is an oriented 2-manifold, with or without boundary, that uses all its vertices. No two triangles have
+    /// the same vertices.
+    pub manifold: bool,
+    /// The mesh has no boundary where the surface stays clear of the box.
+    pub closed_off_the_box: bool,
+    /// Triangles are the same, number by number, wherever vertices are placed; only positions and normals change.
+    pub same_triangles_for_all_placements: bool,
+    /// Boxes of cells that fill the grid, extracted one by one, weld to the mesh of the whole, to the byte.
+    pub chunks: bool,
+    /// Samples are enough ([`Source::Samples`]); otherwise there must be a field to be called.
+    pub samples_suffice: bool,
+}
+
+/// Why a method makes no mesh.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MethodError {
+    /// The grid is not one for this method.
+    #[error(transparent)]
+    Grid(#[from] LatticeError),
+    /// The method's settings do not go together, or the extraction fails.
+    #[error(transparent)]
+    Extract(#[from] ExtractError),
+}
+
+impl Method {
+    /// Whether the method's settings go with each other and with the grid. What this passes is refused by
+    /// [`extract_into`](Self::extract_into) only for its source, its isovalue, or want of memory, threads or numbers.
+    ///
+    /// # Errors
+    /// [`MethodError`], which says what is allowed.
+    pub fn check(&self, grid: &Grid) -> Result<(), MethodError> {
+        self.family().check(grid)
+    }
+
+    /// Cells of the grid along x, y and z.
+    ///
+    /// # Errors
+    /// [`LatticeError`] if the grid is not one for this method.
+    pub fn cells(&self, grid: &Grid) -> Result<[u32; 3], LatticeError> {
+        self.family().cells(grid)
+    }
+
+    /// What an extraction holds of the grid at a time, in bytes. The mesh, and what the field holds, come on top.
+    ///
+    /// # Errors
+    /// [`LatticeError`] if the grid is not one for this method.
+    pub fn memory_bytes(&self, grid: &Grid, execution: &Execution) -> Result<u64, LatticeError> {
+        self.family().memory_bytes(grid, execution)
+    }
+
+    /// What is certain of every mesh.
+    pub fn promises(&self) -> Promises {
+        self.family().promises()
+    }
+
+    /// Extracts the surface where `source` has the isovalue into `extraction`, whose vectors are used again. After an error
+    /// it is empty. `execution` changes nothing about the mesh.
+    ///
+    /// # Errors
+    /// As [`check`](Self::check), and [`MethodError::Extract`] as [`Extractor::extract_into`].
+    pub fn extract_into(
+        &self,
+        extractor: &mut Extractor,
+        source: Source,
+        grid: &Grid,
+        isovalue: f32,
+        execution: &Execution,
+        extraction: &mut Extraction,
+    ) -> Result<(), MethodError> {
+        let result = self.family().extract_into(extractor, source, grid, isovalue, execution, extraction);
+        if result.is_err() {
+            extraction.clear();
+        }
+        result
+    }
+
+    /// Extracts the surface where `source` has the isovalue, as [`extract_into`](Self::extract_into).
+    ///
+    /// # Errors
+    /// The same.
+    pub fn extract(
+        &self,
+        extractor: &mut Extractor,
+        source: Source,
+        grid: &Grid,
+        isovalue: f32,
+        execution: &Execution,
+    ) -> Result<Extraction, MethodError> {
+        let mut extraction = Extraction::default();
+        self.extract_into(extractor, source, grid, isovalue, execution, &mut extraction)?;
+        Ok(extraction)
+    }
+
+    fn family(&self) -> &dyn Family {
+        match self {
+            Self::Tetrahedra(tetrahedra) => tetrahedra,
+        }
+    }
+}
+
+/// What a family of methods implements; see the functions of [`Method`] with the same names.
+trait Family {
+    fn check(&self, grid: &Grid) -> Result<(), MethodError>;
+    fn cells(&self, grid: &Grid) -> Result<[u32; 3], LatticeError>;
+    fn memory_bytes(&self, grid: &Grid, execution: &Execution) -> Result<u64, LatticeError>;
+    fn promises(&self) -> Promises;
+    fn extract_into(
+        &self,
+        extractor: &mut Extractor,
+        source: Source,
+        grid: &Grid,
+        isovalue: f32,
+        execution: &Execution,
+        extraction: &mut Extraction,
+    ) -> Result<(), MethodError>;
+}

@@ -1,0 +1,116 @@
+//! Methods that have a name.
+//!
+//! The first letter is the arrangement: body-centred, simple cubic, mirrored five tetrahedra, face-centred. The second is
+//! the clustering: unclustered, integrated, post-processed by an edge collapse, integrated and then collapsed.
+
+use super::{Method, Tetrahedra};
+use crate::lattice::Arrangement::{self, BodyCentred, FaceCentred, FiveTetrahedra, SimpleCubic};
+use crate::settings::Clustering::{self, EdgeCollapse, Integrated, IntegratedCollapse, None};
+use crate::settings::{Placement, Positions, Topology};
+
+const COSTEN: &str = "Costen 2026";
+const TREECE: &str = "Treece, Prager & Gee 1999; Costen 2026";
+const COLLAPSED: &str = "Costen 2026; Dey, Edelsbrunner, Guha & Nekhayev 1999";
+const OWN: &str = "not in the paper; see extract::Arrangement and extract::Clustering";
+const PLACED: &str = "Treece, Prager & Gee 1999; for the placement see extract::Placement";
+
+/// A method with a name.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Preset {
+    /// 2 to 16 of a to z, 0 to 9 and `-`, a letter first. No two presets have one id.
+    pub id: &'static str,
+    /// The same in words. No two presets have one label.
+    pub label: &'static str,
+    /// What it is.
+    pub method: Method,
+    /// Where it was published: authors and year.
+    pub source: &'static str,
+}
+
+/// The named methods, in a fixed order: with the library's defaults first, then with vertices placed otherwise, then as
+/// published, for comparison with published numbers only.
+pub fn presets() -> &'static [Preset] {
+    &PRESETS
+}
+
+static PRESETS: [Preset; 22] = [
+    plain("bu", "body-centred, none", BodyCentred, None, COSTEN),
+    plain("bi", "body-centred, integrated", BodyCentred, Integrated, TREECE),
+    plain("bp", "body-centred, edge collapse", BodyCentred, EdgeCollapse, COLLAPSED),
+    plain("bc", "body-centred, integrated + collapse", BodyCentred, IntegratedCollapse, OWN),
+    plain("su", "simple cubic, none", SimpleCubic, None, COSTEN),
+    plain("si", "simple cubic, integrated", SimpleCubic, Integrated, TREECE),
+    plain("sp", "simple cubic, edge collapse", SimpleCubic, EdgeCollapse, COLLAPSED),
+    plain("sc", "simple cubic, integrated + collapse", SimpleCubic, IntegratedCollapse, OWN),
+    plain("mu", "five tetrahedra, none", FiveTetrahedra, None, OWN),
+    plain("mp", "five tetrahedra, edge collapse", FiveTetrahedra, EdgeCollapse, OWN),
+    plain("fu", "face-centred, none", FaceCentred, None, OWN),
+    plain("fp", "face-centred, edge collapse", FaceCentred, EdgeCollapse, OWN),
+    placed("bi-projected", "body-centred, integrated, projected", BodyCentred, Placement::Projected),
+    placed("bi-relaxed", "body-centred, integrated, relaxed", BodyCentred, Placement::Relaxed),
+    placed("si-projected", "simple cubic, integrated, projected", SimpleCubic, Placement::Projected),
+    placed("si-relaxed", "simple cubic, integrated, relaxed", SimpleCubic, Placement::Relaxed),
+    published("bu-published", "body-centred, none, as published", BodyCentred, None),
+    published("bi-published", "body-centred, integrated, as published", BodyCentred, Integrated),
+    published("bp-published", "body-centred, edge collapse, as published", BodyCentred, EdgeCollapse),
+    published("su-published", "simple cubic, none, as published", SimpleCubic, None),
+    published("si-published", "simple cubic, integrated, as published", SimpleCubic, Integrated),
+    published("sp-published", "simple cubic, edge collapse, as published", SimpleCubic, EdgeCollapse),
+];
+
+/// With the library's defaults, which `defaults_are_those_of_the_library` holds to.
+const fn settings(arrangement: Arrangement, clustering: Clustering) -> Tetrahedra {
+    Tetrahedra {
+        arrangement,
+        clustering,
+        topology: Topology::Guarded,
+        positions: Positions::Indexed,
+        placement: Placement::MeanOfCrossings,
+        refine_crossings: false,
+    }
+}
+
+const fn plain(
+    id: &'static str,
+    label: &'static str,
+    arrangement: Arrangement,
+    clustering: Clustering,
+    source: &'static str,
+) -> Preset {
+    Preset { id, label, method: Method::Tetrahedra(settings(arrangement, clustering)), source }
+}
+
+const fn placed(
+    id: &'static str,
+    label: &'static str,
+    arrangement: Arrangement,
+    placement: Placement,
+) -> Preset {
+    let method = Tetrahedra { placement, ..settings(arrangement, Integrated) };
+    Preset { id, label, method: Method::Tetrahedra(method), source: PLACED }
+}
+
+/// The original's rules, and its sums as its benchmark makes them.
+const fn published(
+    id: &'static str,
+    label: &'static str,
+    arrangement: Arrangement,
+    clustering: Clustering,
+) -> Preset {
+    let (topology, positions) = (Topology::Published, Positions::Accumulated { chunks: 16 });
+    let method = Tetrahedra { topology, positions, ..settings(arrangement, clustering) };
+    Preset { id, label, method: Method::Tetrahedra(method), source: COSTEN }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn defaults_are_those_of_the_library() {
+        for arrangement in Arrangement::ALL {
+            assert_eq!(settings(arrangement, Integrated), Tetrahedra::new(arrangement));
+        }
+    }
+}

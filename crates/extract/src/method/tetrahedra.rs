@@ -1,0 +1,175 @@
+//! Marching tetrahedra as a method.
+
+use super::{Family, MethodError, Promises};
+use crate::extraction::{Extraction, check};
+use crate::extractor::Extractor;
+use crate::grid::Grid;
+use crate::lattice::{Arrangement, LatticeError};
+use crate::settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
+use crate::source::Source;
+
+/// Regularised marching tetrahedra: an arrangement of sample points, and what [`ExtractSettings`] have beside the isovalue.
+///
+/// With the feature `serde` the keys are those of the fields, and `arrangement` must be given. `positions` is `"indexed"`
+/// or `"accumulated"`; beside the latter `accumulation_chunks` is a number, 1 if it is left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "keys::Keys", into = "keys::Keys"))]
+pub struct Tetrahedra {
+    /// How sample points fill the box, and which tetrahedra they make.
+    pub arrangement: Arrangement,
+    /// How vertices are merged.
+    pub clustering: Clustering,
+    /// Whether merging keeps the surface a manifold.
+    pub topology: Topology,
+    /// How the positions of sample points are computed.
+    pub positions: Positions,
+    /// Where a vertex goes.
+    pub placement: Placement,
+    /// Whether crossings are roots of the field rather than interpolated between samples.
+    pub refine_crossings: bool,
+}
+
+impl Tetrahedra {
+    /// An arrangement with the defaults of [`ExtractSettings`].
+    pub fn new(arrangement: Arrangement) -> Self {
+        Self::with(arrangement, &ExtractSettings::default())
+    }
+
+    /// An arrangement with settings, whose isovalue is left out.
+    pub fn with(arrangement: Arrangement, settings: &ExtractSettings) -> Self {
+        let ExtractSettings { isovalue: _, clustering, topology, positions, placement, refine_crossings } =
+            *settings;
+        Self { arrangement, clustering, topology, positions, placement, refine_crossings }
+    }
+
+    /// The settings of an extraction.
+    pub fn settings(&self, isovalue: f32) -> ExtractSettings {
+        let Self { arrangement: _, clustering, topology, positions, placement, refine_crossings } = *self;
+        ExtractSettings { isovalue, clustering, topology, positions, placement, refine_crossings }
+    }
+}
+
+impl Family for Tetrahedra {
+    fn check(&self, grid: &Grid) -> Result<(), MethodError> {
+        check(&self.settings(0.0), self.arrangement)?;
+        grid.lattice(self.arrangement)?;
+        Ok(())
+    }
+
+    fn cells(&self, grid: &Grid) -> Result<[u32; 3], LatticeError> {
+        Ok(grid.lattice(self.arrangement)?.cells())
+    }
+
+    fn memory_bytes(&self, grid: &Grid, execution: &Execution) -> Result<u64, LatticeError> {
+        Ok(grid.lattice(self.arrangement)?.memory_bytes_for(&self.settings(0.0), execution))
+    }
+
+    fn promises(&self) -> Promises {
+        let guarded = match self.topology {
+            Topology::Guarded => true,
+            Topology::Published => false,
+        };
+        let collapses = match self.clustering {
+            Clustering::None | Clustering::Integrated => false,
+            Clustering::EdgeCollapse | Clustering::IntegratedCollapse => true,
+        };
+        let indexed = self.positions == Positions::Indexed;
+        let moves = self.placement != Placement::MeanOfCrossings || self.refine_crossings;
+        Promises {
+            manifold: guarded,
+            closed_off_the_box: guarded,
+            same_triangles_for_all_placements: !collapses,
+            chunks: indexed && !moves,
+            samples_suffice: indexed && !self.refine_crossings && !self.placement.calls_the_field(),
+        }
+    }
+
+    fn extract_into(
+        &self,
+        extractor: &mut Extractor,
+        source: Source,
+        grid: &Grid,
+        isovalue: f32,
+        execution: &Execution,
+        extraction: &mut Extraction,
+    ) -> Result<(), MethodError> {
+        let settings = self.settings(isovalue);
+        // Before the lattice, as in `check`.
+        check(&settings, self.arrangement)?;
+        let lattice = grid.lattice(self.arrangement)?;
+        Ok(extractor.extract_into(source, &lattice, &settings, execution, extraction)?)
+    }
+}
+
+/// The keys of a file.
+#[cfg(feature = "serde")]
+mod keys {
+    use serde::{Deserialize, Serialize};
+
+    use super::{Arrangement, Clustering, Placement, Tetrahedra, Topology};
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub(super) struct Keys {
+        arrangement: Arrangement,
+        #[serde(default)]
+        clustering: Clustering,
+        #[serde(default)]
+        topology: Topology,
+        #[serde(default)]
+        positions: Positions,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        accumulation_chunks: Option<u32>,
+        #[serde(default)]
+        placement: Placement,
+        #[serde(default)]
+        refine_crossings: bool,
+    }
+
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    enum Positions {
+        #[default]
+        Indexed,
+        Accumulated,
+    }
+
+    impl From<Tetrahedra> for Keys {
+        fn from(method: Tetrahedra) -> Self {
+            let Tetrahedra { arrangement, clustering, topology, positions, placement, refine_crossings } =
+                method;
+            let (positions, accumulation_chunks) = match positions {
+                super::Positions::Indexed => (Positions::Indexed, None),
+                super::Positions::Accumulated { chunks } => (Positions::Accumulated, Some(chunks)),
+            };
+            Self {
+                arrangement,
+                clustering,
+                topology,
+                positions,
+                accumulation_chunks,
+                placement,
+                refine_crossings,
+            }
+        }
+    }
+
+    impl TryFrom<Keys> for Tetrahedra {
+        type Error = &'static str;
+
+        fn try_from(keys: Keys) -> Result<Self, Self::Error> {
+            let positions = match (keys.positions, keys.accumulation_chunks) {
+                (Positions::Indexed, None) => super::Positions::Indexed,
+                (Positions::Indexed, Some(_)) => {
+                    return Err("accumulation_chunks goes with positions = \"accumulated\" only");
+                }
+                (Positions::Accumulated, chunks) => {
+                    super::Positions::Accumulated { chunks: chunks.unwrap_or(1) }
+                }
+            };
+            let Keys { arrangement, clustering, topology, placement, refine_crossings, .. } = keys;
+            Ok(Self { arrangement, clustering, topology, positions, placement, refine_crossings })
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! Methods as tables of a file: what is written is read back, and what is not known is refused by name.
+
+use extract::{Arrangement, Clustering, Method, Placement, Positions, Tetrahedra, Topology};
+use toml::Table;
+
+fn read(text: &str) -> Result<Method, String> {
+    #[derive(serde::Deserialize)]
+    struct File {
+        recipe: Method,
+    }
+    toml::from_str::<File>(text).map(|file| file.recipe).map_err(|error| error.to_string())
+}
+
+/// Names as study files spell them, with what they mean.
+const ARRANGEMENTS: [(&str, Arrangement); 4] = [
+    ("body-centred", Arrangement::BodyCentred),
+    ("simple-cubic", Arrangement::SimpleCubic),
+    ("five-tetrahedra", Arrangement::FiveTetrahedra),
+    ("face-centred", Arrangement::FaceCentred),
+];
+const CLUSTERINGS: [(&str, Clustering); 4] = [
+    ("none", Clustering::None),
+    ("integrated", Clustering::Integrated),
+    ("edge-collapse", Clustering::EdgeCollapse),
+    ("integrated-collapse", Clustering::IntegratedCollapse),
+];
+const TOPOLOGIES: [(&str, Topology); 2] =
+    [("guarded", Topology::Guarded), ("published", Topology::Published)];
+const PLACEMENTS: [(&str, Placement); 4] = [
+    ("mean-of-crossings", Placement::MeanOfCrossings),
+    ("curvature-weighted", Placement::CurvatureWeighted),
+    ("projected", Placement::Projected),
+    ("relaxed", Placement::Relaxed),
+];
+const POSITIONS: [(&str, Positions); 3] = [
+    ("\"indexed\"", Positions::Indexed),
+    ("\"accumulated\"", Positions::Accumulated { chunks: 1 }),
+    ("\"accumulated\", accumulation_chunks = 16", Positions::Accumulated { chunks: 16 }),
+];
+
+#[test]
+fn every_combination_is_read_and_comes_back() {
+    for (a, arrangement) in ARRANGEMENTS {
+        for (c, clustering) in CLUSTERINGS {
+            for (t, topology) in TOPOLOGIES {
+                for (p, placement) in PLACEMENTS {
+                    for (q, positions) in POSITIONS {
+                        for refine_crossings in [false, true] {
+                            let text = format!(
+                                "recipe = {{ kind = \"tetrahedra\", arrangement = \"{a}\", clustering = \"{c}\", \
+                                 topology = \"{t}\", placement = \"{p}\", positions = {q}, \
+                                 refine_crossings = {refine_crossings} }}"
+                            );
+                            let expected = Method::Tetrahedra(Tetrahedra {
+                                arrangement,
+                                clustering,
+                                topology,
+                                positions,
+                                placement,
+                                refine_crossings,
+                            });
+                            assert_eq!(read(&text), Ok(expected), "{text}");
+                            let written = Table::try_from(expected).unwrap();
+                            assert_eq!(written["kind"].as_str(), Some("tetrahedra"));
+                            assert_eq!(written.clone().try_into(), Ok(expected), "{written}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn keys_left_out_are_the_librarys_defaults() {
+    let text = r#"recipe = { kind = "tetrahedra", arrangement = "body-centred", clustering = "integrated", placement = "relaxed" }"#;
+    let relaxed = Tetrahedra { placement: Placement::Relaxed, ..Tetrahedra::new(Arrangement::BodyCentred) };
+    assert_eq!(read(text), Ok(Method::Tetrahedra(relaxed)));
+    let least = r#"recipe = { kind = "tetrahedra", arrangement = "simple-cubic" }"#;
+    assert_eq!(read(least), Ok(Method::Tetrahedra(Tetrahedra::new(Arrangement::SimpleCubic))));
+}
+
+#[test]
+fn what_is_not_known_is_refused_by_name() {
+    for (text, names) in [
+        (
+            r#"kind = "tetrahedra", arrangement = "body-centred", clustring = "none""#,
+            ["clustring", "clustering"],
+        ),
+        (r#"kind = "tetrahedra", arrangement = "body-centered""#, ["body-centered", "body-centred"]),
+        (
+            r#"kind = "tetrahedra", arrangement = "simple-cubic", clustering = "some""#,
+            ["some", "edge-collapse"],
+        ),
+        (r#"kind = "tetrahedra", arrangement = "simple-cubic", topology = "free""#, ["free", "guarded"]),
+        (
+            r#"kind = "tetrahedra", arrangement = "simple-cubic", placement = "mean""#,
+            ["mean", "mean-of-crossings"],
+        ),
+        (
+            r#"kind = "tetrahedra", arrangement = "simple-cubic", positions = "summed""#,
+            ["summed", "accumulated"],
+        ),
+        (
+            r#"kind = "tetrahedra", arrangement = "simple-cubic", accumulation_chunks = 4"#,
+            ["accumulation_chunks", "accumulated"],
+        ),
+        (r#"kind = "tetrahedra""#, ["missing", "arrangement"]),
+        (r#"kind = "octahedra", arrangement = "simple-cubic""#, ["octahedra", "tetrahedra"]),
+        (r#"arrangement = "simple-cubic""#, ["missing", "kind"]),
+    ] {
+        let error = read(&format!("recipe = {{ {text} }}")).unwrap_err();
+        for name in names {
+            assert!(error.lines().last().is_some_and(|line| line.contains(name)), "{text}: {error}");
+        }
+    }
+}
