@@ -1,6 +1,6 @@
 //! A study's answers as ballots, and the groups of items that the models compare.
 
-use design::{Method, Study};
+use design::{MethodId, Study};
 use responses::{Choice, Responses};
 use statistics::{DeclaredBallot, Outcome, ShownBallot};
 
@@ -53,10 +53,7 @@ pub(crate) fn turned(ballot: &ShownBallot) -> ShownBallot {
 /// The same answers, in the same order, about the methods of each question: first the one that the study lists on the left,
 /// whichever side it stood on.
 pub fn declared(study: &Study, ballots: &[ShownBallot]) -> Vec<DeclaredBallot> {
-    let methods = study.methods();
-    let item =
-        |method: Method| methods.iter().position(|&m| m == method).expect("crossed from these methods");
-    let first: Vec<usize> = study.comparisons.iter().map(|c| item(c.left.method)).collect();
+    let first: Vec<usize> = study.comparisons.iter().map(|c| study.place(c.left.method)).collect();
     ballots.iter().map(|ballot| ballot.declared(first[ballot.question()])).collect()
 }
 
@@ -67,10 +64,8 @@ pub(crate) fn is_asked(study: &Study, answer: &responses::Answer) -> bool {
 
 /// The index of each item's method: a study's items are its configurations.
 pub(crate) fn method_of_item(study: &Study, answers: &Responses) -> Vec<usize> {
-    let methods = study.methods();
     assert_eq!(answers.items.len(), study.configurations.len(), "answers were read for another study");
-    let method = |c: &design::Configuration| methods.iter().position(|&m| m == c.id.method);
-    study.configurations.iter().map(|c| method(c).expect("crossed from these methods")).collect()
+    study.configurations.iter().map(|c| study.place(c.id.method)).collect()
 }
 
 pub(crate) fn outcome(choice: Choice) -> Outcome {
@@ -81,11 +76,10 @@ pub(crate) fn outcome(choice: Choice) -> Outcome {
     }
 }
 
-/// The study's comparison groups, then clusterings pooled over arrangements (`clustering`) and arrangements pooled over
-/// clusterings (`arrangement`), where more than one group has them; then all methods (`all`), where the groups hang together.
-/// Groups without an answer are left out.
+/// The study's comparison groups, then the levels of each declared factor pooled over all else, where more than one group has
+/// them, named after the factor; then all methods (`all`), where the groups hang together. Groups without an answer are left out.
 pub fn ballot_groups(study: &Study, ballots: &[ShownBallot]) -> Vec<BallotGroup> {
-    let methods = study.methods();
+    let methods = study.method_ids();
     let mut groups: Vec<BallotGroup> = study
         .groups
         .iter()
@@ -93,7 +87,7 @@ pub fn ballot_groups(study: &Study, ballots: &[ShownBallot]) -> Vec<BallotGroup>
         .map(|(g, group)| {
             let place = |method| group.members.iter().position(|&m| m == method);
             let own = ballots.iter().filter(|b| study.comparisons[b.question()].group == g);
-            let items = group.members.iter().map(Method::to_string).collect();
+            let items = group.members.iter().map(MethodId::to_string).collect();
             let ballots = relabel(own, |item| place(methods[item]));
             BallotGroup { name: group.id.clone(), items, ballots, objects: Vec::new() }
         })
@@ -102,20 +96,15 @@ pub fn ballot_groups(study: &Study, ballots: &[ShownBallot]) -> Vec<BallotGroup>
         let group = |b: &ShownBallot| study.comparisons[b.question()].group;
         ballots.iter().all(|b| group(b) == group(&ballots[0]))
     };
-    let code = |code: char| code.to_ascii_uppercase().to_string();
-    let clusterings = &study.file.clusterings;
-    let same = |b: &&ShownBallot| methods[b.left()].arrangement == methods[b.right()].arrangement;
-    let place = |item: usize| clusterings.iter().position(|&c| c == methods[item].clustering);
-    let items = clusterings.iter().map(|c| code(c.code())).collect();
-    let pooled = relabel(ballots.iter().filter(same), place);
-    let clustering = BallotGroup { name: "clustering".into(), items, ballots: pooled, objects: Vec::new() };
-    let arrangements = &study.file.arrangements;
-    let same = |b: &&ShownBallot| methods[b.left()].clustering == methods[b.right()].clustering;
-    let place = |item: usize| arrangements.iter().position(|&a| a == methods[item].arrangement);
-    let items = arrangements.iter().map(|a| code(a.code())).collect();
-    let pooled = relabel(ballots.iter().filter(same), place);
-    let arrangement = BallotGroup { name: "arrangement".into(), items, ballots: pooled, objects: Vec::new() };
-    groups.extend([clustering, arrangement].into_iter().filter(|group| !one_group(&group.ballots)));
+    for factor in study.declared_factors().rev() {
+        let differs = |b: &&ShownBallot| study.difference(methods[b.left()], methods[b.right()]) == factor;
+        let place = |item: usize| study.level_of(methods[item], factor).map(|level| level.index);
+        let items = study.factor(factor).levels.iter().map(|level| level.code.clone()).collect();
+        let pooled = relabel(ballots.iter().filter(differs), place);
+        let name = study.factor(factor).name.clone();
+        let group = BallotGroup { name, items, ballots: pooled, objects: Vec::new() };
+        groups.extend(Some(group).filter(|group| !one_group(&group.ballots)));
+    }
     groups.extend(all_methods(study, ballots));
     groups.retain(|group| !group.ballots.is_empty());
     groups
@@ -126,11 +115,11 @@ pub(crate) const ALL_METHODS: &str = "all";
 
 /// Every method that is compared, as one group, where a study has several groups and they hang together.
 fn all_methods(study: &Study, ballots: &[ShownBallot]) -> Option<BallotGroup> {
-    let methods = study.methods();
-    let compared = |method: &Method| {
+    let methods = study.method_ids();
+    let compared = |method: &MethodId| {
         study.comparisons.iter().any(|c| c.left.method == *method || c.right.method == *method)
     };
-    let items: Vec<Method> = methods.iter().copied().filter(compared).collect();
+    let items: Vec<MethodId> = methods.iter().copied().filter(compared).collect();
     let place = |item: usize| items.iter().position(|&method| method == methods[item]);
     let own = relabel(ballots.iter(), place);
     // Linked to the first, directly or through others.
@@ -143,7 +132,7 @@ fn all_methods(study: &Study, ballots: &[ShownBallot]) -> Option<BallotGroup> {
     let several = named && study.groups.len() > 1 && linked.into_iter().all(|linked| linked);
     several.then(|| BallotGroup {
         name: ALL_METHODS.into(),
-        items: items.iter().map(Method::to_string).collect(),
+        items: items.iter().map(MethodId::to_string).collect(),
         ballots: own,
         objects: Vec::new(),
     })

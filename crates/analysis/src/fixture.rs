@@ -70,6 +70,11 @@ impl Everything {
     }
 }
 
+/// The two letters of a published method.
+pub(crate) fn crossed(method: design::MethodId) -> design::Crossed {
+    design::Crossed::of(method).expect("two letters")
+}
+
 /// Records of all three purposes, one a published row.
 pub(crate) fn meshes(study: &Study) -> Vec<MeshRecord> {
     let purposes = [Purpose::Benchmark, Purpose::Stimulus, Purpose::Indexed];
@@ -79,14 +84,14 @@ pub(crate) fn meshes(study: &Study) -> Vec<MeshRecord> {
 
 fn mesh(study: &Study, row: &BenchmarkRow, purpose: Purpose) -> MeshRecord {
     let object = study.file.objects.iter().find(|o| o.id == row.id.object).unwrap();
-    let merged = row.id.method.clustering.code();
+    let merged = crossed(row.id.method).clustering.code();
     let (x, y, z) = (u64::from(row.cells_x), u64::from(row.cells_y), u64::from(row.cells_z));
-    let body = row.id.method.arrangement.code() == 'b';
+    let body = crossed(row.id.method).arrangement.code() == 'b';
     // The published unclustered count tells the true number of discarded triangles.
     let unclustered = study.published.benchmark.iter().find(|other| {
         other.id.object == row.id.object
-            && other.id.method.arrangement == row.id.method.arrangement
-            && other.id.method.clustering.code() == 'u'
+            && crossed(other.id.method).arrangement == crossed(row.id.method).arrangement
+            && crossed(other.id.method).clustering.code() == 'u'
     });
     let discarded = unclustered.map_or(0, |u| u.triangles - row.triangles);
     let degenerate = if row.aspect_ratio_mean > 100.0 { 96 } else { 0 };

@@ -2,9 +2,10 @@
 
 use crate::ballots::BallotGroup;
 use crate::omnibus;
+use design::Level;
 use design::Study;
 use design::config::AnalysisSection;
-use design::contrast::{Contrast, Level, Over, PRIMARY, contrasts, families};
+use design::contrast::{Contrast, Over, PRIMARY, contrasts, families};
 use rayon::prelude::*;
 use statistics::{DeclaredBallot, MARGIN, ScoreTest, benjamini_hochberg, holm};
 use std::collections::BTreeSet;
@@ -246,13 +247,12 @@ pub(crate) fn of_contrasts(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hyp
     let mut all: Vec<Hypothesis> = contrasts.par_iter().map(of_contrast).collect();
     for family in &families {
         for &member in &family.members {
-            let kind = contrasts[member].family.code();
             // A family that mixes kinds is named after what it is, its members after their kind.
-            all[member].family = match family.name {
+            all[member].family = match family.name.as_str() {
                 PRIMARY => PRIMARY.into(),
-                _ => kind.into(),
+                _ => contrasts[member].family_name.clone(),
             };
-            all[member].corrected_with = family.name.into();
+            all[member].corrected_with.clone_from(&family.name);
         }
         let mut members: Vec<&mut Hypothesis> = all
             .iter_mut()

@@ -2,7 +2,7 @@
 
 use crate::inputs::Inputs;
 use design::record::{Distribution, MeshRecord, Purpose};
-use design::{Configuration, ConfigurationId, Method, Study};
+use design::{Configuration, ConfigurationId, MethodId, Study};
 
 /// The records of one purpose, found by configuration.
 #[derive(Debug, Clone)]
@@ -22,7 +22,7 @@ impl<'a> MeshSet<'a> {
     }
 
     /// The record of an object, by index, and a method.
-    pub(crate) fn at(&self, object: usize, method: Method) -> Option<&'a MeshRecord> {
+    pub(crate) fn at(&self, object: usize, method: MethodId) -> Option<&'a MeshRecord> {
         self.get(&ConfigurationId { object: self.study.file.objects[object].id.clone(), method })
     }
 

@@ -1,7 +1,7 @@
 //! Does anything differ at all, and does a preference depend on anything? Friedman's tests over participants.
 
-use design::contrast::{Contrast, Factor, Level, Over, contrasts};
-use design::{Method, Study};
+use design::contrast::{Contrast, Over, contrasts};
+use design::{Factor, Level, MethodId, Study};
 use statistics::{ChiSquareTest, DeclaredBallot, friedman, holm};
 
 /// What Friedman's test is asked.
@@ -9,8 +9,8 @@ use statistics::{ChiSquareTest, DeclaredBallot, friedman, holm};
 pub(crate) enum Asked {
     /// Are the values of a factor liked alike?
     Levels(Factor),
-    /// Does the preference between two values depend on the other factor?
-    ByOther([Level; 2]),
+    /// Does the preference between two values depend on another factor?
+    ByOther([Level; 2], Factor),
     /// Does the preference between two values depend on the object?
     ByObject([Level; 2]),
 }
@@ -49,16 +49,17 @@ pub(crate) fn tests(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Omnibus> {
         let levels = levels_of(&pooled, factor);
         (levels.len() > 2).then_some((factor, levels))
     };
-    for (factor, levels) in [Factor::Clustering, Factor::Arrangement].into_iter().filter_map(several) {
+    for (factor, levels) in study.declared_factors().rev().filter_map(several) {
         add(vec![(Asked::Levels(factor), wins_less_losses(study, ballots, factor, &levels))]);
     }
-    let of_factors = |contrast: &&Contrast| contrast.levels[0].factor() != Factor::Method;
-    let by_other = pooled.iter().filter(of_factors).map(|contrast| {
-        let other = |q: usize| match contrast.levels[0].factor() {
-            Factor::Clustering => Some(Level::Arrangement(study.comparisons[q].left.method.arrangement)),
-            _ => Some(Level::Clustering(study.comparisons[q].left.method.clustering)),
-        };
-        (Asked::ByOther(contrast.levels), by(contrast, ballots, other))
+    let by_other = pooled.iter().flat_map(|contrast| {
+        let own = contrast.levels[0].factor;
+        let others =
+            study.declared_factors().filter(move |other| own != study.method_factor() && *other != own);
+        others.map(|other| {
+            let level = |q: usize| study.level_of(study.comparisons[q].left.method, other);
+            (Asked::ByOther(contrast.levels, other), by(contrast, ballots, level))
+        })
     });
     // Of two values the difference is a contrast of its own.
     add(by_other.filter(|(_, rows)| rows.first().is_some_and(|row| row.len() > 2)).collect());
@@ -77,7 +78,7 @@ pub(crate) fn depends_on_object(tests: &[Omnibus], levels: [Level; 2], level: f6
 /// The values of a factor that questions compare, in the order in which they are asked.
 fn levels_of(pooled: &[Contrast], factor: Factor) -> Vec<Level> {
     let mut levels: Vec<Level> = Vec::new();
-    for level in pooled.iter().flat_map(|contrast| contrast.levels).filter(|level| level.factor() == factor) {
+    for level in pooled.iter().flat_map(|contrast| contrast.levels).filter(|level| level.factor == factor) {
         if !levels.contains(&level) {
             levels.push(level);
         }
@@ -92,19 +93,13 @@ fn wins_less_losses(
     factor: Factor,
     levels: &[Level],
 ) -> Vec<Vec<f64>> {
-    let level = |method: Method| match factor {
-        Factor::Clustering => Level::Clustering(method.clustering),
-        _ => Level::Arrangement(method.arrangement),
-    };
     let pair = |ballot: &DeclaredBallot| {
         let comparison = &study.comparisons[ballot.question()];
         let (first, second) = (comparison.left.method, comparison.right.method);
-        let rest = match factor {
-            Factor::Clustering => first.arrangement == second.arrangement,
-            _ => first.clustering == second.clustering,
+        let place = |method: MethodId| {
+            study.level_of(method, factor).and_then(|level| levels.iter().position(|&of| of == level))
         };
-        let place = |method| levels.iter().position(|&of| of == level(method));
-        if rest { place(first).zip(place(second)).filter(|(a, b)| a != b) } else { None }
+        if study.difference(first, second) == factor { place(first).zip(place(second)) } else { None }
     };
     let mut columns = Columns::of(levels.len());
     for ballot in ballots {

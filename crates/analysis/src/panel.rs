@@ -69,7 +69,7 @@ impl Panel {
             machine,
             iterations: own.len(),
             object: study.object(configuration).name.clone(),
-            method: configuration.id.method.label(),
+            method: study.method(configuration.id.method).label.clone(),
             threads,
             times: Stage::ALL.into_iter().filter_map(time).collect(),
             mesh,

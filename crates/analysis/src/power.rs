@@ -14,8 +14,9 @@ mod scores;
 #[cfg(test)]
 mod tests;
 
+use design::Level;
 use design::Study;
-use design::contrast::{Contrast, Level, Over, PRIMARY, contrasts, families};
+use design::contrast::{Contrast, Family, Over, PRIMARY, contrasts, families};
 use design::forms::{Questionnaire, Role};
 use rand::Rng;
 use rayon::prelude::*;
@@ -47,7 +48,9 @@ pub struct Assumptions {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Power {
     /// The family within which p is adjusted, as in the tests of a study.
-    pub family: &'static str,
+    pub family: String,
+    /// What the contrasts of the family are over, in words.
+    pub over: String,
     /// What is compared, such as `U-I`.
     pub contrast: String,
     /// Over which answers, such as `within B`; or the question.
@@ -82,7 +85,8 @@ impl Power {
 
 /// One hypothesis of the design.
 struct Target {
-    family: &'static str,
+    family: String,
+    over: String,
     contrast: String,
     scope: String,
     /// Questions about it.
@@ -155,7 +159,8 @@ pub fn power(study: &Study, assumptions: &Assumptions, done: &(dyn Fn() + Sync))
         for (target, rejected) in told {
             for (&participants, &[plain, adjusted]) in numbers.iter().zip(rejected) {
                 all.push(Power {
-                    family: target.family,
+                    family: target.family.clone(),
+                    over: target.over.clone(),
                     contrast: target.contrast.clone(),
                     scope: target.scope.clone(),
                     questions: target.questions,
@@ -170,6 +175,20 @@ pub fn power(study: &Study, assumptions: &Assumptions, done: &(dyn Fn() + Sync))
         }
     }
     Some(all)
+}
+
+/// What the contrasts of a family are over, in words.
+fn over(study: &Study, family: Family) -> String {
+    match family {
+        Family::Pooled => "all answers".into(),
+        Family::Methods => "methods as a whole".into(),
+        Family::Objects(factor) => format!("{} on one object", study.factor(factor).plural),
+        Family::Groups | Family::Interactions | Family::ObjectPairs(_) => {
+            let names: Vec<&str> =
+                study.declared_factors().map(|factor| study.factor(factor).name.as_str()).collect();
+            format!("within one {}", names.join(" or "))
+        }
+    }
 }
 
 impl Setting {
@@ -204,7 +223,12 @@ impl Setting {
             }
             corrections.push(Correction { size: members.len(), of: holm });
             targets.extend(members.into_iter().map(|contrast| Target {
-                family: if family.name == PRIMARY { PRIMARY } else { contrast.family.code() },
+                family: if family.name == PRIMARY { PRIMARY.into() } else { contrast.family_name.clone() },
+                over: if family.name == PRIMARY {
+                    "primary contrasts".into()
+                } else {
+                    over(study, contrast.family)
+                },
                 contrast: contrast.name.clone(),
                 scope: contrast.scope.clone(),
                 questions: contrast.weights.len(),
@@ -218,7 +242,8 @@ impl Setting {
                 block.contains(&q).then_some((q, questions[q].sign)).into_iter().collect()
             };
             Target {
-                family: QUESTIONS,
+                family: QUESTIONS.into(),
+                over: "one question alone".into(),
                 contrast: format!("{}-{}", comparison.left.method, comparison.right.method),
                 scope: comparison.question.clone(),
                 questions: 1,

@@ -7,7 +7,7 @@
 
 use crate::fraction::Fraction;
 use crate::tally::{QuestionCount, Tally};
-use design::{Arrangement, Clustering, Comparison, Method, Study};
+use design::{Arrangement, Comparison, Crossed, Factor, Group, Level, MethodId, Study};
 
 /// Answers that chose something, ties, and all answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,7 +36,7 @@ pub struct GroupFactor {
     /// Index of the group.
     pub group: usize,
     /// The method.
-    pub method: Method,
+    pub method: MethodId,
     /// Its share of the group's answers; `ties` are the whole group's.
     pub share: Share,
     /// Answers to the group's questions that show the method: what it could have won.
@@ -82,58 +82,39 @@ pub fn group_factors(study: &Study, tally: &Tally, counts: impl Fn(usize) -> boo
 }
 
 /// The sum of each method's group factors, in the study's order; methods in no group are left out.
-pub fn overall(study: &Study, factors: &[GroupFactor]) -> Vec<(Method, Fraction)> {
-    let sum = |method: Method| {
+pub fn overall(study: &Study, factors: &[GroupFactor]) -> Vec<(MethodId, Fraction)> {
+    let sum = |method: MethodId| {
         let of = factors.iter().filter(|f| f.method == method).map(|f| f.share.factor());
         of.reduce(|sum, factor| sum + factor).map(|sum| (method, sum))
     };
-    study.methods().into_iter().filter_map(sum).collect()
+    study.method_ids().into_iter().filter_map(sum).collect()
 }
 
-/// What a margin of the overall table is taken over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Margin {
-    /// The methods of one arrangement.
-    Arrangement(Arrangement),
-    /// The methods of one clustering.
-    Clustering(Clustering),
-}
-
-impl Margin {
-    /// Whether the method counts towards it.
-    pub fn holds(self, method: Method) -> bool {
-        match self {
-            Self::Arrangement(arrangement) => method.arrangement == arrangement,
-            Self::Clustering(clustering) => method.clustering == clustering,
-        }
-    }
-
-    /// The one-letter code.
-    pub fn code(self) -> char {
-        match self {
-            Self::Arrangement(arrangement) => arrangement.code(),
-            Self::Clustering(clustering) => clustering.code(),
-        }
-    }
-
-    /// The name in tables.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Arrangement(arrangement) => arrangement.label(),
-            Self::Clustering(clustering) => clustering.label(),
-        }
-    }
-}
-
-/// Plain means of the overall factors, arrangements first, in the study's order.
-pub fn margins(study: &Study, overall: &[(Method, Fraction)]) -> Vec<(Margin, Fraction)> {
-    let arrangements = study.file.arrangements.iter().map(|&a| Margin::Arrangement(a));
-    let clusterings = study.file.clusterings.iter().map(|&c| Margin::Clustering(c));
-    let mean = |margin: Margin| {
-        let of: Vec<Fraction> = overall.iter().filter(|(m, _)| margin.holds(*m)).map(|&(_, f)| f).collect();
-        Fraction::mean(&of).map(|mean| (margin, mean))
+/// Plain means of the overall factors over the methods of each level of each declared factor, in the study's order.
+pub fn margins(study: &Study, overall: &[(MethodId, Fraction)]) -> Vec<(Level, Fraction)> {
+    let mean = |level: Level| {
+        let holds = |method: MethodId| study.level_of(method, level.factor) == Some(level);
+        let of: Vec<Fraction> = overall.iter().filter(|(m, _)| holds(*m)).map(|&(_, f)| f).collect();
+        Fraction::mean(&of).map(|mean| (level, mean))
     };
-    arrangements.chain(clusterings).filter_map(mean).collect()
+    study.declared_factors().flat_map(|factor| study.levels(factor)).filter_map(mean).collect()
+}
+
+/// The two factors of a study that declares two, as the paper's does.
+pub(crate) fn two_factors(study: &Study) -> Option<[Factor; 2]> {
+    let declared: Vec<Factor> = study.declared_factors().collect();
+    <[Factor; 2]>::try_from(declared).ok()
+}
+
+/// The level of a factor that all members of a group share.
+pub(crate) fn shared(study: &Study, group: &Group, factor: Factor) -> Option<Level> {
+    let first = study.level_of(*group.members.first()?, factor)?;
+    group.members.iter().all(|&member| study.level_of(member, factor) == Some(first)).then_some(first)
+}
+
+/// "a" or "an".
+pub(crate) fn article(noun: &str) -> &'static str {
+    if noun.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }
 }
 
 /// One object's answers to the questions that differ in arrangement alone.
@@ -151,24 +132,23 @@ pub struct ArrangementContest {
     pub simple_cubic: u64,
 }
 
+/// The lattices that a question compares, everything else equal; `None` if it does not.
+fn lattices(comparison: &Comparison) -> Option<[Arrangement; 2]> {
+    let (left, right) = (Crossed::of(comparison.left.method)?, Crossed::of(comparison.right.method)?);
+    let alone = left.clustering == right.clustering && left.arrangement != right.arrangement;
+    alone.then_some([left.arrangement, right.arrangement])
+}
+
 /// Whether a question compares the body-centred with the simple cubic lattice, everything else equal.
 fn is_direct(comparison: &Comparison) -> bool {
-    let (left, right) = (comparison.left.method, comparison.right.method);
     let papers = |a| matches!(a, Arrangement::BodyCentred | Arrangement::SimpleCubic);
-    left.clustering == right.clustering
-        && left.arrangement != right.arrangement
-        && papers(left.arrangement)
-        && papers(right.arrangement)
+    lattices(comparison).is_some_and(|both| both.into_iter().all(papers))
 }
 
 /// How many questions compare lattices, everything else equal, and are not in [`arrangement_contests`], because one of the
 /// two is another lattice.
 pub fn other_arrangement_questions(study: &Study) -> usize {
-    let lattices = |c: &&Comparison| {
-        c.left.method.clustering == c.right.method.clustering
-            && c.left.method.arrangement != c.right.method.arrangement
-    };
-    study.comparisons.iter().filter(lattices).filter(|c| !is_direct(c)).count()
+    study.comparisons.iter().filter(|c| lattices(c).is_some() && !is_direct(c)).count()
 }
 
 /// Body-centred against simple cubic where nothing else differs: by object and group, by object, then pooled. Counted are
@@ -189,7 +169,7 @@ pub fn arrangement_contests(study: &Study, tally: &Tally) -> Vec<ArrangementCont
             object.is_none_or(|o| comparison.object == o) && group.is_none_or(|g| comparison.group == g)
         });
         for (comparison, count) in own {
-            let straight = comparison.left.method.arrangement == Arrangement::BodyCentred;
+            let straight = lattices(comparison).is_some_and(|[left, _]| left == Arrangement::BodyCentred);
             let (body, simple) = if straight { (count.left, count.right) } else { (count.right, count.left) };
             sum.body_centred += body;
             sum.none += count.none;

@@ -1,7 +1,7 @@
 //! From answers to counts.
 
 use crate::ballots::{is_asked, method_of_item};
-use design::{Method, Study};
+use design::{MethodId, Study};
 use polars::prelude::*;
 use responses::Responses;
 
@@ -47,7 +47,7 @@ pub struct MethodCount {
     /// Index of the comparison group.
     pub group: usize,
     /// The method chosen; `None` is no preference.
-    pub chosen: Option<Method>,
+    pub chosen: Option<MethodId>,
     /// How many answers.
     pub answers: u64,
 }
@@ -64,7 +64,7 @@ pub struct TallyRow {
     /// Index of the comparison group.
     pub group: u32,
     /// The method chosen; `None` is no preference.
-    pub chosen: Option<Method>,
+    pub chosen: Option<MethodId>,
     /// How many answers.
     pub answers: u32,
 }
@@ -94,7 +94,7 @@ impl Tally {
             ));
         }
         chosen.sort_unstable();
-        let methods = study.methods();
+        let methods = study.method_ids();
         let row = |same: &[Choice]| {
             let (respondent, object, group, method) = same[0];
             let chosen = method.map(|method| methods[method as usize]);
@@ -118,8 +118,8 @@ impl Tally {
 
 /// Counts of questions added up over those of one object and group.
 fn by_method(study: &Study, questions: &[QuestionCount]) -> PolarsResult<Vec<MethodCount>> {
-    let methods = study.methods();
-    let place = |method: Method| methods.iter().position(|m| *m == method).map(|place| place as u32);
+    let methods = study.method_ids();
+    let place = |method: MethodId| methods.iter().position(|m| *m == method).map(|place| place as u32);
     let counts = study.comparisons.iter().zip(questions).flat_map(|(comparison, count)| {
         let chosen = [
             (place(comparison.left.method), count.left),

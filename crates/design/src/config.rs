@@ -5,13 +5,15 @@
 
 mod analysis;
 mod forms;
+mod methods;
 mod responses;
 
 pub use analysis::{AnalysisSection, Declaration, Exclusion, FamilyRule};
 pub use forms::{FormsSection, OrderRule, ShownNames, SideRule, TrainingSection};
+pub use methods::{FactorSection, LevelSection, MethodSection, SpeltLevel};
 pub use responses::{PairSection, ResponsesSection, SynonymsSection};
 
-use crate::method::{Arrangement, Clustering, ConfigurationId, Method};
+use crate::method::{Arrangement, Clustering, ConfigurationId, MethodId};
 use serde::{Deserialize, Serialize};
 
 /// The whole study file.
@@ -25,14 +27,23 @@ pub struct StudyFile {
     pub study: StudySection,
     /// What a run may use.
     pub limits: LimitsSection,
-    /// What holds for every extraction.
-    pub extraction: ExtractionSection,
+    /// What holds for every extraction of arrangements crossed with clusterings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub extraction: Option<ExtractionSection>,
     /// The objects whose surfaces are extracted.
     pub objects: Vec<ObjectSection>,
-    /// Arrangements to cross with the clusterings.
+    /// Arrangements to cross with the clusterings: the short form of methods.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub arrangements: Vec<Arrangement>,
     /// Clusterings to cross with the arrangements.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub clusterings: Vec<Clustering>,
+    /// The methods, one by one, where they are no crossing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub methods: Vec<MethodSection>,
+    /// What listed methods differ in.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub factors: Vec<FactorSection>,
     /// How the animations are taken.
     pub turntable: TurntableSection,
     /// How surfaces are coloured.
@@ -379,7 +390,7 @@ pub struct GroupSection {
     /// Name in tables and figures.
     pub label: String,
     /// Methods whose comparisons among each other make up the group.
-    pub members: Vec<Method>,
+    pub members: Vec<MethodId>,
 }
 
 /// Published numbers to compare with.

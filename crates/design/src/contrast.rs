@@ -1,13 +1,13 @@
 //! Contrasts of a study: which answers speak for one property over another, with everything else equal.
 //!
 //! They follow from what the study asks alone, so linter, power and analysis count the same ones. A question counts for the
-//! one factor in which its methods differ; where they differ in both, for the pair of methods.
+//! one declared factor in which its methods differ; where they differ in several or in none, for the pair of methods.
 
 mod families;
 
 pub use families::{PRIMARY, TestFamily, WHOLE, families};
 
-use crate::method::{Arrangement, Clustering, Method};
+use crate::method::{Factor, Level};
 use crate::study::Study;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -16,44 +16,22 @@ use std::fmt;
 /// be known is whether they differ at all.
 pub const PAIRED_OBJECTS: usize = 20;
 
-/// What two methods may differ in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Factor {
-    /// How sample points are laid out.
-    Arrangement,
-    /// How vertices are merged.
-    Clustering,
-    /// Both at once, so that a preference can be put down to neither.
-    Method,
-}
-
 /// Kinds of contrasts. Each is a family within which p is adjusted, unless the study says otherwise: [`families`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Family {
-    /// Clusterings pooled over arrangements, arrangements pooled over clusterings.
+    /// Levels of one factor, pooled over all others.
     Pooled,
-    /// Methods that differ in both factors.
+    /// Methods that differ in several factors, or in none that is declared.
     Methods,
-    /// Clusterings within each arrangement, arrangements within each clustering.
+    /// Levels of one factor within each level of another.
     Groups,
     /// Levels of one factor by object.
     Objects(Factor),
-    /// Whether a preference depends on the other factor: differences of two contrasts of [`Groups`](Self::Groups).
+    /// Whether a preference depends on another factor: differences of two contrasts of [`Groups`](Self::Groups).
     Interactions,
     /// Whether it depends on the object: differences of two contrasts of [`Objects`](Self::Objects), where there are at most
     /// [`PAIRED_OBJECTS`]. To be read after a test over all objects.
     ObjectPairs(Factor),
-}
-
-/// One of two things compared: a value of a factor.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Level {
-    /// How sample points are laid out.
-    Arrangement(Arrangement),
-    /// How vertices are merged.
-    Clustering(Clustering),
-    /// Both.
-    Method(Method),
 }
 
 /// Over which answers a contrast goes.
@@ -61,11 +39,11 @@ pub enum Level {
 pub enum Over {
     /// All that compare its two levels.
     All,
-    /// Those where the other factor has this value.
+    /// Those where another factor has this value.
     Within(Level),
     /// Those on one object, by index.
     Object(usize),
-    /// Those where the other factor has the first value, less those where it has the second.
+    /// Those where another factor has the first value, less those where it has the second.
     Difference(Level, Level),
     /// Those on the first object, less those on the second, by index.
     ObjectDifference(usize, usize),
@@ -79,7 +57,9 @@ pub enum Over {
 pub struct Contrast {
     /// Its kind.
     pub family: Family,
-    /// What is compared, such as `U-I`; of methods, `bu-si`.
+    /// The kind's name in files, such as `pooled`.
+    pub family_name: String,
+    /// What is compared, such as `U-I`; of methods, `bu-si`. Where a code has a hyphen of its own, a colon is between them.
     pub name: String,
     /// Over which answers, such as `all`, `within B`, `sphere`, `B - S`, `sphere - bunny`.
     pub scope: String,
@@ -94,60 +74,17 @@ pub struct Contrast {
     pub weights: BTreeMap<usize, i64>,
 }
 
-impl Factor {
-    /// The name in files.
-    pub fn code(self) -> &'static str {
-        match self {
-            Self::Arrangement => "arrangement",
-            Self::Clustering => "clustering",
-            Self::Method => "method",
-        }
-    }
-}
-
 impl Family {
-    /// The name in files. Arrangements by object are the published ones, and have the plain name.
-    pub fn code(self) -> &'static str {
+    /// The name in files.
+    fn name(self, study: &Study) -> String {
+        let by_object = |kind: &str, factor| format!("{kind}{}", study.factor(factor).suffix);
         match self {
-            Self::Pooled => "pooled",
-            Self::Groups => "groups",
-            Self::Objects(Factor::Arrangement) => "objects",
-            Self::Objects(Factor::Clustering) => "objects-clustering",
-            Self::Objects(Factor::Method) => "objects-method",
-            Self::Interactions => "interactions",
-            Self::ObjectPairs(Factor::Arrangement) => "object-pairs",
-            Self::ObjectPairs(Factor::Clustering) => "object-pairs-clustering",
-            Self::ObjectPairs(Factor::Method) => "object-pairs-method",
-            Self::Methods => "methods",
-        }
-    }
-}
-
-impl Level {
-    /// Whose value it is.
-    pub fn factor(self) -> Factor {
-        match self {
-            Self::Arrangement(_) => Factor::Arrangement,
-            Self::Clustering(_) => Factor::Clustering,
-            Self::Method(_) => Factor::Method,
-        }
-    }
-
-    /// The paper's letter, upper case; of a method, both letters, lower case.
-    pub fn code(self) -> String {
-        match self {
-            Self::Arrangement(arrangement) => arrangement.code().to_ascii_uppercase().into(),
-            Self::Clustering(clustering) => clustering.code().to_ascii_uppercase().into(),
-            Self::Method(method) => method.to_string(),
-        }
-    }
-
-    /// The name used in tables and figures.
-    pub fn label(self) -> String {
-        match self {
-            Self::Arrangement(arrangement) => arrangement.label().into(),
-            Self::Clustering(clustering) => clustering.label().into(),
-            Self::Method(method) => method.label(),
+            Self::Pooled => "pooled".into(),
+            Self::Groups => "groups".into(),
+            Self::Objects(factor) => by_object("objects", factor),
+            Self::Interactions => "interactions".into(),
+            Self::ObjectPairs(factor) => by_object("object-pairs", factor),
+            Self::Methods => "methods".into(),
         }
     }
 }
@@ -174,18 +111,22 @@ impl Contrast {
         self.parts.iter().all(|part| part.keys().any(|&question| answered(question)))
     }
 
-    /// What else a question is about, as a number: in differences like is held against like first. Between values of the other
-    /// factor that is the object; between objects it is the value of the other factor.
+    /// What else a question is about, as a number: in differences like is held against like first. Between values of another
+    /// factor that is the object; between objects it is the values of the other factors.
     pub fn stratum(&self, study: &Study, question: usize) -> usize {
         let comparison = &study.comparisons[question];
-        let Method { arrangement, clustering } = comparison.left.method;
-        let place = match (self.over, self.levels[0].factor()) {
-            (Over::Difference(..), _) => Some(comparison.object),
-            (_, Factor::Clustering) => study.file.arrangements.iter().position(|&a| a == arrangement),
-            (_, Factor::Arrangement) => study.file.clusterings.iter().position(|&c| c == clustering),
-            (_, Factor::Method) => None,
-        };
-        place.unwrap_or(0)
+        if let Over::Difference(..) = self.over {
+            return comparison.object;
+        }
+        let factor = self.levels[0].factor;
+        if factor == study.method_factor() {
+            return 0;
+        }
+        let others = study.declared_factors().filter(|other| *other != factor);
+        others.fold(0, |place, other| {
+            let level = study.level_of(comparison.left.method, other);
+            place * study.factor(other).levels.len() + level.map_or(0, |level| level.index)
+        })
     }
 }
 
@@ -195,25 +136,24 @@ struct Question {
     object: usize,
     left: Level,
     right: Level,
-    /// The value of the other factor; `None` where the methods differ in both.
-    within: Option<Level>,
+    /// The values of the declared factors in which they do not differ; none where they are compared as methods.
+    within: Vec<Level>,
 }
 
 impl Question {
     fn of(study: &Study, index: usize) -> Self {
         let comparison = &study.comparisons[index];
         let (left, right) = (comparison.left.method, comparison.right.method);
-        let (levels, within): (fn(Method) -> Level, _) =
-            match (left.arrangement == right.arrangement, left.clustering == right.clustering) {
-                (true, _) => {
-                    (|m| Level::Clustering(m.clustering), Some(Level::Arrangement(left.arrangement)))
-                }
-                (_, true) => {
-                    (|m| Level::Arrangement(m.arrangement), Some(Level::Clustering(left.clustering)))
-                }
-                _ => (Level::Method, None),
-            };
-        Self { index, object: comparison.object, left: levels(left), right: levels(right), within }
+        let factor = study.difference(left, right);
+        let others = study.declared_factors().filter(|other| *other != factor);
+        let within = match factor == study.method_factor() {
+            true => Vec::new(),
+            false => others.filter_map(|other| study.level_of(left, other)).collect(),
+        };
+        let [left, right] = [left, right].map(|method| {
+            study.level_of(method, factor).expect("methods that differ in a factor have a level of it")
+        });
+        Self { index, object: comparison.object, left, right, within }
     }
 }
 
@@ -225,14 +165,14 @@ impl Question {
 pub fn contrasts(study: &Study) -> Vec<Contrast> {
     let questions: Vec<Question> = (0..study.comparisons.len()).map(|q| Question::of(study, q)).collect();
     let mut found = Vec::new();
-    for factor in [Factor::Clustering, Factor::Arrangement, Factor::Method] {
-        let others: Vec<Level> = match factor {
-            Factor::Clustering => study.file.arrangements.iter().map(|&a| Level::Arrangement(a)).collect(),
-            Factor::Arrangement => study.file.clusterings.iter().map(|&c| Level::Clustering(c)).collect(),
-            Factor::Method => Vec::new(),
+    // The factor that changes fastest from method to method first; the factor `method` last.
+    for factor in study.declared_factors().rev().chain([study.method_factor()]) {
+        let others: Vec<Vec<Level>> = match factor == study.method_factor() {
+            true => Vec::new(),
+            false => study.declared_factors().filter(|o| *o != factor).map(|o| study.levels(o)).collect(),
         };
         let mut pairs: Vec<[Level; 2]> = Vec::new();
-        for &Question { left, right, .. } in questions.iter().filter(|q| q.left.factor() == factor) {
+        for &Question { left, right, .. } in questions.iter().filter(|q| q.left.factor == factor) {
             if !pairs.contains(&[left, right]) && !pairs.contains(&[right, left]) {
                 pairs.push([left, right]);
             }
@@ -247,10 +187,16 @@ pub fn contrasts(study: &Study) -> Vec<Contrast> {
     found
 }
 
-/// The contrasts of two levels; `others` are the values of the other factor.
-fn of_pair(study: &Study, questions: &[Question], levels: [Level; 2], others: &[Level]) -> Vec<Contrast> {
+/// The contrasts of two levels; `others` are the values of each other declared factor.
+fn of_pair(
+    study: &Study,
+    questions: &[Question],
+    levels: [Level; 2],
+    others: &[Vec<Level>],
+) -> Vec<Contrast> {
     let [a, b] = levels;
-    let factor = a.factor();
+    let factor = a.factor;
+    let code = |level: Level| study.level(level).code.as_str();
     let where_ = |kept: &dyn Fn(&Question) -> bool| -> BTreeMap<usize, i64> {
         let sign = |q: &Question| match (q.left, q.right) {
             (left, right) if (left, right) == (a, b) => Some((q.index, 1)),
@@ -262,22 +208,25 @@ fn of_pair(study: &Study, questions: &[Question], levels: [Level; 2], others: &[
     let mut found = Vec::new();
     let mut add = |family, scope: String, over, parts: Vec<BTreeMap<usize, i64>>| {
         if parts.iter().all(|part| !part.is_empty()) {
-            let name = format!("{}-{}", a.code(), b.code());
-            let weights = weights(&parts);
-            found.push(Contrast { family, name, scope, levels, over, parts, weights });
+            let between = if code(a).contains('-') || code(b).contains('-') { ':' } else { '-' };
+            let name = format!("{}{between}{}", code(a), code(b));
+            let (family_name, weights) = (Family::name(family, study), weights(&parts));
+            found.push(Contrast { family, family_name, name, scope, levels, over, parts, weights });
         }
     };
-    let whole = if factor == Factor::Method { Family::Methods } else { Family::Pooled };
+    let whole = if factor == study.method_factor() { Family::Methods } else { Family::Pooled };
     add(whole, "all".into(), Over::All, vec![where_(&|_| true)]);
 
-    let within = |level: Level| where_(&|q| q.within == Some(level));
-    for (i, &first) in others.iter().enumerate() {
-        let scope = format!("within {}", first.code());
-        add(Family::Groups, scope, Over::Within(first), vec![within(first)]);
-        for &second in &others[i + 1..] {
-            let scope = format!("{} - {}", first.code(), second.code());
-            let over = Over::Difference(first, second);
-            add(Family::Interactions, scope, over, vec![within(first), within(second)]);
+    let within = |level: Level| where_(&|q| q.within.contains(&level));
+    for others in others {
+        for (i, &first) in others.iter().enumerate() {
+            let scope = format!("within {}", code(first));
+            add(Family::Groups, scope, Over::Within(first), vec![within(first)]);
+            for &second in &others[i + 1..] {
+                let scope = format!("{} - {}", code(first), code(second));
+                let over = Over::Difference(first, second);
+                add(Family::Interactions, scope, over, vec![within(first), within(second)]);
+            }
         }
     }
 

@@ -40,7 +40,7 @@ mod spread;
 pub use file::{FormEntry, FormFile, KeyEntry, Stimulus};
 
 use crate::config::{FormsSection, OrderRule, SideRule};
-use crate::method::{ConfigurationId, Method};
+use crate::method::ConfigurationId;
 use crate::study::{Comparison, Study};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -218,12 +218,15 @@ fn blocks(study: &Study, section: &FormsSection) -> Vec<Vec<usize>> {
 
 /// Which of each block's comparisons its first form shows the other way round than listed.
 fn swapped(study: &Study, section: &FormsSection, split: &[Vec<usize>]) -> Vec<Vec<bool>> {
-    let ends = |&i: &usize| (study.comparisons[i].left.method, study.comparisons[i].right.method);
+    let ends = |&i: &usize| {
+        let Comparison { left, right, .. } = &study.comparisons[i];
+        (study.place(left.method), study.place(right.method))
+    };
     let of_block = |members: &Vec<usize>| members.iter().map(ends).collect();
     match section.sides {
         SideRule::AsListed => split.iter().map(|members| vec![false; members.len()]).collect(),
         SideRule::Balanced => {
-            let blocks: Vec<Vec<(Method, Method)>> = split.iter().map(of_block).collect();
+            let blocks: Vec<Vec<(usize, usize)>> = split.iter().map(of_block).collect();
             sides::over_blocks(&blocks, &mut random(study.file.study.seed, &[SIDES]))
         }
     }
@@ -249,15 +252,14 @@ fn again(of: &Trial) -> Trial {
 /// Which of each block's comparisons are repeated: over all blocks configurations as evenly as can be, then methods, then
 /// pairs of methods, then objects.
 fn repeated(study: &Study, section: &FormsSection, split: &[Vec<usize>]) -> Vec<Vec<usize>> {
-    let (methods, objects) = (study.methods(), study.file.objects.len());
+    let (methods, objects) = (study.methods.len(), study.file.objects.len());
     let labels = |&i: &usize| {
         let Comparison { object, left, right, .. } = &study.comparisons[i];
-        let at = |id: &ConfigurationId| methods.iter().position(|&method| method == id.method).unwrap_or(0);
-        let (a, b) = (at(left), at(right));
-        let ends = vec![object * methods.len() + a, object * methods.len() + b];
-        vec![ends, vec![a, b], vec![a.min(b) * methods.len() + a.max(b)], vec![*object]]
+        let (a, b) = (study.place(left.method), study.place(right.method));
+        let ends = vec![object * methods + a, object * methods + b];
+        vec![ends, vec![a, b], vec![a.min(b) * methods + a.max(b)], vec![*object]]
     };
-    let sizes = [objects * methods.len(), methods.len(), methods.len().pow(2), objects];
+    let sizes = [objects * methods, methods, methods.pow(2), objects];
     let pools: Vec<Vec<spread::Labels>> =
         split.iter().map(|members| members.iter().map(labels).collect()).collect();
     let mut random = random(study.file.study.seed, &[REPEATS]);
@@ -266,7 +268,7 @@ fn repeated(study: &Study, section: &FormsSection, split: &[Vec<usize>]) -> Vec<
 
 /// The same in every block: fewer animations, more answers to each. Methods as evenly as can be, then objects.
 fn controls(study: &Study, section: &FormsSection) -> Vec<Trial> {
-    let methods = study.methods().len();
+    let methods = study.methods.len();
     // Configurations are objects crossed with methods.
     let labels = |i: usize| vec![vec![i % methods], vec![study.configurations[i].object]];
     let pool = (0..study.configurations.len()).map(labels).collect();

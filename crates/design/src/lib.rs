@@ -4,8 +4,8 @@
 //! ([`Study::load`]), and from then on passed by value. The stages never call each other: they hand over the
 //! plain records of [`record`] and [`machine`], so statistics build without geometry.
 //!
-//! Names: a *method* is an arrangement with a clustering (`bi`: body-centred, integrated); a *configuration* is a
-//! method applied to an object (`ss_bi`); a *comparison* shows two configurations of one object side by side; a
+//! Names: a *method* makes a mesh of an object (`bi`: body-centred, integrated); a *factor* is what methods differ in, a *level* a value
+//! of it; a *configuration* is a method applied to an object (`ss_bi`); a *comparison* shows two configurations of one object side by side; a
 //! *comparison group* collects the comparisons whose methods are all among its members.
 
 mod check;
@@ -24,6 +24,9 @@ mod study;
 
 pub use check::ConfigError;
 pub use date::{Date, ParseDateError};
-pub use method::{Arrangement, Clustering, ConfigurationId, Method, ParseIdError};
+pub use method::{
+    Arrangement, Clustering, ConfigurationId, Crossed, Factor, FactorSpec, Level, LevelSpec, Method,
+    MethodId, ParseIdError, Recipe, TETRAHEDRA,
+};
 pub use stage::Stage;
-pub use study::{Comparison, Configuration, Group, Published, Study};
+pub use study::{Comparison, Configuration, Group, METHOD, Published, Study};

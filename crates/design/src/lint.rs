@@ -10,7 +10,6 @@ mod stimuli;
 
 use crate::config::{OrderRule, SideRule};
 use crate::forms::{Form, Questionnaire, Role, Trial};
-use crate::method::Method;
 use crate::study::{Comparison, Study};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -192,11 +191,11 @@ pub fn lint(study: &Study) -> Vec<Fault> {
     faults
 }
 
-/// Two methods of one group, the lower first.
-type MethodPair = (usize, Method, Method);
+/// A group, and two of its methods by their places in the study, the lower first.
+type MethodPair = (usize, usize, usize);
 
-fn method_pair(comparison: &Comparison) -> MethodPair {
-    let (left, right) = (comparison.left.method, comparison.right.method);
+fn method_pair(study: &Study, comparison: &Comparison) -> MethodPair {
+    let (left, right) = (study.place(comparison.left.method), study.place(comparison.right.method));
     (comparison.group, left.min(right), left.max(right))
 }
 
@@ -210,24 +209,23 @@ fn side_rule([one, other]: [u64; 2]) -> Option<Rule> {
 }
 
 /// How often what was shown, over all planned forms. Comparisons only: controls and repeats are there to check answers.
-struct Showings {
-    group_ids: Vec<String>,
+struct Showings<'a> {
+    study: &'a Study,
     /// For each pair: how often its lower method was on the left and on the right.
     sides: BTreeMap<MethodPair, [u64; 2]>,
     /// For each comparison: how often it was shown as listed and swapped.
     comparisons: Vec<[u64; 2]>,
 }
 
-impl Showings {
-    fn of(study: &Study, forms: &[Form]) -> Self {
-        let group_ids = study.groups.iter().map(|group| group.id.clone()).collect();
+impl<'a> Showings<'a> {
+    fn of(study: &'a Study, forms: &[Form]) -> Self {
         let comparisons = vec![[0; 2]; study.comparisons.len()];
-        let mut showings = Self { group_ids, sides: BTreeMap::new(), comparisons };
+        let mut showings = Self { study, sides: BTreeMap::new(), comparisons };
         for form in forms {
             for Trial { role, comparison, left, .. } in &form.trials {
                 let (Role::Comparison, Some(comparison)) = (role, *comparison) else { continue };
-                let pair = method_pair(&study.comparisons[comparison]);
-                showings.sides.entry(pair).or_default()[usize::from(left.method != pair.1)] += 1;
+                let pair = method_pair(study, &study.comparisons[comparison]);
+                showings.sides.entry(pair).or_default()[usize::from(study.place(left.method) != pair.1)] += 1;
                 let swapped = *left != study.comparisons[comparison].left;
                 showings.comparisons[comparison][usize::from(swapped)] += 1;
             }
@@ -235,8 +233,9 @@ impl Showings {
         showings
     }
 
-    fn name(&self, (group, a, b): &MethodPair) -> String {
-        format!("{a} against {b} in group {}", self.group_ids[*group])
+    fn name(&self, &(group, a, b): &MethodPair) -> String {
+        let [a, b] = [a, b].map(|method| self.study.methods[method].id);
+        format!("{a} against {b} in group {}", self.study.groups[group].id)
     }
 
     /// Sides over a pair's questions together, and within each: single questions and objects are tested too. One fault a
@@ -245,7 +244,7 @@ impl Showings {
         let mut faults = Vec::new();
         for (pair, &counts) in &self.sides {
             let of = self.comparisons.iter().zip(&study.comparisons);
-            let own = of.filter(|(_, comparison)| method_pair(comparison) == *pair);
+            let own = of.filter(|(_, comparison)| method_pair(study, comparison) == *pair);
             let questions: Vec<(&str, Option<Rule>)> =
                 own.map(|(&counts, comparison)| (comparison.question.as_str(), side_rule(counts))).collect();
             let Some(rule) = questions.iter().filter_map(|(_, rule)| *rule).chain(side_rule(counts)).min()
@@ -253,7 +252,8 @@ impl Showings {
                 continue;
             };
             let [left, right] = counts;
-            let mut evidence = format!("{} on the left {left} times, on the right {right} times", pair.1);
+            let mut evidence =
+                format!("{} on the left {left} times, on the right {right} times", study.methods[pair.1].id);
             let found: Vec<&str> =
                 questions.iter().filter(|(_, of)| *of == Some(rule)).map(|(q, _)| *q).collect();
             if side_rule(counts) != Some(rule) {
@@ -305,7 +305,8 @@ impl Showings {
     fn connections(&self, study: &Study) -> Vec<Fault> {
         let mut faults = Vec::new();
         for (g, group) in study.groups.iter().enumerate() {
-            let mut parts: Vec<BTreeSet<Method>> = group.members.iter().map(|&m| [m].into()).collect();
+            let mut parts: Vec<BTreeSet<usize>> =
+                group.members.iter().map(|&member| [study.place(member)].into()).collect();
             for (_, a, b) in self.sides.keys().filter(|(of, _, _)| *of == g) {
                 let (joined, mut apart): (Vec<_>, Vec<_>) =
                     parts.into_iter().partition(|part| part.contains(a) || part.contains(b));
@@ -313,8 +314,9 @@ impl Showings {
                 parts = apart;
             }
             if parts.len() > 1 {
-                let list = |part: &BTreeSet<Method>| {
-                    part.iter().map(Method::to_string).collect::<Vec<_>>().join(" ")
+                let list = |part: &BTreeSet<usize>| {
+                    let ids = part.iter().map(|&place| study.methods[place].id.to_string());
+                    ids.collect::<Vec<_>>().join(" ")
                 };
                 let evidence = format!(
                     "{} parts: {}",

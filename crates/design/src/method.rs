@@ -1,121 +1,55 @@
-//! Arrangements, clusterings and the ids that the paper gives to their combinations.
+//! What a study compares: methods, the objects that they are applied to, and the factors in which methods differ.
+
+mod crossing;
+mod factor;
+mod recipe;
+
+pub(crate) use crossing::expand;
+pub use crossing::{Arrangement, Clustering, Crossed};
+pub use factor::{Factor, FactorSpec, Level, LevelSpec};
+pub use recipe::{Recipe, TETRAHEDRA};
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// How sample points are laid out in space.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Arrangement {
-    /// Body-centred cubic: two interleaved cubic grids. Code `b`.
-    BodyCentred,
-    /// Simple cubic: one cubic grid. Code `s`.
-    SimpleCubic,
-    /// One cubic grid with five tetrahedra a cube, neighbours mirrored. Code `m`; not in the paper.
-    FiveTetrahedra,
-    /// Cube corners, face centres and cube centres, 24 tetrahedra a cube. Code `f`; not in the paper.
-    FaceCentred,
+/// The longest id of a method, in bytes.
+const LONGEST: usize = 16;
+
+/// A method's id: 1 to 16 of a-z, 0-9 and hyphen, a letter first. Ids are ordered as text, which means nothing: what has an
+/// order has that of the study.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MethodId {
+    /// Filled up with zeros, so that it can be copied: ids are passed by every answer and sample.
+    text: [u8; LONGEST],
 }
 
-/// How the vertices round a sample point are merged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Clustering {
-    /// No merging: plain marching tetrahedra. Code `u`.
-    None,
-    /// Merging inside the vertex stage. Code `i`.
-    Integrated,
-    /// Short edges collapsed after extraction. Code `p`.
-    EdgeCollapse,
-    /// Merging inside the vertex stage, then short edges collapsed. Code `c`; not in the paper.
-    IntegratedCollapse,
-}
-
-impl Arrangement {
-    /// The paper's one-letter code, and two more.
-    pub fn code(self) -> char {
-        match self {
-            Self::BodyCentred => 'b',
-            Self::SimpleCubic => 's',
-            Self::FiveTetrahedra => 'm',
-            Self::FaceCentred => 'f',
-        }
-    }
-
-    /// Whether there is such a clustering for it: integrated clustering is for the paper's two.
-    pub fn supports(self, clustering: Clustering) -> bool {
-        match (self, clustering) {
-            (Self::BodyCentred | Self::SimpleCubic, _) => true,
-            (Self::FiveTetrahedra | Self::FaceCentred, Clustering::None | Clustering::EdgeCollapse) => true,
-            (
-                Self::FiveTetrahedra | Self::FaceCentred,
-                Clustering::Integrated | Clustering::IntegratedCollapse,
-            ) => false,
-        }
-    }
-
-    /// The name used in tables and figures.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::BodyCentred => "body-centred",
-            Self::SimpleCubic => "simple cubic",
-            Self::FiveTetrahedra => "five tetrahedra",
-            Self::FaceCentred => "face-centred",
-        }
+impl MethodId {
+    /// The id as text.
+    pub fn as_str(&self) -> &str {
+        let length = self.text.iter().position(|&byte| byte == 0).unwrap_or(LONGEST);
+        std::str::from_utf8(&self.text[..length]).expect("ids are ASCII")
     }
 }
 
-impl Clustering {
-    /// The paper's one-letter code.
-    pub fn code(self) -> char {
-        match self {
-            Self::None => 'u',
-            Self::Integrated => 'i',
-            Self::EdgeCollapse => 'p',
-            Self::IntegratedCollapse => 'c',
-        }
-    }
-
-    /// The name used in tables and figures.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Integrated => "integrated",
-            Self::EdgeCollapse => "edge collapse",
-            Self::IntegratedCollapse => "integrated + collapse",
-        }
-    }
-}
-
-/// An arrangement with a clustering, written as two letters: `bi` is body-centred, integrated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Method {
-    /// How sample points are laid out.
-    pub arrangement: Arrangement,
-    /// How vertices are merged.
-    pub clustering: Clustering,
-}
-
-impl Method {
-    /// The name used in tables and figures, such as `body-centred, integrated`.
-    pub fn label(self) -> String {
-        format!("{}, {}", self.arrangement.label(), self.clustering.label())
-    }
-}
-
-impl fmt::Display for Method {
+impl fmt::Display for MethodId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{}", self.arrangement.code(), self.clustering.code())
+        f.write_str(self.as_str())
+    }
+}
+
+impl fmt::Debug for MethodId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Debug::fmt(self.as_str(), f)
     }
 }
 
 /// Why a text is not an id.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ParseIdError {
-    /// Not a two-letter method code.
+    /// Not a method's id.
     #[error(
-        "\"{0}\" is not a method: write an arrangement (b, s, m, f) and a clustering (u, i, p, c), as in \"bi\""
+        "\"{0}\" is not a method's id: write 1 to {LONGEST} of a-z, 0-9 and hyphen, a letter first, as in \"bi\""
     )]
     Method(String),
     /// Not of the form object, underscore, method.
@@ -123,39 +57,43 @@ pub enum ParseIdError {
     Configuration(String),
 }
 
-impl FromStr for Method {
+impl FromStr for MethodId {
     type Err = ParseIdError;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let mut letters = text.chars();
-        let arrangement = match letters.next() {
-            Some('b') => Arrangement::BodyCentred,
-            Some('s') => Arrangement::SimpleCubic,
-            Some('m') => Arrangement::FiveTetrahedra,
-            Some('f') => Arrangement::FaceCentred,
-            _ => return Err(ParseIdError::Method(text.into())),
-        };
-        let clustering = match letters.next() {
-            Some('u') => Clustering::None,
-            Some('i') => Clustering::Integrated,
-            Some('p') => Clustering::EdgeCollapse,
-            Some('c') => Clustering::IntegratedCollapse,
-            _ => return Err(ParseIdError::Method(text.into())),
-        };
-        match letters.next() {
-            None => Ok(Self { arrangement, clustering }),
-            Some(_) => Err(ParseIdError::Method(text.into())),
+        let plain = |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'-';
+        let first = text.bytes().next().is_some_and(|byte| byte.is_ascii_lowercase());
+        if !first || text.len() > LONGEST || !text.bytes().all(plain) {
+            return Err(ParseIdError::Method(text.into()));
         }
+        let mut id = Self { text: [0; LONGEST] };
+        id.text[..text.len()].copy_from_slice(text.as_bytes());
+        Ok(id)
     }
 }
 
-/// An object's id and a method: `ss_bi` is the sphere, body-centred, integrated.
+/// A method of a study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Method {
+    /// Its id, unique in the study.
+    pub id: MethodId,
+    /// The name used in tables and figures, such as `body-centred, integrated`.
+    pub label: String,
+    /// The name used in sentences, such as `integrated clustering on the body-centred lattice`.
+    pub phrase: String,
+    /// How a mesh is made.
+    pub recipe: Recipe,
+    /// For each declared factor of the study, by place, the level that the method is an example of, by place.
+    pub levels: Vec<Option<usize>>,
+}
+
+/// An object's id and a method's: `ss_bi` is the sphere with the method `bi`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ConfigurationId {
     /// The object's id, such as `ss`.
     pub object: String,
-    /// Arrangement and clustering.
-    pub method: Method,
+    /// The method's id, such as `bi`.
+    pub method: MethodId,
 }
 
 impl fmt::Display for ConfigurationId {
@@ -192,7 +130,7 @@ macro_rules! serde_as_text {
         }
     };
 }
-serde_as_text!(Method);
+serde_as_text!(MethodId);
 serde_as_text!(ConfigurationId);
 
 #[cfg(test)]
@@ -200,17 +138,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ids_are_the_papers() {
-        let id: ConfigurationId = "as_sp".parse().unwrap();
-        assert_eq!(id.object, "as");
-        assert_eq!(id.method.arrangement, Arrangement::SimpleCubic);
-        assert_eq!(id.method.clustering, Clustering::EdgeCollapse);
-        assert_eq!(id.to_string(), "as_sp");
+    fn ids_are_printed_as_they_are_read() {
+        for text in ["as_sp", "ss_vtk-flying-edges", "ss_a", "ss_sixteen-letters0"] {
+            let method = text.split('_').nth(1).unwrap();
+            match text.parse::<ConfigurationId>() {
+                Ok(id) => assert_eq!((id.to_string().as_str(), id.method.as_str()), (text, method)),
+                Err(error) => assert!(method.len() > LONGEST, "{error}"),
+            }
+        }
     }
 
     #[test]
     fn anything_else_is_refused() {
-        for text in ["", "_", "ss", "ss_", "_bi", "ss_b", "ss_bix", "ss_xi", "ss_bü"] {
+        for text in [
+            "",
+            "_",
+            "ss",
+            "ss_",
+            "_bi",
+            "ss_B",
+            "ss_1b",
+            "ss_-b",
+            "ss_b i",
+            "ss_b\u{fc}",
+            "ss_seventeen-letters",
+        ] {
             assert!(text.parse::<ConfigurationId>().is_err(), "{text}");
         }
     }

@@ -1,7 +1,7 @@
 //! Published numbers, as a study supplies them for comparison.
 
 use crate::check::ConfigError;
-use crate::method::{ConfigurationId, Method};
+use crate::method::{ConfigurationId, MethodId};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -98,7 +98,7 @@ pub struct Claim {
 
 impl PreferenceCell {
     /// The method that `of` names, for cells of kind `group` and `overall`.
-    pub fn method(&self) -> Option<Method> {
+    pub fn method(&self) -> Option<MethodId> {
         self.of.parse().ok()
     }
 }

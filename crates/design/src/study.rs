@@ -1,13 +1,16 @@
 //! A study, read from its file, checked, and ready to work from.
 
 mod checks;
+mod methods;
+
+pub use methods::METHOD;
 
 use crate::check::{Checker, ConfigError};
 use crate::code_names;
 use crate::config::{ObjectSection, ResponsesSection, StudyFile};
 use crate::forms::Questionnaire;
 use crate::machine::CpuProfile;
-use crate::method::{ConfigurationId, Method};
+use crate::method::{ConfigurationId, FactorSpec, Method, MethodId};
 use crate::published::{BenchmarkRow, Claim, PreferenceCell};
 use checks::{check_forms, check_objects, check_primary, check_sections, check_stills};
 use serde::de::DeserializeOwned;
@@ -23,7 +26,11 @@ pub struct Study {
     pub sha256: String,
     /// What the file says, checked.
     pub file: StudyFile,
-    /// Every object with every arrangement and clustering, in the file's order.
+    /// What the methods differ in: the declared factors, then the one that every study has, [`METHOD`].
+    pub factors: Vec<FactorSpec>,
+    /// What is compared, in the file's order.
+    pub methods: Vec<Method>,
+    /// Every object with every method, in the file's order.
     pub configurations: Vec<Configuration>,
     /// The questions, in the file's order.
     pub comparisons: Vec<Comparison>,
@@ -69,7 +76,7 @@ pub struct Group {
     /// Name in tables and figures.
     pub label: String,
     /// The methods compared.
-    pub members: Vec<Method>,
+    pub members: Vec<MethodId>,
     /// Indices into `comparisons`.
     pub comparisons: Vec<usize>,
 }
@@ -121,8 +128,9 @@ impl Study {
         let checker = Checker { file: path };
         check_sections(&checker, &file)?;
         check_objects(&checker, &file.objects)?;
-        let configurations = cross(&file);
-        let mut groups = groups(&checker, &file, &configurations)?;
+        let (factors, methods) = methods::methods(&checker, &file)?;
+        let configurations = cross(&file, &methods);
+        let mut groups = groups(&checker, &file, &methods)?;
         let comparisons = comparisons(&checker, &file, &configurations, &mut groups)?;
         check_stills(&checker, &file, &configurations)?;
         check_forms(&checker, &file, &configurations)?;
@@ -154,6 +162,8 @@ impl Study {
         let study = Self {
             path: path.into(),
             sha256: Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect(),
+            factors,
+            methods,
             configurations,
             comparisons,
             groups,
@@ -171,9 +181,9 @@ impl Study {
         &self.file.objects[configuration.object]
     }
 
-    /// The methods of the study: arrangements crossed with clusterings, in the file's order.
-    pub fn methods(&self) -> Vec<Method> {
-        methods(&self.file)
+    /// The ids of the methods, in the file's order.
+    pub fn method_ids(&self) -> Vec<MethodId> {
+        self.methods.iter().map(|method| method.id).collect()
     }
 
     /// A path written in the study file, resolved against the file's folder.
@@ -218,47 +228,28 @@ pub(crate) fn read_table<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, Con
     reader.deserialize().collect::<Result<_, _>>().map_err(table_error)
 }
 
-fn methods(file: &StudyFile) -> Vec<Method> {
-    let with =
-        |arrangement| file.clusterings.iter().map(move |&clustering| Method { arrangement, clustering });
-    file.arrangements.iter().copied().flat_map(with).collect()
-}
-
-fn cross(file: &StudyFile) -> Vec<Configuration> {
+fn cross(file: &StudyFile, methods: &[Method]) -> Vec<Configuration> {
     let mut configurations = Vec::new();
     for (object, section) in file.objects.iter().enumerate() {
-        for method in methods(file) {
-            let id = ConfigurationId { object: section.id.clone(), method };
+        for method in methods {
+            let id = ConfigurationId { object: section.id.clone(), method: method.id };
             configurations.push(Configuration { id, object });
         }
     }
     configurations
 }
 
-fn groups(
-    c: &Checker<'_>,
-    file: &StudyFile,
-    configurations: &[Configuration],
-) -> Result<Vec<Group>, ConfigError> {
-    let arrangements: Vec<String> = file.arrangements.iter().map(|a| a.label().into()).collect();
-    c.distinct(|i| format!("arrangements[{i}]"), &arrangements)?;
-    let clusterings: Vec<String> = file.clusterings.iter().map(|a| a.label().into()).collect();
-    c.distinct(|i| format!("clusterings[{i}]"), &clusterings)?;
-    if configurations.is_empty() {
-        let limit = "arrangements and clusterings must list at least one each";
-        return c.refuse("arrangements", "[]", limit);
-    }
+fn groups(c: &Checker<'_>, file: &StudyFile, methods: &[Method]) -> Result<Vec<Group>, ConfigError> {
     let ids: Vec<String> = file.groups.iter().map(|g| g.id.clone()).collect();
     c.distinct(|i| format!("groups[{i}].id"), &ids)?;
-    let known = methods(file);
     for (i, group) in file.groups.iter().enumerate() {
         let members: Vec<String> = group.members.iter().map(ToString::to_string).collect();
         c.distinct(|j| format!("groups[{i}].members[{j}]"), &members)?;
         if members.len() < 2 {
             return c.refuse(format!("groups[{i}].members"), members.join(", "), "must list at least two");
         }
-        if let Some(j) = group.members.iter().position(|member| !known.contains(member)) {
-            let limit = "is not among the arrangements and clusterings of this study";
+        if let Some(j) = group.members.iter().position(|member| methods.iter().all(|of| of.id != *member)) {
+            let limit = "is not a method of this study";
             return c.refuse(format!("groups[{i}].members[{j}]"), group.members[j], limit);
         }
     }

@@ -6,7 +6,7 @@ use crate::comparison::benchmark::double_count;
 use crate::inputs::Inputs;
 use crate::mesh_set::discard_fraction;
 use design::published::Claim;
-use design::{Arrangement, Clustering, Method};
+use design::{Arrangement, Clustering, Crossed};
 
 use Clustering::{EdgeCollapse, Integrated};
 
@@ -100,7 +100,7 @@ fn more_triangles(numbers: &Numbers<'_>, value: f64) -> Option<Finding> {
 }
 
 fn stored(numbers: &Numbers<'_>, value: f64, measure: Measure) -> Option<Finding> {
-    let method = Method { arrangement: Arrangement::SimpleCubic, clustering: Integrated };
+    let method = Crossed { arrangement: Arrangement::SimpleCubic, clustering: Integrated };
     let percent = |side| numbers.get(side, measure, 0, method).map(|ratio| 100.0 * ratio);
     let ours = percent(Side::Ours)?;
     let far = "the published formula for what is needed has a wrong sign";

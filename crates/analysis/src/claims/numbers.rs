@@ -7,7 +7,7 @@ use crate::stage_times::StageTimes;
 use crate::verdict::relative_difference;
 use design::published::BenchmarkRow;
 use design::record::{MeshRecord, Purpose};
-use design::{Arrangement, Clustering, ConfigurationId, Method};
+use design::{Arrangement, Clustering, ConfigurationId, Crossed};
 
 /// Published numbers are known to about this.
 const PRINTED: f64 = 1e-6;
@@ -29,7 +29,7 @@ pub(crate) enum Ours {
 }
 
 /// Two configurations, each an object and a method.
-pub(crate) type Pair = [(usize, Method); 2];
+pub(crate) type Pair = [(usize, Crossed); 2];
 
 /// Whose numbers.
 #[derive(Clone, Copy, PartialEq)]
@@ -56,7 +56,7 @@ impl<'a> Numbers<'a> {
         Self { inputs, meshes: MeshSet::of(inputs, purpose) }
     }
 
-    pub(crate) fn get(&self, side: Side, measure: Measure, object: usize, method: Method) -> Option<f64> {
+    pub(crate) fn get(&self, side: Side, measure: Measure, object: usize, method: Crossed) -> Option<f64> {
         let id = self.id(object, method);
         match (side, measure.ours) {
             (Side::Published, _) => {
@@ -94,7 +94,7 @@ impl<'a> Numbers<'a> {
     /// One clustering and another, in every lattice case.
     pub(crate) fn clustering_pairs(&self, top: Clustering, bottom: Clustering) -> Vec<Pair> {
         let pair = |(object, arrangement)| {
-            [top, bottom].map(|clustering| (object, Method { arrangement, clustering }))
+            [top, bottom].map(|clustering| (object, Crossed { arrangement, clustering }))
         };
         self.lattice_cases().into_iter().map(pair).collect()
     }
@@ -103,14 +103,14 @@ impl<'a> Numbers<'a> {
     pub(crate) fn arrangement_pairs(&self, of: &[Clustering]) -> Vec<Pair> {
         let pair = |(object, clustering)| {
             [Arrangement::BodyCentred, Arrangement::SimpleCubic]
-                .map(|arrangement| (object, Method { arrangement, clustering }))
+                .map(|arrangement| (object, Crossed { arrangement, clustering }))
         };
         self.clustering_cases(of).into_iter().map(pair).collect()
     }
 
     /// `measure` of the first over that of the second, for every pair that has both.
     pub(crate) fn ratios(&self, side: Side, measure: Measure, pairs: &[Pair]) -> Vec<f64> {
-        let get = |(object, method): (usize, Method)| self.get(side, measure, object, method);
+        let get = |(object, method): (usize, Crossed)| self.get(side, measure, object, method);
         pairs.iter().filter_map(|&[top, bottom]| Some(get(top)? / get(bottom)?)).collect()
     }
 
@@ -141,9 +141,9 @@ impl<'a> Numbers<'a> {
         side: Side,
         measure: Measure,
         clustering: Clustering,
-    ) -> Vec<(usize, Method, f64)> {
+    ) -> Vec<(usize, Crossed, f64)> {
         let get = |(object, arrangement): (usize, Arrangement)| {
-            let method = Method { arrangement, clustering };
+            let method = Crossed { arrangement, clustering };
             Some((object, method, self.get(side, measure, object, method)?))
         };
         self.lattice_cases().into_iter().filter_map(get).collect()
@@ -179,8 +179,8 @@ impl<'a> Numbers<'a> {
     }
 
     /// The id of a configuration.
-    pub(crate) fn id(&self, object: usize, method: Method) -> ConfigurationId {
-        ConfigurationId { object: self.inputs.study.file.objects[object].id.clone(), method }
+    pub(crate) fn id(&self, object: usize, method: Crossed) -> ConfigurationId {
+        ConfigurationId { object: self.inputs.study.file.objects[object].id.clone(), method: method.id() }
     }
 }
 

@@ -2,12 +2,12 @@
 
 use super::Finding;
 use crate::fraction::Fraction;
-use crate::preference::{self, ArrangementContest, GroupFactor, Margin};
+use crate::preference::{self, ArrangementContest, GroupFactor};
 use crate::tally::Tally;
 use crate::verdict::Verdict;
 use design::config::{FieldSection, ObjectSection};
 use design::published::{Claim, PreferenceKind};
-use design::{Arrangement, Clustering, Comparison, Method, Study};
+use design::{Arrangement, Clustering, Comparison, Crossed, Study};
 
 pub(super) fn find(study: &Study, tally: &Tally, claim: &Claim) -> Option<Finding> {
     let factors = preference::group_factors(study, tally, |_| true);
@@ -51,7 +51,7 @@ fn mean_preference(
     arrangement: Arrangement,
 ) -> Option<Finding> {
     let margins = preference::margins(study, &preference::overall(study, factors));
-    let &(_, mean) = margins.iter().find(|(m, _)| *m == Margin::Arrangement(arrangement))?;
+    let &(_, mean) = margins.iter().find(|(level, _)| study.level(*level).label == arrangement.label())?;
     let from = published(study, PreferenceKind::ArrangementMean, &arrangement.code().to_string());
     let all = preference::arrangement_contests(study, tally);
     let evidence = all.iter().find(|c| c.object.is_none() && c.group.is_none()).map_or(String::new(), counts);
@@ -65,12 +65,12 @@ fn counts(contest: &ArrangementContest) -> String {
 }
 
 fn favourite(study: &Study, tally: &Tally, factors: &[GroupFactor], claim: &Claim) -> Option<Finding> {
-    let method = Method { arrangement: Arrangement::SimpleCubic, clustering: Clustering::Integrated };
+    let method = Crossed { arrangement: Arrangement::SimpleCubic, clustering: Clustering::Integrated };
     let sums = preference::overall(study, factors);
-    let &(_, sum) = sums.iter().find(|(m, _)| *m == method)?;
+    let &(_, sum) = sums.iter().find(|(m, _)| *m == method.id())?;
     let best = sums.iter().max_by(|a, b| a.1.value().total_cmp(&b.1.value()))?;
-    let from = published(study, PreferenceKind::Overall, &method.to_string());
-    let verdict = match best.0 == method {
+    let from = published(study, PreferenceKind::Overall, method.id().as_str());
+    let verdict = match best.0 == method.id() {
         true => Verdict::Equal,
         false => Verdict::differs(format!("the largest sum is that of {}", best.0)),
     };
@@ -92,7 +92,8 @@ fn favourites(study: &Study, tally: &Tally) -> Vec<String> {
 fn clustering(study: &Study, tally: &Tally) -> Option<Finding> {
     let (mut wins, mut none, mut losses) = (0, 0, 0);
     for (comparison, count) in study.comparisons.iter().zip(&tally.questions) {
-        let (left, right) = (comparison.left.method, comparison.right.method);
+        let crossed = [comparison.left.method, comparison.right.method].map(Crossed::of);
+        let [Some(left), Some(right)] = crossed else { continue };
         if left.arrangement != right.arrangement {
             continue;
         }
@@ -104,9 +105,12 @@ fn clustering(study: &Study, tally: &Tally) -> Option<Finding> {
         none += count.none;
     }
     let all = wins + none + losses;
-    let ever_left = |c: &&Comparison| c.left.method.clustering == Clustering::Integrated;
-    let within = |c: &&Comparison| c.left.method.arrangement == c.right.method.arrangement;
-    let side = match study.comparisons.iter().filter(within).any(|c| ever_left(&c)) {
+    let left_of_one_lattice = |c: &Comparison| {
+        let (left, right) = (Crossed::of(c.left.method)?, Crossed::of(c.right.method)?);
+        (left.arrangement == right.arrangement).then_some(left.clustering)
+    };
+    let lefts = study.comparisons.iter().filter_map(left_of_one_lattice);
+    let side = match lefts.into_iter().any(|left| left == Clustering::Integrated) {
         true => "",
         false => "integrated is never on the left, so a preference for the right side cannot be told apart",
     };

@@ -62,7 +62,8 @@ fn times_are_not_judged_across_machines() {
     let mut everything = Everything::of(fixture::study());
     everything.bench = fixture::bench_of(&everything.study, 9);
     for sample in &mut everything.bench.samples {
-        sample.geometry_s *= 1.0 + f64::from(sample.id.method.clustering.code() == 'i');
+        sample.geometry_s *=
+            1.0 + f64::from(crate::fixture::crossed(sample.id.method).clustering.code() == 'i');
     }
     let row = |everything: &Everything| rows(everything)["geometry_integrated"].clone();
     let alone = row(&everything);
@@ -86,7 +87,7 @@ fn noise_has_no_direction() {
     everything.bench = fixture::bench_of(&everything.study, 9);
     // As fast with as without, but for unrest that leans to the published side.
     for sample in &mut everything.bench.samples {
-        let merged = sample.id.method.clustering.code() == 'i';
+        let merged = crate::fixture::crossed(sample.id.method).clustering.code() == 'i';
         let lean = if sample.iteration % 2 == 0 { 0.94 } else { 1.05 };
         sample.geometry_s = if merged { 0.01 * lean } else { 0.01 };
     }
@@ -152,7 +153,7 @@ fn means_are_explained_by_the_objects_that_moved() {
 #[test]
 fn claims_about_absent_configurations_are_left_out() {
     let mut everything = Everything::of(fixture::study());
-    everything.meshes.retain(|mesh| mesh.id.method.clustering.code() != 'p');
+    everything.meshes.retain(|mesh| crate::fixture::crossed(mesh.id.method).clustering.code() != 'p');
     let rows = rows(&everything);
     assert!(!rows.contains_key("discard_edge_collapse") && !rows.contains_key("less_uniform"));
     assert!(rows.contains_key("discard_integrated"));

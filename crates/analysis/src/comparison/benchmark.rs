@@ -9,7 +9,7 @@ use crate::verdict::{UNEXPLAINED, Verdict, prints_alike, relative_difference};
 use design::config::FieldSection;
 use design::published::BenchmarkRow;
 use design::record::{BenchRun, Counts, MeshRecord, Purpose};
-use design::{Arrangement, Study};
+use design::{Arrangement, Crossed, Study};
 
 /// Another bunny than the published one: its counts and shapes agree to about this.
 const OTHER_MESH: f64 = 0.03;
@@ -237,7 +237,8 @@ fn verdict(
     }
     match quantity.kind {
         Kind::Needed(wrong_sign)
-            if row.id.method.arrangement == Arrangement::SimpleCubic && published == wrong_sign(row) =>
+            if Crossed::of(row.id.method).is_some_and(|of| of.arrangement == Arrangement::SimpleCubic)
+                && published == wrong_sign(row) =>
         {
             return Verdict::differs("the published formula has a wrong sign");
         }

@@ -55,7 +55,8 @@ fn ours(study: &Study, factors: &[GroupFactor], cell: &PreferenceCell) -> Option
         }
         PreferenceKind::ArrangementMean | PreferenceKind::ClusteringMean => {
             let margins = preference::margins(study, &preference::overall(study, factors));
-            let &(_, mean) = margins.iter().find(|(m, _)| cell.of == m.code().to_string())?;
+            let named = |level| study.level(level).code.to_lowercase() == cell.of;
+            let &(_, mean) = margins.iter().find(|(level, _)| named(*level))?;
             Some((mean, mean.to_string()))
         }
     }

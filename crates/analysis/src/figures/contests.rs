@@ -5,8 +5,9 @@ use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::{Draft, canvas_with_legend};
+use design::Level;
 use design::Study;
-use design::contrast::{Contrast, Level, Over, contrasts};
+use design::contrast::{Contrast, Over, contrasts};
 use statistics::{DeclaredBallot, ScoreTest};
 
 pub(super) fn by_object(study: &Study, ballots: &[DeclaredBallot]) -> Option<Draft> {
@@ -54,13 +55,13 @@ fn block(study: &Study, ballots: &[DeclaredBallot], contrast: &Contrast) -> Opti
     };
     let objects = (0..study.file.objects.len()).map(Some);
     let rows: Vec<Row> = objects.chain([None]).filter_map(row).collect();
-    let heading = format!("{} against {}", label(contrast.levels[0]), label(contrast.levels[1]));
+    let heading =
+        format!("{} against {}", label(study, contrast.levels[0]), label(study, contrast.levels[1]));
     (!rows.is_empty()).then_some(Block { heading, rows })
 }
 
-fn label(level: Level) -> String {
-    match level {
-        Level::Clustering(design::Clustering::None) => "no clustering".into(),
-        level => level.label(),
-    }
+fn label(study: &Study, level: Level) -> &str {
+    let spec = study.level(level);
+    // "none" says nothing without its factor.
+    if spec.label == "none" { &spec.phrase } else { &spec.label }
 }

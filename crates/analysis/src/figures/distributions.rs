@@ -7,8 +7,8 @@ use super::meshes::method_legend;
 use super::{Draft, WIDTH, canvas_with_legend, style};
 use crate::inputs::Inputs;
 use crate::mesh_set::MeshSet;
-use design::Method;
 use design::record::{Distribution, MeshRecord, Purpose};
+use design::{MethodId, Study};
 
 const ROW: f64 = 290.0;
 const PER_ROW: usize = 3;
@@ -37,15 +37,15 @@ pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Draft> {
             let axis = Axis::logarithmic(q95);
             let width = WIDTH / block.len() as f64;
             for (i, &object) in block.iter().enumerate() {
-                let boxes: Vec<(Method, Option<&Distribution>)> = inputs
+                let boxes: Vec<(MethodId, Option<&Distribution>)> = inputs
                     .study
-                    .methods()
+                    .method_ids()
                     .into_iter()
                     .map(|method| (method, meshes.at(object, method).map(of).filter(|d| d.count > 0)))
                     .collect();
                 let x = width * i as f64;
                 let name = &inputs.study.file.objects[object].name;
-                panel(&mut canvas, &axis, label, name, &boxes, (x, y), (x + width, y + ROW));
+                panel(&mut canvas, inputs.study, &axis, label, name, &boxes, (x, y), (x + width, y + ROW));
             }
             y += ROW;
         }
@@ -59,10 +59,11 @@ pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Draft> {
 
 fn panel(
     canvas: &mut Canvas,
+    study: &Study,
     axis: &Axis,
     label: &str,
     name: &str,
-    boxes: &[(Method, Option<&Distribution>)],
+    boxes: &[(MethodId, Option<&Distribution>)],
     from: (f64, f64),
     to: (f64, f64),
 ) {
@@ -80,7 +81,7 @@ fn panel(
             canvas.line(vec![(x, y(inner)), (x, y(outer))], BLACK, 1.0);
             canvas.line(vec![(x - half / 2.0, y(outer)), (x + half / 2.0, y(outer))], BLACK, 1.0);
         }
-        let fill = style::method(*method);
+        let fill = style::method(study, *method);
         fill.paint(canvas, (x - half, y(d.q25)), (x + half, y(d.q75)));
         canvas.line(vec![(x - half, y(d.median)), (x + half, y(d.median))], fill.ink(), 2.0);
     }

@@ -17,8 +17,9 @@ const HEIGHT: f64 = 420.0;
 
 /// The methods with their fills, and the mark of published values where there are any.
 pub(super) fn method_legend(inputs: &Inputs<'_>, published: bool) -> Vec<(Swatch, String)> {
-    let entry = |m: Method| (Swatch::Area(style::method(m)), format!("{m}: {}", m.label()));
-    let mut legend: Vec<_> = inputs.study.methods().into_iter().map(entry).collect();
+    let study = inputs.study;
+    let entry = |m: &Method| (Swatch::Area(style::method(study, m.id)), format!("{}: {}", m.id, m.label));
+    let mut legend: Vec<_> = study.methods.iter().map(entry).collect();
     if published {
         legend.push((Swatch::Diamond, "published".into()));
     }
@@ -34,7 +35,7 @@ fn clusters(
     let cluster = |object: &design::config::ObjectSection| Cluster {
         label: object.name.clone(),
         slots: study
-            .methods()
+            .method_ids()
             .into_iter()
             .map(|method| {
                 let id = ConfigurationId { object: object.id.clone(), method };
@@ -63,7 +64,11 @@ fn mesh_clusters(
         return None;
     }
     Some(clusters(inputs, |id, row| {
-        vec![Bar::of(meshes.get(id).and_then(ours), style::method(id.method), row.map(published))]
+        vec![Bar::of(
+            meshes.get(id).and_then(ours),
+            style::method(inputs.study, id.method),
+            row.map(published),
+        )]
     }))
 }
 
@@ -90,7 +95,7 @@ pub(super) fn pass_times(inputs: &Inputs<'_>) -> Option<Draft> {
     let run = inputs.bench?;
     let clusters = clusters(inputs, |id, row| {
         let times = StageTimes::of(run, id);
-        let fill = style::method(id.method);
+        let fill = style::method(inputs.study, id.method);
         let ms = |s: f64| 1e3 * s;
         let vertex = times.map(|t| ms(t.vertex_s));
         let geometry = times.map(|t| ms(t.geometry_s));

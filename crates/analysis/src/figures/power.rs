@@ -19,16 +19,16 @@ const WANTED: f64 = 0.8;
 /// # Errors
 /// If drawing fails, which is not to be expected.
 pub fn power_figure(assumptions: &Assumptions, all: &[Power]) -> Result<Figure, AnalysisError> {
-    let mut kinds: Vec<(&'static str, usize)> = Vec::new();
+    let mut kinds: Vec<(&str, usize)> = Vec::new();
     for power in all {
-        if !kinds.contains(&(power.family, power.questions)) {
-            kinds.push((power.family, power.questions));
+        if !kinds.contains(&(power.over.as_str(), power.questions)) {
+            kinds.push((power.over.as_str(), power.questions));
         }
     }
     let plural = |n: usize| if n == 1 { "question" } else { "questions" };
     let mut legend: Vec<(Swatch, String)> = Vec::new();
-    for (i, (family, questions)) in kinds.iter().enumerate() {
-        let name = format!("{}: {questions} {}", over(family), plural(*questions));
+    for (i, (over, questions)) in kinds.iter().enumerate() {
+        let name = format!("{}: {questions} {}", over, plural(*questions));
         legend.push((Swatch::Mark(Mark::nth(i, true)), name));
     }
     legend.push((Swatch::Mark(Mark::nth(0, false)), "hollow: adjusted in its family".into()));
@@ -50,26 +50,12 @@ pub fn power_figure(assumptions: &Assumptions, all: &[Power]) -> Result<Figure, 
     Draft { name: "power", caption, canvas }.finish()
 }
 
-/// What the contrasts of a family are over.
-fn over(family: &str) -> &str {
-    match family {
-        "pooled" => "all answers",
-        "methods" => "methods that differ in both",
-        "groups" => "within one lattice or clustering",
-        "objects" => "lattices on one object",
-        "objects-clustering" => "clusterings on one object",
-        "objects-method" => "methods on one object",
-        "primary" => "primary contrasts",
-        _ => "one question alone",
-    }
-}
-
 fn panel(assumptions: &Assumptions, all: &[Power], share: f64, kinds: &[(&str, usize)]) -> Scatter {
     let (mut lines, mut marks) = (Vec::new(), Vec::new());
-    for (i, &(family, questions)) in kinds.iter().enumerate() {
+    for (i, &(over, questions)) in kinds.iter().enumerate() {
         let mean = |n: usize, value: fn(&Power) -> f64| {
             let of_kind = |p: &&Power| {
-                (p.family, p.questions, p.participants) == (family, questions, n) && p.share == share
+                (p.over.as_str(), p.questions, p.participants) == (over, questions, n) && p.share == share
             };
             let found: Vec<f64> = all.iter().filter(of_kind).map(value).collect();
             (n as f64, found.iter().sum::<f64>() / found.len() as f64)

@@ -8,7 +8,8 @@ use super::scatter::Scatter;
 use super::{Draft, WIDTH, canvas_with_legend};
 use crate::inputs::Inputs;
 use crate::prediction::{MetricPrediction, Prediction, Scale};
-use design::Study;
+use crate::preference;
+use design::{Comparison, Study};
 use statistics::{DeclaredBallot, ShownBallot, outcome_counts};
 
 const ROW: f64 = 320.0;
@@ -25,9 +26,12 @@ pub(super) fn draft(
     for (o, object) in study.file.objects.iter().enumerate() {
         legend.push((Swatch::Mark(Mark::nth(o, true)), object.name.clone()));
     }
-    let hollow = study.comparisons.iter().any(|c| c.left.method.arrangement != c.right.method.arrangement);
-    if hollow {
-        legend.push((Swatch::Mark(Mark::nth(0, false)), "hollow: different lattices".into()));
+    // Only of two factors does one of them say something that the other does not.
+    if let Some([outer, _]) = preference::two_factors(study)
+        && study.comparisons.iter().any(|c| differs(study, c))
+    {
+        let text = format!("hollow: different {}", study.factor(outer).plural);
+        legend.push((Swatch::Mark(Mark::nth(0, false)), text));
     }
     legend.push((Swatch::Line(BLACK), "Davidson's model".into()));
     legend.push((Swatch::Dashes, "as many for either".into()));
@@ -47,6 +51,13 @@ pub(super) fn draft(
     Some(Draft { name: "prediction", caption, canvas })
 }
 
+/// Whether a question's methods differ in the first of two factors.
+fn differs(study: &Study, comparison: &Comparison) -> bool {
+    let level = |method, factor| study.level_of(method, factor);
+    let (left, right) = (comparison.left.method, comparison.right.method);
+    preference::two_factors(study).is_some_and(|[outer, _]| level(left, outer) != level(right, outer))
+}
+
 fn panel(study: &Study, found: &MetricPrediction, counts: &[[u64; 3]]) -> Scatter {
     let of_scale = |advantage: f64| match found.metric.scale {
         Scale::Difference => advantage,
@@ -62,7 +73,7 @@ fn panel(study: &Study, found: &MetricPrediction, counts: &[[u64; 3]]) -> Scatte
             continue;
         }
         most = most.max(advantage.abs());
-        let same = comparison.left.method.arrangement == comparison.right.method.arrangement;
+        let same = !differs(study, comparison);
         let at = (of_scale(advantage.abs()), better as f64 / (left + right) as f64);
         marks.push((at, Mark::nth(comparison.object, same)));
     }

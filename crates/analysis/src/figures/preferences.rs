@@ -10,13 +10,13 @@ use crate::preference::{self, GroupFactor};
 use crate::tables::preferences::interval;
 use crate::tally::Tally;
 use design::published::PreferenceKind;
-use design::{Method, Study};
+use design::{Method, MethodId, Study};
 
 const ROW: f64 = 306.0;
 
 fn legend_of(study: &Study) -> Vec<(Swatch, String)> {
-    let entry = |m: Method| (Swatch::Area(style::method(m)), format!("{m}: {}", m.label()));
-    study.methods().into_iter().map(entry).collect()
+    let entry = |m: &Method| (Swatch::Area(style::method(study, m.id)), format!("{}: {}", m.id, m.label));
+    study.methods.iter().map(entry).collect()
 }
 
 pub(super) fn per_object(study: &Study, tally: &Tally) -> Draft {
@@ -64,7 +64,7 @@ fn group_panel(study: &Study, tally: &Tally, group: usize) -> BarPanel {
             label: factor.method.to_string(),
             bars: vec![Bar {
                 interval: interval(tally, factor, o),
-                ..Bar::of(Some(factor.share.factor().value()), style::method(factor.method), None)
+                ..Bar::of(Some(factor.share.factor().value()), style::method(study, factor.method), None)
             }],
         };
         if !of_group.is_empty() {
@@ -82,46 +82,50 @@ fn group_panel(study: &Study, tally: &Tally, group: usize) -> BarPanel {
     }
 }
 
-/// What a group compares: its part of a sum is drawn accordingly.
-fn compares_arrangements(study: &Study, group: usize) -> bool {
-    let members = &study.groups[group].members;
-    members.iter().any(|m| m.arrangement != members[0].arrangement)
+/// Whether a group compares levels of the first of two factors: its part of a sum is drawn accordingly.
+fn compares_first(study: &Study, group: usize) -> bool {
+    let group = &study.groups[group];
+    preference::two_factors(study).is_some_and(|[outer, _]| preference::shared(study, group, outer).is_none())
 }
 
 /// Which half of a sum weighs more, and why; nothing if both reach equally far or there is one alone.
 fn weights(study: &Study, factors: &[GroupFactor]) -> String {
-    let reach = |arrangements| {
-        let of_kind = factors.iter().filter(|f| compares_arrangements(study, f.group) == arrangements);
+    let Some([outer, inner]) = preference::two_factors(study) else { return String::new() };
+    let [outer, inner] = [outer, inner].map(|factor| study.factor(factor).name.as_str());
+    let reach = |of_outer| {
+        let of_kind = factors.iter().filter(|f| compares_first(study, f.group) == of_outer);
         of_kind.map(GroupFactor::cap).max_by(|a, b| a.value().total_cmp(&b.value()))
     };
-    let (Some(arrangement), Some(clustering)) = (reach(true), reach(false)) else { return String::new() };
-    let half = match arrangement.value() - clustering.value() {
-        more if more > 0.0 => "arrangement",
-        less if less < 0.0 => "clustering",
+    let (Some(of_outer), Some(of_inner)) = (reach(true), reach(false)) else { return String::new() };
+    let half = match of_outer.value() - of_inner.value() {
+        more if more > 0.0 => outer,
+        less if less < 0.0 => inner,
         _ => return String::new(),
     };
-    let [arrangement, clustering] = [arrangement, clustering].map(|cap| {
+    let [of_outer, of_inner] = [of_outer, of_inner].map(|cap| {
         let text = cap.to_string();
         text.strip_suffix("/1").map_or(text.clone(), str::to_owned)
     });
     format!(
-        " A factor of an arrangement group can reach {arrangement}, one of a clustering group {clustering}, so the \
-         sum weighs the {half} half more."
+        " A factor of {} {outer} group can reach {of_outer}, one of {} {inner} group {of_inner}, so the sum weighs the {half} \
+         half more.",
+        preference::article(outer),
+        preference::article(inner)
     )
 }
 
 pub(super) fn overall(study: &Study, tally: &Tally) -> Draft {
     let factors = preference::group_factors(study, tally, |_| true);
-    let published = |method: Method| {
+    let published = |method: MethodId| {
         let mut cells = study.published.preferences.iter();
         cells.find(|c| c.kind == PreferenceKind::Overall && c.method() == Some(method)).map(|c| c.factor)
     };
-    let slot = |(method, sum): (Method, crate::Fraction)| {
-        let fill = style::method(method);
+    let slot = |(method, sum): (MethodId, crate::Fraction)| {
+        let fill = style::method(study, method);
         let of_method = factors.iter().filter(|f| f.method == method);
         let segment = |f: &GroupFactor| {
-            let arrangements = compares_arrangements(study, f.group);
-            (f.share.factor().value(), if arrangements { fill.striped() } else { fill })
+            let of_outer = compares_first(study, f.group);
+            (f.share.factor().value(), if of_outer { fill.striped() } else { fill })
         };
         let bar = Bar {
             segments: of_method.map(segment).collect(),
@@ -134,12 +138,15 @@ pub(super) fn overall(study: &Study, tally: &Tally) -> Draft {
     let slots: Vec<Slot> = preference::overall(study, &factors).into_iter().map(slot).collect();
     let mut legend = legend_of(study);
     let white = Fill { outline: BLACK, ..Fill::plain(WHITE) };
-    let any = |arrangements| factors.iter().any(|f| compares_arrangements(study, f.group) == arrangements);
-    if any(false) {
-        legend.push((Swatch::Area(white), "from clustering groups".into()));
-    }
-    if any(true) {
-        legend.push((Swatch::Area(white.striped()), "from arrangement groups".into()));
+    if let Some([outer, inner]) = preference::two_factors(study) {
+        let any = |of_outer| factors.iter().any(|f| compares_first(study, f.group) == of_outer);
+        let from = |factor| format!("from {} groups", study.factor(factor).name);
+        if any(false) {
+            legend.push((Swatch::Area(white), from(inner)));
+        }
+        if any(true) {
+            legend.push((Swatch::Area(white.striped()), from(outer)));
+        }
     }
     if slots.iter().flat_map(|s| &s.bars).any(|bar| bar.published.is_some()) {
         legend.push((Swatch::Diamond, "published".into()));

@@ -51,7 +51,7 @@ fn panel(inputs: &Inputs<'_>, object: usize, sampling: bool) -> BarPanel {
             style::stages().into_iter().zip(seconds).filter(|((name, _), _)| sampling || *name != "sampling");
         Bar { segments: stages.map(|((_, fill), s)| (1e3 * s, fill)).collect(), ..Bar::default() }
     };
-    let methods = inputs.study.methods().into_iter();
+    let methods = inputs.study.method_ids().into_iter();
     let slots: Vec<Slot> = methods.map(|m| Slot { label: m.to_string(), bars: vec![bar(m)] }).collect();
     let label = if sampling { object.name.clone() } else { format!("{}, without sampling", object.name) };
     let mut clusters = vec![Cluster { label, slots }];

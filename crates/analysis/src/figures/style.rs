@@ -1,10 +1,10 @@
 //! Colours and fills: told apart by lightness as well as by hue (after Okabe and Ito 2008).
 //!
-//! Hue and lightness tell the clustering; a light tint with a dark outline tells simple cubic from body-centred; stripes
-//! tell the second stage or half of a bar.
+//! Hue and lightness tell the level of the last factor, or the method of a study without factors; full, tinted or striped tells the
+//! level of the factor before. Stripes also tell the second stage or half of a bar.
 
 use super::canvas::{BLACK, Canvas, Colour, WHITE};
-use design::{Arrangement, Clustering, Method};
+use design::{MethodId, Study};
 use plotters::style::RGBColor;
 
 /// How an area is filled.
@@ -75,19 +75,52 @@ pub(super) fn ink_on(colour: Colour) -> Colour {
     if lightness < 128.0 { WHITE } else { BLACK }
 }
 
-/// The fill of a method.
-pub(super) fn method(method: Method) -> Fill {
-    let colour = match method.clustering {
-        Clustering::None => RGBColor(0x4d, 0x4d, 0x4d),
-        Clustering::Integrated => RGBColor(0xe6, 0x9f, 0x00),
-        Clustering::EdgeCollapse => RGBColor(0x00, 0x72, 0xb2),
-        Clustering::IntegratedCollapse => RGBColor(0x00, 0x9e, 0x73),
+/// Hues of levels, by place: grey, orange, blue, green, purple, sky blue, vermilion, yellow.
+const HUES: [Colour; 8] = [
+    RGBColor(0x4d, 0x4d, 0x4d),
+    RGBColor(0xe6, 0x9f, 0x00),
+    RGBColor(0x00, 0x72, 0xb2),
+    RGBColor(0x00, 0x9e, 0x73),
+    RGBColor(0xcc, 0x79, 0xa7),
+    RGBColor(0x56, 0xb4, 0xe9),
+    RGBColor(0xd5, 0x5e, 0x00),
+    RGBColor(0xf0, 0xe4, 0x42),
+];
+
+/// How many ways of filling there are.
+const FILLINGS: usize = 4;
+
+/// Whether two factors tell all methods apart, in hues and fillings enough.
+fn tells_methods(study: &Study) -> bool {
+    let all: Vec<&Vec<Option<usize>>> = study.methods.iter().map(|method| &method.levels).collect();
+    let fits = |levels: &[Option<usize>], most: [usize; 2]| {
+        levels.iter().zip(most).all(|(level, most)| level.is_some_and(|level| level < most))
     };
-    match method.arrangement {
-        Arrangement::BodyCentred => Fill::plain(colour),
-        Arrangement::SimpleCubic => Fill { colour: tint(colour), outline: colour, stripes: false },
-        Arrangement::FiveTetrahedra => Fill { colour: tint(colour), outline: colour, stripes: true },
-        Arrangement::FaceCentred => Fill::plain(colour).striped(),
+    let distinct = |i: usize| !all[..i].contains(&all[i]);
+    (0..all.len()).all(|i| fits(all[i], [FILLINGS, HUES.len()]) && distinct(i))
+}
+
+/// Which hue and which filling a method has, by place. No two of up to 32 methods of a study have both in common.
+pub(super) fn hue_and_filling(study: &Study, method: MethodId) -> [usize; 2] {
+    let level = |factor| study.level_of(method, factor).map(|level| level.index);
+    let crossed = match study.declared_factors().collect::<Vec<_>>()[..] {
+        [outer, inner] if tells_methods(study) => level(outer).zip(level(inner)),
+        _ => None,
+    };
+    let place = study.place(method);
+    let (filling, hue) = crossed.unwrap_or((place / HUES.len(), place));
+    [hue % HUES.len(), filling % FILLINGS]
+}
+
+/// The fill of a method.
+pub(super) fn method(study: &Study, method: MethodId) -> Fill {
+    let [hue, filling] = hue_and_filling(study, method);
+    let colour = HUES[hue];
+    match filling {
+        0 => Fill::plain(colour),
+        1 => Fill { colour: tint(colour), outline: colour, stripes: false },
+        2 => Fill { colour: tint(colour), outline: colour, stripes: true },
+        _ => Fill::plain(colour).striped(),
     }
 }
 

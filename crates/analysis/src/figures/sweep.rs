@@ -7,7 +7,7 @@ use super::scatter::Scatter;
 use super::{Draft, Figure, WIDTH, canvas_with_legend, style};
 use crate::inputs::AnalysisError;
 use crate::sweep::{Point, SpeedUp, Sweep};
-use design::{Arrangement, Method, Study};
+use design::{MethodId, Study};
 
 const ROW: f64 = 340.0;
 /// From one mark to the next at the same number of threads, in widths of the axis.
@@ -49,24 +49,18 @@ fn fewest(sweep: &Sweep) -> u32 {
     sweep.points.iter().map(|point| point.threads).min().unwrap_or(1)
 }
 
-/// A filling for each arrangement, a shape for each clustering.
-fn mark(study: &Study, method: Method) -> Mark {
-    let n = study.file.clusterings.iter().position(|c| *c == method.clustering).unwrap_or(0);
-    let filling = match method.arrangement {
-        Arrangement::BodyCentred => Filling::Full,
-        Arrangement::SimpleCubic => Filling::Hollow,
-        Arrangement::FiveTetrahedra => Filling::Dotted,
-        Arrangement::FaceCentred => Filling::Holed,
-    };
-    Mark::of(n, filling)
+/// A shape for each hue of [`style::method`], a filling for each of its fillings.
+fn mark(study: &Study, method: MethodId) -> Mark {
+    let [hue, filling] = style::hue_and_filling(study, method);
+    Mark::of(hue, [Filling::Full, Filling::Hollow, Filling::Dotted, Filling::Holed][filling])
 }
 
 fn legend(study: &Study) -> Vec<(Swatch, String)> {
-    study.methods().into_iter().map(|m| (Swatch::Mark(mark(study, m)), m.label())).collect()
+    study.methods.iter().map(|m| (Swatch::Mark(mark(study, m.id)), m.label.clone())).collect()
 }
 
 /// The points of one configuration on the fewest threads, by resolution.
-fn line<'a>(sweep: &'a Sweep, object: &str, method: Method) -> Vec<&'a Point> {
+fn line<'a>(sweep: &'a Sweep, object: &str, method: MethodId) -> Vec<&'a Point> {
     let threads = fewest(sweep);
     let own = |p: &&Point| p.id.object == object && p.id.method == method && p.threads == threads;
     sweep.points.iter().filter(own).collect()
@@ -91,11 +85,11 @@ fn lines(
     logarithmic_y: bool,
 ) -> Scatter {
     let (mut lines, mut marks) = (Vec::new(), Vec::new());
-    for method in study.methods() {
+    for method in study.method_ids() {
         let points: Vec<(f64, f64)> =
             line(sweep, object, method).into_iter().filter_map(|p| Some((x(p)?, y(p)?))).collect();
         marks.extend(points.iter().map(|&at| (at, mark(study, method))));
-        lines.push((style::method(method).outline, points));
+        lines.push((style::method(study, method).outline, points));
     }
     let of = |pick: fn(&(f64, f64)) -> f64| lines.iter().flat_map(move |(_, line)| line.iter().map(pick));
     let ends = |values: &mut dyn Iterator<Item = f64>| {
@@ -186,12 +180,12 @@ fn speed_up(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
     let panel = |object: &str, cells: u32| {
         let ideal = vec![(f64::from(base), 1.0), (f64::from(most), f64::from(most) / f64::from(base))];
         let (mut lines, mut marks) = (vec![(style::IDEAL, ideal)], Vec::new());
-        let methods = study.methods();
+        let methods = study.method_ids();
         for (n, &method) in methods.iter().enumerate() {
             // Side by side, so that one interval does not hide another.
             let aside = (n as f64 - (methods.len() - 1) as f64 / 2.0) * ASIDE * f64::from(most - base);
             let own = |f: &&SpeedUp| f.cells == cells && f.id.object == object && f.id.method == method;
-            let colour = style::method(method).outline;
+            let colour = style::method(study, method).outline;
             let mut points = vec![(f64::from(base), 1.0)];
             for found in sweep.speed_ups.iter().filter(own) {
                 let x = f64::from(found.threads) + aside;
@@ -250,34 +244,48 @@ mod tests {
     use super::*;
     use crate::fixture;
 
-    /// Every method of every arrangement there is, in the legend and in the plot.
-    #[test]
-    fn no_two_methods_share_a_mark() {
-        use design::Clustering;
-        let arrangements = [
-            Arrangement::BodyCentred,
-            Arrangement::SimpleCubic,
-            Arrangement::FiveTetrahedra,
-            Arrangement::FaceCentred,
-        ];
-        let clusterings = [Clustering::None, Clustering::Integrated, Clustering::EdgeCollapse];
+    /// The paper's study with other methods: so many of the first factor's levels times so many of the second's, or one by one.
+    fn with_methods(levels: Option<[usize; 2]>, count: usize) -> Study {
         let mut study = fixture::study();
-        study.file.clusterings = clusterings.to_vec();
-        let drawn = |method: Method| {
-            let mut canvas = super::super::canvas::Canvas::new(20.0, 20.0);
-            mark(&study, method).draw(&mut canvas, (10.0, 10.0));
-            canvas.to_svg("mark").unwrap()
+        let spec = |count: usize| design::FactorSpec {
+            levels: vec![study.factors[0].levels[0].clone(); count],
+            ..study.factors[0].clone()
         };
-        let mut marks = std::collections::BTreeMap::new();
-        for arrangement in arrangements {
-            for clustering in clusterings {
-                let method = Method { arrangement, clustering };
-                if let Some(other) = marks.insert(drawn(method), method) {
-                    panic!("{} and {} look the same", other.label(), method.label());
+        let mut factors: Vec<design::FactorSpec> = levels.into_iter().flatten().map(spec).collect();
+        factors.push(spec(count));
+        let method = |i: usize| design::Method {
+            id: format!("m{i}").parse().unwrap(),
+            label: format!("method {i}"),
+            levels: levels.map_or(Vec::new(), |[_, inner]| vec![Some(i / inner), Some(i % inner)]),
+            ..study.methods[0].clone()
+        };
+        let methods = (0..count).map(method).collect();
+        (study.factors, study.methods) = (factors, methods);
+        study
+    }
+
+    /// In the legend and in the plot, and in bars.
+    #[test]
+    fn no_two_methods_look_the_same() {
+        let crossed = |outer, inner| with_methods(Some([outer, inner]), outer * inner);
+        // Five of the first factor have no filling each, so that the methods are told apart one by one.
+        for study in [fixture::study(), crossed(4, 8), crossed(5, 6), crossed(2, 10), with_methods(None, 32)]
+        {
+            let mut looks = std::collections::BTreeMap::new();
+            for method in &study.methods {
+                let mut canvas = super::super::canvas::Canvas::new(40.0, 20.0);
+                mark(&study, method.id).draw(&mut canvas, (10.0, 10.0));
+                let marked = canvas.to_svg("mark").unwrap();
+                let mut canvas = super::super::canvas::Canvas::new(40.0, 20.0);
+                style::method(&study, method.id).paint(&mut canvas, (5.0, 5.0), (35.0, 15.0));
+                for look in [marked, canvas.to_svg("bar").unwrap()] {
+                    if let Some(other) = looks.insert(look, method.id) {
+                        panic!("{other} and {} look the same", method.id);
+                    }
                 }
             }
+            assert_eq!(looks.len(), 2 * study.methods.len());
         }
-        assert_eq!(marks.len(), 12);
     }
 
     #[test]

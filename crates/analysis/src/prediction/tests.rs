@@ -61,7 +61,7 @@ fn the_papers_answers_on_published_triangle_counts() {
 fn a_planted_metric_is_found() {
     let mut all = Everything::of(fixture::study());
     for mesh in &mut all.meshes {
-        mesh.quality.radius_ratio.mean = match mesh.id.method.clustering {
+        mesh.quality.radius_ratio.mean = match crate::fixture::crossed(mesh.id.method).clustering {
             Clustering::None => 0.5,
             Clustering::EdgeCollapse => 0.8,
             _ => 0.9,
@@ -70,7 +70,7 @@ fn a_planted_metric_is_found() {
     let mut ballots = all.answers.shown.clone();
     for ballot in &mut ballots {
         let c = &all.study.comparisons[ballot.question()];
-        let ratio = |id: &design::ConfigurationId| match id.method.clustering {
+        let ratio = |id: &design::ConfigurationId| match crate::fixture::crossed(id.method).clustering {
             Clustering::None => 5,
             Clustering::EdgeCollapse => 8,
             _ => 9,

@@ -49,9 +49,11 @@ fn the_six_sums_and_five_margins() {
         assert_eq!(*sum, Fraction::new(clustering, 162) + Fraction::new(arrangement, 54));
     }
     assert_eq!(sums.len(), 6);
-    let margins: Vec<(char, i128)> =
-        margins(&study, &sums).iter().map(|(m, mean)| (m.code(), mean.rounded(4))).collect();
-    assert_eq!(margins, [('b', 8128), ('s', 6626), ('u', 5556), ('i', 9259), ('p', 7315)]);
+    let margins: Vec<(&str, i128)> = margins(&study, &sums)
+        .iter()
+        .map(|(m, mean)| (study.level(*m).code.as_str(), mean.rounded(4)))
+        .collect();
+    assert_eq!(margins, [("B", 8128), ("S", 6626), ("U", 5556), ("I", 9259), ("P", 7315)]);
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::verdict::{Verdict, prints_alike};
 use design::Clustering::{self, EdgeCollapse, Integrated, None as Unclustered};
 use design::published::Claim;
 use design::record::Purpose;
-use design::{Arrangement, Method};
+use design::{Arrangement, Crossed};
 use statistics::interval::LEVEL;
 use statistics::median;
 
@@ -173,7 +173,7 @@ struct Duel {
 
 fn duels(numbers: &Numbers<'_>, side: Side, measure: Measure, arrangement: Arrangement) -> Vec<Duel> {
     let of = |(object, own): (usize, Arrangement)| {
-        let get = |clustering| numbers.get(side, measure, object, Method { arrangement, clustering });
+        let get = |clustering| numbers.get(side, measure, object, Crossed { arrangement, clustering });
         let name = numbers.object_name(object).to_owned();
         (own == arrangement).then_some(())?;
         Some(Duel { name, integrated: get(Integrated)?, collapsed: get(EdgeCollapse)? })
@@ -331,7 +331,7 @@ mod tests {
     fn the_published_conclusions_are_held_against_numbers() {
         let mut everything = Everything::of(fixture::study());
         for mesh in &mut everything.meshes {
-            let integrated = mesh.id.method.clustering == Integrated;
+            let integrated = crate::fixture::crossed(mesh.id.method).clustering == Integrated;
             mesh.quality.radius_ratio.mean = if integrated { 0.92 } else { 0.89 };
         }
         let blocks = findings(&everything.inputs());

@@ -5,10 +5,10 @@ use super::words::{against, capital, counted, list, number};
 use super::{Block, Evidence, names};
 use crate::fraction::Fraction;
 use crate::hypotheses::Subject;
-use crate::preference::{GroupFactor, Margin, group_factors, margins, overall};
+use crate::preference::{self, GroupFactor, group_factors, margins, overall, two_factors};
 use crate::tally::Tally;
-use design::contrast::{Level, Over};
-use design::{Arrangement, Method, Study};
+use design::contrast::Over;
+use design::{Level, MethodId, Study};
 
 pub(super) fn findings(study: &Study, tally: &Tally, evidence: &Evidence<'_>) -> Vec<Block> {
     let factors = group_factors(study, tally, |_| true);
@@ -21,11 +21,10 @@ pub(super) fn findings(study: &Study, tally: &Tally, evidence: &Evidence<'_>) ->
     found.into_iter().flatten().map(|text| Block::Finding(Finding::new(Standing::Noted, text))).collect()
 }
 
-/// The arrangement that all members of a group share; `None` for a group that compares arrangements.
-fn shared(study: &Study, group: usize) -> Option<Arrangement> {
-    let members = &study.groups[group].members;
-    let first = members.first()?.arrangement;
-    members.iter().all(|m| m.arrangement == first).then_some(first)
+/// The level of the first of two factors that all members of a group share; `None` for a group that compares such levels.
+fn shared(study: &Study, group: usize) -> Option<Level> {
+    let [outer, _] = two_factors(study)?;
+    preference::shared(study, &study.groups[group], outer)
 }
 
 fn text_of(fraction: Fraction) -> String {
@@ -66,52 +65,56 @@ fn two_scales(study: &Study, factors: &[GroupFactor]) -> Option<String> {
     })
 }
 
-/// Within one arrangement the factors of a clustering group add up to one less the share of ties.
+/// Within one level of the first factor the preference factors of a group of the second add up to one less the share of ties.
 fn ties_alone(study: &Study, factors: &[GroupFactor]) -> Option<String> {
+    let [outer, inner] = two_factors(study)?.map(|factor| study.factor(factor).name.as_str());
     let mut parts = Vec::new();
     for g in 0..study.groups.len() {
         let own: Vec<&GroupFactor> = factors.iter().filter(|f| f.group == g).collect();
-        let (Some(arrangement), Some(first)) = (shared(study, g), own.first()) else { continue };
+        let (Some(level), Some(first)) = (shared(study, g), own.first()) else { continue };
         let wins: u64 = own.iter().map(|f| f.share.wins).sum();
         parts.push(format!(
             "{wins}/{} on {} ({})",
             first.share.answers,
-            names::level(Level::Arrangement(arrangement)),
+            names::level(study, level),
             counted(first.share.ties as usize, "tie")
         ));
     }
     (parts.len() > 1).then(|| {
         format!(
-            "The clustering half of an arrangement's sums says nothing about arrangements: within one arrangement the factors \
-             always add up to one less the share of ties, {}.",
+            "The {inner} half of {} {outer}'s sums says nothing about {outer}s: within one {outer} the factors always add up to one \
+             less the share of ties, {}.",
+            preference::article(outer),
             list(&parts)
         )
     })
 }
 
-/// The difference between the means of two arrangements, taken apart.
+/// The difference between the means of the first factor's two levels, taken apart.
 fn difference(study: &Study, factors: &[GroupFactor], evidence: &Evidence<'_>) -> Option<String> {
+    let [outer, inner] = two_factors(study)?;
     let sums = overall(study, factors);
-    let mean = |arrangement| {
+    let mean = |level| {
         let of = margins(study, &sums);
-        of.into_iter().find(|(m, _)| *m == Margin::Arrangement(arrangement)).map(|(_, mean)| mean.value())
+        of.into_iter().find(|(of, _)| *of == level).map(|(_, mean)| mean.value())
     };
-    let [first, second] = study.file.arrangements[..] else { return None };
+    let [first, second] = study.levels(outer)[..] else { return None };
     let (a, b) = (mean(first)?, mean(second)?);
-    let half = |arrangement: Arrangement, direct: bool| {
-        let of = sums.iter().filter(|(m, _)| m.arrangement == arrangement).count() as f64;
-        let own = factors.iter().filter(|f| f.method.arrangement == arrangement);
+    let holds = |method: MethodId, level: Level| study.level_of(method, outer) == Some(level);
+    let half = |level: Level, direct: bool| {
+        let of = sums.iter().filter(|(m, _)| holds(*m, level)).count() as f64;
+        let own = factors.iter().filter(|f| holds(f.method, level));
         let part = own.filter(|f| shared(study, f.group).is_none() == direct);
         part.map(|f| f.share.factor().value()).sum::<f64>() / of
     };
-    // Only where the clustering groups of both have one factor for each of the same number of methods do their factors add up
-    // to one less the share of ties.
-    let members = |arrangement: Arrangement| {
-        let own = factors.iter().filter(|f| f.method.arrangement == arrangement);
+    // Only where the groups of the second factor have one preference factor for each of the same number of methods on both levels
+    // do these add up to one less the share of ties.
+    let members = |level: Level| {
+        let own = factors.iter().filter(|f| holds(f.method, level));
         let mut groups: Vec<usize> =
             own.filter(|f| shared(study, f.group).is_some()).map(|f| f.group).collect();
         groups.dedup();
-        let methods = sums.iter().filter(|(m, _)| m.arrangement == arrangement).count();
+        let methods = sums.iter().filter(|(m, _)| holds(*m, level)).count();
         (groups.len(), methods)
     };
     let ties: u64 = (0..study.groups.len())
@@ -124,27 +127,24 @@ fn difference(study: &Study, factors: &[GroupFactor], evidence: &Evidence<'_>) -
     let by_ties = half(first, false) - half(second, false);
     let direct = half(first, true) - half(second, true);
     let of_contrast = evidence.hypotheses.iter().find(|h| match h.subject {
-        Subject::Contrast { levels, over } => over == Over::All && levels.map(is_arrangement) == [true, true],
+        Subject::Contrast { levels, over } => over == Over::All && levels[0].factor == outer,
         _ => false,
     })?;
     let Subject::Contrast { levels, .. } = of_contrast.subject else { return None };
     let counts = of_contrast.test.counts?;
-    let [one, other] = [first, second].map(|a| names::level(Level::Arrangement(a)));
+    let [one, other] = [first, second].map(|level| names::level(study, level));
     Some(format!(
-        "The mean sums of {one} and {other} are {} and {}. Of the difference of {}, {} comes from ties in the clustering \
+        "The mean sums of {one} and {other} are {} and {}. Of the difference of {}, {} comes from ties in the {} \
          groups and {} from the questions that compare the two directly, where {} has {}.",
         number(a, 3),
         number(b, 3),
         number(a - b, 3),
         number(by_ties, 3),
+        study.factor(inner).name,
         number(direct, 3),
-        names::level(levels[0]),
+        names::level(study, levels[0]),
         against(counts)
     ))
-}
-
-fn is_arrangement(level: Level) -> bool {
-    matches!(level, Level::Arrangement(_))
 }
 
 /// Who has the largest sum: over all, by wins over appearances, and on each object. A first place may be shared.
@@ -155,13 +155,13 @@ fn favourite(study: &Study, tally: &Tally, factors: &[GroupFactor]) -> Option<St
     if methods.len() == compared {
         return Some(format!("All methods have the same sum, {}.", number(sum.value(), 3)));
     }
-    let shares = study.methods().into_iter().filter_map(|m| {
+    let shares = study.method_ids().into_iter().filter_map(|m| {
         let own: Vec<&GroupFactor> = factors.iter().filter(|f| f.method == m).collect();
         let (wins, shown) = own.iter().fold((0, 0), |(w, n), f| (w + f.share.wins, n + f.appearances));
         (shown > 0).then(|| (m, Fraction::new(wins.into(), shown.into())))
     });
     let (by_share, share) = largest(shares)?;
-    let mut objects: Vec<(Vec<Method>, Vec<&str>)> = Vec::new();
+    let mut objects: Vec<(Vec<MethodId>, Vec<&str>)> = Vec::new();
     for (o, object) in study.file.objects.iter().enumerate() {
         let own = group_factors(study, tally, |other| other == o);
         let Some((best, _)) = largest(overall(study, &own)) else { continue };
@@ -170,9 +170,9 @@ fn favourite(study: &Study, tally: &Tally, factors: &[GroupFactor]) -> Option<St
             None => objects.push((best, vec![&object.name])),
         }
     }
-    let together = |methods: &[Method]| list(&methods.iter().map(Method::to_string).collect::<Vec<_>>());
+    let together = |methods: &[MethodId]| list(&methods.iter().map(MethodId::to_string).collect::<Vec<_>>());
     let (has, have) = ("has", "have together");
-    let verb = |methods: &[Method]| if methods.len() == 1 { has } else { have };
+    let verb = |methods: &[MethodId]| if methods.len() == 1 { has } else { have };
     let share_text = match by_share == methods {
         true => format!("and the largest share of wins over appearances, {}", number(share.value(), 3)),
         false => format!(
@@ -194,7 +194,7 @@ fn favourite(study: &Study, tally: &Tally, factors: &[GroupFactor]) -> Option<St
         }
     };
     let who = match methods[..] {
-        [method] => format!("{} ({method})", capital(&method.label())),
+        [method] => format!("{} ({method})", capital(&study.method(method).label)),
         _ => together(&methods),
     };
     Some(format!(
@@ -206,8 +206,8 @@ fn favourite(study: &Study, tally: &Tally, factors: &[GroupFactor]) -> Option<St
 }
 
 /// All that share the largest value.
-fn largest(values: impl IntoIterator<Item = (Method, Fraction)>) -> Option<(Vec<Method>, Fraction)> {
-    let mut best: Option<(Vec<Method>, Fraction)> = None;
+fn largest(values: impl IntoIterator<Item = (MethodId, Fraction)>) -> Option<(Vec<MethodId>, Fraction)> {
+    let mut best: Option<(Vec<MethodId>, Fraction)> = None;
     for (method, value) in values {
         match &mut best {
             Some((methods, most)) if *most == value => methods.push(method),

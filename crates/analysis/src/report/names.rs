@@ -2,44 +2,26 @@
 
 use super::Evidence;
 use crate::hypotheses::{Hypothesis, On, Subject};
-use design::contrast::{Level, Over};
-use design::{Arrangement, Clustering, Method, Study};
+use design::contrast::Over;
+use design::{Level, Study};
 
 /// A level as a noun: `edge collapse`, `the body-centred lattice`.
-pub(super) fn level(level: Level) -> String {
-    match level {
-        Level::Method(Method { arrangement, clustering }) => {
-            let clustering = self::level(Level::Clustering(clustering));
-            return format!("{clustering} on {}", self::level(Level::Arrangement(arrangement)));
-        }
-        Level::Arrangement(Arrangement::BodyCentred) => "the body-centred lattice",
-        Level::Arrangement(Arrangement::SimpleCubic) => "the simple cubic lattice",
-        Level::Arrangement(Arrangement::FiveTetrahedra) => "the lattice of five tetrahedra a cube",
-        Level::Arrangement(Arrangement::FaceCentred) => "the face-centred lattice",
-        Level::Clustering(Clustering::None) => "no clustering",
-        Level::Clustering(Clustering::Integrated) => "integrated clustering",
-        Level::Clustering(Clustering::EdgeCollapse) => "edge collapse",
-        Level::Clustering(Clustering::IntegratedCollapse) => "integrated clustering with collapse",
-    }
-    .into()
+pub(super) fn level(study: &Study, level: Level) -> String {
+    study.level(level).phrase.clone()
 }
 
 /// Where, with a space before it: ` on the body-centred lattice`, ` without clustering`.
-pub(super) fn within(level: Level) -> String {
-    match level {
-        Level::Clustering(Clustering::None) => " without clustering".into(),
-        Level::Clustering(_) => format!(" with {}", self::level(level)),
-        Level::Arrangement(_) | Level::Method(_) => format!(" on {}", self::level(level)),
-    }
+pub(super) fn within(study: &Study, level: Level) -> String {
+    format!(" {}", study.level(level).within)
 }
 
 /// The answers that a contrast goes over, with a space before it; nothing for all of them.
 pub(super) fn over(study: &Study, over: Over) -> String {
     match over {
         Over::All => String::new(),
-        Over::Within(level) => within(level),
+        Over::Within(level) => within(study, level),
         Over::Object(object) => format!(" on the {}", study.file.objects[object].name),
-        Over::Difference(a, b) => format!("{} rather than{}", within(a), within(b)),
+        Over::Difference(a, b) => format!("{} rather than{}", within(study, a), within(study, b)),
         Over::ObjectDifference(a, b) => {
             let [a, b] = [a, b].map(|object| study.file.objects[object].name.as_str());
             format!(" on the {a} rather than on the {b}")
@@ -65,7 +47,7 @@ pub(super) fn on_object(on: &On) -> String {
 pub(super) fn hypothesis(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> String {
     match (&hypothesis.subject, evidence.study) {
         (Subject::Contrast { levels, over }, Some(study)) => {
-            let [first, second] = levels.map(level);
+            let [first, second] = levels.map(|level| self::level(study, level));
             format!("{first} against {second}{}", self::over(study, *over))
         }
         (Subject::Items { first, second, group, on }, _) => {

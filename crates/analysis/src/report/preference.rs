@@ -5,8 +5,9 @@ use super::words::{against, capital, counted, list, number, p};
 use super::{Block, Evidence, names, tipping, worths};
 use crate::hypotheses::{self, Conclusion, Hypothesis, On, Subject};
 use crate::omnibus::{self, Asked, Omnibus};
+use design::Level;
 use design::Study;
-use design::contrast::{Factor, Level, Over, contrasts};
+use design::contrast::{Over, contrasts};
 use statistics::ScoreTest;
 
 /// So many comparisons that too few people lean on are told one by one, more of them together.
@@ -92,10 +93,10 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
     let Some(study) = evidence.study else {
         return of_items(evidence, sorted, level);
     };
-    sorted.holds.extend(levels_differ(evidence));
+    sorted.holds.extend(levels_differ(study, evidence));
     let mut by_object = Vec::new();
     for (hypothesis, levels, over) in contrasts_of(evidence) {
-        let [first, second] = levels.map(names::level);
+        let [first, second] = levels.map(|level| names::level(study, level));
         let scope = names::over(study, over);
         match over {
             Over::Difference(..) | Over::ObjectDifference(..) => {}
@@ -256,16 +257,12 @@ fn without_one_object(study: &Study, evidence: &Evidence<'_>, hypothesis: &Hypot
     text
 }
 
-fn levels_differ(evidence: &Evidence<'_>) -> Vec<Block> {
+fn levels_differ(study: &Study, evidence: &Evidence<'_>) -> Vec<Block> {
     let level = evidence.rules().level;
     let shown = evidence.omnibus.iter().filter(|of| of.adjusted <= level);
     let text = |of: &Omnibus| {
         let Asked::Levels(factor) = of.asked else { return None };
-        let noun = match factor {
-            Factor::Clustering => "clusterings",
-            Factor::Arrangement => "lattices",
-            Factor::Method => "methods",
-        };
+        let noun = &study.factor(factor).plural;
         Some(format!(
             "The {noun} are not liked alike: Friedman's test on {}' wins less losses, chi-square {:.2} on {} degrees of \
              freedom, {}.",
@@ -371,7 +368,7 @@ fn parts<'a>(evidence: &'a Evidence<'_>, hypothesis: &Hypothesis) -> Option<Part
             let part = |over| {
                 Some((names::over(study, over), test_of(Subject::Contrast { levels: *levels, over })?))
             };
-            Some((levels.map(names::level), [part(a)?, part(b)?]))
+            Some((levels.map(|level| names::level(study, level)), [part(a)?, part(b)?]))
         }
         (Subject::Items { group, first, second, on: On::Difference(objects) }, _) => {
             let part = |object: &String| {

@@ -5,7 +5,8 @@ use super::words::{capital, counted, interval, list, number, p as p_value};
 use super::{Block, Evidence, asked, names};
 use crate::audit::{Finding as Verdict, Probe};
 use crate::table::Table;
-use design::contrast::{Level, Over, contrasts};
+use design::Level;
+use design::contrast::{Over, contrasts};
 use statistics::{
     Model, Pairs, Participants, Separation, ShownBallot, Side, SideBound, SideDesign, clustered_covariance,
     fit, has_spread, separation, side_bound, side_design,
@@ -230,7 +231,7 @@ fn always(evidence: &Evidence<'_>) -> Option<String> {
     }
     let of = |sides: [bool; 2], word: &str| {
         let own: Vec<String> =
-            seen.iter().filter(|(_, s)| *s == sides).map(|(level, _)| names::level(*level)).collect();
+            seen.iter().filter(|(_, s)| *s == sides).map(|(level, _)| names::level(study, *level)).collect();
         (!own.is_empty()).then(|| format!("{} always stood on the {word}", list(&own)))
     };
     let parts: Vec<String> =

@@ -3,8 +3,8 @@
 use super::Evidence;
 use super::words::number;
 use crate::hypotheses::{Hypothesis, Subject};
-use design::contrast::{Factor, Level, Over};
-use design::{Method, Study};
+use design::contrast::Over;
+use design::{Level, MethodId, Study};
 use statistics::{
     FARTHEST_TIP, Pairs, Participants, ShownBallot, SideDesign, Tip, Tipping, side_design, tipping,
 };
@@ -51,18 +51,9 @@ fn undone(side: &str, at: f64) -> String {
 /// The answers about levels of the same factor as `items`, which grow by those that others are compared with, everything else
 /// equal; as far as a contrast goes.
 fn about(study: &Study, shown: &[ShownBallot], over: Over, items: &mut Vec<Level>) -> Vec<ShownBallot> {
-    let factor = items[0].factor();
-    let level = |method: Method| match factor {
-        Factor::Clustering => Level::Clustering(method.clustering),
-        Factor::Arrangement => Level::Arrangement(method.arrangement),
-        Factor::Method => Level::Method(method),
-    };
-    let rest = |method: Method| match factor {
-        Factor::Clustering => Some(Level::Arrangement(method.arrangement)),
-        Factor::Arrangement => Some(Level::Clustering(method.clustering)),
-        Factor::Method => None,
-    };
-    let methods = study.methods();
+    let factor = items[0].factor;
+    let methods = study.method_ids();
+    let level = |method: MethodId| study.level_of(method, factor);
     let mut place = |level: Level| {
         items.iter().position(|&known| known == level).unwrap_or_else(|| {
             items.push(level);
@@ -74,12 +65,13 @@ fn about(study: &Study, shown: &[ShownBallot], over: Over, items: &mut Vec<Level
         let [left, right] = [ballot.left(), ballot.right()].map(|item| methods[item]);
         let meant = match over {
             Over::All => true,
-            Over::Within(level) => rest(left) == Some(level),
+            Over::Within(level) => study.level_of(left, level.factor) == Some(level),
             Over::Object(object) => study.comparisons[ballot.question()].object == object,
             Over::Difference(..) | Over::ObjectDifference(..) => false,
         };
-        if meant && rest(left) == rest(right) {
-            own.push(ballot.with_items([place(level(left)), place(level(right))]));
+        let equal_else = factor == study.method_factor() || study.difference(left, right) == factor;
+        if let (true, Some(left), Some(right)) = (meant && equal_else, level(left), level(right)) {
+            own.push(ballot.with_items([place(left), place(right)]));
         }
     }
     own

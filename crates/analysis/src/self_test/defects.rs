@@ -4,6 +4,7 @@ use super::studies::{Dealt, Design, PEOPLE};
 use crate::audit::{Probe, Report, audit};
 use crate::ballots::{ballot_groups, ballots, method_of_item};
 use crate::recorded::Recorded;
+use design::Factor;
 use rand_pcg::Pcg64;
 use responses::{Answer, Choice, Participant, Responses, StimulusId};
 use statistics::Outcome;
@@ -206,12 +207,12 @@ struct Worths {
 impl Worths {
     fn of(dealt: &Dealt, defect: Defect) -> Self {
         let study = &dealt.study;
-        let (methods, objects) = (study.methods(), &study.file.objects);
-        let step = if study.file.clusterings.len() > 3 { 1.0 } else { 1.5 };
-        let place = |m: design::Method| {
-            let lattice = study.file.arrangements.iter().position(|&a| a == m.arrangement).unwrap_or(0);
-            let clustering = study.file.clusterings.iter().position(|&c| c == m.clustering).unwrap_or(0);
-            step * clustering as f64 + lattice as f64
+        let (methods, objects) = (study.method_ids(), &study.file.objects);
+        let [lattices, mergings] = [Factor(0), Factor(1)];
+        let step = if study.factor(mergings).levels.len() > 3 { 1.0 } else { 1.5 };
+        let place = |m: design::MethodId| {
+            let of = |factor| study.level_of(m, factor).map_or(0.0, |level| level.index as f64);
+            step * of(mergings) + of(lattices)
         };
         let worth = |configuration: &design::Configuration| {
             let method = configuration.id.method;
@@ -238,7 +239,7 @@ fn answered(dealt: &Dealt, worths: &Worths, side: f64, numbers: &mut Pcg64) -> R
         let number = (participant + 1).to_string();
         responses.participants.push(Participant { id: format!("p{number}"), form: Some(number) });
         let worths = if participant == 7 { &worths.of_the_eighth } else { &worths.everybodys };
-        let deviations: Vec<f64> = dealt.study.methods().iter().map(|_| scale * normal(numbers)).collect();
+        let deviations: Vec<f64> = dealt.study.methods.iter().map(|_| scale * normal(numbers)).collect();
         let speed = 8.0 + 0.3 * normal(numbers);
         for (order, asked) in (1..).zip(form) {
             let own = asked.sides.map(|item| worths[item as usize] + deviations[method[item as usize]]);
@@ -270,7 +271,7 @@ fn copy(responses: &mut Responses, changed: impl Fn(Answer, Choice) -> Answer) {
 
 /// The file whose sides are mixed up: of the pairs on the first object one that people judge very differently.
 fn mixed_up(dealt: &Dealt) -> [u32; 2] {
-    let place = [0, 1, 2][dealt.study.file.clusterings.len() - 2];
+    let place = [0, 1, 2][dealt.study.factor(Factor(1)).levels.len() - 2];
     let question = &dealt.unanswered.questions[place];
     [question.left, question.right]
 }

@@ -4,7 +4,7 @@
 //! the same time, each at the resolution that this buys it.
 
 use super::{Point, series};
-use design::{ConfigurationId, Method};
+use design::{ConfigurationId, MethodId};
 use serde::Serialize;
 
 /// What is spent.
@@ -32,7 +32,7 @@ pub struct Budget {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Best {
     /// The method.
-    pub method: Method,
+    pub method: MethodId,
     /// Mean radius ratio.
     pub radius_ratio: f64,
     /// Cells along the longest axis.
@@ -50,7 +50,7 @@ pub(super) fn budgets(points: &[Point]) -> Vec<Budget> {
     objects.dedup();
     let mut found = Vec::new();
     for object in objects {
-        let lines: Vec<(Method, Vec<&Point>)> = all
+        let lines: Vec<(MethodId, Vec<&Point>)> = all
             .iter()
             .filter(|(id, _)| id.object == object)
             .map(|(id, _)| {
@@ -68,7 +68,7 @@ pub(super) fn budgets(points: &[Point]) -> Vec<Budget> {
 
 fn budget(
     object: &str,
-    lines: &[(Method, Vec<&Point>)],
+    lines: &[(MethodId, Vec<&Point>)],
     of: fn(&Point) -> f64,
     cost: fn(f64) -> Cost,
 ) -> Option<Budget> {
@@ -81,7 +81,7 @@ fn budget(
         return None;
     }
     let budget = (low * high).sqrt();
-    let best = |(method, line): &(Method, Vec<&Point>)| {
+    let best = |(method, line): &(MethodId, Vec<&Point>)| {
         let at = |value: fn(&Point) -> f64| interpolate(line, of, value, budget);
         Some(Best {
             method: *method,

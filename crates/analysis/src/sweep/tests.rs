@@ -33,7 +33,8 @@ pub(crate) fn made_up() -> Sweep {
             levels.push(SweepLevel { cells, threads, run });
         }
         for configuration in study.configurations.iter().filter(|c| c.id.object == "ss") {
-            let merged = configuration.id.method.clustering == design::Clustering::Integrated;
+            let merged =
+                crate::fixture::crossed(configuration.id.method).clustering == design::Clustering::Integrated;
             meshes.push(SweepMesh {
                 id: configuration.id.clone(),
                 cells,

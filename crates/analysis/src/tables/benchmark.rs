@@ -5,16 +5,16 @@ use crate::mesh_set::{MeshSet, discard_fraction, known};
 use crate::published_ratio;
 use crate::stage_times::{StageTimes, conditions};
 use crate::table::{Cell, Table};
+use crate::tables::design::{level, method_columns};
 use design::config::FieldSection;
 use design::record::{MeshRecord, Purpose};
 
 /// A column: name in CSV, heading, and its cell.
 type Entry = (&'static str, &'static str, fn(&MeshRecord) -> Cell);
 
+/// What is known of a mesh; after the first come the columns that tell the method.
 const MESH_COLUMNS: &[Entry] = &[
     ("resolution", "Cubes", |m| Cell::text(format!("{}x{}x{}", m.cells[0], m.cells[1], m.cells[2]))),
-    ("arrangement", "Arrangement", |m| Cell::text(m.id.method.arrangement.label())),
-    ("clustering", "Clustering", |m| Cell::text(m.id.method.clustering.label())),
     ("tetrahedra", "Tetrahedra", |m| Cell::count(m.counts.tetrahedra)),
     ("tetrahedra_evaluated", "Evaluated", |m| Cell::count(m.counts.tetrahedra_evaluated)),
     ("evaluated_fraction", "Evaluated fraction", |m| {
@@ -70,6 +70,9 @@ const TIME_COLUMNS: &[TimeEntry] = &[
     ("normals_s", "Normals, s", |t| Cell::Number(t.normals_s, 6)),
 ];
 
+/// Stands for the columns that tell the method.
+const FACTORS: &str = "factors";
+
 /// The four blocks that the paper prints.
 const BLOCKS: &[(&str, &[&str])] = &[
     (
@@ -77,8 +80,7 @@ const BLOCKS: &[(&str, &[&str])] = &[
         &[
             "id",
             "resolution",
-            "arrangement",
-            "clustering",
+            FACTORS,
             "tetrahedra",
             "vertices",
             "triangles",
@@ -131,8 +133,19 @@ fn fraction(times: &StageTimes, stage_s: f64) -> Cell {
 /// The whole benchmark, one row a configuration.
 pub(super) fn benchmark(inputs: &Inputs<'_>) -> Option<Table> {
     let mut table = whole(inputs, |_| true)?;
-    let blocks: Vec<_> =
-        BLOCKS.iter().copied().filter(|(name, _)| inputs.bench.is_some() || *name != "Times").collect();
+    let study = inputs.study;
+    let factors: Vec<&str> =
+        method_columns(study).into_iter().map(|factor| &*study.factor(factor).name).collect();
+    let spelt = |names: &[&'static str]| -> Vec<&str> {
+        let of = |name: &&'static str| if *name == FACTORS { factors.clone() } else { vec![*name] };
+        names.iter().flat_map(of).collect()
+    };
+    let blocks: Vec<(&str, Vec<&str>)> = BLOCKS
+        .iter()
+        .filter(|(name, _)| inputs.bench.is_some() || *name != "Times")
+        .map(|(name, columns)| (*name, spelt(columns)))
+        .collect();
+    let blocks: Vec<(&str, &[&str])> = blocks.iter().map(|(name, columns)| (*name, &columns[..])).collect();
     table.print_in_blocks(&blocks);
     Some(table)
 }
@@ -160,15 +173,20 @@ pub(super) fn asteroid(inputs: &Inputs<'_>) -> Option<Table> {
 
 fn whole(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Option<Table> {
     let meshes = MeshSet::of(inputs, Purpose::Benchmark);
-    let mut columns = vec![("id", "Id")];
-    columns.extend(MESH_COLUMNS.iter().map(|&(name, heading, _)| (name, heading)));
+    let study = inputs.study;
+    let factors = method_columns(study);
+    let headings: Vec<String> = factors.iter().map(|&factor| study.factor(factor).heading()).collect();
+    let mut columns = vec![("id", "Id"), (MESH_COLUMNS[0].0, MESH_COLUMNS[0].1)];
+    columns.extend(factors.iter().zip(&headings).map(|(&f, heading)| (&*study.factor(f).name, &**heading)));
+    columns.extend(MESH_COLUMNS[1..].iter().map(|&(name, heading, _)| (name, heading)));
     if inputs.bench.is_some() {
         columns.extend(TIME_COLUMNS.iter().map(|&(name, heading, _)| (name, heading)));
     }
     let mut table = Table::new("benchmark", "Benchmark", &columns);
     for (configuration, mesh) in meshes.in_order().filter(|(c, _)| holds(c.object)) {
-        let mut row = vec![Cell::text(&mesh.id)];
-        row.extend(MESH_COLUMNS.iter().map(|(_, _, cell)| cell(mesh)));
+        let mut row = vec![Cell::text(&mesh.id), (MESH_COLUMNS[0].2)(mesh)];
+        row.extend(factors.iter().map(|&factor| level(study, mesh.id.method, factor)));
+        row.extend(MESH_COLUMNS[1..].iter().map(|(_, _, cell)| cell(mesh)));
         if let Some(run) = inputs.bench {
             let times = StageTimes::of(run, &configuration.id);
             let cell = |entry: &TimeEntry| times.as_ref().map_or(Cell::Missing, entry.2);

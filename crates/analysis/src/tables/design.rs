@@ -1,32 +1,45 @@
 //! Tables that follow from the study file alone.
 
 use crate::table::{Cell, Table};
-use ::design::Study;
+use ::design::{Factor, MethodId, Study};
 
-/// The configurations: object, arrangement, clustering, spacings (the paper's appendix A).
+/// The factors that tell a method in a table: the declared ones, or what it is as a whole where these do not tell two apart.
+pub(super) fn method_columns(study: &Study) -> Vec<Factor> {
+    let declared: Vec<Factor> = study.declared_factors().collect();
+    let mut known = Vec::new();
+    let told = study.methods.iter().all(|method| {
+        let new = method.levels.iter().all(Option::is_some) && !known.contains(&&method.levels);
+        known.push(&method.levels);
+        new
+    });
+    if told && !declared.is_empty() { declared } else { [declared, vec![study.method_factor()]].concat() }
+}
+
+/// A method's level, by name; empty if it has none.
+pub(super) fn level(study: &Study, method: MethodId, factor: Factor) -> Cell {
+    let level = study.level_of(method, factor);
+    level.map_or(Cell::Missing, |level| Cell::text(&study.level(level).label))
+}
+
+/// The configurations: object, method, spacings (the paper's appendix A).
 pub(super) fn configurations(study: &Study) -> Table {
-    let mut table = Table::new(
-        "configurations",
-        "Configurations",
-        &[
-            ("id", "Id"),
-            ("object", "Object"),
-            ("arrangement", "Arrangement"),
-            ("clustering", "Clustering"),
-            ("benchmark_spacing", "Cube edge, benchmark"),
-            ("stimulus_spacing", "Cube edge, stimuli"),
-        ],
-    );
+    let mut columns = vec![("id".to_owned(), "Id".to_owned()), ("object".into(), "Object".into())];
+    let factors = method_columns(study);
+    columns.extend(factors.iter().map(|&factor| {
+        let spec = study.factor(factor);
+        (spec.name.clone(), spec.heading())
+    }));
+    columns.push(("benchmark_spacing".into(), "Cube edge, benchmark".into()));
+    columns.push(("stimulus_spacing".into(), "Cube edge, stimuli".into()));
+    let columns: Vec<(&str, &str)> = columns.iter().map(|(name, heading)| (&**name, &**heading)).collect();
+    let mut table = Table::new("configurations", "Configurations", &columns);
     for configuration in &study.configurations {
         let object = study.object(configuration);
-        table.push(vec![
-            Cell::text(&configuration.id),
-            Cell::text(&object.name),
-            Cell::text(configuration.id.method.arrangement.label()),
-            Cell::text(configuration.id.method.clustering.label()),
-            Cell::Number(object.benchmark_spacing, 3),
-            Cell::Number(object.stimulus_spacing, 3),
-        ]);
+        let mut row = vec![Cell::text(&configuration.id), Cell::text(&object.name)];
+        row.extend(factors.iter().map(|&factor| level(study, configuration.id.method, factor)));
+        row.push(Cell::Number(object.benchmark_spacing, 3));
+        row.push(Cell::Number(object.stimulus_spacing, 3));
+        table.push(row);
     }
     table
 }

@@ -2,8 +2,7 @@
 
 use crate::omnibus::{Asked, Omnibus, tests};
 use crate::table::{Cell, Table};
-use design::Study;
-use design::contrast::{Factor, Level};
+use design::{Level, Study};
 use statistics::DeclaredBallot;
 
 /// Friedman's tests: does anything differ at all?
@@ -22,19 +21,19 @@ pub(super) fn omnibus(study: &Study, ballots: &[DeclaredBallot]) -> Table {
         ],
     );
     for Omnibus { asked, test, adjusted, participants } in tests(study, ballots) {
-        let minus = |[a, b]: [Level; 2]| format!("{} minus {}", a.label(), b.label());
+        let minus = |[a, b]: [Level; 2]| format!("{} minus {}", study.level(a).label, study.level(b).label);
+        let name = |levels: [Level; 2]| study.factor(levels[0].factor).name.as_str();
         let (question, scores) = match asked {
             Asked::Levels(factor) => {
-                (factor.code().to_owned(), format!("wins minus losses of each {}", factor.code()))
+                let name = &study.factor(factor).name;
+                (name.clone(), format!("wins minus losses of each {name}"))
             }
-            Asked::ByOther(levels) => match levels[0].factor() {
-                Factor::Clustering => {
-                    ("clustering x arrangement".into(), format!("{}, by arrangement", minus(levels)))
-                }
-                _ => ("arrangement x clustering".into(), format!("{}, by clustering", minus(levels))),
-            },
+            Asked::ByOther(levels, other) => {
+                let other = &study.factor(other).name;
+                (format!("{} x {other}", name(levels)), format!("{}, by {other}", minus(levels)))
+            }
             Asked::ByObject(levels) => {
-                (format!("object x {}", levels[0].factor().code()), format!("{}, by object", minus(levels)))
+                (format!("object x {}", name(levels)), format!("{}, by object", minus(levels)))
             }
         };
         table.push(vec![

@@ -25,7 +25,7 @@ fn in_full(all: &[Power]) -> Table {
     for power in all {
         let [error, adjusted_error] = power.errors();
         table.push(vec![
-            Cell::text(power.family),
+            Cell::text(&power.family),
             Cell::text(&power.contrast),
             Cell::text(&power.scope),
             Cell::count(power.questions as u64),

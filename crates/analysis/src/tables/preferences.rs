@@ -1,10 +1,10 @@
 //! The preference factors: per group, overall, margins, per object, and the direct contest of arrangements.
 
 use crate::digits::counted;
-use crate::preference::{self, GroupFactor, Margin};
+use crate::preference::{self, GroupFactor};
 use crate::table::{Cell, Column, Table};
 use crate::tally::{Tally, TallyRow};
-use design::{Method, Study};
+use design::{Factor, Level, MethodId, Study};
 use statistics::interval::{Interval, t_over_respondents, wilson};
 
 pub(super) fn all(study: &Study, tally: &Tally) -> Vec<Table> {
@@ -64,45 +64,49 @@ fn overall(study: &Study, factors: &[GroupFactor]) -> Table {
     for &(method, sum) in &overall {
         table.push(vec![Cell::text(method), Cell::Number(sum.value(), 3)]);
     }
-    table.parts = vec![grid(study, &overall)];
+    table.parts.extend(grid(study, &overall));
     let mut note = "A sum adds factors of different scale.".to_owned();
-    let of_one_lattice = |group: &&design::Group| {
-        let first = group.members.first().map(|method| method.arrangement);
-        group.members.iter().all(|method| Some(method.arrangement) == first)
-    };
-    if study.groups.iter().filter(of_one_lattice).count() > 1 {
-        note.push_str(
-            " The clustering groups' part of an arrangement's mean is the same for any outcome but for ties, so it says \
-             nothing about arrangements.",
-        );
+    if let Some([outer, inner]) = preference::two_factors(study) {
+        let of_one_level = |group: &&design::Group| preference::shared(study, group, outer).is_some();
+        if study.groups.iter().filter(of_one_level).count() > 1 {
+            let [outer, inner] = [outer, inner].map(|factor| &study.factor(factor).name);
+            note.push_str(&format!(
+                " The {inner} groups' part of {} {outer}'s mean is the same for any outcome but for ties, so it says nothing \
+                 about {outer}s.",
+                preference::article(outer)
+            ));
+        }
     }
     table.notes.push(note);
     table
 }
 
-/// The paper's arrangement: arrangements down, clusterings across, means at the ends.
-fn grid(study: &Study, overall: &[(Method, crate::Fraction)]) -> Table {
+/// The paper's arrangement of a study whose methods have two factors: the levels of the first down, those of the second across,
+/// means at the ends.
+fn grid(study: &Study, overall: &[(MethodId, crate::Fraction)]) -> Option<Table> {
+    let [down, across] = preference::two_factors(study)?;
     let margins = preference::margins(study, overall);
-    let mut table = Table::new("preference_overall", "", &[("arrangement", "Arrangement")]);
+    let first = study.factor(down);
+    let mut table = Table::new("preference_overall", "", &[(&*first.name, &*first.heading())]);
     let heading = |text: &str| Column { name: text.into(), heading: text.into() };
-    table.columns.extend(study.file.clusterings.iter().map(|c| heading(c.label())));
+    table.columns.extend(study.factor(across).levels.iter().map(|level| heading(&level.label)));
     table.columns.push(heading("mean"));
-    let margin = |of: Margin| margins.iter().find(|(m, _)| *m == of).map(|(_, mean)| mean.value());
-    for &arrangement in &study.file.arrangements {
-        let mut row = vec![Cell::text(arrangement.label())];
-        for &clustering in &study.file.clusterings {
-            let method = Method { arrangement, clustering };
-            let sum = overall.iter().find(|(m, _)| *m == method).map(|(_, sum)| sum.value());
-            row.push(Cell::number(sum, 3));
+    let margin = |of: Level| margins.iter().find(|(m, _)| *m == of).map(|(_, mean)| mean.value());
+    let has = |method: MethodId, factor: Factor, level: Level| study.level_of(method, factor) == Some(level);
+    for row_level in study.levels(down) {
+        let mut row = vec![Cell::text(&study.level(row_level).label)];
+        for level in study.levels(across) {
+            let of = |(m, _): &&(MethodId, _)| has(*m, down, row_level) && has(*m, across, level);
+            row.push(Cell::number(overall.iter().find(of).map(|(_, sum)| sum.value()), 3));
         }
-        row.push(Cell::number(margin(Margin::Arrangement(arrangement)), 3));
+        row.push(Cell::number(margin(row_level), 3));
         table.push(row);
     }
     let mut row = vec![Cell::text("mean")];
-    row.extend(study.file.clusterings.iter().map(|&c| Cell::number(margin(Margin::Clustering(c)), 3)));
+    row.extend(study.levels(across).into_iter().map(|level| Cell::number(margin(level), 3)));
     row.push(Cell::Missing);
     table.push(row);
-    table
+    Some(table)
 }
 
 fn margins(study: &Study, factors: &[GroupFactor]) -> Table {
@@ -111,15 +115,11 @@ fn margins(study: &Study, factors: &[GroupFactor]) -> Table {
         "Means of overall preference",
         &[("margin", "Mean over"), ("code", "Code"), ("label", "Methods"), ("factor", "Mean of sums")],
     );
-    for (margin, mean) in preference::margins(study, &preference::overall(study, factors)) {
-        let kind = match margin {
-            Margin::Arrangement(_) => "arrangement",
-            Margin::Clustering(_) => "clustering",
-        };
+    for (level, mean) in preference::margins(study, &preference::overall(study, factors)) {
         table.push(vec![
-            Cell::text(kind),
-            Cell::text(margin.code()),
-            Cell::text(margin.label()),
+            Cell::text(&study.factor(level.factor).name),
+            Cell::text(study.level(level).code.to_lowercase()),
+            Cell::text(&study.level(level).label),
             Cell::Number(mean.value(), 3),
         ]);
     }

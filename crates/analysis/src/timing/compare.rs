@@ -2,7 +2,7 @@
 
 use super::differences::build_differences;
 use super::floor::{NoiseFloor, between, speed_shift};
-use super::series::{Judgement, Verdict, by_configuration, middle, thirds, values};
+use super::series::{self, Judgement, Series, Verdict, by_configuration, middle, thirds, values};
 use super::statements::STATEMENTS_SCHEMA;
 use design::record::{BenchRun, BenchSample};
 use design::{ConfigurationId, Stage};
@@ -72,10 +72,13 @@ pub struct Limits {
 pub fn compare(a: &BenchRun, b: &BenchRun, across: Vec<String>) -> Comparison {
     let floors = [a, b].map(NoiseFloor::of);
     let shift = speed_shift(a, b);
-    let (in_a, in_b) = (by_configuration(&a.samples), by_configuration(&b.samples));
-    let both: Vec<_> = in_a.iter().filter_map(|(id, a)| Some((*id, [a, in_b.get(id)?]))).collect();
-    let only_a = in_a.keys().filter(|id| !in_b.contains_key(*id));
-    let alone = only_a.chain(in_b.keys().filter(|id| !in_a.contains_key(*id)));
+    let (in_a, in_b) = (by_configuration(a), by_configuration(b));
+    let both: Vec<_> = in_a.iter().filter_map(|(id, a)| Some((*id, [a, series::of(&in_b, id)?]))).collect();
+    let without = |one: &[(&'_ ConfigurationId, Vec<&BenchSample>)], other: &Series<'_>| {
+        let alone = one.iter().filter(|(id, _)| series::of(other, id).is_none());
+        alone.map(|(id, _)| (*id).clone()).collect::<Vec<_>>()
+    };
+    let alone = [without(&in_a, &in_b), without(&in_b, &in_a)].concat();
     let level = 1.0 - MISSES / both.len().max(1) as f64;
     let of_stage = |stage: Stage| {
         let floors = &floors;
@@ -89,7 +92,7 @@ pub fn compare(a: &BenchRun, b: &BenchRun, across: Vec<String>) -> Comparison {
         builds: build_differences(a, b),
         speed_shift: shift,
         rows: stages.into_iter().flat_map(of_stage).collect(),
-        unmatched: alone.map(|id| (*id).clone()).collect(),
+        unmatched: alone,
     }
 }
 

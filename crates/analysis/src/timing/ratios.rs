@@ -33,16 +33,13 @@ pub struct Ratio {
 const STAGES: [Stage; 5] =
     [Stage::Total, Stage::Sampling, Stage::Vertex, Stage::GeometryAsPublished, Stage::Normals];
 
-/// All pairs of one object that share the arrangement or the clustering, in the order of their ids.
+/// All pairs of one object, in the run's order of configurations.
 pub(super) fn ratios(run: &BenchRun, floor: &NoiseFloor, resampling: Resampling) -> Vec<Ratio> {
-    let series: Vec<_> = by_configuration(&run.samples).into_iter().collect();
+    let series = by_configuration(run);
     let mut ratios = Vec::new();
     for (i, first) in series.iter().enumerate() {
         for second in &series[i + 1..] {
-            let (a, b) = (first.0.method, second.0.method);
-            if first.0.object == second.0.object
-                && (a.arrangement == b.arrangement || a.clustering == b.clustering)
-            {
+            if first.0.object == second.0.object {
                 ratios.extend(
                     STAGES.iter().filter_map(|stage| ratio(floor, first, second, *stage, resampling)),
                 );

@@ -1,6 +1,6 @@
 //! The samples of one stage of one configuration, and the words for what follows from them.
 
-use design::record::BenchSample;
+use design::record::{BenchRun, BenchSample};
 use design::{ConfigurationId, Stage};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -65,13 +65,20 @@ impl Judgement {
 }
 
 /// The samples of each configuration, in the order measured.
-pub(super) type Series<'a> = BTreeMap<&'a ConfigurationId, Vec<&'a BenchSample>>;
+pub(super) type Series<'a> = Vec<(&'a ConfigurationId, Vec<&'a BenchSample>)>;
 
-/// Samples by configuration.
-pub(super) fn by_configuration(samples: &[BenchSample]) -> Series<'_> {
-    let mut series = Series::new();
-    samples.iter().for_each(|sample| series.entry(&sample.id).or_default().push(sample));
-    series
+/// Samples by configuration, in the study's order, which is that of the memory measured; what has none comes after, as first
+/// measured.
+pub(super) fn by_configuration(run: &BenchRun) -> Series<'_> {
+    let mut own: BTreeMap<&ConfigurationId, Vec<&BenchSample>> = BTreeMap::new();
+    run.samples.iter().for_each(|sample| own.entry(&sample.id).or_default().push(sample));
+    let order = run.memory.iter().map(|memory| &memory.id).chain(run.samples.iter().map(|sample| &sample.id));
+    order.filter_map(|id| Some((id, own.remove(id)?))).collect()
+}
+
+/// The samples of one configuration; `None` if it has none.
+pub(super) fn of<'s, 'a>(series: &'s Series<'a>, id: &ConfigurationId) -> Option<&'s Vec<&'a BenchSample>> {
+    series.iter().find(|(other, _)| *other == id).map(|(_, samples)| samples)
 }
 
 /// One stage.

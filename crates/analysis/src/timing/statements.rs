@@ -71,7 +71,7 @@ pub fn statements(run: &BenchRun) -> Statements {
     let floor = NoiseFloor::of(run);
     let mut medians = Vec::new();
     let (mut found, mut effects) = (Vec::new(), Vec::new());
-    for (id, samples) in by_configuration(&run.samples) {
+    for (id, samples) in by_configuration(run) {
         for stage in Stage::ALL {
             let seconds = median(values(&samples, stage), LEVEL).expect("the configuration has samples");
             medians.push(StageMedian { id: id.clone(), stage, samples: samples.len(), seconds });

@@ -49,7 +49,7 @@ fn medians(run: &BenchRun, statements: &Statements) -> Table {
         ("extraction_mib", "of it extraction"),
     ]);
     let mut table = Table::new("bench_medians", "Median times", &columns);
-    for id in by_configuration(&run.samples).into_keys() {
+    for (id, _) in by_configuration(run) {
         let of = |stage: Stage| {
             let found = statements.medians.iter().find(|median| median.id == *id && median.stage == stage);
             found.expect("every stage of every configuration has a median")

@@ -11,8 +11,8 @@ pub const WHOLE: &str = "all";
 /// Contrasts whose p values are corrected together.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TestFamily {
-    /// [`PRIMARY`], [`WHOLE`] or a [`Family::code`].
-    pub name: &'static str,
+    /// [`PRIMARY`], [`WHOLE`] or a [family's name](Contrast::family_name).
+    pub name: String,
     /// Indices of the contrasts, ascending, at least one.
     pub members: Vec<usize>,
 }
@@ -26,16 +26,17 @@ pub fn families(contrasts: &[Contrast], section: &AnalysisSection) -> Vec<TestFa
     let is_primary = |contrast: &Contrast| section.primary.contains(&contrast.to_string());
     let (primary, others): (Vec<usize>, Vec<usize>) =
         (0..contrasts.len()).partition(|&i| is_primary(&contrasts[i]));
-    let mut families = vec![TestFamily { name: PRIMARY, members: primary }];
+    let mut families = vec![TestFamily { name: PRIMARY.into(), members: primary }];
     match section.families {
-        FamilyRule::One => families.push(TestFamily { name: WHOLE, members: others }),
+        FamilyRule::One => families.push(TestFamily { name: WHOLE.into(), members: others }),
         FamilyRule::ByKind => {
             let mut kinds: Vec<Family> = others.iter().map(|&i| contrasts[i].family).collect();
             kinds.sort_unstable();
             kinds.dedup();
             families.extend(kinds.into_iter().map(|kind| {
-                let members = others.iter().copied().filter(|&i| contrasts[i].family == kind).collect();
-                TestFamily { name: kind.code(), members }
+                let members: Vec<usize> =
+                    others.iter().copied().filter(|&i| contrasts[i].family == kind).collect();
+                TestFamily { name: contrasts[members[0]].family_name.clone(), members }
             }));
         }
     }

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::config::{AnalysisSection, FamilyRule};
-use crate::method::ConfigurationId;
-use crate::study::tests::{load, paper_with};
+use crate::method::{Arrangement, Clustering, ConfigurationId, Crossed, MethodId};
+use crate::study::tests::{cross, load, paper_with};
 use crate::study::{Comparison, Group};
 use proptest::prelude::*;
 
@@ -15,14 +15,25 @@ fn of(all: &[Contrast], family: Family) -> Vec<String> {
     all.iter().filter(|c| c.family == family).map(|c| format!("{} {}", c.name, c.scope)).collect()
 }
 
+/// The paper's two factors, and the one that every study has.
+const ARRANGEMENT: Factor = Factor(0);
+const CLUSTERING: Factor = Factor(1);
+const METHOD: Factor = Factor(2);
+
+fn crossed(method: MethodId) -> Crossed {
+    Crossed::of(method).expect("two letters")
+}
+
 /// The paper's study with other factors, objects and questions, all in one group.
 fn design(arrangements: &str, clusterings: &str, objects: usize, asked: &[(usize, &str, &str)]) -> Study {
     let mut study = paper();
-    let methods = |codes: &str, suffix: &str, prefix: &str| -> Vec<Method> {
-        codes.chars().map(|c| format!("{prefix}{c}{suffix}").parse().unwrap()).collect()
+    let methods = |codes: &str, suffix: &str, prefix: &str| -> Vec<Crossed> {
+        codes.chars().map(|c| crossed(format!("{prefix}{c}{suffix}").parse().unwrap())).collect()
     };
-    study.file.arrangements = methods(arrangements, "u", "").iter().map(|m| m.arrangement).collect();
-    study.file.clusterings = methods(clusterings, "", "b").iter().map(|m| m.clustering).collect();
+    let arrangements: Vec<Arrangement> =
+        methods(arrangements, "u", "").iter().map(|m| m.arrangement).collect();
+    let clusterings: Vec<Clustering> = methods(clusterings, "", "b").iter().map(|m| m.clustering).collect();
+    cross(&mut study, &arrangements, &clusterings);
     let object = study.file.objects[0].clone();
     study.file.objects = (0..objects)
         .map(|o| {
@@ -39,7 +50,7 @@ fn design(arrangements: &str, clusterings: &str, objects: usize, asked: &[(usize
     study.groups = vec![Group {
         id: "G".into(),
         label: "all".into(),
-        members: study.methods(),
+        members: study.method_ids(),
         comparisons: (0..asked.len()).collect(),
     }];
     study
@@ -61,14 +72,14 @@ fn the_papers_contrasts() {
         "B-S within P",
     ];
     assert_eq!(of(&all, Family::Groups), groups);
-    assert_eq!(of(&all, Family::Objects(Factor::Arrangement)), ["B-S sphere", "B-S asteroid", "B-S bunny"]);
-    let by_object = of(&all, Family::Objects(Factor::Clustering));
+    assert_eq!(of(&all, Family::Objects(ARRANGEMENT)), ["B-S sphere", "B-S asteroid", "B-S bunny"]);
+    let by_object = of(&all, Family::Objects(CLUSTERING));
     assert_eq!((by_object.len(), by_object[1].as_str()), (9, "U-I asteroid"));
     let interactions = ["U-I B - S", "U-P B - S", "P-I B - S", "B-S U - I", "B-S U - P", "B-S I - P"];
     assert_eq!(of(&all, Family::Interactions), interactions);
     let pairs = ["B-S sphere - asteroid", "B-S sphere - bunny", "B-S asteroid - bunny"];
-    assert_eq!(of(&all, Family::ObjectPairs(Factor::Arrangement)), pairs);
-    assert_eq!(of(&all, Family::ObjectPairs(Factor::Clustering)).len(), 9);
+    assert_eq!(of(&all, Family::ObjectPairs(ARRANGEMENT)), pairs);
+    assert_eq!(of(&all, Family::ObjectPairs(CLUSTERING)).len(), 9);
     assert_eq!(of(&all, Family::Methods), [""; 0]);
     assert_eq!(all.len(), 4 + 9 + 3 + 9 + 6 + 3 + 9);
     assert!(all.is_sorted_by_key(|contrast| contrast.family));
@@ -130,8 +141,8 @@ fn of_many_objects_no_two_are_held_against_each_other() {
     let pairs = |objects: usize| {
         let asked: Vec<(usize, &str, &str)> = (0..objects).map(|o| (o, "bu", "bi")).collect();
         let all = contrasts(&design("b", "ui", objects, &asked));
-        assert_eq!(of(&all, Family::Objects(Factor::Clustering)).len(), objects);
-        of(&all, Family::ObjectPairs(Factor::Clustering)).len()
+        assert_eq!(of(&all, Family::Objects(CLUSTERING)).len(), objects);
+        of(&all, Family::ObjectPairs(CLUSTERING)).len()
     };
     assert_eq!([pairs(2), pairs(PAIRED_OBJECTS), pairs(PAIRED_OBJECTS + 1)], [1, 190, 0]);
 }
@@ -139,8 +150,9 @@ fn of_many_objects_no_two_are_held_against_each_other() {
 #[test]
 fn methods_that_differ_in_both_factors_are_tested_as_methods() {
     let asked = [(0, "bu", "si"), (1, "si", "bu"), (1, "bi", "su"), (0, "bu", "bi")];
-    let all = contrasts(&design("bs", "ui", 2, &asked));
-    let names: Vec<(&str, String)> = all.iter().map(|c| (c.family.code(), c.to_string())).collect();
+    let study = design("bs", "ui", 2, &asked);
+    let all = contrasts(&study);
+    let names: Vec<(&str, String)> = all.iter().map(|c| (c.family_name.as_str(), c.to_string())).collect();
     let expected = [
         ("pooled", "U-I"),
         ("methods", "bu-si"),
@@ -151,15 +163,18 @@ fn methods_that_differ_in_both_factors_are_tested_as_methods() {
     ];
     assert_eq!(names, expected.map(|(family, name)| (family, name.to_owned())));
     assert_eq!(all[1].weights, [(0, 1), (1, -1)].into());
-    assert_eq!(all[1].levels[0].label(), "body-centred, none");
+    assert_eq!(study.level(all[1].levels[0]).label, "body-centred, none");
 }
 
 #[test]
 fn families_of_correction() {
     let study = paper();
     let all = contrasts(&study);
-    let sizes = |section: &AnalysisSection| -> Vec<(&str, usize)> {
-        families(&all, section).iter().map(|family| (family.name, family.members.len())).collect()
+    let sizes = |section: &AnalysisSection| -> Vec<(String, usize)> {
+        families(&all, section).into_iter().map(|family| (family.name, family.members.len())).collect()
+    };
+    let named = |sizes: &[(&str, usize)]| -> Vec<(String, usize)> {
+        sizes.iter().map(|&(name, size)| (name.to_owned(), size)).collect()
     };
     let mut section = AnalysisSection::default();
     let by_kind = [
@@ -171,18 +186,18 @@ fn families_of_correction() {
         ("object-pairs", 3),
         ("object-pairs-clustering", 9),
     ];
-    assert_eq!(sizes(&section), by_kind);
+    assert_eq!(sizes(&section), named(&by_kind));
     section.primary = ["B-S within U", "B-S"].map(String::from).into();
-    assert_eq!(sizes(&section)[..3], [("primary", 2), ("pooled", 3), ("groups", 8)]);
+    assert_eq!(sizes(&section)[..3], named(&[("primary", 2), ("pooled", 3), ("groups", 8)]));
     let first = &families(&all, &section)[0];
     assert_eq!(
         first.members.iter().map(|&i| all[i].to_string()).collect::<Vec<_>>(),
         ["B-S", "B-S within U"]
     );
     section.families = FamilyRule::One;
-    assert_eq!(sizes(&section), [("primary", 2), ("all", 41)]);
+    assert_eq!(sizes(&section), named(&[("primary", 2), ("all", 41)]));
     section.primary.clear();
-    assert_eq!(sizes(&section), [("all", 43)]);
+    assert_eq!(sizes(&section), named(&[("all", 43)]));
 }
 
 #[test]
@@ -245,14 +260,18 @@ proptest! {
             hypotheses.push(weights);
 
             let sign = |c: &Comparison| -> Option<i64> {
-                let (l, r) = (c.left.method, c.right.method);
-                let ends = |m: Method| match contrast.levels[0].factor() {
-                    Factor::Arrangement => Level::Arrangement(m.arrangement),
-                    Factor::Clustering => Level::Clustering(m.clustering),
-                    Factor::Method => Level::Method(m),
+                let (l, r) = (crossed(c.left.method), crossed(c.right.method));
+                let factor = contrast.levels[0].factor;
+                let ends = |m: Crossed| {
+                    let index = match factor {
+                        ARRANGEMENT => "bsmf".find(m.arrangement.code()).unwrap(),
+                        CLUSTERING => "up".find(m.clustering.code()).unwrap(),
+                        _ => study.methods.iter().position(|of| of.id == m.id()).unwrap(),
+                    };
+                    Level { factor, index }
                 };
                 let differ = usize::from(l.arrangement != r.arrangement) + usize::from(l.clustering != r.clustering);
-                let wanted = if contrast.levels[0].factor() == Factor::Method { 2 } else { 1 };
+                let wanted = if factor == METHOD { 2 } else { 1 };
                 let [a, b] = contrast.levels;
                 match [ends(l), ends(r)] {
                     _ if differ != wanted => None,
@@ -261,10 +280,10 @@ proptest! {
                     _ => None,
                 }
             };
-            let has = |c: &Comparison, level: Level| match level {
-                Level::Arrangement(a) => c.left.method.arrangement == a && c.right.method.arrangement == a,
-                Level::Clustering(b) => c.left.method.clustering == b && c.right.method.clustering == b,
-                Level::Method(_) => false,
+            let has = |c: &Comparison, level: Level| {
+                let letter = |m: MethodId| m.as_str().chars().nth(level.factor.0).unwrap();
+                let wanted = ["bsmf", "up"][level.factor.0].chars().nth(level.index).unwrap();
+                letter(c.left.method) == wanted && letter(c.right.method) == wanted
             };
             let part = |kept: &dyn Fn(&Comparison) -> bool| scores(&study, &answers, |c| if kept(c) { sign(c) } else { None });
             // Means of the parts times their sizes, as fractions.
@@ -301,16 +320,15 @@ proptest! {
                     .map(|(&q, &w)| (q, w)).collect();
                 prop_assert!(own.is_empty() || known.contains(&key(&own)), "{} on {}", whole, o);
             }
-            for level in study.file.arrangements.iter().map(|&a| Level::Arrangement(a))
-                .chain(study.file.clusterings.iter().map(|&c| Level::Clustering(c))) {
-                if whole.family == Family::Methods || level.factor() == whole.levels[0].factor() {
+            for level in study.levels(ARRANGEMENT).into_iter().chain(study.levels(CLUSTERING)) {
+                if whole.family == Family::Methods || level.factor == whole.levels[0].factor {
                     continue;
                 }
                 let own: BTreeMap<usize, i64> = whole.weights.iter().filter(|(q, _)| {
                     let Comparison { left, .. } = &study.comparisons[**q];
-                    level == Level::Arrangement(left.method.arrangement) || level == Level::Clustering(left.method.clustering)
+                    study.level_of(left.method, level.factor) == Some(level)
                 }).map(|(&q, &w)| (q, w)).collect();
-                prop_assert!(own.is_empty() || known.contains(&key(&own)), "{} within {}", whole, level.code());
+                prop_assert!(own.is_empty() || known.contains(&key(&own)), "{} within {}", whole, study.level(level).code);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Sides: which end of each comparison is on the left, so that nobody is on one side more often than on the other.
+//!
+//! Methods are given by their places in the study.
 
-use crate::method::Method;
 use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_pcg::Pcg64;
@@ -11,7 +12,7 @@ use std::collections::BTreeMap;
 /// Within a block as by [`balanced`]; over blocks what leads two methods have of each other cancels out as well as a search
 /// finds: block after block is drawn anew and kept if leads shrink. They cannot always vanish: a lead within a block may have
 /// to follow from another.
-pub(super) fn over_blocks(blocks: &[Vec<(Method, Method)>], random: &mut Pcg64) -> Vec<Vec<bool>> {
+pub(super) fn over_blocks(blocks: &[Vec<(usize, usize)>], random: &mut Pcg64) -> Vec<Vec<bool>> {
     let mut swapped: Vec<Vec<bool>> = blocks.iter().map(|block| balanced(block, random)).collect();
     let mut total = Leads::new();
     blocks.iter().zip(&swapped).for_each(|(block, swapped)| add(&mut total, &leads(block, swapped), 1));
@@ -44,9 +45,9 @@ const SWEEPS: usize = 8;
 const DRAWS: usize = 16;
 
 /// How much more often the lower of two methods is on the left.
-type Leads = BTreeMap<(Method, Method), i64>;
+type Leads = BTreeMap<(usize, usize), i64>;
 
-fn leads(block: &[(Method, Method)], swapped: &[bool]) -> Leads {
+fn leads(block: &[(usize, usize)], swapped: &[bool]) -> Leads {
     let mut leads = Leads::new();
     for (&(left, right), &swapped) in block.iter().zip(swapped) {
         let lead = if (left < right) == swapped { -1 } else { 1 };
@@ -70,14 +71,14 @@ fn squares(others: &Leads, own: &Leads) -> i64 {
 /// the left of the other equally often, all to within one. Of several meetings pairs cancel out; what is left is a
 /// simple graph, whose edges get the direction in which an Euler tour runs through them, after its vertices of odd degree have
 /// been joined to one more vertex.
-fn balanced(comparisons: &[(Method, Method)], random: &mut Pcg64) -> Vec<bool> {
+fn balanced(comparisons: &[(usize, usize)], random: &mut Pcg64) -> Vec<bool> {
     let mut swapped = vec![false; comparisons.len()];
-    let mut meetings: BTreeMap<(Method, Method), Vec<usize>> = BTreeMap::new();
+    let mut meetings: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
     for (i, &(left, right)) in comparisons.iter().enumerate() {
         meetings.entry((left.min(right), left.max(right))).or_default().push(i);
     }
     // The left method of comparison `i` is to be `first`.
-    let mut set = |i: usize, first: Method| swapped[i] = comparisons[i].0 != first;
+    let mut set = |i: usize, first: usize| swapped[i] = comparisons[i].0 != first;
     let mut edges = Vec::new();
     for (&(low, high), meetings) in &mut meetings {
         meetings.shuffle(random);
@@ -89,7 +90,7 @@ fn balanced(comparisons: &[(Method, Method)], random: &mut Pcg64) -> Vec<bool> {
         edges.extend(twos.remainder().iter().map(|&i| (Some(low), Some(high), Some(i))));
     }
     edges.shuffle(random);
-    let mut degree: BTreeMap<Method, usize> = BTreeMap::new();
+    let mut degree: BTreeMap<usize, usize> = BTreeMap::new();
     edges.iter().flat_map(|&(a, b, _)| [a, b]).flatten().for_each(|m| *degree.entry(m).or_default() += 1);
     let odd = degree.iter().filter(|(_, degree)| *degree % 2 == 1);
     edges.extend(odd.map(|(&method, _)| (Some(method), None, None)));
@@ -122,18 +123,12 @@ mod tests {
     use proptest::prelude::*;
     use rand::SeedableRng;
 
-    fn method(i: usize) -> Method {
-        let code = [["b", "s"][i % 2], ["u", "i", "p", "c"][i / 2]].concat();
-        code.parse().expect("one of the eight")
-    }
-
     proptest! {
         #[test]
         fn nobody_is_on_one_side_more_than_once_too_often(
             pairs in prop::collection::vec((0usize..8, 0usize..8), 0..80), seed in any::<u64>()
         ) {
-            let distinct = pairs.into_iter().filter(|(a, b)| a != b);
-            let pairs: Vec<(Method, Method)> = distinct.map(|(a, b)| (method(a), method(b))).collect();
+            let pairs: Vec<(usize, usize)> = pairs.into_iter().filter(|(a, b)| a != b).collect();
             let swapped = balanced(&pairs, &mut Pcg64::seed_from_u64(seed));
             let (mut lead, mut pair_lead) = (BTreeMap::new(), BTreeMap::new());
             for (&(left, right), swap) in pairs.iter().zip(swapped) {

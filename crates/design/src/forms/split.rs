@@ -5,7 +5,6 @@
 //! where the number of blocks divides the number of a group's pairs, every block gets the same pairs on every object.
 
 use crate::contrast::{Family, contrasts};
-use crate::method::Method;
 use crate::study::{Comparison, Study};
 use rand::seq::SliceRandom;
 use rand_pcg::Pcg64;
@@ -96,8 +95,8 @@ fn dealt(order: &[usize], count: usize) -> Vec<usize> {
 fn orders(study: &Study, random: &mut Pcg64) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<Part>> = Vec::new();
     for group in by(study, |c| c.group) {
-        let mut pairs: BTreeMap<(Method, Method), Part> = BTreeMap::new();
-        group.iter().for_each(|&i| pairs.entry(pair(&study.comparisons[i])).or_default().push(i));
+        let mut pairs: BTreeMap<(usize, usize), Part> = BTreeMap::new();
+        group.iter().for_each(|&i| pairs.entry(pair(study, &study.comparisons[i])).or_default().push(i));
         groups.push(pairs.into_values().collect());
     }
     groups.iter_mut().flatten().for_each(|own| own.sort_by_key(|&i| study.comparisons[i].object));
@@ -121,8 +120,10 @@ fn orders(study: &Study, random: &mut Pcg64) -> Vec<Vec<usize>> {
     orders
 }
 
-fn pair(Comparison { left, right, .. }: &Comparison) -> (Method, Method) {
-    (left.method.min(right.method), left.method.max(right.method))
+/// The places of the two methods, the lower first.
+fn pair(study: &Study, Comparison { left, right, .. }: &Comparison) -> (usize, usize) {
+    let (left, right) = (study.place(left.method), study.place(right.method));
+    (left.min(right), left.max(right))
 }
 
 /// The comparisons with each value of a label, in the order of values.
@@ -137,7 +138,7 @@ fn by<T: Ord>(study: &Study, label: impl Fn(&Comparison) -> T) -> Vec<Part> {
 /// Everything that is judged.
 fn terms(study: &Study) -> Vec<Term> {
     let mut terms = Vec::new();
-    terms.extend(by(study, pair).into_iter().map(|part| Term::Even(Aim::Pairs, part)));
+    terms.extend(by(study, |c| pair(study, c)).into_iter().map(|part| Term::Even(Aim::Pairs, part)));
     terms.extend(by(study, |c| c.group).into_iter().map(|part| Term::Even(Aim::Groups, part)));
     terms.extend(by(study, |c| c.object).into_iter().map(|part| Term::Even(Aim::Objects, part)));
     for contrast in contrasts(study) {
@@ -169,9 +170,9 @@ fn terms(study: &Study) -> Vec<Term> {
 fn triads(study: &Study, own: &[usize]) -> Vec<Part> {
     let mut found = Vec::new();
     for (i, &first) in own.iter().enumerate() {
-        let (a, b) = pair(&study.comparisons[first]);
+        let (a, b) = pair(study, &study.comparisons[first]);
         for (j, &second) in own.iter().enumerate().skip(i + 1) {
-            let (c, d) = pair(&study.comparisons[second]);
+            let (c, d) = pair(study, &study.comparisons[second]);
             // The methods in which the two differ are the third's.
             let third = match [a == c, a == d, b == c, b == d] {
                 [true, false, false, false] => (b.min(d), b.max(d)),
@@ -180,7 +181,7 @@ fn triads(study: &Study, own: &[usize]) -> Vec<Part> {
                 [false, false, false, true] => (a.min(c), a.max(c)),
                 _ => continue,
             };
-            let thirds = own[j + 1..].iter().filter(|&&i| pair(&study.comparisons[i]) == third);
+            let thirds = own[j + 1..].iter().filter(|&&i| pair(study, &study.comparisons[i]) == third);
             found.extend(thirds.map(|&third| vec![first, second, third]));
         }
     }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::config::FormsSection;
-use crate::method::Method;
+use crate::method::MethodId;
 use crate::study::tests::paper_with;
 use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -117,7 +117,7 @@ proptest! {
             prop_assert!(of(Role::Control).all(|trial| trial.left == trial.right));
             let different: BTreeSet<_> = form.trials.iter().map(|trial| (trial.role, &trial.left, &trial.right)).collect();
             prop_assert_eq!(different.len(), form.trials.len(), "nothing twice");
-            let mut of_controls: BTreeMap<Method, i64> = study.methods().into_iter().map(|m| (m, 0)).collect();
+            let mut of_controls: BTreeMap<MethodId, i64> = study.method_ids().into_iter().map(|m| (m, 0)).collect();
             of(Role::Control).for_each(|trial| *of_controls.entry(trial.left.method).or_default() += 1);
             prop_assert!(even(of_controls.values().copied()), "{of_controls:?}");
             if questionnaire.blocks() == 1 {
@@ -127,8 +127,8 @@ proptest! {
                 prop_assert_eq!(Some(uneven(&study, &repeated)), least);
             }
 
-            let mut method_lead: BTreeMap<Method, i64> = BTreeMap::new();
-            let mut pair_lead: BTreeMap<(Method, Method), i64> = BTreeMap::new();
+            let mut method_lead: BTreeMap<MethodId, i64> = BTreeMap::new();
+            let mut pair_lead: BTreeMap<(MethodId, MethodId), i64> = BTreeMap::new();
             for trial in of(Role::Comparison) {
                 let (left, right) = (trial.left.method, trial.right.method);
                 *method_lead.entry(left).or_default() += 1;

@@ -2,13 +2,13 @@
 
 use super::{Fault, Rule};
 use crate::config::{FormsSection, ShownNames};
-use crate::method::{Clustering, ConfigurationId};
+use crate::method::ConfigurationId;
 use crate::study::Study;
 
 /// What tells what is shown, in what participants read: ids of questions, and texts.
 ///
-/// Texts are searched for whole words, capitals or not: ids of configurations and names of arrangements and clusterings (but for
-/// "none") in all, the two letters of a method in the short ones only: some of them are words, which prose is full of.
+/// Texts are searched for whole words, capitals or not: ids of configurations and names of methods and levels (but for "none") in
+/// all, ids of methods in the short ones only: some of them are words, which prose is full of.
 pub(super) fn names(study: &Study, section: &FormsSection) -> Vec<Fault> {
     let mut faults = Vec::new();
     let mut fault = |place: String, evidence: String| {
@@ -26,10 +26,9 @@ pub(super) fn names(study: &Study, section: &FormsSection) -> Vec<Fault> {
         }
     }
     let mut told: Vec<String> = study.configurations.iter().map(|c| c.id.to_string()).collect();
-    told.extend(study.file.arrangements.iter().map(|arrangement| arrangement.label().to_owned()));
-    let clusterings = study.file.clusterings.iter().filter(|&&clustering| clustering != Clustering::None);
-    told.extend(clusterings.map(|clustering| clustering.label().to_owned()));
-    let codes: Vec<String> = study.methods().iter().map(ToString::to_string).collect();
+    let levels = study.factors.iter().flat_map(|factor| &factor.levels);
+    told.extend(levels.map(|level| level.label.clone()).filter(|label| label != "none"));
+    let codes: Vec<String> = study.method_ids().iter().map(ToString::to_string).collect();
     let short = |key: &str, text: &str| (key.to_owned(), text.to_owned(), true);
     let mut texts =
         vec![short("study.title", &study.file.study.title), short("forms.prompt", &section.prompt)];

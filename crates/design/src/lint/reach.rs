@@ -12,7 +12,7 @@ pub struct Reach {
     /// What is tested.
     pub contrast: Contrast,
     /// Name of the family in which it is corrected, see [`families`].
-    pub family: &'static str,
+    pub family: String,
     /// Whether some form asks about every part of it.
     pub asked: bool,
     /// How many participants would [count](Contrast::counts) who answer everything they are asked.
@@ -43,11 +43,17 @@ pub fn reach(study: &Study, participants: usize) -> Vec<Reach> {
         let counts =
             |(asked, _): &&(BTreeSet<usize>, usize)| contrast.counts(|question| asked.contains(&question));
         let people: Vec<usize> = blocks.iter().filter(counts).map(|(_, people)| *people).collect();
-        Reach { family: "", asked: !people.is_empty(), participants: people.iter().sum(), p: None, contrast }
+        Reach {
+            family: String::new(),
+            asked: !people.is_empty(),
+            participants: people.iter().sum(),
+            p: None,
+            contrast,
+        }
     };
     let mut reach: Vec<Reach> = all.into_iter().map(of_contrast).collect();
     for TestFamily { name, members } in families {
-        members.iter().for_each(|&i| reach[i].family = name);
+        members.iter().for_each(|&i| reach[i].family.clone_from(&name));
         let mut counted = members;
         counted.retain(|&i| reach[i].participants > 0);
         // The most people first: their p is smallest.
@@ -68,12 +74,12 @@ pub(super) fn faults(study: &Study, participants: usize) -> Vec<Fault> {
     let reach = reach(study, participants);
     let mut faults = Vec::new();
     let mut judged: Vec<&str> = Vec::new();
-    for &Reach { family, .. } in &reach {
-        if judged.contains(&family) {
+    for Reach { family, .. } in &reach {
+        if judged.contains(&family.as_str()) {
             continue;
         }
         judged.push(family);
-        let own = || reach.iter().filter(|of| of.family == family);
+        let own = || reach.iter().filter(|of| of.family == *family);
         let place = format!("family {family}");
         let unasked: Vec<&Reach> = own().filter(|of| !of.asked).collect();
         if !unasked.is_empty() {

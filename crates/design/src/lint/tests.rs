@@ -3,7 +3,8 @@
 use super::*;
 use crate::config::{FormsSection, ShownNames};
 use crate::method::ConfigurationId;
-use crate::study::tests::{load, paper_with};
+use crate::method::{Arrangement, Clustering};
+use crate::study::tests::{cross, load, paper_with};
 
 fn balanced() -> Study {
     load("balanced.toml")
@@ -155,8 +156,11 @@ fn a_method_that_is_asked_about_less_often() {
 #[test]
 fn methods_that_are_never_compared() {
     let mut study = balanced();
+    let clusterings =
+        [Clustering::None, Clustering::Integrated, Clustering::EdgeCollapse, Clustering::IntegratedCollapse];
+    cross(&mut study, &[Arrangement::BodyCentred, Arrangement::SimpleCubic], &clusterings);
     // A fourth and a fifth method of group B, compared with each other on every object and with no other.
-    let extra: Vec<Method> = vec!["bc".parse().unwrap(), "sc".parse().unwrap()];
+    let extra: Vec<crate::MethodId> = vec!["bc".parse().unwrap(), "sc".parse().unwrap()];
     let b = study.groups.iter().position(|group| group.id == "B").unwrap();
     keep(&mut study, |c| c.group != b || c.question != "Q2" && c.question != "Q3");
     keep(&mut study, |c| c.group != b);
@@ -195,8 +199,9 @@ fn methods_that_differ_in_two_properties() {
     }
     // Tested as methods, with families of their own.
     assert_eq!(lint(&study), []);
+    let reached = reach(&study, 36);
     let families: Vec<(&str, usize)> =
-        reach(&study, 36).iter().map(|of| (of.family, of.participants)).collect();
+        reached.iter().map(|of| (of.family.as_str(), of.participants)).collect();
     for (family, tests) in [("methods", 1), ("objects-method", 3), ("object-pairs-method", 3)] {
         assert_eq!(families.iter().filter(|of| **of == (family, 36)).count(), tests, "{family}");
     }

@@ -18,7 +18,9 @@ pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), Co
     }
     c.positive("limits.memory_gib", file.limits.memory_gib, 1024.0)?;
     check_arrangements(c, file)?;
-    c.count("extraction.accumulation_chunks", file.extraction.accumulation_chunks, 1, 4096)?;
+    if let Some(extraction) = &file.extraction {
+        c.count("extraction.accumulation_chunks", extraction.accumulation_chunks, 1, 4096)?;
+    }
 
     let t = &file.turntable;
     c.count("turntable.width", t.width, 16, 4096)?;
@@ -81,7 +83,8 @@ fn check_arrangements(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigErr
             return c.refuse(key, arrangement.label(), limit);
         }
         let is_published = matches!(arrangement, Arrangement::BodyCentred | Arrangement::SimpleCubic);
-        if !is_published && file.extraction.positions == Positions::Accumulated {
+        let summed = file.extraction.as_ref().is_some_and(|of| of.positions == Positions::Accumulated);
+        if !is_published && summed {
             return c.refuse(key, arrangement.label(), "needs extraction.positions = \"indexed\"");
         }
     }

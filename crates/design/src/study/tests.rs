@@ -1,4 +1,6 @@
+use super::methods::with_method;
 use super::*;
+use crate::method::{Arrangement, Clustering, expand};
 
 /// A study file of this project.
 pub(crate) fn load(name: &str) -> Study {
@@ -13,6 +15,15 @@ pub(crate) fn paper_with(from: &str, to: &str) -> Result<Study, ConfigError> {
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(text.contains(from), "{from} is not in {}", path.display());
     Study::parse(&text.replacen(from, to, 1), &path)
+}
+
+/// Gives a study other factors, and the methods that follow; objects and questions stay.
+pub(crate) fn cross(study: &mut Study, arrangements: &[Arrangement], clusterings: &[Clustering]) {
+    let section = study.file.extraction.as_ref().expect("a study of the short form");
+    (study.factors, study.methods) = {
+        let (factors, methods) = expand(arrangements, clusterings, section);
+        with_method(factors, methods)
+    };
 }
 
 fn error_with(from: &str, to: &str) -> String {
@@ -112,14 +123,15 @@ fn unknown_keys_and_missing_files_are_named() {
 
 #[test]
 fn topology_is_guarded_unless_said_otherwise() {
-    let topology = |to| paper_with("topology = \"published\"", to).unwrap().file.extraction.topology;
+    let topology = |to| paper_with("topology = \"published\"", to).unwrap().file.extraction.unwrap().topology;
     assert_eq!(topology("topology = \"published\""), crate::config::Topology::Published);
     assert_eq!(topology(""), crate::config::Topology::Guarded);
 }
 
 #[test]
 fn chunks_of_layers_may_be_left_out() {
-    let chunks = |to| paper_with("accumulation_chunks = 16", to).unwrap().file.extraction.accumulation_chunks;
+    let chunks =
+        |to| paper_with("accumulation_chunks = 16", to).unwrap().file.extraction.unwrap().accumulation_chunks;
     assert_eq!((chunks("accumulation_chunks = 16"), chunks("")), (16, 1));
     let error = error_with("accumulation_chunks = 16", "accumulation_chunks = 0");
     assert!(error.contains("accumulation_chunks = 0: must lie between 1 and 4096"), "{error}");
@@ -136,7 +148,7 @@ fn unknown_placements_are_told_what_there_is() {
     }
     let error = error_with("refine_crossings = false", "refine_crossings = 4");
     assert!(error.contains("refine_crossings = 4") && error.contains("boolean"), "{error}");
-    let placement = |to| paper_with(key, to).unwrap().file.extraction.placement;
+    let placement = |to| paper_with(key, to).unwrap().file.extraction.unwrap().placement;
     assert_eq!(placement(""), crate::config::Placement::MeanOfCrossings);
     assert_eq!(placement("placement = \"relaxed\""), crate::config::Placement::Relaxed);
 }

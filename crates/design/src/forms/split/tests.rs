@@ -1,9 +1,10 @@
 //! Blocks against the dealing of a sorted list, against every dealing there is, and on the design that it aliased.
 
 use super::*;
-use crate::contrast::{Contrast, Factor};
+use crate::contrast::Contrast;
 use crate::forms::{Questionnaire, Role};
-use crate::study::tests::load;
+use crate::method::{Arrangement, Clustering, Crossed, Factor, MethodId};
+use crate::study::tests::{cross, load};
 use proptest::prelude::*;
 use rand::SeedableRng;
 use std::collections::BTreeSet;
@@ -23,7 +24,7 @@ fn first_aims(study: &Study, all: &[Contrast], blocks: &[Vec<usize>]) -> [usize;
     let squares = |of: &dyn Fn(usize) -> bool| -> usize {
         blocks.iter().map(|block| block.iter().filter(|&&i| of(i)).count().pow(2)).sum()
     };
-    let pairs: BTreeSet<(Method, Method)> = study.comparisons.iter().map(pair).collect();
+    let pairs: BTreeSet<(usize, usize)> = study.comparisons.iter().map(|c| pair(study, c)).collect();
     let untested = |interaction: bool| {
         let of =
             all.iter().filter(|c| c.is_difference() && (c.family == Family::Interactions) == interaction);
@@ -31,7 +32,7 @@ fn first_aims(study: &Study, all: &[Contrast], blocks: &[Vec<usize>]) -> [usize;
     };
     let plain = all.iter().filter(|c| !c.is_difference());
     [
-        pairs.iter().map(|&own| squares(&|i| pair(&study.comparisons[i]) == own)).sum(),
+        pairs.iter().map(|&own| squares(&|i| pair(study, &study.comparisons[i]) == own)).sum(),
         untested(true),
         untested(false),
         plain.map(|contrast| squares(&|i| contrast.weights.contains_key(&i))).sum(),
@@ -42,10 +43,13 @@ fn first_aims(study: &Study, all: &[Contrast], blocks: &[Vec<usize>]) -> [usize;
 /// arrangements of each clustering; of its comparisons those that are kept.
 fn design(arrangements: usize, clusterings: usize, objects: usize, kept: impl Fn(usize) -> bool) -> Study {
     let mut study = load("balanced.toml");
-    let method =
-        |a: usize, c: usize| -> Method { [["b", "s", "m", "f"][a], ["u", "p"][c]].concat().parse().unwrap() };
-    study.file.arrangements = (0..arrangements).map(|a| method(a, 0).arrangement).collect();
-    study.file.clusterings = (0..clusterings).map(|c| method(0, c).clustering).collect();
+    let method = |a: usize, c: usize| -> MethodId {
+        [["b", "s", "m", "f"][a], ["u", "p"][c]].concat().parse().unwrap()
+    };
+    let crossed = |a, c| Crossed::of(method(a, c)).expect("two letters");
+    let lattices: Vec<Arrangement> = (0..arrangements).map(|a| crossed(a, 0).arrangement).collect();
+    let mergings: Vec<Clustering> = (0..clusterings).map(|c| crossed(0, c).clustering).collect();
+    cross(&mut study, &lattices, &mergings);
     let object = study.file.objects[0].clone();
     study.file.objects.clear();
     for o in 0..objects {
@@ -113,9 +117,9 @@ proptest! {
         prop_assert!(sizes.iter().all(|&size| size == questions / count || size == questions.div_ceil(count)));
         prop_assert!(blocks.iter().all(|block| block.is_sorted()));
         prop_assert_eq!(blocks.iter().flatten().collect::<BTreeSet<_>>().len(), questions);
-        let pairs: BTreeSet<(Method, Method)> = study.comparisons.iter().map(pair).collect();
+        let pairs: BTreeSet<(usize, usize)> = study.comparisons.iter().map(|c| pair(&study, c)).collect();
         for own in pairs {
-            let counts = blocks.iter().map(|block| block.iter().filter(|&&i| pair(&study.comparisons[i]) == own).count());
+            let counts = blocks.iter().map(|block| block.iter().filter(|&&i| pair(&study, &study.comparisons[i]) == own).count());
             let counts: Vec<usize> = counts.collect();
             prop_assert!(counts.iter().max().unwrap() - counts.iter().min().unwrap() <= 1, "{:?} {:?}", own, counts);
         }
@@ -175,7 +179,7 @@ fn three_blocks_of_the_balanced_study_hold_every_hypothesis() {
                 *people += usize::from(contrast.counts(|q| asked.contains(&q)));
             }
             // One of each pair of methods, arrangements on each object, and all clusterings on some object.
-            let pairs: BTreeSet<_> = asked.iter().map(|&i| pair(&study.comparisons[i])).collect();
+            let pairs: BTreeSet<_> = asked.iter().map(|&i| pair(&study, &study.comparisons[i])).collect();
             assert_eq!(pairs.len(), 9, "{seed}");
             let tournaments = by(&study, |c| (c.group, c.object)).into_iter();
             let whole =
@@ -185,8 +189,8 @@ fn three_blocks_of_the_balanced_study_hold_every_hypothesis() {
         for (contrast, people) in all.iter().zip(people) {
             // What is asked of two objects of three, or of one of two arrangements, is asked of a part of the people.
             let expected = match contrast.family {
-                Family::Objects(Factor::Clustering) => 24,
-                Family::ObjectPairs(Factor::Clustering) => 12,
+                Family::Objects(Factor(1)) => 24,
+                Family::ObjectPairs(Factor(1)) => 12,
                 _ => 36,
             };
             assert_eq!(people, expected, "{seed} {contrast}");

@@ -4,7 +4,7 @@ use super::*;
 use crate::config::FamilyRule;
 use crate::contrast::Family;
 use crate::lint::lint;
-use crate::method::{ConfigurationId, Method};
+use crate::method::{ConfigurationId, MethodId};
 use crate::study::Comparison;
 use crate::study::tests::load;
 use proptest::prelude::*;
@@ -39,7 +39,7 @@ fn lattices_alone(participants: u32, objects: usize) -> Study {
         study.file.objects.push(object);
         let [left, right] = ["su", "bu"].map(|method| ConfigurationId {
             object: format!("o{o}"),
-            method: method.parse::<Method>().unwrap(),
+            method: method.parse::<MethodId>().unwrap(),
         });
         study.comparisons.push(Comparison { question: format!("Q{o}"), object: o, group, left, right });
     }
@@ -83,7 +83,7 @@ fn a_primary_contrast_needs_fewer() {
         reach(study, 6).into_iter().find(|of| of.contrast.to_string() == name).unwrap()
     };
     let primary = of(&study, "B-S");
-    assert_eq!((primary.family, primary.p), ("primary", Some([0.03125, 0.03125])));
+    assert_eq!((primary.family.as_str(), primary.p), ("primary", Some([0.03125, 0.03125])));
     assert_eq!(of(&study, "U-I").p, Some([0.03125, 3.0 * 0.03125]));
     study.file.analysis.primary.clear();
     assert_eq!(of(&study, "B-S").p, Some([0.03125, 4.0 * 0.03125]));
@@ -167,7 +167,7 @@ proptest! {
             prop_assert!(of.asked || people == 0);
             if people > 0 {
                 let p = 2.0 / 2f64.powi(people as i32);
-                families.entry(of.family).or_default().push((i, p));
+                families.entry(&of.family).or_default().push((i, p));
             } else {
                 prop_assert_eq!(of.p, None);
             }
