@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p analysis --example simulate -- configs/paper.toml 100000 answers.csv [SEED]`
 
-use design::{Method, Study};
+use design::Study;
 use statistics::Outcome;
 use statistics::simulation::{Plan, Population, Shown, simulate, stream};
 use std::io::Write;
@@ -14,8 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let study = Study::load(study.as_ref())?;
     let seed = rest.first().map_or(Ok(1), |seed| seed.parse())?;
-    let methods = study.methods();
-    let item = |method: Method| methods.iter().position(|&m| m == method).expect("checked on load");
+    let item = |method| study.place(method);
     let questions = study.comparisons.iter().map(|c| Shown {
         left: item(c.left.method),
         right: item(c.right.method),

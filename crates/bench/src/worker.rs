@@ -5,20 +5,45 @@ use crate::load::resident_bytes;
 use crate::reference::Reference;
 use crate::run::{Measurement, PeakBytes};
 use crate::stages::StageSeconds;
-use extract::{Execution, ExtractSettings, Lattice, StageTimes, extract};
+use extract::{Execution, Extraction, Extractor, Grid, Method, MethodError, StageTimes};
 use field::ScalarField;
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::io::{self, BufRead, Write};
 
 /// A configuration, ready to extract.
-pub struct Subject<'a> {
+#[derive(Clone, Copy)]
+pub struct Prepared<'a> {
     /// What is sampled.
     pub field: &'a dyn ScalarField,
-    /// Where it is sampled.
-    pub lattice: Lattice,
-    /// Isovalue, clustering, positions.
-    pub settings: ExtractSettings,
+    /// What decides the mesh.
+    pub method: Method,
+    /// Where the field is sampled.
+    pub grid: Grid,
+    /// The value of the surface.
+    pub isovalue: f32,
+}
+
+impl Prepared<'_> {
+    /// The mesh, with buffers of its own.
+    ///
+    /// # Errors
+    /// As [`Method::extract`].
+    pub fn extract(&self, execution: &Execution) -> Result<Extraction, MethodError> {
+        self.extract_with(&mut Extractor::new(), execution)
+    }
+
+    /// The same with an extractor that is there, for its buffers and its progress.
+    ///
+    /// # Errors
+    /// As [`Method::extract`].
+    pub fn extract_with(
+        &self,
+        extractor: &mut Extractor,
+        execution: &Execution,
+    ) -> Result<Extraction, MethodError> {
+        self.method.extract(extractor, self.field.into(), &self.grid, self.isovalue, execution)
+    }
 }
 
 /// What the measuring process is asked; subjects are numbered.
@@ -55,7 +80,7 @@ pub fn serve<'a>(
     mut replies: impl Write,
     pinned: Option<Vec<u32>>,
     threads: u32,
-    subject: &mut dyn FnMut(usize) -> Result<Subject<'a>, String>,
+    subject: &mut dyn FnMut(usize) -> Result<Prepared<'a>, String>,
 ) -> io::Result<()> {
     let mut reference = Reference::default();
     let mut say = |reply: &Reply| {
@@ -76,12 +101,12 @@ pub fn serve<'a>(
 }
 
 /// Extracts once and drops the mesh; dropping is not in any stage.
-fn time(subject: &Subject<'_>, threads: u32, reference: &mut Reference) -> Result<Measurement, String> {
+fn time(subject: &Prepared<'_>, threads: u32, reference: &mut Reference) -> Result<Measurement, String> {
     let reference_s = Some(reference.time().as_secs_f64());
     Ok(Measurement { stages: StageSeconds::from(&extract_once(subject, threads)?), reference_s })
 }
 
-fn peak(subject: &Subject<'_>, threads: u32) -> Result<Option<PeakBytes>, String> {
+fn peak(subject: &Prepared<'_>, threads: u32) -> Result<Option<PeakBytes>, String> {
     let before = resident_bytes();
     extract_once(subject, threads)?;
     Ok(before.zip(resident_bytes()).map(|([before_bytes, peak_before_bytes], [_, peak_bytes])| PeakBytes {
@@ -91,9 +116,9 @@ fn peak(subject: &Subject<'_>, threads: u32) -> Result<Option<PeakBytes>, String
     }))
 }
 
-fn extract_once(subject: &Subject<'_>, threads: u32) -> Result<StageTimes, String> {
+fn extract_once(subject: &Prepared<'_>, threads: u32) -> Result<StageTimes, String> {
     let execution = Execution { threads: threads as usize };
-    let extraction = extract(subject.field, &subject.lattice, &subject.settings, &execution);
+    let extraction = subject.extract(&execution);
     extraction.map(|extraction| black_box(extraction).times).map_err(|error| error.to_string())
 }
 
@@ -133,27 +158,28 @@ impl Reply {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use extract::{Arrangement, Clustering, Positions};
+    use extract::{Arrangement, Clustering, Positions, Tetrahedra};
     use field::Sphere;
     use glam::Vec3;
     use mesh::Bounds;
     use std::time::Duration;
 
-    fn sphere(settings: ExtractSettings) -> Subject<'static> {
+    fn sphere(method: Tetrahedra) -> Prepared<'static> {
         let bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) };
-        let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.5).unwrap();
-        Subject { field: &Sphere { radius: 1.0 }, lattice, settings }
+        let grid = Grid { bounds, spacing: 0.5 };
+        Prepared { field: &Sphere { radius: 1.0 }, method: Method::Tetrahedra(method), grid, isovalue: 0.0 }
     }
 
     fn replies(requests: &[Request]) -> Vec<Reply> {
         let lines: Vec<String> =
             requests.iter().map(|request| serde_json::to_string(request).unwrap()).collect();
         let mut out = Vec::new();
+        let plain = Tetrahedra::new(Arrangement::BodyCentred);
         let subject = &mut |number| match number {
-            0 => Ok(sphere(ExtractSettings { clustering: Clustering::EdgeCollapse, ..Default::default() })),
+            0 => Ok(sphere(Tetrahedra { clustering: Clustering::EdgeCollapse, ..plain })),
             1 => {
                 let positions = Positions::Accumulated { chunks: 0 };
-                Ok(sphere(ExtractSettings { positions, ..Default::default() }))
+                Ok(sphere(Tetrahedra { positions, ..plain }))
             }
             _ => Err("there are two subjects".into()),
         };
@@ -211,7 +237,7 @@ mod tests {
 
     #[test]
     fn what_is_no_request_ends_the_process() {
-        let mut never = |_| -> Result<Subject<'static>, String> { unreachable!() };
+        let mut never = |_| -> Result<Prepared<'static>, String> { unreachable!() };
         assert!(serve("{\"sing\":1}\n".as_bytes(), &mut Vec::new(), None, 1, &mut never).is_err());
     }
 }

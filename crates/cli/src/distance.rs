@@ -1,11 +1,10 @@
 //! How far two surfaces are from each other: `isostudy distance`.
 
 use crate::args::Distance;
-use crate::subject::Fields;
-use crate::{input, mesh_file, say, significant, subject};
+use crate::fields::Fields;
+use crate::{input, mesh_file, prepare, say, significant};
 use anyhow::{Context, Result, bail};
-use design::Arrangement;
-use extract::{Execution, ExtractSettings, Lattice};
+use extract::{Arrangement, Execution, Grid, Method, Tetrahedra};
 use field::ScalarField;
 use mesh::metro::{Amount, Deviation, Metro, Sampling, Surface};
 use serde::Serialize;
@@ -60,19 +59,17 @@ fn to_object(arguments: &Distance, a: &Surface, id: &str, sampling: &Sampling) -
     };
     let object = &objects[index];
     let spacing = arguments.source.spacing.map_or(object.benchmark_spacing, f64::from);
-    let lattice = subject::lattice(object, Arrangement::BodyCentred, spacing)
-        .with_context(|| format!("--spacing {spacing}"))?;
+    let grid = prepare::grid(object, spacing);
     let fields = Fields::new(&study);
-    to_isosurface(arguments, a, (fields.get(index)?, 0), object.isovalue as f32, &lattice, sampling)
-        .with_context(|| format!("{} and {id}", arguments.a.display()))
+    to_isosurface(arguments, a, (fields.get(index)?, 0), object.isovalue as f32, &grid, sampling)
+        .with_context(|| format!("{} and {id}, with spacing {spacing}", arguments.a.display()))
 }
 
 /// Against the isosurface of a formula, a volume or a mesh's distance, in its box.
 fn to_source(arguments: &Distance, a: &Surface, sampling: &Sampling) -> Result<(String, Metro)> {
     let source = arguments.source.read()?.context("something to compare with is needed")?;
-    let lattice = source.lattice(Arrangement::BodyCentred)?;
     let field = (&*source.field, source.held);
-    let metro = to_isosurface(arguments, a, field, source.isovalue, &lattice, sampling)
+    let metro = to_isosurface(arguments, a, field, source.isovalue, &source.grid(), sampling)
         .with_context(|| format!("{} and {}", arguments.a.display(), source.name))?;
     Ok((source.name, metro))
 }
@@ -83,13 +80,15 @@ fn to_isosurface(
     a: &Surface,
     (field, held): (&dyn ScalarField, u64),
     isovalue: f32,
-    lattice: &Lattice,
+    grid: &Grid,
     sampling: &Sampling,
 ) -> Result<Metro> {
     let execution = Execution { threads: arguments.threads as usize };
     let limit = arguments.source.limit();
-    subject::check_limit(lattice, &ExtractSettings::default(), &execution, held, limit)?;
-    Ok(extract::distances(a, field, isovalue, lattice, sampling, &execution)?)
+    // The isosurface is looked for on such a lattice.
+    let method = Method::Tetrahedra(Tetrahedra::new(Arrangement::BodyCentred));
+    prepare::check_limit(&method, grid, &execution, held, limit)?;
+    Ok(extract::distances(a, field, isovalue, grid, sampling, &execution)?)
 }
 
 fn surface(path: &Path) -> Result<Surface> {

@@ -1,7 +1,9 @@
 //! Files that are named to be read. A device or a pipe may never end, or never begin.
 
+use crate::prepare;
 use anyhow::{Context, Result, bail};
 use design::Study;
+use design::record::Purpose;
 use std::path::{Path, PathBuf};
 
 /// What is there must be a file; that it is not there at all its reader says.
@@ -38,7 +40,11 @@ pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>> {
 /// If it is no file, or something in it is wrong.
 pub(crate) fn study(path: &Path) -> Result<Study> {
     regular(path)?;
-    Ok(Study::load(path)?)
+    let study = Study::load(path)?;
+    for of in &study.methods {
+        prepare::method(&study, of.id, Purpose::Benchmark)?;
+    }
+    Ok(study)
 }
 
 /// Whether two paths lead to one file, which need not be there.

@@ -1,15 +1,16 @@
 //! One configuration at one resolution: extracted, measured, timed, printed.
 
 use crate::args::Inspect;
+use crate::fields::Fields;
+use crate::prepare::{self, Wanted, prepare};
 use crate::records::mesh_record;
-use crate::subject::Fields;
-use crate::{input, machine, say, subject};
+use crate::{input, machine, say};
 use analysis::Panel;
 use anyhow::{Context, Result, bail};
-use bench::StageSeconds;
+use bench::{Prepared, StageSeconds};
 use design::ConfigurationId;
 use design::record::Purpose;
-use extract::{Execution, extract};
+use extract::Execution;
 
 /// Prints the panel.
 pub(crate) fn inspect(arguments: &Inspect) -> Result<()> {
@@ -20,32 +21,31 @@ pub(crate) fn inspect(arguments: &Inspect) -> Result<()> {
         bail!("{id}: {} has {}", study.path.display(), known.join(", "));
     };
     let object = study.object(configuration);
-    let spacing = match arguments.resolution {
-        Some(cells) => subject::spacing_of_cells(object, cells),
-        None => object.benchmark_spacing,
+    let wanted = match arguments.resolution {
+        Some(cells) => Wanted::Cells(cells, Purpose::Benchmark),
+        None => Wanted::For(Purpose::Benchmark),
     };
-    let method = configuration.id.method;
-    let lattice = subject::lattice(object, method.arrangement, spacing)?;
-    let settings = subject::settings(&study, configuration, Purpose::Benchmark);
+    let spacing = wanted.spacing(object);
+    let fields = Fields::new(&study);
+    let prepared = prepare(&study, &fields, configuration, wanted)?;
     let execution = Execution { threads: arguments.threads as usize };
     let machine = machine::read();
-    subject::check_memory(&study, &lattice, &settings, &execution, machine.memory_bytes)
+    prepare::check_memory(&study, &prepared.method, &prepared.grid, &execution, machine.memory_bytes)
         .with_context(|| format!("{id} with spacing {spacing}"))?;
-    let fields = Fields::new(&study);
-    let field = fields.get(configuration.object)?;
-    let extraction = extract(field, &lattice, &settings, &execution)?;
+    let extraction = prepared.extract(&execution)?;
     if extraction.mesh.triangles.is_empty() {
         bail!(
             "{id}: no surface at isovalue {} with spacing {spacing}: every sample lies on one side",
             object.isovalue
         );
     }
-    let accuracy = extract::accuracy(&extraction.mesh, field, settings.isovalue, &lattice, &execution)?;
-    let record = mesh_record(&id, Purpose::Benchmark, spacing, &lattice, &extraction, &accuracy);
+    let Prepared { field, grid, isovalue, method } = &prepared;
+    let accuracy = extract::accuracy(&extraction.mesh, *field, *isovalue, grid, &execution)?;
+    let record = mesh_record(&id, Purpose::Benchmark, spacing, method.cells(grid)?, &extraction, &accuracy);
     // The extraction above was the warm-up.
     let mut samples = Vec::new();
     for iteration in 0..arguments.iterations {
-        let times = extract(field, &lattice, &settings, &execution)?.times;
+        let times = prepared.extract(&execution)?.times;
         samples.push(StageSeconds::from(&times).sample(id.clone(), [0, iteration, 0], None));
     }
     let threads = match arguments.threads {

@@ -11,6 +11,7 @@ mod args;
 mod asking;
 mod comparing;
 mod distance;
+mod fields;
 mod input;
 mod inspect;
 mod machine;
@@ -19,6 +20,7 @@ mod memory;
 mod mesh_file;
 mod picture;
 mod pipeline;
+mod prepare;
 mod progress;
 mod questionnaire;
 mod records;
@@ -26,13 +28,13 @@ mod rooms;
 mod run_file;
 mod source;
 mod store;
-mod subject;
 mod surface;
 mod video;
 
 use anyhow::{Context, Result};
 use args::{Analyse, Bench, BenchVerb, Cli, Command, Design, Run, Selection};
 use clap::Parser;
+use design::record::Purpose;
 use design::{ConfigurationId, Published, Study};
 use pipeline::{Pipeline, PlanLength};
 use std::io::{ErrorKind, Write};
@@ -281,14 +283,14 @@ fn validate(path: &Path) -> Result<()> {
     let study = load(path)?;
     for configuration in &study.configurations {
         let object = study.object(configuration);
-        let spacing = object.benchmark_spacing;
-        let lattice = subject::lattice(object, configuration.id.method.arrangement, spacing)?;
-        let [x, y, z] = lattice.cells();
+        let grid = prepare::grid(object, object.benchmark_spacing);
+        let method = prepare::method(&study, configuration.id.method, Purpose::Benchmark)?;
+        let [x, y, z] = method.cells(&grid)?;
         say(&format!(
             "{}  {}, {}, {x} x {y} x {z} cubes",
             configuration.id,
             object.name,
-            configuration.id.method.label()
+            study.method(configuration.id.method).label
         ))?;
     }
     let respondents = match answers::of_study(&study)? {
@@ -302,8 +304,8 @@ fn validate(path: &Path) -> Result<()> {
 /// Reads and checks a study and everything it names: lattices and memory, mesh files, answers.
 fn load(path: &Path) -> Result<Study> {
     let study = input::study(path)?;
-    subject::check_lattices(&study, bench::read_machine().memory_bytes)?;
-    subject::check_mesh_files(&study)?;
+    prepare::check(&study, bench::read_machine().memory_bytes)?;
+    fields::check_mesh_files(&study)?;
     if let Some(reading) = answers::of_study(&study)?.filter(|reading| !reading.report.remarks.is_empty()) {
         answers::announce(&reading.report);
     }

@@ -4,13 +4,12 @@
 use design::ConfigurationId;
 use design::record::{Accuracy, Counts, Distribution, Histogram, MeshRecord, Purpose, Quality, Topology};
 use extract::Extraction;
-use extract::Lattice;
 
 pub(crate) fn mesh_record(
     id: &ConfigurationId,
     purpose: Purpose,
     spacing: f64,
-    lattice: &Lattice,
+    cells: [u32; 3],
     extraction: &Extraction,
     accuracy: &extract::Accuracy,
 ) -> MeshRecord {
@@ -18,7 +17,7 @@ pub(crate) fn mesh_record(
         id: id.clone(),
         purpose,
         spacing,
-        cells: lattice.cells(),
+        cells,
         counts: counts(&extraction.counts),
         quality: quality(&mesh::quality::quality(&extraction.mesh)),
         topology: topology(&mesh::topology::topology(&extraction.mesh)),

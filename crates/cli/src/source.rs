@@ -1,12 +1,11 @@
 //! Where a surface comes from without a study: a formula, a volume or a mesh; and the lattice it is looked at on.
 
 use crate::memory::{self, Limit};
-use crate::{mesh_file, subject};
+use crate::mesh_file;
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
-use design::Arrangement;
 use expression::{Expression, ExpressionError};
-use extract::Lattice;
+use extract::Grid;
 use field::{Beyond, Holes, MeshDistance, MeshFieldError, Negated, ScalarField, VolumeField, Walled};
 use glam::Vec3;
 use mesh::{Bounds, repair};
@@ -234,15 +233,15 @@ impl Source {
         Self { field, is_closed: true, ..self }
     }
 
-    /// The lattice to look at it on.
-    ///
-    /// # Errors
-    /// If box and spacing make none.
-    pub(crate) fn lattice(&self, arrangement: Arrangement) -> Result<Lattice> {
-        let Self { bounds, spacing, .. } = *self;
-        subject::lattice_over(bounds, arrangement, spacing).with_context(|| {
-            format!("from {} to {} with spacing {spacing:?}", place(bounds.min), place(bounds.max))
-        })
+    /// Where to look at it.
+    pub(crate) fn grid(&self) -> Grid {
+        Grid { bounds: self.bounds, spacing: self.spacing }
+    }
+
+    /// Box and spacing, for people.
+    pub(crate) fn place(&self) -> String {
+        let Self { bounds, spacing, .. } = self;
+        format!("from {} to {} with spacing {spacing:?}", place(bounds.min), place(bounds.max))
     }
 
     /// The isovalue as asked for.

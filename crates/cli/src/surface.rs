@@ -3,12 +3,11 @@
 use crate::args::{Run, Selection};
 use crate::source::{Inside, Source, SourceArguments, place};
 use crate::store::{write_whole, write_whole_by};
-use crate::{Outcome, counted, input, mesh_file, records, say, significant, subject};
+use crate::{Outcome, counted, input, mesh_file, prepare, records, say, significant};
 use anyhow::{Context, Result, bail};
 use clap::{ArgGroup, Args};
 use design::record::{Accuracy, Counts, Distribution, Quality, Topology};
-use design::{Arrangement, Clustering};
-use extract::{Execution, ExtractSettings, Extraction, Lattice};
+use extract::{Arrangement, Clustering, Execution, Extraction, Extractor, Grid, Method, Tetrahedra};
 use mesh::TriangleMesh;
 use raster::{Camera, Look, Shading, Viewport};
 use serde::de::IntoDeserializer;
@@ -89,16 +88,18 @@ pub(crate) fn extract(arguments: &Extract) -> Result<Outcome> {
     check_outputs(arguments, out)?;
     let source =
         arguments.source.read()?.context("one of a study, --field, --volume and --mesh is needed")?;
-    let lattice = source.lattice(arguments.arrangement)?;
+    let grid = source.grid();
     let chosen = arguments.clustering.unwrap_or(match arguments.arrangement {
         Arrangement::BodyCentred | Arrangement::SimpleCubic => Clustering::Integrated,
         Arrangement::FiveTetrahedra | Arrangement::FaceCentred => Clustering::EdgeCollapse,
     });
-    let clustering = subject::clustering(chosen);
-    let settings = ExtractSettings { isovalue: source.isovalue, clustering, ..ExtractSettings::default() };
+    let method =
+        Method::Tetrahedra(Tetrahedra { clustering: chosen, ..Tetrahedra::new(arguments.arrangement) });
     let execution = Execution { threads: arguments.threads as usize };
-    subject::check_limit(&lattice, &settings, &execution, source.held, arguments.source.limit())?;
-    let extraction = extract::extract(&*source.field, &lattice, &settings, &execution)?;
+    prepare::check_limit(&method, &grid, &execution, source.held, arguments.source.limit())
+        .with_context(|| source.place())?;
+    let extraction =
+        method.extract(&mut Extractor::new(), (&*source.field).into(), &grid, source.isovalue, &execution)?;
     if extraction.mesh.triangles.is_empty() {
         bail!(source.no_surface());
     }
@@ -112,8 +113,10 @@ pub(crate) fn extract(arguments: &Extract) -> Result<Outcome> {
     }
     if arguments.quality || arguments.json {
         let accuracy =
-            extract::accuracy(&extraction.mesh, &*source.field, settings.isovalue, &lattice, &execution)?;
-        let report = Report::new((arguments.arrangement, chosen), &source, &lattice, &extraction, &accuracy);
+            extract::accuracy(&extraction.mesh, &*source.field, source.isovalue, &grid, &execution)?;
+        let cells = method.cells(&grid)?;
+        let report =
+            Report::new((arguments.arrangement, chosen), &source, (&grid, cells), &extraction, &accuracy);
         say(&if arguments.json { serde_json::to_string_pretty(&report)? } else { report.to_text() })?;
     }
     // With --json standard output is JSON and nothing else.
@@ -188,7 +191,7 @@ impl Report {
     fn new(
         (arrangement, clustering): (Arrangement, Clustering),
         source: &Source,
-        lattice: &Lattice,
+        (grid, cells): (&Grid, [u32; 3]),
         extraction: &Extraction,
         accuracy: &extract::Accuracy,
     ) -> Self {
@@ -202,8 +205,8 @@ impl Report {
             clustering,
             isovalue: source.asked_isovalue(),
             inside: source.inside,
-            spacing: lattice.spacing(),
-            cells: lattice.cells(),
+            spacing: grid.spacing,
+            cells,
             extraction_s: extraction.times.total().as_secs_f64(),
             area: extraction.mesh.area(),
             volume: is_closed.then(|| extraction.mesh.volume()),
@@ -229,8 +232,8 @@ impl Report {
             faults.iter().filter(|f| f.1 > 0).map(|(name, count)| format!("{count} {name}")).collect();
         let state = if faults.is_empty() { "closed manifold".to_owned() } else { faults.join(", ") };
         let rows = [
-            ("lattice", format!("{}, {x} x {y} x {z} cubes of {}", self.arrangement.label(), self.spacing)),
-            ("clustering", self.clustering.label().to_owned()),
+            ("lattice", format!("{}, {x} x {y} x {z} cubes of {}", self.arrangement, self.spacing)),
+            ("clustering", self.clustering.to_string()),
             ("time", format!("{:.3} s", self.extraction_s)),
             ("vertices", t.vertices.to_string()),
             ("triangles", q.triangles.to_string()),

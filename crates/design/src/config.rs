@@ -4,13 +4,15 @@
 //! are unchecked. [`crate::Study::load`] turns them into something to work from.
 
 mod analysis;
+mod field;
 mod forms;
 mod methods;
 mod responses;
 
 pub use analysis::{AnalysisSection, Declaration, Exclusion, FamilyRule};
+pub use field::{FieldSection, Inside, MeshSourceSection};
 pub use forms::{FormsSection, OrderRule, ShownNames, SideRule, TrainingSection};
-pub use methods::{FactorSection, LevelSection, MethodSection, SpeltLevel};
+pub use methods::{BudgetSection, FactorSection, LevelSection, MethodSection, SpeltLevel};
 pub use responses::{PairSection, ResponsesSection, SynonymsSection};
 
 use crate::method::{Arrangement, Clustering, ConfigurationId, MethodId};
@@ -27,9 +29,9 @@ pub struct StudyFile {
     pub study: StudySection,
     /// What a run may use.
     pub limits: LimitsSection,
-    /// What holds for every extraction of arrangements crossed with clusterings.
+    /// Keys that the recipes of arrangements crossed with clusterings have in common.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub extraction: Option<ExtractionSection>,
+    pub extraction: Option<toml::Table>,
     /// The objects whose surfaces are extracted.
     pub objects: Vec<ObjectSection>,
     /// Arrangements to cross with the clusterings: the short form of methods.
@@ -93,66 +95,6 @@ pub struct LimitsSection {
     pub memory_gib: f64,
 }
 
-/// Where lattice positions come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Positions {
-    /// Computed from indices.
-    Indexed,
-    /// Summed up in single precision, as the original program does.
-    Accumulated,
-}
-
-/// Whether clustering must keep the surface a manifold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Topology {
-    /// It must: the mesh is an oriented manifold with the topology of the unclustered surface.
-    #[default]
-    Guarded,
-    /// The published rules as they are, defects and all.
-    Published,
-}
-
-/// Where a vertex goes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Placement {
-    /// To the mean of its cluster's crossings, as published.
-    #[default]
-    MeanOfCrossings,
-    /// To the mean weighted by how sharply the surface bends at each crossing.
-    CurvatureWeighted,
-    /// From the mean to the isosurface, along the field's gradient.
-    Projected,
-    /// Half the way to the mean of the neighbouring vertices, then to the isosurface.
-    Relaxed,
-}
-
-/// What holds for every extraction.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ExtractionSection {
-    /// Where lattice positions come from.
-    pub positions: Positions,
-    /// Whether clustering must keep the surface a manifold.
-    #[serde(default)]
-    pub topology: Topology,
-    /// With accumulated positions: into how many runs of layers the z axis is cut, each starting its sum anew.
-    #[serde(default = "one", deserialize_with = "whole")]
-    pub accumulation_chunks: u32,
-    /// Where a vertex goes.
-    #[serde(default)]
-    pub placement: Placement,
-    /// Whether crossings are roots of the field rather than interpolated between samples.
-    #[serde(default)]
-    pub refine_crossings: bool,
-}
-
-fn one() -> u32 {
-    1
-}
-
 /// One object of the study.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -175,40 +117,6 @@ pub struct ObjectSection {
     pub stimulus_spacing: f64,
     /// The camera for this object.
     pub camera: CameraSection,
-}
-
-/// A scalar field, positive inside.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-pub enum FieldSection {
-    /// Radius minus distance from the origin.
-    Sphere {
-        /// Radius.
-        radius: f64,
-    },
-    /// The paper's fractal-noise asteroid; it has no parameters.
-    Asteroid,
-    /// Signed distance to a closed triangle mesh: the first of the sources that is there.
-    Mesh {
-        /// Files to try in turn.
-        sources: Vec<MeshSourceSection>,
-    },
-}
-
-/// A mesh file and how it is placed in the scene: `scale * axes(p) + offset`.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MeshSourceSection {
-    /// OBJ or PLY file.
-    pub file: String,
-    /// The file's SHA-256 in hexadecimal; any other content is refused.
-    pub sha256: String,
-    /// Which file axis becomes x, y and z, with sign: `["x", "-z", "y"]`.
-    pub axes: [String; 3],
-    /// Scale factor.
-    pub scale: f64,
-    /// Added after scaling.
-    pub offset: [f64; 3],
 }
 
 /// The camera for one object.

@@ -4,11 +4,12 @@ mod crossing;
 mod factor;
 mod recipe;
 
-pub(crate) use crossing::expand;
 pub use crossing::{Arrangement, Clustering, Crossed};
+pub(crate) use crossing::{expand, is_summed};
 pub use factor::{Factor, FactorSpec, Level, LevelSpec};
 pub use recipe::{Recipe, TETRAHEDRA};
 
+use crate::config::BudgetSection;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -83,6 +84,8 @@ pub struct Method {
     pub phrase: String,
     /// How a mesh is made.
     pub recipe: Recipe,
+    /// What decides its resolution in place of the object's spacing.
+    pub budget: Option<BudgetSection>,
     /// For each declared factor of the study, by place, the level that the method is an example of, by place.
     pub levels: Vec<Option<usize>>,
 }

@@ -8,8 +8,8 @@ mod bunny;
 
 use bunny::{BOX, bunny};
 use extract::{
-    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, Placement, Source,
-    accuracy,
+    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Extractor, Grid, Lattice, Placement,
+    Source, accuracy,
 };
 use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
 use glam::Vec3;
@@ -72,7 +72,7 @@ fn row(id: &str, field: &dyn ScalarField, lattice: &Lattice, settings: &ExtractS
     }
     let h = f64::from(lattice.spacing());
     let shape = quality(&extraction.mesh);
-    let found = accuracy(&extraction.mesh, field, 0.0, lattice, &ONE).expect("one thread");
+    let found = accuracy(&extraction.mesh, field, 0.0, &Grid::from(lattice), &ONE).expect("one thread");
     println!(
         "| {id} | {:?}{} | {:.4} | {:.1} | {:.5} | {:.3} | {:.2} | {:.2} | {:.1} |",
         settings.placement,

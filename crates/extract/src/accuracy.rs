@@ -7,8 +7,8 @@ use mesh::metro::{AreaSamples, Surface};
 use rayon::prelude::*;
 
 use crate::extraction::ExtractError;
+use crate::grid::Grid;
 use crate::isosurface::{Isosurface, REACH};
-use crate::lattice::Lattice;
 use crate::level::Level;
 use crate::sampling::{SHARE, on_threads};
 use crate::settings::Execution;
@@ -48,7 +48,7 @@ impl Accuracy {
     }
 }
 
-/// Measures `mesh` against the isosurface of `field` in the box of the `lattice` it was extracted on. The lattice's
+/// Measures `mesh` against the isosurface of `field` in the box of the `grid` it was extracted on. The grid's
 /// spacing sets the width of differences (1/32) and how far a surface is looked for (3).
 ///
 /// Distances are taken at 8,192 points that share the area evenly, as [`AreaSamples`] places them. The density is that
@@ -77,10 +77,10 @@ pub fn accuracy(
     mesh: &TriangleMesh,
     field: &dyn ScalarField,
     isovalue: f32,
-    lattice: &Lattice,
+    grid: &Grid,
     execution: &Execution,
 ) -> Result<Accuracy, ExtractError> {
-    let spacing = lattice.spacing();
+    let spacing = grid.spacing;
     let triangles: Vec<[Vec3; 3]> = (0..mesh.triangles.len()).map(|t| mesh.corners(t)).collect();
     let points: Vec<DVec3> = points_on(&triangles);
     // Without an area there is nothing to be far from.
@@ -88,7 +88,7 @@ pub fn accuracy(
 
     let mut kept = Kept::default();
     let level = Level { field: field.prepared(&mut kept).unwrap_or(field), isovalue, spacing };
-    let isosurface = Isosurface::new(field, level, lattice, execution)?;
+    let isosurface = Isosurface::new(field, level, grid, execution)?;
     let beyond = points_on(&isosurface.triangles);
     let every = mesh.normals.len().div_ceil(VERTICES).max(1);
     let vertices: Vec<usize> = (0..mesh.normals.len()).step_by(every).collect();

@@ -6,8 +6,8 @@ use mesh::metro::{Foot, Metro, MetroError, Sampling, Surface};
 use thiserror::Error;
 
 use crate::extraction::ExtractError;
+use crate::grid::Grid;
 use crate::isosurface::Isosurface;
-use crate::lattice::Lattice;
 use crate::level::Level;
 use crate::sampling::on_threads;
 use crate::settings::Execution;
@@ -27,7 +27,7 @@ pub enum DistanceError {
     Mesh(#[from] MetroError),
 }
 
-/// The distances from `mesh` to the isosurface of `field` in the box of `lattice`, and back; `diagonal` is that of the
+/// The distances from `mesh` to the isosurface of `field` in the box of `grid`, and back; `diagonal` is that of the
 /// isosurface's bounding box.
 ///
 /// Distances, their errors and what is not seen are as in [`crate::accuracy`], with as many points as `sampling` asks for:
@@ -42,14 +42,14 @@ pub fn distances(
     mesh: &Surface,
     field: &dyn ScalarField,
     isovalue: f32,
-    lattice: &Lattice,
+    grid: &Grid,
     sampling: &Sampling,
     execution: &Execution,
 ) -> Result<Metro, DistanceError> {
     let mut kept = Kept::default();
     let prepared = field.prepared(&mut kept).unwrap_or(field);
-    let level = Level { field: prepared, isovalue, spacing: lattice.spacing() };
-    let isosurface = Isosurface::new(field, level, lattice, execution)?;
+    let level = Level { field: prepared, isovalue, spacing: grid.spacing };
+    let isosurface = Isosurface::new(field, level, grid, execution)?;
     let reference = joined(&isosurface.triangles).map_err(DistanceError::Isosurface)?;
     on_threads(execution, usize::MAX, || {
         // Too far for the gradient, the nearest triangle of the extraction says where to look.

@@ -104,6 +104,9 @@ pub enum ExtractError {
         /// What was given.
         value: f32,
     },
+    /// No lattice over the grid.
+    #[error(transparent)]
+    Grid(#[from] crate::lattice::LatticeError),
     /// [`Positions::Accumulated`] with no chunk at all.
     #[error("accumulated positions need at least one chunk of layers")]
     NoChunks,

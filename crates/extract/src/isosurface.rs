@@ -6,7 +6,8 @@ use mesh::metro::Foot;
 
 use crate::extraction::ExtractError;
 use crate::extractor::extract;
-use crate::lattice::{Arrangement, Lattice};
+use crate::grid::Grid;
+use crate::lattice::Arrangement;
 use crate::level::Level;
 use crate::settings::{Clustering, Execution, ExtractSettings};
 use field::ScalarField;
@@ -33,17 +34,17 @@ impl<'a> Isosurface<'a> {
     pub(crate) fn new(
         field: &'a dyn ScalarField,
         level: Level<'a>,
-        lattice: &Lattice,
+        grid: &Grid,
         execution: &Execution,
     ) -> Result<Self, ExtractError> {
-        let (bounds, isovalue) = (lattice.bounds(), level.isovalue);
+        let (bounds, isovalue) = (grid.bounds, level.isovalue);
         if let Some(triangles) = field.isosurface_triangles(isovalue) {
             return Ok(Self { field, level, bounds, triangles: triangles.to_vec(), is_exact: true });
         }
-        let finer = Lattice::try_new(Arrangement::BodyCentred, bounds, FINER * lattice.spacing());
-        let finer = finer.unwrap_or_else(|_| lattice.clone());
-        let merged = finer.arrangement().supports(Clustering::Integrated);
-        let clustering = if merged { Clustering::Integrated } else { Clustering::None };
+        // Where there are too many points for the finer lattice, that of the grid has to do.
+        let finer = Grid { bounds, spacing: FINER * grid.spacing }.lattice(Arrangement::BodyCentred);
+        let finer = finer.or_else(|_| grid.lattice(Arrangement::SimpleCubic))?;
+        let clustering = Clustering::Integrated;
         let settings = ExtractSettings { isovalue, clustering, ..ExtractSettings::default() };
         let found = extract(field, &finer, &settings, execution)?.mesh;
         let triangles = (0..found.triangles.len()).map(|t| found.corners(t)).collect();

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use extract::{
-    Accuracy, Arrangement, DistanceError, Execution, ExtractSettings, Lattice, accuracy, distances, extract,
+    Accuracy, Arrangement, DistanceError, Execution, ExtractSettings, Grid, Lattice, accuracy, distances,
+    extract,
 };
 use field::{Asteroid, MeshDistance, ScalarField, Sphere};
 use glam::{Vec3, vec3};
@@ -75,7 +76,7 @@ fn sphere_mesh(times: u32) -> TriangleMesh {
 fn measure(mesh: &TriangleMesh, field: &dyn ScalarField, isovalue: f32, spacing: f32) -> Accuracy {
     let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     let lattice = Lattice::try_new(Arrangement::SimpleCubic, bounds, spacing).unwrap();
-    accuracy(mesh, field, isovalue, &lattice, &THREADS).unwrap()
+    accuracy(mesh, field, isovalue, &Grid::from(&lattice), &THREADS).unwrap()
 }
 
 #[test]
@@ -152,7 +153,10 @@ fn distance_fields_and_noise_lose_no_point() {
             let found = measure(&mesh, field, 0.0, 0.1);
             assert_eq!((found.lost_points, found.lost_vertices), (0, 0));
             assert!(found.distance.mean < within * 0.1, "{}", found.distance.mean);
-            assert_eq!(found, accuracy(&mesh, field, 0.0, &lattice, &Execution { threads: 1 }).unwrap());
+            assert_eq!(
+                found,
+                accuracy(&mesh, field, 0.0, &Grid::from(&lattice), &Execution { threads: 1 }).unwrap()
+            );
         }
     }
 }
@@ -210,8 +214,8 @@ fn a_field_that_knows_its_surface_gives_what_a_search_gives_and_more() {
             .unwrap();
     let (known, searched) = (Sphere { radius: 0.8 }, Ball { radius: 0.8 });
     let mesh = extract(&known, &lattice, &ExtractSettings::default(), &THREADS).unwrap().mesh;
-    let [a, b] =
-        [&known as &dyn ScalarField, &searched].map(|f| accuracy(&mesh, f, 0.0, &lattice, &THREADS).unwrap());
+    let [a, b] = [&known as &dyn ScalarField, &searched]
+        .map(|f| accuracy(&mesh, f, 0.0, &Grid::from(&lattice), &THREADS).unwrap());
     for (a, b) in [
         (a.distance.mean, b.distance.mean),
         (a.distance.max, b.distance.max),
@@ -236,7 +240,7 @@ fn a_mesh_as_field_is_measured_both_ways_as_two_meshes_are() {
         Lattice::try_new(Arrangement::BodyCentred, Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE }, 0.1)
             .unwrap();
     let mesh = extract(&field, &lattice, &ExtractSettings::default(), &THREADS).unwrap().mesh;
-    let found = accuracy(&mesh, &field, 0.0, &lattice, &THREADS).unwrap();
+    let found = accuracy(&mesh, &field, 0.0, &Grid::from(&lattice), &THREADS).unwrap();
     let sampling = Sampling { amount: Amount::Samples(200_000), seed: 5 };
     let want = metro(&mesh, &source, &sampling).unwrap();
     for (found, want) in [(found.distance, want.forward), (found.distance_to_mesh, want.backward)] {
@@ -261,8 +265,9 @@ fn distances_name_the_places() {
     let sampling = Sampling { amount: Amount::Samples(20_000), seed: 3 };
     let surface = Surface::try_new(&cut).unwrap();
     for field in [&Sphere { radius: 0.8 } as &dyn ScalarField, &Ball { radius: 0.8 }] {
-        let run =
-            |threads| distances(&surface, field, 0.0, &lattice, &sampling, &Execution { threads }).unwrap();
+        let run = |threads| {
+            distances(&surface, field, 0.0, &Grid::from(&lattice), &sampling, &Execution { threads }).unwrap()
+        };
         let found = run(1);
         assert!(found.forward.max < 3e-4 && found.forward.lost_samples == 0);
         // To the rim at x = 0.6. Triangles end up to an edge, 0.03, before it; the next sample to the pole may be 0.02 off.
@@ -275,7 +280,8 @@ fn distances_name_the_places() {
         assert!((found.diagonal - 1.6 * f64::sqrt(3.0)).abs() < 0.01);
         assert_eq!(run(2), found);
     }
-    let nothing = distances(&surface, &Sphere { radius: 0.8 }, 0.9, &lattice, &sampling, &THREADS);
+    let nothing =
+        distances(&surface, &Sphere { radius: 0.8 }, 0.9, &Grid::from(&lattice), &sampling, &THREADS);
     assert_eq!(nothing, Err(DistanceError::Isosurface(MetroError::Mesh(MeshError::Empty))));
 }
 

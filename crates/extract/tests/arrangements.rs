@@ -7,7 +7,7 @@ mod survey;
 use std::f64::consts::PI;
 
 use extract::{
-    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Lattice,
+    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Grid, Lattice,
     Placement, Positions, Source, Topology, accuracy, extract,
 };
 use field::{Asteroid, Gyroid, ScalarField, Sphere};
@@ -117,7 +117,7 @@ fn area_and_volume_converge_at_second_order() {
         let lattice = Lattice::try_new(arrangement, CUBE, 0.05).unwrap();
         let sphere = Sphere { radius: radius as f32 };
         let mesh = run(&sphere, &lattice, Clustering::None).mesh;
-        let distance = accuracy(&mesh, &sphere, 0.0, &lattice, &ONE).unwrap().distance;
+        let distance = accuracy(&mesh, &sphere, 0.0, &Grid::from(&lattice), &ONE).unwrap().distance;
         assert!(distance.max < 2.0 * 0.05f64.powi(2) / (4.0 * radius), "{arrangement:?} {distance:?}");
     }
 }

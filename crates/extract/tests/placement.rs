@@ -3,8 +3,8 @@
 mod fields;
 
 use extract::{
-    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extractor, Lattice, Placement, Source,
-    Topology, accuracy, extract,
+    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extractor, Grid, Lattice, Placement,
+    Source, Topology, accuracy, extract,
 };
 use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
 use fields::{FAMILIES, Volume};
@@ -129,7 +129,7 @@ fn projected_vertices_lie_on_the_surface_and_relaxed_ones_make_better_triangles(
     };
     for (arrangement, published_quality) in [(BOTH[0], 0.92), (BOTH[1], 0.845)] {
         let of = |mesh: &TriangleMesh| {
-            let found = accuracy(mesh, &sphere, 0.0, &lattice(arrangement), &ONE).unwrap();
+            let found = accuracy(mesh, &sphere, 0.0, &Grid::from(&lattice(arrangement)), &ONE).unwrap();
             (quality(mesh).radius_ratio.mean, found.distance.mean, found.normal_error_deg.mean)
         };
         let off =
@@ -191,7 +191,7 @@ fn curvature_draws_vertices_to_creases() {
         let distances = [Placement::MeanOfCrossings, Placement::CurvatureWeighted].map(|placement| {
             let settings = ExtractSettings { placement, ..ExtractSettings::default() };
             let mesh = extract(&Block, &lattice, &settings, &ONE).unwrap().mesh;
-            accuracy(&mesh, &Block, 0.0, &lattice, &ONE).unwrap().distance.mean
+            accuracy(&mesh, &Block, 0.0, &Grid::from(&lattice), &ONE).unwrap().distance.mean
         });
         assert!(distances[1] < 0.9 * distances[0], "{distances:?}");
     }

@@ -1,15 +1,16 @@
 //! Every configuration's mesh, once a purpose, with its record.
 
 use super::Pipeline;
+use crate::prepare::{self, Wanted, prepare};
 use crate::progress::Step;
 use crate::records::mesh_record;
 use crate::store::{Inputs, Stamp};
-use crate::{rooms, subject};
+use crate::{fields, rooms};
 use anyhow::{Context, Result, bail};
-use design::config::Positions;
+use bench::Prepared;
 use design::record::{MeshRecord, Purpose};
 use design::{Configuration, ConfigurationId};
-use extract::{Execution, Extraction, Extractor, Lattice};
+use extract::{Execution, Extraction, Extractor};
 use mesh::TriangleMesh;
 
 /// How far a mesh moves the bar, which moves while one is extracted: a large volume takes minutes.
@@ -36,7 +37,7 @@ impl Pipeline<'_> {
     /// The meshes of every purpose: what is measured, and what is shown.
     pub(crate) fn all_meshes(&self, only: &[ConfigurationId]) -> Result<Meshes> {
         let mut purposes = vec![Purpose::Benchmark, Purpose::Stimulus];
-        if self.study.file.extraction.positions == Positions::Accumulated {
+        if prepare::sums_positions(self.study)? {
             purposes.push(Purpose::Indexed);
         }
         self.meshes(&purposes, only)
@@ -72,14 +73,15 @@ impl Pipeline<'_> {
 
     fn mesh(&self, configuration: &Configuration, purpose: Purpose, step: &Step) -> Result<Stamp> {
         let object = self.study.object(configuration);
-        let (spacing, _) = subject::spacing(object, purpose);
+        let spacing = Wanted::For(purpose).spacing(object);
         let name = purpose_name(purpose);
         let inputs = self.extraction_inputs(configuration, purpose)?.value("spacing", &spacing);
         self.stage(&format!("mesh/{name}/{}", configuration.id), inputs, |writer| {
-            let lattice = subject::lattice(object, configuration.id.method.arrangement, spacing)?;
-            let extraction = self.extract(configuration, purpose, spacing, step)?;
-            let accuracy = self.accuracy(configuration, &lattice, &extraction.mesh)?;
-            let record = mesh_record(&configuration.id, purpose, spacing, &lattice, &extraction, &accuracy);
+            let prepared = prepare(self.study, &self.fields, configuration, Wanted::For(purpose))?;
+            let extraction = self.extract(configuration, &prepared, step)?;
+            let accuracy = self.accuracy(&prepared, &extraction.mesh)?;
+            let cells = prepared.method.cells(&prepared.grid)?;
+            let record = mesh_record(&configuration.id, purpose, spacing, cells, &extraction, &accuracy);
             // The indexed variant is only measured: nothing is rendered from it.
             if purpose != Purpose::Indexed {
                 let mut ply = Vec::new();
@@ -102,51 +104,40 @@ impl Pipeline<'_> {
             .value("purpose", &purpose)
             .value("volume", &(object.min, object.max))
             .value("isovalue", &object.isovalue)
-            .value("extraction", &self.study.file.extraction)
-            .text("field", &subject::field_inputs(self.study, object)?))
+            .value("recipe", &self.study.method(configuration.id.method).recipe)
+            .text("field", &fields::field_inputs(self.study, object)?))
     }
 
-    /// Extracts one configuration at a spacing, and moves the bar meanwhile by up to [`TICKS_A_MESH`].
+    /// Extracts one configuration, and moves the bar meanwhile by up to [`TICKS_A_MESH`].
     pub(super) fn extract(
         &self,
         configuration: &Configuration,
-        purpose: Purpose,
-        spacing: f64,
+        prepared: &Prepared<'_>,
         step: &Step,
     ) -> Result<Extraction> {
-        let object = self.study.object(configuration);
-        let lattice = subject::lattice(object, configuration.id.method.arrangement, spacing)?;
-        let settings = subject::settings(self.study, configuration, purpose);
         let execution = Execution { threads: self.threads };
-        let field = self.fields.get(configuration.object)?;
         let mut extractor = Extractor::new().with_progress(step.within(TICKS_A_MESH));
-        let extraction = extractor.extract(field.into(), &lattice, &settings, &execution)?;
+        let extraction = prepared.extract_with(&mut extractor, &execution)?;
         if extraction.mesh.triangles.is_empty() {
             let why = match extraction.counts.crossings {
                 0 => "every sample lies on one side",
                 _ => "clustering left no triangle",
             };
             bail!(
-                "{}: objects[{}]: no surface at isovalue {:?} with spacing {spacing:?}: {why}",
+                "{}: objects[{}]: no surface at isovalue {:?} with spacing {:?}: {why}",
                 self.study.path.display(),
                 configuration.object,
-                object.isovalue,
+                self.study.object(configuration).isovalue,
+                prepared.grid.spacing
             );
         }
         Ok(extraction)
     }
 
     /// How well a configuration's mesh stands for its isosurface.
-    fn accuracy(
-        &self,
-        configuration: &Configuration,
-        lattice: &Lattice,
-        mesh: &TriangleMesh,
-    ) -> Result<extract::Accuracy> {
-        let isovalue = self.study.object(configuration).isovalue as f32;
-        let field = self.fields.get(configuration.object)?;
-        let execution = Execution { threads: self.threads };
-        Ok(extract::accuracy(mesh, field, isovalue, lattice, &execution)?)
+    fn accuracy(&self, prepared: &Prepared<'_>, mesh: &TriangleMesh) -> Result<extract::Accuracy> {
+        let Prepared { field, grid, isovalue, .. } = prepared;
+        Ok(extract::accuracy(mesh, *field, *isovalue, grid, &Execution { threads: self.threads })?)
     }
 
     /// The records of finished meshes.

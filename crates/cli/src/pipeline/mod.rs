@@ -23,8 +23,8 @@ pub(crate) use stimuli::MadeWith;
 pub(crate) use tables::{write_answers_only, write_without_study};
 pub(crate) use timings::{PlanLength, measure};
 
+use crate::fields::Fields;
 use crate::store::{Inputs, Stamp, Store, Writer};
-use crate::subject::Fields;
 use anyhow::{Context, Result};
 use design::Study;
 

@@ -73,7 +73,7 @@ fn turntable_cards(study: &Study) -> Vec<Card> {
     let (codes, _) = study.code_names();
     let card = |(configuration, code): (&Configuration, String)| Card {
         object: study.object(configuration).id.clone(),
-        title: format!("{}: {}", configuration.id, configuration.id.method.label()),
+        title: format!("{}: {}", configuration.id, study.method(configuration.id.method).label),
         file: format!("stimuli/turntables/{code}.gif"),
     };
     study.configurations.iter().zip(codes).map(card).collect()

@@ -3,6 +3,7 @@
 use super::meshes::TICKS_A_MESH;
 use super::{Meshes, Pipeline};
 use crate::picture;
+use crate::prepare::{Wanted, prepare};
 use crate::progress::Step;
 use crate::store::{Inputs, Stamp};
 use crate::{rooms, video};
@@ -35,7 +36,7 @@ impl MadeWith {
         let camera = [object.camera.distance, object.camera.vertical_fov_rad, file.turntable.elevation_rad];
         let mut settings = Inputs::default()
             .value("object", object)
-            .value("extraction", &file.extraction)
+            .value("recipe", &study.method(configuration.id.method).recipe)
             .value("turntable", &file.turntable)
             .value("shading", &file.shading)
             .finish();
@@ -216,7 +217,9 @@ impl Pipeline<'_> {
             .value("turntable", &self.study.file.turntable)
             .value("shading", &self.study.file.shading);
         self.stage(&format!("still/{}", still.id), inputs, |writer| {
-            let mesh = self.extract(configuration, Purpose::Stimulus, still.spacing, step)?.mesh;
+            let wanted = Wanted::Spacing(still.spacing, Purpose::Stimulus);
+            let prepared = prepare(self.study, &self.fields, configuration, wanted)?;
+            let mesh = self.extract(configuration, &prepared, step)?.mesh;
             let settings = picture::turntable(&self.study.file.turntable, &object.camera);
             let shading = picture::shading(&self.study.file.shading);
             let sheet = picture::still_sheet(&mesh, &settings, &shading, &still.looks)?;

@@ -2,9 +2,10 @@
 
 use super::Pipeline;
 use super::timings::Bout;
+use crate::prepare::{self, Wanted, prepare};
 use crate::progress::Step;
 use crate::store::{Inputs, Stamp, remove_if_there};
-use crate::{machine, rooms, subject};
+use crate::{machine, rooms};
 use analysis::sweep::SweepLevel;
 use anyhow::{Context, Result, bail};
 use bench::Plan;
@@ -27,7 +28,7 @@ impl Pipeline<'_> {
         let Some(section) = &file.benchmark.sweep else {
             bail!("{}: there is no [benchmark.sweep]; configs/paper.toml has one", self.study.path.display());
         };
-        subject::check_sweep(self.study, section, bench::read_machine().memory_bytes)?;
+        prepare::check_sweep(self.study, section, bench::read_machine().memory_bytes)?;
         let machine = machine::read();
         let (mut levels, mut meshes, mut stamps) = (Vec::new(), Vec::new(), Vec::new());
         // Threads inside: what is compared is measured close together.
@@ -130,12 +131,9 @@ impl Pipeline<'_> {
     }
 
     fn sweep_mesh(&self, configuration: &Configuration, cells: u32) -> Result<SweepMesh> {
-        let object = self.study.object(configuration);
-        let spacing = subject::spacing_of_cells(object, cells);
-        let lattice = subject::lattice(object, configuration.id.method.arrangement, spacing)?;
-        let settings = subject::settings(self.study, configuration, Purpose::Indexed);
-        let field = self.fields.get(configuration.object)?;
-        let extraction = extract::extract(field, &lattice, &settings, &Execution { threads: self.threads })
+        let wanted = Wanted::Cells(cells, Purpose::Indexed);
+        let extraction = prepare(self.study, &self.fields, configuration, wanted)?
+            .extract(&Execution { threads: self.threads })
             .with_context(|| format!("{} at {cells} cells per axis", configuration.id))?;
         let quality = mesh::quality::quality(&extraction.mesh);
         Ok(SweepMesh {

@@ -2,13 +2,14 @@
 
 use super::{Pipeline, sweep};
 use crate::args::Worker;
+use crate::fields::Fields;
+use crate::prepare::{Wanted, prepare};
 use crate::progress::Step;
 use crate::store::{Inputs, Stamp, remove_if_there, sha256, write_whole};
-use crate::subject::Fields;
-use crate::{input, machine, rooms, run_file, subject};
+use crate::{fields, input, machine, rooms, run_file};
 use analysis::timing;
 use anyhow::{Context, Result, bail};
-use bench::{BenchError, Entry, Plan, ProcessExecutor, Subject};
+use bench::{BenchError, Entry, Plan, Prepared, ProcessExecutor};
 use design::machine::Machine;
 use design::record::{BenchRun, Purpose};
 use design::{Configuration, ConfigurationId};
@@ -186,12 +187,12 @@ impl Pipeline<'_> {
 
     /// What is asked of the extractor.
     pub(super) fn workload(&self, inputs: Inputs) -> Result<Inputs> {
-        let mut inputs =
-            inputs.value("extraction", &self.study.file.extraction).value("methods", &self.study.methods());
+        let recipes: Vec<_> = self.study.methods.iter().map(|method| (method.id, &method.recipe)).collect();
+        let mut inputs = inputs.value("methods", &recipes);
         for object in &self.study.file.objects {
             inputs = inputs
                 .value("volume", &(object.min, object.max, object.benchmark_spacing, object.isovalue))
-                .text("field", &subject::field_inputs(self.study, object)?);
+                .text("field", &fields::field_inputs(self.study, object)?);
         }
         Ok(inputs)
     }
@@ -214,24 +215,16 @@ pub(crate) fn measure(arguments: &Worker) -> Result<()> {
         Some((_, section)) => sweep::configurations(&study, section),
         None => study.configurations.iter().collect(),
     };
-    let mut subject = |number: usize| -> Result<Subject<'_>, String> {
+    let mut prepared = |number: usize| -> Result<Prepared<'_>, String> {
         let configuration = *configurations.get(number).ok_or("there is no such configuration")?;
-        let object = study.object(configuration);
-        let (spacing, purpose) = match sweep {
-            Some((cells, _)) => (subject::spacing_of_cells(object, cells), Purpose::Indexed),
-            None => (object.benchmark_spacing, Purpose::Benchmark),
+        let wanted = match sweep {
+            Some((cells, _)) => Wanted::Cells(cells, Purpose::Indexed),
+            None => Wanted::For(Purpose::Benchmark),
         };
-        let subject = || -> Result<Subject<'_>> {
-            Ok(Subject {
-                field: fields.get(configuration.object)?,
-                lattice: subject::lattice(object, configuration.id.method.arrangement, spacing)?,
-                settings: subject::settings(&study, configuration, purpose),
-            })
-        };
-        subject().map_err(|error| format!("{error:#}"))
+        prepare(&study, &fields, configuration, wanted).map_err(|error| format!("{error:#}"))
     };
     let (requests, replies) = (std::io::stdin().lock(), std::io::stdout().lock());
-    Ok(bench::serve(requests, replies, pinned, arguments.threads, &mut subject)?)
+    Ok(bench::serve(requests, replies, pinned, arguments.threads, &mut prepared)?)
 }
 
 fn stage_name(length: PlanLength) -> &'static str {

@@ -17,6 +17,39 @@ pub struct MethodSection {
     /// What the method is an example of: names of factors to their levels.
     #[serde(default)]
     pub levels: BTreeMap<String, String>,
+    /// What decides its resolution in place of the object's spacing.
+    #[serde(rename = "match", skip_serializing_if = "Option::is_none")]
+    pub budget: Option<BudgetSection>,
+}
+
+/// Another method of the study whose mesh must be met, by choice of the spacing: one of the three.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum BudgetSection {
+    /// As many triangles, to 1 %.
+    TrianglesOf(MethodId),
+    /// As many samples, to 1 %.
+    SamplesOf(MethodId),
+    /// As much time for an extraction, to 5 %.
+    TimeOf(MethodId),
+}
+
+impl BudgetSection {
+    /// The method whose mesh must be met.
+    pub fn of(self) -> MethodId {
+        match self {
+            Self::TrianglesOf(id) | Self::SamplesOf(id) | Self::TimeOf(id) => id,
+        }
+    }
+
+    /// The key, and what is as much, for people.
+    pub fn names(self) -> [&'static str; 2] {
+        match self {
+            Self::TrianglesOf(_) => ["triangles_of", "triangles"],
+            Self::SamplesOf(_) => ["samples_of", "samples"],
+            Self::TimeOf(_) => ["time_of", "time"],
+        }
+    }
 }
 
 /// What some methods of a study differ in.

@@ -1,7 +1,6 @@
 //! The short form of a study's methods: arrangements crossed with clusterings. Costen's (2026) letters live here.
 
 use super::{FactorSpec, LevelSpec, Method, MethodId, Recipe, TETRAHEDRA};
-use crate::config::ExtractionSection;
 use serde::{Deserialize, Serialize};
 
 /// How sample points are laid out in space.
@@ -166,19 +165,28 @@ impl Crossed {
     }
 
     /// What the extractor is told: the crossing's two keys, and what `[extraction]` says for all.
-    fn recipe(self, section: &ExtractionSection) -> Recipe {
-        let mut settings = toml::Table::try_from(section).expect("plain keys and values");
+    fn recipe(self, section: &toml::Table) -> Recipe {
+        let mut settings = section.clone();
+        // With positions that follow from indices there is nothing that it could say.
+        if !is_summed(section) {
+            settings.remove("accumulation_chunks");
+        }
         settings.insert("arrangement".into(), self.arrangement.key().into());
         settings.insert("clustering".into(), self.clustering.key().into());
         Recipe { kind: TETRAHEDRA.into(), settings }
     }
 }
 
+/// Whether lattice positions are summed up, as the original program does.
+pub(crate) fn is_summed(section: &toml::Table) -> bool {
+    section.get("positions").and_then(toml::Value::as_str) == Some("accumulated")
+}
+
 /// Arrangements crossed with clusterings, in the file's order, as two factors and their methods.
 pub(crate) fn expand(
     arrangements: &[Arrangement],
     clusterings: &[Clustering],
-    section: &ExtractionSection,
+    section: &toml::Table,
 ) -> (Vec<FactorSpec>, Vec<Method>) {
     let lattice = |of: &Arrangement| LevelSpec {
         code: of.code().to_ascii_uppercase().into(),
@@ -219,6 +227,7 @@ pub(crate) fn expand(
                 label: crossed.label(),
                 phrase: crossed.phrase(),
                 recipe: crossed.recipe(section),
+                budget: None,
                 levels: vec![Some(a), Some(c)],
             });
         }

@@ -3,8 +3,9 @@
 use super::{Configuration, Study};
 use crate::Arrangement;
 use crate::check::{Checker, ConfigError, short};
-use crate::config::{FieldSection, ObjectSection, Positions, StudyFile, SweepSection};
+use crate::config::{FieldSection, ObjectSection, StudyFile, SweepSection};
 use crate::contrast::contrasts;
+use crate::method::is_summed;
 
 /// Everything that does not need another section to judge.
 pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigError> {
@@ -18,9 +19,6 @@ pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), Co
     }
     c.positive("limits.memory_gib", file.limits.memory_gib, 1024.0)?;
     check_arrangements(c, file)?;
-    if let Some(extraction) = &file.extraction {
-        c.count("extraction.accumulation_chunks", extraction.accumulation_chunks, 1, 4096)?;
-    }
 
     let t = &file.turntable;
     c.count("turntable.width", t.width, 16, 4096)?;
@@ -83,7 +81,7 @@ fn check_arrangements(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigErr
             return c.refuse(key, arrangement.label(), limit);
         }
         let is_published = matches!(arrangement, Arrangement::BodyCentred | Arrangement::SimpleCubic);
-        let summed = file.extraction.as_ref().is_some_and(|of| of.positions == Positions::Accumulated);
+        let summed = file.extraction.as_ref().is_some_and(is_summed);
         if !is_published && summed {
             return c.refuse(key, arrangement.label(), "needs extraction.positions = \"indexed\"");
         }
@@ -155,7 +153,7 @@ fn check_field(c: &Checker<'_>, key: &str, field: &FieldSection) -> Result<(), C
     match field {
         FieldSection::Sphere { radius } => c.length(&format!("{key}.radius"), *radius, 1e6),
         FieldSection::Asteroid => Ok(()),
-        FieldSection::Mesh { sources } => {
+        FieldSection::Mesh { file, sources, .. } => {
             for (i, source) in sources.iter().enumerate() {
                 let key = |name: &str| format!("{key}.sources[{i}].{name}");
                 let mut letters: Vec<&str> =
@@ -165,18 +163,30 @@ fn check_field(c: &Checker<'_>, key: &str, field: &FieldSection) -> Result<(), C
                     let limit = "must name x, y and z once each, with an optional minus";
                     return c.refuse(key("axes"), format!("{:?}", source.axes), limit);
                 }
-                if source.sha256.len() != 64 || !source.sha256.bytes().all(|b| b.is_ascii_hexdigit()) {
-                    return c.refuse(key("sha256"), &source.sha256, "must be 64 hexadecimal digits");
+                if let Some(digest) = &source.sha256
+                    && (digest.len() != 64 || !digest.bytes().all(|b| b.is_ascii_hexdigit()))
+                {
+                    return c.refuse(key("sha256"), digest, "must be 64 hexadecimal digits");
                 }
                 c.positive(&key("scale"), source.scale, 1e6)?;
                 c.numbers(&key("offset"), &source.offset, -1e6, 1e6)?;
             }
             // Whether one is there matters only to those who make meshes: a design is judged without.
-            if sources.is_empty() {
-                return c.refuse(format!("{key}.sources"), "[]", "must list at least one file");
+            match (file, sources.is_empty()) {
+                (None, true) => {
+                    c.refuse(format!("{key}.file"), "nothing", "must name a file, or list sources")
+                }
+                (Some(file), false) => c.refuse(format!("{key}.file"), file, "goes without sources"),
+                _ => Ok(()),
             }
-            Ok(())
         }
+        FieldSection::Formula { text, .. } if text.trim().is_empty() => {
+            c.refuse(format!("{key}.text"), "\"\"", "must be a formula in x, y and z")
+        }
+        FieldSection::Volume { file, .. } if file.trim().is_empty() => {
+            c.refuse(format!("{key}.file"), "\"\"", "must name a file")
+        }
+        FieldSection::Formula { .. } | FieldSection::Volume { .. } | FieldSection::Terrain(_) => Ok(()),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Study;
 use crate::check::{Checker, ConfigError};
-use crate::config::{FactorSection, LevelSection, StudyFile};
+use crate::config::{FactorSection, LevelSection, MethodSection, StudyFile};
 use crate::method::{Factor, FactorSpec, Level, LevelSpec, Method, MethodId, expand};
 
 /// The name of the factor that every study has: what a method is as a whole.
@@ -72,6 +72,9 @@ fn listed(c: &Checker<'_>, file: &StudyFile) -> Result<(Vec<FactorSpec>, Vec<Met
     c.distinct(|i| format!("methods[{i}].id"), &ids)?;
     let labels: Vec<String> = file.methods.iter().map(|method| method.label.clone()).collect();
     c.distinct(|i| format!("methods[{i}].label"), &labels)?;
+    for (i, section) in file.methods.iter().enumerate() {
+        check_budget(c, file, i, section)?;
+    }
     let factors = factors(c, &file.factors)?;
     let mut methods = Vec::new();
     for (i, section) in file.methods.iter().enumerate() {
@@ -104,10 +107,28 @@ fn listed(c: &Checker<'_>, file: &StudyFile) -> Result<(Vec<FactorSpec>, Vec<Met
             label: section.label.clone(),
             phrase: section.label.clone(),
             recipe: section.recipe.clone(),
+            budget: section.budget,
             levels,
         });
     }
     Ok((factors, methods))
+}
+
+fn check_budget(
+    c: &Checker<'_>,
+    file: &StudyFile,
+    i: usize,
+    section: &MethodSection,
+) -> Result<(), ConfigError> {
+    let Some(budget) = section.budget else { return Ok(()) };
+    let key = || format!("methods[{i}].match.{}", budget.names()[0]);
+    let limit = match file.methods.iter().find(|other| other.id == budget.of()) {
+        Some(other) if other.id == section.id => "must name another method of this study",
+        Some(other) if other.budget.is_some() => "must name a method that has no match of its own",
+        Some(_) => return Ok(()),
+        None => "must name a method of this study",
+    };
+    c.refuse(key(), budget.of(), limit)
 }
 
 fn factors(c: &Checker<'_>, sections: &[FactorSection]) -> Result<Vec<FactorSpec>, ConfigError> {

@@ -122,38 +122,6 @@ fn unknown_keys_and_missing_files_are_named() {
 }
 
 #[test]
-fn topology_is_guarded_unless_said_otherwise() {
-    let topology = |to| paper_with("topology = \"published\"", to).unwrap().file.extraction.unwrap().topology;
-    assert_eq!(topology("topology = \"published\""), crate::config::Topology::Published);
-    assert_eq!(topology(""), crate::config::Topology::Guarded);
-}
-
-#[test]
-fn chunks_of_layers_may_be_left_out() {
-    let chunks =
-        |to| paper_with("accumulation_chunks = 16", to).unwrap().file.extraction.unwrap().accumulation_chunks;
-    assert_eq!((chunks("accumulation_chunks = 16"), chunks("")), (16, 1));
-    let error = error_with("accumulation_chunks = 16", "accumulation_chunks = 0");
-    assert!(error.contains("accumulation_chunks = 0: must lie between 1 and 4096"), "{error}");
-}
-
-#[test]
-fn unknown_placements_are_told_what_there_is() {
-    let key = "placement = \"mean-of-crossings\"";
-    let error = error_with(key, "placement = \"nearest\"");
-    for part in
-        ["paper.toml", "placement = ", "nearest", "mean-of-crossings", "curvature-weighted", "relaxed"]
-    {
-        assert!(error.contains(part), "{error}");
-    }
-    let error = error_with("refine_crossings = false", "refine_crossings = 4");
-    assert!(error.contains("refine_crossings = 4") && error.contains("boolean"), "{error}");
-    let placement = |to| paper_with(key, to).unwrap().file.extraction.unwrap().placement;
-    assert_eq!(placement(""), crate::config::Placement::MeanOfCrossings);
-    assert_eq!(placement("placement = \"relaxed\""), crate::config::Placement::Relaxed);
-}
-
-#[test]
 fn forms_need_something_to_ask() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/two-methods.toml");
     let text = std::fs::read_to_string(&path).unwrap();
