@@ -35,21 +35,24 @@ pub(crate) fn accuracy(accuracy: &extract::Accuracy) -> Accuracy {
     }
 }
 
+/// # Panics
+/// If the method is not one of tetrahedra: a record has no place for another yet.
 pub(crate) fn counts(c: &extract::Counts) -> Counts {
+    let tetrahedra = c.tetrahedra.expect("a study's methods are of tetrahedra");
     Counts {
-        stored_samples: c.stored_samples,
-        needed_samples: c.needed_samples,
-        stored_edges: c.stored_edges,
-        needed_edges: c.needed_edges,
-        tetrahedra: c.tetrahedra,
-        tetrahedra_evaluated: c.tetrahedra_evaluated,
+        stored_samples: tetrahedra.stored_samples,
+        needed_samples: c.samples,
+        stored_edges: tetrahedra.stored_edges,
+        needed_edges: tetrahedra.needed_edges,
+        tetrahedra: tetrahedra.tetrahedra,
+        tetrahedra_evaluated: tetrahedra.tetrahedra_evaluated,
         crossings: c.crossings,
         vertices: c.vertices,
         triangles: c.triangles,
         discarded_triangles: c.discarded_triangles,
-        discarded_as_published: c.discarded_as_published,
-        sample_bytes: c.sample_bytes,
-        edge_bytes: c.edge_bytes,
+        discarded_as_published: tetrahedra.discarded_as_published,
+        sample_bytes: tetrahedra.sample_bytes,
+        edge_bytes: tetrahedra.edge_bytes,
         vertex_bytes: c.vertex_bytes,
         index_bytes: c.index_bytes,
     }

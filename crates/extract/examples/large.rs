@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     )?;
     println!(
         "{} samples, {} triangles, {:.1} s",
-        extraction.counts.stored_samples,
+        extraction.counts.samples,
         extraction.counts.triangles,
         start.elapsed().as_secs_f64()
     );

@@ -57,13 +57,36 @@ impl StageTimes {
     }
 }
 
-/// How much of everything an extraction had.
+/// How much of everything an extraction had, whatever the method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counts {
+    /// Sample points that belong to a cell, taken or not.
+    pub samples: u64,
+    /// Cells of the grid: the cubes, whatever they are cut into.
+    pub cells: u64,
+    /// Cells that the surface may meet, in which triangles are looked for.
+    pub cells_visited: u64,
+    /// Edges between sample points whose ends are on different sides.
+    pub crossings: u64,
+    /// Vertices of the mesh.
+    pub vertices: u64,
+    /// Triangles of the mesh.
+    pub triangles: u64,
+    /// Triangles that clustering took away: with `triangles`, those of the unclustered mesh.
+    pub discarded_triangles: u64,
+    /// Bytes of the vertices: 24 each, a position and a normal.
+    pub vertex_bytes: u64,
+    /// Bytes of the vertex indices: 12 a triangle.
+    pub index_bytes: u64,
+    /// What only marching tetrahedra have; `None` with any other method.
+    pub tetrahedra: Option<TetrahedraCounts>,
+}
+
+/// How much of everything else marching tetrahedra had. Their [`Counts::samples`] are [`Lattice::needed_samples`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TetrahedraCounts {
     /// [`Lattice::stored_samples`].
     pub stored_samples: u64,
-    /// [`Lattice::needed_samples`].
-    pub needed_samples: u64,
     /// [`Lattice::stored_edges`].
     pub stored_edges: u64,
     /// [`Lattice::needed_edges`].
@@ -73,25 +96,13 @@ pub struct Counts {
     /// Tetrahedra of all cells that the surface may meet: body-centred, where one of the centre's fourteen edges
     /// crosses; simple cubic, where the cube's corners are not all on one side.
     pub tetrahedra_evaluated: u64,
-    /// Lattice edges whose ends are on different sides.
-    pub crossings: u64,
-    /// Vertices of the mesh.
-    pub vertices: u64,
-    /// Triangles of the mesh.
-    pub triangles: u64,
-    /// Triangles that clustering took away: with `triangles`, those of the unclustered mesh.
-    pub discarded_triangles: u64,
-    /// The same with the original's over-count, for comparison with the published column only: under integrated
-    /// clustering a tetrahedron with one triangle can count two.
+    /// [`Counts::discarded_triangles`] with the original's over-count, for comparison with the published column only: under
+    /// integrated clustering a tetrahedron with one triangle can count two.
     pub discarded_as_published: u64,
     /// Bytes of the samples where all are stored: 4 each.
     pub sample_bytes: u64,
     /// Bytes of the edge records where all are stored: 58 a sample point, fourteen 4-byte vertex numbers and fourteen flags.
     pub edge_bytes: u64,
-    /// Bytes of the vertices: 24 each, a position and a normal.
-    pub vertex_bytes: u64,
-    /// Bytes of the vertex indices: 12 a triangle.
-    pub index_bytes: u64,
 }
 
 /// Why a surface cannot be extracted.
@@ -206,22 +217,27 @@ impl Counts {
         crossings: u64,
     ) -> Self {
         let (vertices, triangles) = (mesh.positions.len() as u64, mesh.triangles.len() as u64);
-        Self {
+        let tetrahedra = TetrahedraCounts {
             stored_samples: lattice.stored_samples(),
-            needed_samples: lattice.needed_samples(),
             stored_edges: lattice.stored_edges(),
             needed_edges: lattice.needed_edges(),
             tetrahedra: lattice.tetrahedra(),
             tetrahedra_evaluated: surface.tetrahedra_evaluated,
+            discarded_as_published: surface.discarded_as_published,
+            sample_bytes: lattice.sample_bytes(),
+            edge_bytes: lattice.edge_bytes(),
+        };
+        Self {
+            samples: lattice.needed_samples(),
+            cells: lattice.cells().iter().map(|&n| u64::from(n)).product(),
+            cells_visited: surface.cells_visited,
             crossings,
             vertices,
             triangles,
             discarded_triangles: surface.discarded,
-            discarded_as_published: surface.discarded_as_published,
-            sample_bytes: lattice.sample_bytes(),
-            edge_bytes: lattice.edge_bytes(),
             vertex_bytes: 24 * vertices,
             index_bytes: 12 * triangles,
+            tetrahedra: Some(tetrahedra),
         }
     }
 }

@@ -182,7 +182,7 @@ mod vertices;
 pub use accuracy::{Accuracy, accuracy};
 pub use chunks::{Chunk, ChunkError, ChunkExtractor, WeldError, weld_chunks};
 pub use distances::{DistanceError, distances};
-pub use extraction::{Counts, ExtractError, Extraction, StageTimes};
+pub use extraction::{Counts, ExtractError, Extraction, StageTimes, TetrahedraCounts};
 pub use extractor::{Extractor, extract};
 pub use field::ScalarField;
 pub use grid::Grid;

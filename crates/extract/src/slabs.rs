@@ -220,6 +220,7 @@ fn join(pieces: &mut [Piece], most_vertices: u32) -> Result<Vec<Seam>, ExtractEr
             whole.keys.append(&mut trace.keys);
             whole.cells.append(&mut trace.cells);
         }
+        first.surface.cells_visited += piece.surface.cells_visited;
         first.surface.tetrahedra_evaluated += piece.surface.tetrahedra_evaluated;
         first.surface.discarded += piece.surface.discarded;
         first.surface.discarded_as_published += piece.surface.discarded_as_published;

@@ -15,7 +15,9 @@ pub(crate) const MOST_TRIANGLES_A_CELL: usize = 48;
 #[derive(Debug, Default)]
 pub(crate) struct Triangulation {
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// Tetrahedra of the cells that were not skipped.
+    /// Cells that were not skipped.
+    pub(crate) cells_visited: u64,
+    /// Their tetrahedra.
     pub(crate) tetrahedra_evaluated: u64,
     /// Triangles left out because two corners are the same vertex.
     pub(crate) discarded: u64,
@@ -48,6 +50,7 @@ pub(crate) fn triangulate(
                     continue;
                 }
                 result.triangles.try_reserve(MOST_TRIANGLES_A_CELL)?;
+                result.cells_visited += 1;
                 let inside = sides.is_inside(base);
                 for spoke in &spokes {
                     if belongs_to_an_earlier_cell(lattice.arrangement(), spoke, [x, y, z]) {

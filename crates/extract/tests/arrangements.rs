@@ -214,7 +214,7 @@ fn buffers_samples_and_threads_do_not_show() {
                     extractor.extract(Source::Field(&volume), &lattice, &settings, &execution).unwrap();
                 assert_eq!((again.mesh, again.counts), (expected.mesh.clone(), expected.counts));
             }
-            assert_eq!(expected.counts.needed_samples, lattice.needed_samples());
+            assert_eq!(expected.counts.samples, lattice.needed_samples());
             assert_eq!(lattice.memory_bytes(), 9 * lattice.stored_samples());
         }
     }

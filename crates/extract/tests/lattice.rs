@@ -23,8 +23,9 @@ fn twenty_cells_a_side_as_the_original_shows_them() {
     assert_eq!(lattice.stored_edges(), 291_368);
     assert_eq!(lattice.needed_edges(), 125_260);
     assert_eq!(lattice.tetrahedra(), 100_800);
-    let counts = extract(&Sphere::default(), &lattice, &ExtractSettings::default(), &Execution::default());
-    assert_eq!(counts.unwrap().counts.tetrahedra_evaluated, 25_056);
+    let extraction =
+        extract(&Sphere::default(), &lattice, &ExtractSettings::default(), &Execution::default()).unwrap();
+    assert_eq!(extraction.counts.tetrahedra.unwrap().tetrahedra_evaluated, 25_056);
 }
 
 #[test]
@@ -97,7 +98,9 @@ fn memory_covers_what_the_counts_say() {
         let counts =
             extract(&Sphere::default(), &lattice, &ExtractSettings::default(), &Execution::default())
                 .unwrap()
-                .counts;
+                .counts
+                .tetrahedra
+                .unwrap();
         let tables = counts.sample_bytes + counts.edge_bytes;
         assert!(lattice.memory_bytes() > tables && lattice.memory_bytes() < tables * 11 / 10);
     }
@@ -183,7 +186,8 @@ fn nothing_inside_is_an_empty_mesh() {
             extract(&Sphere { radius }, &lattice, &ExtractSettings::default(), &Execution::default())
                 .unwrap();
         assert_eq!(extraction.mesh, mesh::TriangleMesh::default());
-        assert_eq!((extraction.counts.crossings, extraction.counts.tetrahedra_evaluated), (0, 0));
+        assert_eq!((extraction.counts.crossings, extraction.counts.cells_visited), (0, 0));
+        assert_eq!(extraction.counts.tetrahedra.unwrap().tetrahedra_evaluated, 0);
     }
 }
 
@@ -206,5 +210,57 @@ fn one_cell_is_a_lattice() {
         let counts = extract(&Of(corner_ball), &lattice, &settings, &Execution::default()).unwrap().counts;
         // The corner inside sees its three cube edges, and per arrangement its diagonals.
         assert_eq!(counts.crossings, 7);
+    }
+}
+
+/// Cells are visited where their own points, and body-centred those of the cells beside them, are on both sides; here each
+/// is looked at by itself.
+#[test]
+fn cells_visited_are_those_that_the_surface_may_meet() {
+    const CELLS: i32 = 32;
+    let sphere = Sphere { radius: 0.8 };
+    let spacing = 2.0 / CELLS as f32;
+    let at = |p: [f32; 3]| sphere.sample(Vec3::NEG_ONE + Vec3::from_array(p) * spacing) > 0.0;
+    for arrangement in Arrangement::ALL {
+        let mut expected = 0;
+        for cell in 0..CELLS.pow(3) {
+            let low = [cell % CELLS, cell / CELLS % CELLS, cell / CELLS.pow(2)].map(|i| i as f32);
+            let point = |halves: [i32; 3]| at([0, 1, 2].map(|axis| low[axis] + 0.5 * halves[axis] as f32));
+            let corners = (0..8).map(|c| [0, 1, 2].map(|axis| 2 * (c >> axis & 1)));
+            let across = |to: i32| {
+                (0..3).flat_map(move |axis| {
+                    [1 - to, 1 + to].map(|v| {
+                        let mut face = [1; 3];
+                        face[axis] = v;
+                        face
+                    })
+                })
+            };
+            let points: Vec<_> = match arrangement {
+                Arrangement::SimpleCubic | Arrangement::FiveTetrahedra => corners.collect(),
+                Arrangement::FaceCentred => corners.chain(across(1)).chain([[1; 3]]).collect(),
+                // No centre beyond the box is inside.
+                Arrangement::BodyCentred => corners.chain(across(2)).chain([[1; 3]]).collect(),
+            };
+            let inside = points.iter().filter(|&&halves| point(halves)).count();
+            expected += u64::from(inside > 0 && inside < points.len());
+        }
+        let lattice = Lattice::try_new(arrangement, UNIT, spacing).unwrap();
+        assert_eq!(lattice.cells(), [CELLS as u32; 3]);
+        let settings = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
+        for threads in [1, 3] {
+            let counts = extract(&sphere, &lattice, &settings, &Execution { threads }).unwrap().counts;
+            assert_eq!((counts.cells, counts.cells_visited), (32 * 32 * 32, expected), "{arrangement}");
+            let tetrahedra = counts.tetrahedra.unwrap();
+            assert_eq!(counts.samples, lattice.needed_samples());
+            let a_cell = match arrangement {
+                Arrangement::BodyCentred => 12,
+                Arrangement::SimpleCubic => 6,
+                Arrangement::FiveTetrahedra => 5,
+                Arrangement::FaceCentred => 24,
+            };
+            // Body-centred, the lowest cells have more, and the surface stays clear of them.
+            assert_eq!(tetrahedra.tetrahedra_evaluated, a_cell * expected, "{arrangement}");
+        }
     }
 }

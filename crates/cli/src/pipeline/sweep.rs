@@ -139,7 +139,7 @@ impl Pipeline<'_> {
         Ok(SweepMesh {
             id: configuration.id.clone(),
             cells,
-            needed_samples: extraction.counts.needed_samples,
+            needed_samples: extraction.counts.samples,
             vertices: extraction.counts.vertices,
             triangles: extraction.counts.triangles,
             radius_ratio_mean: quality.radius_ratio.mean,

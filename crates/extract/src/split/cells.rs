@@ -55,6 +55,7 @@ pub(super) fn triangulate_layer(
                 for (corner, record) in of_corner.iter_mut().enumerate().take(corners.len()) {
                     *record = records[corner].at(at(corner));
                 }
+                result.cells_visited += 1;
                 let x = column / steps;
                 for tetrahedron in &grid.tetrahedra[(x + y + z) % 2] {
                     result.tetrahedra_evaluated += 1;

@@ -131,6 +131,7 @@ fn triangulate(points: &Points, trace: &mut Trace) -> Triangulation {
         if inside == 0 || inside == cut.corners.len() {
             continue;
         }
+        result.cells_visited += 1;
         for tetrahedron in &cut.tetrahedra[(origin + x + y + z) % 2] {
             result.tetrahedra_evaluated += 1;
             let corners = tetrahedron.corners.map(at);

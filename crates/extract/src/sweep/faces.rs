@@ -199,6 +199,7 @@ impl<'a> CellRow<'a> {
         if base.crossing() & self.grid.deciding == 0 {
             return;
         }
+        result.cells_visited += 1;
         let mut corners = [Record::default(); 16];
         let mut all = base;
         for &d in &self.tables.corners {
