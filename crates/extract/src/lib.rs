@@ -23,7 +23,7 @@
 //!
 //! - Inside is a value above the isovalue. A value equal to it is outside, and so is `NaN`.
 //! - Triangles are counter-clockwise seen from outside and have three different vertices; normals point outward.
-//! - The same field, lattice and settings give the same mesh to the byte, on any number of threads. The fields here
+//! - The same field, lattice and settings give the same mesh to the byte, on any number of threads. The fields of [`field`]
 //!   use no platform mathematics, so the mesh is also the same on every machine.
 //! - Vertices lie in the lattice's box. With [`Topology::Guarded`] and [`Positions::Indexed`], the defaults, so do all
 //!   sample points, and the tetrahedra fill the box and nothing else: outermost points lie on its faces, and where the

@@ -32,8 +32,9 @@ const PLACEMENTS: [(&str, Placement); 4] = [
     ("projected", Placement::Projected),
     ("relaxed", Placement::Relaxed),
 ];
-const POSITIONS: [(&str, Positions); 3] = [
+const POSITIONS: [(&str, Positions); 4] = [
     ("\"indexed\"", Positions::Indexed),
+    ("\"indexed\", accumulation_chunks = 16", Positions::Indexed),
     ("\"accumulated\"", Positions::Accumulated { chunks: 1 }),
     ("\"accumulated\", accumulation_chunks = 16", Positions::Accumulated { chunks: 16 }),
 ];
@@ -100,10 +101,6 @@ fn what_is_not_known_is_refused_by_name() {
         (
             r#"kind = "tetrahedra", arrangement = "simple-cubic", positions = "summed""#,
             ["summed", "accumulated"],
-        ),
-        (
-            r#"kind = "tetrahedra", arrangement = "simple-cubic", accumulation_chunks = 4"#,
-            ["accumulation_chunks", "accumulated"],
         ),
         (r#"kind = "tetrahedra""#, ["missing", "arrangement"]),
         (r#"kind = "octahedra", arrangement = "simple-cubic""#, ["octahedra", "tetrahedra"]),

@@ -11,10 +11,11 @@ use crate::source::Source;
 /// Regularised marching tetrahedra: an arrangement of sample points, and what [`ExtractSettings`] have beside the isovalue.
 ///
 /// With the feature `serde` the keys are those of the fields, and `arrangement` must be given. `positions` is `"indexed"`
-/// or `"accumulated"`; beside the latter `accumulation_chunks` is a number, 1 if it is left out.
+/// or `"accumulated"`; to the latter belongs a number `accumulation_chunks`, 1 if it is left out, without effect beside the
+/// former.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "keys::Keys", into = "keys::Keys"))]
+#[cfg_attr(feature = "serde", serde(from = "keys::Keys", into = "keys::Keys"))]
 pub struct Tetrahedra {
     /// How sample points fill the box, and which tetrahedra they make.
     pub arrangement: Arrangement,
@@ -155,21 +156,16 @@ mod keys {
         }
     }
 
-    impl TryFrom<Keys> for Tetrahedra {
-        type Error = &'static str;
-
-        fn try_from(keys: Keys) -> Result<Self, Self::Error> {
-            let positions = match (keys.positions, keys.accumulation_chunks) {
-                (Positions::Indexed, None) => super::Positions::Indexed,
-                (Positions::Indexed, Some(_)) => {
-                    return Err("accumulation_chunks goes with positions = \"accumulated\" only");
-                }
-                (Positions::Accumulated, chunks) => {
-                    super::Positions::Accumulated { chunks: chunks.unwrap_or(1) }
-                }
+    impl From<Keys> for Tetrahedra {
+        fn from(keys: Keys) -> Self {
+            let chunks = keys.accumulation_chunks.unwrap_or(1);
+            let positions = match keys.positions {
+                // Study files keep the number for the day when they sum up again.
+                Positions::Indexed => super::Positions::Indexed,
+                Positions::Accumulated => super::Positions::Accumulated { chunks },
             };
             let Keys { arrangement, clustering, topology, placement, refine_crossings, .. } = keys;
-            Ok(Self { arrangement, clustering, topology, positions, placement, refine_crossings })
+            Self { arrangement, clustering, topology, positions, placement, refine_crossings }
         }
     }
 }
