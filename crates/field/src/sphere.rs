@@ -9,7 +9,7 @@ use super::{ScalarField, has_sound_lengths};
 /// A ball round the origin: `f(p) = radius - |p|`, the exact signed distance, positive inside.
 ///
 /// Source: Costen (2026), evaluation object "sphere", with radius 1 in the box from -1 to 1. There the surface
-/// touches the box at six points, and rounding decides each of them; see [`crate::Positions`].
+/// touches the box at six points, and rounding decides each of them; see `extract::Positions`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sphere {
     /// Radius in the unit of the coordinates.
