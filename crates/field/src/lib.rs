@@ -14,19 +14,25 @@
 
 mod asteroid;
 mod asteroid_table;
+mod fractal;
 mod gyroid;
 mod mesh_distance;
 mod negated;
+mod noise;
 mod sine;
 mod sphere;
+mod terrain;
 mod volume;
 mod walled;
 
 pub use asteroid::Asteroid;
+pub use fractal::{Fractal, MOST_OCTAVES, NoiseShape};
 pub use gyroid::Gyroid;
 pub use mesh_distance::{Holes, InwardPart, MeshDistance, MeshFieldError};
 pub use negated::Negated;
+pub use noise::{NOISE_CURVATURE, NOISE_SLOPE, noise, noise_and_gradient, noise_range};
 pub use sphere::Sphere;
+pub use terrain::{Terrain, TerrainCharacter, TerrainError, TerrainSettings};
 pub use volume::{Beyond, VolumeField, VolumeFieldError};
 pub use walled::Walled;
 
