@@ -47,6 +47,20 @@ pub enum ExpressionError {
         /// How many there have to be.
         wanted: &'static str,
     },
+    /// An argument that has to be one of certain numbers, the same everywhere.
+    #[error("column {column}: {what} of `{name}` has to be {wanted}, not {found}")]
+    Setting {
+        /// Where the argument starts.
+        column: usize,
+        /// The function.
+        name: String,
+        /// Which argument.
+        what: &'static str,
+        /// What it may be.
+        wanted: &'static str,
+        /// What it is.
+        found: String,
+    },
     /// Something else than what has to follow.
     #[error("column {column}: {found} where {wanted} belongs")]
     Unexpected {
@@ -95,6 +109,7 @@ impl ExpressionError {
             | Self::Number { column, .. }
             | Self::Name { column, .. }
             | Self::Arguments { column, .. }
+            | Self::Setting { column, .. }
             | Self::Unexpected { column, .. }
             | Self::TooDeep { column, .. } => Some(column),
             Self::TooLong { .. } | Self::TooComplex | Self::Constant { .. } => None,

@@ -28,7 +28,7 @@ impl Interval {
     }
 
     /// Wide enough for the rounding of what was computed; nothing if an end is no number.
-    fn rounded(low: f64, high: f64) -> Known {
+    pub(crate) fn rounded(low: f64, high: f64) -> Known {
         let slack = |v: f64| v.abs() * ROUNDING + TINY;
         let infinite = |v: f64| if v.abs() >= LARGE { v.signum() * f64::INFINITY } else { v };
         let (low, high) = (infinite(low - slack(low)), infinite(high + slack(high)));
@@ -44,7 +44,7 @@ impl Interval {
         self.low <= v && v <= self.high
     }
 
-    fn is_finite(self) -> bool {
+    pub(crate) fn is_finite(self) -> bool {
         self.low.is_finite() && self.high.is_finite()
     }
 

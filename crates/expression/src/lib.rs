@@ -25,9 +25,15 @@
 //! | two | `atan2(y, x)`, `mod(a, b)`, `pow(a, b)` |
 //! | three | `clamp(v, low, high)`, `mix(a, b, t)` |
 //! | one or more | `min max length` |
+//! | gradient noise | `noise(x, y, z)`, `fbm(x, y, z, octaves)`, `ridged(x, y, z, octaves)`, `billowed(x, y, z, octaves)`; each with a seed as last argument if wanted |
 //!
 //! `mod` and `%` have the sign of a positive divisor. `a^b` with a whole number for `b` up to 64 is a product; otherwise
 //! it is `exp(b ln(a))`, which is no number for a negative `a`.
+//!
+//! Noise has features of about one unit and is 0 at whole-number points: `noise(x*4, y*4, 0)` has four in a unit, and the same
+//! at all heights. The values are those of [`field::Fractal`] with gain 0.5, rounded to single precision: `noise` and
+//! `fbm` lie in -1 to 1, `ridged` and `billowed` in 0 to 1. `octaves` is a whole number from 1 to 16, the seed one from 0
+//! to 16777215, 0 if left out; both are the same everywhere. Noise may stand in the arguments of noise.
 //!
 //! # Guaranteed
 //!
@@ -38,6 +44,8 @@
 //!   that have no variable: `0/0` is no number, and neither is a sum, difference, product or quotient with it.
 //! - Interval arithmetic bounds the values in a box, rounding included, so that blocks without surface are never sampled.
 //!   Where a formula is not a number in a box, nothing is known there, and all samples are taken.
+//! - Noise is the same on every machine, to the bit, and so is a formula of noise, `+ - * /`, `sqrt`, `abs`, `min` and `max`.
+//!   The bounds of a box take the noise's own in the box of its arguments.
 //!
 //! # Not guaranteed
 //!
@@ -48,8 +56,10 @@
 
 mod error;
 mod interval;
+mod noise_call;
 mod parser;
 mod range;
+mod stage;
 mod token;
 
 use std::cell::RefCell;
@@ -57,24 +67,23 @@ use std::fmt;
 use std::str::FromStr;
 
 use fidget_core::Context;
-use fidget_core::eval::{BulkEvaluator, Function, MathFunction, Tape};
 use fidget_core::var::Var;
-use fidget_core::vm::{GenericVmTape, VmFloatSliceEval, VmFunction};
-use field::ScalarField;
+use field::{Fractal, ScalarField};
 use glam::Vec3;
 use mesh::Bounds;
 
 pub use error::ExpressionError;
 
 use crate::range::RangeTape;
+use crate::stage::{Evaluator, Stage};
 
 /// A formula in x, y and z, ready to be evaluated. Made by [`str::parse`]; the front page says what may be written.
 #[derive(Clone)]
 pub struct Expression {
     text: String,
-    tape: GenericVmTape<255>,
-    /// Which coordinate each of the tape's inputs is.
-    inputs: Vec<usize>,
+    /// Each with its arguments, inner ones first; `None` where the value does not depend on it.
+    noises: Vec<Option<(Stage, Fractal)>>,
+    value: Stage,
     range: RangeTape,
 }
 
@@ -83,20 +92,22 @@ impl FromStr for Expression {
 
     fn from_str(text: &str) -> Result<Self, ExpressionError> {
         let mut context = Context::new();
-        let root = parser::parse(text, &mut context)?;
+        let (root, calls) = parser::parse(text, &mut context)?;
         if let Ok(value) = context.get_const(root) {
             return Err(ExpressionError::Constant { value });
         }
-        let function = VmFunction::new(&context, &[root]).map_err(|_| ExpressionError::TooComplex)?;
-        let tape = function.float_slice_tape(Default::default());
-        let mut inputs = vec![0; tape.vars().len()];
-        for (axis, variable) in [Var::X, Var::Y, Var::Z].iter().enumerate() {
-            if let Some(input) = tape.vars().get(variable) {
-                inputs[input] = axis;
+        let variables: Vec<Var> =
+            [Var::X, Var::Y, Var::Z].into_iter().chain(calls.iter().map(|call| call.variable)).collect();
+        let value = Stage::new(&context, &[root], &variables)?;
+        let mut noises: Vec<Option<(Stage, Fractal)>> = vec![None; calls.len()];
+        for (i, call) in calls.iter().enumerate().rev() {
+            let outer = noises[i + 1..].iter().flatten().map(|(arguments, _)| arguments);
+            if outer.chain([&value]).any(|stage| stage.needs(3 + i)) {
+                noises[i] = Some((Stage::new(&context, &call.arguments, &variables)?, call.noise));
             }
         }
-        let range = RangeTape::new(&context, root);
-        Ok(Self { text: text.to_owned(), tape, inputs, range })
+        let range = RangeTape::new(&context, root, &calls);
+        Ok(Self { text: text.to_owned(), noises, value, range })
     }
 }
 
@@ -116,8 +127,9 @@ impl fmt::Display for Expression {
 /// What a thread evaluates with, so that no sample allocates.
 #[derive(Default)]
 struct Workspace {
-    evaluator: VmFloatSliceEval<255>,
-    coordinates: [Vec<f32>; 3],
+    evaluator: Evaluator,
+    /// x, y, z, and the values of noise.
+    columns: Vec<Vec<f32>>,
 }
 
 thread_local! {
@@ -132,17 +144,24 @@ impl ScalarField for Expression {
     }
 
     fn sample_row(&self, x: &[f32], y: f32, z: f32, values: &mut [f32]) {
-        WORKSPACE.with_borrow_mut(|Workspace { evaluator, coordinates }| {
-            coordinates[0].clear();
-            coordinates[0].extend_from_slice(x);
+        WORKSPACE.with_borrow_mut(|Workspace { evaluator, columns }| {
+            let count = 3 + self.noises.len();
+            columns.resize_with(columns.len().max(count), Vec::new);
+            columns[0].clear();
+            columns[0].extend_from_slice(x);
             for (axis, value) in [(1, y), (2, z)] {
-                coordinates[axis].clear();
-                coordinates[axis].resize(x.len(), value);
+                columns[axis].clear();
+                columns[axis].resize(x.len(), value);
             }
-            let inputs: [&[f32]; 3] =
-                std::array::from_fn(|k| self.inputs.get(k).map_or(&[][..], |&axis| &coordinates[axis][..]));
-            let found = evaluator.eval(&self.tape, &inputs[..self.inputs.len()]);
-            values.copy_from_slice(&found.expect("one value a variable and point")[0]);
+            for (i, noise) in self.noises.iter().enumerate() {
+                let Some((arguments, noise)) = noise else { continue };
+                let found = arguments.eval(columns, evaluator);
+                let (x, y, z) = (&found[0], &found[1], &found[2]);
+                let at = |i: usize| [x[i], y[i], z[i]];
+                columns[3 + i].clear();
+                columns[3 + i].extend((0..values.len()).map(|i| noise_call::value(noise, at(i))));
+            }
+            values.copy_from_slice(&self.value.eval(columns, evaluator)[0]);
         });
     }
 

@@ -4,6 +4,7 @@ use fidget_core::Context;
 use fidget_core::context::Node;
 
 use crate::ExpressionError;
+use crate::noise_call::{self, NOISES, NoiseCall};
 use crate::token::{Token, shortened, tokens};
 
 /// Levels of brackets, functions, signs and powers. A level takes a few hundred bytes of stack.
@@ -19,14 +20,15 @@ const PRODUCT: u8 = 2;
 const SIGN: u8 = 3;
 const POWER: u8 = 4;
 
-pub(crate) fn parse(text: &str, context: &mut Context) -> Result<Node, ExpressionError> {
+/// The value of a formula, and its calls of noise, inner ones first.
+pub(crate) fn parse(text: &str, context: &mut Context) -> Result<(Node, Vec<NoiseCall>), ExpressionError> {
     if text.len() > TEXT_LIMIT {
         return Err(ExpressionError::TooLong { bytes: text.len(), limit: TEXT_LIMIT });
     }
-    let mut parser = Parser { tokens: tokens(text)?, at: 0, depth: 0, context };
+    let mut parser = Parser { tokens: tokens(text)?, at: 0, depth: 0, calls: Vec::new(), context };
     let root = parser.expression(SUM)?;
     match parser.peek() {
-        Token::End => Ok(root),
+        Token::End => Ok((root, parser.calls)),
         _ => Err(parser.unexpected("an operator or the end")),
     }
 }
@@ -35,6 +37,7 @@ struct Parser<'a> {
     tokens: Vec<(Token, usize)>,
     at: usize,
     depth: usize,
+    calls: Vec<NoiseCall>,
     context: &'a mut Context,
 }
 
@@ -187,15 +190,25 @@ impl Parser<'_> {
 
     fn call(&mut self, name: &str, column: usize) -> Result<Node, ExpressionError> {
         self.at += 1;
-        let mut arguments = Vec::new();
+        let mut placed = Vec::new();
         while !self.take_sign(')') {
-            if !arguments.is_empty() && !self.take_sign(',') {
+            if !placed.is_empty() && !self.take_sign(',') {
                 return Err(self.unexpected("`,`, `)` or an operator"));
             }
-            arguments.push(self.expression(SUM)?);
+            let column = self.column();
+            placed.push((self.expression(SUM)?, column));
         }
-        let known = self.function(name, &arguments)?;
-        let given = arguments.len();
+        let given = placed.len();
+        let known = match NOISES.into_iter().find(|(noise, _)| *noise == name) {
+            Some(noise) => {
+                let value = noise_call::call(noise, &placed, self.context, &mut self.calls)?;
+                value.ok_or_else(|| arity(name))
+            }
+            None => {
+                let arguments: Vec<Node> = placed.into_iter().map(|(node, _)| node).collect();
+                self.function(name, &arguments)?
+            }
+        };
         known.map_err(|wanted| match wanted {
             Some(wanted) => ExpressionError::Arguments { column, name: shortened(name), given, wanted },
             None => ExpressionError::Name { column, name: shortened(name) },
@@ -268,7 +281,7 @@ impl Parser<'_> {
 }
 
 /// All functions, by how many arguments they take.
-const FUNCTIONS: [(&str, &[&str]); 4] = [
+const FUNCTIONS: [(&str, &[&str]); 6] = [
     (
         "one argument",
         &[
@@ -279,6 +292,8 @@ const FUNCTIONS: [(&str, &[&str]); 4] = [
     ("two arguments", &["atan2", "mod", "pow"]),
     ("three arguments", &["clamp", "mix"]),
     ("at least one argument", &["min", "max", "length"]),
+    ("x, y, z, and a seed if wanted", &["noise"]),
+    ("x, y, z, octaves, and a seed if wanted", &["fbm", "ridged", "billowed"]),
 ];
 
 /// How many arguments a function takes.

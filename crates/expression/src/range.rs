@@ -1,15 +1,23 @@
 //! The range of a formula in a box: its graph, evaluated with intervals.
 
+use std::collections::HashMap;
+
+use field::Fractal;
 use fidget_core::Context;
 use fidget_core::context::{BinaryOpcode, Node, Op, UnaryOpcode};
 use fidget_core::var::Var;
+use glam::DVec3;
 use mesh::Bounds;
 
 use crate::interval::{Interval, Known};
+use crate::noise_call::NoiseCall;
 
 /// The operations of a graph in an order in which each comes after its arguments, which are given by their places.
 #[derive(Debug, Clone)]
-pub(crate) struct RangeTape(Vec<Step>);
+pub(crate) struct RangeTape {
+    steps: Vec<Step>,
+    noises: Vec<Fractal>,
+}
 
 #[derive(Debug, Clone, Copy)]
 enum Step {
@@ -18,16 +26,20 @@ enum Step {
     Constant(f32),
     Unary(UnaryOpcode, usize),
     Binary(BinaryOpcode, usize, usize),
+    /// Which noise, and its arguments.
+    Noise(usize, [usize; 3]),
     /// Something of which nothing is known.
     Unknown,
 }
 
 impl RangeTape {
-    pub(crate) fn new(context: &Context, root: Node) -> Self {
+    pub(crate) fn new(context: &Context, root: Node, calls: &[NoiseCall]) -> Self {
         let mut steps = Vec::new();
-        let mut places = std::collections::HashMap::new();
+        let mut places = HashMap::new();
         // Without recursion, since a sum of many terms is as deep as it is long.
         let mut waiting = vec![root];
+        let numbers: HashMap<Var, usize> =
+            calls.iter().enumerate().map(|(number, call)| (call.variable, number)).collect();
         while let Some(&node) = waiting.last() {
             let place = |node: Node| places.get(&node).copied();
             let step = match context.get_op(node).copied() {
@@ -36,6 +48,19 @@ impl RangeTape {
                 Some(Op::Input(Var::X)) => Some(Step::Axis(0)),
                 Some(Op::Input(Var::Y)) => Some(Step::Axis(1)),
                 Some(Op::Input(Var::Z)) => Some(Step::Axis(2)),
+                Some(Op::Input(variable)) => match numbers.get(&variable) {
+                    Some(&number) => {
+                        let arguments = calls[number].arguments;
+                        let missing = arguments.into_iter().filter(|&node| place(node).is_none());
+                        let before = waiting.len();
+                        waiting.extend(missing);
+                        if waiting.len() > before {
+                            continue;
+                        }
+                        Some(Step::Noise(number, arguments.map(|node| places[&node])))
+                    }
+                    None => Some(Step::Unknown),
+                },
                 Some(Op::Unary(op, a)) => match place(a) {
                     Some(at) => Some(Step::Unary(op, at)),
                     None => {
@@ -60,12 +85,12 @@ impl RangeTape {
                 steps.push(step);
             }
         }
-        Self(steps)
+        Self { steps, noises: calls.iter().map(|call| call.noise).collect() }
     }
 
     pub(crate) fn of(&self, bounds: Bounds) -> Option<(f32, f32)> {
-        let mut values: Vec<Known> = Vec::with_capacity(self.0.len());
-        for step in &self.0 {
+        let mut values: Vec<Known> = Vec::with_capacity(self.steps.len());
+        for step in &self.steps {
             let value = match *step {
                 Step::Axis(axis) => {
                     let (low, high) = (f64::from(bounds.min[axis]), f64::from(bounds.max[axis]));
@@ -74,6 +99,10 @@ impl RangeTape {
                 Step::Constant(value) => (!value.is_nan()).then(|| Interval::new(value.into(), value.into())),
                 Step::Unary(op, a) => values[a].and_then(|a| unary(op, a)),
                 Step::Binary(op, a, b) => values[a].zip(values[b]).and_then(|(a, b)| binary(op, a, b)),
+                Step::Noise(number, arguments) => {
+                    let [x, y, z] = arguments.map(|at| values[at]);
+                    x.zip(y).zip(z).and_then(|((x, y), z)| noise(&self.noises[number], [x, y, z]))
+                }
                 Step::Unknown => None,
             };
             values.push(value);
@@ -82,6 +111,16 @@ impl RangeTape {
         // To the nearest is inward by at most half of what was added last, but for the axes themselves, which are exact.
         Some((low as f32, high as f32))
     }
+}
+
+/// At infinity noise is no number.
+fn noise(noise: &Fractal, arguments: [Interval; 3]) -> Known {
+    if !arguments.iter().all(|argument| argument.is_finite()) {
+        return None;
+    }
+    let low = DVec3::from(arguments.map(|argument| argument.low));
+    let (low, high) = noise.range(low, DVec3::from(arguments.map(|argument| argument.high)));
+    Interval::rounded(low, high)
 }
 
 fn unary(op: UnaryOpcode, a: Interval) -> Known {

@@ -104,7 +104,8 @@ fn errors_name_the_column_and_what_stands_there() {
     let unknown = |what: &str| {
         format!(
             "{what} is not known; x, y, z, pi, tau and e are, and the functions sqrt, cbrt, abs, exp, ln, sin, cos, tan, \
-             asin, acos, atan, floor, ceil, round, sign, square, atan2, mod, pow, clamp, mix, min, max, length"
+             asin, acos, atan, floor, ceil, round, sign, square, atan2, mod, pow, clamp, mix, min, max, length, noise, fbm, \
+             ridged, billowed"
         )
     };
     for (text, want) in [

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::noise::{NOISE_SLOPE, noise, noise_range};
+use crate::noise::{NOISE_SLOPE, Near, noise, noise_range};
 
 /// The most octaves of a [`Fractal`].
 pub const MOST_OCTAVES: u32 = 16;
@@ -23,7 +23,7 @@ pub enum NoiseShape {
 }
 
 /// A weighted mean of octaves of [`noise`]: `sum gain^k shape(noise(2^k p + k s, seed + k)) / sum gain^k`, k from 0, with
-/// `s` = (0.382, 0.618, 0). One octave of the plain shape is the noise itself. The same to the bit on every machine.
+/// `s` = (0.3819660112501051, 0.6180339887498949, 0), and seeds modulo 2^32. One octave of the plain shape is the noise itself. The same to the bit on every machine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fractal {
     shape: NoiseShape,
@@ -65,6 +65,9 @@ impl Fractal {
 
     /// A range that holds every value in the box from `low` to `high`, which are finite.
     pub fn range(&self, low: DVec3, high: DVec3) -> (f64, f64) {
+        if self.shape == NoiseShape::Plain {
+            return self.plain_range(low, high);
+        }
         let mut range = (0.0, 0.0);
         for (octave, weight) in self.octaves() {
             let of_noise = noise_range(octave.place(low), octave.place(high), octave.seed);
@@ -72,6 +75,23 @@ impl Fractal {
             range = (range.0 + least * weight, range.1 + greatest * weight);
         }
         (range.0 - 1e-12, range.1 + 1e-12)
+    }
+
+    /// Gradients are added before their size is taken: those of different octaves may cancel.
+    fn plain_range(&self, low: DVec3, high: DVec3) -> (f64, f64) {
+        let (mut middle, mut gradient, mut off) = (0.0, DVec3::ZERO, 1e-12);
+        for (octave, weight) in self.octaves() {
+            match Near::of(octave.place(low), octave.place(high), octave.seed) {
+                Some(near) => {
+                    middle += near.value * weight;
+                    gradient += near.gradient * (octave.frequency * weight);
+                    off += near.off * weight;
+                }
+                None => off += weight,
+            }
+        }
+        off += gradient.abs().dot((high - low) * 0.5);
+        ((middle - off).max(-1.0 - 1e-12), (middle + off).min(1.0 + 1e-12))
     }
 
     /// The least and the greatest value that there can be, but for rounding.

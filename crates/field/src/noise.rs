@@ -35,7 +35,9 @@ const GRADIENTS: [[f64; 3]; 12] = [
 
 /// Gradient noise at `p`: 0 at whole-number points, features of about one unit, twice differentiable everywhere.
 ///
-/// Each whole-number point `i` has one of twelve gradients `g`, by a hash of `i` and `seed`. The value is
+/// Each whole-number point `i` has one of twelve gradients `g`, drawn by `i` and `seed`: with whole numbers modulo 2^64,
+/// `h = G (seed + 1) + A ix + B iy + C iz`, `h = G (h xor h >> 32)`, `h = A (h xor h >> 29)`, the `12 (h >> 32) >> 32`-th of
+/// the private constants, where `G` and `A`, `B`, `C` are too. The value is
 /// `0.9647 sum w(p - i) g . (p - i)` over the eight corners of the unit cell, where `w` is the product over the axes of
 /// `1 - s(|t|)`, `s(t) = 6 t^5 - 15 t^4 + 10 t^3`. Only sums, products and comparisons in `f64` are taken, in a fixed
 /// order: the result is the same to the bit on every machine. Beyond 2^52 it is 0; at what is not finite it is `NaN`.
@@ -79,19 +81,41 @@ pub fn noise_and_gradient(p: DVec3, seed: u32) -> (f64, DVec3) {
 /// At a distance `r` from the middle the value differs from that there by at most [`NOISE_SLOPE`] `r`, and by at most
 /// the gradient's part and half of [`NOISE_CURVATURE`] `r^2`. Small boxes so have ranges little larger than needed.
 pub fn noise_range(low: DVec3, high: DVec3, seed: u32) -> (f64, f64) {
-    let (centre, half) = ((low + high) * 0.5, (high - low) * 0.5);
-    let radius = half.length();
-    let off_by_slope = NOISE_SLOPE * radius;
-    // The greatest possible value less the least.
-    if off_by_slope.is_nan() || off_by_slope >= 2.0 {
-        return (-1.0, 1.0);
+    match Near::of(low, high, seed) {
+        Some(near) => {
+            let off = near.gradient.abs().dot((high - low) * 0.5) + near.off;
+            ((near.value - off).max(-1.0), (near.value + off).min(1.0))
+        }
+        None => (-1.0, 1.0),
     }
-    let (value, gradient) = noise_and_gradient(centre, seed);
-    let off_by_curvature = gradient.abs().dot(half) + 0.5 * NOISE_CURVATURE * radius * radius;
-    // What double precision leaves out of places and sums.
-    let rounding = 1e-12 + 1e-14 * centre.abs().max_element();
-    let off = off_by_slope.min(off_by_curvature) + rounding;
-    ((value - off).max(-1.0), (value + off).min(1.0))
+}
+
+/// What noise is like in a box: at each point of it no more than `off` from `value + gradient . step from the middle`.
+pub(super) struct Near {
+    pub(super) value: f64,
+    /// Zero where it tells less than the bound of the slope.
+    pub(super) gradient: DVec3,
+    pub(super) off: f64,
+}
+
+impl Near {
+    /// `None` where the box is so large that nothing is known.
+    pub(super) fn of(low: DVec3, high: DVec3, seed: u32) -> Option<Self> {
+        let (centre, half) = ((low + high) * 0.5, (high - low) * 0.5);
+        let radius = half.length();
+        let by_slope = NOISE_SLOPE * radius;
+        // The greatest possible value less the least.
+        if by_slope.is_nan() || by_slope >= 2.0 {
+            return None;
+        }
+        let (value, gradient) = noise_and_gradient(centre, seed);
+        let by_curvature = 0.5 * NOISE_CURVATURE * radius * radius;
+        // What double precision leaves out of places and sums.
+        let rounding = 1e-12 + 1e-14 * centre.abs().max_element();
+        let is_curved = gradient.abs().dot(half) + by_curvature < by_slope;
+        let (gradient, off) = if is_curved { (gradient, by_curvature) } else { (DVec3::ZERO, by_slope) };
+        Some(Self { value, gradient, off: off + rounding })
+    }
 }
 
 /// Where there are no cells.
@@ -166,7 +190,8 @@ impl Cell {
             for axis in 0..3 {
                 let others = weight((axis + 1) % 3) * weight((axis + 2) % 3);
                 let change = if corner >> axis & 1 == 1 { others } else { -others };
-                gradient[axis] += self.gradients[corner][axis] * all + slant * change * fade_slope(self.t[axis]);
+                gradient[axis] +=
+                    self.gradients[corner][axis] * all + slant * change * fade_slope(self.t[axis]);
             }
         }
         (self.value(), gradient)

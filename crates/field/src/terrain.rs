@@ -6,8 +6,8 @@ mod settings;
 use glam::{DVec3, Vec3};
 use mesh::Bounds;
 
-use super::ScalarField;
-use super::fractal::{Fractal, NoiseShape};
+use crate::ScalarField;
+use crate::fractal::{Fractal, NoiseShape};
 use relief::Relief;
 pub use settings::{TerrainCharacter, TerrainError, TerrainSettings};
 
@@ -18,7 +18,7 @@ const CAVE_STRETCH: f64 = 1.4;
 /// How far noise typically is from 0, at a length of one cell away: makes a cave's value about a distance.
 const CAVE_SLOPE: f64 = 1.5;
 /// Two noises have squares with a sum below `t^2` in a share of about this times `t^2` of space.
-const HOLLOW: f64 = 7.5;
+const HOLLOW: f64 = 10.5;
 
 /// A piece of ground, `z` up, inside where there is rock.
 ///
@@ -64,7 +64,8 @@ pub struct Terrain {
 
 impl Terrain {
     /// Bounds in which the characters look their best: 2 by 2 by 1, round the origin.
-    pub const DEFAULT_BOUNDS: Bounds = Bounds { min: Vec3::new(-1.0, -1.0, -0.5), max: Vec3::new(1.0, 1.0, 0.5) };
+    pub const DEFAULT_BOUNDS: Bounds =
+        Bounds { min: Vec3::new(-1.0, -1.0, -0.5), max: Vec3::new(1.0, 1.0, 0.5) };
 
     /// A terrain in `bounds`, which are those that it is meant to be extracted in.
     ///
@@ -246,7 +247,7 @@ impl ScalarField for Terrain {
         let caves = parts.caves.map(|ranges| (self.cave_range(ranges), self.cave_slope(ranges)));
         let shift_slope = if self.has_overhangs() {
             let [a, b] = self.shifts.map(|shift| shift.slope());
-            a.hypot(b) * self.settings.overhang / self.settings.overhang_period
+            (a * a + b * b).sqrt() * self.settings.overhang / self.settings.overhang_period
         } else {
             0.0
         };

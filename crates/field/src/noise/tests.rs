@@ -22,7 +22,8 @@ fn suprema(t: DVec3, u: DVec3) -> [f64; 3] {
             let sign: f64 = if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
             step[axis] -= sign.max(0.0);
             let weight = if sign > 0.0 { fade(t[axis]) } else { 1.0 - fade(t[axis]) };
-            axes[axis] = [weight, sign * fade_slope(t[axis]) * u[axis], sign * second(t[axis]) * u[axis] * u[axis]];
+            axes[axis] =
+                [weight, sign * fade_slope(t[axis]) * u[axis], sign * second(t[axis]) * u[axis] * u[axis]];
         }
         let [x, y, z] = axes;
         let weight = x[0] * y[0] * z[0];
@@ -61,9 +62,8 @@ impl Turned for DVec3 {
 /// Points of a grid over an eighth of the cell with `n` steps a side, of each group that turns and mirrors one another one.
 fn grid(n: usize) -> impl Iterator<Item = DVec3> {
     let at = move |i: usize| 0.5 * i as f64 / n as f64;
-    (0..=n).flat_map(move |x| {
-        (x..=n).flat_map(move |y| (y..=n).map(move |z| DVec3::new(at(x), at(y), at(z))))
-    })
+    (0..=n)
+        .flat_map(move |x| (x..=n).flat_map(move |y| (y..=n).map(move |z| DVec3::new(at(x), at(y), at(z)))))
 }
 
 #[test]
@@ -74,10 +74,15 @@ fn bounds_are_proven() {
         let [s1, s2, s3, s4] = [3.75, 11.5472, 120.0, 720.0];
         let [a, b, c] = u.abs().to_array();
         let pairs = |p: i32, q: i32| {
-            [(a, b), (b, c), (c, a)].map(|(v, w)| v.powi(p) * w.powi(q) + v.powi(q) * w.powi(p)).iter().sum::<f64>()
+            [(a, b), (b, c), (c, a)]
+                .map(|(v, w)| v.powi(p) * w.powi(q) + v.powi(q) * w.powi(p))
+                .iter()
+                .sum::<f64>()
         };
         let second = s2 + s1 * s1 * pairs(1, 1);
-        let third = s3 * (a.powi(3) + b.powi(3) + c.powi(3)) + 3.0 * s2 * s1 * pairs(2, 1) + 6.0 * s1.powi(3) * a * b * c;
+        let third = s3 * (a.powi(3) + b.powi(3) + c.powi(3))
+            + 3.0 * s2 * s1 * pairs(2, 1)
+            + 6.0 * s1.powi(3) * a * b * c;
         let fourth = s4 * (a.powi(4) + b.powi(4) + c.powi(4))
             + 4.0 * s3 * s1 * pairs(3, 1)
             + 3.0 * s2 * s2 * pairs(2, 2)
@@ -126,7 +131,8 @@ fn best(v: DVec3) -> [f64; 3] {
 #[test]
 fn no_bound_is_much_too_large() {
     let greatest = DVec3::new(0.35, 0.475, 0.5);
-    let step = |t: DVec3, corner: usize| t - DVec3::from_array([0, 1, 2].map(|axis| (corner >> axis & 1) as f64));
+    let step =
+        |t: DVec3, corner: usize| t - DVec3::from_array([0, 1, 2].map(|axis| (corner >> axis & 1) as f64));
     let cell = Cell { t: greatest.to_array(), gradients: std::array::from_fn(|c| best(step(greatest, c))) };
     assert!((0.9995..=1.0).contains(&(cell.value() * SCALE)), "{}", cell.value());
 
@@ -229,7 +235,13 @@ fn ranges_hold_and_those_of_small_boxes_are_tight() {
             seen += greatest - least;
         }
         // A hundredth, a tenth and a fifth of a cell.
-        let most = if size < 0.05 { 1.1 } else if size < 0.2 { 1.6 } else { f64::INFINITY };
+        let most = if size < 0.05 {
+            1.1
+        } else if size < 0.2 {
+            1.6
+        } else {
+            f64::INFINITY
+        };
         assert!(told < most * seen, "{size}: {told} told, {seen} seen");
     }
 }

@@ -3,10 +3,10 @@
 use glam::DVec3;
 
 use super::TerrainSettings;
-use crate::field::fractal::{Fractal, NoiseShape};
+use crate::fractal::{Fractal, NoiseShape};
 
 /// The part of a terrace's height that its riser takes of the way.
-const RISER: f64 = 0.3;
+const RISER: f64 = 0.2;
 /// How much of a terrace stays a slope, so that treads are not flat.
 const SLOPING: f64 = 0.25;
 

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-use crate::field::fractal::MOST_OCTAVES;
+use crate::fractal::MOST_OCTAVES;
 
 /// Settings of a [`Terrain`](super::Terrain). Plain data; [`check`](Self::check) says what is allowed.
 ///
@@ -88,14 +88,14 @@ impl TerrainCharacter {
             Self::Hills => hills,
             Self::Cliffs => TerrainSettings {
                 ground: 0.24,
-                relief: 0.26,
+                relief: 0.4,
                 period: 0.5,
                 octaves: 5,
                 gain: 0.35,
-                ridged: 0.5,
-                terrace: 0.13,
-                overhang: 0.06,
-                overhang_period: 0.2,
+                ridged: 0.3,
+                terrace: 0.1,
+                overhang: 0.05,
+                overhang_period: 0.18,
                 ..hills
             },
             Self::Caves => TerrainSettings {
@@ -108,7 +108,7 @@ impl TerrainCharacter {
                 billowed: 0.3,
                 overhang: 0.03,
                 overhang_period: 0.2,
-                caves: 0.12,
+                caves: 0.13,
                 cave_period: 0.24,
                 ..hills
             },
