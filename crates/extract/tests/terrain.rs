@@ -62,7 +62,8 @@ fn characters_have_the_topology_of_their_names() {
         assert!(handles > 20, "caves {seed}: {handles} handles");
     }
     // Small shifts turn the ground without tearing it.
-    let whole = TerrainSettings { overhang: 0.0225, closed: true, ..TerrainCharacter::Cliffs.settings(2) };
+    let whole =
+        TerrainSettings { overhang: 0.0225, overhang_period: 0.18, ..TerrainCharacter::Cliffs.settings(2) };
     let whole = TerrainSettings { ground: 0.25, relief: 0.2, ..whole };
     let mesh = mesh_of(&terrain(whole), BOUNDS, Arrangement::BodyCentred, 160);
     assert_eq!((topology(&mesh).components, topology(&mesh).euler_characteristic), (1, 2));

@@ -203,7 +203,7 @@ impl Cell {
 fn hash(place: u64) -> usize {
     let mixed = (place ^ place >> 32).wrapping_mul(GOLDEN);
     let mixed = (mixed ^ mixed >> 29).wrapping_mul(STEPS[0]);
-    ((mixed >> 32) * GRADIENTS.len() as u64 >> 32) as usize
+    (((mixed >> 32) * GRADIENTS.len() as u64) >> 32) as usize
 }
 
 #[inline]

@@ -35,7 +35,8 @@ pub struct TerrainSettings {
     /// has another shift, so cliffs lean over. The ground stays in one piece while `overhang` is below 0.13
     /// `overhang_period`.
     pub overhang: f64,
-    /// The size of overhangs, in widths: the edge of that noise's cells; 0.001 to 100.
+    /// The size of overhangs along the ground, in widths: the edge of that noise's cells, which are half as high; 0.001 to
+    /// 100.
     pub overhang_period: f64,
     /// How much of the rock is hollowed out, as a share of its volume: caves, and arches where they come out; 0 to 0.5. Met to
     /// within a quarter on average over seeds.
@@ -94,8 +95,8 @@ impl TerrainCharacter {
                 gain: 0.35,
                 ridged: 0.3,
                 terrace: 0.1,
-                overhang: 0.05,
-                overhang_period: 0.18,
+                overhang: 0.06,
+                overhang_period: 0.28,
                 ..hills
             },
             Self::Caves => TerrainSettings {
