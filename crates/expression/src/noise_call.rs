@@ -3,10 +3,10 @@
 //! fidget's graph takes no functions from outside. A call is a variable of its own there; its three arguments are a graph
 //! as well, evaluated before.
 
-use field::{Fractal, MOST_OCTAVES, NoiseShape};
 use fidget_core::Context;
 use fidget_core::context::Node;
 use fidget_core::var::Var;
+use field::{Fractal, MOST_OCTAVES, NoiseShape};
 
 use crate::ExpressionError;
 

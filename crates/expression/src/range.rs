@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use field::Fractal;
 use fidget_core::Context;
 use fidget_core::context::{BinaryOpcode, Node, Op, UnaryOpcode};
 use fidget_core::var::Var;
+use field::Fractal;
 use glam::DVec3;
 use mesh::Bounds;
 
