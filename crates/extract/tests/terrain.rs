@@ -41,7 +41,7 @@ fn characters_have_the_topology_of_their_names() {
     let whole =
         TerrainSettings { overhang: 0.0225, overhang_period: 0.18, ..TerrainCharacter::Cliffs.settings(2) };
     let whole = TerrainSettings { ground: 0.25, relief: 0.2, ..whole };
-    let mesh = mesh_of(&terrain(whole), BOUNDS, Arrangement::BodyCentred, 160);
+    let mesh = mesh_of(&terrain(whole), BOUNDS, Arrangement::BodyCentred, 120);
     assert_eq!((topology(&mesh).components, topology(&mesh).euler_characteristic), (1, 2));
 }
 
@@ -111,7 +111,7 @@ impl ScalarField for Watched<'_> {
 #[test]
 fn pruning_saves_samples_and_changes_no_byte() {
     for (character, share) in
-        [(TerrainCharacter::Hills, 0.2), (TerrainCharacter::Cliffs, 0.4), (TerrainCharacter::Caves, 0.5)]
+        [(TerrainCharacter::Hills, 0.25), (TerrainCharacter::Cliffs, 0.45), (TerrainCharacter::Caves, 0.6)]
     {
         for closed in [true, false] {
             let field = terrain(TerrainSettings { closed, ..character.settings(7) });
@@ -119,7 +119,7 @@ fn pruning_saves_samples_and_changes_no_byte() {
                 let mut found = Vec::new();
                 for tells in [false, true] {
                     let watched = Watched { field: &field, tells, samples: AtomicUsize::new(0) };
-                    let mesh = mesh_of(&watched, BOUNDS, arrangement, 100);
+                    let mesh = mesh_of(&watched, BOUNDS, arrangement, 80);
                     found.push((mesh, watched.samples.into_inner()));
                 }
                 let [plain, pruned] = [&found[0], &found[1]];

@@ -56,7 +56,7 @@ pub struct TerrainSettings {
 pub enum TerrainCharacter {
     /// Smooth hills: no vertical line meets the ground twice.
     Hills,
-    /// Terraced cliffs that lean over, without caves.
+    /// Terraced cliffs that lean over, with an arch here and there.
     Cliffs,
     /// Rough ground over a maze of caves, with arches.
     Caves,
@@ -95,7 +95,7 @@ impl TerrainCharacter {
                 gain: 0.35,
                 ridged: 0.3,
                 terrace: 0.1,
-                overhang: 0.06,
+                overhang: 0.045,
                 overhang_period: 0.28,
                 ..hills
             },
