@@ -6,7 +6,7 @@
 //! | field | value |
 //! |---|---|
 //! | [`Sphere`], [`Asteroid`], [`Gyroid`] | formulas |
-//! | [`Terrain`] | ground with hills, cliffs and caves, from [`noise`] and [`Fractal`] |
+//! | [`Terrain`] | ground with hills, cliffs and caves, from [`noise()`] and [`Fractal`] |
 //! | [`MeshDistance`] | the distance to a triangle mesh, positive inside |
 //! | [`VolumeField`] | samples of a regular grid, interpolated |
 //! | [`Negated`], [`Walled`] | another field, turned round or ended at walls |

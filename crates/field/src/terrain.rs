@@ -40,7 +40,7 @@ const HOLLOW: f64 = 10.5;
 /// # Guaranteed
 /// - Values are computed in `f64` with sums, products, quotients and comparisons in a fixed order, and rounded once: the same
 ///   on every machine. (The threshold `t` takes a square root, which IEEE 754 rounds correctly.)
-/// - [`range`](ScalarField::range) and [`slope`](ScalarField::slope) follow from the bounds of [`noise`](super::noise).
+/// - [`range`](ScalarField::range) and [`slope`](ScalarField::slope) follow from the bounds of [`noise`](crate::noise()).
 /// - Closed, and extracted in its own bounds with guarded topology, the mesh has no boundary.
 /// - Without overhangs and caves, no vertical line meets the ground twice.
 ///
