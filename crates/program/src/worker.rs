@@ -1,0 +1,277 @@
+//! A running program: started, asked, ended.
+
+use std::io::Write;
+use std::path::Path;
+use std::process::{ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+
+use crate::answer::{self, Answer, Done, Ready};
+use crate::error::{End, Phase, Problem, ProgramError, shortened};
+use crate::group::{Group, Memory};
+use crate::lines::{Heard, lines};
+use crate::mesh_file;
+use crate::program::Program;
+use crate::request::{Line, Request, Samples, write_samples};
+use crate::tail::Tail;
+
+/// The longest line that a program may say, without its end.
+pub const LINE_LIMIT_BYTES: usize = 65_536;
+
+/// How often memory and life are looked at while an answer is awaited.
+const LOOK_EVERY: Duration = Duration::from_millis(50);
+/// How long a program that closed its output may take to end.
+const PARTING: Duration = Duration::from_secs(1);
+
+/// A running program. Dropped, its process group is killed and its folder removed.
+#[derive(Debug)]
+pub struct Worker {
+    // Dropped in this order: nothing of the group may live when the folder goes.
+    group: Group,
+    requests: Option<Sender<Vec<u8>>>,
+    replies: Receiver<Heard>,
+    stderr: Tail,
+    program: Program,
+    ready: Ready,
+    last_id: u64,
+    running: bool,
+    folder: TempDir,
+}
+
+impl Worker {
+    /// Starts the program in an empty folder of its own, which is also its `TMPDIR`, and waits until it is ready. It inherits
+    /// the environment and the CPUs that the calling thread is pinned to.
+    ///
+    /// # Errors
+    /// Those of [`Program::check`], and whatever keeps the program from being ready in time; it is gone then.
+    pub fn start(program: &Program) -> Result<Self, ProgramError> {
+        let mut worker = Self::spawn(program).map_err(|problem| program.error(problem))?;
+        match worker.hear_ready() {
+            Ok(ready) => worker.ready = ready,
+            Err(problem) => return Err(worker.stop(problem)),
+        }
+        Ok(worker)
+    }
+
+    /// What the program said of itself.
+    pub fn ready(&self) -> &Ready {
+        &self.ready
+    }
+
+    /// The program's own folder. Meshes and samples may be put here; it goes with the worker.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// The number of its first process, for those who account for CPU time.
+    pub fn process(&self) -> u32 {
+        self.group.id()
+    }
+
+    /// Whether it may be asked. After an error that leaves both sides in step (`failed`, a broken mesh, a request that cannot
+    /// be made) it may; after any other it was killed, and another has to be started.
+    pub fn is_running(&self) -> bool {
+        self.running
+    }
+
+    /// The memory of the program and all that it started; `None` where it cannot be seen.
+    pub fn memory(&mut self) -> Option<Memory> {
+        self.group.memory(true)
+    }
+
+    /// Asks for one isosurface and waits for it, with the mesh if there is to be one.
+    ///
+    /// # Errors
+    /// [`ProgramError`]. See [`Worker::is_running`] for what comes after it.
+    pub fn extract(&mut self, request: &Request<'_>) -> Result<Answer, ProgramError> {
+        if !self.running {
+            return Err(self.program.error(Problem::Stopped));
+        }
+        match self.ask(request) {
+            Ok(answer) => Ok(answer),
+            Err(problem) if problem.is_in_step() => {
+                let stderr = self.stderr.words();
+                Err(ProgramError { stderr, ..self.program.error(problem) })
+            }
+            Err(problem) => Err(self.stop(problem)),
+        }
+    }
+
+    /// Closes the program's input and waits until it has ended, at most for the time limit. Without this call it is killed, and
+    /// a second answer to the last request is not seen.
+    ///
+    /// # Errors
+    /// If it says something more, does not end, or ends with a code other than 0.
+    pub fn finish(mut self) -> Result<(), ProgramError> {
+        if !self.running {
+            return Err(self.program.error(Problem::Stopped));
+        }
+        self.requests = None;
+        let limit = self.program.time_limit;
+        match self.listen(Phase::Finish) {
+            Ok((line, _)) => Err(self.stop(Problem::Unasked { line: shortened(&line) })),
+            Err(Problem::Ended { end: End::Code(0), rest, .. }) if rest.is_empty() => {
+                self.running = false;
+                Ok(())
+            }
+            Err(Problem::TimeLimit { .. }) => Err(self.stop(Problem::NotEnded { limit })),
+            Err(Problem::Ended { end: End::NotYet, .. }) => {
+                Err(self.stop(Problem::NotEnded { limit: PARTING }))
+            }
+            Err(problem) => Err(self.stop(problem)),
+        }
+    }
+
+    fn spawn(program: &Program) -> Result<Self, Problem> {
+        let words = program.resolved()?;
+        let folder = TempDir::with_prefix("isostudy-").map_err(Problem::io(&std::env::temp_dir()))?;
+        let mut command = Command::new(&words[0]);
+        command.args(&words[1..]).current_dir(folder.path()).env("TMPDIR", folder.path());
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut group = Group::spawn(&mut command).map_err(Problem::Start)?;
+        let child = group.child();
+        let (Some(input), Some(output), Some(errors)) =
+            (child.stdin.take(), child.stdout.take(), child.stderr.take())
+        else {
+            unreachable!("all three are pipes")
+        };
+        Ok(Self {
+            group,
+            requests: Some(writer(input)),
+            replies: lines(output, LINE_LIMIT_BYTES),
+            stderr: Tail::of(errors),
+            program: program.clone(),
+            ready: Ready { name: String::new(), version: String::new(), note: None },
+            last_id: 0,
+            running: true,
+            folder,
+        })
+    }
+
+    fn hear_ready(&mut self) -> Result<Ready, Problem> {
+        let (line, _) = self.listen(Phase::Start)?;
+        answer::ready(&line)
+    }
+
+    fn ask(&mut self, request: &Request<'_>) -> Result<Answer, Problem> {
+        request.check()?;
+        let own_samples = self.folder.path().join("samples.f32");
+        let samples = match request.samples {
+            Samples::Values(values) => {
+                write_samples(&own_samples, values).map_err(Problem::io(&own_samples))?;
+                own_samples
+            }
+            Samples::File(path) => std::path::absolute(path).map_err(Problem::io(path))?,
+        };
+        let mesh = request.mesh.map(|path| self.folder.path().join(path));
+        if let Some(path) = &mesh {
+            mesh_file::clear(path)?;
+        }
+        if let Ok(heard) = self.replies.try_recv() {
+            return Err(self.unasked(heard));
+        }
+        self.last_id += 1;
+        let id = self.last_id;
+        let Request { size, origin, spacing, isovalue, .. } = *request;
+        let line = Line { id, samples: &samples, size, origin, spacing, isovalue, mesh: mesh.as_deref() };
+        let mut line = serde_json::to_vec(&line)
+            .map_err(|error| Problem::Request { key: "samples, mesh", reason: error.to_string() })?;
+        line.push(b'\n');
+        let (done, wall) = self.answered(line, id)?;
+        let memory = self.group.memory(true);
+        self.check_memory(memory, Phase::Request(id))?;
+        if done.triangles == 0 && !request.may_be_empty {
+            return Err(Problem::Empty { id });
+        }
+        let limit = self.program.memory_limit_bytes;
+        let mesh = mesh.map(|path| mesh_file::read(&path, request, &done, limit)).transpose()?;
+        let Done { extraction_s, callback_s, peak_bytes, vertices, triangles, .. } = done;
+        Ok(Answer { extraction_s, callback_s, peak_bytes, wall, vertices, triangles, mesh, memory })
+    }
+
+    fn answered(&mut self, line: Vec<u8>, id: u64) -> Result<(Done, Duration), Problem> {
+        let asked = Instant::now();
+        // Without a receiver the program is gone, which is what listening finds out.
+        let _ = self.requests.as_ref().map(|requests| requests.send(line));
+        let (line, at) = self.listen(Phase::Request(id))?;
+        let Some(wall) = at.checked_duration_since(asked) else {
+            return Err(Problem::Unasked { line: shortened(&line) });
+        };
+        Ok((answer::done(&line, id, wall)?, wall))
+    }
+
+    /// The next line, and when it came.
+    fn listen(&mut self, phase: Phase) -> Result<(Vec<u8>, Instant), Problem> {
+        let limit = self.program.time_limit;
+        let begin = Instant::now();
+        let mut had_ended = false;
+        loop {
+            let left = limit.saturating_sub(begin.elapsed());
+            match self.replies.recv_timeout(left.min(LOOK_EVERY)) {
+                Ok(Heard::Line(line, at)) => return Ok((line, at)),
+                Ok(Heard::TooLong(start)) => {
+                    let start = shortened(&start[..start.len().min(100)]);
+                    return Err(Problem::LineTooLong { phase, limit: LINE_LIMIT_BYTES, start });
+                }
+                Ok(Heard::End(rest)) => return Err(self.ended(phase, &rest)),
+                Err(RecvTimeoutError::Disconnected) => return Err(self.ended(phase, &[])),
+                // It ended, and something that it started holds its output open.
+                Err(RecvTimeoutError::Timeout) if had_ended => return Err(self.ended(phase, &[])),
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            had_ended = self.group.has_ended();
+            if !had_ended {
+                let memory = self.group.memory(false);
+                self.check_memory(memory, phase)?;
+                if begin.elapsed() >= limit {
+                    return Err(Problem::TimeLimit { phase, limit });
+                }
+            }
+        }
+    }
+
+    fn check_memory(&self, memory: Option<Memory>, phase: Phase) -> Result<(), Problem> {
+        match (memory, self.program.memory_limit_bytes) {
+            (Some(Memory { peak_bytes: bytes, .. }), Some(limit)) if bytes > limit => {
+                Err(Problem::MemoryLimit { phase, bytes, limit })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn ended(&mut self, phase: Phase, rest: &[u8]) -> Problem {
+        self.group.ends_within(PARTING);
+        Problem::Ended { phase, end: self.group.kill(), rest: shortened(rest) }
+    }
+
+    fn unasked(&mut self, heard: Heard) -> Problem {
+        match heard {
+            Heard::Line(line, _) | Heard::TooLong(line) => Problem::Unasked { line: shortened(&line) },
+            Heard::End(rest) => self.ended(Phase::Request(self.last_id + 1), &rest),
+        }
+    }
+
+    fn stop(&mut self, problem: Problem) -> ProgramError {
+        self.running = false;
+        self.requests = None;
+        self.group.kill();
+        ProgramError { stderr: self.stderr.last_words(), ..self.program.error(problem) }
+    }
+}
+
+/// Writes lines as they come: a program that does not read its input must not keep us waiting. The pipe is closed when the
+/// sender is dropped or the program is gone.
+fn writer(mut input: ChildStdin) -> Sender<Vec<u8>> {
+    let (sender, lines) = channel::<Vec<u8>>();
+    thread::spawn(move || {
+        for line in lines {
+            if input.write_all(&line).is_err() {
+                return;
+            }
+        }
+    });
+    sender
+}
