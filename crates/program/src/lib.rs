@@ -51,8 +51,8 @@
 //!
 //! - This is no sandbox. A program may do whatever its user may do; only run what you trust.
 //! - A process that leaves the group (`setsid`) is neither counted nor ended.
-//! - Memory is looked at every 50 ms, and a process that the program starts is noticed within a second. A limit may be
-//!   overstepped meanwhile. It is watched on Linux only.
+//! - Memory is looked at every 50 ms, and a process that the program starts is noticed within about a second (later where
+//!   there are thousands of processes). A limit may be overstepped meanwhile. It is watched on Linux only.
 //! - If the caller's process is killed, its programs meet the end of their input. One that is extracting ends after that.
 //! - Nothing is said about the mesh's topology or quality, or about which way its triangles face.
 
