@@ -1,24 +1,15 @@
 #!/bin/sh
-# Times isostudy's extraction beside manifold3d, VTK, scikit-image (Python wheels) and fast-surface-nets, isosurface (Rust crates)
-# on the same fields and sizes, interleaved, and measures every mesh with isostudy's own `mesh`. What cannot be had or fails is
-# skipped and named, on standard error and under the table. What is fetched stays under cache/ and target/.
+# Times isostudy's extraction beside VTK, scikit-image, PyMCubes, manifold3d (Python wheels) and fast-surface-nets, isosurface,
+# transvoxel (Rust crates): sets up the programs that configs/peers.toml names, then runs that study's benchmark. What is fetched stays
+# under cache/ and target/.
 #
-# usage: scripts/peers.sh [--rounds N] [--cells N,N] [--out DIR]
-# PEERS_PYTHON: a Python that has the wheels already; otherwise they are installed into cache/peers.
+# usage: scripts/peers.sh [arguments of `isostudy bench`]
 set -eu
 cd "$(dirname "$0")/.."
 
-python=${PEERS_PYTHON:-cache/peers/bin/python}
-if [ ! -x "$python" ]; then
-    if python3 -m venv cache/peers; then
-        for wheel in numpy==2.4.6 manifold3d==3.5.4 vtk==9.7.2 scikit-image==0.26.0; do
-            cache/peers/bin/pip install --quiet "$wheel" || echo "peers: SKIPPED: no wheel of $wheel" >&2
-        done
-    else
-        echo "peers: SKIPPED: manifold3d, vtk and scikit-image: python3 -m venv does not work here" >&2
-    fi
+if [ ! -x cache/methods/bin/python ]; then
+    python3 -m venv cache/methods
 fi
-export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-target}/peers"
-cargo build --release --quiet --manifest-path scripts/peers/Cargo.toml
-# One core for all: a peer that would use more could not be told apart from a faster one.
-exec "$CARGO_TARGET_DIR/release/peers" --python "$python" --worker scripts/peers/worker.py --date "$(date -u +%F)" "$@"
+cache/methods/bin/pip install --quiet --requirement scripts/methods/requirements.txt
+cargo build --release --quiet --manifest-path scripts/peers/Cargo.toml --target-dir target/peers
+exec cargo run --release --locked --quiet --package cli --bin isostudy -- bench configs/peers.toml --allow-programs "$@"

@@ -1,6 +1,7 @@
 //! The adapters in `scripts/methods/`, where their libraries are installed: `pip install -r scripts/methods/requirements.txt`.
 //!
-//! `METHODS_PYTHON` names the Python that has them; otherwise it is `python3`. What is not there is skipped, and said.
+//! `METHODS_PYTHON` names the Python that has them; otherwise it is `python3`. `PEERS_WORKER` names the program of `scripts/peers`.
+//! What is not there is skipped, and said.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -9,7 +10,7 @@ use std::time::Duration;
 
 use mesh::TriangleMesh;
 use mesh::topology::topology;
-use program::{Program, Request, Samples, Worker};
+use program::{Problem, Program, Request, Samples, Worker};
 
 /// The samples of a sphere of radius 1, by the shape of the grid that `scripts/peers` has.
 const REACH: f64 = 1.1;
@@ -49,38 +50,58 @@ fn start(adapter: &str, package: &str) -> Option<Worker> {
         eprintln!("SKIPPED: {adapter}: {python} has no numpy or no {package}");
         return None;
     }
+    Some(worker(vec![python, format!("./{adapter}.py")]))
+}
+
+/// A worker of another crate, or none and a note if nobody says where the program is.
+fn start_crate(method: &str) -> Option<Worker> {
+    let Ok(program) = std::env::var("PEERS_WORKER") else {
+        eprintln!("SKIPPED: {method}: PEERS_WORKER does not name the program that scripts/peers builds");
+        return None;
+    };
+    Some(worker(vec![program, "--method".to_owned(), method.to_owned()]))
+}
+
+fn worker(command: Vec<String>) -> Worker {
     let program = Program {
-        command: vec![python, format!("./{adapter}.py")],
+        command,
         base: Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts/methods"),
         time_limit: Duration::from_secs(300),
         memory_limit_bytes: Some(4 << 30),
     };
-    Some(Worker::start(&program).expect("the adapter starts"))
+    Worker::start(&program).expect("the adapter starts")
+}
+
+fn request(sphere: &Sphere, isovalue: f64) -> Request<'_> {
+    Request {
+        samples: Samples::Values(&sphere.values),
+        size: sphere.size,
+        origin: sphere.origin,
+        spacing: sphere.spacing,
+        isovalue,
+        mesh: Some("mesh.ply".as_ref()),
+        may_be_empty: false,
+    }
 }
 
 fn extract(worker: &mut Worker, sphere: &Sphere, isovalue: f64) -> TriangleMesh {
-    let answer = worker
-        .extract(&Request {
-            samples: Samples::Values(&sphere.values),
-            size: sphere.size,
-            origin: sphere.origin,
-            spacing: sphere.spacing,
-            isovalue,
-            mesh: Some("mesh.ply".as_ref()),
-            may_be_empty: false,
-        })
-        .expect("an answer");
+    let answer = worker.extract(&request(sphere, isovalue)).expect("an answer");
     assert!(answer.extraction_s.expect("it is told") > 0.0);
     answer.mesh.expect("a mesh")
 }
 
-/// Closed, in one piece, facing outward, of the volume of a ball, and nowhere farther than `error` from its surface.
+/// Closed, in one piece, and where a sphere is.
 fn assert_is_sphere(mesh: &TriangleMesh, sphere: &Sphere, radius: f64, error: f64) {
     let report = topology(mesh);
     assert!(
         report.is_closed_manifold() && report.components == 1 && report.euler_characteristic == 2,
         "{report:?}"
     );
+    assert_lies_on_sphere(mesh, sphere, radius, error);
+}
+
+/// Facing outward, of the volume of a ball, and nowhere farther than `error` from its surface.
+fn assert_lies_on_sphere(mesh: &TriangleMesh, sphere: &Sphere, radius: f64, error: f64) {
     let distance = |p: &mesh::glam::Vec3| {
         let d = [0, 1, 2].map(|a| f64::from(p.to_array()[a]) - sphere.centre[a]);
         d.iter().map(|x| x * x).sum::<f64>().sqrt()
@@ -98,8 +119,8 @@ fn assert_is_sphere(mesh: &TriangleMesh, sphere: &Sphere, radius: f64, error: f6
 
 /// The sphere of `scripts/peers` at 100 cells, whose counts are published with the table of other libraries; then one whose
 /// axes differ in every way, cut at another value.
-fn check(adapter: &str, package: &str, triangles: usize, error_of_spacing: f64) {
-    let Some(mut worker) = start(adapter, package) else { return };
+fn check(worker: Option<Worker>, triangles: usize, error_of_spacing: f64) {
+    let Some(mut worker) = worker else { return };
     let sphere = Sphere::new([100; 3], [0.0; 3]);
     let mesh = extract(&mut worker, &sphere, 0.0);
     assert_is_sphere(&mesh, &sphere, 1.0, error_of_spacing * sphere.spacing[0]);
@@ -116,21 +137,58 @@ const INTERPOLATED: f64 = 0.02;
 
 #[test]
 fn flying_edges_of_vtk_make_a_sphere() {
-    check("vtk_flying_edges", "vtkmodules", 78_008, INTERPOLATED);
+    check(start("vtk_flying_edges", "vtkmodules"), 78_008, INTERPOLATED);
 }
 
 #[test]
 fn marching_cubes_of_scikit_image_make_a_sphere() {
-    check("skimage_lewiner", "skimage", 78_008, INTERPOLATED);
+    check(start("skimage_lewiner", "skimage"), 78_008, INTERPOLATED);
 }
 
 #[test]
 fn marching_cubes_of_pymcubes_make_a_sphere() {
-    check("pymcubes", "mcubes", 78_008, INTERPOLATED);
+    check(start("pymcubes", "mcubes"), 78_008, INTERPOLATED);
 }
 
 #[test]
 fn surface_nets_of_vtk_make_a_sphere_though_they_see_labels_only() {
     // fast-surface-nets, which has a square for each edge that is crossed as well, has this many.
-    check("vtk_surface_nets", "vtkmodules", 78_012, 0.5);
+    check(start("vtk_surface_nets", "vtkmodules"), 78_012, 0.5);
+}
+
+#[test]
+fn fast_surface_nets_make_a_sphere() {
+    check(start_crate("fast-surface-nets"), 78_012, 0.5);
+}
+
+#[test]
+fn crates_that_know_cubes_alone_make_a_sphere_and_refuse_other_grids() {
+    for method in ["isosurface", "transvoxel"] {
+        let Some(mut worker) = start_crate(method) else { return };
+        for (cells, isovalue, centre) in [(100, 0.0, [0.0; 3]), (50, 0.25, [3.0, -5.0, 7.0])] {
+            let sphere = Sphere::new([cells; 3], centre);
+            let mesh = extract(&mut worker, &sphere, isovalue);
+            let error = INTERPOLATED * sphere.spacing[0];
+            match method {
+                // It does not join its vertices, and those that belong together differ in their last digits.
+                "isosurface" => assert_lies_on_sphere(&mesh, &sphere, 1.0 - isovalue, error),
+                _ => assert_is_sphere(&mesh, &sphere, 1.0 - isovalue, error),
+            }
+            assert!(cells != 100 || mesh.triangles.len() == 78_008, "{method}: {}", mesh.triangles.len());
+        }
+        let sphere = Sphere::new([60, 50, 40], [0.0; 3]);
+        let refused = worker.extract(&request(&sphere, 0.0)).expect_err("it knows cubes alone");
+        assert!(matches!(*refused.problem, Problem::Failed { .. }), "{refused}");
+        worker.finish().expect("it ends with its input");
+    }
+}
+
+#[test]
+fn level_set_of_manifold_makes_a_sphere_of_interpolated_samples() {
+    let Some(mut worker) = start("manifold_level_set", "manifold3d") else { return };
+    let sphere = Sphere::new([24; 3], [3.0, -5.0, 7.0]);
+    let mesh = extract(&mut worker, &sphere, 0.25);
+    // Twice interpolated: between samples, and along the edges of its own lattice.
+    assert_is_sphere(&mesh, &sphere, 0.75, 0.1 * sphere.spacing[0]);
+    worker.finish().expect("it ends with its input");
 }
