@@ -53,7 +53,8 @@
 //! - A process that leaves the group (`setsid`) is neither counted nor ended.
 //! - Memory is looked at every 50 ms, and a process that the program starts is noticed within about a second (later where
 //!   there are thousands of processes). A limit may be overstepped meanwhile. It is watched on Linux only.
-//! - If the caller's process is killed, its programs meet the end of their input. One that is extracting ends after that.
+//! - If the caller's process is killed, its programs meet the end of their input. One that is extracting ends after that,
+//!   and the folders stay.
 //! - Nothing is said about the mesh's topology or quality, or about which way its triangles face.
 
 mod answer;

@@ -1,5 +1,6 @@
 //! Nothing of a program stays: no process, no folder, no more memory than it may have.
 
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::programs::{ask, assert_gone, first_error, is_alive, planted};
@@ -49,6 +50,46 @@ fn a_program_that_ends_well_leaves_nothing_either() {
     assert_ends(first);
     assert_ends(second);
     assert!(!folder.exists());
+}
+
+/// Set for a process that this test starts of itself: the file into which it says whom it started.
+const KILLED: &str = "PROGRAM_TEST_KILLED";
+
+/// Two, so that one could hold the other's input open.
+#[test]
+fn programs_end_when_their_caller_is_killed() {
+    if let Some(file) = std::env::var_os(KILLED) {
+        let workers = [(); 2].map(|()| Worker::start(&planted("good")).expect("it is ready"));
+        let folders = workers.each_ref().map(|worker| worker.folder().display().to_string());
+        let started = workers.each_ref().map(|worker| worker.process().to_string());
+        std::fs::write(&file, [started, folders].concat().join("\n") + "\n").expect("a file");
+        std::thread::sleep(Duration::from_secs(1000));
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("started");
+    let mut caller = Command::new(std::env::current_exe().expect("this test"))
+        .args(["--exact", "processes::programs_end_when_their_caller_is_killed"])
+        .env(KILLED, &file)
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("this test starts itself");
+    let begin = Instant::now();
+    let words = loop {
+        let words = std::fs::read_to_string(&file).unwrap_or_default();
+        if words.lines().count() == 4 && words.ends_with('\n') {
+            break words;
+        }
+        assert!(begin.elapsed() < Duration::from_secs(60), "it starts nothing: {:?}", caller.try_wait());
+        std::thread::sleep(Duration::from_millis(10));
+    };
+    let lines: Vec<&str> = words.lines().collect();
+    let started = [0, 1].map(|i| lines[i].parse().expect("a number"));
+    assert!(started.iter().all(|&process| is_alive(process)));
+    caller.kill().expect("it runs");
+    caller.wait().expect("it is killed");
+    started.into_iter().for_each(assert_ends);
+    // A process that is killed removes nothing.
+    lines[2..].iter().for_each(|folder| std::fs::remove_dir_all(folder).expect("its folder"));
 }
 
 #[test]
