@@ -226,9 +226,11 @@ impl Worker {
             if !had_ended {
                 let memory = self.group.memory(false);
                 self.check_memory(memory, phase)?;
-                if begin.elapsed() >= limit {
-                    return Err(Problem::TimeLimit { phase, limit });
-                }
+            }
+            // One that has just ended is given one more look, for its last line and its code.
+            let extra = if had_ended { LOOK_EVERY } else { Duration::ZERO };
+            if begin.elapsed().saturating_sub(extra) >= limit {
+                return Err(Problem::TimeLimit { phase, limit });
             }
         }
     }

@@ -56,9 +56,11 @@ fn a_program_that_cannot_start_is_quoted() {
     );
     assert_eq!(error.stderr, "a last word");
     assert!(error.to_string().contains("a last word"), "{error}");
-    let error = at_start("no-version");
-    assert!(matches!(*error.problem, Problem::Line { phase: Phase::Start, .. }), "{error}");
-    assert!(error.to_string().contains("version"), "{error}");
+    for (plan, words) in [("no-version", "missing field `version`"), ("no-name", "must not be empty")] {
+        let error = at_start(plan);
+        assert!(matches!(*error.problem, Problem::Line { phase: Phase::Start, .. }), "{error}");
+        assert!(error.to_string().contains(words), "{error}");
+    }
 }
 
 #[test]

@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 PLAN = sys.argv[1]
@@ -39,6 +40,8 @@ def write_mesh(path, rows=("0 0 0", "1 0 0", "0 1 0"), corners="0 1 2"):
 
 
 def start():
+    if os.listdir(".") or os.path.realpath(os.environ["TMPDIR"]) != os.path.realpath("."):
+        sys.exit("not an empty folder of its own")
     if PLAN == "slow-start":
         time.sleep(0.3)
     elif PLAN == "hang-at-start":
@@ -50,6 +53,8 @@ def start():
         sys.exit("a last word")
     elif PLAN == "no-version":
         say({"ready": {"name": "planted"}})
+    elif PLAN == "no-name":
+        say({"ready": {"name": " ", "version": "1.0"}})
     elif PLAN == "memory-at-start":
         taken = take(400)
         time.sleep(1000)
@@ -82,7 +87,8 @@ def answer(request):
         time.sleep(1000)
         del taken
     elif PLAN == "memory-of-a-child":
-        subprocess.run([sys.executable, __file__, "memory-at-start"])
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([sys.executable, __file__, "memory-at-start"], cwd=folder, env={**os.environ, "TMPDIR": folder})
     elif PLAN == "fail-once" and request["id"] == 1:
         return say({"id": 1, "failed": "out of luck"})
     elif PLAN == "garbage":
