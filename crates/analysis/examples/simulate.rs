@@ -20,10 +20,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         right: item(c.right.method),
         scene: c.object,
     });
-    let plan = Plan { items: methods.len(), questions: questions.collect(), counterbalanced: false };
+    let plan = Plan { items: study.methods.len(), questions: questions.collect(), counterbalanced: false };
     // Some spread of worths, so that nothing is decided and nothing is void.
-    let worths = (0..methods.len()).map(|i| 0.15 * i as f64).collect();
-    let population = Population { worths, ..Population::indifferent(methods.len(), 1.0) };
+    let worths = (0..study.methods.len()).map(|i| 0.15 * i as f64).collect();
+    let population = Population { worths, ..Population::indifferent(study.methods.len(), 1.0) };
     let ballots = simulate(&plan, &population, respondents.parse()?, &mut stream(seed, 0));
     let mut file = std::io::BufWriter::new(std::fs::File::create(out)?);
     let header: Vec<&str> = study.comparisons.iter().map(|c| c.question.as_str()).collect();
