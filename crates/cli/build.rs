@@ -7,8 +7,22 @@ use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const ROOMS: [&str; 10] =
-    ["mesh", "design", "responses", "field", "extract", "raster", "bench", "analysis", "serve", "cli"];
+const ROOMS: [&str; 14] = [
+    "mesh",
+    "design",
+    "responses",
+    "field",
+    "expression",
+    "volume",
+    "extract",
+    "program",
+    "raster",
+    "bench",
+    "statistics",
+    "analysis",
+    "serve",
+    "cli",
+];
 
 fn main() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");

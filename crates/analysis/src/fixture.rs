@@ -115,30 +115,35 @@ fn mesh(study: &Study, row: &BenchmarkRow, purpose: Purpose) -> MeshRecord {
     };
     let vertices = row.vertices + u64::from(purpose == Purpose::Indexed && object.id == "ss");
     MeshRecord {
+        schema: MeshRecord::SCHEMA,
         id: row.id.clone(),
         purpose,
         spacing: object.benchmark_spacing,
         cells: [row.cells_x, row.cells_y, row.cells_z],
         counts: Counts {
-            stored_samples: row.stored_samples,
-            needed_samples: if body { row.needed_samples } else { (x + 1) * (y + 1) * (z + 1) },
-            stored_edges: row.stored_edges,
-            needed_edges: if body {
-                row.needed_edges
-            } else {
-                7 * x * y * z + 3 * (x * y + x * z + y * z) + x + y + z
-            },
-            tetrahedra: row.tetrahedra,
-            tetrahedra_evaluated: row.tetrahedra_evaluated,
-            crossings: row.vertices,
+            samples: Some(if body { row.needed_samples } else { (x + 1) * (y + 1) * (z + 1) }),
+            cells: Some(x * y * z),
+            cells_visited: None,
+            crossings: Some(row.vertices),
             vertices,
             triangles: row.triangles,
-            discarded_triangles: discarded,
-            discarded_as_published: row.discarded_as_published,
-            sample_bytes: row.sample_bytes,
-            edge_bytes: row.edge_bytes,
+            discarded_triangles: Some(discarded),
             vertex_bytes: row.vertex_bytes,
             index_bytes: row.index_bytes,
+            tetrahedra: Some(TetrahedraCounts {
+                stored_samples: row.stored_samples,
+                stored_edges: row.stored_edges,
+                needed_edges: if body {
+                    row.needed_edges
+                } else {
+                    7 * x * y * z + 3 * (x * y + x * z + y * z) + x + y + z
+                },
+                tetrahedra: row.tetrahedra,
+                tetrahedra_evaluated: row.tetrahedra_evaluated,
+                discarded_as_published: row.discarded_as_published,
+                sample_bytes: row.sample_bytes,
+                edge_bytes: row.edge_bytes,
+            }),
         },
         quality: Quality {
             triangles: row.triangles,

@@ -1,7 +1,7 @@
 //! The meshes of one purpose, in the study's order.
 
 use crate::inputs::Inputs;
-use design::record::{Distribution, MeshRecord, Purpose};
+use design::record::{Distribution, MeshRecord, Purpose, TetrahedraCounts};
 use design::{Configuration, ConfigurationId, MethodId, Study};
 
 /// The records of one purpose, found by configuration.
@@ -44,4 +44,21 @@ pub(crate) fn known(of: &Distribution, statistic: fn(&Distribution) -> f64) -> O
 /// The share of triangles that merging discarded, `discarded / (discarded + kept)`, in 0..=1; 0 of none.
 pub(crate) fn discard_fraction(discarded: u64, kept: u64) -> f64 {
     if discarded == 0 { 0.0 } else { discarded as f64 / (discarded + kept) as f64 }
+}
+
+/// A count that only tetrahedra have; not a number of another method.
+pub(crate) fn of_tetrahedra(mesh: &MeshRecord, count: fn(&TetrahedraCounts) -> u64) -> f64 {
+    mesh.counts.of_tetrahedra(count).map_or(f64::NAN, |count| count as f64)
+}
+
+/// The true share of triangles that merging took away; not a number where it is not known.
+pub(crate) fn discarded(mesh: &MeshRecord) -> f64 {
+    let count = mesh.counts.discarded_triangles;
+    count.map_or(f64::NAN, |count| discard_fraction(count, mesh.counts.triangles))
+}
+
+/// The same as the published count comes to.
+pub(crate) fn discarded_as_published(mesh: &MeshRecord) -> f64 {
+    let count = mesh.counts.of_tetrahedra(|t| t.discarded_as_published);
+    count.map_or(f64::NAN, |count| discard_fraction(count, mesh.counts.triangles))
 }

@@ -88,24 +88,44 @@ impl Panel {
         text.heading("mesh");
         text.count("vertices", c.vertices);
         text.count("triangles", c.triangles);
-        let unclustered = c.triangles + c.discarded_triangles;
-        text.share("discarded triangles", c.discarded_triangles, unclustered, "of all");
-        text.count("  as published, some twice", c.discarded_as_published);
+        if let Some(discarded) = c.discarded_triangles {
+            text.share("discarded triangles", discarded, c.triangles + discarded, "of all");
+        }
+        if let Some(of) = &c.tetrahedra {
+            text.count("  as published, some twice", of.discarded_as_published);
+        }
         let t = &m.topology;
         text.line("Euler characteristic", &t.euler_characteristic.to_string(), "");
         text.count("components", t.components);
         text.count("boundary edges", t.boundary_edges);
         text.count("edges of more than two triangles", t.non_manifold_edges);
         text.heading("generation");
-        text.share("sample points stored", c.stored_samples, c.needed_samples, "of those needed");
-        text.count("  needed", c.needed_samples);
-        text.share("edges stored", c.stored_edges, c.needed_edges, "of those needed");
-        text.count("  needed", c.needed_edges);
-        text.share("tetrahedra evaluated", c.tetrahedra_evaluated, c.tetrahedra, "of all");
-        text.count("  all", c.tetrahedra);
-        text.count("lattice edges that cross", c.crossings);
-        text.count("bytes of samples", c.sample_bytes);
-        text.count("bytes of edges", c.edge_bytes);
+        let needed = c.samples.unwrap_or_default();
+        match &c.tetrahedra {
+            Some(of) => {
+                text.share("sample points stored", of.stored_samples, needed, "of those needed");
+                text.count("  needed", needed);
+                text.share("edges stored", of.stored_edges, of.needed_edges, "of those needed");
+                text.count("  needed", of.needed_edges);
+                text.share("tetrahedra evaluated", of.tetrahedra_evaluated, of.tetrahedra, "of all");
+                text.count("  all", of.tetrahedra);
+                text.count("lattice edges that cross", c.crossings.unwrap_or_default());
+                text.count("bytes of samples", of.sample_bytes);
+                text.count("bytes of edges", of.edge_bytes);
+            }
+            None => {
+                let known = [
+                    ("sample points", c.samples),
+                    ("cells", c.cells),
+                    ("cells looked into", c.cells_visited),
+                    ("grid edges that cross", c.crossings),
+                ];
+                known
+                    .iter()
+                    .filter_map(|(name, count)| Some((name, (*count)?)))
+                    .for_each(|(name, count)| text.count(name, count));
+            }
+        }
         text.count("bytes of vertices", c.vertex_bytes);
         text.count("bytes of indices", c.index_bytes);
         self.timing(&mut text);

@@ -60,4 +60,4 @@ pub use profile::{MEMORY_ALLOWANCE, ProfileRow, compare_profile, differences};
 pub use reference::Reference;
 pub use run::{Executor, Measurement, PeakBytes, check_journal, run};
 pub use stages::StageSeconds;
-pub use worker::{Prepared, Reply, Request, serve};
+pub use worker::{Measured, Prepared, Reply, Request, serve};

@@ -5,7 +5,7 @@ use crate::load::resident_bytes;
 use crate::reference::Reference;
 use crate::run::{Measurement, PeakBytes};
 use crate::stages::StageSeconds;
-use extract::{Execution, Extraction, Extractor, Grid, Method, MethodError, StageTimes};
+use extract::{Execution, Extraction, Extractor, Grid, Method, MethodError};
 use field::ScalarField;
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
@@ -46,7 +46,57 @@ impl Prepared<'_> {
     }
 }
 
-/// What the measuring process is asked; subjects are numbered.
+impl Prepared<'_> {
+    /// Extracts once and says how long each stage took.
+    ///
+    /// # Errors
+    /// Why it cannot be extracted.
+    pub fn time(&self, threads: u32) -> Result<StageSeconds, String> {
+        let extraction = self.extract(&Execution { threads: threads as usize });
+        let times = extraction.map(|extraction| black_box(extraction).times);
+        times.map(|times| StageSeconds::from(&times)).map_err(|error| error.to_string())
+    }
+
+    /// Extracts once and says how much memory that took.
+    ///
+    /// # Errors
+    /// Why it cannot be extracted.
+    pub fn memory(&self, threads: u32) -> Result<Option<PeakBytes>, String> {
+        let before = resident_bytes();
+        self.time(threads)?;
+        Ok(before.zip(resident_bytes()).map(|([before_bytes, peak_before_bytes], [_, peak_bytes])| {
+            PeakBytes { before_bytes, peak_before_bytes, peak_bytes }
+        }))
+    }
+}
+
+/// What can be timed: configurations, by number. Whatever comes before an extraction is untimed.
+pub trait Measured {
+    /// Extracts once and says how long each stage took; dropping the mesh is in none. `threads` are those of the sampling stage,
+    /// 0 for every core.
+    ///
+    /// # Errors
+    /// Why it cannot be extracted, for people.
+    fn time(&mut self, number: usize, threads: u32) -> Result<StageSeconds, String>;
+
+    /// Extracts once and says how much memory that took; `None` where it is not told.
+    ///
+    /// # Errors
+    /// As [`time`](Self::time).
+    fn memory(&mut self, number: usize, threads: u32) -> Result<Option<PeakBytes>, String>;
+}
+
+impl<'a, F: FnMut(usize) -> Result<Prepared<'a>, String>> Measured for F {
+    fn time(&mut self, number: usize, threads: u32) -> Result<StageSeconds, String> {
+        self(number)?.time(threads)
+    }
+
+    fn memory(&mut self, number: usize, threads: u32) -> Result<Option<PeakBytes>, String> {
+        self(number)?.memory(threads)
+    }
+}
+
+/// What the measuring process is asked; configurations are numbered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Request {
@@ -70,17 +120,16 @@ pub enum Reply {
     Failed(String),
 }
 
-/// Answers requests until there are no more. `subject` makes a configuration ready, untimed; `threads` are those of the
-/// sampling stage, 0 for every core.
+/// Answers requests until there are no more. `threads` are those of the sampling stage, 0 for every core.
 ///
 /// # Errors
 /// If a request cannot be read or understood or an answer not written. What an extraction refuses is an answer.
-pub fn serve<'a>(
+pub fn serve(
     requests: impl BufRead,
     mut replies: impl Write,
     pinned: Option<Vec<u32>>,
     threads: u32,
-    subject: &mut dyn FnMut(usize) -> Result<Prepared<'a>, String>,
+    measured: &mut dyn Measured,
 ) -> io::Result<()> {
     let mut reference = Reference::default();
     let mut say = |reply: &Reply| {
@@ -91,35 +140,15 @@ pub fn serve<'a>(
     for line in requests.lines() {
         let reply = match serde_json::from_str(&line?)? {
             Request::Time(number) => {
-                subject(number).and_then(|s| time(&s, threads, &mut reference)).map(Reply::Measurement)
+                let reference_s = Some(reference.time().as_secs_f64());
+                let stages = measured.time(number, threads);
+                stages.map(|stages| Reply::Measurement(Measurement { stages, reference_s }))
             }
-            Request::Memory(number) => subject(number).and_then(|s| peak(&s, threads)).map(Reply::Memory),
+            Request::Memory(number) => measured.memory(number, threads).map(Reply::Memory),
         };
         say(&reply.unwrap_or_else(Reply::Failed))?;
     }
     Ok(())
-}
-
-/// Extracts once and drops the mesh; dropping is not in any stage.
-fn time(subject: &Prepared<'_>, threads: u32, reference: &mut Reference) -> Result<Measurement, String> {
-    let reference_s = Some(reference.time().as_secs_f64());
-    Ok(Measurement { stages: StageSeconds::from(&extract_once(subject, threads)?), reference_s })
-}
-
-fn peak(subject: &Prepared<'_>, threads: u32) -> Result<Option<PeakBytes>, String> {
-    let before = resident_bytes();
-    extract_once(subject, threads)?;
-    Ok(before.zip(resident_bytes()).map(|([before_bytes, peak_before_bytes], [_, peak_bytes])| PeakBytes {
-        before_bytes,
-        peak_before_bytes,
-        peak_bytes,
-    }))
-}
-
-fn extract_once(subject: &Prepared<'_>, threads: u32) -> Result<StageTimes, String> {
-    let execution = Execution { threads: threads as usize };
-    let extraction = subject.extract(&execution);
-    extraction.map(|extraction| black_box(extraction).times).map_err(|error| error.to_string())
 }
 
 impl Reply {
@@ -158,7 +187,7 @@ impl Reply {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use extract::{Arrangement, Clustering, Positions, Tetrahedra};
+    use extract::{Arrangement, Clustering, Positions, StageTimes, Tetrahedra};
     use field::Sphere;
     use glam::Vec3;
     use mesh::Bounds;

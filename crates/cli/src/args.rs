@@ -196,6 +196,9 @@ pub(crate) struct Run {
     /// take the study's own
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1024))]
     pub(crate) threads: u32,
+    /// Run the programs that the study names as methods; they may do whatever you may do
+    #[arg(long)]
+    pub(crate) allow_programs: bool,
 }
 
 /// Some of a study's configurations.
@@ -307,6 +310,12 @@ pub(crate) struct Worker {
     /// The study's sweep at so many cells per axis, instead of its benchmark
     #[arg(long)]
     pub(crate) cells: Option<u32>,
+    /// Configurations that failed and are not counted
+    #[arg(long)]
+    pub(crate) without: Vec<String>,
+    /// Spacings that were found for methods with a budget
+    #[arg(long)]
+    pub(crate) spacings: Option<PathBuf>,
 }
 
 /// A number that is finite and not negative.

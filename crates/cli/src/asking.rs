@@ -62,6 +62,10 @@ fn make_bundle(run: &Run, videos: Videos, with_faults: bool) -> Result<Option<Pa
     with_pipeline(run, |pipeline, out| {
         let forms = pipeline.forms()?.with_context(|| no_forms(&run.study))?;
         let meshes = pipeline.stimulus_meshes(&[])?;
+        let failed: Vec<String> = pipeline.failed().iter().map(ToString::to_string).collect();
+        if !failed.is_empty() {
+            bail!("{} failed: people cannot be asked about what is not there", failed.join(", "));
+        }
         let turntables = pipeline.turntables(&meshes, &[])?;
         let pairs = pipeline.pairs(&turntables)?;
         pipeline.contact_sheet(&meshes)?;

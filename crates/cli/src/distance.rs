@@ -61,14 +61,15 @@ fn to_object(arguments: &Distance, a: &Surface, id: &str, sampling: &Sampling) -
     let spacing = arguments.source.spacing.map_or(object.benchmark_spacing, f64::from);
     let grid = prepare::grid(object, spacing);
     let fields = Fields::new(&study);
-    to_isosurface(arguments, a, (fields.get(index)?, 0), object.isovalue as f32, &grid, sampling)
+    let made = fields.get(index)?;
+    to_isosurface(arguments, a, (&*made.field, 0), made.isovalue, &grid, sampling)
         .with_context(|| format!("{} and {id}, with spacing {spacing}", arguments.a.display()))
 }
 
 /// Against the isosurface of a formula, a volume or a mesh's distance, in its box.
 fn to_source(arguments: &Distance, a: &Surface, sampling: &Sampling) -> Result<(String, Metro)> {
     let source = arguments.source.read()?.context("something to compare with is needed")?;
-    let field = (&*source.field, source.held);
+    let field: (&dyn ScalarField, u64) = (&*source.field, source.held);
     let metro = to_isosurface(arguments, a, field, source.isovalue, &source.grid(), sampling)
         .with_context(|| format!("{} and {}", arguments.a.display(), source.name))?;
     Ok((source.name, metro))

@@ -1,6 +1,6 @@
 //! Files that are named to be read. A device or a pipe may never end, or never begin.
 
-use crate::prepare;
+use crate::recipe::recipe;
 use anyhow::{Context, Result, bail};
 use design::Study;
 use design::record::Purpose;
@@ -41,8 +41,8 @@ pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>> {
 pub(crate) fn study(path: &Path) -> Result<Study> {
     regular(path)?;
     let study = Study::load(path)?;
-    for of in &study.methods {
-        prepare::method(&study, of.id, Purpose::Benchmark)?;
+    for method in &study.methods {
+        recipe(&study, method.id, Purpose::Benchmark)?;
     }
     Ok(study)
 }

@@ -2,8 +2,8 @@
 
 use crate::args::Inspect;
 use crate::fields::Fields;
-use crate::prepare::{self, Wanted, prepare};
-use crate::records::mesh_record;
+use crate::prepare::{self, Spacings, Wanted, prepare};
+use crate::records::{self, mesh_record};
 use crate::{input, machine, say};
 use analysis::Panel;
 use anyhow::{Context, Result, bail};
@@ -27,7 +27,10 @@ pub(crate) fn inspect(arguments: &Inspect) -> Result<()> {
     };
     let spacing = wanted.spacing(object);
     let fields = Fields::new(&study);
-    let prepared = prepare(&study, &fields, configuration, wanted)?;
+    let prepared = prepare(&study, &fields, &Spacings::default(), configuration, wanted)?;
+    let Some(prepared) = prepared.extractor() else {
+        bail!("{id}: is made by a program or is a file; what is timed here are extractors of ours");
+    };
     let execution = Execution { threads: arguments.threads as usize };
     let machine = machine::read();
     prepare::check_memory(&study, &prepared.method, &prepared.grid, &execution, machine.memory_bytes)
@@ -41,7 +44,8 @@ pub(crate) fn inspect(arguments: &Inspect) -> Result<()> {
     }
     let Prepared { field, grid, isovalue, method } = &prepared;
     let accuracy = extract::accuracy(&extraction.mesh, *field, *isovalue, grid, &execution)?;
-    let record = mesh_record(&id, Purpose::Benchmark, spacing, method.cells(grid)?, &extraction, &accuracy);
+    let (cells, counts) = (method.cells(grid)?, records::counts(&extraction.counts));
+    let record = mesh_record(&id, Purpose::Benchmark, spacing, cells, counts, &extraction.mesh, &accuracy);
     // The extraction above was the warm-up.
     let mut samples = Vec::new();
     for iteration in 0..arguments.iterations {

@@ -15,7 +15,9 @@ mod fields;
 mod input;
 mod inspect;
 mod machine;
+mod made;
 mod manifest;
+mod measured;
 mod memory;
 mod mesh_file;
 mod picture;
@@ -23,6 +25,7 @@ mod pipeline;
 mod prepare;
 mod progress;
 mod questionnaire;
+mod recipe;
 mod records;
 mod rooms;
 mod run_file;
@@ -36,7 +39,9 @@ use args::{Analyse, Bench, BenchVerb, Cli, Command, Design, Run, Selection};
 use clap::Parser;
 use design::record::Purpose;
 use design::{ConfigurationId, Published, Study};
+use extract::Arrangement;
 use pipeline::{Pipeline, PlanLength};
+use recipe::Recipe;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -84,22 +89,26 @@ fn run(command: Command) -> Result<Outcome> {
         Command::Study(run) => return with_page(&run, |pipeline| pipeline.study()),
         Command::Report(run) => return with_page(&run, |pipeline| pipeline.report()),
         Command::Extract(arguments) => match arguments.of_study() {
-            Some(selection) => with_selection(&selection, |pipeline, only, out| {
-                pipeline.all_meshes(only)?;
-                say(&out.join("meshes").display().to_string())
-            }),
+            Some(selection) => {
+                return with_selection(&selection, |pipeline, only, out| {
+                    pipeline.all_meshes(only)?;
+                    say(&out.join("meshes").display().to_string())
+                });
+            }
             None => return surface::extract(&arguments),
         },
-        Command::Turntable(selection) => with_selection(&selection, |pipeline, only, out| {
-            let meshes = pipeline.stimulus_meshes(only)?;
-            pipeline.turntables(&meshes, only)?;
-            say(&out.join("stimuli/turntables").display().to_string())
-        }),
+        Command::Turntable(selection) => {
+            return with_selection(&selection, |pipeline, only, out| {
+                let meshes = pipeline.stimulus_meshes(only)?;
+                pipeline.turntables(&meshes, only)?;
+                say(&out.join("stimuli/turntables").display().to_string())
+            });
+        }
         Command::Pairs(pairs) => {
             if pairs.mp4 {
                 video::check()?;
             }
-            with_pipeline(&pairs.run, |pipeline, out| {
+            return with_pipeline(&pairs.run, |pipeline, out| {
                 let meshes = pipeline.stimulus_meshes(&[])?;
                 let turntables = pipeline.turntables(&meshes, &[])?;
                 let stamps = pipeline.pairs(&turntables)?;
@@ -109,7 +118,7 @@ fn run(command: Command) -> Result<Outcome> {
                     pipeline.finished_videos(&stamps)?;
                 }
                 say(&out.join("stimuli/pairs").display().to_string())
-            })
+            });
         }
         Command::Bundle(arguments) => return asking::bundle(&arguments),
         Command::Serve(arguments) => return asking::serve(&arguments),
@@ -125,10 +134,12 @@ fn run(command: Command) -> Result<Outcome> {
         Command::Design(Design::Check(arguments)) => return questionnaire::check(&arguments),
         Command::Design(Design::Rules) => questionnaire::rules(),
         Command::Design(Design::Power(arguments)) => questionnaire::power(&arguments),
-        Command::Design(Design::Forms(run)) => with_pipeline(&run, |pipeline, out| {
-            pipeline.forms()?.with_context(|| no_forms(&run.study))?;
-            say(&out.join("forms").display().to_string())
-        }),
+        Command::Design(Design::Forms(run)) => {
+            return with_pipeline(&run, |pipeline, out| {
+                pipeline.forms()?.with_context(|| no_forms(&run.study))?;
+                say(&out.join("forms").display().to_string())
+            });
+        }
     }?;
     Ok(Outcome::Sound)
 }
@@ -136,24 +147,26 @@ fn run(command: Command) -> Result<Outcome> {
 fn time(arguments: &Bench) -> Result<Outcome> {
     match &arguments.verb {
         Some(BenchVerb::Compare(arguments)) => return comparing::compare(arguments),
-        Some(BenchVerb::Sweep(run)) => with_pipeline(run, |pipeline, out| {
-            for table in pipeline.sweep()? {
-                say(&table)?;
-            }
-            say(&out.join("bench/sweep").display().to_string())
-        }),
+        Some(BenchVerb::Sweep(run)) => {
+            return with_pipeline(run, |pipeline, out| {
+                for table in pipeline.sweep()? {
+                    say(&table)?;
+                }
+                say(&out.join("bench/sweep").display().to_string())
+            });
+        }
         Some(BenchVerb::Import(arguments)) => comparing::import(arguments),
         Some(BenchVerb::Worker(arguments)) => pipeline::measure(arguments),
         None => {
             let run = arguments.run.as_ref().context("a study file is needed")?;
             let length = if arguments.short { PlanLength::Short } else { PlanLength::Full };
-            with_pipeline(run, |pipeline, _| {
+            return with_pipeline(run, |pipeline, _| {
                 let timings = pipeline.timings(length)?;
                 for table in pipeline.timing_statements(&timings)? {
                     say(&table)?;
                 }
                 Ok(())
-            })
+            });
         }
     }?;
     Ok(Outcome::Sound)
@@ -161,19 +174,28 @@ fn time(arguments: &Bench) -> Result<Outcome> {
 
 /// Work that ends with the page. A published number that differs from ours without a known reason fails it.
 fn with_page(run: &Run, work: impl FnOnce(&mut Pipeline<'_>) -> Result<Vec<String>>) -> Result<Outcome> {
-    let mut outcome = Outcome::Sound;
-    with_pipeline(run, |pipeline, out| {
+    let mut as_published = true;
+    let outcome = with_pipeline(run, |pipeline, out| {
         for difference in work(pipeline)? {
             tell!("differs from what was published: {difference}");
-            outcome = Outcome::CheckFailed;
+            as_published = false;
         }
         say(&out.join("index.html").display().to_string())
     })?;
-    Ok(outcome)
+    Ok(if as_published { outcome } else { Outcome::CheckFailed })
 }
 
-fn with_pipeline(run: &Run, work: impl FnOnce(&mut Pipeline<'_>, &Path) -> Result<()>) -> Result<()> {
+/// A configuration whose program failed fails the check, after all else was done.
+fn with_pipeline(run: &Run, work: impl FnOnce(&mut Pipeline<'_>, &Path) -> Result<()>) -> Result<Outcome> {
     let study = load(&run.study)?;
+    let commands = recipe::commands(&study)?;
+    if !commands.is_empty() && !run.allow_programs {
+        anyhow::bail!(
+            "{} runs programs, which may do whatever you may do; --allow-programs runs them:\n  {}",
+            study.path.display(),
+            commands.join("\n  ")
+        );
+    }
     let threads = run.threads as usize;
     if threads > 0 {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
@@ -182,13 +204,19 @@ fn with_pipeline(run: &Run, work: impl FnOnce(&mut Pipeline<'_>, &Path) -> Resul
     let store = Store::open(&out, run.force)?;
     let mut pipeline = Pipeline::new(&study, store, threads);
     work(&mut pipeline, &out)?;
-    pipeline.finish()
+    pipeline.finish()?;
+    let failed: Vec<String> = pipeline.failed().iter().map(ToString::to_string).collect();
+    if failed.is_empty() {
+        return Ok(Outcome::Sound);
+    }
+    tell!("failed and left out: {}", failed.join(", "));
+    Ok(Outcome::CheckFailed)
 }
 
 fn with_selection(
     selection: &Selection,
     work: impl FnOnce(&mut Pipeline<'_>, &[ConfigurationId], &Path) -> Result<()>,
-) -> Result<()> {
+) -> Result<Outcome> {
     let study = load(&selection.run.study)?;
     let mut only = Vec::new();
     for text in &selection.only {
@@ -284,8 +312,10 @@ fn validate(path: &Path) -> Result<()> {
     for configuration in &study.configurations {
         let object = study.object(configuration);
         let grid = prepare::grid(object, object.benchmark_spacing);
-        let method = prepare::method(&study, configuration.id.method, Purpose::Benchmark)?;
-        let [x, y, z] = method.cells(&grid)?;
+        let [x, y, z] = match recipe::recipe(&study, configuration.id.method, Purpose::Benchmark)? {
+            Recipe::Extractor(method) => method.cells(&grid)?,
+            Recipe::Program(_) | Recipe::Meshes(_) => grid.lattice(Arrangement::SimpleCubic)?.cells(),
+        };
         say(&format!(
             "{}  {}, {}, {x} x {y} x {z} cubes",
             configuration.id,
@@ -304,8 +334,9 @@ fn validate(path: &Path) -> Result<()> {
 /// Reads and checks a study and everything it names: lattices and memory, mesh files, answers.
 fn load(path: &Path) -> Result<Study> {
     let study = input::study(path)?;
+    recipe::check(&study)?;
     prepare::check(&study, bench::read_machine().memory_bytes)?;
-    fields::check_mesh_files(&study)?;
+    fields::check(&study)?;
     if let Some(reading) = answers::of_study(&study)?.filter(|reading| !reading.report.remarks.is_empty()) {
         answers::announce(&reading.report);
     }

@@ -1,15 +1,15 @@
 //! From a study's words to the extractor's: methods, grids, isovalues. The one place where `design` meets `extract`.
 
-use crate::fields::Fields;
+use crate::fields::{self, Fields};
 use crate::memory::Limit;
+use crate::recipe::{Recipe, recipe};
 use anyhow::{Context, Result, bail};
-use bench::Prepared;
 use design::config::{ObjectSection, SweepSection};
 use design::record::Purpose;
-use design::{Configuration, MethodId, Study};
-use extract::{Execution, Grid, Method, Positions, Tetrahedra};
-use glam::Vec3;
-use mesh::Bounds;
+use design::{Configuration, ConfigurationId, MethodId, Study};
+use extract::{Arrangement, Execution, Grid, Method};
+use field::ScalarField;
+use serde::{Deserialize, Serialize};
 
 /// At which resolution, and for what.
 #[derive(Debug, Clone, Copy)]
@@ -43,65 +43,90 @@ impl Wanted {
     }
 }
 
-/// A configuration, ready to extract.
+/// A configuration, ready to make.
+#[derive(Clone)]
+pub(crate) struct Prepared<'a> {
+    /// Which one.
+    pub(crate) id: ConfigurationId,
+    /// What is sampled; inside is above the isovalue.
+    pub(crate) field: &'a dyn ScalarField,
+    /// The value of the surface.
+    pub(crate) isovalue: f32,
+    /// Where the field is sampled.
+    pub(crate) grid: Grid,
+    /// How the mesh comes to be.
+    pub(crate) recipe: Recipe,
+}
+
+/// Finds what a configuration needs.
 ///
 /// # Errors
 /// If its field cannot be made, or its recipe is none; the study, the key and what is allowed are named.
 pub(crate) fn prepare<'a>(
     study: &Study,
     fields: &'a Fields<'_>,
+    spacings: &Spacings,
     configuration: &Configuration,
     wanted: Wanted,
 ) -> Result<Prepared<'a>> {
     let object = study.object(configuration);
+    let made = fields.get(configuration.object)?;
+    let spacing = match wanted {
+        Wanted::For(purpose) => spacings.of(&configuration.id, purpose),
+        _ => None,
+    };
     Ok(Prepared {
-        field: fields.get(configuration.object)?,
-        method: method(study, configuration.id.method, wanted.purpose())?,
-        grid: grid(object, wanted.spacing(object)),
-        isovalue: object.isovalue as f32,
+        id: configuration.id.clone(),
+        field: &*made.field,
+        isovalue: made.isovalue,
+        grid: grid(object, spacing.unwrap_or_else(|| wanted.spacing(object))),
+        recipe: recipe(study, configuration.id.method, wanted.purpose())?,
     })
 }
 
-/// What a study's method is to the extractor. Meshes made for [`Purpose::Indexed`] have indexed positions whatever the study says.
-///
-/// # Errors
-/// If its recipe is none, naming file, key and what is allowed.
-pub(crate) fn method(study: &Study, id: MethodId, purpose: Purpose) -> Result<Method> {
-    let recipe = &study.method(id).recipe;
-    let mut keys = recipe.settings.clone();
-    keys.insert("kind".into(), recipe.kind.as_str().into());
-    let method = toml::Value::Table(keys).try_into().with_context(|| {
-        let key = match study.file.methods.iter().position(|section| section.id == id) {
-            Some(i) => format!("methods[{i}].recipe"),
-            None => "extraction".to_owned(),
-        };
-        format!("{}: {key}", study.path.display())
-    })?;
-    Ok(match (method, purpose) {
-        (Method::Tetrahedra(of), Purpose::Indexed) => {
-            Method::Tetrahedra(Tetrahedra { positions: Positions::Indexed, ..of })
-        }
-        (method, _) => method,
-    })
-}
-
-/// Whether some method sums its positions up, so that meshes with indexed ones are measured beside.
-pub(crate) fn sums_positions(study: &Study) -> Result<bool> {
-    for of in &study.methods {
-        if let Method::Tetrahedra(of) = method(study, of.id, Purpose::Benchmark)?
-            && of.positions != Positions::Indexed
-        {
-            return Ok(true);
-        }
+impl<'a> Prepared<'a> {
+    /// What the extractor is given; `None` for what is no extractor of ours.
+    pub(crate) fn extractor(&self) -> Option<bench::Prepared<'a>> {
+        let Recipe::Extractor(method) = self.recipe else { return None };
+        Some(bench::Prepared { field: self.field, method, grid: self.grid, isovalue: self.isovalue })
     }
-    Ok(false)
+
+    /// Cells of the grid along x, y and z: those of the method, or as many as fill the box.
+    ///
+    /// # Errors
+    /// If the grid is none.
+    pub(crate) fn cells(&self) -> Result<[u32; 3]> {
+        Ok(match &self.recipe {
+            Recipe::Extractor(method) => method.cells(&self.grid)?,
+            Recipe::Program(_) | Recipe::Meshes(_) => self.grid.lattice(Arrangement::SimpleCubic)?.cells(),
+        })
+    }
+}
+
+/// Spacings that were found for methods with a budget, in place of their objects'.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct Spacings(Vec<(ConfigurationId, Purpose, f64)>);
+
+impl Spacings {
+    /// What was found; `None` where the object's spacing holds.
+    pub(crate) fn of(&self, id: &ConfigurationId, purpose: Purpose) -> Option<f64> {
+        self.0.iter().find(|(of, for_, _)| of == id && *for_ == purpose).map(|(.., spacing)| *spacing)
+    }
+
+    /// Whether nothing was looked for.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Keeps what was found.
+    pub(crate) fn keep(&mut self, id: ConfigurationId, purpose: Purpose, spacing: f64) {
+        self.0.push((id, purpose, spacing));
+    }
 }
 
 /// An object's volume, filled with cubes.
 pub(crate) fn grid(object: &ObjectSection, spacing: f64) -> Grid {
-    let corner = |p: [f64; 3]| Vec3::from_array(p.map(|x| x as f32));
-    let bounds = Bounds { min: corner(object.min), max: corner(object.max) };
-    Grid { bounds, spacing: spacing as f32 }
+    Grid { bounds: fields::bounds(object), spacing: spacing as f32 }
 }
 
 /// Checks that every method goes with every grid of the study, and that what the extractor holds of it fits into memory.
@@ -114,7 +139,7 @@ pub(crate) fn check(study: &Study, machine_bytes: Option<u64>) -> Result<()> {
     let execution = Execution { threads: cores.max(study.file.benchmark.threads as usize) };
     let check = |key: String, object: &ObjectSection, id: MethodId, wanted: Wanted| -> Result<()> {
         let spacing = wanted.spacing(object);
-        let method = method(study, id, wanted.purpose())?;
+        let Recipe::Extractor(method) = recipe(study, id, wanted.purpose())? else { return Ok(()) };
         check_memory(study, &method, &grid(object, spacing), &execution, machine_bytes)
             .with_context(|| format!("{file}: {key} = {spacing:?}"))
     };
@@ -146,7 +171,7 @@ pub(crate) fn check_sweep(study: &Study, section: &SweepSection, machine_bytes: 
         for object in study.file.objects.iter().filter(|object| section.objects.contains(&object.id)) {
             let wanted = Wanted::Cells(cells, Purpose::Indexed);
             for of in &study.methods {
-                let method = method(study, of.id, Purpose::Indexed)?;
+                let Recipe::Extractor(method) = recipe(study, of.id, Purpose::Indexed)? else { continue };
                 let grid = grid(object, wanted.spacing(object));
                 check_memory(study, &method, &grid, &Execution { threads }, machine_bytes).with_context(
                     || format!("{}: benchmark.sweep.cells[{i}] = {cells}", study.path.display()),
@@ -214,7 +239,7 @@ const GIB: f64 = (1u64 << 30) as f64;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use extract::{Placement, Topology};
+    use extract::{Placement, Positions, Tetrahedra, Topology};
     use std::path::Path;
 
     /// The paper's file with one passage replaced.
@@ -223,7 +248,9 @@ mod tests {
         let text = std::fs::read_to_string(&path)?;
         assert!(text.contains(from), "{from} is not in {}", path.display());
         let study = Study::parse(&text.replacen(from, to, 1), &path)?;
-        let Method::Tetrahedra(of) = method(&study, study.methods[0].id, Purpose::Benchmark)? else {
+        let Recipe::Extractor(Method::Tetrahedra(of)) =
+            recipe(&study, study.methods[0].id, Purpose::Benchmark)?
+        else {
             bail!("no tetrahedra");
         };
         Ok(of)

@@ -2,25 +2,29 @@
 //! geometry crates know nothing of studies, and the statistics know nothing of geometry.
 
 use design::ConfigurationId;
-use design::record::{Accuracy, Counts, Distribution, Histogram, MeshRecord, Purpose, Quality, Topology};
-use extract::Extraction;
+use design::record::{
+    Accuracy, Counts, Distribution, Histogram, MeshRecord, Purpose, Quality, TetrahedraCounts, Topology,
+};
+use mesh::TriangleMesh;
 
 pub(crate) fn mesh_record(
     id: &ConfigurationId,
     purpose: Purpose,
     spacing: f64,
     cells: [u32; 3],
-    extraction: &Extraction,
+    counts: Counts,
+    mesh: &TriangleMesh,
     accuracy: &extract::Accuracy,
 ) -> MeshRecord {
     MeshRecord {
+        schema: MeshRecord::SCHEMA,
         id: id.clone(),
         purpose,
         spacing,
         cells,
-        counts: counts(&extraction.counts),
-        quality: quality(&mesh::quality::quality(&extraction.mesh)),
-        topology: topology(&mesh::topology::topology(&extraction.mesh)),
+        counts,
+        quality: quality(&mesh::quality::quality(mesh)),
+        topology: topology(&mesh::topology::topology(mesh)),
         accuracy: self::accuracy(accuracy),
     }
 }
@@ -35,26 +39,42 @@ pub(crate) fn accuracy(accuracy: &extract::Accuracy) -> Accuracy {
     }
 }
 
-/// # Panics
-/// If the method is not one of tetrahedra: a record has no place for another yet.
 pub(crate) fn counts(c: &extract::Counts) -> Counts {
-    let tetrahedra = c.tetrahedra.expect("a study's methods are of tetrahedra");
     Counts {
-        stored_samples: tetrahedra.stored_samples,
-        needed_samples: c.samples,
-        stored_edges: tetrahedra.stored_edges,
-        needed_edges: tetrahedra.needed_edges,
-        tetrahedra: tetrahedra.tetrahedra,
-        tetrahedra_evaluated: tetrahedra.tetrahedra_evaluated,
-        crossings: c.crossings,
+        samples: Some(c.samples),
+        cells: Some(c.cells),
+        cells_visited: Some(c.cells_visited),
+        crossings: Some(c.crossings),
         vertices: c.vertices,
         triangles: c.triangles,
-        discarded_triangles: c.discarded_triangles,
-        discarded_as_published: tetrahedra.discarded_as_published,
-        sample_bytes: tetrahedra.sample_bytes,
-        edge_bytes: tetrahedra.edge_bytes,
+        discarded_triangles: Some(c.discarded_triangles),
         vertex_bytes: c.vertex_bytes,
         index_bytes: c.index_bytes,
+        tetrahedra: c.tetrahedra.as_ref().map(|t| TetrahedraCounts {
+            stored_samples: t.stored_samples,
+            stored_edges: t.stored_edges,
+            needed_edges: t.needed_edges,
+            tetrahedra: t.tetrahedra,
+            tetrahedra_evaluated: t.tetrahedra_evaluated,
+            discarded_as_published: t.discarded_as_published,
+            sample_bytes: t.sample_bytes,
+            edge_bytes: t.edge_bytes,
+        }),
+    }
+}
+
+/// Of a mesh that came from elsewhere, made on a grid of so many cells if that is known.
+pub(crate) fn counts_of_mesh(mesh: &TriangleMesh, cells: Option<[u32; 3]>) -> Counts {
+    let product = |more: u64| cells.map(|cells| cells.iter().map(|&along| u64::from(along) + more).product());
+    let bytes = |count: usize, each: usize| (count * each) as u64;
+    Counts {
+        samples: product(1),
+        cells: product(0),
+        vertices: mesh.positions.len() as u64,
+        triangles: mesh.triangles.len() as u64,
+        vertex_bytes: bytes(mesh.positions.len() + mesh.normals.len(), size_of::<[f32; 3]>()),
+        index_bytes: bytes(mesh.triangles.len(), size_of::<[u32; 3]>()),
+        ..Counts::default()
     }
 }
 

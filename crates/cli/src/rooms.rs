@@ -5,6 +5,10 @@ const DESIGN: &str = env!("ISOSTUDY_ROOM_DESIGN");
 const RESPONSES: &str = env!("ISOSTUDY_ROOM_RESPONSES");
 const FIELD: &str = env!("ISOSTUDY_ROOM_FIELD");
 const EXTRACT: &str = env!("ISOSTUDY_ROOM_EXTRACT");
+const EXPRESSION: &str = env!("ISOSTUDY_ROOM_EXPRESSION");
+const VOLUME: &str = env!("ISOSTUDY_ROOM_VOLUME");
+const PROGRAM: &str = env!("ISOSTUDY_ROOM_PROGRAM");
+const STATISTICS: &str = env!("ISOSTUDY_ROOM_STATISTICS");
 const RASTER: &str = env!("ISOSTUDY_ROOM_RASTER");
 const BENCH: &str = env!("ISOSTUDY_ROOM_BENCH");
 const ANALYSIS: &str = env!("ISOSTUDY_ROOM_ANALYSIS");
@@ -13,13 +17,13 @@ const PAGE: &str = env!("ISOSTUDY_ROOM_PAGE");
 const CLI: &str = env!("ISOSTUDY_ROOM_CLI");
 
 /// What makes meshes.
-pub(crate) const MESHES: &[&str] = &[MESH, FIELD, EXTRACT, CLI];
+pub(crate) const MESHES: &[&str] = &[MESH, FIELD, EXPRESSION, VOLUME, EXTRACT, PROGRAM, CLI];
 /// What makes pictures of meshes.
 pub(crate) const PICTURES: &[&str] = &[MESH, RASTER, CLI];
 /// What makes timings.
-pub(crate) const TIMINGS: &[&str] = &[MESH, FIELD, EXTRACT, BENCH, CLI];
+pub(crate) const TIMINGS: &[&str] = &[MESH, FIELD, EXPRESSION, VOLUME, EXTRACT, PROGRAM, BENCH, CLI];
 /// What makes tables, figures and the report.
-pub(crate) const TABLES: &[&str] = &[DESIGN, RESPONSES, ANALYSIS, CLI, PAGE];
+pub(crate) const TABLES: &[&str] = &[DESIGN, RESPONSES, STATISTICS, ANALYSIS, CLI, PAGE];
 /// What makes the key.
 pub(crate) const KEYS: &[&str] = &[DESIGN, CLI];
 /// What makes the bundle for participants.

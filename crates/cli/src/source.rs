@@ -1,4 +1,4 @@
-//! Where a surface comes from without a study: a formula, a volume or a mesh; and the lattice it is looked at on.
+//! Where a surface comes from: a formula, a volume or a mesh; and where it is looked at.
 
 use crate::memory::{self, Limit};
 use crate::mesh_file;
@@ -68,7 +68,7 @@ pub(crate) enum Inside {
 /// A field and where to look at it.
 pub(crate) struct Source {
     /// Inside is above [`isovalue`](Self::isovalue), whatever was asked for.
-    pub(crate) field: Box<dyn ScalarField>,
+    pub(crate) field: Box<dyn ScalarField + Send>,
     pub(crate) isovalue: f32,
     /// As asked for.
     pub(crate) inside: Inside,
@@ -100,25 +100,70 @@ impl SourceArguments {
     /// # Errors
     /// If it cannot be read or has no inside.
     pub(crate) fn read(&self) -> Result<Option<Source>> {
+        let options = Options {
+            bounds: self.bounds,
+            spacing: self.spacing,
+            cells: self.cells,
+            isovalue: self.isovalue,
+            inside: self.inside,
+            close: self.close,
+            allow_open: self.allow_open,
+            limit: self.limit(),
+        };
         if let Some(formula) = &self.field {
-            let field: Expression = formula.parse().map_err(|error: ExpressionError| {
-                let shown = error.excerpt(formula);
-                anyhow::Error::new(error).context(format!("--field '{shown}'"))
-            })?;
             let bounds = self.bounds.context("--bounds is needed")?;
-            let source = self.source(Box::new(field), Inside::Below, bounds, formula);
-            return Ok(Some(if self.close { source.closed() } else { source }));
+            return options.of_formula(formula, bounds, "--field").map(Some);
         }
         if let Some(path) = &self.volume {
-            return self.of_volume(path).map(Some);
+            return options.of_volume(path).map(Some);
         }
-        self.mesh.as_deref().map(|path| self.of_mesh(path)).transpose()
+        self.mesh.as_deref().map(|path| options.of_mesh(path)).transpose()
+    }
+}
+
+/// What is asked of a source, whoever asks.
+pub(crate) struct Options {
+    /// The box to look at; the source's own unless given.
+    pub(crate) bounds: Option<Bounds>,
+    /// Edge of the cubes.
+    pub(crate) spacing: Option<f32>,
+    /// The same, as the number of cubes along the longest side.
+    pub(crate) cells: Option<u32>,
+    pub(crate) isovalue: f32,
+    /// Which side is solid; the source's custom unless given.
+    pub(crate) inside: Option<Inside>,
+    /// Whether the surface ends at the walls of the box.
+    pub(crate) close: bool,
+    /// Whether a mesh may have holes.
+    pub(crate) allow_open: bool,
+    /// The memory that there is.
+    pub(crate) limit: Limit,
+}
+
+impl Options {
+    /// A formula in a box; `key` is where it stands, for errors.
+    ///
+    /// # Errors
+    /// If it is none.
+    pub(crate) fn of_formula(&self, formula: &str, bounds: Bounds, key: &str) -> Result<Source> {
+        let field: Expression = formula.parse().map_err(|error: ExpressionError| {
+            let shown = error.excerpt(formula);
+            anyhow::Error::new(error).context(format!("{key} '{shown}'"))
+        })?;
+        let source = self.source(Box::new(field), Inside::Below, bounds, formula);
+        Ok(if self.close { source.closed() } else { source })
     }
 
     /// A source with the defaults that hold for all.
-    fn source(&self, field: Box<dyn ScalarField>, inside: Inside, bounds: Bounds, name: &str) -> Source {
+    fn source(
+        &self,
+        field: Box<dyn ScalarField + Send>,
+        inside: Inside,
+        bounds: Bounds,
+        name: &str,
+    ) -> Source {
         let inside = self.inside.unwrap_or(inside);
-        let (field, isovalue): (Box<dyn ScalarField>, f32) = match inside {
+        let (field, isovalue): (Box<dyn ScalarField + Send>, f32) = match inside {
             Inside::Above => (field, self.isovalue),
             Inside::Below => (Box::new(Negated(field)), -self.isovalue),
         };
@@ -128,8 +173,12 @@ impl SourceArguments {
         Source { field, isovalue, inside, bounds, spacing, is_closed: false, name, held: 0, values }
     }
 
-    fn of_volume(&self, path: &Path) -> Result<Source> {
-        let volume::Volume { counts, values, origin, steps } = self.limit().read(path)?;
+    /// A volume in a file.
+    ///
+    /// # Errors
+    /// If it cannot be read, is too large, or is none.
+    pub(crate) fn of_volume(&self, path: &Path) -> Result<Source> {
+        let volume::Volume { counts, values, origin, steps } = self.limit.read(path)?;
         let name = path.display();
         let mut field = VolumeField::try_new(counts, values, origin, steps, Beyond::Continued)
             .with_context(|| name.to_string())?;
@@ -170,7 +219,11 @@ impl SourceArguments {
         Ok(source)
     }
 
-    fn of_mesh(&self, path: &Path) -> Result<Source> {
+    /// The distance to a mesh in a file.
+    ///
+    /// # Errors
+    /// If it cannot be read, or has no inside.
+    pub(crate) fn of_mesh(&self, path: &Path) -> Result<Source> {
         let (field, tight) = mesh_field(path, self.allow_open)?;
         // Room for a few cubes, and for what is thickened.
         let room = 0.05 * tight.size().max_element() - self.isovalue.min(0.0);

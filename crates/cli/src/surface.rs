@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail};
 use clap::{ArgGroup, Args};
 use design::record::{Accuracy, Counts, Distribution, Quality, Topology};
 use extract::{Arrangement, Clustering, Execution, Extraction, Extractor, Grid, Method, Tetrahedra};
+use field::ScalarField;
 use mesh::TriangleMesh;
 use raster::{Camera, Look, Shading, Viewport};
 use serde::de::IntoDeserializer;
@@ -58,6 +59,9 @@ pub(crate) struct Extract {
     /// Of a study, redo what is up to date as well
     #[arg(long, conflicts_with_all = ["field", "volume", "mesh"])]
     force: bool,
+    /// Of a study, run the programs that it names as methods; they may do whatever you may do
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh"])]
+    allow_programs: bool,
     /// Of a study, only these configurations, such as ss_bi [default: all]
     #[arg(long, value_name = "ID", value_delimiter = ',', conflicts_with_all = ["field", "volume", "mesh"])]
     only: Vec<String>,
@@ -67,7 +71,13 @@ impl Extract {
     /// What is asked of a study, if one is given.
     pub(crate) fn of_study(&self) -> Option<Selection> {
         let study = self.study.clone()?;
-        let run = Run { study, out: self.out.clone(), force: self.force, threads: self.threads };
+        let run = Run {
+            study,
+            out: self.out.clone(),
+            force: self.force,
+            threads: self.threads,
+            allow_programs: self.allow_programs,
+        };
         Some(Selection { run, only: self.only.clone() })
     }
 }
@@ -98,8 +108,9 @@ pub(crate) fn extract(arguments: &Extract) -> Result<Outcome> {
     let execution = Execution { threads: arguments.threads as usize };
     prepare::check_limit(&method, &grid, &execution, source.held, arguments.source.limit())
         .with_context(|| source.place())?;
+    let field: &dyn ScalarField = &*source.field;
     let extraction =
-        method.extract(&mut Extractor::new(), (&*source.field).into(), &grid, source.isovalue, &execution)?;
+        method.extract(&mut Extractor::new(), field.into(), &grid, source.isovalue, &execution)?;
     if extraction.mesh.triangles.is_empty() {
         bail!(source.no_surface());
     }

@@ -23,6 +23,8 @@ pub enum Purpose {
 /// One extracted mesh: how it was made, what was counted, what its triangles and its topology are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeshRecord {
+    /// Version of this layout; [`MeshRecord::SCHEMA`].
+    pub schema: u32,
     /// Which configuration.
     pub id: ConfigurationId,
     /// What for.
@@ -41,25 +43,56 @@ pub struct MeshRecord {
     pub accuracy: Accuracy,
 }
 
-/// What an extraction counted. Names as in `extract::Counts`, whose docs define them.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "defined where they are counted, in `extract::Counts`")]
+impl MeshRecord {
+    /// The version of the layout that is written and read here. 2 has counts that every method has, and those of tetrahedra beside
+    /// them.
+    pub const SCHEMA: u32 = 2;
+}
+
+/// What was counted while a mesh was made. What its method does not have, or does not tell, is `None`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counts {
+    /// Sample points that the grid has for the method.
+    pub samples: Option<u64>,
+    /// Cells of the grid.
+    pub cells: Option<u64>,
+    /// Cells that the method looked into.
+    pub cells_visited: Option<u64>,
+    /// Crossings of grid edges with the surface.
+    pub crossings: Option<u64>,
+    /// Vertices of the mesh.
+    pub vertices: u64,
+    /// Triangles of the mesh.
+    pub triangles: u64,
+    /// Triangles that merging took away.
+    pub discarded_triangles: Option<u64>,
+    /// Bytes of the mesh's vertices, normals included.
+    pub vertex_bytes: u64,
+    /// Bytes of the mesh's indices.
+    pub index_bytes: u64,
+    /// What only tetrahedra have.
+    pub tetrahedra: Option<TetrahedraCounts>,
+}
+
+/// What only marching tetrahedra count. Names as in `extract::TetrahedraCounts`, whose docs define them.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "defined where they are counted, in `extract::TetrahedraCounts`")]
+pub struct TetrahedraCounts {
     pub stored_samples: u64,
-    pub needed_samples: u64,
     pub stored_edges: u64,
     pub needed_edges: u64,
     pub tetrahedra: u64,
     pub tetrahedra_evaluated: u64,
-    pub crossings: u64,
-    pub vertices: u64,
-    pub triangles: u64,
-    pub discarded_triangles: u64,
     pub discarded_as_published: u64,
     pub sample_bytes: u64,
     pub edge_bytes: u64,
-    pub vertex_bytes: u64,
-    pub index_bytes: u64,
+}
+
+impl Counts {
+    /// What only tetrahedra have, by name of the function's field; `None` of another method.
+    pub fn of_tetrahedra(&self, count: fn(&TetrahedraCounts) -> u64) -> Option<u64> {
+        self.tetrahedra.as_ref().map(count)
+    }
 }
 
 /// Quality of a mesh's triangles. Names as in `mesh::quality::QualityReport`.

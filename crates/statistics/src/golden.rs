@@ -1,7 +1,7 @@
 //! The paper's 18 x 27 answers against the values of docs/statistics.md, each to its printed digit.
 
 use super::*;
-use design::{Arrangement, Clustering, Study};
+use design::{Arrangement, Clustering, Crossed, Study};
 use std::path::Path;
 
 /// The paper's study; its bunny is any file that is always there.
@@ -14,7 +14,7 @@ pub(super) fn study() -> Study {
 /// All 486 answers; items are methods in the study's order.
 pub(super) fn ballots(study: &Study) -> Vec<ShownBallot> {
     let text = std::fs::read_to_string(study.responses.as_deref().unwrap()).unwrap();
-    let methods = study.methods();
+    let methods = study.method_ids();
     let item = |method| methods.iter().position(|&m| m == method).unwrap();
     let mut ballots = Vec::new();
     for (participant, line) in text.lines().skip(1).enumerate() {
@@ -51,7 +51,8 @@ pub(super) fn clusterings(study: &Study, of: Option<Arrangement>) -> Vec<ShownBa
     let mut kept = ballots(study);
     kept.retain_mut(|ballot| {
         let comparison = &study.comparisons[ballot.question()];
-        let (left, right) = (comparison.left.method, comparison.right.method);
+        let crossed = |method| Crossed::of(method).expect("the paper's methods");
+        let (left, right) = (crossed(comparison.left.method), crossed(comparison.right.method));
         *ballot = ballot.with_items([item(left.clustering), item(right.clustering)]);
         left.arrangement == right.arrangement && of.is_none_or(|of| of == left.arrangement)
     });

@@ -111,8 +111,8 @@ mod tests {
             at(tipping(&participants, other, item).unwrap().right, right);
         }
         // Body-centred (left) over simple cubic: two items, so the lower end itself.
-        let methods = study.methods();
-        let lattice = |method: usize| usize::from(methods[method].arrangement == Arrangement::BodyCentred);
+        let methods = study.method_ids();
+        let lattice = |method: usize| usize::from(methods[method].as_str().starts_with('b'));
         let all = golden::ballots(&study);
         let of_lattices = all.iter().filter(|b| lattice(b.left()) != lattice(b.right()));
         let lattices: Vec<ShownBallot> =

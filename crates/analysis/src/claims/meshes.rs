@@ -4,7 +4,7 @@ use super::numbers::{Measure, Numbers, Ours, Side, mean, mean_change};
 use super::{Finding, judge};
 use crate::comparison::benchmark::double_count;
 use crate::inputs::Inputs;
-use crate::mesh_set::discard_fraction;
+use crate::mesh_set::{self, discarded_as_published, of_tetrahedra};
 use design::published::Claim;
 use design::{Arrangement, Clustering, Crossed};
 
@@ -12,23 +12,23 @@ use Clustering::{EdgeCollapse, Integrated};
 
 const TRIANGLES: Measure =
     Measure { published: |p| p.triangles as f64, ours: Ours::Mesh(|m| m.counts.triangles as f64) };
-const SAMPLES: Measure =
-    Measure { published: |p| p.stored_samples as f64, ours: Ours::Mesh(|m| m.counts.stored_samples as f64) };
-const DISCARD_AS_PUBLISHED: Measure = Measure {
-    published: |p| p.discard_fraction,
-    ours: Ours::Mesh(|m| discard_fraction(m.counts.discarded_as_published, m.counts.triangles)),
+const SAMPLES: Measure = Measure {
+    published: |p| p.stored_samples as f64,
+    ours: Ours::Mesh(|m| of_tetrahedra(m, |t| t.stored_samples)),
 };
-const DISCARD: Measure = Measure {
-    published: |p| p.discard_fraction,
-    ours: Ours::Mesh(|m| discard_fraction(m.counts.discarded_triangles, m.counts.triangles)),
-};
+const DISCARD_AS_PUBLISHED: Measure =
+    Measure { published: |p| p.discard_fraction, ours: Ours::Mesh(|m| discarded_as_published(m)) };
+const DISCARD: Measure =
+    Measure { published: |p| p.discard_fraction, ours: Ours::Mesh(|m| mesh_set::discarded(m)) };
 const SAMPLES_STORED: Measure = Measure {
     published: |p| p.stored_samples as f64 / p.needed_samples as f64,
-    ours: Ours::Mesh(|m| m.counts.stored_samples as f64 / m.counts.needed_samples as f64),
+    ours: Ours::Mesh(|m| {
+        of_tetrahedra(m, |t| t.stored_samples) / m.counts.samples.unwrap_or_default() as f64
+    }),
 };
 const EDGES_STORED: Measure = Measure {
     published: |p| p.stored_edges as f64 / p.needed_edges as f64,
-    ours: Ours::Mesh(|m| m.counts.stored_edges as f64 / m.counts.needed_edges as f64),
+    ours: Ours::Mesh(|m| of_tetrahedra(m, |t| t.stored_edges) / of_tetrahedra(m, |t| t.needed_edges)),
 };
 
 pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {

@@ -2,7 +2,7 @@
 
 use super::Compared;
 use crate::inputs::Inputs;
-use crate::mesh_set::{MeshSet, discard_fraction, known};
+use crate::mesh_set::{MeshSet, discarded, discarded_as_published, known};
 use crate::published_ratio;
 use crate::stage_times::StageTimes;
 use crate::verdict::{UNEXPLAINED, Verdict, prints_alike, relative_difference};
@@ -39,7 +39,9 @@ impl Kind {
     /// Whether a quantity put right differs from the one as published, which is compared as well.
     fn adds_something(self, mesh: &MeshRecord) -> bool {
         match self {
-            Self::Discarded => mesh.counts.discarded_triangles < mesh.counts.discarded_as_published,
+            Self::Discarded => {
+                mesh.counts.discarded_triangles < mesh.counts.of_tetrahedra(|t| t.discarded_as_published)
+            }
             Self::RatioWithoutDegenerate => mesh.quality.degenerate > 0,
             _ => true,
         }
@@ -54,19 +56,26 @@ struct Quantity {
     ours: fn(&MeshRecord) -> Option<f64>,
 }
 
-/// A count that both sides call by one name, unless ours is named as well.
+/// A count, published as `$published`.
 macro_rules! count {
-    ($name:ident, $kind:expr) => {
-        count!($name, $kind, $name, $name)
-    };
-    ($name:ident, $kind:expr, $published:ident, $ours:ident) => {
+    ($name:ident, $kind:expr, $published:ident, $ours:expr) => {
         Quantity {
             name: stringify!($name),
             decimals: 0,
             kind: $kind,
             published: |p| p.$published as f64,
-            ours: |m| Some(m.counts.$ours as f64),
+            ours: |m| {
+                let count: fn(&Counts) -> Option<u64> = $ours;
+                count(&m.counts).map(|count| count as f64)
+            },
         }
+    };
+}
+
+/// A count that only tetrahedra have, and that both sides call by one name.
+macro_rules! count_of_tetrahedra {
+    ($name:ident, $kind:expr) => {
+        count!($name, $kind, $name, |c| c.of_tetrahedra(|t| t.$name))
     };
 }
 
@@ -101,32 +110,32 @@ const QUANTITIES: &[Quantity] = &[
     cells!(cells_x, 0),
     cells!(cells_y, 1),
     cells!(cells_z, 2),
-    count!(tetrahedra, Kind::Lattice),
-    count!(stored_samples, Kind::Lattice),
-    count!(stored_edges, Kind::Lattice),
-    count!(sample_bytes, Kind::Lattice),
-    count!(edge_bytes, Kind::Lattice),
-    count!(needed_samples, Kind::Needed(samples_with_the_wrong_sign)),
-    count!(needed_edges, Kind::Needed(edges_with_the_wrong_sign)),
-    count!(tetrahedra_evaluated, Kind::Surface),
+    count_of_tetrahedra!(tetrahedra, Kind::Lattice),
+    count_of_tetrahedra!(stored_samples, Kind::Lattice),
+    count_of_tetrahedra!(stored_edges, Kind::Lattice),
+    count_of_tetrahedra!(sample_bytes, Kind::Lattice),
+    count_of_tetrahedra!(edge_bytes, Kind::Lattice),
+    count!(needed_samples, Kind::Needed(samples_with_the_wrong_sign), needed_samples, |c| c.samples),
+    count_of_tetrahedra!(needed_edges, Kind::Needed(edges_with_the_wrong_sign)),
+    count_of_tetrahedra!(tetrahedra_evaluated, Kind::Surface),
     Quantity {
         name: "evaluated_fraction",
         decimals: 6,
         kind: Kind::Surface,
         published: |p| p.tetrahedra_evaluated as f64 / p.tetrahedra as f64,
-        ours: |m| Some(m.counts.tetrahedra_evaluated as f64 / m.counts.tetrahedra as f64),
+        ours: |m| m.counts.tetrahedra.as_ref().map(|t| t.tetrahedra_evaluated as f64 / t.tetrahedra as f64),
     },
-    count!(vertices, Kind::Surface),
-    count!(triangles, Kind::Surface),
-    count!(vertex_bytes, Kind::Surface),
-    count!(index_bytes, Kind::Surface),
-    count!(discarded_as_published, Kind::Surface),
-    count!(discarded_triangles, Kind::Discarded, discarded_as_published, discarded_triangles),
+    count!(vertices, Kind::Surface, vertices, |c| Some(c.vertices)),
+    count!(triangles, Kind::Surface, triangles, |c| Some(c.triangles)),
+    count!(vertex_bytes, Kind::Surface, vertex_bytes, |c| Some(c.vertex_bytes)),
+    count!(index_bytes, Kind::Surface, index_bytes, |c| Some(c.index_bytes)),
+    count_of_tetrahedra!(discarded_as_published, Kind::Surface),
+    count!(discarded_triangles, Kind::Discarded, discarded_as_published, |c| c.discarded_triangles),
     real!(discard_fraction_as_published, Kind::Surface, discard_fraction, |m| {
-        Some(discard_fraction(m.counts.discarded_as_published, m.counts.triangles))
+        Some(discarded_as_published(m)).filter(|share| !share.is_nan())
     }),
     real!(discard_fraction, Kind::Discarded, discard_fraction, |m| {
-        Some(discard_fraction(m.counts.discarded_triangles, m.counts.triangles))
+        Some(discarded(m)).filter(|share| !share.is_nan())
     }),
     real!(area_mean, Kind::Surface, area_mean, |m| known(&m.quality.area, |d| d.mean)),
     real!(area_sd, Kind::Surface, area_sd, |m| known(&m.quality.area, |d| d.sd)),
@@ -313,7 +322,8 @@ pub(crate) fn zero_ratios(degenerate: u64) -> String {
 
 /// By how much our re-run of the published count of discarded triangles exceeds the true one.
 fn excess(counts: &Counts) -> String {
-    counts.discarded_as_published.saturating_sub(counts.discarded_triangles).to_string()
+    let published = counts.of_tetrahedra(|t| t.discarded_as_published).unwrap_or_default();
+    published.saturating_sub(counts.discarded_triangles.unwrap_or_default()).to_string()
 }
 
 /// Why the published number of discarded triangles is too high. `excess` is of our own two counts: the published

@@ -7,7 +7,7 @@ use crate::claims;
 use crate::claims::numbers::{Measure, Numbers, Ours, Pair, Side, mean};
 use crate::claims::times::{Change, Direction, GEOMETRY, VERTEX, WHOLE, by_round};
 use crate::inputs::Inputs;
-use crate::mesh_set::{discard_fraction, known};
+use crate::mesh_set::{discarded, discarded_as_published, known};
 use crate::verdict::{Verdict, prints_alike};
 use design::Clustering::{self, EdgeCollapse, Integrated, None as Unclustered};
 use design::published::Claim;
@@ -24,12 +24,9 @@ const TRIANGLES: Measure =
     Measure { published: |p| p.triangles as f64, ours: Ours::Mesh(|m| m.counts.triangles as f64) };
 const DISCARD_AS_PUBLISHED: Measure = Measure {
     published: |p| 100.0 * p.discard_fraction,
-    ours: Ours::Mesh(|m| 100.0 * discard_fraction(m.counts.discarded_as_published, m.counts.triangles)),
+    ours: Ours::Mesh(|m| 100.0 * discarded_as_published(m)),
 };
-const DISCARD: Measure = Measure {
-    ours: Ours::Mesh(|m| 100.0 * discard_fraction(m.counts.discarded_triangles, m.counts.triangles)),
-    ..DISCARD_AS_PUBLISHED
-};
+const DISCARD: Measure = Measure { ours: Ours::Mesh(|m| 100.0 * discarded(m)), ..DISCARD_AS_PUBLISHED };
 const TWO_EDGES: Measure = Measure {
     published: |p| p.aspect_ratio_mean,
     ours: Ours::Shape(|m| known(&m.quality.published_aspect_ratio, |d| d.mean)),

@@ -15,27 +15,32 @@ type Entry = (&'static str, &'static str, fn(&MeshRecord) -> Cell);
 /// What is known of a mesh; after the first come the columns that tell the method.
 const MESH_COLUMNS: &[Entry] = &[
     ("resolution", "Cubes", |m| Cell::text(format!("{}x{}x{}", m.cells[0], m.cells[1], m.cells[2]))),
-    ("tetrahedra", "Tetrahedra", |m| Cell::count(m.counts.tetrahedra)),
-    ("tetrahedra_evaluated", "Evaluated", |m| Cell::count(m.counts.tetrahedra_evaluated)),
+    ("tetrahedra", "Tetrahedra", |m| maybe(m.counts.of_tetrahedra(|t| t.tetrahedra))),
+    ("tetrahedra_evaluated", "Evaluated", |m| maybe(m.counts.of_tetrahedra(|t| t.tetrahedra_evaluated))),
     ("evaluated_fraction", "Evaluated fraction", |m| {
-        Cell::number(ratio(m.counts.tetrahedra_evaluated, m.counts.tetrahedra), 4)
+        let share = m.counts.tetrahedra.as_ref().and_then(|t| ratio(t.tetrahedra_evaluated, t.tetrahedra));
+        Cell::number(share, 4)
     }),
     ("vertices", "Vertices", |m| Cell::count(m.counts.vertices)),
     ("triangles", "Triangles", |m| Cell::count(m.counts.triangles)),
-    ("discarded_triangles", "Discarded", |m| Cell::count(m.counts.discarded_triangles)),
-    ("discarded_as_published", "Discarded, as published", |m| Cell::count(m.counts.discarded_as_published)),
+    ("discarded_triangles", "Discarded", |m| maybe(m.counts.discarded_triangles)),
+    ("discarded_as_published", "Discarded, as published", |m| {
+        maybe(m.counts.of_tetrahedra(|t| t.discarded_as_published))
+    }),
     ("discard_fraction", "Discard fraction", |m| {
-        Cell::Number(discard_fraction(m.counts.discarded_triangles, m.counts.triangles), 4)
+        let discarded = m.counts.discarded_triangles;
+        Cell::number(discarded.map(|count| discard_fraction(count, m.counts.triangles)), 4)
     }),
     ("discard_fraction_as_published", "as published", |m| {
-        Cell::Number(discard_fraction(m.counts.discarded_as_published, m.counts.triangles), 4)
+        let discarded = m.counts.of_tetrahedra(|t| t.discarded_as_published);
+        Cell::number(discarded.map(|count| discard_fraction(count, m.counts.triangles)), 4)
     }),
-    ("stored_samples", "Samples stored", |m| Cell::count(m.counts.stored_samples)),
-    ("needed_samples", "Samples needed", |m| Cell::count(m.counts.needed_samples)),
-    ("stored_edges", "Edges stored", |m| Cell::count(m.counts.stored_edges)),
-    ("needed_edges", "Edges needed", |m| Cell::count(m.counts.needed_edges)),
-    ("sample_bytes", "Lattice bytes", |m| Cell::count(m.counts.sample_bytes)),
-    ("edge_bytes", "Edge bytes", |m| Cell::count(m.counts.edge_bytes)),
+    ("stored_samples", "Samples stored", |m| maybe(m.counts.of_tetrahedra(|t| t.stored_samples))),
+    ("needed_samples", "Samples needed", |m| maybe(m.counts.samples)),
+    ("stored_edges", "Edges stored", |m| maybe(m.counts.of_tetrahedra(|t| t.stored_edges))),
+    ("needed_edges", "Edges needed", |m| maybe(m.counts.of_tetrahedra(|t| t.needed_edges))),
+    ("sample_bytes", "Lattice bytes", |m| maybe(m.counts.of_tetrahedra(|t| t.sample_bytes))),
+    ("edge_bytes", "Edge bytes", |m| maybe(m.counts.of_tetrahedra(|t| t.edge_bytes))),
     ("vertex_bytes", "Vertex bytes", |m| Cell::count(m.counts.vertex_bytes)),
     ("index_bytes", "Index bytes", |m| Cell::count(m.counts.index_bytes)),
     ("aspect_ratio_mean", "Aspect ratio mean", |m| {
@@ -120,6 +125,11 @@ const BLOCKS: &[(&str, &[&str])] = &[
         ],
     ),
 ];
+
+/// A count; empty where the method has none.
+fn maybe(count: Option<u64>) -> Cell {
+    count.map_or(Cell::Missing, Cell::count)
+}
 
 fn ratio(part: u64, whole: u64) -> Option<f64> {
     (whole > 0).then(|| part as f64 / whole as f64)

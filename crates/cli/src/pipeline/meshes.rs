@@ -1,16 +1,16 @@
 //! Every configuration's mesh, once a purpose, with its record.
 
 use super::Pipeline;
-use crate::prepare::{self, Wanted, prepare};
+use crate::made::Made;
+use crate::prepare::{Prepared, Wanted};
 use crate::progress::Step;
 use crate::records::mesh_record;
 use crate::store::{Inputs, Stamp};
-use crate::{fields, rooms};
-use anyhow::{Context, Result, bail};
-use bench::Prepared;
+use crate::{recipe, rooms};
+use anyhow::{Context, Result};
 use design::record::{MeshRecord, Purpose};
 use design::{Configuration, ConfigurationId};
-use extract::{Execution, Extraction, Extractor};
+use extract::{Execution, Extractor};
 use mesh::TriangleMesh;
 
 /// How far a mesh moves the bar, which moves while one is extracted: a large volume takes minutes.
@@ -37,7 +37,7 @@ impl Pipeline<'_> {
     /// The meshes of every purpose: what is measured, and what is shown.
     pub(crate) fn all_meshes(&self, only: &[ConfigurationId]) -> Result<Meshes> {
         let mut purposes = vec![Purpose::Benchmark, Purpose::Stimulus];
-        if prepare::sums_positions(self.study)? {
+        if recipe::sums_positions(self.study)? {
             purposes.push(Purpose::Indexed);
         }
         self.meshes(&purposes, only)
@@ -50,42 +50,56 @@ impl Pipeline<'_> {
 
     /// Extracts and measures the configurations in `only`, or all if it is empty.
     fn meshes(&self, purposes: &[Purpose], only: &[ConfigurationId]) -> Result<Meshes> {
+        self.budgets(purposes)?;
         let selected = self.selected(only);
         let count = selected.len() * purposes.len();
         let step = Step::begin("meshes", count, count * TICKS_A_MESH);
-        let mut entries = Vec::new();
+        let (mut entries, mut reached) = (Vec::new(), 0);
         for &purpose in purposes {
             for configuration in &selected {
-                let stamp = self.mesh(configuration, purpose, &step)?;
-                step.count(stamp.redone);
-                entries.push((configuration.id.clone(), purpose, stamp));
-                step.reach(entries.len() * TICKS_A_MESH);
+                reached += TICKS_A_MESH;
+                // What a program did once it does again.
+                if self.has_failed(&configuration.id) {
+                    continue;
+                }
+                match self.mesh(configuration, purpose, &step) {
+                    Ok(stamp) => {
+                        step.count(stamp.redone);
+                        entries.push((configuration.id.clone(), purpose, stamp));
+                    }
+                    Err(error) => self.fail(&configuration.id, error)?,
+                }
+                step.reach(reached);
             }
         }
+        entries.retain(|(id, ..)| !self.has_failed(id));
         step.end();
         Ok(Meshes { entries })
     }
 
+    /// Those that are asked for and have not failed.
     pub(super) fn selected(&self, only: &[ConfigurationId]) -> Vec<&Configuration> {
-        let wanted = |c: &&Configuration| only.is_empty() || only.contains(&c.id);
+        let wanted =
+            |c: &&Configuration| (only.is_empty() || only.contains(&c.id)) && !self.has_failed(&c.id);
         self.study.configurations.iter().filter(wanted).collect()
     }
 
     fn mesh(&self, configuration: &Configuration, purpose: Purpose, step: &Step) -> Result<Stamp> {
-        let object = self.study.object(configuration);
-        let spacing = Wanted::For(purpose).spacing(object);
         let name = purpose_name(purpose);
+        let object = self.study.object(configuration);
+        let found = self.spacings().of(&configuration.id, purpose);
+        let spacing = found.unwrap_or_else(|| Wanted::For(purpose).spacing(object));
         let inputs = self.extraction_inputs(configuration, purpose)?.value("spacing", &spacing);
         self.stage(&format!("mesh/{name}/{}", configuration.id), inputs, |writer| {
-            let prepared = prepare(self.study, &self.fields, configuration, Wanted::For(purpose))?;
-            let extraction = self.extract(configuration, &prepared, step)?;
-            let accuracy = self.accuracy(&prepared, &extraction.mesh)?;
-            let cells = prepared.method.cells(&prepared.grid)?;
-            let record = mesh_record(&configuration.id, purpose, spacing, cells, &extraction, &accuracy);
+            let prepared = self.prepare(configuration, Wanted::For(purpose))?;
+            let Made { mesh, counts } = self.make(configuration, &prepared, step)?;
+            let accuracy = self.accuracy(&prepared, &mesh)?;
+            let cells = prepared.cells()?;
+            let record = mesh_record(&configuration.id, purpose, spacing, cells, counts, &mesh, &accuracy);
             // The indexed variant is only measured: nothing is rendered from it.
             if purpose != Purpose::Indexed {
                 let mut ply = Vec::new();
-                mesh::write_ply(&extraction.mesh, &mut ply)?;
+                mesh::write_ply(&mesh, &mut ply)?;
                 writer.write(&format!("meshes/{name}/{}.ply", configuration.id), &ply)?;
             }
             writer.write_json(&format!("meshes/{name}/{}.json", configuration.id), &record)
@@ -105,33 +119,25 @@ impl Pipeline<'_> {
             .value("volume", &(object.min, object.max))
             .value("isovalue", &object.isovalue)
             .value("recipe", &self.study.method(configuration.id.method).recipe)
-            .text("field", &fields::field_inputs(self.study, object)?))
+            .value("recipe files", &recipe::inputs(self.study, configuration.id.method)?)
+            .text("field", self.fields.inputs(configuration.object)?))
     }
 
-    /// Extracts one configuration, and moves the bar meanwhile by up to [`TICKS_A_MESH`].
-    pub(super) fn extract(
+    /// Makes the mesh of one configuration, and moves the bar meanwhile by up to [`TICKS_A_MESH`].
+    pub(super) fn make(
         &self,
         configuration: &Configuration,
         prepared: &Prepared<'_>,
         step: &Step,
-    ) -> Result<Extraction> {
+    ) -> Result<Made> {
         let execution = Execution { threads: self.threads };
         let mut extractor = Extractor::new().with_progress(step.within(TICKS_A_MESH));
-        let extraction = prepared.extract_with(&mut extractor, &execution)?;
-        if extraction.mesh.triangles.is_empty() {
-            let why = match extraction.counts.crossings {
-                0 => "every sample lies on one side",
-                _ => "clustering left no triangle",
-            };
-            bail!(
-                "{}: objects[{}]: no surface at isovalue {:?} with spacing {:?}: {why}",
-                self.study.path.display(),
-                configuration.object,
-                self.study.object(configuration).isovalue,
-                prepared.grid.spacing
-            );
-        }
-        Ok(extraction)
+        let place = || {
+            let isovalue = self.study.object(configuration).isovalue;
+            let file = self.study.path.display();
+            format!("{file}: objects[{}] with isovalue {isovalue:?}", configuration.object)
+        };
+        prepared.make(&mut extractor, &execution).with_context(place)
     }
 
     /// How well a configuration's mesh stands for its isosurface.
@@ -158,7 +164,7 @@ impl Pipeline<'_> {
     }
 }
 
-fn purpose_name(purpose: Purpose) -> &'static str {
+pub(super) fn purpose_name(purpose: Purpose) -> &'static str {
     match purpose {
         Purpose::Benchmark => "benchmark",
         Purpose::Stimulus => "stimulus",

@@ -1,13 +1,14 @@
 //! The chain of stages from a study file to the page that shows it all.
 //!
 //! ```text
-//! objects ─ meshes ─┬─ turntables ─ pairs, key ─┐
-//! comparisons ─ forms, key ─────────────────────┤
-//!                   └─ stills ──────────────────┤
-//! objects ─ timings ─┐                          ├─ page ─ manifest
-//! answers ───────────┴─ tables, figures, report ┘
+//! objects ─ budgets ─ meshes ─┬─ turntables ─ pairs, key ─┐
+//! comparisons ─ forms, key ───┼───────────────────────────┤
+//!                             └─ stills ──────────────────┤
+//! objects ─ budgets ─ timings ─┐                          ├─ page ─ manifest
+//! answers ─────────────────────┴─ tables, figures, report ┘
 //! ```
 
+mod budgets;
 mod bundle;
 mod meshes;
 mod page;
@@ -24,9 +25,14 @@ pub(crate) use tables::{write_answers_only, write_without_study};
 pub(crate) use timings::{PlanLength, measure};
 
 use crate::fields::Fields;
+use crate::made;
+use crate::prepare::{Prepared, Spacings, Wanted, prepare};
 use crate::store::{Inputs, Stamp, Store, Writer};
 use anyhow::{Context, Result};
-use design::Study;
+use design::record::Purpose;
+use design::{Configuration, ConfigurationId, Study};
+use std::collections::BTreeMap;
+use std::sync::{PoisonError, RwLock, RwLockReadGuard};
 
 /// Stages that only commands of their own make; a whole study leaves them in place.
 const ASKED_FOR: [&str; 4] = ["bench/", "bundle", "contact_sheet", "video/"];
@@ -39,11 +45,23 @@ pub(crate) struct Pipeline<'a> {
     threads: usize,
     /// Meshes, animations and timings are only looked up, never made.
     frozen: bool,
+    /// What was found for methods with a budget.
+    spacings: RwLock<Spacings>,
+    /// Configurations whose program failed, and why.
+    failed: RwLock<BTreeMap<ConfigurationId, String>>,
 }
 
 impl<'a> Pipeline<'a> {
     pub(crate) fn new(study: &'a Study, store: Store, threads: usize) -> Self {
-        Self { study, store, fields: Fields::new(study), threads, frozen: false }
+        Self {
+            study,
+            store,
+            fields: Fields::new(study),
+            threads,
+            frozen: false,
+            spacings: RwLock::default(),
+            failed: RwLock::default(),
+        }
     }
 
     /// The whole study. What an earlier form of it left behind goes. Returns the published
@@ -68,6 +86,44 @@ impl<'a> Pipeline<'a> {
         self.study()
     }
 
+    /// A configuration, with the spacing that was found for it.
+    fn prepare(&self, configuration: &Configuration, wanted: Wanted) -> Result<Prepared<'_>> {
+        prepare(self.study, &self.fields, &self.spacings(), configuration, wanted)
+    }
+
+    /// What was found for methods with a budget.
+    fn spacings(&self) -> RwLockReadGuard<'_, Spacings> {
+        read(&self.spacings)
+    }
+
+    fn keep_spacing(&self, id: ConfigurationId, purpose: Purpose, spacing: f64) {
+        self.spacings.write().unwrap_or_else(PoisonError::into_inner).keep(id, purpose, spacing);
+    }
+
+    /// Whether a configuration's program failed: the others go on without it.
+    fn has_failed(&self, id: &ConfigurationId) -> bool {
+        read(&self.failed).contains_key(id)
+    }
+
+    /// Keeps why a configuration failed, and says it, if its program is to blame.
+    ///
+    /// # Errors
+    /// Anything else that went wrong.
+    fn fail(&self, id: &ConfigurationId, error: anyhow::Error) -> Result<()> {
+        if made::program_error(&error).is_none() {
+            return Err(error);
+        }
+        let why = format!("{error:#}");
+        tell!("{id} failed and is left out: {why}");
+        self.failed.write().unwrap_or_else(PoisonError::into_inner).insert(id.clone(), why);
+        Ok(())
+    }
+
+    /// The configurations that failed, in order.
+    pub(crate) fn failed(&self) -> Vec<ConfigurationId> {
+        read(&self.failed).keys().cloned().collect()
+    }
+
     /// Clears away what is no longer part of the study, and writes the manifest of what is.
     pub(crate) fn finish(&self) -> Result<()> {
         self.store.remove_retired()?;
@@ -87,4 +143,9 @@ impl<'a> Pipeline<'a> {
         }
         self.store.stage(name, inputs, make).with_context(|| name.to_owned())
     }
+}
+
+/// Nothing is left half done where a thread panics.
+fn read<T>(lock: &RwLock<T>) -> RwLockReadGuard<'_, T> {
+    lock.read().unwrap_or_else(PoisonError::into_inner)
 }

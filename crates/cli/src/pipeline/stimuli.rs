@@ -3,7 +3,7 @@
 use super::meshes::TICKS_A_MESH;
 use super::{Meshes, Pipeline};
 use crate::picture;
-use crate::prepare::{Wanted, prepare};
+use crate::prepare::Wanted;
 use crate::progress::Step;
 use crate::store::{Inputs, Stamp};
 use crate::{rooms, video};
@@ -99,9 +99,10 @@ impl Pipeline<'_> {
 
     /// Composes every pair that anybody is shown from two finished turntables.
     pub(crate) fn pairs(&self, turntables: &[Stamp]) -> Result<Vec<Stamp>> {
-        let stimuli = self.study.stimuli();
+        let shown = |of: &Stimulus| !self.has_failed(&of.left) && !self.has_failed(&of.right);
+        let stimuli: Vec<Stimulus> = self.study.stimuli().into_iter().filter(shown).collect();
         let by_id: HashMap<&ConfigurationId, &Stamp> =
-            self.study.configurations.iter().map(|c| &c.id).zip(turntables).collect();
+            self.selected(&[]).into_iter().map(|c| &c.id).zip(turntables).collect();
         let step = Step::begin("pairs", stimuli.len(), stimuli.len());
         let one = |stimulus: &Stimulus| {
             let stamp = self.pair(stimulus, by_id[&stimulus.left], by_id[&stimulus.right])?;
@@ -192,7 +193,8 @@ impl Pipeline<'_> {
 
     /// The figures of still pictures.
     pub(crate) fn stills(&self) -> Result<Vec<Stamp>> {
-        let stills = &self.study.file.stills;
+        let made = |still: &&StillSection| !self.has_failed(&still.configuration);
+        let stills: Vec<&StillSection> = self.study.file.stills.iter().filter(made).collect();
         let step = Step::begin("stills", stills.len(), stills.len() * TICKS_A_MESH);
         let mut stamps = Vec::new();
         for still in stills {
@@ -218,8 +220,8 @@ impl Pipeline<'_> {
             .value("shading", &self.study.file.shading);
         self.stage(&format!("still/{}", still.id), inputs, |writer| {
             let wanted = Wanted::Spacing(still.spacing, Purpose::Stimulus);
-            let prepared = prepare(self.study, &self.fields, configuration, wanted)?;
-            let mesh = self.extract(configuration, &prepared, step)?.mesh;
+            let prepared = self.prepare(configuration, wanted)?;
+            let mesh = self.make(configuration, &prepared, step)?.mesh;
             let settings = picture::turntable(&self.study.file.turntable, &object.camera);
             let shading = picture::shading(&self.study.file.shading);
             let sheet = picture::still_sheet(&mesh, &settings, &shading, &still.looks)?;

@@ -2,7 +2,7 @@
 
 use super::Pipeline;
 use super::timings::Bout;
-use crate::prepare::{self, Wanted, prepare};
+use crate::prepare::{self, Wanted};
 use crate::progress::Step;
 use crate::store::{Inputs, Stamp, remove_if_there};
 use crate::{machine, rooms};
@@ -132,7 +132,10 @@ impl Pipeline<'_> {
 
     fn sweep_mesh(&self, configuration: &Configuration, cells: u32) -> Result<SweepMesh> {
         let wanted = Wanted::Cells(cells, Purpose::Indexed);
-        let extraction = prepare(self.study, &self.fields, configuration, wanted)?
+        let prepared = self.prepare(configuration, wanted)?;
+        let extraction = prepared
+            .extractor()
+            .context("a sweep is of extractors of ours")?
             .extract(&Execution { threads: self.threads })
             .with_context(|| format!("{} at {cells} cells per axis", configuration.id))?;
         let quality = mesh::quality::quality(&extraction.mesh);

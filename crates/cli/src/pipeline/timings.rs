@@ -3,13 +3,15 @@
 use super::{Pipeline, sweep};
 use crate::args::Worker;
 use crate::fields::Fields;
-use crate::prepare::{Wanted, prepare};
+use crate::measured::Clock;
+use crate::prepare::{Prepared, Spacings, Wanted, prepare};
 use crate::progress::Step;
+use crate::recipe::{self, Recipe};
 use crate::store::{Inputs, Stamp, remove_if_there, sha256, write_whole};
-use crate::{fields, input, machine, rooms, run_file};
+use crate::{input, machine, rooms, run_file};
 use analysis::timing;
 use anyhow::{Context, Result, bail};
-use bench::{BenchError, Entry, Plan, Prepared, ProcessExecutor};
+use bench::{BenchError, Entry, Plan, ProcessExecutor};
 use design::machine::Machine;
 use design::record::{BenchRun, Purpose};
 use design::{Configuration, ConfigurationId};
@@ -44,6 +46,9 @@ impl Bout<'_> {
 impl Pipeline<'_> {
     /// Times every configuration. The short plan is not run where a full run is up to date: the full one stands for it.
     pub(crate) fn timings(&self, length: PlanLength) -> Result<Stamp> {
+        if self.spacings().is_empty() {
+            self.budgets(&[Purpose::Benchmark])?;
+        }
         let machine = machine::read();
         if length == PlanLength::Short
             && let Some(full) =
@@ -55,12 +60,11 @@ impl Pipeline<'_> {
         let plan = self.plan(length)?;
         let inputs = self.inputs(length, &machine)?;
         let key = self.inputs(length, &machine)?.finish();
-        let count = self.study.configurations.len();
+        let count = self.timed()?.len();
         let step = Step::begin("timings", count * plan.iterations as usize, 0);
         let journal = self.store.journal(stage_name(length));
         let stamp = self.stage(stage_name(length), inputs, |writer| {
-            let bout =
-                Bout { plan: &plan, configurations: self.study.configurations.iter().collect(), cells: None };
+            let bout = Bout { plan: &plan, configurations: self.timed()?, cells: None };
             let run = self.run(&bout, machine, &journal, &key, &step)?;
             let folder = stage_name(length);
             writer.write_json(&format!("{folder}/run.json"), &run)?;
@@ -138,6 +142,8 @@ impl Pipeline<'_> {
         let mut file = File::options().append(true).open(journal)?;
         let program = std::env::current_exe().context("cannot find this program to start it again")?;
         let digest = sha256(&std::fs::read(&self.study.path)?);
+        let mut spacings = tempfile::NamedTempFile::new()?;
+        spacings.write_all(&serde_json::to_vec(&*self.spacings())?)?;
         let worker = || {
             let mut command = Command::new(&program);
             command.args(["bench", "worker"]).arg(&self.study.path);
@@ -146,6 +152,10 @@ impl Pipeline<'_> {
             if let Some(cells) = bout.cells {
                 command.args(["--cells", &cells.to_string()]);
             }
+            for id in self.failed() {
+                command.args(["--without", &id.to_string()]);
+            }
+            command.arg("--spacings").arg(spacings.path());
             command
         };
         let mut record = |entry: &Entry| file.write_all(entry.line().as_bytes());
@@ -185,17 +195,45 @@ impl Pipeline<'_> {
         self.workload(inputs)
     }
 
+    /// What has a time and has not failed.
+    fn timed(&self) -> Result<Vec<&Configuration>> {
+        let mut timed = timed(self.study)?;
+        timed.retain(|configuration| !self.has_failed(&configuration.id));
+        Ok(timed)
+    }
+
     /// What is asked of the extractor.
     pub(super) fn workload(&self, inputs: Inputs) -> Result<Inputs> {
         let recipes: Vec<_> = self.study.methods.iter().map(|method| (method.id, &method.recipe)).collect();
-        let mut inputs = inputs.value("methods", &recipes);
-        for object in &self.study.file.objects {
+        let failed = self.failed();
+        let mut inputs = inputs.value("methods", &recipes).value("spacings", &*self.spacings());
+        if !failed.is_empty() {
+            inputs = inputs.value("failed", &failed);
+        }
+        for method in &self.study.methods {
+            for digest in recipe::inputs(self.study, method.id)? {
+                inputs = inputs.text("recipe file", &digest);
+            }
+        }
+        for (number, object) in self.study.file.objects.iter().enumerate() {
             inputs = inputs
                 .value("volume", &(object.min, object.max, object.benchmark_spacing, object.isovalue))
-                .text("field", &fields::field_inputs(self.study, object)?);
+                .text("field", self.fields.inputs(number)?);
         }
         Ok(inputs)
     }
+}
+
+/// The configurations that can be timed: all but those whose meshes are there.
+fn timed(study: &design::Study) -> Result<Vec<&Configuration>> {
+    let mut timed = Vec::new();
+    for configuration in &study.configurations {
+        match recipe::recipe(study, configuration.id.method, Purpose::Benchmark)? {
+            Recipe::Meshes(_) => {}
+            Recipe::Extractor(_) | Recipe::Program(_) => timed.push(configuration),
+        }
+    }
+    Ok(timed)
 }
 
 /// The measuring process: answers requests on standard input until there are no more.
@@ -213,18 +251,28 @@ pub(crate) fn measure(arguments: &Worker) -> Result<()> {
     };
     let configurations: Vec<&Configuration> = match sweep {
         Some((_, section)) => sweep::configurations(&study, section),
-        None => study.configurations.iter().collect(),
+        None => {
+            let mut timed = timed(&study)?;
+            timed.retain(|configuration| !arguments.without.contains(&configuration.id.to_string()));
+            timed
+        }
     };
-    let mut prepared = |number: usize| -> Result<Prepared<'_>, String> {
+    let spacings: Spacings = match &arguments.spacings {
+        Some(path) => {
+            serde_json::from_slice(&input::bytes(path)?).with_context(|| path.display().to_string())?
+        }
+        None => Spacings::default(),
+    };
+    let prepared = |number: usize| -> Result<Prepared<'_>, String> {
         let configuration = *configurations.get(number).ok_or("there is no such configuration")?;
         let wanted = match sweep {
             Some((cells, _)) => Wanted::Cells(cells, Purpose::Indexed),
             None => Wanted::For(Purpose::Benchmark),
         };
-        prepare(&study, &fields, configuration, wanted).map_err(|error| format!("{error:#}"))
+        prepare(&study, &fields, &spacings, configuration, wanted).map_err(|error| format!("{error:#}"))
     };
     let (requests, replies) = (std::io::stdin().lock(), std::io::stdout().lock());
-    Ok(bench::serve(requests, replies, pinned, arguments.threads, &mut prepared)?)
+    Ok(bench::serve(requests, replies, pinned, arguments.threads, &mut Clock::new(prepared))?)
 }
 
 fn stage_name(length: PlanLength) -> &'static str {

@@ -1,6 +1,6 @@
 use super::*;
 use crate::{Outcome, ShownBallot, golden};
-use design::{Clustering, ConfigurationId};
+use design::ConfigurationId;
 
 /// Two covariates of the paper's questions: log ratio of the published triangle counts, and whether a side is merged.
 fn covariates() -> Vec<Option<Vec<f64>>> {
@@ -8,7 +8,7 @@ fn covariates() -> Vec<Option<Vec<f64>>> {
     let triangles = |id: &ConfigurationId| {
         study.published.benchmark.iter().find(|row| row.id == *id).unwrap().triangles as f64
     };
-    let merged = |id: &ConfigurationId| f64::from(u8::from(id.method.clustering != Clustering::None));
+    let merged = |id: &ConfigurationId| f64::from(u8::from(!id.method.as_str().ends_with('u')));
     let of = |c: &design::Comparison| {
         vec![(triangles(&c.left) / triangles(&c.right)).ln(), merged(&c.left) - merged(&c.right)]
     };

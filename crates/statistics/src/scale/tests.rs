@@ -15,9 +15,10 @@ fn six() -> Vec<ShownBallot> {
         (SimpleCubic, Clustering::Integrated),
     ];
     let study = golden::study();
-    let methods = study.methods();
+    let methods = study.method_ids();
     let item = |of: usize| {
-        let own = (methods[of].arrangement, methods[of].clustering);
+        let letters = methods[of].as_str().split_at(1);
+        let own = (letters.0, letters.1);
         order.iter().position(|&method| method == own).unwrap()
     };
     golden::ballots(&study).iter().map(|b| b.with_items([item(b.left()), item(b.right())])).collect()

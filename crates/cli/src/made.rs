@@ -1,0 +1,106 @@
+//! A configuration's mesh, however it comes to be.
+
+use crate::prepare::Prepared;
+use crate::recipe::Recipe;
+use crate::{mesh_file, records};
+use anyhow::{Context, Result, bail};
+use design::record::Counts;
+use extract::{Execution, Extractor};
+use glam::Vec3;
+use mesh::TriangleMesh;
+use program::{Program, ProgramError, Request, Samples, Worker};
+use std::path::Path;
+
+/// A mesh, and what was counted on the way.
+pub(crate) struct Made {
+    pub(crate) mesh: TriangleMesh,
+    pub(crate) counts: Counts,
+}
+
+impl Prepared<'_> {
+    /// The mesh.
+    ///
+    /// # Errors
+    /// If there is no surface; what an extractor refuses; [`ProgramError`] of a program, which names it; if a file is no mesh.
+    pub(crate) fn make(&self, extractor: &mut Extractor, execution: &Execution) -> Result<Made> {
+        let made = match &self.recipe {
+            Recipe::Extractor(_) => {
+                let extraction =
+                    self.extractor().context("an extractor")?.extract_with(extractor, execution)?;
+                Made { counts: records::counts(&extraction.counts), mesh: extraction.mesh }
+            }
+            Recipe::Program(program) => self.by_program(program)?,
+            Recipe::Meshes(files) => {
+                let path = files.get(&self.id.object).context("checked when the study was read")?;
+                let mesh = with_normals(mesh_file::read(path)?);
+                Made { counts: records::counts_of_mesh(&mesh, None), mesh }
+            }
+        };
+        if made.mesh.triangles.is_empty() {
+            let why = match made.counts.crossings {
+                Some(0) => "every sample lies on one side",
+                _ => "no triangle is left",
+            };
+            bail!("no surface with spacing {:?}: {why}", self.grid.spacing);
+        }
+        Ok(made)
+    }
+
+    fn by_program(&self, program: &Program) -> Result<Made> {
+        let cells = self.cells()?;
+        let mut worker = Worker::start(program)?;
+        let path = worker.folder().join("mesh.ply");
+        let samples = self.samples(cells);
+        let answer = worker.extract(&self.request(Samples::Values(&samples), cells, Some(&path)))?;
+        worker.finish()?;
+        let mesh = with_normals(answer.mesh.context("a mesh was asked for")?);
+        Ok(Made { counts: records::counts_of_mesh(&mesh, Some(cells)), mesh })
+    }
+
+    /// What a program is asked.
+    pub(crate) fn request<'r>(
+        &self,
+        samples: Samples<'r>,
+        cells: [u32; 3],
+        mesh: Option<&'r Path>,
+    ) -> Request<'r> {
+        Request {
+            samples,
+            size: cells.map(|along| along + 1),
+            origin: self.grid.bounds.min.to_array().map(f64::from),
+            spacing: [f64::from(self.grid.spacing); 3],
+            isovalue: f64::from(self.isovalue),
+            mesh,
+            may_be_empty: false,
+        }
+    }
+
+    /// The field at the corners of the grid's cells, x fastest. Where the spacing does not divide the box, the last lie beyond it.
+    pub(crate) fn samples(&self, cells: [u32; 3]) -> Vec<f32> {
+        let (min, spacing) = (self.grid.bounds.min, self.grid.spacing);
+        let [along_x, along_y, along_z] = cells.map(|along| along as usize + 1);
+        let place = |start: f32, i: usize| start + i as f32 * spacing;
+        let x: Vec<f32> = (0..along_x).map(|i| place(min.x, i)).collect();
+        let mut samples = vec![0.0; along_x * along_y * along_z];
+        for (row, values) in samples.chunks_exact_mut(along_x).enumerate() {
+            let (y, z) = (place(min.y, row % along_y), place(min.z, row / along_y));
+            self.field.sample_row(&x, y, z, values);
+        }
+        samples
+    }
+}
+
+/// Whoever draws a mesh needs normals.
+fn with_normals(mut mesh: TriangleMesh) -> TriangleMesh {
+    if mesh.normals.len() != mesh.positions.len() {
+        mesh.normals = mesh::normals::area_weighted_normals(&mesh.positions, &mesh.triangles);
+        // A vertex without a triangle, or with such as cancel out, points anywhere.
+        mesh.normals.iter_mut().filter(|normal| !normal.is_finite()).for_each(|normal| *normal = Vec3::Z);
+    }
+    mesh
+}
+
+/// What is wrong with a program, if that is why something failed: the others then go on.
+pub(crate) fn program_error(error: &anyhow::Error) -> Option<&ProgramError> {
+    error.chain().find_map(|cause| cause.downcast_ref::<ProgramError>())
+}

@@ -1,0 +1,82 @@
+//! The configurations of a study in front of the clock: extractors of ours, and programs that stay started.
+
+use crate::prepare::Prepared;
+use crate::recipe::Recipe;
+use bench::{Measured, PeakBytes, StageSeconds};
+use program::{Answer, Program, Samples, Worker, write_samples};
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+/// Makes a configuration ready, by number.
+type Prepare<'a> = dyn FnMut(usize) -> Result<Prepared<'a>, String> + 'a;
+
+/// What is timed in one measuring process.
+pub(crate) struct Clock<'a> {
+    prepare: Box<Prepare<'a>>,
+    running: HashMap<usize, Running>,
+}
+
+/// A program that is started, and the samples that it is given.
+struct Running {
+    worker: Worker,
+    samples: PathBuf,
+    cells: [u32; 3],
+}
+
+impl<'a> Clock<'a> {
+    pub(crate) fn new(prepare: impl FnMut(usize) -> Result<Prepared<'a>, String> + 'a) -> Self {
+        Self { prepare: Box::new(prepare), running: HashMap::new() }
+    }
+
+    /// Asks a program once, started before and with its samples written, neither of which is timed.
+    fn ask(&mut self, number: usize, prepared: &Prepared<'_>, program: &Program) -> Result<Answer, String> {
+        let text = |error: &dyn std::fmt::Display| format!("{}: {error}", prepared.id);
+        if self.running.get(&number).is_none_or(|running| !running.worker.is_running()) {
+            let cells = prepared.cells().map_err(|error| text(&format!("{error:#}")))?;
+            let worker = Worker::start(program).map_err(|error| text(&error))?;
+            let samples = worker.folder().join("samples.f32");
+            write_samples(&samples, &prepared.samples(cells)).map_err(|error| text(&error))?;
+            self.running.insert(number, Running { worker, samples, cells });
+        }
+        let running = self.running.get_mut(&number).ok_or_else(|| text(&"not started"))?;
+        let request = prepared.request(Samples::File(&running.samples), running.cells, None);
+        running.worker.extract(&request).map_err(|error| text(&error))
+    }
+}
+
+impl Measured for Clock<'_> {
+    fn time(&mut self, number: usize, threads: u32) -> Result<StageSeconds, String> {
+        let prepared = (self.prepare)(number)?;
+        match &prepared.recipe {
+            Recipe::Program(program) => {
+                let answer = self.ask(number, &prepared, program)?;
+                // A program says how long it took, not what each stage did: it is all in one.
+                let geometry_s = answer.extraction_s.unwrap_or(answer.wall.as_secs_f64());
+                Ok(StageSeconds { geometry_s, ..StageSeconds::default() })
+            }
+            _ => extractor(&prepared)?.time(threads),
+        }
+    }
+
+    fn memory(&mut self, number: usize, threads: u32) -> Result<Option<PeakBytes>, String> {
+        let prepared = (self.prepare)(number)?;
+        match &prepared.recipe {
+            Recipe::Program(program) => {
+                // Started anew, so that no earlier extraction is in its peak.
+                self.running.remove(&number);
+                let answer = self.ask(number, &prepared, program)?;
+                let after = self.running.get_mut(&number).and_then(|running| running.worker.memory());
+                Ok(after.or(answer.memory).map(|memory| PeakBytes {
+                    before_bytes: 0,
+                    peak_before_bytes: 0,
+                    peak_bytes: answer.peak_bytes.unwrap_or(memory.peak_bytes),
+                }))
+            }
+            _ => extractor(&prepared)?.memory(threads),
+        }
+    }
+}
+
+fn extractor<'a>(prepared: &Prepared<'a>) -> Result<bench::Prepared<'a>, String> {
+    prepared.extractor().ok_or_else(|| format!("{}: there is nothing to time", prepared.id))
+}

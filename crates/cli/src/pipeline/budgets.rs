@@ -1,0 +1,174 @@
+//! Budgets: the spacing at which a method gives as many triangles or samples, or takes as much time, as another.
+
+use super::Pipeline;
+use super::meshes::purpose_name;
+use crate::prepare::{self, Wanted};
+use crate::progress::Step;
+use crate::recipe::Recipe;
+use anyhow::{Context, Result, bail};
+use design::config::BudgetSection;
+use design::record::Purpose;
+use design::{Configuration, ConfigurationId};
+use extract::{Execution, Extractor};
+use serde::{Deserialize, Serialize};
+use std::time::Instant;
+
+/// How many spacings are tried for one mesh.
+const MOST_STEPS: u32 = 48;
+/// How far what is found may be from what is asked for, as a share of it.
+const COUNTS_WITHIN: f64 = 0.01;
+const TIME_WITHIN: f64 = 0.05;
+/// Extractions of which the median is taken where time is matched.
+const ROUNDS: usize = 5;
+
+/// What was found for one configuration.
+#[derive(Debug, Serialize, Deserialize)]
+struct Found {
+    schema: u32,
+    id: ConfigurationId,
+    /// Whose mesh is matched.
+    of: ConfigurationId,
+    /// In what: triangles, samples, time.
+    what: String,
+    /// What the other has; seconds of time.
+    wanted: f64,
+    /// What this has at the spacing.
+    found: f64,
+    spacing: f64,
+    /// Spacings that were tried.
+    steps: u32,
+}
+
+impl Pipeline<'_> {
+    /// Finds the spacing of every configuration whose method has a budget, for some purposes.
+    ///
+    /// # Errors
+    /// If no spacing meets one; what an extractor refuses.
+    pub(super) fn budgets(&self, purposes: &[Purpose]) -> Result<()> {
+        let with_budget = |c: &&Configuration| self.study.method(c.id.method).budget.is_some();
+        let asked: Vec<&Configuration> = self.study.configurations.iter().filter(with_budget).collect();
+        if asked.is_empty() {
+            return Ok(());
+        }
+        let step = Step::begin("budgets", asked.len() * purposes.len(), asked.len() * purposes.len());
+        for &purpose in purposes {
+            for configuration in &asked {
+                if let Err(error) = self.budget(configuration, purpose, &step) {
+                    self.fail(&configuration.id, error)?;
+                }
+                step.tick(1);
+            }
+        }
+        step.end();
+        Ok(())
+    }
+
+    fn budget(&self, configuration: &Configuration, purpose: Purpose, step: &Step) -> Result<()> {
+        let budget = self.study.method(configuration.id.method).budget.context("it has one")?;
+        let of = ConfigurationId { object: configuration.id.object.clone(), method: budget.of() };
+        let reference = self.study.configurations.iter().find(|c| c.id == of);
+        let reference = reference.context("methods are crossed with objects")?;
+        let inputs = self
+            .extraction_inputs(configuration, purpose)?
+            .value("budget", &budget)
+            .value("spacing", &Wanted::For(purpose).spacing(self.study.object(configuration)))
+            .text("of", &self.extraction_inputs(reference, purpose)?.finish());
+        let name = format!("budget/{}/{}", purpose_name(purpose), configuration.id);
+        let file = format!("budgets/{}/{}.json", purpose_name(purpose), configuration.id);
+        let stamp = self.stage(&name, inputs, |writer| {
+            let found = self.search(configuration, reference, budget, purpose)?;
+            writer.write_json(&file, &found)
+        })?;
+        step.count(stamp.redone);
+        let text = std::fs::read(self.store.root().join(&file)).with_context(|| file.clone())?;
+        let found: Found = serde_json::from_slice(&text).with_context(|| file.clone())?;
+        self.keep_spacing(found.id, purpose, found.spacing);
+        Ok(())
+    }
+
+    /// Bisection over spacings, each guessed from how counts grow: with the square of the resolution, or its cube.
+    fn search(
+        &self,
+        configuration: &Configuration,
+        reference: &Configuration,
+        budget: BudgetSection,
+        purpose: Purpose,
+    ) -> Result<Found> {
+        let start = Wanted::For(purpose).spacing(self.study.object(configuration));
+        let wanted = self.measure(reference, budget, Wanted::Spacing(start, purpose))?;
+        let (within, power) = match budget {
+            BudgetSection::TrianglesOf(_) => (COUNTS_WITHIN, 2.0),
+            BudgetSection::SamplesOf(_) => (COUNTS_WITHIN, 3.0),
+            BudgetSection::TimeOf(_) => (TIME_WITHIN, 2.0),
+        };
+        let [key, what] = budget.names();
+        // The finest spacing that gives too little, and the coarsest that gives too much.
+        let (mut coarse, mut fine): (Option<(f64, f64)>, Option<(f64, f64)>) = (None, None);
+        let mut spacing = start;
+        for steps in 1..=MOST_STEPS {
+            let found = self.measure(configuration, budget, Wanted::Spacing(spacing, purpose))?;
+            if (found - wanted).abs() <= within * wanted {
+                return Ok(Found {
+                    schema: 1,
+                    id: configuration.id.clone(),
+                    of: reference.id.clone(),
+                    what: what.into(),
+                    wanted,
+                    found,
+                    spacing,
+                    steps,
+                });
+            }
+            let side = if found < wanted { &mut coarse } else { &mut fine };
+            *side = Some((spacing, found));
+            let guess = spacing * (found.max(1e-9) / wanted).powf(1.0 / power).clamp(0.1, 10.0);
+            spacing = match (fine, coarse) {
+                (Some((low, _)), Some((high, _))) if guess <= low || guess >= high || steps % 3 == 0 => {
+                    (low * high).sqrt()
+                }
+                _ => guess,
+            };
+        }
+        let nearest = [coarse, fine].into_iter().flatten();
+        let nearest: Vec<String> = nearest.map(|(s, found)| format!("{found} at {s:?}")).collect();
+        let i = self.study.place(configuration.id.method);
+        bail!(
+            "{}: methods[{i}].match.{key} = {}: no spacing gives {} {wanted} {what} to {} %: {}",
+            self.study.path.display(),
+            budget.of(),
+            configuration.id,
+            100.0 * within,
+            nearest.join(", ")
+        )
+    }
+
+    fn measure(&self, configuration: &Configuration, budget: BudgetSection, wanted: Wanted) -> Result<f64> {
+        let prepared = self.prepare(configuration, wanted)?;
+        if let Recipe::Extractor(method) = &prepared.recipe {
+            let execution = Execution { threads: self.threads };
+            let machine = bench::read_machine().memory_bytes;
+            prepare::check_memory(self.study, method, &prepared.grid, &execution, machine)
+                .with_context(|| format!("{} with spacing {:?}", configuration.id, prepared.grid.spacing))?;
+        }
+        if let BudgetSection::TimeOf(_) = budget {
+            let mut seconds = Vec::new();
+            // One thread, as engines extract; the first is for warming up.
+            for _ in 0..=ROUNDS {
+                let begun = Instant::now();
+                prepared.make(&mut Extractor::new(), &Execution { threads: 1 })?;
+                seconds.push(begun.elapsed().as_secs_f64());
+            }
+            seconds.remove(0);
+            seconds.sort_by(f64::total_cmp);
+            return Ok(seconds[ROUNDS / 2]);
+        }
+        let made = prepared.make(&mut Extractor::new(), &Execution { threads: self.threads })?;
+        match budget {
+            BudgetSection::SamplesOf(_) => {
+                let samples = made.counts.samples;
+                Ok(samples.with_context(|| format!("{} takes no samples", configuration.id))? as f64)
+            }
+            _ => Ok(made.counts.triangles as f64),
+        }
+    }
+}

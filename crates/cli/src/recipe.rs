@@ -1,0 +1,193 @@
+//! What a study's recipes ask for: an extractor of ours, a program, or meshes that are there.
+
+use anyhow::{Context, Result, bail};
+use design::record::Purpose;
+use design::{MethodId, Study};
+use extract::{Method, Positions, Tetrahedra};
+use program::Program;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// The kinds of recipes that are the study's own, and never the extractor's: a game's library must not be able to start processes.
+const PROGRAM: &str = "program";
+const MESHES: &str = "meshes";
+
+/// How the meshes of a method come to be.
+#[derive(Debug, Clone)]
+pub(crate) enum Recipe {
+    /// An extractor of ours.
+    Extractor(Method),
+    /// A program that is given samples and answers with a mesh.
+    Program(Program),
+    /// Meshes that are there: an object's id, and its file.
+    Meshes(BTreeMap<String, PathBuf>),
+}
+
+/// The keys of a program.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ProgramKeys {
+    command: Vec<String>,
+    #[serde(default = "a_minute")]
+    time_limit_s: f64,
+    #[serde(default = "four")]
+    memory_gib: f64,
+}
+
+/// The keys of meshes that are there.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MeshKeys {
+    files: BTreeMap<String, String>,
+}
+
+fn a_minute() -> f64 {
+    60.0
+}
+
+fn four() -> f64 {
+    4.0
+}
+
+/// What a study's method asks for. Meshes made for [`Purpose::Indexed`] have indexed positions whatever the study says.
+///
+/// # Errors
+/// If its recipe is none, naming file, key and what is allowed.
+pub(crate) fn recipe(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
+    read(study, id, purpose).with_context(|| key(study, id))
+}
+
+/// Where a method's recipe stands.
+pub(crate) fn key(study: &Study, id: MethodId) -> String {
+    let key = match study.file.methods.iter().position(|section| section.id == id) {
+        Some(i) => format!("methods[{i}].recipe"),
+        None => "extraction".to_owned(),
+    };
+    format!("{}: {key}", study.path.display())
+}
+
+fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
+    let recipe = &study.method(id).recipe;
+    let keys = recipe.settings.clone();
+    match recipe.kind.as_str() {
+        PROGRAM => {
+            let keys: ProgramKeys = toml::Value::Table(keys).try_into()?;
+            for (name, value, most) in
+                [("time_limit_s", keys.time_limit_s, 86_400.0), ("memory_gib", keys.memory_gib, 1024.0)]
+            {
+                if !(value > 0.0 && value <= most) {
+                    bail!("{name} = {value:?}: must be above 0 and at most {most}");
+                }
+            }
+            Ok(Recipe::Program(Program {
+                command: keys.command,
+                base: study.resolve("."),
+                time_limit: Duration::from_secs_f64(keys.time_limit_s),
+                memory_limit_bytes: Some((keys.memory_gib * (1u64 << 30) as f64) as u64),
+            }))
+        }
+        MESHES => {
+            let keys: MeshKeys = toml::Value::Table(keys).try_into()?;
+            let objects: Vec<&str> = study.file.objects.iter().map(|object| object.id.as_str()).collect();
+            if let Some(other) = keys.files.keys().find(|id| !objects.contains(&id.as_str())) {
+                bail!("files.{other}: is not an object of this study, which has {}", objects.join(", "));
+            }
+            if let Some(missing) = objects.iter().find(|id| !keys.files.contains_key(**id)) {
+                bail!("files.{missing}: must name a mesh of this object");
+            }
+            Ok(Recipe::Meshes(keys.files.into_iter().map(|(id, file)| (id, study.resolve(&file))).collect()))
+        }
+        kind => {
+            let mut keys = keys;
+            keys.insert("kind".into(), kind.into());
+            let method = toml::Value::Table(keys).try_into().map_err(|error: toml::de::Error| {
+                let error = error.to_string();
+                let own = format!("`{PROGRAM}`, `{MESHES}`");
+                // The study's own kinds are kinds too.
+                anyhow::Error::msg(match error.split_once("unknown variant") {
+                    Some(_) => format!("{}, {own}", error.trim_end()),
+                    None => error.trim_end().to_owned(),
+                })
+            })?;
+            Ok(Recipe::Extractor(match (method, purpose) {
+                (Method::Tetrahedra(of), Purpose::Indexed) => {
+                    Method::Tetrahedra(Tetrahedra { positions: Positions::Indexed, ..of })
+                }
+                (method, _) => method,
+            }))
+        }
+    }
+}
+
+/// Checks that every recipe is one, and that programs and meshes are there.
+///
+/// # Errors
+/// The first that is not, naming file, key and what is allowed.
+pub(crate) fn check(study: &Study) -> Result<()> {
+    for method in &study.methods {
+        match recipe(study, method.id, Purpose::Benchmark)? {
+            Recipe::Extractor(_) => {}
+            Recipe::Program(program) => program.check().with_context(|| key(study, method.id))?,
+            Recipe::Meshes(files) => {
+                for (object, path) in &files {
+                    if !path.is_file() {
+                        bail!(
+                            "{}.files.{object} names {}: no such file",
+                            key(study, method.id),
+                            path.display()
+                        );
+                    }
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The commands that a study would run.
+///
+/// # Errors
+/// As [`recipe`].
+pub(crate) fn commands(study: &Study) -> Result<Vec<String>> {
+    let mut commands = Vec::new();
+    for method in &study.methods {
+        if let Recipe::Program(program) = recipe(study, method.id, Purpose::Benchmark)? {
+            commands.push(format!("{}: {}", method.id, program.command.join(" ")));
+        }
+    }
+    Ok(commands)
+}
+
+/// Whether some method sums its positions up, so that meshes with indexed ones are measured beside.
+///
+/// # Errors
+/// As [`recipe`].
+pub(crate) fn sums_positions(study: &Study) -> Result<bool> {
+    for method in &study.methods {
+        if let Recipe::Extractor(Method::Tetrahedra(of)) = recipe(study, method.id, Purpose::Benchmark)?
+            && of.positions != Positions::Indexed
+        {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// What a recipe depends on beside its keys: the content of programs and meshes that it names.
+///
+/// # Errors
+/// If one cannot be read.
+pub(crate) fn inputs(study: &Study, id: MethodId) -> Result<Vec<String>> {
+    let files = match recipe(study, id, Purpose::Benchmark)? {
+        Recipe::Extractor(_) => Vec::new(),
+        Recipe::Program(program) => program.files().with_context(|| key(study, id))?,
+        Recipe::Meshes(files) => files.into_values().collect(),
+    };
+    let digest = |path: &PathBuf| {
+        let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+        Ok(crate::store::sha256(&bytes))
+    };
+    files.iter().map(digest).collect()
+}
