@@ -3,11 +3,13 @@
 use super::{ALARM, Audited, Probe, Report, list};
 use crate::ballots::BallotGroup;
 use crate::digits::{counted, number};
-use statistics::{Split, exchange, holm};
+use statistics::{Protocol, ShownBallot, Split, exchange, holm, screening_with};
 use std::collections::BTreeSet;
 
 /// One person's answers are no sample of what people think.
 const FEWEST_PEOPLE: usize = 2;
+/// So many decided answers are on one side by chance of 1 in 32.
+const FEWEST_DECIDED: u64 = 6;
 
 /// One pair of items in one group, on one object against the others.
 struct Comparison {
@@ -21,22 +23,23 @@ struct Comparison {
 type Compared = [Vec<usize>; 2];
 
 /// For each group, pair of items and object: each participant's answers on the object against those on the others, by the
-/// permutation test within participants ([`exchange`]); Holm over all. Questions with a suspect key are left out. What holds
-/// the same answers against the same others is one comparison: one object against the other of two, or a pair that
-/// two groups have.
+/// permutation test within participants ([`exchange`]); Holm over all. Questions with a suspect key are left out, and so are people who
+/// press one side throughout: sides go with objects in a form, and then what they press does, too. What holds the same
+/// answers against the same others is one comparison: one object against the other of two, or a pair that two groups have.
 pub(super) fn probe(audited: &Audited<'_>, suspects: &BTreeSet<usize>) -> Report {
+    let pressing = pressing_one_side(audited);
     let mut all: Vec<Comparison> = Vec::new();
     let mut known = BTreeSet::new();
     for group in audited.groups {
         for first in 0..group.items.len() {
             for second in first + 1..group.items.len() {
-                all.extend(compare(audited, suspects, group, (first, second), &mut known));
+                all.extend(compare(audited, (suspects, &pressing), group, (first, second), &mut known));
             }
         }
     }
     if all.is_empty() {
         let reason = "no two people were shown the same pair of items on more than one object";
-        return Report::not_answerable(Probe::ObjectInteraction, reason);
+        return Report::not_answerable(Probe::ObjectInteraction, &format!("{reason}{}", left_out(&pressing)));
     }
     let adjusted = holm(&all.iter().map(|c| c.p).collect::<Vec<_>>());
     let mut order: Vec<usize> = (0..all.len()).collect();
@@ -63,12 +66,38 @@ pub(super) fn probe(audited: &Audited<'_>, suspects: &BTreeSet<usize>) -> Report
         }
         false => list(&found),
     };
+    let evidence = format!("{evidence}{}", left_out(&pressing));
     Report::tested(Probe::ObjectInteraction, adjusted[order[0]], evidence)
+}
+
+/// Who decided on one side alone, whatever stood there; nobody where that may be what they prefer.
+fn pressing_one_side(audited: &Audited<'_>) -> BTreeSet<usize> {
+    let protocol = Protocol { scenes: audited.scenes, ..Protocol::default() };
+    let one_side = |of: &statistics::Screening| {
+        let [left, _, right] = of.answers;
+        left + right >= FEWEST_DECIDED && left.min(right) == 0 && of.tells_sides()
+    };
+    match audited.sides_recorded {
+        true => screening_with(audited.ballots, &protocol)
+            .iter()
+            .filter(|of| one_side(of))
+            .map(|of| of.participant)
+            .collect(),
+        false => BTreeSet::new(),
+    }
+}
+
+/// What is said of them.
+fn left_out(pressing: &BTreeSet<usize>) -> String {
+    match pressing.len() {
+        0 => String::new(),
+        n => format!("; without {} pressing one side throughout", counted(n, "respondent")),
+    }
 }
 
 fn compare(
     audited: &Audited<'_>,
-    suspects: &BTreeSet<usize>,
+    (suspects, pressing): (&BTreeSet<usize>, &BTreeSet<usize>),
     group: &BallotGroup,
     (first, second): (usize, usize),
     known: &mut BTreeSet<Compared>,
@@ -77,7 +106,8 @@ fn compare(
     // By participant and scene: answers for the first, neither, for the second.
     let mut seen: Vec<[u64; 3]> = Vec::new();
     let mut shown: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); scenes];
-    for ballot in group.ballots.iter().filter(|b| !suspects.contains(&b.question())) {
+    let judged = |b: &&ShownBallot| !suspects.contains(&b.question()) && !pressing.contains(&b.participant());
+    for ballot in group.ballots.iter().filter(judged) {
         let outcome = match (ballot.left(), ballot.right()) {
             sides if sides == (first, second) => ballot.outcome(),
             sides if sides == (second, first) => ballot.outcome().swapped(),

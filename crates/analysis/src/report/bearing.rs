@@ -38,7 +38,7 @@ fn unanimity(evidence: &Evidence<'_>) -> Finding {
     let mut text = match (of(Metric::Nominal), of(Metric::Ordinal)) {
         (Some(nominal), Some(ordinal)) => format!(
             "Krippendorff's alpha over {over} is {nominal} nominal and {ordinal} ordinal; 1 is full agreement, 0 what chance gives. In brackets: \
-             95 % jackknife intervals over participants.",
+             95 % intervals over participants.",
         ),
         _ => format!(
             "Krippendorff's alpha over {over} has no value: nobody answered what another did, or all answers are the same.",

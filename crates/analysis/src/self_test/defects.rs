@@ -50,13 +50,15 @@ pub enum Defect {
     ObjectInteraction,
     /// One method is chosen always.
     Separation,
-    /// Respondents 4, 9, 14 and so on press left throughout, among others with preferences.
+    /// Respondents 4, 9, 14 and so on press left throughout, among others with preferences: both ways round of the forms.
     PressingLeft,
+    /// Respondents 4, 10, 16 and so on press left throughout, among others with preferences: one way round of the forms.
+    PressingLeftAlike,
 }
 
 impl Defect {
     /// The studies without a defect, then every defect.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::None { preferences: false, side: 0 },
         Self::None { preferences: true, side: 0 },
         Self::None { preferences: false, side: 8 },
@@ -75,12 +77,13 @@ impl Defect {
         Self::ObjectInteraction,
         Self::Separation,
         Self::PressingLeft,
+        Self::PressingLeftAlike,
     ];
 
     /// The probe that has to find it.
     pub fn probe(self) -> Option<Probe> {
         match self {
-            Self::None { side: 0, .. } | Self::PressingLeft => None,
+            Self::None { side: 0, .. } | Self::PressingLeft | Self::PressingLeftAlike => None,
             Self::None { .. } => Some(Probe::Side),
             Self::OddRespondent => Some(Probe::OddRespondent),
             Self::CopiedRows | Self::CopiedTimes => Some(Probe::CopiedRows),
@@ -110,13 +113,15 @@ impl Defect {
             Self::ObjectInteraction => "object interaction".into(),
             Self::Separation => "separation".into(),
             Self::PressingLeft => "seven respondents press left throughout".into(),
+            Self::PressingLeftAlike => "six press left throughout, forms the same way round".into(),
         }
     }
 
     /// Whether a probe that speaks up is right to, though the defect is not its own: some respondents with a side and no preference
     /// of their own are a side, and outlying.
     pub(super) fn may_be_seen_by(self, probe: Probe) -> bool {
-        self == Self::PressingLeft && matches!(probe, Probe::Side | Probe::OddRespondent)
+        matches!(self, Self::PressingLeft | Self::PressingLeftAlike)
+            && matches!(probe, Probe::Side | Probe::OddRespondent)
     }
 
     /// Whether so many answers are enough to find it, dealt like this.
@@ -189,10 +194,8 @@ pub fn planted(defect: Defect, design: Design, seed: u64, study: u64) -> Planted
             let of_file = responses.answers.iter_mut().filter(|answer| [answer.left, answer.right] == sides);
             of_file.for_each(|answer| answer.choice = answer.choice.swapped());
         }
-        Defect::PressingLeft => {
-            let careless = responses.answers.iter_mut().filter(|answer| answer.participant % 5 == 3);
-            careless.for_each(|answer| answer.choice = Choice::Left);
-        }
+        Defect::PressingLeft => press_left(&mut responses, 5),
+        Defect::PressingLeftAlike => press_left(&mut responses, 6),
         _ => {}
     }
     Planted { design, responses }
@@ -267,6 +270,12 @@ fn copy(responses: &mut Responses, changed: impl Fn(Answer, Choice) -> Answer) {
     responses.participants[16].form = responses.participants[4].form.clone();
     let own = responses.answers.iter_mut().filter(|answer| answer.participant == 16);
     own.zip(copied).for_each(|(answer, copied)| *answer = copied);
+}
+
+/// Every so many people, from the fourth, press left throughout.
+fn press_left(responses: &mut Responses, every: u32) {
+    let careless = responses.answers.iter_mut().filter(|answer| answer.participant % every == 3);
+    careless.for_each(|answer| answer.choice = Choice::Left);
 }
 
 /// The file whose sides are mixed up: of the pairs on the first object one that people judge very differently.

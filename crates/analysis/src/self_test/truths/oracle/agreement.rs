@@ -40,7 +40,7 @@ pub(super) fn expected(oracle: &Oracle<'_>) -> Expected {
         let Triads { all, decided, strict, weak, tournaments, zeta } = circles;
         let circle = |count: u64| if all > 0 { Want::count(count) } else { Want::Empty };
         let [nominal, ordinal] = [false, true].map(|ordinal| {
-            let ends = jackknife(&everybody, ordinal);
+            let ends = ends(&everybody, ordinal);
             [alpha(&counts, ordinal), ends.map(|ends| ends[0]), ends.map(|ends| ends[1])].map(Want::number)
         });
         let ([nominal, nominal_low, nominal_high], [ordinal, ordinal_low, ordinal_high]) = (nominal, ordinal);
@@ -96,9 +96,10 @@ fn sums(people: &[Vec<[u64; 3]>]) -> Vec<[u64; 3]> {
     sums
 }
 
-/// The ends of alpha's interval: each person left out in turn, a t quantile of the standard error of that.
-fn jackknife(people: &[Vec<[u64; 3]>], ordinal: bool) -> Option<[f64; 2]> {
+/// The ends of alpha's interval: the odds at which the test of them is a t quantile away.
+fn ends(people: &[Vec<[u64; 3]>], ordinal: bool) -> Option<[f64; 2]> {
     let all = sums(people);
+    let value = alpha(&all, ordinal)?;
     let without = |own: &Vec<[u64; 3]>| {
         let rest: Vec<[u64; 3]> =
             all.iter().zip(own).map(|(sum, own)| [0, 1, 2].map(|i| sum[i] - own[i])).collect();
@@ -106,15 +107,93 @@ fn jackknife(people: &[Vec<[u64; 3]>], ordinal: bool) -> Option<[f64; 2]> {
     };
     let left_out: Vec<f64> = people.iter().map(without).collect::<Option<_>>()?;
     let m = left_out.len() as f64;
-    let mean = left_out.iter().sum::<f64>() / m;
-    let error = ((m - 1.0) / m * left_out.iter().map(|x| (x - mean).powi(2)).sum::<f64>()).sqrt();
-    // Where leaving anybody out changes nothing nobody knows how people differ.
-    if m < 3.0 || error < 1e-12 {
+    let middle = left_out.iter().sum::<f64>() / m;
+    let of_alpha = (m - 1.0) / m * left_out.iter().map(|x| (x - middle).powi(2)).sum::<f64>();
+    // Who agrees on everything says nothing of how people differ.
+    if m < 4.0 || value == 1.0 {
         return None;
     }
-    let half = StudentsT::new(0.0, 1.0, m - 1.0).expect("three people or more").inverse_cdf(0.975) * error;
-    let value = alpha(&all, ordinal)?;
-    Some([value - half, value + half].map(|end| end.clamp(-1.0, 1.0)))
+    let (own, free) = (own_pairs(&all, ordinal), deviations(people, &all, ordinal));
+    let odds = value / (1.0 - value);
+    let beyond = |x: f64, quantiles: f64| {
+        let positive = x.max(0.0);
+        let mean = positive + own;
+        let parts = [2.0 * own * own / free, of_alpha / (1.0 - value).powi(4) * positive / (odds + own).max(1e-9)];
+        let variance = parts[0] + parts[1];
+        let degrees = variance.powi(2) / (parts[0].powi(2) / ((m - 1.0) * free) + parts[1].powi(2) / (m - 1.0));
+        let h = variance / mean.powi(2) / 9.0;
+        let z = (((odds + own - (x - positive)) / mean).cbrt() - (1.0 - h)) / h.sqrt();
+        z - quantiles * StudentsT::new(0.0, 1.0, degrees).expect("three degrees or more").inverse_cdf(0.975)
+    };
+    let end = |quantiles: f64| {
+        let [mut low, mut high] = [-0.5, 1e9];
+        if beyond(low, quantiles) <= 0.0 {
+            return -1.0;
+        }
+        for _ in 0..120 {
+            let x = 0.5 * (low + high);
+            *(if beyond(x, quantiles) > 0.0 { &mut low } else { &mut high }) = x;
+        }
+        low / (1.0 + low)
+    };
+    Some([end(1.0), end(-1.0)])
+}
+
+/// How far two values are apart, up to a factor that all distances share.
+fn apart(i: usize, j: usize, ordinal: bool) -> f64 {
+    let steps = i.abs_diff(j) as f64;
+    if ordinal { steps * steps } else { steps.min(1.0) }
+}
+
+/// The share of the disagreement between different answers that goes if each is paired with itself as well.
+fn own_pairs(counts: &[[u64; 3]], ordinal: bool) -> f64 {
+    let [mut different, mut with_own] = [0.0; 2];
+    for counts in counts.iter().map(|counts| counts.map(|count| count as f64)) {
+        let n: f64 = counts.iter().sum();
+        if n >= 2.0 {
+            let pairs = |i: usize| (0..3).map(move |j| counts[i] * counts[j] * apart(i, j, ordinal)).sum::<f64>();
+            let disagreement: f64 = (0..3).map(pairs).sum();
+            different += disagreement / (n - 1.0);
+            with_own += disagreement / n;
+        }
+    }
+    1.0 - with_own / different
+}
+
+/// How many independent deviations the shares of the questions have: of each person a list of how they move them, of these lists the
+/// covariance, and of that the trace squared over the trace of the square.
+fn deviations(people: &[Vec<[u64; 3]>], all: &[[u64; 3]], ordinal: bool) -> f64 {
+    let asked: Vec<usize> = (0..all.len()).filter(|&q| all[q].iter().sum::<u64>() >= 2).collect();
+    let answers = |q: usize| all[q].iter().sum::<u64>() as f64;
+    let root: Vec<f64> = asked.iter().map(|&q| answers(q).sqrt()).collect();
+    let total: f64 = asked.iter().map(|&q| answers(q)).sum();
+    // Of values of the three answers: how a person's answers to a question are above what all people give it.
+    let above = |own: &[[u64; 3]], values: [f64; 3]| -> Vec<f64> {
+        let sum = |counts: [u64; 3]| (0..3).map(|i| counts[i] as f64 * values[i]).sum::<f64>();
+        let of = |q: usize| sum(own[q]) - own[q].iter().sum::<u64>() as f64 * sum(all[q]) / answers(q);
+        asked.iter().zip(&root).map(|(&q, root)| of(q) / root).collect()
+    };
+    let moves = |own: &Vec<[u64; 3]>| {
+        let mut list = above(own, [1.0, 0.0, -1.0]);
+        if !ordinal {
+            let neither = above(own, [0.0, 1.0, 0.0]);
+            let mean: f64 = neither.iter().zip(&root).map(|(x, root)| x * root).sum::<f64>() / total;
+            list.extend(neither.iter().zip(&root).map(|(x, root)| 3.0_f64.sqrt() * (x - mean * root)));
+        }
+        list
+    };
+    let lists: Vec<Vec<f64>> = people.iter().map(moves).collect();
+    let (n, size) = (lists.len() as f64, lists[0].len());
+    let covariance =
+        |a: usize, b: usize| lists.iter().map(|list| list[a] * list[b]).sum::<f64>() / (n - 1.0);
+    let trace: f64 = (0..size).map(|a| covariance(a, a)).sum();
+    let square: f64 = (0..size).flat_map(|a| (0..size).map(move |b| (a, b))).map(|(a, b)| covariance(a, b).powi(2)).sum();
+    let lengths = |list: &Vec<f64>| list.iter().map(|x| x * x).sum::<f64>().powi(2);
+    let fourth = lists.iter().map(lengths).sum::<f64>() / (n - 1.0);
+    let unbiased = (n - 1.0) / (n * (n - 2.0) * (n - 3.0))
+        * ((n - 1.0) * (n - 2.0) * square + trace * trace - n * fourth);
+    let free = trace * trace / unbiased;
+    if unbiased > 0.0 { free.clamp(1.0, size as f64) } else { size as f64 }
 }
 
 /// Krippendorff's, by its coincidences: values are the two items and neither, and which of them is named first says nothing,
