@@ -65,6 +65,10 @@ impl Better {
         let mut kinds: BTreeMap<&BTreeMap<usize, [u64; 2]>, u64> = BTreeMap::new();
         people.iter().for_each(|of| *kinds.entry(of).or_default() += 1);
         let (kinds, counts): (Vec<_>, Vec<u64>) = kinds.into_iter().unzip();
+        let surplus = |of: &BTreeMap<usize, [u64; 2]>| {
+            of.iter().map(|(&question, &[hits, misses])| (question, hits as i64 - misses as i64)).collect()
+        };
+        let kinds: Vec<Vec<(usize, i64)>> = kinds.into_iter().map(surplus).collect();
         let resampled = percentile(&counts, Resampling::default(), |weights| pairs(&kinds, weights).share());
         Self {
             test: ScoreTest::of(ballots.iter().filter_map(signed)),
@@ -81,15 +85,16 @@ impl Better {
 }
 
 /// Who wins each pair among so many people of each kind.
-fn pairs(kinds: &[&BTreeMap<usize, [u64; 2]>], weights: &[u64]) -> PairCount {
-    let mut net: BTreeMap<usize, i64> = BTreeMap::new();
+fn pairs(kinds: &[Vec<(usize, i64)>], weights: &[u64]) -> PairCount {
+    let questions = kinds.iter().flatten().map(|&(question, _)| question + 1).max().unwrap_or(0);
+    let mut net: Vec<Option<i64>> = vec![None; questions];
     for (kind, &weight) in kinds.iter().zip(weights).filter(|(_, weight)| **weight > 0) {
-        for (&question, &[hits, misses]) in *kind {
-            *net.entry(question).or_default() += weight as i64 * (hits as i64 - misses as i64);
+        for &(question, surplus) in kind {
+            *net[question].get_or_insert(0) += weight as i64 * surplus;
         }
     }
     let mut count = PairCount::default();
-    for net in net.into_values() {
+    for net in net.into_iter().flatten() {
         match net.signum() {
             1 => count.better += 1,
             -1 => count.worse += 1,

@@ -9,12 +9,14 @@ use super::people::{Given, Pressed, method, normal};
 use super::routes::Route;
 use crate::answered::Answered;
 use crate::ballots::BallotGroup;
+use crate::fixture;
 use crate::inputs::Inputs;
 use crate::self_test::allowance;
 use crate::table::{Cell, Table};
 use crate::tables::tables;
 use design::Study;
 use design::forms::{KeyEntry, Questionnaire, Role};
+use design::record::{Distribution, MeshRecord, Purpose};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use responses::Plan;
@@ -38,31 +40,69 @@ enum Truth {
     Nothing,
     /// Clusterings and lattices differ, and the left side is liked.
     Worths,
+    /// Round triangles are liked, whatever made them.
+    Slope,
 }
+
+/// Log-odds for one standard deviation of the meshes' radius ratios.
+const SLOPE: f64 = 0.5;
 
 impl Truth {
     fn name(self) -> &'static str {
         match self {
             Self::Nothing => "no preference",
             Self::Worths => "worths and a side",
+            Self::Slope => "a metric",
         }
     }
 
-    /// In logits.
-    fn worth(self, method: &str) -> f64 {
+    /// Of an object and a method, in logits.
+    fn worth(self, id: &str) -> f64 {
+        let method = method(id);
         let place = |letters: &str, at: usize| letters.find(&method[at..=at]).expect("a letter") as f64;
         match self {
             Self::Nothing => 0.0,
             Self::Worths => 0.5 * place("upi", 1) + 0.3 * place("sb", 0),
+            Self::Slope => SLOPE * measures(id)[0],
         }
+    }
+
+    /// What was measured, if anything: tables of it take their time.
+    fn meshes(self, study: &Study) -> Vec<MeshRecord> {
+        if self == Self::Slope { meshes(study) } else { Vec::new() }
     }
 
     fn side(self) -> f64 {
         match self {
-            Self::Nothing => 0.0,
+            Self::Nothing | Self::Slope => 0.0,
             Self::Worths => 0.4,
         }
     }
+}
+
+/// Radius ratio, triangles and shading error of a mesh, in standard deviations of meshes: always the same ones.
+fn measures(id: &str) -> [f64; 3] {
+    let seed = id.bytes().fold(7, |sum: u64, byte| sum * 256 + u64::from(byte));
+    let mut random = Pcg64::seed_from_u64(seed);
+    [0; 3].map(|_| normal(&mut random))
+}
+
+/// Meshes as the study's, of which three things are known.
+fn meshes(study: &Study) -> Vec<MeshRecord> {
+    let any = fixture::meshes(&fixture::study()).swap_remove(0);
+    let unknown = |of: &Distribution| Distribution { count: 0, ..of.clone() };
+    let mesh = |configuration: &design::Configuration| {
+        let mut mesh = MeshRecord { id: configuration.id.clone(), purpose: Purpose::Stimulus, ..any.clone() };
+        let [ratio, triangles, error] = measures(&configuration.id.to_string());
+        mesh.quality.radius_ratio.mean = 0.6 + 0.05 * ratio;
+        mesh.counts.triangles = (1e6 * (0.3 * triangles).exp()) as u64;
+        mesh.accuracy.normal_error_deg.mean = 2.0 * (0.3 * error).exp();
+        mesh.quality.min_angle_deg = unknown(&mesh.quality.min_angle_deg);
+        mesh.quality.published_aspect_ratio = unknown(&mesh.quality.published_aspect_ratio);
+        mesh.accuracy.distance = unknown(&mesh.accuracy.distance);
+        mesh
+    };
+    study.configurations.iter().map(mesh).collect()
 }
 
 /// What so many people answer; each form has one more person than it is the turn of.
@@ -73,7 +113,8 @@ fn answers(forms: &[Vec<KeyEntry>], truth: Truth, people: usize, study: u64) -> 
         let mut own: BTreeMap<&str, f64> = BTreeMap::new();
         for shown in &forms[person % forms.len()] {
             let mut liked = |id| {
-                *own.entry(method(id)).or_insert_with_key(|id| truth.worth(id) + 0.8 * normal(&mut random))
+                let own = *own.entry(method(id)).or_insert_with(|| 0.8 * normal(&mut random));
+                truth.worth(id) + own
             };
             let half = (0.5 * (liked(&shown.left) - liked(&shown.right) + truth.side())).exp();
             let weights = [half, 0.5, 1.0 / half];
@@ -92,10 +133,15 @@ fn answers(forms: &[Vec<KeyEntry>], truth: Truth, people: usize, study: u64) -> 
 }
 
 /// Everything that is printed of the answers, and the groups that models compare.
-fn printed(study: &Study, plan: &Plan, given: &[Given], route: Route) -> (Vec<Table>, Vec<BallotGroup>) {
+fn printed(
+    (study, meshes): (&Study, &[MeshRecord]),
+    plan: &Plan,
+    given: &[Given],
+    route: Route,
+) -> (Vec<Table>, Vec<BallotGroup>) {
     let read = route.read(study, plan, given).expect("a file that is right");
     let answered = Answered::of(study, read).expect("answers to the study's questions");
-    (tables(&Inputs { study, meshes: &[], bench: None, answers: Some(&answered) }), answered.groups)
+    (tables(&Inputs { study, meshes, bench: None, answers: Some(&answered) }), answered.groups)
 }
 
 /// A number's place: table, column, and the names at the head of its row.
@@ -121,8 +167,17 @@ fn number(cell: &Cell) -> Option<f64> {
     }
 }
 
-/// The estimate that each interval is about, and its ends: columns `low` and `high` follow their estimate, or name it.
-fn intervals(table: &Table) -> Vec<(String, [usize; 3])> {
+/// Where an interval stands in a table.
+struct Ends {
+    column: String,
+    /// What it is about, and what has to be taken off it.
+    estimate: (usize, Option<usize>),
+    low: usize,
+    high: usize,
+}
+
+/// Intervals of a table: columns `low` and `high` follow their estimate, or name it.
+fn intervals(table: &Table) -> Vec<Ends> {
     let place = |name: &str| table.columns.iter().position(|column| column.name == name);
     let mut found = Vec::new();
     for (at, column) in table.columns.iter().enumerate() {
@@ -132,11 +187,16 @@ fn intervals(table: &Table) -> Vec<(String, [usize; 3])> {
             "p_without_one_" => continue,
             "studentised_" => place("mean"),
             "" if table.name == "worths" => place("log_worth"),
+            "" if table.name == "prediction_joint" => place("coefficient"),
+            "pairs_won_" => place("pairs_won_share"),
+            "gain_" => place("constant_log_loss"),
             "" => Some(at - 1),
             of => place(of.trim_end_matches('_')),
         };
         let high = place(&format!("{of}high")).expect("an upper end");
-        found.push((column.name.clone(), [estimate.expect("an estimate"), at, high]));
+        let less = if of == "gain_" { place("log_loss") } else { None };
+        let estimate = (estimate.expect("an estimate"), less);
+        found.push(Ends { column: column.name.clone(), estimate, low: at, high });
     }
     found
 }
@@ -185,7 +245,7 @@ fn seen((tables, groups): &(Vec<Table>, Vec<BallotGroup>)) -> Seen {
         let ends = intervals(table);
         for (name, row) in rows(table) {
             let place = |column: &str| (table.name.clone(), column.to_owned(), name.clone());
-            for (column, [_, low, high]) in &ends {
+            for Ends { column, low, high, .. } in &ends {
                 if let (Some(low), Some(high)) = (number(&row[*low]), number(&row[*high])) {
                     seen.intervals.push((place(column), [low, high]));
                 }
@@ -218,9 +278,10 @@ fn estimates(tables: &[Table]) -> BTreeMap<Place, f64> {
     for table in tables {
         let ends = intervals(table);
         for (name, row) in rows(table) {
-            for (column, [estimate, ..]) in &ends {
+            for Ends { column, estimate: (of, less), .. } in &ends {
                 let place = (table.name.clone(), column.clone(), name.clone());
-                all.extend(number(&row[*estimate]).map(|value| (place, value)));
+                let less = less.map_or(Some(0.0), |less| number(&row[less]));
+                all.extend(number(&row[*of]).zip(less).map(|(value, less)| (place, value - less)));
             }
         }
     }
@@ -264,6 +325,14 @@ fn print(
 
 #[test]
 #[ignore = "minutes: run by make test-long; prints tables"]
+fn coverage_through_files_with_meshes() {
+    for design in [designs::FULL, designs::BLOCKS] {
+        one(&design, Truth::Slope);
+    }
+}
+
+#[test]
+#[ignore = "minutes: run by make test-long; prints tables"]
 fn coverage_through_files() {
     for design in [designs::FULL, designs::BLOCKS] {
         for truth in [Truth::Nothing, Truth::Worths] {
@@ -288,17 +357,17 @@ fn each_alone(of: impl Fn(u64) -> Seen + Sync) -> Vec<Seen> {
 
 fn one(design: &Design, truth: Truth) {
     let study = design.study(300);
-    let plan = Plan::of_study(&study);
+    let (plan, meshes) = (Plan::of_study(&study), truth.meshes(&study));
     let key = Questionnaire::of(&study).expect("it plans forms").key();
     let asked = |of: &[KeyEntry]| of.iter().filter(|entry| entry.role != Role::Training).cloned().collect();
     let forms: Vec<Vec<KeyEntry>> = key.chunk_by(|a, b| a.form == b.form).map(asked).collect();
     let many = answers(&forms, truth, MANY, u64::from(u16::MAX));
-    let is = estimates(&printed(&study, &plan, &many, Route::Long).0);
+    let is = estimates(&printed((&study, &meshes), &plan, &many, Route::Long).0);
     for people in SIZES {
         let route = |number: u64| [Route::Long, Route::ByForm, Route::Wide][(number % 3) as usize];
         let all = each_alone(|number| {
             let given = answers(&forms, truth, people, number * 1000 + people as u64);
-            seen(&printed(&study, &plan, &given, route(number)))
+            seen(&printed((&study, &meshes), &plan, &given, route(number)))
         });
         let head = format!("{} | {} | {people}", design.name, truth.name());
         let (mut covered, mut rejected) = (BTreeMap::new(), BTreeMap::new());
@@ -326,7 +395,9 @@ fn one(design: &Design, truth: Truth) {
         let enough = design.name == designs::FULL.name || people >= 60;
         for (column, share) in print(&head, "covered", covered, true) {
             let near = (0.93..=0.97).contains(&share);
-            assert!(near || !enough, "{head}: {column} covers {share}");
+            // What a fit to the same answers foretells, and who wins how many pairs, is not what many people show.
+            let another = ["accuracy", "gain", "pairs_won"].iter().any(|of| column.starts_with(&format!("prediction.{of}")));
+            assert!(near || !enough || another, "{head}: {column} covers {share}");
         }
         if truth == Truth::Nothing {
             print(&head, "rejected", rejected, false);
