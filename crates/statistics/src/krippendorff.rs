@@ -57,10 +57,10 @@ pub fn alpha(questions: &[[u64; 3]], metric: Metric) -> Option<f64> {
 ///   (((o + b) / (x + b))^(1/3) - 1 + h) / sqrt h is compared with t, on as many degrees as v has: (m - 1) f of its first part
 ///   and m - 1 of its second (Satterthwaite). Below x = 0 everything is as at 0, but moved.
 ///
-/// Simulated ([docs/statistics.md](../../../docs/statistics.md#krippendorffs-alpha)), it covers 92 to 98 % where alpha -+ t s covers 75 to
-/// 99 %; not where of few questions all but one are nearly unanimous among 12 people, and where 4 people
-/// answer a question. The bootstrap does not serve: resamples have people more than once, who agree with themselves, and alpha
-/// rises.
+/// Simulated over 140 populations (docs/statistics.md has the table), it covers 94 to 97 % on average from 12 people on, whatever
+/// alpha, where alpha -+ t s covers 89 to 98 %. Least, 81 %, is where of 12 people's questions all but one are nearly unanimous;
+/// where 4 people answer a question it covers up to 100 %. The bootstrap does not serve: resamples have people more than
+/// once, who agree with themselves, and alpha rises.
 ///
 /// Takes time in proportion to the sum over participants of their answers squared, and memory to the square of the questions'
 /// number. The order of ballots makes no difference. Questions are numbered from 0.

@@ -85,11 +85,13 @@ fn metrics(prediction: &Prediction) -> Table {
     table.notes.push(
         "Metrics are of the meshes that were shown. Share of decided: answers for the side with the better value over all \
          answers but no preference; t interval at 95 % over participants. p: exact sign-flip test over participants, adjusted \
-         by Holm over the metrics. A pair is won by the side with more answers; its interval: percentiles of 2000 resamples of participants. Log-odds: \
+         by Holm over the metrics. A pair is won by the side with more answers; from and to: 95 % of 2000 resamples of participants, which say how firm the winners are and \
+         not what share many more people would show. Log-odds: \
          Davidson's model with the metric's difference for the worths, in units of the root mean square of the differences \
          (differences of ratios and angles, logarithms of quotients for the rest); standard error, t interval and p clustered \
          on participants. Left-out: each object predicted from a fit to the others; the constant knows the share of ties and \
-         no more; the gain is the mean fall in log loss, with its t interval over participants. Intervals of shares are cut at 0 and 1."
+         no more; the gain is the mean fall in log loss. The t intervals over participants of accuracy and gain are about these fits: fits to \
+         more people foretell better. Intervals of shares are cut at 0 and 1."
             .into(),
     );
     let blocks: [(&str, &[&str]); 3] = [
