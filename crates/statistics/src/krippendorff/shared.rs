@@ -101,8 +101,8 @@ impl Covariance {
                 for k in 0..kinds {
                     for l in 0..kinds {
                         let [mean, other_mean] = [one.means[k], other.means[l]];
-                        let sum =
-                            sums[k][l] - other_mean * sums[k][2] - mean * sums[2][l] + mean * other_mean * sums[2][2];
+                        let sum = sums[k][l] - other_mean * sums[k][2] - mean * sums[2][l]
+                            + mean * other_mean * sums[2][2];
                         values[(kinds * i + k) * size + kinds * j + l] =
                             LENGTHS[k] * LENGTHS[l] * sum / (one.answers * other.answers).sqrt();
                     }

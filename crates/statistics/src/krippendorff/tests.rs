@@ -94,7 +94,8 @@ proptest! {
 #[test]
 fn who_is_needed() {
     let answer = |p: usize, q: usize| {
-        let preference = [Preference::First, Preference::Second, Preference::Neither, Preference::First][(p * q + p) % 4];
+        let preference =
+            [Preference::First, Preference::Second, Preference::Neither, Preference::First][(p * q + p) % 4];
         DeclaredBallot::new(p, q, [0, 1], preference)
     };
     let of = |people: usize| {

@@ -396,7 +396,9 @@ fn one(design: &Design, truth: Truth) {
         for (column, share) in print(&head, "covered", covered, true) {
             let near = (0.93..=0.97).contains(&share);
             // What a fit to the same answers foretells, and who wins how many pairs, is not what many people show.
-            let another = ["accuracy", "gain", "pairs_won"].iter().any(|of| column.starts_with(&format!("prediction.{of}")));
+            let another = ["accuracy", "gain", "pairs_won"]
+                .iter()
+                .any(|of| column.starts_with(&format!("prediction.{of}")));
             assert!(near || !enough || another, "{head}: {column} covers {share}");
         }
         if truth == Truth::Nothing {

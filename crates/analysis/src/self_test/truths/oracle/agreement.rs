@@ -118,9 +118,11 @@ fn ends(people: &[Vec<[u64; 3]>], ordinal: bool) -> Option<[f64; 2]> {
     let beyond = |x: f64, quantiles: f64| {
         let positive = x.max(0.0);
         let mean = positive + own;
-        let parts = [2.0 * own * own / free, of_alpha / (1.0 - value).powi(4) * positive / (odds + own).max(1e-9)];
+        let parts =
+            [2.0 * own * own / free, of_alpha / (1.0 - value).powi(4) * positive / (odds + own).max(1e-9)];
         let variance = parts[0] + parts[1];
-        let degrees = variance.powi(2) / (parts[0].powi(2) / ((m - 1.0) * free) + parts[1].powi(2) / (m - 1.0));
+        let degrees =
+            variance.powi(2) / (parts[0].powi(2) / ((m - 1.0) * free) + parts[1].powi(2) / (m - 1.0));
         let h = variance / mean.powi(2) / 9.0;
         let z = (((odds + own - (x - positive)) / mean).cbrt() - (1.0 - h)) / h.sqrt();
         z - quantiles * StudentsT::new(0.0, 1.0, degrees).expect("three degrees or more").inverse_cdf(0.975)
@@ -151,7 +153,8 @@ fn own_pairs(counts: &[[u64; 3]], ordinal: bool) -> f64 {
     for counts in counts.iter().map(|counts| counts.map(|count| count as f64)) {
         let n: f64 = counts.iter().sum();
         if n >= 2.0 {
-            let pairs = |i: usize| (0..3).map(move |j| counts[i] * counts[j] * apart(i, j, ordinal)).sum::<f64>();
+            let pairs =
+                |i: usize| (0..3).map(move |j| counts[i] * counts[j] * apart(i, j, ordinal)).sum::<f64>();
             let disagreement: f64 = (0..3).map(pairs).sum();
             different += disagreement / (n - 1.0);
             with_own += disagreement / n;
@@ -184,10 +187,10 @@ fn deviations(people: &[Vec<[u64; 3]>], all: &[[u64; 3]], ordinal: bool) -> f64 
     };
     let lists: Vec<Vec<f64>> = people.iter().map(moves).collect();
     let (n, size) = (lists.len() as f64, lists[0].len());
-    let covariance =
-        |a: usize, b: usize| lists.iter().map(|list| list[a] * list[b]).sum::<f64>() / (n - 1.0);
+    let covariance = |a: usize, b: usize| lists.iter().map(|list| list[a] * list[b]).sum::<f64>() / (n - 1.0);
     let trace: f64 = (0..size).map(|a| covariance(a, a)).sum();
-    let square: f64 = (0..size).flat_map(|a| (0..size).map(move |b| (a, b))).map(|(a, b)| covariance(a, b).powi(2)).sum();
+    let square: f64 =
+        (0..size).flat_map(|a| (0..size).map(move |b| (a, b))).map(|(a, b)| covariance(a, b).powi(2)).sum();
     let lengths = |list: &Vec<f64>| list.iter().map(|x| x * x).sum::<f64>().powi(2);
     let fourth = lists.iter().map(lengths).sum::<f64>() / (n - 1.0);
     let unbiased = (n - 1.0) / (n * (n - 2.0) * (n - 3.0))
