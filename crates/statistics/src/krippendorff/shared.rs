@@ -162,9 +162,9 @@ fn length(own: &[DeclaredBallot], questions: &[Question], metric: Metric) -> f64
         if !question.counts() {
             continue;
         }
-        for k in 0..kinds(metric) {
+        for (k, length) in LENGTHS.iter().enumerate().take(kinds(metric)) {
             let sum: i64 = of_question.iter().map(|b| terms(b)[k]).sum();
-            let moved = LENGTHS[k] * (sum as f64 - of_question.len() as f64 * question.means[k]);
+            let moved = length * (sum as f64 - of_question.len() as f64 * question.means[k]);
             square += moved * moved / question.answers;
             of_mean += if k == 1 { moved } else { 0.0 };
         }
