@@ -1,11 +1,15 @@
 //! Turntables as palette indices, and pairs of them.
 
+use crate::colour_index::ColourIndex;
+use crate::colouring::Colouring;
 use crate::fill::Painter;
 use crate::index_table::IndexTable;
+use crate::legend::legend;
 use crate::level_colours::LevelColours;
+use crate::nearest::Search;
 use crate::samples::Samples;
 use crate::surface::Surface;
-use crate::{AnimationError, Look, Palette, RasterError, Shading, Turntable};
+use crate::{AnimationError, LightFollows, Look, Palette, RasterError, Shading, Turntable};
 use mesh::TriangleMesh;
 use rayon::prelude::*;
 use tiny_skia::{Pixmap, PremultipliedColorU8};
@@ -38,32 +42,87 @@ pub fn turntable(
     look: Look,
     on_frame: &(dyn Fn() + Sync),
 ) -> Result<Animation, RasterError> {
+    turntable_in(mesh, turntable, shading, look, &Palette::of_look(shading, look), on_frame)
+}
+
+/// As [`turntable()`], in a palette that turntables of other looks may have as well: that of [`Palette::of_looks`].
+///
+/// # Errors
+/// As [`render`](crate::render).
+pub fn turntable_in(
+    mesh: &TriangleMesh,
+    turntable: &Turntable,
+    shading: &Shading,
+    look: Look,
+    palette: &Palette,
+    on_frame: &(dyn Fn() + Sync),
+) -> Result<Animation, RasterError> {
     turntable.check()?;
-    let viewport = turntable.viewport();
-    let surface = Surface::try_new(mesh, shading, look)?;
-    let palette = Palette::of_look(shading, look);
+    let surface = Surface::try_new(mesh, None, shading, look)?;
     let lines = look == Look::SmoothWireframe;
-    let table = IndexTable::new(LevelColours::new(shading), &palette, viewport.supersampling, lines);
-    let frames = (0..turntable.frames)
+    let table = IndexTable::new(LevelColours::new(shading), palette, turntable.supersampling, lines);
+    let frames = frames(&surface, turntable, shading, look, &|samples| table.index(samples), on_frame);
+    Ok(turntable.animation(palette.clone(), frames))
+}
+
+/// As [`turntable()`], coloured by numbers, with their scale below every frame, which makes it higher. Its palette is
+/// that of [`Palette::of_numbers`].
+///
+/// # Errors
+/// As [`render_coloured`](crate::render_coloured).
+pub fn turntable_coloured(
+    mesh: &TriangleMesh,
+    colouring: &Colouring,
+    turntable: &Turntable,
+    shading: &Shading,
+    look: Look,
+    on_frame: &(dyn Fn() + Sync),
+) -> Result<Animation, RasterError> {
+    turntable.check()?;
+    let surface = Surface::try_new(mesh, Some(colouring), shading, look)?;
+    let palette = Palette::of_numbers(shading, look);
+    let index = ColourIndex::new(LevelColours::of_numbers(shading), &palette, turntable.supersampling);
+    let frames = frames(&surface, turntable, shading, look, &|samples| index.index(samples), on_frame);
+    Ok(turntable.animation(palette, frames).over(&legend(&colouring.scale, turntable.width)))
+}
+
+fn frames(
+    surface: &Surface,
+    turntable: &Turntable,
+    shading: &Shading,
+    look: Look,
+    index: &(dyn Fn(&Samples) -> Vec<u8> + Sync),
+    on_frame: &(dyn Fn() + Sync),
+) -> Vec<Vec<u8>> {
+    let viewport = turntable.viewport();
+    let first = turntable.camera(0);
+    let still = surface.lit(shading);
+    (0..turntable.frames)
         .into_par_iter()
         .map_init(
-            || (Painter::new(shading, look, &viewport), Samples::new(&viewport)),
+            || (Painter::new(shading, look, surface.is_coloured(), &viewport), Samples::new(&viewport)),
             |(painter, samples), frame| {
                 samples.clear();
-                painter.draw(&surface, &turntable.camera(frame), &viewport, samples);
-                let indices = table.index(samples);
+                let camera = turntable.camera(frame);
+                let turned = match shading.light_follows {
+                    LightFollows::Scene => None,
+                    LightFollows::Camera => Some(surface.lit(&shading.turned(&first, &camera))),
+                };
+                let lit = turned.as_ref().unwrap_or(&still);
+                painter.draw(surface, lit, &camera, &viewport, samples);
+                let indices = index(samples);
                 on_frame();
                 indices
             },
         )
-        .collect();
-    Ok(Animation {
-        width: turntable.width,
-        height: turntable.height,
-        delay_cs: turntable.frame_delay_cs(),
-        palette,
-        frames,
-    })
+        .collect()
+}
+
+impl Turntable {
+    fn animation(&self, palette: Palette, frames: Vec<Vec<u8>>) -> Animation {
+        let (width, height, delay_cs) = (self.width, self.height, self.frame_delay_cs());
+        Animation { width, height, delay_cs, palette, frames }
+    }
 }
 
 impl Animation {
@@ -114,6 +173,17 @@ impl Animation {
             palette: self.palette.clone(),
             ..*self
         }
+    }
+
+    /// With `strip` below every frame, in the palette's nearest colours.
+    fn over(mut self, strip: &Pixmap) -> Animation {
+        debug_assert_eq!(self.width, strip.width(), "a strip as wide as the frames");
+        let search = Search::new(&self.palette);
+        let colour = |p: &PremultipliedColorU8| [p.red(), p.green(), p.blue()].map(f32::from);
+        let rows: Vec<u8> = strip.pixels().iter().map(|p| search.nearest(colour(p))).collect();
+        self.height += strip.height();
+        self.frames.iter_mut().for_each(|frame| frame.extend_from_slice(&rows));
+        self
     }
 
     /// Frame `frame` in colour, opaque.

@@ -61,6 +61,15 @@ impl Camera {
         (p.z >= self.near && p.z <= self.far).then(|| (view.sample_position(p).map(|v| v * scale), p.z))
     }
 
+    /// Right, up and forward: unit vectors across each other.
+    pub(crate) fn axes(&self) -> [Vec3; 3] {
+        let forward = (self.target - self.eye).normalize_or_zero();
+        // Looking straight up or down leaves `right` open: any axis across the line of sight will do.
+        let right =
+            forward.cross(self.up).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
+        [right, right.cross(forward), forward]
+    }
+
     pub(crate) fn check(&self) -> Result<(), RasterError> {
         let setting =
             |setting, value: f32, allowed| RasterError::Setting { setting, value: value as f64, allowed };
@@ -118,15 +127,12 @@ pub(crate) struct View {
 
 impl View {
     pub(crate) fn new(camera: &Camera, viewport: &Viewport) -> View {
-        let forward = (camera.target - camera.eye).normalize_or_zero();
-        // Looking straight up or down leaves `right` open: any axis across the line of sight will do.
-        let right =
-            forward.cross(camera.up).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
+        let [right, up, forward] = camera.axes();
         let samples = |pixels: u32| (pixels * viewport.supersampling) as f32;
         View {
             eye: camera.eye,
             right,
-            up: right.cross(forward),
+            up,
             forward,
             focal: samples(viewport.height) * 0.5 / libm::tanf(camera.vertical_fov_rad * 0.5),
             centre: [samples(viewport.width) * 0.5, samples(viewport.height) * 0.5],

@@ -8,11 +8,13 @@
 
 use glam::Vec3;
 
-/// A corner in view coordinates with its exposure.
+/// A corner in view coordinates with what its colour follows from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Corner {
     pub(crate) position: Vec3,
     pub(crate) exposure: f32,
+    /// On the scale of colours.
+    pub(crate) place: f32,
 }
 
 /// The volume that is kept.
@@ -74,6 +76,7 @@ fn between(kept: Corner, lost: Corner, t: f32) -> Corner {
     Corner {
         position: kept.position + (lost.position - kept.position) * t,
         exposure: kept.exposure + (lost.exposure - kept.exposure) * t,
+        place: kept.place + (lost.place - kept.place) * t,
     }
 }
 
@@ -84,7 +87,7 @@ mod tests {
     const BOUNDS: Bounds = Bounds { near: 1.0, far: 10.0, slope: 4.0 };
 
     fn corner(x: f32, y: f32, z: f32) -> Corner {
-        Corner { position: Vec3::new(x, y, z), exposure: z }
+        Corner { position: Vec3::new(x, y, z), exposure: z, place: 0.0 }
     }
 
     #[test]

@@ -39,6 +39,24 @@ pub enum RasterError {
         /// Number of vertices.
         vertices: usize,
     },
+    /// Numbers that colour a mesh are not one for each of its parts.
+    #[error("{values} numbers to colour the mesh, one for each {of} are {count}")]
+    Values {
+        /// Numbers that were given.
+        values: usize,
+        /// `"triangle"` or `"vertex"`.
+        of: &'static str,
+        /// How many the mesh has.
+        count: usize,
+    },
+    /// A number that colours a mesh is NaN.
+    #[error("{of} {index} has no number to colour it")]
+    NoNumber {
+        /// `"triangle"` or `"vertex"`.
+        of: &'static str,
+        /// Which of them.
+        index: usize,
+    },
 }
 
 /// Why an animation could not be put together, read or written.

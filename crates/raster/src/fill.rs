@@ -6,8 +6,8 @@
 
 use crate::camera::View;
 use crate::clip::{Bounds, Corner};
-use crate::samples::{BACKGROUND, LANES, LevelScale, Samples, WIRE};
-use crate::surface::Surface;
+use crate::samples::{BACKGROUND, LANES, LevelScale, Samples, WIRE, coloured_levels};
+use crate::surface::{Corners, Lit, Surface};
 use crate::{Camera, Look, Shading, Viewport};
 use glam::{Vec3, Vec4};
 
@@ -24,6 +24,8 @@ const BOTH: u8 = 2;
 /// Draws surfaces of one look; holds the scratch space of a thread.
 pub(crate) struct Painter {
     look: Look,
+    /// Whether the surfaces are coloured by numbers.
+    coloured: bool,
     scale: LevelScale,
     /// Half the line width, in 1/256 samples.
     wire_reach: f32,
@@ -46,9 +48,10 @@ struct Projected {
 }
 
 impl Painter {
-    pub(crate) fn new(shading: &Shading, look: Look, viewport: &Viewport) -> Painter {
+    pub(crate) fn new(shading: &Shading, look: Look, coloured: bool, viewport: &Viewport) -> Painter {
         Painter {
             look,
+            coloured,
             scale: LevelScale::new(shading.max_exposure()),
             wire_reach: shading.wire_width_px * 0.5 * viewport.supersampling as f32 * SUB as f32,
             projected: Vec::new(),
@@ -59,6 +62,7 @@ impl Painter {
     pub(crate) fn draw(
         &mut self,
         surface: &Surface,
+        lit: &Lit,
         camera: &Camera,
         viewport: &Viewport,
         samples: &mut Samples,
@@ -76,31 +80,33 @@ impl Painter {
             }
         }));
         for (t, corners) in surface.triangles.iter().enumerate() {
-            let exposures = surface.exposures(t);
+            let drawn = surface.corners(lit, t);
             let at = corners.map(|v| projected[v as usize]);
             if at.iter().all(|p| p.inside) {
-                self.fill(at.map(|p| p.at), exposures, samples);
+                self.fill(at.map(|p| p.at), drawn, samples);
             } else {
                 let positions = corners.map(|v| view.view_point(surface.positions[v as usize]));
-                self.fill_cut(positions, exposures, &view, &bounds, samples);
+                self.fill_cut(positions, drawn, &view, &bounds, samples);
             }
         }
         self.projected = projected;
     }
 
     /// The part of a triangle that can be projected, as a fan.
-    fn fill_cut(&self, at: [Vec3; 3], d: [f32; 3], view: &View, bounds: &Bounds, samples: &mut Samples) {
-        let triangle = [0, 1, 2].map(|i| Corner { position: at[i], exposure: d[i] });
-        let polygon: Vec<_> =
-            bounds.cut(triangle).iter().map(|c| (snap(view, c.position), c.exposure)).collect();
+    fn fill_cut(&self, at: [Vec3; 3], drawn: Corners, view: &View, bounds: &Bounds, samples: &mut Samples) {
+        let Corners { exposures, places } = drawn;
+        let triangle =
+            [0, 1, 2].map(|i| Corner { position: at[i], exposure: exposures[i], place: places[i] });
+        let polygon = bounds.cut(triangle);
         for i in 2..polygon.len() {
             let fan = [polygon[0], polygon[i - 1], polygon[i]];
-            self.fill(fan.map(|c| c.0), fan.map(|c| c.1), samples);
+            let drawn = Corners { exposures: fan.map(|c| c.exposure), places: fan.map(|c| c.place) };
+            self.fill(fan.map(|c| snap(view, c.position)), drawn, samples);
         }
     }
 
     #[inline]
-    fn fill(&self, at: [Snapped; 3], d: [f32; 3], samples: &mut Samples) {
+    fn fill(&self, at: [Snapped; 3], drawn: Corners, samples: &mut Samples) {
         let (x, y) = (at.map(|c| c.x), at.map(|c| c.y));
         let (x0, x1) = (x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2]));
         let (y0, y1) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
@@ -110,21 +116,32 @@ impl Painter {
             return;
         }
         let span = Span { columns, rows };
-        match self.look {
-            Look::Smooth | Look::Flat => self.scan::<SURFACE>(at, d, span, samples),
-            Look::Wireframe => self.scan::<LINES>(at, d, span, samples),
-            Look::SmoothWireframe => self.scan::<BOTH>(at, d, span, samples),
+        match (self.look, self.coloured) {
+            (Look::Smooth | Look::Flat, false) => self.scan::<SURFACE, false>(at, drawn, span, samples),
+            (Look::Smooth | Look::Flat, true) => self.scan::<SURFACE, true>(at, drawn, span, samples),
+            (Look::Wireframe, false) => self.scan::<LINES, false>(at, drawn, span, samples),
+            (Look::Wireframe, true) => self.scan::<LINES, true>(at, drawn, span, samples),
+            (Look::SmoothWireframe, false) => self.scan::<BOTH, false>(at, drawn, span, samples),
+            (Look::SmoothWireframe, true) => self.scan::<BOTH, true>(at, drawn, span, samples),
         }
     }
 
     #[inline]
-    fn scan<const WHAT: u8>(&self, mut at: [Snapped; 3], mut d: [f32; 3], span: Span, samples: &mut Samples) {
+    fn scan<const WHAT: u8, const COLOURED: bool>(
+        &self,
+        mut at: [Snapped; 3],
+        drawn: Corners,
+        span: Span,
+        samples: &mut Samples,
+    ) {
+        let Corners { exposures: mut d, mut places } = drawn;
         let double_area = match edge(at[0], at[1], at[2].x, at[2].y) {
             0 => return,
             // Both sides are drawn: only the order on the screen is turned.
             area if area < 0 => {
                 at.swap(1, 2);
                 d.swap(1, 2);
+                places.swap(1, 2);
                 -area
             }
             area => area,
@@ -144,6 +161,7 @@ impl Painter {
         let share = 1.0 / double_area as f32;
         let near = Along::new(at.map(|c| c.nearness), step_x, share);
         let over = Along::new([0, 1, 2].map(|i| d[i] * at[i].nearness), step_x, share);
+        let place = Along::new([0, 1, 2].map(|i| places[i] * at[i].nearness), step_x, share);
         let away = match WHAT {
             SURFACE => [0.0; 3],
             _ => edges.map(|(a, b)| 1.0 / ((b.x - a.x) as f32).hypot((b.y - a.y) as f32)),
@@ -158,6 +176,7 @@ impl Painter {
             if from < to {
                 let at_start = [0, 1, 2].map(|i| (w[i] + from * step_x[i]) as f32);
                 let (near_start, over_start) = (near.at(at_start), over.at(at_start));
+                let place_start = if COLOURED { place.at(at_start) } else { 0.0 };
                 let first = row * samples.stride + columns[0] + from as usize;
                 let length = (to - from) as usize;
                 let reach = length.next_multiple_of(LANES);
@@ -169,7 +188,10 @@ impl Painter {
                     let there = Vec4::from_array(*nearest);
                     let wins = here.cmpgt(there) & k.cmplt(Vec4::splat(length as f32));
                     if wins.any() {
-                        let surface = self.scale.levels((over_start + k * over.step) / here);
+                        let mut surface = self.scale.levels((over_start + k * over.step) / here);
+                        if COLOURED {
+                            surface = coloured_levels(surface, (place_start + k * place.step) / here);
+                        }
                         let seen = if WHAT == SURFACE {
                             surface
                         } else {

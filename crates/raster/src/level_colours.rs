@@ -1,7 +1,7 @@
 //! The colour of every sample level.
 
-use crate::Shading;
-use crate::samples::{BACKGROUND, LevelScale, TOP_LEVEL};
+use crate::samples::{BACKGROUND, LevelScale, SHADES, TINTS, TOP_LEVEL, tint_and_shade};
+use crate::{Shading, map_colour};
 
 /// Colours in 0..255, one a level, unrounded.
 pub(crate) struct LevelColours {
@@ -11,13 +11,27 @@ pub(crate) struct LevelColours {
 }
 
 impl LevelColours {
+    /// Those of the material.
     pub(crate) fn new(shading: &Shading) -> LevelColours {
         let scale = LevelScale::new(shading.max_exposure());
+        let surface = (0..=TOP_LEVEL as usize).map(|l| shading.colour(scale.exposure(l as f32)));
+        Self::with(surface, shading)
+    }
+
+    /// Those of numbers, shaded.
+    pub(crate) fn of_numbers(shading: &Shading) -> LevelColours {
+        let scale = LevelScale::new(shading.max_exposure());
+        let colour = |level: usize| {
+            let (place, exposure) = tint_and_shade(level.max(1), &scale);
+            map_colour(place).map(|v| v * shading.brightness(exposure))
+        };
+        Self::with((0..=TINTS * SHADES).map(colour), shading)
+    }
+
+    fn with(surface: impl Iterator<Item = [f32; 3]>, shading: &Shading) -> LevelColours {
         let in_255 = |colour: [f32; 3]| colour.map(|v| v.clamp(0.0, 1.0) * 255.0);
         LevelColours {
-            surface: (0..=TOP_LEVEL as usize)
-                .map(|l| in_255(shading.colour(scale.exposure(l as f32))))
-                .collect(),
+            surface: surface.map(in_255).collect(),
             background: in_255(shading.background),
             wire: in_255(shading.wire),
         }

@@ -9,6 +9,10 @@ pub(crate) const BACKGROUND: f32 = 0.0;
 pub(crate) const WIRE: f32 = 65536.0;
 /// Highest level of a surface, the lowest is 1.
 pub(crate) const TOP_LEVEL: f32 = 16383.0;
+/// Levels of brightness that a colour for a number has.
+pub(crate) const SHADES: usize = 128;
+/// Colours for numbers. With [`SHADES`] they are as many as there are levels.
+pub(crate) const TINTS: usize = 127;
 /// Samples the fill works on at once; rows have as many to spare at their end.
 pub(crate) const LANES: usize = 4;
 
@@ -36,6 +40,23 @@ impl LevelScale {
     pub(crate) fn exposure(&self, level: f32) -> f32 {
         (level - 1.0) / self.per_unit - self.max
     }
+}
+
+/// Levels for surfaces that are coloured by numbers: whole, `1 + tint * SHADES + shade`, from those of their exposures and
+/// from places on the scale, 0 to 1. [`tint_and_shade`] is the way back.
+#[inline]
+pub(crate) fn coloured_levels(exposure_levels: Vec4, places: Vec4) -> Vec4 {
+    const LAST: f32 = (SHADES - 1) as f32;
+    let shades = ((exposure_levels - 1.0) * (LAST / (TOP_LEVEL - 1.0)) + 0.5).floor();
+    let tints = (places.clamp(Vec4::ZERO, Vec4::ONE) * (TINTS - 1) as f32 + 0.5).floor();
+    tints * SHADES as f32 + shades + 1.0
+}
+
+/// Place on the scale and exposure of a level that [`coloured_levels`] gave.
+pub(crate) fn tint_and_shade(level: usize, scale: &LevelScale) -> (f32, f32) {
+    let (tint, shade) = ((level - 1) / SHADES, (level - 1) % SHADES);
+    let exposure_level = 1.0 + shade as f32 * ((TOP_LEVEL - 1.0) / (SHADES - 1) as f32);
+    (tint as f32 / (TINTS - 1) as f32, scale.exposure(exposure_level))
 }
 
 /// Samples of one picture, row by row.
@@ -99,5 +120,24 @@ impl Samples {
         let Touched { x, y } = self.touched;
         [x, y]
             .map(|[from, to]| if from < to { from / supersampling..to.div_ceil(supersampling) } else { 0..0 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_of_colours_are_told_apart_and_lead_back() {
+        let scale = LevelScale::new(1.0);
+        assert!(TINTS * SHADES <= TOP_LEVEL as usize);
+        for place in [0.0, 0.25, 0.5, 0.8, 1.0] {
+            for exposure in [-1.0, -0.3, 0.0, 0.7, 1.0] {
+                let levels = coloured_levels(scale.levels(Vec4::splat(exposure)), Vec4::splat(place));
+                let (p, d) = tint_and_shade(levels.x as usize, &scale);
+                assert!((p - place).abs() <= 0.5 / 126.0 + 1e-6, "{place}: {p}");
+                assert!((d - exposure).abs() <= 1.0 / 127.0 + 1e-5, "{exposure}: {d}");
+            }
+        }
     }
 }

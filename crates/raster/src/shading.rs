@@ -1,6 +1,10 @@
 //! The material: a colour from one number.
 
+use crate::{Camera, RasterError};
 use glam::Vec3;
+
+/// Brightness of a colour that stands for a number where the surface faces away from the light.
+const DARKEST: f32 = 0.8;
 
 /// How a surface is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -16,13 +20,28 @@ pub enum Look {
     SmoothWireframe,
 }
 
+/// What a turntable's light is fixed to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum LightFollows {
+    /// The scene: the object turns under it, and half of the turn shows its dark side.
+    #[default]
+    Scene,
+    /// The camera: light falls on every frame as it does on the first.
+    Camera,
+}
+
 /// Light, material and line colours, red, green, blue in 0..1 as written to the 8-bit frame (no gamma step).
 ///
-/// The default is the shader of Costen (2026) with its constants; `wire` and `wire_width_px` are ours.
+/// The default is the shader of Costen (2026) with its constants; `light_follows`, `ambient`, `wire` and
+/// `wire_width_px` are ours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shading {
     /// The direction light travels, L. Not normalised: the original's has length 1.0198.
     pub light: [f32; 3],
+    /// What the light is fixed to in a turntable. A still has one frame, so that both are the same there.
+    pub light_follows: LightFollows,
+    /// Share of the light that comes from all sides, 0 to 1; 0 is as published, with 1 nothing is shaded.
+    pub ambient: f32,
     /// Colour towards the light, A.
     pub lit: [f32; 3],
     /// Colour at the terminator, B; a tenth of it faces away from the light.
@@ -41,6 +60,8 @@ impl Default for Shading {
     fn default() -> Self {
         Shading {
             light: [-0.6, 0.2, -0.8],
+            light_follows: LightFollows::Scene,
+            ambient: 0.0,
             lit: [0.949, 0.553, 0.027],
             shade: [0.212, 0.071, 0.310],
             highlight: [1.0, 0.95, 0.8],
@@ -65,13 +86,37 @@ impl Shading {
 
     /// The surface colour at exposure `d`, clamped to 0..1 a channel (what an 8-bit frame does):
     /// `back = mix(B, 0.1 B, -d)`, `front = mix(A, W, d^3)`, `mix(back, front, clamp(d, 0, 1))` with
-    /// `mix(a, b, t) = a + (b - a) t`, t unclamped.
+    /// `mix(a, b, t) = a + (b - a) t`, t unclamped. Of that, `mix(_, A, ambient)`.
     pub fn colour(&self, d: f32) -> [f32; 3] {
         let (lit, shade, highlight) =
             (Vec3::from(self.lit), Vec3::from(self.shade), Vec3::from(self.highlight));
         let back = mix(shade, shade * 0.1, -d);
         let front = mix(lit, highlight, d * d * d);
-        mix(back, front, d.clamp(0.0, 1.0)).clamp(Vec3::ZERO, Vec3::ONE).to_array()
+        let directed = mix(back, front, d.clamp(0.0, 1.0)).clamp(Vec3::ZERO, Vec3::ONE);
+        mix(directed, lit, self.ambient).to_array()
+    }
+
+    /// How bright a colour that stands for a number is at exposure `d`: from [`DARKEST`] turned away from the light to
+    /// 1 towards it, evenly, so that no part of the surface is too dark to be read.
+    pub(crate) fn brightness(&self, d: f32) -> f32 {
+        let towards = (0.5 + 0.5 * d / self.max_exposure().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
+        let directed = DARKEST + (1.0 - DARKEST) * towards;
+        directed + (1.0 - directed) * self.ambient
+    }
+
+    /// The same with a light that stands to `camera` as this one stands to `first`.
+    pub(crate) fn turned(&self, first: &Camera, camera: &Camera) -> Shading {
+        let light = Vec3::from(self.light);
+        let [right, up, forward] = camera.axes();
+        let [x, y, z] = first.axes().map(|axis| axis.dot(light));
+        Shading { light: (right * x + up * y + forward * z).to_array(), ..*self }
+    }
+
+    pub(crate) fn check(&self) -> Result<(), RasterError> {
+        match self.ambient {
+            0.0..=1.0 => Ok(()),
+            value => Err(RasterError::Setting { setting: "ambient", value: value as f64, allowed: "0 to 1" }),
+        }
     }
 }
 
@@ -104,6 +149,21 @@ mod tests {
         close(1.0, [1.0, 0.95, 0.8]);
         close(-1.0, [0.0212, 0.0071, 0.0310]);
         close(0.5, [0.6313875, 0.3527875, 0.2865625]);
+    }
+
+    /// Half of the light from all sides: half-way to A, whatever the exposure.
+    #[test]
+    fn ambient_light_leads_to_the_lit_colour() {
+        let shading = Shading { ambient: 0.5, ..Shading::default() };
+        let got = shading.colour(-1.0);
+        let want = [(0.0212 + 0.949) / 2.0, (0.0071 + 0.553) / 2.0, (0.0310 + 0.027) / 2.0];
+        assert!((0..3).all(|c| (got[c] - want[c]).abs() < 1e-6), "{got:?}");
+        let even = Shading { ambient: 1.0, ..Shading::default() };
+        let is_lit = |d| (0..3).all(|c| (even.colour(d)[c] - even.lit[c]).abs() < 1e-6);
+        assert!([-1.0, 0.0, 0.9].into_iter().all(is_lit));
+        assert_eq!(even.brightness(-1.0), 1.0);
+        let away = shading.brightness(-shading.max_exposure());
+        assert!((away - (0.8 + 1.0) / 2.0).abs() < 1e-6, "{away}");
     }
 
     #[test]

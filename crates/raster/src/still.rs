@@ -1,5 +1,6 @@
 //! One picture in full colour.
 
+use crate::colouring::Colouring;
 use crate::fill::Painter;
 use crate::level_colours::LevelColours;
 use crate::samples::Samples;
@@ -14,7 +15,7 @@ use tiny_skia::{Pixmap, PremultipliedColorU8};
 ///
 /// # Errors
 /// [`RasterError`] for a viewport or camera out of range, a used vertex that is not finite, an index out of range,
-/// or missing normals (every look but [`Look::Flat`] takes vertex normals).
+/// an ambient light out of range, or missing normals (every look but [`Look::Flat`] takes vertex normals).
 pub fn render(
     mesh: &TriangleMesh,
     camera: &Camera,
@@ -22,12 +23,44 @@ pub fn render(
     shading: &Shading,
     look: Look,
 ) -> Result<Pixmap, RasterError> {
+    draw(mesh, None, camera, viewport, shading, look)
+}
+
+/// As [`render`], coloured by numbers: each sample has the colour of its number, darkened where the surface turns away
+/// from the light, to no less than 0.8 of it. The scale is not in it; [`legend`](crate::legend()) draws it.
+///
+/// # Errors
+/// As [`render`], and [`RasterError`] for numbers that are not as many as what they are for, or NaN.
+pub fn render_coloured(
+    mesh: &TriangleMesh,
+    colouring: &Colouring,
+    camera: &Camera,
+    viewport: Viewport,
+    shading: &Shading,
+    look: Look,
+) -> Result<Pixmap, RasterError> {
+    draw(mesh, Some(colouring), camera, viewport, shading, look)
+}
+
+fn draw(
+    mesh: &TriangleMesh,
+    colouring: Option<&Colouring>,
+    camera: &Camera,
+    viewport: Viewport,
+    shading: &Shading,
+    look: Look,
+) -> Result<Pixmap, RasterError> {
     viewport.check()?;
     camera.check()?;
-    let surface = Surface::try_new(mesh, shading, look)?;
+    let surface = Surface::try_new(mesh, colouring, shading, look)?;
     let mut samples = Samples::new(&viewport);
-    Painter::new(shading, look, &viewport).draw(&surface, camera, &viewport, &mut samples);
-    Ok(to_pixmap(&samples, &viewport, &LevelColours::new(shading)))
+    let mut painter = Painter::new(shading, look, surface.is_coloured(), &viewport);
+    painter.draw(&surface, &surface.lit(shading), camera, &viewport, &mut samples);
+    let colours = match colouring {
+        None => LevelColours::new(shading),
+        Some(_) => LevelColours::of_numbers(shading),
+    };
+    Ok(to_pixmap(&samples, &viewport, &colours))
 }
 
 fn to_pixmap(samples: &Samples, viewport: &Viewport, colours: &LevelColours) -> Pixmap {

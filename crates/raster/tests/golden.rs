@@ -5,8 +5,8 @@ mod shapes;
 
 use raster::tiny_skia::Pixmap;
 use raster::{
-    Caption, Look, Panel, Shading, Sheet, Turntable, panels, pixmap_from_png, pixmap_to_png, render,
-    turntable,
+    Caption, Colouring, LightFollows, Look, Panel, Shading, Sheet, Turntable, Values, legend, panels,
+    pixmap_from_png, pixmap_to_png, render, render_coloured, turntable, turntable_coloured,
 };
 use std::path::Path;
 
@@ -91,4 +91,43 @@ fn sheet_with_captions() {
     compare("sheet", &panels(&list, &sheet).unwrap());
     let above = Sheet { caption: Caption::Above, columns: 3, title: None, ..sheet };
     compare("sheet_above", &panels(&list, &above).unwrap());
+}
+
+/// Under a light that turns with the camera, some of it from all sides.
+fn camera_light() -> Shading {
+    Shading { light_follows: LightFollows::Camera, ambient: 0.25, ..Shading::default() }
+}
+
+#[test]
+fn half_a_turn_later_with_the_light_on_the_camera() {
+    let mesh = shapes::torus(0.7, 0.3, 24, 12);
+    for (name, look) in [("camera_light", Look::Smooth), ("camera_light_flat", Look::Flat)] {
+        let animation = turntable(&mesh, &settings(), &camera_light(), look, &|| ()).unwrap();
+        compare(name, &animation.picture(4));
+    }
+}
+
+#[test]
+fn radius_ratios() {
+    // Bad at the poles, good at the equator.
+    let mesh = shapes::sphere(1.0, 10);
+    let colouring = Colouring::radius_ratio(&mesh);
+    let (camera, viewport) = (settings().camera(1), settings().viewport());
+    let still = render_coloured(&mesh, &colouring, &camera, viewport, &Shading::default(), Look::Flat);
+    compare("quality", &still.unwrap());
+    let lined = render_coloured(&mesh, &colouring, &camera, viewport, &camera_light(), Look::SmoothWireframe);
+    compare("quality_lined", &lined.unwrap());
+}
+
+#[test]
+fn distances_at_vertices_with_their_scale() {
+    let mesh = shapes::torus(0.7, 0.3, 24, 12);
+    // From 0 at the bottom to 0.1, and beyond at the top.
+    let distances = mesh.positions.iter().map(|p| (p.z + 0.3) / 5.0).collect();
+    let colouring = Colouring::distance(Values::PerVertex(distances), 0.1);
+    let settings = Turntable { width: 256, height: 128, ..settings() };
+    let animation =
+        turntable_coloured(&mesh, &colouring, &settings, &camera_light(), Look::Smooth, &|| ()).unwrap();
+    compare("error_frame_3", &animation.picture(3));
+    compare("scale", &legend(&colouring.scale, 512));
 }
