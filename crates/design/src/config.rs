@@ -7,12 +7,14 @@ mod analysis;
 mod field;
 mod forms;
 mod methods;
+mod pictures;
 mod responses;
 
 pub use analysis::{AnalysisSection, Declaration, Exclusion, FamilyRule};
 pub use field::{FieldSection, Inside, MeshSourceSection};
 pub use forms::{FormsSection, OrderRule, ShownNames, SideRule, TrainingSection};
 pub use methods::{BudgetSection, FactorSection, LevelSection, MethodSection, SpeltLevel};
+pub use pictures::{LightFollows, Look, ShadingSection, StillSection, StimulusLook, TurntableSection};
 pub use responses::{PairSection, ResponsesSection, SynonymsSection};
 
 use crate::method::{Arrangement, Clustering, ConfigurationId, MethodId};
@@ -129,60 +131,6 @@ pub struct CameraSection {
     pub vertical_fov_rad: f64,
 }
 
-/// How the animations are taken.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TurntableSection {
-    /// Frame width in pixels.
-    #[serde(deserialize_with = "whole")]
-    pub width: u32,
-    /// Frame height in pixels.
-    #[serde(deserialize_with = "whole")]
-    pub height: u32,
-    /// Frames a turn.
-    #[serde(deserialize_with = "whole")]
-    pub frames: u32,
-    /// Nominal seconds a turn; a frame's delay is rounded down to whole centiseconds.
-    pub duration_s: f64,
-    /// The paper's elevation parameter u in radians.
-    pub elevation_rad: f64,
-    /// Near plane.
-    pub near: f64,
-    /// Far plane.
-    pub far: f64,
-    /// Samples along each side of a pixel.
-    #[serde(deserialize_with = "whole")]
-    pub supersampling: u32,
-}
-
-impl TurntableSection {
-    /// Centiseconds that a frame lasts: a whole number, since GIFs hold no other.
-    pub fn delay_cs(&self) -> f64 {
-        (100.0 * self.duration_s / f64::from(self.frames)).floor()
-    }
-
-    /// Milliseconds that a turn really takes.
-    pub fn loop_ms(&self) -> u32 {
-        (10.0 * self.delay_cs() * f64::from(self.frames)) as u32
-    }
-}
-
-/// How surfaces are coloured; colours are red, green, blue from 0 to 1.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ShadingSection {
-    /// Direction in which light travels, not normalised.
-    pub light: [f64; 3],
-    /// Colour towards the light.
-    pub lit: [f64; 3],
-    /// Colour away from the light.
-    pub shade: [f64; 3],
-    /// Colour of the highlight.
-    pub highlight: [f64; 3],
-    /// Colour behind the object.
-    pub background: [f64; 3],
-}
-
 /// How stimuli are made from turntables.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -190,48 +138,6 @@ pub struct StimuliSection {
     /// Whole-number enlargement of a pair in the file, nearest neighbour.
     #[serde(deserialize_with = "whole")]
     pub pair_scale: u32,
-}
-
-/// How a still shows the surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Look {
-    /// Interpolated vertex normals.
-    Smooth,
-    /// One normal a triangle.
-    Flat,
-    /// Triangle edges only.
-    Wireframe,
-    /// Smooth with triangle edges on top.
-    SmoothWireframe,
-}
-
-impl Look {
-    /// The name used in captions.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Smooth => "smooth",
-            Self::Flat => "flat",
-            Self::Wireframe => "wireframe",
-            Self::SmoothWireframe => "smooth + wireframe",
-        }
-    }
-}
-
-/// A figure of still pictures: one configuration in several looks.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StillSection {
-    /// File name without extension.
-    pub id: String,
-    /// Caption.
-    pub caption: String,
-    /// What is shown.
-    pub configuration: ConfigurationId,
-    /// Cube edge.
-    pub spacing: f64,
-    /// The looks, left to right.
-    pub looks: Vec<Look>,
 }
 
 /// What is timed, and how often.

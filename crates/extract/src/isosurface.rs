@@ -53,10 +53,7 @@ impl<'a> Isosurface<'a> {
 
     /// The nearest point of the isosurface, if the field knows it, or where the gradient leads within [`REACH`].
     pub(crate) fn foot(&self, p: DVec3) -> Option<Foot> {
-        self.field.nearest_on_isosurface(p, self.level.isovalue).or_else(|| {
-            let foot = self.level.foot(p.as_vec3(), REACH * self.level.spacing)?;
-            Some(Foot { position: foot.position.as_dvec3(), distance: foot.distance })
-        })
+        foot(self.field, &self.level, p)
     }
 
     /// The point of the isosurface that a point of the triangles stands for; `None` if it is outside the box.
@@ -68,4 +65,13 @@ impl<'a> Isosurface<'a> {
         let is_inside = on_surface.cmpge(min - slack).all() && on_surface.cmple(max + slack).all();
         is_inside.then_some(on_surface)
     }
+}
+
+/// The nearest point of the isosurface of `field`, if it knows that, or where the gradient leads within [`REACH`].
+/// `level` is the field's.
+pub(crate) fn foot(field: &dyn ScalarField, level: &Level, p: DVec3) -> Option<Foot> {
+    field.nearest_on_isosurface(p, level.isovalue).or_else(|| {
+        let foot = level.foot(p.as_vec3(), REACH * level.spacing)?;
+        Some(Foot { position: foot.position.as_dvec3(), distance: foot.distance })
+    })
 }

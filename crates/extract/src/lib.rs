@@ -176,6 +176,7 @@ mod sweep;
 mod tetrahedra;
 mod tiles;
 mod trace;
+mod triangle_distances;
 mod triangles;
 mod vertices;
 
@@ -191,3 +192,4 @@ pub use method::{Method, MethodError, Preset, Promises, Tetrahedra, presets};
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use source::Source;
 pub use trace::VertexKey;
+pub use triangle_distances::triangle_distances;

@@ -58,6 +58,8 @@ pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), Co
     ] {
         c.numbers(key, colour, 0.0, 1.0)?;
     }
+    c.number("shading.ambient", s.ambient, 0.0, 1.0)?;
+    c.positive("shading.error_scale", s.error_scale, 10.0)?;
     c.count("stimuli.pair_scale", file.stimuli.pair_scale, 1, 4)?;
 
     let b = &file.benchmark;

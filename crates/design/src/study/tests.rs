@@ -122,6 +122,67 @@ fn unknown_keys_and_missing_files_are_named() {
 }
 
 #[test]
+fn looks_and_light_are_as_published_unless_said_otherwise() {
+    use crate::config::{LightFollows, Look, StimulusLook};
+    let file = paper_with("schema = 1", "schema = 1").unwrap().file;
+    assert_eq!(
+        (file.turntable.look, file.shading.light_follows),
+        (StimulusLook::Smooth, LightFollows::Scene)
+    );
+    assert_eq!((file.shading.ambient, file.shading.error_scale), (0.0, 0.1));
+    // What the digests of stages are made of has not changed for a study that does not set them.
+    let written = serde_json::to_string(&(&file.turntable, &file.shading, &file.stills)).unwrap();
+    for key in ["look\"", "light_follows", "ambient", "error_scale", "turntable"] {
+        assert!(!written.contains(key), "{key} in {written}");
+    }
+
+    let set = "supersampling = 2\nlook = \"flat\"\n";
+    let light = "[shading]\nlight_follows = \"camera\"\nambient = 0.25\nerror_scale = 0.5\n";
+    let file = paper_with("supersampling = 2\n\n[shading]\n", &format!("{set}{light}")).unwrap().file;
+    assert_eq!((file.turntable.look, file.shading.light_follows), (StimulusLook::Flat, LightFollows::Camera));
+    let written = serde_json::to_string(&(&file.turntable, &file.shading)).unwrap();
+    for said in
+        ["\"look\":\"flat\"", "\"light_follows\":\"camera\"", "\"ambient\":0.25", "\"error_scale\":0.5"]
+    {
+        assert!(written.contains(said), "{said} not in {written}");
+    }
+    let looks = "looks = [\"quality\", \"error\"]\nturntable = true";
+    let file = paper_with("looks = [\"smooth\", \"smooth-wireframe\"]", looks).unwrap().file;
+    assert_eq!(
+        (&file.stills[0].looks[..], file.stills[0].turntable),
+        (&[Look::Quality, Look::Error][..], true)
+    );
+    assert!(serde_json::to_string(&file.stills[0]).unwrap().contains("\"turntable\":true"));
+}
+
+#[test]
+fn unknown_looks_and_lights_are_told_what_there_is() {
+    let with =
+        |key: &str| error_with("supersampling = 2\n\n[shading]\n", &format!("supersampling = 2\n{key}\n"));
+    let says = |error: String, parts: &[&str]| {
+        assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+    };
+    let allowed = ["paper.toml", "expected one of `smooth`, `flat`, `smooth-wireframe`"];
+    says(with("look = \"wireframe\"\n[shading]"), &allowed);
+    says(with("look = \"quality\"\n[shading]"), &allowed);
+    says(with("[shading]\nlight_follows = \"eye\""), &["light_follows", "`scene` or `camera`"]);
+    says(with("[shading]\nambient = 1.5"), &["shading.ambient = 1.5: must lie between 0 and 1"]);
+    says(with("[shading]\nambient = nan"), &["shading.ambient = NaN: must be a finite number"]);
+    says(with("[shading]\nerror_scale = 0.0"), &["shading.error_scale = 0: must be above 0 and at most 10"]);
+    let error = error_with("looks = [\"smooth\",", "looks = [\"shape\",");
+    says(error, &["shape", "`quality`, `error`"]);
+}
+
+/// A look's name is the word that the study file has for it.
+#[test]
+fn looks_are_named_as_in_the_file() {
+    use crate::config::Look::{Error, Flat, Quality, Smooth, SmoothWireframe, Wireframe};
+    for look in [Smooth, Flat, Wireframe, SmoothWireframe, Quality, Error] {
+        assert_eq!(serde_json::to_value(look).unwrap(), look.name());
+    }
+}
+
+#[test]
 fn forms_need_something_to_ask() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/two-methods.toml");
     let text = std::fs::read_to_string(&path).unwrap();
