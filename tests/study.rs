@@ -171,6 +171,74 @@ fn a_killed_study_resumes_to_the_same_bytes() {
     }
 }
 
+/// Frames of an animation: how bright each is where it differs from the first pixel, on average, and the darkest of it.
+fn brightness(gif: &[u8]) -> Vec<(f64, u32)> {
+    let animation = raster::Animation::read_gif(gif).unwrap();
+    let sum = |index: u8| animation.palette.colours()[usize::from(index)].iter().map(|&v| u32::from(v)).sum();
+    let of_frame = |frame: &Vec<u8>| {
+        let shown: Vec<u32> = frame.iter().filter(|&&i| i != frame[0]).map(|&i| sum(i)).collect();
+        let total: u32 = shown.iter().sum();
+        (f64::from(total) / shown.len() as f64, *shown.iter().min().unwrap())
+    };
+    animation.frames.iter().map(of_frame).collect()
+}
+
+/// `[turntable] look`, `[shading] light_follows` and `ambient`, and the looks of a still reach the files; leaving them out
+/// is as before.
+#[test]
+fn looks_and_light_reach_the_pictures() {
+    let fixture = Fixture::new();
+    let sphere = |fixture: &Fixture| {
+        fixture.succeed("turntable", &["--only", "ss_bi"]);
+        let made = files(fixture.out());
+        let gifs: Vec<_> = made.keys().filter(|path| path.starts_with("stimuli/turntables/")).collect();
+        assert_eq!(gifs.len(), 1);
+        made[gifs[0]].clone()
+    };
+    let published = sphere(&fixture);
+    let range = |frames: &[(f64, u32)]| {
+        let (low, high) = frames.iter().fold((f64::MAX, 0.0f64), |(a, b), f| (a.min(f.0), b.max(f.0)));
+        high / low
+    };
+    assert!(range(&brightness(&published)) > 2.0);
+
+    fixture.edit("supersampling = 2", "supersampling = 2\nlook = \"flat\"");
+    fixture.edit("[shading]\n", "[shading]\nlight_follows = \"camera\"\nambient = 0.25\n");
+    let lit = brightness(&sphere(&fixture));
+    assert!(range(&lit) < 1.05, "{lit:?}");
+    // A quarter of the lit colour at least, less what rounding takes.
+    let least = (0.25 * (0.949 + 0.553 + 0.027) * 255.0) as u32 - 6;
+    assert!(lit.iter().all(|&(_, darkest)| darkest >= least), "{lit:?}");
+
+    fixture.edit("look = \"flat\"\n", "");
+    fixture
+        .edit("light_follows = \"camera\"\nambient = 0.25\n", "light_follows = \"scene\"\nambient = 0.0\n");
+    assert!(sphere(&fixture) == published, "what is written out is as by default");
+}
+
+#[test]
+fn stills_turn_and_have_colours_for_numbers() {
+    let fixture = Fixture::new();
+    let stills = "turntable = true\nlooks = [\"flat\", \"quality\", \"error\"]";
+    fixture.edit("looks = [\"smooth\", \"flat\", \"smooth-wireframe\"]", stills);
+    fixture.succeed("study", &[]);
+    let made = files(fixture.out());
+    let gif = |look: &str| {
+        let bytes = &made[&format!("figures/still_sphere_{look}.gif")];
+        raster::Animation::read_gif(bytes.as_slice()).unwrap()
+    };
+    let (flat, quality, error) = (gif("flat"), gif("quality"), gif("error"));
+    assert_eq!((flat.width, flat.height, flat.frames.len()), (96, 96, 12));
+    assert!(quality.height > flat.height && error.height > flat.height, "the scale is below");
+    let page = String::from_utf8(made["index.html"].clone()).unwrap();
+    assert!(page.contains("href=\"figures/still_sphere_error.gif\">error</a>"));
+    assert!(!page.contains("still_bunny_"), "only where it is asked for");
+    let sheet = raster::pixmap_from_png(&made["figures/still_sphere.png"]).unwrap();
+    assert!(sheet.width() > 3 * 96 && sheet.height() > quality.height);
+    let again = fixture.succeed("study", &[]);
+    assert!(!again.stderr.contains(" made, "), "{}", again.stderr);
+}
+
 #[test]
 fn threads_change_no_byte() {
     let run = |threads: &str| -> BTreeMap<String, Vec<u8>> {

@@ -45,6 +45,7 @@ fn main() {
             "args.rs",
             "main.rs",
             "surface.rs",
+            "turning.rs",
             "progress.rs",
             "page.rs",
             "index.html",

@@ -20,8 +20,8 @@ pub(crate) enum Command {
     Study(Run),
     /// Extract a surface from a formula, a volume or a mesh; or, given a study, the study's meshes, and measure them
     Extract(crate::surface::Extract),
-    /// Render the turntable animations
-    Turntable(Selection),
+    /// Render a study's turntable animations; or, given a mesh, its own, in any look
+    Turntable(crate::turning::Turn),
     /// Compose the side-by-side pairs and write the key
     Pairs(Pairs),
     /// Put together what participants get (forms and pairs, no key), and the researcher's contact sheet

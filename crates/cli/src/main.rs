@@ -11,6 +11,7 @@ mod args;
 mod asking;
 mod comparing;
 mod distance;
+mod error_colours;
 mod fields;
 mod input;
 mod inspect;
@@ -32,6 +33,7 @@ mod run_file;
 mod source;
 mod store;
 mod surface;
+mod turning;
 mod video;
 
 use anyhow::{Context, Result};
@@ -97,13 +99,16 @@ fn run(command: Command) -> Result<Outcome> {
             }
             None => return surface::extract(&arguments),
         },
-        Command::Turntable(selection) => {
-            return with_selection(&selection, |pipeline, only, out| {
-                let meshes = pipeline.stimulus_meshes(only)?;
-                pipeline.turntables(&meshes, only)?;
-                say(&out.join("stimuli/turntables").display().to_string())
-            });
-        }
+        Command::Turntable(arguments) => match arguments.of_study()? {
+            Some(selection) => {
+                return with_selection(&selection, |pipeline, only, out| {
+                    let meshes = pipeline.stimulus_meshes(only)?;
+                    pipeline.turntables(&meshes, only)?;
+                    say(&out.join("stimuli/turntables").display().to_string())
+                });
+            }
+            None => turning::turn(&arguments),
+        },
         Command::Pairs(pairs) => {
             if pairs.mp4 {
                 video::check()?;

@@ -2,10 +2,10 @@
 
 use anyhow::Result;
 use base64::Engine;
-use design::config::{CameraSection, Look, ShadingSection, TurntableSection};
+use design::config::{CameraSection, LightFollows, Look, ShadingSection, StimulusLook, TurntableSection};
 use mesh::TriangleMesh;
-use raster::tiny_skia::{Pixmap, PixmapPaint, Transform};
-use raster::{Panel, Shading, Sheet, Turntable, Viewport};
+use raster::tiny_skia::{Color, Pixmap, PixmapPaint, Transform};
+use raster::{Animation, Colouring, Palette, Panel, Shading, Sheet, Turntable, Viewport};
 
 /// A figure as a picture and as a scalable page with the pictures in it and captions as text.
 pub(crate) struct StillSheet {
@@ -36,8 +36,103 @@ pub(crate) fn shading(section: &ShadingSection) -> Shading {
         shade: colour(section.shade),
         highlight: colour(section.highlight),
         background: colour(section.background),
+        light_follows: light_follows(section.light_follows),
+        ambient: section.ambient as f32,
         ..Shading::default()
     }
+}
+
+/// The rasteriser's word for what the light is fixed to.
+pub(crate) fn light_follows(follows: LightFollows) -> raster::LightFollows {
+    match follows {
+        LightFollows::Scene => raster::LightFollows::Scene,
+        LightFollows::Camera => raster::LightFollows::Camera,
+    }
+}
+
+/// A look as the rasteriser takes it.
+pub(crate) struct Drawn {
+    look: raster::Look,
+    /// What colours the mesh, if it is not its material.
+    colouring: Option<Colouring>,
+}
+
+impl Drawn {
+    /// What `look` is for a mesh; `error` gives the colours of [`Look::Error`] and is asked for nothing else. Numbers
+    /// of triangles are shown on flat ones, so that each can be told from its neighbours.
+    ///
+    /// # Errors
+    /// What `error` returns.
+    pub(crate) fn new(
+        mesh: &TriangleMesh,
+        look: Look,
+        error: impl FnOnce() -> Result<Colouring>,
+    ) -> Result<Self> {
+        let colouring = match look {
+            Look::Smooth | Look::Flat | Look::Wireframe | Look::SmoothWireframe => None,
+            Look::Quality => Some(Colouring::radius_ratio(mesh)),
+            Look::Error => Some(error()?),
+        };
+        Ok(Self { look: raster_look(look), colouring })
+    }
+
+    /// With numbers, if any, in another look.
+    pub(crate) fn with_look(self, look: Look) -> Self {
+        Self { look: raster_look(look), ..self }
+    }
+
+    /// One turn, with the scale of numbers below.
+    ///
+    /// # Errors
+    /// If the rasteriser refuses mesh or camera.
+    pub(crate) fn turned(
+        &self,
+        mesh: &TriangleMesh,
+        turntable: &Turntable,
+        shading: &Shading,
+    ) -> Result<Animation> {
+        Ok(match &self.colouring {
+            None => raster::turntable(mesh, turntable, shading, self.look, &|| ())?,
+            Some(colouring) => {
+                raster::turntable_coloured(mesh, colouring, turntable, shading, self.look, &|| ())?
+            }
+        })
+    }
+
+    /// The first frame, and the scale of numbers that belongs below it.
+    fn still(
+        &self,
+        mesh: &TriangleMesh,
+        turntable: &Turntable,
+        shading: &Shading,
+    ) -> Result<(Pixmap, Option<Pixmap>)> {
+        let (camera, viewport) = (turntable.camera(0), turntable.viewport());
+        Ok(match &self.colouring {
+            None => (raster::render(mesh, &camera, viewport, shading, self.look)?, None),
+            Some(colouring) => (
+                raster::render_coloured(mesh, colouring, &camera, viewport, shading, self.look)?,
+                Some(raster::legend(&colouring.scale, turntable.width)),
+            ),
+        })
+    }
+}
+
+/// One turn of a mesh as people are shown it, in its look, with the colours that all `looks` of the study have in common:
+/// any two of its turntables make a pair.
+///
+/// # Errors
+/// If the rasteriser refuses mesh or camera.
+pub(crate) fn stimulus(
+    mesh: &TriangleMesh,
+    turntable: &Turntable,
+    shading: &Shading,
+    look: StimulusLook,
+    looks: &[StimulusLook],
+    on_frame: &(dyn Fn() + Sync),
+) -> Result<Animation> {
+    let looks: Vec<raster::Look> = looks.iter().map(|&look| raster_look(look.into())).collect();
+    let palette = Palette::of_looks(shading, &looks);
+    Ok(raster::turntable_in(mesh, turntable, shading, raster_look(look.into()), &palette, on_frame)?)
 }
 
 /// The first frame of the turntable in several looks, side by side.
@@ -48,15 +143,22 @@ pub(crate) fn still_sheet(
     mesh: &TriangleMesh,
     turntable: &Turntable,
     shading: &Shading,
-    looks: &[Look],
+    looks: &[(Look, Drawn)],
 ) -> Result<StillSheet> {
     let mut pictures = Vec::new();
-    for (i, &look) in looks.iter().enumerate() {
+    for (i, (look, drawn)) in looks.iter().enumerate() {
         let label = format!("({}) {}", char::from(b'a' + (i % 26) as u8), look.label());
-        let camera = turntable.camera(0);
-        let picture = raster::render(mesh, &camera, turntable.viewport(), shading, raster_look(look))?;
-        pictures.push((picture, label));
+        pictures.push((drawn.still(mesh, turntable, shading)?, label));
     }
+    // All as high as the highest, so that they stand in one line.
+    let room = pictures.iter().filter_map(|((_, scale), _)| scale.as_ref()).map(Pixmap::height).max();
+    let pictures: Vec<(Pixmap, String)> = pictures
+        .into_iter()
+        .map(|((picture, scale), label)| match room {
+            None => (picture, label),
+            Some(room) => (with_room_below(&picture, scale.as_ref(), room), label),
+        })
+        .collect();
     let panels: Vec<Panel<'_>> = pictures.iter().map(|(picture, label)| Panel { picture, label }).collect();
     let sheet = Sheet { columns: looks.len(), ..Sheet::default() };
     let png = raster::pixmap_to_png(&raster::panels(&panels, &sheet)?);
@@ -71,13 +173,26 @@ pub(crate) fn thumbnail(
     mesh: &TriangleMesh,
     turntable: &Turntable,
     shading: &Shading,
+    look: StimulusLook,
     side_px: u32,
 ) -> Result<Pixmap> {
     let longer = f64::from(turntable.width.max(turntable.height));
     let shrunk = |pixels: u32| (f64::from(pixels * side_px) / longer).round().max(1.0) as u32;
     let (width, height) = (shrunk(turntable.width), shrunk(turntable.height));
     let viewport = Viewport { width, height, ..turntable.viewport() };
-    Ok(raster::render(mesh, &turntable.camera(0), viewport, shading, raster::Look::Smooth)?)
+    Ok(raster::render(mesh, &turntable.camera(0), viewport, shading, raster_look(look.into()))?)
+}
+
+/// A picture over `room` pixels of white paper, on which the scale lies, if there is one.
+fn with_room_below(picture: &Pixmap, scale: Option<&Pixmap>, room: u32) -> Pixmap {
+    let mut both = Pixmap::new(picture.width(), picture.height() + room).expect("a picture has pixels");
+    both.fill(Color::WHITE);
+    let (paint, still) = (PixmapPaint::default(), Transform::identity());
+    both.draw_pixmap(0, 0, picture.as_ref(), &paint, still, None);
+    if let Some(scale) = scale {
+        both.draw_pixmap(0, picture.height() as i32, scale.as_ref(), &paint, still, None);
+    }
+    both
 }
 
 /// Two pictures of one size, edge to edge.
@@ -103,7 +218,7 @@ pub(crate) fn contact_sheet(pictures: &[(String, Pixmap)], title: &str) -> Resul
 fn raster_look(look: Look) -> raster::Look {
     match look {
         Look::Smooth => raster::Look::Smooth,
-        Look::Flat => raster::Look::Flat,
+        Look::Flat | Look::Quality | Look::Error => raster::Look::Flat,
         Look::Wireframe => raster::Look::Wireframe,
         Look::SmoothWireframe => raster::Look::SmoothWireframe,
     }

@@ -90,6 +90,11 @@ impl SourceArguments {
         self.volume.as_deref().or(self.mesh.as_deref())
     }
 
+    /// Whether a formula, a volume or a mesh is named.
+    pub(crate) fn is_given(&self) -> bool {
+        self.field.is_some() || self.file().is_some()
+    }
+
     /// What memory there is for it.
     pub(crate) fn limit(&self) -> Limit {
         Limit::of(self.memory)

@@ -83,7 +83,7 @@ impl Extract {
 }
 
 /// What a study calls it.
-fn named<T: for<'de> Deserialize<'de>>(text: &str) -> Result<T, String> {
+pub(crate) fn named<T: for<'de> Deserialize<'de>>(text: &str) -> Result<T, String> {
     let name: StrDeserializer<'_, NameError> = text.into_deserializer();
     T::deserialize(name).map_err(|error| error.to_string())
 }

@@ -7,7 +7,7 @@ pub use methods::METHOD;
 
 use crate::check::{Checker, ConfigError};
 use crate::code_names;
-use crate::config::{ObjectSection, ResponsesSection, StudyFile};
+use crate::config::{ObjectSection, ResponsesSection, StimulusLook, StudyFile};
 use crate::forms::Questionnaire;
 use crate::machine::CpuProfile;
 use crate::method::{ConfigurationId, FactorSpec, Method, MethodId};
@@ -179,6 +179,22 @@ impl Study {
     /// The object of a configuration.
     pub fn object(&self, configuration: &Configuration) -> &ObjectSection {
         &self.file.objects[configuration.object]
+    }
+
+    /// How a configuration's animation shows it. One look for all, until methods have their own.
+    pub fn look(&self, _configuration: &Configuration) -> StimulusLook {
+        self.file.turntable.look
+    }
+
+    /// The looks of all configurations, each once.
+    pub fn looks(&self) -> Vec<StimulusLook> {
+        let mut looks = Vec::new();
+        for look in self.configurations.iter().map(|configuration| self.look(configuration)) {
+            if !looks.contains(&look) {
+                looks.push(look);
+            }
+        }
+        looks
     }
 
     /// The ids of the methods, in the file's order.

@@ -1,11 +1,11 @@
 //! How far each triangle of a mesh is from the isosurface.
 
+use field::{Kept, ScalarField};
 use glam::DVec3;
 use mesh::TriangleMesh;
 use rayon::prelude::*;
 
 use crate::extraction::ExtractError;
-use crate::field::{Kept, ScalarField};
 use crate::isosurface::foot;
 use crate::level::Level;
 use crate::sampling::{SHARE, on_threads};

@@ -1,6 +1,7 @@
 //! Distances of triangles to the isosurface.
 
-use extract::{Execution, ExtractSettings, Lattice, ScalarField, Sphere, extract, triangle_distances};
+use extract::{Execution, ExtractSettings, Lattice, extract, triangle_distances};
+use field::{ScalarField, Sphere};
 use glam::Vec3;
 use mesh::{Bounds, TriangleMesh};
 

@@ -49,6 +49,21 @@ impl Default for Turntable {
 }
 
 impl Turntable {
+    /// A turn in which a ball of `radius` round the origin touches the picture's border all the time; what has nothing to
+    /// do with distances is as by default. `radius` must be above 0.
+    pub fn around(radius: f32) -> Self {
+        let vertical_fov_rad = 0.6;
+        let eye_distance = radius / libm::sinf(0.5 * vertical_fov_rad);
+        let unit = Turntable { distance: 1.0, ..Turntable::default() };
+        Turntable {
+            distance: eye_distance / unit.eye_distance(),
+            vertical_fov_rad,
+            near: (eye_distance - radius) * 0.5,
+            far: eye_distance + 2.0 * radius,
+            ..unit
+        }
+    }
+
     /// The camera of picture `frame`: with t = 2 pi frame / frames, D `distance` and u `elevation_rad`,
     /// `eye = D ((cos t - sin t) cos u, (sin t + cos t) cos u, sin u)`, looking at the origin, z up.
     ///

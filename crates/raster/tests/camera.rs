@@ -74,3 +74,22 @@ fn a_spheres_outline_has_the_right_radius() {
     assert!((middle[0] as f32 - (150.0 - expected)).abs() < 1.0, "{middle:?}");
     assert!((middle[middle.len() - 1] as f32 + 1.0 - (150.0 + expected)).abs() < 1.0, "{middle:?}");
 }
+
+/// The outline of a ball as seen from the eye: just inside the border of every frame, and nothing is cut off in depth.
+#[test]
+fn a_turn_around_a_ball_has_it_to_the_border() {
+    for radius in [0.01, 1.0, 250.0] {
+        let turn = Turntable::around(radius);
+        for frame in [0, 17, 60] {
+            let camera = turn.camera(frame);
+            let distance = camera.eye.length();
+            // Where a line from the eye touches the ball, straight above the middle of the picture.
+            let (sin, cos) = (radius / distance, (1.0 - (radius / distance).powi(2)).sqrt());
+            let back = camera.eye / distance;
+            let up = (Vec3::Z - back * back.z).normalize();
+            let ([x, y], _) = camera.project((back * sin + up * cos) * radius, &turn.viewport()).unwrap();
+            assert!((x - 256.0).abs() < 0.5 && y.abs() < 0.5, "{radius}: {x}, {y}");
+            assert!(camera.near < distance - radius && camera.far > distance + radius);
+        }
+    }
+}

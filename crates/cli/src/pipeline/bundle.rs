@@ -121,7 +121,9 @@ impl Pipeline<'_> {
                 let camera = &self.study.object(configuration).camera;
                 let settings = picture::turntable(&self.study.file.turntable, camera);
                 let shading = picture::shading(&self.study.file.shading);
-                halves.insert(&configuration.id, picture::thumbnail(&mesh, &settings, &shading, HALF_PX)?);
+                let look = self.study.look(configuration);
+                let half = picture::thumbnail(&mesh, &settings, &shading, look, HALF_PX)?;
+                halves.insert(&configuration.id, half);
             }
             let question = |s: &Stimulus| {
                 let shows = |c: &&design::Comparison| {

@@ -2,17 +2,17 @@
 
 use super::meshes::TICKS_A_MESH;
 use super::{Meshes, Pipeline};
-use crate::picture;
+use crate::picture::{self, Drawn};
 use crate::prepare::Wanted;
 use crate::progress::Step;
 use crate::store::{Inputs, Stamp};
-use crate::{rooms, video};
+use crate::{error_colours, rooms, video};
 use anyhow::{Context, Result};
-use design::config::StillSection;
+use design::config::{Look, StillSection};
 use design::forms::Stimulus;
 use design::record::Purpose;
 use design::{Comparison, Configuration, ConfigurationId, Study};
-use raster::{Animation, Look};
+use raster::Animation;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -88,7 +88,9 @@ impl Pipeline<'_> {
             let settings = picture::turntable(&self.study.file.turntable, &object.camera);
             let shading = picture::shading(&self.study.file.shading);
             let mesh = self.read_mesh(mesh)?;
-            let animation = raster::turntable(&mesh, &settings, &shading, Look::Smooth, &|| step.tick(1))?;
+            let (look, looks) = (self.study.look(configuration), self.study.looks());
+            let on_frame = || step.tick(1);
+            let animation = picture::stimulus(&mesh, &settings, &shading, look, &looks, &on_frame)?;
             let mut gif = Vec::new();
             animation.write_gif(&mut gif)?;
             writer.write(&format!("{TURNTABLES}/{code}.gif"), &gif)?;
@@ -224,9 +226,27 @@ impl Pipeline<'_> {
             let mesh = self.make(configuration, &prepared, step)?.mesh;
             let settings = picture::turntable(&self.study.file.turntable, &object.camera);
             let shading = picture::shading(&self.study.file.shading);
-            let sheet = picture::still_sheet(&mesh, &settings, &shading, &still.looks)?;
+            let error = || {
+                let most = self.study.file.shading.error_scale as f32;
+                let surface = (prepared.field, prepared.isovalue, still.spacing as f32);
+                error_colours::of(&mesh, surface, most, self.threads)
+            };
+            let drawn = |&look: &Look| Ok((look, Drawn::new(&mesh, look, error)?));
+            let looks = still.looks.iter().map(drawn).collect::<Result<Vec<_>>>()?;
+            let sheet = picture::still_sheet(&mesh, &settings, &shading, &looks)?;
             writer.write(&format!("figures/{}.png", still.id), &sheet.png)?;
-            writer.write(&format!("figures/{}.svg", still.id), sheet.svg.as_bytes())
+            writer.write(&format!("figures/{}.svg", still.id), sheet.svg.as_bytes())?;
+            // A look that is listed twice is one file.
+            let turning = looks
+                .iter()
+                .enumerate()
+                .filter(|(i, (look, _))| still.turntable && !still.looks[..*i].contains(look));
+            for (_, (look, drawn)) in turning {
+                let mut gif = Vec::new();
+                drawn.turned(&mesh, &settings, &shading)?.write_gif(&mut gif)?;
+                writer.write(&format!("figures/{}_{}.gif", still.id, look.name()), &gif)?;
+            }
+            Ok(())
         })
     }
 }
