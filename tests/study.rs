@@ -54,8 +54,8 @@ fn assert_golden(made: &BTreeMap<String, Vec<u8>>) {
         .map(|(path, bytes)| (path, sha256(&bytes)))
         .collect();
     let lines: String = found.iter().map(|(path, digest)| format!("{digest}  {path}\n")).collect();
-    let differs = |path: &&str| found.get(**path).map(String::as_str) != Some(golden[**path]);
-    let mut differing: Vec<&str> = golden.keys().filter(differs).copied().collect();
+    let differs = |path: &&str| found.get(*path).map(String::as_str) != Some(golden[*path]);
+    let mut differing: Vec<&str> = golden.keys().copied().filter(differs).collect();
     differing.extend(found.keys().map(String::as_str).filter(|path| !golden.contains_key(path)));
     if !differing.is_empty() {
         let path = std::env::temp_dir().join("quick.sha256");

@@ -9,7 +9,7 @@ pub(crate) use crossing::{expand, is_summed};
 pub use factor::{Factor, FactorSpec, Level, LevelSpec};
 pub use recipe::{Recipe, TETRAHEDRA};
 
-use crate::config::BudgetSection;
+use crate::config::{BudgetSection, StimulusLook};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -86,6 +86,8 @@ pub struct Method {
     pub recipe: Recipe,
     /// What decides its resolution in place of the object's spacing.
     pub budget: Option<BudgetSection>,
+    /// How its meshes look in animations; `None` as all do.
+    pub look: Option<StimulusLook>,
     /// For each declared factor of the study, by place, the level that the method is an example of, by place.
     pub levels: Vec<Option<usize>>,
 }

@@ -182,8 +182,8 @@ impl Study {
     }
 
     /// How a configuration's animation shows it. One look for all, until methods have their own.
-    pub fn look(&self, _configuration: &Configuration) -> StimulusLook {
-        self.file.turntable.look
+    pub fn look(&self, configuration: &Configuration) -> StimulusLook {
+        self.method(configuration.id.method).look.unwrap_or(self.file.turntable.look)
     }
 
     /// The looks of all configurations, each once.

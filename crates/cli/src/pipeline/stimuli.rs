@@ -39,6 +39,7 @@ impl MadeWith {
             .value("recipe", &study.method(configuration.id.method).recipe)
             .value("turntable", &file.turntable)
             .value("shading", &file.shading)
+            .value("look", &study.look(configuration))
             .finish();
         settings.truncate(16);
         Self { camera, settings }
@@ -83,7 +84,8 @@ impl Pipeline<'_> {
         let inputs = Inputs::of_rooms(rooms::PICTURES)
             .stamp(mesh)
             .text("code", code)
-            .value("settings", &MadeWith::of(self.study, configuration));
+            .value("settings", &MadeWith::of(self.study, configuration))
+            .value("looks", &self.study.looks());
         let stamp = self.stage(&format!("turntable/{}", configuration.id), inputs, |writer| {
             let settings = picture::turntable(&self.study.file.turntable, &object.camera);
             let shading = picture::shading(&self.study.file.shading);

@@ -1,5 +1,6 @@
 //! `[[methods]]` and `[[factors]]`: what is compared, and what it differs in.
 
+use crate::config::StimulusLook;
 use crate::method::{MethodId, Recipe};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -20,6 +21,9 @@ pub struct MethodSection {
     /// What decides its resolution in place of the object's spacing.
     #[serde(rename = "match", skip_serializing_if = "Option::is_none")]
     pub budget: Option<BudgetSection>,
+    /// How its meshes look in animations; as all do unless given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub look: Option<StimulusLook>,
 }
 
 /// Another method of the study whose mesh must be met, by choice of the spacing: one of the three.

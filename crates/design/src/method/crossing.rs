@@ -228,6 +228,7 @@ pub(crate) fn expand(
                 phrase: crossed.phrase(),
                 recipe: crossed.recipe(section),
                 budget: None,
+                look: None,
                 levels: vec![Some(a), Some(c)],
             });
         }

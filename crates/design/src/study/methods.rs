@@ -108,6 +108,7 @@ fn listed(c: &Checker<'_>, file: &StudyFile) -> Result<(Vec<FactorSpec>, Vec<Met
             phrase: section.label.clone(),
             recipe: section.recipe.clone(),
             budget: section.budget,
+            look: section.look,
             levels,
         });
     }

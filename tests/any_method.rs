@@ -1,0 +1,300 @@
+//! A study may compare any method on any object: everything at once, from a study file to a report whose tests are about methods; and
+//! what is said where something is wrong with it.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+const STUDY: &str = include_str!("any_method/study.toml");
+const METHODS: [&str; 5] = ["bi", "bi-relaxed", "fp", "cuberille", "artist"];
+const OBJECTS: [&str; 3] = ["fo", "te", "vo"];
+
+struct Folder(TempDir);
+
+struct Ran {
+    code: Option<i32>,
+    stdout: String,
+    stderr: String,
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap()
+}
+
+impl Folder {
+    /// The study with its files: a program, a scan, and meshes made by hand.
+    fn new() -> Self {
+        let folder = Self(tempfile::tempdir().unwrap());
+        let mut comparisons = String::from("comparisons = [\n");
+        let mut number = 0;
+        for object in OBJECTS {
+            for (i, left) in METHODS.iter().enumerate() {
+                for right in &METHODS[i + 1..] {
+                    number += 1;
+                    comparisons += &format!(
+                        "  {{ question = \"Q{number}\", left = \"{object}_{left}\", right = \"{object}_{right}\" }},\n"
+                    );
+                }
+            }
+        }
+        folder.write("study.toml", &STUDY.replace("schema = 1\n", &format!("schema = 1\n{comparisons}]\n")));
+        fs::copy(root().join("scripts/methods/example.py"), folder.path("example.py")).unwrap();
+        fs::copy(root().join("configs/cpu/x86-64-v3.toml"), folder.path("cpu.toml")).unwrap();
+        fs::write(folder.path("scan.nrrd"), scan()).unwrap();
+        fs::create_dir(folder.path("by-hand")).unwrap();
+        // Coarser than any other, from the same surfaces.
+        let ring = "sqrt((sqrt(x^2 + y^2) - 0.6)^2 + z^2) - 0.25";
+        let boxed = "--bounds=-1,-1,-0.5,1,1,0.5";
+        folder.extract(&["--field", ring, boxed, "--spacing", "0.2", "-o", "by-hand/fo.ply"]);
+        let hill = "max(z - 0.3*fbm(x, y, 0, 2), max(max(abs(x), abs(y)) - 0.9, -0.4 - z))";
+        folder.extract(&["--field", hill, boxed, "--spacing", "0.2", "-o", "by-hand/te.obj"]);
+        folder.extract(&[
+            "--volume", "scan.nrrd", "--isovalue", "0.5", "--spacing", "0.25", "--close", "-o", "by-hand/vo.ply",
+        ]);
+        folder
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        fs::write(self.path(name), text).unwrap();
+    }
+
+    fn edit(&self, from: &str, to: &str) {
+        let text = fs::read_to_string(self.path("study.toml")).unwrap();
+        assert!(text.contains(from), "{from} is not in the study");
+        self.write("study.toml", &text.replacen(from, to, 1));
+    }
+
+    fn run(&self, arguments: &[&str]) -> Ran {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
+        let output = command.args(arguments).current_dir(self.0.path()).output().unwrap();
+        let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+        Ran { code: output.status.code(), stdout: text(&output.stdout), stderr: text(&output.stderr) }
+    }
+
+    fn succeed(&self, arguments: &[&str]) -> Ran {
+        let ran = self.run(arguments);
+        assert_eq!(ran.code, Some(0), "{arguments:?}: {}{}", ran.stdout, ran.stderr);
+        ran
+    }
+
+    fn extract(&self, arguments: &[&str]) {
+        self.succeed(&[&["extract"], arguments].concat());
+    }
+
+    fn table(&self, path: &str) -> Vec<Vec<String>> {
+        let text = fs::read_to_string(self.path(path)).unwrap();
+        text.lines().filter(|line| !line.starts_with('#')).map(cells).collect()
+    }
+}
+
+/// The cells of a line of CSV.
+fn cells(line: &str) -> Vec<String> {
+    let (mut cells, mut quoted) = (vec![String::new()], false);
+    for letter in line.chars() {
+        match letter {
+            '"' => quoted = !quoted,
+            ',' if !quoted => cells.push(String::new()),
+            _ => cells.last_mut().unwrap().push(letter),
+        }
+    }
+    cells
+}
+
+/// A ball's density on 25 samples along each side, from -1 to 1: a half at a distance of 0.7.
+fn scan() -> Vec<u8> {
+    let n = 25;
+    let step = 2.0 / (n - 1) as f32;
+    let mut bytes = format!(
+        "NRRD0004\ntype: float\ndimension: 3\nsizes: {n} {n} {n}\nendian: little\nencoding: raw\nspace dimension: 3\n\
+         space directions: ({step},0,0) (0,{step},0) (0,0,{step})\nspace origin: (-1,-1,-1)\n\n"
+    )
+    .into_bytes();
+    let at = |i: i32| i as f32 * step - 1.0;
+    for k in 0..n {
+        for j in 0..n {
+            for i in 0..n {
+                let distance = (at(i).powi(2) + at(j).powi(2) + at(k).powi(2)).sqrt();
+                bytes.extend((1.2 - distance).to_le_bytes());
+            }
+        }
+    }
+    bytes
+}
+
+#[test]
+fn any_method_on_any_object_from_file_to_report() {
+    let folder = Folder::new();
+    let faults = folder.run(&["design", "check", "study.toml"]);
+    assert_eq!(faults.code, Some(0), "{}{}", faults.stdout, faults.stderr);
+    folder.succeed(&["validate", "study.toml"]);
+
+    // A study file from a stranger is code.
+    let refused = folder.run(&["study", "study.toml", "--out", "out"]);
+    assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+    assert!(refused.stderr.contains("--allow-programs") && refused.stderr.contains("cuberille: python3 ./example.py"));
+    assert!(!folder.path("out").exists());
+
+    folder.succeed(&["study", "study.toml", "--out", "out", "--allow-programs"]);
+    for object in OBJECTS {
+        for method in METHODS {
+            assert!(folder.path(&format!("out/meshes/benchmark/{object}_{method}.ply")).exists());
+        }
+    }
+    let benchmark = folder.table("out/tables/benchmark.csv");
+    let column = |name: &str| benchmark[0].iter().position(|title| title == name).unwrap_or_else(|| panic!("{name}"));
+    let cell = |id: &str, name: &str| {
+        benchmark.iter().find(|row| row[0] == id).unwrap_or_else(|| panic!("{id}"))[column(name)].clone()
+    };
+    for object in OBJECTS {
+        let number = |method: &str, name: &str| cell(&format!("{object}_{method}"), name).parse::<f64>().unwrap();
+        // The budget is met to 1 %, by another spacing.
+        let share = number("fp", "triangles") / number("bi", "triangles");
+        assert!((share - 1.0).abs() <= 0.01, "{object}: {share}");
+        // What a method has not is an empty cell, and what has no time has none.
+        assert_eq!(cell(&format!("{object}_cuberille"), "tetrahedra"), "");
+        assert_eq!(cell(&format!("{object}_artist"), "total_without_normals_s"), "");
+        assert!(number("cuberille", "total_without_normals_s") > 0.0);
+        // Relaxing moves vertices and leaves triangles.
+        assert_eq!(number("bi", "triangles"), number("bi-relaxed", "triangles"));
+    }
+    assert_eq!(cell("fo_bi", "method"), "body-centred, integrated");
+    assert_eq!(cell("fo_bi-relaxed", "placement"), "relaxed");
+    assert_eq!(cell("fo_fp", "placement"), "");
+
+    // Again: nothing is made, whatever the kind.
+    let again = folder.succeed(&["study", "study.toml", "--out", "out", "--allow-programs"]);
+    assert!(!again.stderr.contains(" made, "), "{}", again.stderr);
+    folder.succeed(&["bundle", "study.toml", "--out", "out", "--allow-programs"]);
+    assert_eq!(fs::read_dir(folder.path("out/bundle/stimuli")).unwrap().count() % 2, 0);
+
+    answered(&folder);
+}
+
+/// Everybody likes relaxed vertices wherever they see them, and has no preference else. The tests are about methods.
+fn answered(folder: &Folder) {
+    let study: toml::Table = fs::read_to_string(folder.path("study.toml")).unwrap().parse().unwrap();
+    let mut long = String::from("participant,question,left,right,choice\n");
+    for person in 0..24 {
+        for comparison in study["comparisons"].as_array().unwrap() {
+            let text = |key: &str| comparison[key].as_str().unwrap();
+            let (mut left, mut right) = (text("left"), text("right"));
+            if person % 2 == 1 {
+                (left, right) = (right, left);
+            }
+            let choice = match (left.ends_with("_bi-relaxed"), right.ends_with("_bi-relaxed")) {
+                (true, _) => "left",
+                (_, true) => "right",
+                _ => "none",
+            };
+            long += &format!("p{person},{},{left},{right},{choice}\n", text("question"));
+        }
+    }
+    folder.write("answers.csv", &long);
+    folder.succeed(&["analyse", "study.toml", "--responses", "answers.csv", "--out", "analysed"]);
+    let tests = folder.table("analysed/tables/tests.csv");
+    let column = |name: &str| tests[0].iter().position(|title| title == name).unwrap_or_else(|| panic!("{name}"));
+    let found: Vec<(&str, &str, f64)> = tests[1..]
+        .iter()
+        .filter(|row| row[column("scope")] == "all")
+        .map(|row| {
+            (&*row[column("family")], &*row[column("contrast")], row[column("p_adjusted")].parse().unwrap())
+        })
+        .collect();
+    // One declared factor, and ten pairs of methods of which it has one.
+    let pooled: Vec<&str> = found.iter().filter(|of| of.0 == "pooled").map(|of| of.1).collect();
+    assert_eq!(pooled, ["mean-relaxed"]);
+    let methods: BTreeSet<&str> = found.iter().filter(|of| of.0 == "methods").map(|of| of.1).collect();
+    assert_eq!(methods.len(), 9, "{methods:?}");
+    for (family, contrast, p) in &found {
+        let about_relaxed = contrast.contains("relaxed");
+        assert!(if about_relaxed { *p < 0.001 } else { *p > 0.5 }, "{family} {contrast}: {p}");
+    }
+    let report = fs::read_to_string(folder.path("analysed/report.md")).unwrap();
+    assert!(report.contains("relaxed vertices"), "{report}");
+    assert!(report.contains("made by hand"), "{report}");
+}
+
+/// What is wrong is said with file, key and what is allowed, before any work starts.
+#[test]
+fn bad_input_is_refused_before_any_work() {
+    for (from, to, told) in [
+        ("id = \"fp\"", "id = \"bi\"", vec!["study.toml: methods[2].id = bi"]),
+        ("levels = { placement = \"mean\" }", "levels = { colour = \"red\" }", vec!["methods[0].levels = colour", "placement"]),
+        (
+            "levels = { placement = \"mean\" }",
+            "levels = { placement = \"median\" }",
+            vec!["methods[0].levels.placement = median", "mean, relaxed"],
+        ),
+        (
+            "recipe = { kind = \"tetrahedra\", arrangement = \"body-centred\", clustering = \"integrated\" }",
+            "recipe = { kind = \"tetrahedra\", arrangement = \"body-centred\", command = [\"x\"] }",
+            vec!["study.toml: methods[0].recipe", "command", "clustering"],
+        ),
+        (
+            "recipe = { kind = \"tetrahedra\", arrangement = \"body-centred\", clustering = \"integrated\" }",
+            "recipe = { kind = \"cones\" }",
+            vec!["study.toml: methods[0].recipe", "cones", "tetrahedra", "program", "meshes"],
+        ),
+        ("- 0.25\" }", "+ 25\" }", vec!["study.toml: objects[0].field", "no surface"]),
+        ("z^2) - 0.25", "z^2 - 0.25", vec!["study.toml: objects[0].field", "text"]),
+        ("scan.nrrd", "skan.nrrd", vec!["study.toml: objects[2].field", "skan.nrrd", "no such file"]),
+        ("character = \"caves\"", "character = \"moon\"", vec!["study.toml: objects[1].field", "moon", "hills"]),
+        ("caves = 0.15", "caves = 15", vec!["study.toml: objects[1].field", "caves", "0 to 0.5"]),
+        ("./example.py", "./nobody.py", vec!["study.toml: methods[3].recipe", "nobody.py"]),
+        ("\"python3\"", "\"no-such-program-anywhere\"", vec!["study.toml: methods[3].recipe", "no-such-program-anywhere"]),
+        ("fo = \"by-hand/fo.ply\", ", "", vec!["study.toml: methods[4].recipe", "files.fo"]),
+        ("by-hand/te.obj", "by-hand/nothing.obj", vec!["study.toml: methods[4].recipe", "files.te", "no such file"]),
+        ("triangles_of = \"bi\"", "triangles_of = \"fp\"", vec!["study.toml: methods[2].match.triangles_of = fp", "another method"]),
+        ("triangles_of = \"bi\"", "triangles_of = \"mc\"", vec!["study.toml: methods[2].match.triangles_of = mc"]),
+        ("triangles_of = \"bi\"", "vertices_of = \"bi\"", vec!["vertices_of", "triangles_of", "samples_of", "time_of"]),
+    ] {
+        let folder = Folder::new();
+        folder.edit(from, to);
+        let ran = folder.run(&["study", "study.toml", "--out", "out", "--allow-programs"]);
+        assert_eq!(ran.code, Some(2), "{to}: {}{}", ran.stdout, ran.stderr);
+        for part in told {
+            assert!(ran.stderr.contains(part), "{to}: no `{part}` in: {}", ran.stderr);
+        }
+        assert!(!folder.path("out").exists(), "{to}");
+    }
+}
+
+/// A budget that no spacing meets: more triangles than a lattice over the box can have at a few cells.
+#[test]
+fn a_budget_that_cannot_be_met_is_said() {
+    let folder = Folder::new();
+    folder.edit("match = { triangles_of = \"bi\" }", "match = { samples_of = \"artist\" }");
+    let ran = folder.run(&["extract", "study.toml", "--out", "out", "--allow-programs"]);
+    assert_eq!(ran.code, Some(2), "{}", ran.stderr);
+    assert!(ran.stderr.contains("fo_artist takes no samples"), "{}", ran.stderr);
+}
+
+/// A program that crashes, hangs or answers with nonsense fails by name; the others go on, and the exit code says so.
+#[test]
+fn a_program_that_fails_is_left_out_by_name() {
+    for (program, told) in [
+        ("import sys\nsys.exit(3)\n", "exit code 3"),
+        ("import time\nprint('{\"ready\": {\"name\": \"x\", \"version\": \"1\"}}', flush=True)\ntime.sleep(60)\n", "1 s"),
+        ("print('hello', flush=True)\ninput()\n", "hello"),
+    ] {
+        let folder = Folder::new();
+        folder.write("example.py", program);
+        folder.edit("time_limit_s = 60", "time_limit_s = 1");
+        let ran = folder.run(&["study", "study.toml", "--out", "out", "--allow-programs"]);
+        assert_eq!(ran.code, Some(1), "{program}: {}", ran.stderr);
+        assert!(ran.stderr.contains("fo_cuberille failed") && ran.stderr.contains(told), "{told}: {}", ran.stderr);
+        assert!(ran.stderr.contains("failed and left out: fo_cuberille, te_cuberille, vo_cuberille"), "{}", ran.stderr);
+        let benchmark = folder.table("out/tables/benchmark.csv");
+        let ids: BTreeSet<&str> = benchmark[1..].iter().map(|row| row[0].as_str()).collect();
+        assert!(ids.contains("fo_bi") && !ids.contains("fo_cuberille"), "{ids:?}");
+        assert!(folder.path("out/index.html").exists());
+        let bundle = folder.run(&["bundle", "study.toml", "--out", "out", "--allow-programs"]);
+        assert_eq!(bundle.code, Some(2), "{}", bundle.stderr);
+    }
+}
