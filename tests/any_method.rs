@@ -51,7 +51,15 @@ impl Folder {
         let hill = "max(z - 0.3*fbm(x, y, 0, 2), max(max(abs(x), abs(y)) - 0.9, -0.4 - z))";
         folder.extract(&["--field", hill, boxed, "--spacing", "0.2", "-o", "by-hand/te.obj"]);
         folder.extract(&[
-            "--volume", "scan.nrrd", "--isovalue", "0.5", "--spacing", "0.25", "--close", "-o", "by-hand/vo.ply",
+            "--volume",
+            "scan.nrrd",
+            "--isovalue",
+            "0.5",
+            "--spacing",
+            "0.25",
+            "--close",
+            "-o",
+            "by-hand/vo.ply",
         ]);
         folder
     }
@@ -137,7 +145,10 @@ fn any_method_on_any_object_from_file_to_report() {
     // A study file from a stranger is code.
     let refused = folder.run(&["study", "study.toml", "--out", "out"]);
     assert_eq!(refused.code, Some(2), "{}", refused.stderr);
-    assert!(refused.stderr.contains("--allow-programs") && refused.stderr.contains("cuberille: python3 ./example.py"));
+    assert!(
+        refused.stderr.contains("--allow-programs")
+            && refused.stderr.contains("cuberille: python3 ./example.py")
+    );
     assert!(!folder.path("out").exists());
 
     folder.succeed(&["study", "study.toml", "--out", "out", "--allow-programs"]);
@@ -147,12 +158,14 @@ fn any_method_on_any_object_from_file_to_report() {
         }
     }
     let benchmark = folder.table("out/tables/benchmark.csv");
-    let column = |name: &str| benchmark[0].iter().position(|title| title == name).unwrap_or_else(|| panic!("{name}"));
+    let column =
+        |name: &str| benchmark[0].iter().position(|title| title == name).unwrap_or_else(|| panic!("{name}"));
     let cell = |id: &str, name: &str| {
         benchmark.iter().find(|row| row[0] == id).unwrap_or_else(|| panic!("{id}"))[column(name)].clone()
     };
     for object in OBJECTS {
-        let number = |method: &str, name: &str| cell(&format!("{object}_{method}"), name).parse::<f64>().unwrap();
+        let number =
+            |method: &str, name: &str| cell(&format!("{object}_{method}"), name).parse::<f64>().unwrap();
         // The budget is met to 1 %, by another spacing.
         let share = number("fp", "triangles") / number("bi", "triangles");
         assert!((share - 1.0).abs() <= 0.01, "{object}: {share}");
@@ -198,7 +211,8 @@ fn answered(folder: &Folder) {
     folder.write("answers.csv", &long);
     folder.succeed(&["analyse", "study.toml", "--responses", "answers.csv", "--out", "analysed"]);
     let tests = folder.table("analysed/tables/tests.csv");
-    let column = |name: &str| tests[0].iter().position(|title| title == name).unwrap_or_else(|| panic!("{name}"));
+    let column =
+        |name: &str| tests[0].iter().position(|title| title == name).unwrap_or_else(|| panic!("{name}"));
     let found: Vec<(&str, &str, f64)> = tests[1..]
         .iter()
         .filter(|row| row[column("scope")] == "all")
@@ -225,7 +239,11 @@ fn answered(folder: &Folder) {
 fn bad_input_is_refused_before_any_work() {
     for (from, to, told) in [
         ("id = \"fp\"", "id = \"bi\"", vec!["study.toml: methods[2].id = bi"]),
-        ("levels = { placement = \"mean\" }", "levels = { colour = \"red\" }", vec!["methods[0].levels = colour", "placement"]),
+        (
+            "levels = { placement = \"mean\" }",
+            "levels = { colour = \"red\" }",
+            vec!["methods[0].levels = colour", "placement"],
+        ),
         (
             "levels = { placement = \"mean\" }",
             "levels = { placement = \"median\" }",
@@ -244,15 +262,39 @@ fn bad_input_is_refused_before_any_work() {
         ("- 0.25\" }", "+ 25\" }", vec!["study.toml: objects[0].field", "no surface"]),
         ("z^2) - 0.25", "z^2 - 0.25", vec!["study.toml: objects[0].field", "text"]),
         ("scan.nrrd", "skan.nrrd", vec!["study.toml: objects[2].field", "skan.nrrd", "no such file"]),
-        ("character = \"caves\"", "character = \"moon\"", vec!["study.toml: objects[1].field", "moon", "hills"]),
+        (
+            "character = \"caves\"",
+            "character = \"moon\"",
+            vec!["study.toml: objects[1].field", "moon", "hills"],
+        ),
         ("caves = 0.15", "caves = 15", vec!["study.toml: objects[1].field", "caves", "0 to 0.5"]),
         ("./example.py", "./nobody.py", vec!["study.toml: methods[3].recipe", "nobody.py"]),
-        ("\"python3\"", "\"no-such-program-anywhere\"", vec!["study.toml: methods[3].recipe", "no-such-program-anywhere"]),
+        (
+            "\"python3\"",
+            "\"no-such-program-anywhere\"",
+            vec!["study.toml: methods[3].recipe", "no-such-program-anywhere"],
+        ),
         ("fo = \"by-hand/fo.ply\", ", "", vec!["study.toml: methods[4].recipe", "files.fo"]),
-        ("by-hand/te.obj", "by-hand/nothing.obj", vec!["study.toml: methods[4].recipe", "files.te", "no such file"]),
-        ("triangles_of = \"bi\"", "triangles_of = \"fp\"", vec!["study.toml: methods[2].match.triangles_of = fp", "another method"]),
-        ("triangles_of = \"bi\"", "triangles_of = \"mc\"", vec!["study.toml: methods[2].match.triangles_of = mc"]),
-        ("triangles_of = \"bi\"", "vertices_of = \"bi\"", vec!["vertices_of", "triangles_of", "samples_of", "time_of"]),
+        (
+            "by-hand/te.obj",
+            "by-hand/nothing.obj",
+            vec!["study.toml: methods[4].recipe", "files.te", "no such file"],
+        ),
+        (
+            "triangles_of = \"bi\"",
+            "triangles_of = \"fp\"",
+            vec!["study.toml: methods[2].match.triangles_of = fp", "another method"],
+        ),
+        (
+            "triangles_of = \"bi\"",
+            "triangles_of = \"mc\"",
+            vec!["study.toml: methods[2].match.triangles_of = mc"],
+        ),
+        (
+            "triangles_of = \"bi\"",
+            "vertices_of = \"bi\"",
+            vec!["vertices_of", "triangles_of", "samples_of", "time_of"],
+        ),
     ] {
         let folder = Folder::new();
         folder.edit(from, to);
@@ -280,7 +322,10 @@ fn a_budget_that_cannot_be_met_is_said() {
 fn a_program_that_fails_is_left_out_by_name() {
     for (program, told) in [
         ("import sys\nsys.exit(3)\n", "exit code 3"),
-        ("import time\nprint('{\"ready\": {\"name\": \"x\", \"version\": \"1\"}}', flush=True)\ntime.sleep(60)\n", "1 s"),
+        (
+            "import time\nprint('{\"ready\": {\"name\": \"x\", \"version\": \"1\"}}', flush=True)\ntime.sleep(60)\n",
+            "1 s",
+        ),
         ("print('hello', flush=True)\ninput()\n", "hello"),
     ] {
         let folder = Folder::new();
@@ -288,8 +333,16 @@ fn a_program_that_fails_is_left_out_by_name() {
         folder.edit("time_limit_s = 60", "time_limit_s = 1");
         let ran = folder.run(&["study", "study.toml", "--out", "out", "--allow-programs"]);
         assert_eq!(ran.code, Some(1), "{program}: {}", ran.stderr);
-        assert!(ran.stderr.contains("fo_cuberille failed") && ran.stderr.contains(told), "{told}: {}", ran.stderr);
-        assert!(ran.stderr.contains("failed and left out: fo_cuberille, te_cuberille, vo_cuberille"), "{}", ran.stderr);
+        assert!(
+            ran.stderr.contains("fo_cuberille failed") && ran.stderr.contains(told),
+            "{told}: {}",
+            ran.stderr
+        );
+        assert!(
+            ran.stderr.contains("failed and left out: fo_cuberille, te_cuberille, vo_cuberille"),
+            "{}",
+            ran.stderr
+        );
         let benchmark = folder.table("out/tables/benchmark.csv");
         let ids: BTreeSet<&str> = benchmark[1..].iter().map(|row| row[0].as_str()).collect();
         assert!(ids.contains("fo_bi") && !ids.contains("fo_cuberille"), "{ids:?}");

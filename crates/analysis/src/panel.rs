@@ -13,7 +13,7 @@ use std::fmt::Write;
 ///
 /// 2 has the distance from the isosurface to the mesh (`mesh.accuracy.distance_to_mesh`), 3 the study, the machine and how
 /// many extractions were timed.
-pub const PANEL_SCHEMA: u32 = 3;
+pub const PANEL_SCHEMA: u32 = 4;
 
 /// What is known of one configuration.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -199,7 +199,8 @@ fn present_source(
             FieldSection::Mesh { file: Some(_), .. } => "file",
             _ => "sources[0].file",
         };
-        let bunny = match path.ends_with("bunny.ply") {
+        // What is fetched has a digest.
+        let bunny = match sources.first().is_some_and(|first| first.sha256.is_some()) {
             true => "; `make bunny` (scripts/fetch-bunny.sh) fetches the mesh",
             false => "",
         };

@@ -33,7 +33,7 @@
 //!   unless edges are collapsed; and beside the mean of interpolated crossings none is turned over.
 //! - With [`Topology::Guarded`], the default, and any [`Clustering`]: whatever the samples, the mesh is an oriented
 //!   2-manifold that uses all its vertices, closed where the surface stays clear of the box. No two triangles have
-//!   the same vertices. Components, genus and boundary loops are those of the unclustered surface. Why: DESIGN.md.
+//!   the same vertices. Components, genus and boundary loops are those of the unclustered surface. Why: docs/manifold.md.
 //! - With the same topology no unclustered triangle is without area, also at samples that equal the isovalue, and no edge
 //!   is collapsed where one would lose its area. A sample that equals the isovalue lies below it by less than any number:
 //!   a vertex that has its place to itself stays there; where there are several, each goes a few units in the last place

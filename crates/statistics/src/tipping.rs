@@ -81,7 +81,6 @@ mod tests {
     use super::*;
     use crate::simulation::{Plan, Population, simulate, stream};
     use crate::{Outcome, ShownBallot, golden};
-    use design::Arrangement;
 
     #[track_caller]
     fn at(tip: Tip, want: f64) {

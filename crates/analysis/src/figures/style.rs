@@ -75,16 +75,14 @@ pub(super) fn ink_on(colour: Colour) -> Colour {
     if lightness < 128.0 { WHITE } else { BLACK }
 }
 
-/// Hues of levels, by place: grey, orange, blue, green, purple, sky blue, vermilion, yellow.
-const HUES: [Colour; 8] = [
+/// Hues of levels, by place: grey, orange, blue, green, purple, sky blue. As many as marks have shapes.
+const HUES: [Colour; 6] = [
     RGBColor(0x4d, 0x4d, 0x4d),
     RGBColor(0xe6, 0x9f, 0x00),
     RGBColor(0x00, 0x72, 0xb2),
     RGBColor(0x00, 0x9e, 0x73),
     RGBColor(0xcc, 0x79, 0xa7),
     RGBColor(0x56, 0xb4, 0xe9),
-    RGBColor(0xd5, 0x5e, 0x00),
-    RGBColor(0xf0, 0xe4, 0x42),
 ];
 
 /// How many ways of filling there are.
@@ -100,7 +98,7 @@ fn tells_methods(study: &Study) -> bool {
     (0..all.len()).all(|i| fits(all[i], [FILLINGS, HUES.len()]) && distinct(i))
 }
 
-/// Which hue and which filling a method has, by place. No two of up to 32 methods of a study have both in common.
+/// Which hue and which filling a method has, by place. No two of up to 24 methods of a study have both in common.
 pub(super) fn hue_and_filling(study: &Study, method: MethodId) -> [usize; 2] {
     let level = |factor| study.level_of(method, factor).map(|level| level.index);
     let crossed = match study.declared_factors().collect::<Vec<_>>()[..] {

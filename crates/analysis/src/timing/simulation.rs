@@ -283,8 +283,8 @@ fn ratios_within_a_run_are_paired() {
         NoiseFloor { aa: [("total", ids.iter().map(|id| (id.clone(), 0.05)).collect())].into(), load: 0.0 };
     let ratios = super::ratios::ratios(&run, &floor, Resampling::default());
     let totals: Vec<&Ratio> = ratios.iter().filter(|ratio| ratio.stage == Stage::Total).collect();
-    // Of each object: three pairs of clusterings on each of two lattices, and three of lattices.
-    assert_eq!(totals.len(), 3 * 9);
+    // Of each object every two of six methods.
+    assert_eq!(totals.len(), 3 * 15);
     for ratio in totals {
         let place = |id| ids.iter().position(|known| known == id).unwrap() as i32;
         let truth = 1.24_f64.powi(place(&ratio.second) - place(&ratio.first));

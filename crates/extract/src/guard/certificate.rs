@@ -1,4 +1,4 @@
-//! The conditions V, E and T of DESIGN.md, checked on whole volumes as a map from the unclustered surface to the
+//! The conditions V, E and T of docs/manifold.md, checked on whole volumes as a map from the unclustered surface to the
 //! clustered one; and the other way to a manifold, to look for defects afterwards.
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,4 +1,4 @@
-//! The tables against the written rule, and the finite parts of the argument in DESIGN.md, enumerated.
+//! The tables against the written rule, and the finite parts of the argument in docs/manifold.md, enumerated.
 //!
 //! Names as there: `p` a lattice point, `S` a strict set of its crossings, `w` another direction; V, E and T are the
 //! three conditions under which clusters keep the surface.
@@ -22,7 +22,7 @@ fn is_boundary(link: &Link) -> bool {
     link.nodes() >> BEYOND & 1 == 1
 }
 
-/// The rule in the words of DESIGN.md, on lists of offsets and nothing else.
+/// The rule in the words of docs/manifold.md, on lists of offsets and nothing else.
 mod written_rule {
     use crate::lattice::Offset;
 

@@ -7,7 +7,7 @@
 //! clusters at both its ends, so the end that sees it in a positive direction gives way.
 //!
 //! Nothing here depends on how nearness was decided, as long as every crossing is near exactly one end. Why the
-//! rule suffices, inside and at the volume's boundary, is in DESIGN.md.
+//! rule suffices, inside and at the volume's boundary, is in docs/manifold.md.
 
 mod link;
 mod shapes;

@@ -1,26 +1,13 @@
 use super::*;
 use crate::simulation::{Plan, Population, simulate, stream};
 use crate::{Outcome, ShownBallot, golden};
-use design::{Arrangement, Clustering};
 
 /// The paper's answers about all six methods, numbered su, bu, sp, bp, bi, si.
 fn six() -> Vec<ShownBallot> {
-    use Arrangement::{BodyCentred, SimpleCubic};
-    let order = [
-        (SimpleCubic, Clustering::None),
-        (BodyCentred, Clustering::None),
-        (SimpleCubic, Clustering::EdgeCollapse),
-        (BodyCentred, Clustering::EdgeCollapse),
-        (BodyCentred, Clustering::Integrated),
-        (SimpleCubic, Clustering::Integrated),
-    ];
+    let order = ["su", "bu", "sp", "bp", "bi", "si"];
     let study = golden::study();
     let methods = study.method_ids();
-    let item = |of: usize| {
-        let letters = methods[of].as_str().split_at(1);
-        let own = (letters.0, letters.1);
-        order.iter().position(|&method| method == own).unwrap()
-    };
+    let item = |of: usize| order.iter().position(|&method| method == methods[of].as_str()).unwrap();
     golden::ballots(&study).iter().map(|b| b.with_items([item(b.left()), item(b.right())])).collect()
 }
 
