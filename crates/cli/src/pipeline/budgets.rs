@@ -13,8 +13,12 @@ use extract::{Execution, Extractor};
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
-/// How many spacings are tried for one mesh.
-const MOST_STEPS: u32 = 48;
+/// How many spacings are tried for one mesh by bisection.
+const MOST_STEPS: u32 = 24;
+/// Counts jump where one more cell fits into the box, and may jump past what is wanted: then so many spacings more are tried, up to
+/// this factor finer and coarser.
+const MORE_STEPS: u32 = 96;
+const AROUND: f64 = 1.2;
 /// How far what is found may be from what is asked for, as a share of it.
 const COUNTS_WITHIN: f64 = 0.01;
 const TIME_WITHIN: f64 = 0.05;
@@ -105,7 +109,7 @@ impl Pipeline<'_> {
         // The finest spacing that gives too little, and the coarsest that gives too much.
         let (mut coarse, mut fine): (Option<(f64, f64)>, Option<(f64, f64)>) = (None, None);
         let mut spacing = start;
-        for steps in 1..=MOST_STEPS {
+        for steps in 1..=MOST_STEPS + MORE_STEPS {
             let found = self.measure(configuration, budget, Wanted::Spacing(spacing, purpose))?;
             if (found - wanted).abs() <= within * wanted {
                 return Ok(Found {
@@ -118,6 +122,13 @@ impl Pipeline<'_> {
                     spacing,
                     steps,
                 });
+            }
+            if steps >= MOST_STEPS {
+                // From the middle outwards, finer and coarser in turn.
+                let middle = coarse.or(fine).map_or(start, |(at, _)| at);
+                let (far, side) = ((steps - MOST_STEPS) / 2 + 1, if steps % 2 == 0 { 1.0 } else { -1.0 });
+                spacing = middle * AROUND.powf(side * 2.0 * f64::from(far) / f64::from(MORE_STEPS));
+                continue;
             }
             let side = if found < wanted { &mut coarse } else { &mut fine };
             *side = Some((spacing, found));
