@@ -16,10 +16,14 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Write a study file of one's own to begin with, each key explained
+    New(crate::new::New),
     /// Do everything: meshes, animations, short benchmark, tables, figures, index.html
     Study(Run),
     /// Extract a surface from a formula, a volume or a mesh; or, given a study, the study's meshes, and measure them
     Extract(crate::surface::Extract),
+    /// List the methods that have a name, what each promises, and its source
+    Methods(crate::methods::Methods),
     /// Render a study's turntable animations; or, given a mesh, its own, in any look
     Turntable(crate::turning::Turn),
     /// Compose the side-by-side pairs and write the key

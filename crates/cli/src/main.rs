@@ -9,6 +9,7 @@ mod tell;
 mod answers;
 mod args;
 mod asking;
+mod chosen_method;
 mod comparing;
 mod distance;
 mod error_colours;
@@ -21,6 +22,8 @@ mod manifest;
 mod measured;
 mod memory;
 mod mesh_file;
+mod methods;
+mod new;
 mod picture;
 mod pipeline;
 mod prepare;
@@ -99,6 +102,8 @@ fn run(command: Command) -> Result<Outcome> {
             }
             None => return surface::extract(&arguments),
         },
+        Command::New(arguments) => new::new(&arguments),
+        Command::Methods(arguments) => methods::methods(&arguments),
         Command::Turntable(arguments) => match arguments.of_study()? {
             Some(selection) => {
                 return with_selection(&selection, |pipeline, only, out| {

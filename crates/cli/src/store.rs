@@ -324,6 +324,22 @@ pub(crate) fn write_whole_by(
     all().with_context(|| format!("cannot write {}", path.display()))
 }
 
+/// The same as [`write_whole`] where nothing is yet.
+///
+/// # Errors
+/// If something is there, which stays as it is; if it cannot be written.
+pub(crate) fn write_new(path: &Path, bytes: &[u8]) -> Result<()> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    let all = || -> std::io::Result<()> {
+        let mut partial = partial_file().tempfile_in(folder).map_err(|error| error.kind())?;
+        partial.write_all(bytes)?;
+        partial.persist_noclobber(path)?;
+        Ok(())
+    };
+    all().with_context(|| format!("cannot write {}", path.display()))
+}
+
 /// A temporary file becomes a result, so it gets a result's permissions, not its owner's alone.
 fn partial_file() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();

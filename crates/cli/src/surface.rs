@@ -1,6 +1,7 @@
 //! `isostudy extract` without a study: a formula, a volume or a mesh becomes a surface in a file.
 
 use crate::args::{Run, Selection};
+use crate::chosen_method::{self, Told};
 use crate::source::{Inside, Source, SourceArguments, place};
 use crate::store::{write_whole, write_whole_by};
 use crate::{Outcome, counted, input, mesh_file, prepare, records, say, significant};
@@ -26,7 +27,7 @@ const SCHEMA: u32 = 1;
 Examples:
   isostudy extract --field 'sqrt(x^2+y^2+z^2) - 1' --bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2 --spacing 0.05 -o ball.ply
   isostudy extract --volume head.nrrd --isovalue 300.5 -o head.glb --quality
-  isostudy extract --mesh scan.stl --cells 200 -o remeshed.obj --picture remeshed.png
+  isostudy extract --mesh scan.stl --cells 200 -o even.obj --picture even.png --method bi-relaxed
   isostudy extract configs/paper.toml --only ss_bi")]
 pub(crate) struct Extract {
     /// Study file, such as configs/paper.toml: extract its meshes and measure them
@@ -41,6 +42,12 @@ pub(crate) struct Extract {
     /// integrated clustering [default: integrated; edge-collapse where there is none]
     #[arg(long, value_name = "NAME", value_parser = named::<Clustering>, conflicts_with = "study")]
     clustering: Option<Clustering>,
+    /// A method by its name instead, such as bi-relaxed; `isostudy methods` lists them
+    #[arg(long, value_name = "ID", value_parser = chosen_method::preset, conflicts_with_all = ["study", "recipe", "arrangement", "clustering"])]
+    method: Option<Method>,
+    /// A method as a study file has it instead: '{ kind = "tetrahedra", arrangement = "body-centred", placement = "relaxed" }'
+    #[arg(long, value_name = "TOML", value_parser = chosen_method::recipe, conflicts_with_all = ["study", "arrangement", "clustering"])]
+    recipe: Option<Method>,
     /// Mesh to write, .obj, .ply, .stl or .glb; of a study, the folder for results [default: results/<study id>]
     #[arg(long, short, value_name = "FILE", required_unless_present = "study")]
     out: Option<PathBuf>,
@@ -80,6 +87,16 @@ impl Extract {
         };
         Some(Selection { run, only: self.only.clone() })
     }
+
+    fn method(&self) -> Method {
+        self.method.or(self.recipe).unwrap_or_else(|| {
+            let clustering = self.clustering.unwrap_or(match self.arrangement {
+                Arrangement::BodyCentred | Arrangement::SimpleCubic => Clustering::Integrated,
+                Arrangement::FiveTetrahedra | Arrangement::FaceCentred => Clustering::EdgeCollapse,
+            });
+            Method::Tetrahedra(Tetrahedra { clustering, ..Tetrahedra::new(self.arrangement) })
+        })
+    }
 }
 
 /// What a study calls it.
@@ -99,12 +116,7 @@ pub(crate) fn extract(arguments: &Extract) -> Result<Outcome> {
     let source =
         arguments.source.read()?.context("one of a study, --field, --volume and --mesh is needed")?;
     let grid = source.grid();
-    let chosen = arguments.clustering.unwrap_or(match arguments.arrangement {
-        Arrangement::BodyCentred | Arrangement::SimpleCubic => Clustering::Integrated,
-        Arrangement::FiveTetrahedra | Arrangement::FaceCentred => Clustering::EdgeCollapse,
-    });
-    let method =
-        Method::Tetrahedra(Tetrahedra { clustering: chosen, ..Tetrahedra::new(arguments.arrangement) });
+    let method = arguments.method();
     let execution = Execution { threads: arguments.threads as usize };
     prepare::check_limit(&method, &grid, &execution, source.held, arguments.source.limit())
         .with_context(|| source.place())?;
@@ -126,9 +138,8 @@ pub(crate) fn extract(arguments: &Extract) -> Result<Outcome> {
         let accuracy =
             extract::accuracy(&extraction.mesh, &*source.field, source.isovalue, &grid, &execution)?;
         let cells = method.cells(&grid)?;
-        let report =
-            Report::new((arguments.arrangement, chosen), &source, (&grid, cells), &extraction, &accuracy);
-        say(&if arguments.json { serde_json::to_string_pretty(&report)? } else { report.to_text() })?;
+        let report = Report::new(method, &source, (&grid, cells), &extraction, &accuracy);
+        say(&if arguments.json { serde_json::to_string_pretty(&report)? } else { report.to_text()? })?;
     }
     // With --json standard output is JSON and nothing else.
     if !arguments.json {
@@ -180,8 +191,12 @@ struct Report {
     /// The formula or the file.
     source: String,
     bounds: [[f32; 3]; 2],
-    arrangement: Arrangement,
-    clustering: Clustering,
+    method: Told,
+    /// What tetrahedra have; no key where the method is none of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    arrangement: Option<Arrangement>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clustering: Option<Clustering>,
     isovalue: f32,
     inside: Inside,
     spacing: f32,
@@ -200,7 +215,7 @@ struct Report {
 
 impl Report {
     fn new(
-        (arrangement, clustering): (Arrangement, Clustering),
+        method: Method,
         source: &Source,
         (grid, cells): (&Grid, [u32; 3]),
         extraction: &Extraction,
@@ -208,12 +223,17 @@ impl Report {
     ) -> Self {
         let topology = mesh::topology::topology(&extraction.mesh);
         let is_closed = topology.boundary_edges == 0;
+        let of = match method {
+            Method::Tetrahedra(of) => Some(of),
+            _ => None,
+        };
         Self {
             schema: SCHEMA,
             source: source.name.clone(),
             bounds: [source.bounds.min.to_array(), source.bounds.max.to_array()],
-            arrangement,
-            clustering,
+            method: Told::of(method),
+            arrangement: of.map(|of| of.arrangement),
+            clustering: of.map(|of| of.clustering),
             isovalue: source.asked_isovalue(),
             inside: source.inside,
             spacing: grid.spacing,
@@ -229,7 +249,7 @@ impl Report {
         }
     }
 
-    fn to_text(&self) -> String {
+    fn to_text(&self) -> Result<String> {
         let [x, y, z] = self.cells;
         let (q, t) = (&self.quality, &self.topology);
         let faults = [
@@ -242,9 +262,11 @@ impl Report {
         let faults: Vec<String> =
             faults.iter().filter(|f| f.1 > 0).map(|(name, count)| format!("{count} {name}")).collect();
         let state = if faults.is_empty() { "closed manifold".to_owned() } else { faults.join(", ") };
+        let lattice = self.arrangement.map_or_else(String::new, |of| format!("{of}, "));
         let rows = [
-            ("lattice", format!("{}, {x} x {y} x {z} cubes of {}", self.arrangement, self.spacing)),
-            ("clustering", self.clustering.to_string()),
+            ("method", self.method.to_text()?),
+            ("lattice", format!("{lattice}{x} x {y} x {z} cubes of {}", self.spacing)),
+            ("clustering", self.clustering.map_or_else(|| "none".into(), |of| of.to_string())),
             ("time", format!("{:.3} s", self.extraction_s)),
             ("vertices", t.vertices.to_string()),
             ("triangles", q.triangles.to_string()),
@@ -274,7 +296,7 @@ impl Report {
             ("to the surface", way(&self.accuracy.distance) + &lost(self.accuracy.lost_points)),
             ("from it", self.accuracy.distance_to_mesh.as_ref().map_or_else(String::new, way)),
         ];
-        rows.map(|(name, value)| format!("{name:<15} {value}")).join("\n")
+        Ok(rows.map(|(name, value)| format!("{name:<15} {value}")).join("\n"))
     }
 }
 

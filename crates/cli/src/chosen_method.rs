@@ -1,0 +1,125 @@
+//! A method on the command line: by its name, or by the recipe that a study file would have for it.
+
+use extract::{Method, Preset, presets};
+use serde::{Deserialize, Serialize};
+use toml::de::ValueDeserializer;
+
+/// The kinds of recipe that a study alone can have, and why.
+const OF_A_STUDY: [(&str, &str); 2] = [
+    (
+        "program",
+        "programs are methods of a study, in whose folder they are found and by whose limits they are held; see `isostudy study`",
+    ),
+    (
+        "meshes",
+        "finished meshes belong to the objects of a study; what is extracted here is none of them. See `isostudy study`",
+    ),
+];
+/// The kinds that go without one.
+const KINDS: &str = "tetrahedra";
+
+/// A method as reports name it.
+#[derive(Debug, Serialize)]
+pub(crate) struct Told {
+    /// The name of the preset that it is, if it is one.
+    id: Option<&'static str>,
+    /// The same in words.
+    label: Option<&'static str>,
+    /// What a study file says of it, defaults written out.
+    recipe: Method,
+}
+
+impl Told {
+    /// Looks for the preset that makes the same meshes.
+    pub(crate) fn of(method: Method) -> Self {
+        let preset = presets().iter().find(|preset| preset.method == method);
+        Self { id: preset.map(|of| of.id), label: preset.map(|of| of.label), recipe: method }
+    }
+
+    /// The name, or else the recipe.
+    ///
+    /// # Errors
+    /// If the recipe cannot be written as TOML, which each can.
+    pub(crate) fn to_text(&self) -> Result<String, toml::ser::Error> {
+        match (self.id, self.label) {
+            (Some(id), Some(label)) => Ok(format!("{id}: {label}")),
+            _ => Ok(toml::Value::try_from(self.recipe)?.to_string()),
+        }
+    }
+}
+
+/// The method of a preset's id.
+///
+/// # Errors
+/// If no preset has it; those that there are are named.
+pub(crate) fn preset(id: &str) -> Result<Method, String> {
+    let found = presets().iter().find(|preset| preset.id == id);
+    let known = || presets().iter().map(|Preset { id, .. }| *id).collect::<Vec<_>>().join(", ");
+    found
+        .map(|preset| preset.method)
+        .ok_or_else(|| format!("no method has this name; `isostudy methods` explains those that do: {}", known()))
+}
+
+/// The method of a recipe, an inline table as in a study file.
+///
+/// # Errors
+/// If it is no TOML, no table, or of a kind that goes with studies alone; if a key or a value is unknown, with those that are known.
+pub(crate) fn recipe(text: &str) -> Result<Method, String> {
+    let value = ValueDeserializer::parse(text).and_then(toml::Value::deserialize);
+    let value = value.map_err(|error| error.to_string().trim_end().to_owned())?;
+    let toml::Value::Table(table) = &value else {
+        return Err("must be a table, such as { kind = \"tetrahedra\", arrangement = \"body-centred\" }".into());
+    };
+    let kind = match table.get("kind") {
+        Some(toml::Value::String(kind)) => kind.as_str(),
+        Some(other) => return Err(format!("kind = {other}: allowed: \"{KINDS}\"")),
+        None => return Err(format!("kind is missing; allowed: \"{KINDS}\"")),
+    };
+    if let Some((_, why)) = OF_A_STUDY.iter().find(|(of, _)| *of == kind) {
+        return Err(format!("kind = \"{kind}\": {why}; allowed here: \"{KINDS}\""));
+    }
+    // Errors in values do not say their key, for what has a kind is read twice.
+    let known = Method::deserialize(value.clone()).map_err(|error| error.message().to_owned());
+    known.map_err(|error| match guilty(table) {
+        Some((key, value)) => format!("{key} = {value}: {error}"),
+        None => error,
+    })
+}
+
+/// The one key whose removal mends a recipe, or whose value alone is wrong.
+fn guilty(table: &toml::Table) -> Option<(&String, &toml::Value)> {
+    let mended = |key: &str| {
+        let mut rest = table.clone();
+        rest.remove(key);
+        Method::deserialize(toml::Value::Table(rest)).is_ok()
+    };
+    table.iter().find(|(key, _)| mended(key))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use extract::{Arrangement, Placement, Tetrahedra};
+
+    #[test]
+    fn a_recipe_has_the_defaults_of_the_library() {
+        let text = "{ kind = \"tetrahedra\", arrangement = \"body-centred\", placement = \"relaxed\" }";
+        let relaxed = Tetrahedra { placement: Placement::Relaxed, ..Tetrahedra::new(Arrangement::BodyCentred) };
+        assert_eq!(recipe(text), Ok(Method::Tetrahedra(relaxed)));
+        assert_eq!(preset("bi-relaxed"), recipe(text));
+    }
+
+    #[test]
+    fn what_is_told_is_read_again() {
+        for preset in presets() {
+            let told = Told::of(preset.method);
+            assert_eq!((told.id, told.label), (Some(preset.id), Some(preset.label)));
+            assert_eq!(told.to_text().unwrap(), format!("{}: {}", preset.id, preset.label));
+            assert_eq!(recipe(&toml::Value::try_from(told.recipe).unwrap().to_string()), Ok(preset.method));
+        }
+        let own = Tetrahedra { refine_crossings: true, ..Tetrahedra::new(Arrangement::SimpleCubic) };
+        let told = Told::of(Method::Tetrahedra(own));
+        assert_eq!((told.id, told.label), (None, None));
+        assert_eq!(recipe(&told.to_text().unwrap()), Ok(Method::Tetrahedra(own)));
+    }
+}
