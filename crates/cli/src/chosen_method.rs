@@ -55,9 +55,9 @@ impl Told {
 pub(crate) fn preset(id: &str) -> Result<Method, String> {
     let found = presets().iter().find(|preset| preset.id == id);
     let known = || presets().iter().map(|Preset { id, .. }| *id).collect::<Vec<_>>().join(", ");
-    found
-        .map(|preset| preset.method)
-        .ok_or_else(|| format!("no method has this name; `isostudy methods` explains those that do: {}", known()))
+    found.map(|preset| preset.method).ok_or_else(|| {
+        format!("no method has this name; `isostudy methods` explains those that do: {}", known())
+    })
 }
 
 /// The method of a recipe, an inline table as in a study file.
@@ -68,7 +68,9 @@ pub(crate) fn recipe(text: &str) -> Result<Method, String> {
     let value = ValueDeserializer::parse(text).and_then(toml::Value::deserialize);
     let value = value.map_err(|error| error.to_string().trim_end().to_owned())?;
     let toml::Value::Table(table) = &value else {
-        return Err("must be a table, such as { kind = \"tetrahedra\", arrangement = \"body-centred\" }".into());
+        return Err(
+            "must be a table, such as { kind = \"tetrahedra\", arrangement = \"body-centred\" }".into()
+        );
     };
     let kind = match table.get("kind") {
         Some(toml::Value::String(kind)) => kind.as_str(),
@@ -104,7 +106,8 @@ mod tests {
     #[test]
     fn a_recipe_has_the_defaults_of_the_library() {
         let text = "{ kind = \"tetrahedra\", arrangement = \"body-centred\", placement = \"relaxed\" }";
-        let relaxed = Tetrahedra { placement: Placement::Relaxed, ..Tetrahedra::new(Arrangement::BodyCentred) };
+        let relaxed =
+            Tetrahedra { placement: Placement::Relaxed, ..Tetrahedra::new(Arrangement::BodyCentred) };
         assert_eq!(recipe(text), Ok(Method::Tetrahedra(relaxed)));
         assert_eq!(preset("bi-relaxed"), recipe(text));
     }

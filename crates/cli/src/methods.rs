@@ -66,7 +66,10 @@ pub(crate) struct Methods {
 /// If standard output cannot be written.
 pub(crate) fn methods(arguments: &Methods) -> Result<()> {
     say(&if arguments.json {
-        serde_json::to_string_pretty(&List { schema: SCHEMA, methods: presets().iter().map(Entry::of).collect() })?
+        serde_json::to_string_pretty(&List {
+            schema: SCHEMA,
+            methods: presets().iter().map(Entry::of).collect(),
+        })?
     } else {
         text()
     })
@@ -111,9 +114,13 @@ fn text() -> String {
         lines.push(format!("{:<INDENT$}promises {words}", ""));
         lines.push(format!("{:<INDENT$}source   {}", "", preset.source));
     }
-    lines.push("\nPromises hold for every mesh, whatever the field. What is not promised may still hold for one.".into());
+    lines.push(
+        "\nPromises hold for every mesh, whatever the field. What is not promised may still hold for one."
+            .into(),
+    );
     lines.extend(PROMISES.iter().map(|of| format!("  {:<17}{}", of.word, of.meaning)));
-    lines.push("\n`isostudy extract --method ID` takes a name, --recipe any other choice of settings.".into());
+    lines
+        .push("\n`isostudy extract --method ID` takes a name, --recipe any other choice of settings.".into());
     lines.push("The keys of recipes are explained in docs/study-file.md.".into());
     lines.join("\n")
 }

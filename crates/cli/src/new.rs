@@ -34,7 +34,10 @@ pub(crate) fn new(arguments: &New) -> Result<()> {
     let (study, target) = (folder.join("study.toml"), folder.join(TARGET));
     for place in [folder.as_path(), &folder.join("cpu")] {
         if fs::symlink_metadata(place).is_ok() && !place.is_dir() {
-            bail!("{}: is not a folder; the study goes into a folder that is new or has no study yet", place.display());
+            bail!(
+                "{}: is not a folder; the study goes into a folder that is new or has no study yet",
+                place.display()
+            );
         }
     }
     for file in [&study, &target] {
@@ -44,7 +47,8 @@ pub(crate) fn new(arguments: &New) -> Result<()> {
     }
     store::write_new(&target, TARGET_TEXT.as_bytes())?;
     let id = id(folder)?;
-    if let Err(error) = store::write_new(&study, STUDY.replacen(ID, &format!("id = \"{id}\""), 1).as_bytes()) {
+    if let Err(error) = store::write_new(&study, STUDY.replacen(ID, &format!("id = \"{id}\""), 1).as_bytes())
+    {
         store::remove_if_there(&target)?;
         return Err(error);
     }
@@ -53,7 +57,10 @@ pub(crate) fn new(arguments: &New) -> Result<()> {
     tell!("Change it, and then:");
     for (command, what) in [
         (format!("isostudy design check {named}"), "is its questionnaire sound?"),
-        (format!("isostudy study {named}"), format!("makes meshes, animations, times: results/{id}/index.html").as_str()),
+        (
+            format!("isostudy study {named}"),
+            format!("makes meshes, animations, times: results/{id}/index.html").as_str(),
+        ),
         (format!("isostudy serve {named}"), "puts the questions to people (`bundle` does without a server)"),
     ] {
         tell!("  {command}\n      {what}");
@@ -93,9 +100,12 @@ mod tests {
     #[test]
     fn ids_are_made_of_what_they_may_have() {
         let folder = tempfile::tempdir().unwrap();
-        for (name, want) in
-            [("hills", "hills"), ("Two Methods_2", "two-methods-2"), ("-a--b-", "a-b"), ("\u{e4}", "my-study")]
-        {
+        for (name, want) in [
+            ("hills", "hills"),
+            ("Two Methods_2", "two-methods-2"),
+            ("-a--b-", "a-b"),
+            ("\u{e4}", "my-study"),
+        ] {
             let path = folder.path().join(name);
             fs::create_dir(&path).unwrap();
             assert_eq!(id(&path).unwrap(), want);

@@ -91,7 +91,7 @@ fn numbers_end_where_the_page_says() {
             tried += 1;
         }
     }
-    assert!(tried > 40, "{tried}");
+    assert!(tried >= 40, "{tried}");
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn names_are_those_that_are_taken() {
             tried += 1;
         }
     }
-    assert_eq!(tried, 12, "names");
+    assert_eq!(tried, 13);
 }
 
 #[test]
@@ -300,6 +300,7 @@ fn full_study() -> StudyFile {
             near: 1.0,
             far: 1.0,
             supersampling: 1,
+            look: StimulusLook::Flat,
         },
         shading: ShadingSection {
             light: [0.0; 3],
@@ -307,6 +308,9 @@ fn full_study() -> StudyFile {
             shade: [0.0; 3],
             highlight: [0.0; 3],
             background: [0.0; 3],
+            light_follows: LightFollows::Camera,
+            ambient: 1.0,
+            error_scale: 1.0,
         },
         stimuli: StimuliSection { pair_scale: 1 },
         stills: vec![StillSection {
@@ -315,6 +319,7 @@ fn full_study() -> StudyFile {
             configuration: id(),
             spacing: 1.0,
             looks: vec![Look::Smooth],
+            turntable: true,
         }],
         benchmark: BenchmarkSection {
             warmup: 1,

@@ -1,0 +1,374 @@
+//! `isostudy methods`, `extract --method` and `--recipe`, and `isostudy new`, as a user runs them; and the keys of
+//! `docs/study-file.md` that crates other than `design` read.
+
+#[path = "../crates/design/tests/page/mod.rs"]
+mod page;
+
+use extract::{Method, presets};
+use page::{Row, Section, sections};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::process::Command;
+use toml::Table;
+
+struct Folder(tempfile::TempDir);
+
+struct Said {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    fn run(&self, arguments: &[&str]) -> Said {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
+        let output = command.args(arguments).current_dir(self.0.path()).output().unwrap();
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        Said { code: output.status.code().unwrap(), out: text(&output.stdout), err: text(&output.stderr) }
+    }
+
+    fn succeed(&self, arguments: &[&str]) -> Said {
+        let said = self.run(arguments);
+        assert_eq!(said.code, 0, "{arguments:?}: {} {}", said.out, said.err);
+        said
+    }
+
+    /// A ball of 10 cells, by a method; what is told of it.
+    fn ball(&self, method: &[&str]) -> Value {
+        let ball = ["extract", "--field", "sqrt(x^2+y^2+z^2) - 1", "--bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2"];
+        let said =
+            self.succeed(&[&ball[..], &["--cells", "10", "-o", "ball.ply", "--json"], method].concat());
+        serde_json::from_str(&said.out).unwrap()
+    }
+
+    /// What is said of a recipe that is refused; nothing is written then.
+    fn refused(&self, recipe: &str) -> String {
+        let ball = ["extract", "--field", "x", "--bounds=-1,-1,-1,1,1,1", "-o", "a.ply", "--recipe", recipe];
+        let said = self.run(&ball);
+        assert!(said.code == 2 && !self.path("a.ply").exists(), "{recipe}: {}", said.err);
+        said.err
+    }
+}
+
+#[test]
+fn every_method_of_the_list_makes_a_ball() {
+    let folder = Folder::new();
+    let list: Value = serde_json::from_str(&folder.succeed(&["methods", "--json"]).out).unwrap();
+    let methods = list["methods"].as_array().unwrap();
+    let ids: Vec<&str> = methods.iter().map(|method| method["id"].as_str().unwrap()).collect();
+    assert_eq!(ids, presets().iter().map(|preset| preset.id).collect::<Vec<_>>());
+    let text = folder.succeed(&["methods"]).out;
+    for method in methods {
+        let id = method["id"].as_str().unwrap();
+        let label = method["label"].as_str().unwrap();
+        let lines =
+            text.lines().filter(|line| line.split_whitespace().next() == Some(id) && line.ends_with(label));
+        assert_eq!(lines.count(), 1, "{id} in the text");
+        let report = folder.ball(&["--method", id]);
+        assert_eq!(report["method"]["id"], id);
+        assert_eq!(report["method"]["recipe"], method["recipe"]);
+        assert_eq!(report["arrangement"], method["recipe"]["arrangement"]);
+        // A ball of 10 cells is seen by all of them; what is promised is kept.
+        let volume = report["volume"].as_f64();
+        let is_closed = report["topology"]["boundary_edges"] == 0;
+        let is_manifold =
+            ["non_manifold_edges", "misoriented_edges", "non_manifold_vertices", "duplicate_faces"]
+                .iter()
+                .all(|fault| report["topology"][fault] == 0);
+        assert!(is_closed || method["promises"]["closed_off_the_box"] == false, "{id}");
+        assert!(is_manifold || method["promises"]["manifold"] == false, "{id}");
+        let share = volume.unwrap() / (4.0 / 3.0 * std::f64::consts::PI);
+        assert!((0.9..1.02).contains(&share), "{id}: {share}");
+    }
+}
+
+#[test]
+fn a_recipe_is_the_method_that_it_spells() {
+    let folder = Folder::new();
+    let bytes = || std::fs::read(folder.path("ball.ply")).unwrap();
+    let relaxed = "{ kind = \"tetrahedra\", arrangement = \"body-centred\", placement = \"relaxed\" }";
+    let report = folder.ball(&["--recipe", relaxed]);
+    assert_eq!(report["method"]["label"], "body-centred, integrated, relaxed");
+    let spelt = bytes();
+    folder.ball(&["--method", "bi-relaxed"]);
+    assert_eq!(bytes(), spelt);
+    // Another mesh; and the older words name the method as well.
+    let report = folder.ball(&["--arrangement", "simple-cubic", "--clustering", "none"]);
+    assert_eq!((&report["method"]["id"], &report["clustering"]), (&"su".into(), &"none".into()));
+    assert_ne!(bytes(), spelt);
+    // A method without a name is told by its recipe.
+    let own = "{ kind = \"tetrahedra\", arrangement = \"simple-cubic\", refine_crossings = true }";
+    let report = folder.ball(&["--recipe", own]);
+    assert!(report["method"]["id"].is_null() && report["method"]["recipe"]["refine_crossings"] == true);
+    let said = folder.succeed(&[
+        "extract",
+        "--field",
+        "x^2+y^2+z^2-1",
+        "--bounds=-2,-2,-2,2,2,2",
+        "--cells=9",
+        "-o=a.ply",
+        "--quality",
+        "--recipe",
+        own,
+    ]);
+    let line = said.out.lines().find(|line| line.starts_with("method ")).unwrap();
+    assert!(line.contains("refine_crossings = true") && line.contains("simple-cubic"), "{line}");
+}
+
+#[test]
+fn what_is_no_recipe_is_refused_with_its_place_and_what_is_allowed() {
+    let folder = Folder::new();
+    let body = "kind = \"tetrahedra\", arrangement = \"body-centred\"";
+    for (recipe, parts) in [
+        (format!("{{ {body}, placment = \"relaxed\" }}"), &["placment = \"relaxed\"", "`placement`"][..]),
+        (format!("{{ {body}, command = [\"a\"] }}"), &["command = [\"a\"]", "`refine_crossings`"]),
+        (format!("{{ {body}, files = {{ a = \"a.ply\" }} }}"), &["unknown field `files`", "`clustering`"]),
+        (format!("{{ {body}, placement = \"near\" }}"), &["placement = \"near\"", "`projected`, `relaxed`"]),
+        (format!("{{ {body}, refine_crossings = 4 }}"), &["refine_crossings = 4", "boolean"]),
+        (format!("{{ {body}"), &["line 1, column", "unclosed inline table"]),
+        (format!("{{ {body} }} x"), &["line 1, column"]),
+        ("7".into(), &["must be a table"]),
+        ("{ arrangement = \"body-centred\" }".into(), &["kind is missing", "\"tetrahedra\""]),
+        ("{ kind = \"tetrahedra\" }".into(), &["missing field `arrangement`"]),
+        ("{ kind = \"cubes\" }".into(), &["`cubes`", "`tetrahedra`"]),
+        ("{ kind = \"program\", command = [\"a\"] }".into(), &["kind = \"program\"", "of a study"]),
+        ("{ kind = \"meshes\", files = {} }".into(), &["kind = \"meshes\"", "of a study"]),
+    ] {
+        let error = folder.refused(&recipe);
+        assert!(
+            error.contains("--recipe") && parts.iter().all(|part| error.contains(part)),
+            "{recipe}: {error}"
+        );
+    }
+    for other in [["--method", "bi"], ["--clustering", "none"], ["--arrangement", "simple-cubic"]] {
+        let recipe = format!("{{ {body} }}");
+        let said =
+            folder.run(
+                &[
+                    &[
+                        "extract",
+                        "--field",
+                        "x",
+                        "--bounds=-1,-1,-1,1,1,1",
+                        "-o",
+                        "a.ply",
+                        "--recipe",
+                        &recipe,
+                    ][..],
+                    &other,
+                ]
+                .concat(),
+            );
+        assert!(said.code == 2 && said.err.contains("cannot be used with"), "{other:?}: {}", said.err);
+    }
+    let said =
+        folder.run(&["extract", "--field", "x", "--bounds=-1,-1,-1,1,1,1", "-o", "a.ply", "--method", "no"]);
+    assert!(said.code == 2 && said.err.contains("bi-relaxed") && said.err.contains("isostudy methods"));
+}
+
+#[test]
+fn a_new_study_passes_every_check() {
+    let folder = Folder::new();
+    let said = folder.succeed(&["new", "my terrain"]);
+    assert_eq!(said.out, "my terrain/study.toml\n");
+    for next in ["design check", "study", "serve"] {
+        assert!(said.err.contains(&format!("isostudy {next} 'my terrain/study.toml'\n")), "{}", said.err);
+    }
+    let check = folder.succeed(&["design", "check", "my terrain/study.toml"]);
+    assert_eq!(check.out, "my terrain/study.toml: no faults\n");
+    let valid = folder.succeed(&["validate", "my terrain/study.toml"]);
+    assert!(valid.out.ends_with("study.toml: valid; 2 questions in 1 groups, no answers\n"), "{}", valid.out);
+    // It needs nothing but its folder, and has surfaces in the middle of their boxes.
+    std::fs::rename(folder.path("my terrain"), folder.path("moved")).unwrap();
+    folder.succeed(&["validate", "moved/study.toml"]);
+    for id in ["torus_bi", "torus_bi-relaxed", "cliffs_bi", "cliffs_bi-relaxed"] {
+        let panel =
+            folder.succeed(&["inspect", id, "--study", "moved/study.toml", "--iterations", "1", "--json"]);
+        assert!(panel.out.contains("\"boundary_edges\": 0"), "{id}: {}", panel.out);
+    }
+    let id = |name: &str| folder.read(name).parse::<Table>().unwrap()["study"]["id"].clone();
+    assert_eq!(id("moved/study.toml").as_str(), Some("my-terrain"));
+}
+
+#[test]
+fn nothing_is_written_over() {
+    let folder = Folder::new();
+    folder.succeed(&["new", "a/b"]);
+    std::fs::write(folder.path("a/b/study.toml"), "mine").unwrap();
+    let listing = || {
+        let mut found: Vec<PathBuf> = ["", "a", "a/b", "a/b/cpu"]
+            .iter()
+            .flat_map(|name| std::fs::read_dir(folder.path(name)).unwrap().map(|entry| entry.unwrap().path()))
+            .collect();
+        found.sort();
+        found
+    };
+    let before = listing();
+    let said = folder.run(&["new", "a/b"]);
+    assert!(said.code == 2 && said.err.contains("a/b/study.toml: is there already"), "{}", said.err);
+    // The profile alone is in the way as well; and the study is not written then.
+    std::fs::remove_file(folder.path("a/b/study.toml")).unwrap();
+    let said = folder.run(&["new", "a/b"]);
+    assert!(said.code == 2 && said.err.contains("x86-64-v3.toml: is there already"), "{}", said.err);
+    std::fs::write(folder.path("a/b/study.toml"), "mine").unwrap();
+    assert_eq!((listing(), folder.read("a/b/study.toml").as_str()), (before, "mine"));
+    for (file, name) in [("file", "file"), ("c/cpu", "c")] {
+        std::fs::create_dir_all(folder.path(file).parent().unwrap()).unwrap();
+        std::fs::write(folder.path(file), "mine").unwrap();
+        let said = folder.run(&["new", name]);
+        assert!(said.code == 2 && said.err.contains(&format!("{file}: is not a folder")), "{}", said.err);
+        assert_eq!(folder.read(file), "mine");
+        assert!(!folder.path("c/study.toml").exists());
+    }
+    // A folder with other files will do.
+    std::fs::create_dir(folder.path("d")).unwrap();
+    std::fs::write(folder.path("d/notes"), "mine").unwrap();
+    folder.succeed(&["new", "d"]);
+    assert_eq!(folder.read("d/notes"), "mine");
+}
+
+fn section(table: &str, kind: &str) -> Section {
+    let mut found = sections().into_iter();
+    found
+        .find(|section| section.table == table && section.kind.as_deref() == Some(kind))
+        .expect("a section of the page")
+}
+
+fn keys(section: &Section) -> BTreeSet<String> {
+    section.rows.iter().map(|row| row.key.clone()).collect()
+}
+
+/// The keys that a message lists as allowed.
+fn quoted(message: &str) -> Vec<String> {
+    let (_, known) = message.split_once("expected").expect("what is allowed is said");
+    known.split('`').skip(1).step_by(2).map(str::to_owned).collect()
+}
+
+#[test]
+fn the_page_has_the_keys_and_names_of_tetrahedra() {
+    let section = section("methods.recipe", "tetrahedra");
+    let read = |keys: Table| toml::Value::Table(keys).try_into::<Method>();
+    let example: Table = section.examples[0].parse().unwrap();
+    let recipe = example["recipe"].as_table().unwrap().clone();
+    assert!(read(recipe.clone()).is_ok());
+    let with = |key: &str, value: toml::Value| {
+        let mut recipe = recipe.clone();
+        recipe.insert(key.into(), value);
+        read(recipe).map_err(|error| error.message().to_owned())
+    };
+    let known = quoted(&with("no_such_key", 1.into()).unwrap_err());
+    assert_eq!(keys(&section), known.into_iter().collect());
+    let named: Vec<&Row> = section.rows.iter().filter(|row| row.holds == "name").collect();
+    assert_eq!(named.len(), 5);
+    for row in named {
+        assert_eq!(row.names(), quoted(&with(&row.key, "no-such-name".into()).unwrap_err()), "{}", row.key);
+    }
+    // What is left out is what the page says.
+    let mut least: Table = [("kind", "tetrahedra"), ("arrangement", "body-centred")]
+        .map(|(key, value)| (key.to_owned(), value.into()))
+        .into_iter()
+        .collect();
+    let left_out = read(least.clone()).unwrap();
+    for row in section.rows.iter().filter(|row| !row.is_needed()) {
+        least.insert(row.key.clone(), row.default.trim_matches('`').parse().unwrap());
+    }
+    assert_eq!(read(least).unwrap(), left_out);
+}
+
+#[test]
+fn the_page_has_the_keys_of_what_the_study_hands_on() {
+    let folder = Folder::new();
+    folder.succeed(&["new", "a"]);
+    let study = folder.read("a/study.toml");
+    let recipe =
+        "recipe = { kind = \"tetrahedra\", arrangement = \"body-centred\", clustering = \"integrated\" }";
+    let field = "field = { kind = \"terrain\", character = \"cliffs\", seed = 2 }";
+    assert!(study.contains(recipe) && study.contains(field));
+    for (table, kind, from, to) in [
+        (
+            "objects.field",
+            "terrain",
+            field,
+            "field = { kind = \"terrain\", character = \"hills\", no_such_key = 1 }",
+        ),
+        (
+            "methods.recipe",
+            "program",
+            recipe,
+            "recipe = { kind = \"program\", command = [\"true\"], no_such_key = 1 }",
+        ),
+        ("methods.recipe", "meshes", recipe, "recipe = { kind = \"meshes\", files = {}, no_such_key = 1 }"),
+    ] {
+        std::fs::write(folder.path("a/other.toml"), study.replacen(from, to, 1)).unwrap();
+        let said = folder.run(&["validate", "a/other.toml"]);
+        assert_eq!(said.code, 2);
+        assert_eq!(
+            keys(&section(table, kind)),
+            quoted(&said.err).into_iter().collect(),
+            "{kind}: {}",
+            said.err
+        );
+    }
+}
+
+#[test]
+fn the_page_has_the_defaults_of_terrains() {
+    let section = section("objects.field", "terrain");
+    use field::TerrainCharacter::{Caves, Cliffs, Hills};
+    for (place, character) in [Hills, Cliffs, Caves].into_iter().enumerate() {
+        // Written out, so that a setting that is added does not compile before it is here.
+        let field::TerrainSettings {
+            seed,
+            ground,
+            relief,
+            period,
+            octaves,
+            gain,
+            ridged,
+            billowed,
+            terrace,
+            overhang,
+            overhang_period,
+            caves,
+            cave_period,
+            closed,
+            margin,
+        } = character.settings(1);
+        let defaults = [
+            ("seed", seed.to_string()),
+            ("ground", ground.to_string()),
+            ("relief", relief.to_string()),
+            ("period", period.to_string()),
+            ("octaves", octaves.to_string()),
+            ("gain", gain.to_string()),
+            ("ridged", ridged.to_string()),
+            ("billowed", billowed.to_string()),
+            ("terrace", terrace.to_string()),
+            ("overhang", overhang.to_string()),
+            ("overhang_period", overhang_period.to_string()),
+            ("caves", caves.to_string()),
+            ("cave_period", cave_period.to_string()),
+            ("closed", closed.to_string()),
+            ("margin", margin.to_string()),
+        ];
+        assert_eq!(section.rows.len(), defaults.len() + 1, "and the character");
+        for (key, default) in defaults {
+            let row = section.rows.iter().find(|row| row.key == key).expect("a row of the page");
+            let on_the_page: Vec<&str> = row.default.split(", ").collect();
+            assert_eq!(on_the_page[place % on_the_page.len()], default, "{key} of {character}");
+        }
+    }
+}
