@@ -114,7 +114,7 @@ fn names_are_those_that_are_taken() {
             tried += 1;
         }
     }
-    assert_eq!(tried, 13);
+    assert_eq!(tried, 14);
 }
 
 #[test]
@@ -269,6 +269,7 @@ fn full_study() -> StudyFile {
         recipe: Recipe { kind: text(), settings: Table::new() },
         levels: [(text(), text())].into(),
         budget: Some(budget),
+        look: Some(StimulusLook::Flat),
     };
     let bi = "bi".parse().unwrap();
     StudyFile {
