@@ -1,4 +1,4 @@
-//! The study file, key by key. Every key here is documented in `configs/paper.toml` with unit and range.
+//! The study file, key by key. Every key here is documented in `docs/study-file.md` with unit, range and default.
 //!
 //! These types mirror the file and nothing else: paths are as written (relative to the file's own folder), numbers
 //! are unchecked. [`crate::Study::load`] turns them into something to work from.
