@@ -24,7 +24,7 @@ const PROMISES: [Promise; 5] = [
     Promise {
         key: "manifold",
         word: "manifold",
-        meaning: "an oriented manifold, with or without boundary; no triangle twice, no vertex unused",
+        meaning: "oriented manifold, with or without boundary; no triangle twice, no vertex unused",
         is_made: |of| of.manifold,
     },
     Promise {
