@@ -25,6 +25,9 @@ const TIME_WITHIN: f64 = 0.05;
 /// Extractions of which the median is taken where time is matched.
 const ROUNDS: usize = 5;
 
+/// A spacing, and what it gave.
+type Tried = (f64, f64);
+
 /// What was found for one configuration.
 #[derive(Debug, Serialize, Deserialize)]
 struct Found {
@@ -107,7 +110,7 @@ impl Pipeline<'_> {
         };
         let [key, what] = budget.names();
         // The finest spacing that gives too little, and the coarsest that gives too much.
-        let (mut coarse, mut fine): (Option<(f64, f64)>, Option<(f64, f64)>) = (None, None);
+        let (mut coarse, mut fine): (Option<Tried>, Option<Tried>) = (None, None);
         let mut spacing = start;
         for steps in 1..=MOST_STEPS + MORE_STEPS {
             let found = self.measure(configuration, budget, Wanted::Spacing(spacing, purpose))?;
