@@ -2,6 +2,7 @@
 
 mod answers;
 mod asking;
+mod data;
 mod fixture;
 mod football;
 mod page;

@@ -1,12 +1,10 @@
 //! From answers to counts.
 
-use crate::ballots::{is_asked, method_of_item};
+use crate::frames;
 use design::{MethodId, Study};
 use polars::prelude::*;
 use responses::Responses;
-
-/// Respondent, object, group, and the method chosen, which is nothing for no preference.
-type Choice = (u32, u32, u32, Option<u32>);
+use std::collections::BTreeSet;
 
 /// How often each choice was made in one question, with the sides as the study declares them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -75,34 +73,16 @@ impl Tally {
     /// # Panics
     /// If the answers were read for another study.
     pub fn of(answers: &Responses, study: &Study) -> Self {
-        let items = method_of_item(study, answers);
-        let mut questions = vec![QuestionCount::default(); study.comparisons.len()];
-        let mut chosen: Vec<Choice> = Vec::with_capacity(answers.answers.len());
-        for answer in answers.answers.iter().filter(|answer| is_asked(study, answer)) {
-            let count = &mut questions[answer.question as usize];
-            *match answers.declared_choice(answer) {
-                responses::Choice::Left => &mut count.left,
-                responses::Choice::NoPreference => &mut count.none,
-                responses::Choice::Right => &mut count.right,
-            } += 1;
-            let comparison = &study.comparisons[answer.question as usize];
-            chosen.push((
-                answer.participant,
-                comparison.object as u32,
-                comparison.group as u32,
-                answer.chosen().map(|item| items[item as usize] as u32),
-            ));
+        let frame = frames::answers(Some(study), answers, &BTreeSet::new()).frame;
+        let counted =
+            Counted { study, methods: study.method_ids(), answers: frame.lazy().filter(col("counted")) };
+        let added = "columns of numbers, all of one length";
+        Self {
+            respondents: answers.participants.len(),
+            rows: counted.by_respondent().expect(added),
+            questions: counted.by_question().expect(added),
+            methods: counted.by_method().expect(added),
         }
-        chosen.sort_unstable();
-        let methods = study.method_ids();
-        let row = |same: &[Choice]| {
-            let (respondent, object, group, method) = same[0];
-            let chosen = method.map(|method| methods[method as usize]);
-            TallyRow { respondent, object, group, chosen, answers: same.len() as u32 }
-        };
-        let rows = chosen.chunk_by(|a, b| a == b).map(row).collect();
-        let methods = by_method(study, &questions).expect("columns of numbers, all of one length");
-        Self { respondents: answers.participants.len(), rows, questions, methods }
     }
 
     /// How many people have an answer in the counts.
@@ -116,41 +96,58 @@ impl Tally {
     }
 }
 
-/// Counts of questions added up over those of one object and group.
-fn by_method(study: &Study, questions: &[QuestionCount]) -> PolarsResult<Vec<MethodCount>> {
-    let methods = study.method_ids();
-    let place = |method: MethodId| methods.iter().position(|m| *m == method).map(|place| place as u32);
-    let counts = study.comparisons.iter().zip(questions).flat_map(|(comparison, count)| {
-        let chosen = [
-            (place(comparison.left.method), count.left),
-            (None, count.none),
-            (place(comparison.right.method), count.right),
-        ];
-        chosen.map(|(method, answers)| (comparison.object as u32, comparison.group as u32, method, answers))
-    });
-    let counts: Vec<(u32, u32, Option<u32>, u64)> = counts.collect();
-    let keys = ["object", "group", "chosen"];
-    let added = df!(
-        "object" => counts.iter().map(|count| count.0).collect::<Vec<_>>(),
-        "group" => counts.iter().map(|count| count.1).collect::<Vec<_>>(),
-        "chosen" => counts.iter().map(|count| count.2).collect::<Vec<_>>(),
-        "answers" => counts.iter().map(|count| count.3).collect::<Vec<_>>(),
-    )?
-    .lazy()
-    .filter(col("answers").gt(lit(0_u64)))
-    .group_by(keys.map(col))
-    .agg([col("answers").sum()])
-    .sort(keys, SortMultipleOptions::default())
-    .collect()?;
-    let [object, group, chosen] = keys.map(|key| added.column(key).and_then(|column| column.u32()));
-    let (object, group, chosen, answers) = (object?, group?, chosen?, added.column("answers")?.u64()?);
-    let row = |i| {
-        Some(MethodCount {
-            object: object.get(i)? as usize,
-            group: group.get(i)? as usize,
-            chosen: chosen.get(i).map(|method| methods[method as usize]),
-            answers: answers.get(i)?,
-        })
-    };
-    Ok((0..added.height()).filter_map(row).collect())
+/// The answers that count, as a frame.
+struct Counted<'a> {
+    study: &'a Study,
+    methods: Vec<MethodId>,
+    answers: LazyFrame,
+}
+
+impl Counted<'_> {
+    /// Numbers of answers that are alike in these columns, ordered by them; nothing comes before anything.
+    fn alike<const N: usize>(&self, keys: [&str; N]) -> PolarsResult<Vec<([Option<u32>; N], u32)>> {
+        let by = keys.map(col);
+        let counts = self.answers.clone().group_by(by).agg([len().alias("answers")]);
+        let counts = counts.sort(keys, SortMultipleOptions::default()).collect()?;
+        let answers = counts.column("answers")?.u32()?;
+        let columns: Vec<&UInt32Chunked> =
+            keys.iter().map(|key| counts.column(key)?.u32()).collect::<PolarsResult<_>>()?;
+        let row = |i: usize| (std::array::from_fn(|key| columns[key].get(i)), answers.get(i).unwrap_or(0));
+        Ok((0..counts.height()).map(row).collect())
+    }
+
+    fn method(&self, place: Option<u32>) -> Option<MethodId> {
+        place.map(|place| self.methods[place as usize])
+    }
+
+    fn by_respondent(&self) -> PolarsResult<Vec<TallyRow>> {
+        let alike = self.alike(["participant", "object", "group", "chosen"])?;
+        let row = |([participant, object, group, chosen], answers): ([Option<u32>; 4], u32)| {
+            let chosen = self.method(chosen);
+            Some(TallyRow { respondent: participant? - 1, object: object?, group: group?, chosen, answers })
+        };
+        Ok(alike.into_iter().filter_map(row).collect())
+    }
+
+    fn by_question(&self) -> PolarsResult<Vec<QuestionCount>> {
+        let mut questions = vec![QuestionCount::default(); self.study.comparisons.len()];
+        for ([question, chosen], answers) in self.alike(["question", "chosen"])? {
+            let Some(question) = question.map(|question| question as usize) else { continue };
+            let count = &mut questions[question];
+            *match self.method(chosen) {
+                None => &mut count.none,
+                Some(method) if method == self.study.comparisons[question].left.method => &mut count.left,
+                Some(_) => &mut count.right,
+            } += u64::from(answers);
+        }
+        Ok(questions)
+    }
+
+    fn by_method(&self) -> PolarsResult<Vec<MethodCount>> {
+        let row = |([object, group, chosen], answers): ([Option<u32>; 3], u32)| {
+            let (object, group) = (object? as usize, group? as usize);
+            Some(MethodCount { object, group, chosen: self.method(chosen), answers: answers.into() })
+        };
+        Ok(self.alike(["object", "group", "chosen"])?.into_iter().filter_map(row).collect())
+    }
 }

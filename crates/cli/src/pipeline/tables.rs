@@ -4,7 +4,7 @@ use super::{Meshes, Pipeline};
 use crate::progress::Step;
 use crate::rooms;
 use crate::store::{Inputs, Stamp, Store, Writer, sha256};
-use analysis::{Answered, Figure, Table};
+use analysis::{Answered, Figure, LongFrame, Table};
 use anyhow::{Context, Result};
 use design::Study;
 use design::config::ResponsesSection;
@@ -87,6 +87,7 @@ pub(crate) fn write_without_study(
         write_tables(writer, &tables)?;
         let figures = analysis::figures_of_groups(&groups).context("figures")?;
         write_figures(writer, &figures)?;
+        write_frames(writer, &[analysis::answers_frame(&reading.responses)])?;
         super::report::write(
             writer,
             &analysis::report_of_groups(&title, &reading.responses, &groups, &tables, &figures),
@@ -125,7 +126,16 @@ fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>, gallery: bool) 
     write_figures(writer, &figures)?;
     let report = analysis::report(inputs, &tables, &figures);
     super::report::write(writer, &report, gallery)?;
+    write_frames(writer, &analysis::frames(inputs))?;
     Ok(tables)
+}
+
+/// What tables summarise, row by row, for other programs.
+fn write_frames(writer: &mut Writer<'_>, frames: &[LongFrame]) -> Result<()> {
+    for frame in frames {
+        writer.write(&format!("data/{}.parquet", frame.name), &frame.to_parquet()?)?;
+    }
+    Ok(())
 }
 
 fn write_figures(writer: &mut Writer<'_>, figures: &[Figure]) -> Result<()> {
