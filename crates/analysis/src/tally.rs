@@ -74,14 +74,16 @@ impl Tally {
     /// If the answers were read for another study.
     pub fn of(answers: &Responses, study: &Study) -> Self {
         let frame = frames::answers(Some(study), answers, &BTreeSet::new()).frame;
-        let counted =
-            Counted { study, methods: study.method_ids(), answers: frame.lazy().filter(col("counted")) };
-        let added = "columns of numbers, all of one length";
+        let numbers = "columns of numbers, all of one length";
+        let by_person = Packed::of(&frame, ["participant", "object", "group", "chosen"]).expect(numbers);
+        let by_question = Packed::of(&frame, ["question", "chosen"]).expect(numbers);
+        drop(frame);
+        let questions = count_questions(study, by_question.counts().expect(numbers));
         Self {
             respondents: answers.participants.len(),
-            rows: counted.by_respondent().expect(added),
-            questions: counted.by_question().expect(added),
-            methods: counted.by_method().expect(added),
+            rows: rows(study, by_person.counts().expect(numbers)),
+            methods: by_method(study, &questions).expect(numbers),
+            questions,
         }
     }
 
@@ -96,58 +98,116 @@ impl Tally {
     }
 }
 
-/// The answers that count, as a frame.
-struct Counted<'a> {
-    study: &'a Study,
-    methods: Vec<MethodId>,
-    answers: LazyFrame,
+/// How many rows are alike in some columns, by what they hold.
+type Counts<const N: usize> = Vec<([Option<u32>; N], u32)>;
+
+/// Some columns of the answers that count, as one number per row: the first column weighs most, and nothing is less than anything.
+///
+/// Grouping millions of rows by four columns takes twenty times as long as sorting one and grouping it sorted.
+struct Packed<const N: usize> {
+    numbers: Vec<u64>,
+    /// By column, one more than its largest digit.
+    sizes: [u64; N],
 }
 
-impl Counted<'_> {
-    /// Numbers of answers that are alike in these columns, ordered by them; nothing comes before anything.
-    fn alike<const N: usize>(&self, keys: [&str; N]) -> PolarsResult<Vec<([Option<u32>; N], u32)>> {
-        let by = keys.map(col);
-        let counts = self.answers.clone().group_by(by).agg([len().alias("answers")]);
-        let counts = counts.sort(keys, SortMultipleOptions::default()).collect()?;
-        let answers = counts.column("answers")?.u32()?;
-        let columns: Vec<&UInt32Chunked> =
-            keys.iter().map(|key| counts.column(key)?.u32()).collect::<PolarsResult<_>>()?;
-        let row = |i: usize| (std::array::from_fn(|key| columns[key].get(i)), answers.get(i).unwrap_or(0));
-        Ok((0..counts.height()).map(row).collect())
-    }
-
-    fn method(&self, place: Option<u32>) -> Option<MethodId> {
-        place.map(|place| self.methods[place as usize])
-    }
-
-    fn by_respondent(&self) -> PolarsResult<Vec<TallyRow>> {
-        let alike = self.alike(["participant", "object", "group", "chosen"])?;
-        let row = |([participant, object, group, chosen], answers): ([Option<u32>; 4], u32)| {
-            let chosen = self.method(chosen);
-            Some(TallyRow { respondent: participant? - 1, object: object?, group: group?, chosen, answers })
-        };
-        Ok(alike.into_iter().filter_map(row).collect())
-    }
-
-    fn by_question(&self) -> PolarsResult<Vec<QuestionCount>> {
-        let mut questions = vec![QuestionCount::default(); self.study.comparisons.len()];
-        for ([question, chosen], answers) in self.alike(["question", "chosen"])? {
-            let Some(question) = question.map(|question| question as usize) else { continue };
-            let count = &mut questions[question];
-            *match self.method(chosen) {
-                None => &mut count.none,
-                Some(method) if method == self.study.comparisons[question].left.method => &mut count.left,
-                Some(_) => &mut count.right,
-            } += u64::from(answers);
+impl<const N: usize> Packed<N> {
+    fn of(frame: &DataFrame, columns: [&str; N]) -> PolarsResult<Self> {
+        let mut numbers = vec![0; frame.height()];
+        let mut sizes = [1; N];
+        for (column, size) in columns.into_iter().zip(&mut sizes) {
+            let places = frame.column(column)?.u32()?;
+            *size = u64::from(places.max().unwrap_or(0)) + 2;
+            for (number, place) in numbers.iter_mut().zip(places.iter()) {
+                *number = *number * *size + place.map_or(0, |place| u64::from(place) + 1);
+            }
         }
-        Ok(questions)
+        let mut counted = frame.column("counted")?.bool()?.iter();
+        numbers.retain(|_| counted.next().flatten() == Some(true));
+        Ok(Self { numbers, sizes })
     }
 
-    fn by_method(&self) -> PolarsResult<Vec<MethodCount>> {
-        let row = |([object, group, chosen], answers): ([Option<u32>; 3], u32)| {
-            let (object, group) = (object? as usize, group? as usize);
-            Some(MethodCount { object, group, chosen: self.method(chosen), answers: answers.into() })
-        };
-        Ok(self.alike(["object", "group", "chosen"])?.into_iter().filter_map(row).collect())
+    fn unpack(&self, mut number: u64) -> [Option<u32>; N] {
+        let mut places = [None; N];
+        for (place, size) in places.iter_mut().zip(self.sizes).rev() {
+            *place = (number % size).checked_sub(1).map(|place| place as u32);
+            number /= size;
+        }
+        places
     }
+
+    /// The number of rows of each kind, in the order of their columns.
+    fn counts(mut self) -> PolarsResult<Counts<N>> {
+        let numbers = UInt64Chunked::from_vec("number".into(), std::mem::take(&mut self.numbers));
+        let sorted = numbers.sort(false).into_column();
+        let frame = DataFrame::new(sorted.len(), vec![sorted])?.lazy();
+        // Sorted before, and grouped in that order.
+        let counts = frame.group_by_stable([col("number")]).agg([len().alias("answers")]).collect()?;
+        let (numbers, answers) = (counts.column("number")?.u64()?, counts.column("answers")?.u32()?);
+        let known = numbers.iter().zip(answers.iter());
+        Ok(known.filter_map(|(number, answers)| Some((self.unpack(number?), answers?))).collect())
+    }
+}
+
+fn rows(study: &Study, counts: Counts<4>) -> Vec<TallyRow> {
+    let methods = study.method_ids();
+    let row = |([participant, object, group, chosen], answers): ([Option<u32>; 4], u32)| {
+        let chosen = chosen.map(|method| methods[method as usize]);
+        Some(TallyRow { respondent: participant? - 1, object: object?, group: group?, chosen, answers })
+    };
+    counts.into_iter().filter_map(row).collect()
+}
+
+fn count_questions(study: &Study, counts: Counts<2>) -> Vec<QuestionCount> {
+    let methods = study.method_ids();
+    let mut questions = vec![QuestionCount::default(); study.comparisons.len()];
+    for ([question, chosen], answers) in counts {
+        let Some(question) = question.map(|question| question as usize) else { continue };
+        let count = &mut questions[question];
+        let left = study.comparisons[question].left.method;
+        *match chosen.map(|method| methods[method as usize] == left) {
+            Some(true) => &mut count.left,
+            None => &mut count.none,
+            Some(false) => &mut count.right,
+        } += u64::from(answers);
+    }
+    questions
+}
+
+/// Counts of questions added up over those of one object and group.
+fn by_method(study: &Study, questions: &[QuestionCount]) -> PolarsResult<Vec<MethodCount>> {
+    let methods = study.method_ids();
+    let place = |method: MethodId| methods.iter().position(|m| *m == method).map(|place| place as u32);
+    let counts = study.comparisons.iter().zip(questions).flat_map(|(comparison, count)| {
+        let chosen = [
+            (place(comparison.left.method), count.left),
+            (None, count.none),
+            (place(comparison.right.method), count.right),
+        ];
+        chosen.map(|(method, answers)| (comparison.object as u32, comparison.group as u32, method, answers))
+    });
+    let counts: Vec<(u32, u32, Option<u32>, u64)> = counts.collect();
+    let keys = ["object", "group", "chosen"];
+    let added = df!(
+        "object" => counts.iter().map(|count| count.0).collect::<Vec<_>>(),
+        "group" => counts.iter().map(|count| count.1).collect::<Vec<_>>(),
+        "chosen" => counts.iter().map(|count| count.2).collect::<Vec<_>>(),
+        "answers" => counts.iter().map(|count| count.3).collect::<Vec<_>>(),
+    )?
+    .lazy()
+    .filter(col("answers").gt(lit(0_u64)))
+    .group_by(keys.map(col))
+    .agg([col("answers").sum()])
+    .sort(keys, SortMultipleOptions::default())
+    .collect()?;
+    let [object, group, chosen] = keys.map(|key| added.column(key).and_then(|column| column.u32()));
+    let (object, group, chosen, answers) = (object?, group?, chosen?, added.column("answers")?.u64()?);
+    let row = |i| {
+        Some(MethodCount {
+            object: object.get(i)? as usize,
+            group: group.get(i)? as usize,
+            chosen: chosen.get(i).map(|method| methods[method as usize]),
+            answers: answers.get(i)?,
+        })
+    };
+    Ok((0..added.height()).filter_map(row).collect())
 }
