@@ -7,7 +7,7 @@ mod parquet;
 mod rows;
 mod times;
 
-pub(crate) use answers::answers;
+pub(crate) use answers::{COLUMNS, answers};
 
 use crate::answered::Answered;
 use crate::inputs::Inputs;
@@ -55,7 +55,7 @@ impl LongFrame {
 /// The frames of a study: `answers`, `meshes` and `times`, without those that it has no rows of.
 pub fn frames(inputs: &Inputs<'_>) -> Vec<LongFrame> {
     let of_answers =
-        |answered: &Answered| answers(Some(inputs.study), &answered.responses, &answered.excluded);
+        |answered: &Answered| answers(Some(inputs.study), &answered.responses, &answered.excluded, &COLUMNS);
     let mut frames: Vec<LongFrame> = inputs.answers.map(of_answers).into_iter().collect();
     frames.push(meshes::meshes(inputs.study, inputs.meshes));
     frames.extend(inputs.bench.map(times::times));
@@ -65,7 +65,7 @@ pub fn frames(inputs: &Inputs<'_>) -> Vec<LongFrame> {
 
 /// The frame of answers without a study: items are named as in their file.
 pub fn answers_frame(responses: &Responses) -> LongFrame {
-    answers(None, responses, &BTreeSet::new())
+    answers(None, responses, &BTreeSet::new(), &COLUMNS)
 }
 
 #[cfg(test)]

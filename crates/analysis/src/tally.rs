@@ -73,7 +73,8 @@ impl Tally {
     /// # Panics
     /// If the answers were read for another study.
     pub fn of(answers: &Responses, study: &Study) -> Self {
-        let frame = frames::answers(Some(study), answers, &BTreeSet::new()).frame;
+        let columns = ["participant", "question", "object", "group", "chosen", "counted"];
+        let frame = frames::answers(Some(study), answers, &BTreeSet::new(), &columns).frame;
         let numbers = "columns of numbers, all of one length";
         let by_person = Packed::of(&frame, ["participant", "object", "group", "chosen"]).expect(numbers);
         let by_question = Packed::of(&frame, ["question", "chosen"]).expect(numbers);

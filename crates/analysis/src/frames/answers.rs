@@ -8,7 +8,24 @@ use polars::prelude::*;
 use responses::{Answer, Choice, Responses};
 use std::collections::BTreeSet;
 
-/// Every answer in the order in which it was read, with the sides as they were shown, or as the study lists them where the file
+/// Every column, in the order of the file.
+pub(crate) const COLUMNS: [&str; 13] = [
+    "participant",
+    "question",
+    "object",
+    "group",
+    "role",
+    "left",
+    "right",
+    "choice",
+    "chosen",
+    "sides_recorded",
+    "place",
+    "seconds",
+    "counted",
+];
+
+/// Some columns of every answer in the order in which it was read, with the sides as they were shown, or as the study lists them where the file
 /// does not say.
 ///
 /// Of a study, `left`, `right` and `chosen` are places among its methods, `object` and `group` those among its own with others
@@ -16,8 +33,13 @@ use std::collections::BTreeSet;
 /// what they are called in a file goes nowhere.
 ///
 /// # Panics
-/// If the answers were read for another study.
-pub(crate) fn answers(study: Option<&Study>, responses: &Responses, excluded: &BTreeSet<usize>) -> LongFrame {
+/// If the answers were read for another study, or for a column that is not one of [`COLUMNS`].
+pub(crate) fn answers(
+    study: Option<&Study>,
+    responses: &Responses,
+    excluded: &BTreeSet<usize>,
+    columns: &[&str],
+) -> LongFrame {
     let questions = &responses.questions;
     let (mut objects, mut groups) = (Names::default(), Names::default());
     if let Some(study) = study {
@@ -57,24 +79,27 @@ pub(crate) fn answers(study: Option<&Study>, responses: &Responses, excluded: &B
         let values: BooleanChunked = all().map(of).collect();
         values.with_name(name.into()).into_column()
     };
-    let seconds = all().map(|answer| answer.rt_ms.map(|ms| f64::from(ms) / 1e3));
-    let columns = vec![
-        place("participant", &|answer| Some(answer.participant + 1)),
-        place("question", &|answer| Some(answer.question)),
-        place("object", &|answer| object[answer.question as usize]),
-        place("group", &|answer| group[answer.question as usize]),
-        place("role", &|answer| Some(questions[answer.question as usize].role as u32)),
-        place("left", &|answer| Some(item[seen(answer)[0] as usize])),
-        place("right", &|answer| Some(item[seen(answer)[1] as usize])),
-        place("choice", &|answer| Some(choice(answer) as u32)),
-        place("chosen", &|answer| answer.chosen().map(|chosen| item[chosen as usize])),
-        truth("sides_recorded", &|_| responses.sides_recorded),
-        place("place", &|answer| answer.order),
-        Float64Chunked::from_iter_options("seconds".into(), seconds).into_column(),
-        truth("counted", &|answer| asked(answer) && !excluded.contains(&(answer.participant as usize))),
-    ];
-    let frame = DataFrame::new(responses.answers.len(), columns)
-        .expect("columns of one length, each with its own name");
+    let seconds = || all().map(|answer| answer.rt_ms.map(|ms| f64::from(ms) / 1e3));
+    let column = |&name: &&str| match name {
+        "participant" => place(name, &|answer| Some(answer.participant + 1)),
+        "question" => place(name, &|answer| Some(answer.question)),
+        "object" => place(name, &|answer| object[answer.question as usize]),
+        "group" => place(name, &|answer| group[answer.question as usize]),
+        "role" => place(name, &|answer| Some(questions[answer.question as usize].role as u32)),
+        "left" => place(name, &|answer| Some(item[seen(answer)[0] as usize])),
+        "right" => place(name, &|answer| Some(item[seen(answer)[1] as usize])),
+        "choice" => place(name, &|answer| Some(choice(answer) as u32)),
+        "chosen" => place(name, &|answer| answer.chosen().map(|chosen| item[chosen as usize])),
+        "sides_recorded" => truth(name, &|_| responses.sides_recorded),
+        "place" => place(name, &|answer| answer.order),
+        "seconds" => Float64Chunked::from_iter_options(name.into(), seconds()).into_column(),
+        "counted" => {
+            truth(name, &|answer| asked(answer) && !excluded.contains(&(answer.participant as usize)))
+        }
+        other => panic!("{other} is no column of answers"),
+    };
+    let frame = DataFrame::new(responses.answers.len(), columns.iter().map(column).collect());
+    let frame = frame.expect("columns of one length, each with its own name");
     let texts = vec![
         ("question", questions.iter().map(|question| question.id.clone()).collect()),
         ("object", objects.0),

@@ -54,7 +54,7 @@ fn an_answer_is_on_the_sides_that_were_shown() {
          anna@example.org,3,Q1,{right},{left},left,1500\nbo,,Q1,{left},{right},none,\n"
     );
     let answers = fixture::parse(&text, &study);
-    let long = super::answers(Some(&study), &answers, &BTreeSet::from([1]));
+    let long = super::answers(Some(&study), &answers, &BTreeSet::from([1]), &COLUMNS);
     let methods = [left.method.to_string(), right.method.to_string()];
     assert_eq!(said(&long, "left"), [methods[1].clone(), methods[0].clone()]);
     assert_eq!(said(&long, "right"), methods);
@@ -82,7 +82,7 @@ fn unknown_sides_are_the_listed_ones() {
     let mirrored = &mut answers.answers[0];
     (mirrored.left, mirrored.right, mirrored.choice) = (mirrored.right, mirrored.left, Choice::Left);
     answers.sides_recorded = false;
-    let long = super::answers(Some(&study), &answers, &BTreeSet::new());
+    let long = super::answers(Some(&study), &answers, &BTreeSet::new(), &COLUMNS);
     let comparison = &study.comparisons[answers.answers[0].question as usize];
     assert_eq!(said(&long, "left")[0], comparison.left.method.to_string());
     assert_eq!(said(&long, "choice")[0], "right");
