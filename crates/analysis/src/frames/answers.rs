@@ -8,7 +8,7 @@ use polars::prelude::*;
 use responses::{Answer, Choice, Responses};
 use std::collections::BTreeSet;
 
-/// Every column, in the order of the file.
+/// Every column, in the order of the Parquet file.
 pub(crate) const COLUMNS: [&str; 13] = [
     "participant",
     "question",
@@ -25,8 +25,8 @@ pub(crate) const COLUMNS: [&str; 13] = [
     "counted",
 ];
 
-/// Some columns of every answer in the order in which it was read, with the sides as they were shown, or as the study lists them where the file
-/// does not say.
+/// Some columns of every answer in the order in which it was read, with the sides as they were shown, or as the study lists them
+/// where the file does not say.
 ///
 /// Of a study, `left`, `right` and `chosen` are places among its methods, `object` and `group` those among its own with others
 /// after them; `counted` leaves out controls, repeats, and whoever is `excluded`. Participants are counted from 1, as in tables:
