@@ -87,7 +87,7 @@ fn every_statement_is_there_in_every_format() {
     let ratios = std::fs::read_to_string(fixture.out().join("bench/full/bench_ratios.csv")).unwrap();
     for stage in ["total", "sampling", "vertex", "geometry and clustering", "normals"] {
         let of_stage = |line: &&str| line.split(',').next() == Some(stage);
-        assert_eq!(ratios.lines().filter(of_stage).count(), 27, "{stage}");
+        assert_eq!(ratios.lines().filter(of_stage).count(), 45, "{stage}");
     }
     let machine = std::fs::read_to_string(fixture.out().join("bench/full/machine.csv")).unwrap();
     assert!(machine.contains("\ncompiler,,rustc"), "{machine}");

@@ -70,6 +70,9 @@ fn drafts(inputs: &Inputs<'_>) -> Vec<Draft> {
     drafts.extend(meshes::aspect_ratios(inputs));
     drafts.extend(stages::stage_times(inputs));
     drafts.extend(distributions::aspect_ratios(inputs));
+    if let Some(found) = crate::tables::benchmark::budgets(inputs) {
+        drafts.iter_mut().for_each(|draft| draft.caption += &format!(" {found}"));
+    }
     if let Some(answered) = inputs.answers {
         let Answered { tally, shown, declared, groups, .. } = answered;
         drafts.push(answers::per_question(inputs.study, tally, answered.sides_differ()));

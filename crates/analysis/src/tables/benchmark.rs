@@ -85,6 +85,7 @@ const BLOCKS: &[(&str, &[&str])] = &[
         &[
             "id",
             "resolution",
+            "spacing",
             FACTORS,
             "tetrahedra",
             "vertices",
@@ -187,6 +188,11 @@ fn whole(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Option<Table> {
     let factors = method_columns(study);
     let headings: Vec<String> = factors.iter().map(|&factor| study.factor(factor).heading()).collect();
     let mut columns = vec![("id", "Id"), (MESH_COLUMNS[0].0, MESH_COLUMNS[0].1)];
+    // Where the object's spacing does not hold for all.
+    let matched = study.methods.iter().any(|method| method.budget.is_some());
+    if matched {
+        columns.push(("spacing", "Cube edge"));
+    }
     columns.extend(factors.iter().zip(&headings).map(|(&f, heading)| (&*study.factor(f).name, &**heading)));
     columns.extend(MESH_COLUMNS[1..].iter().map(|&(name, heading, _)| (name, heading)));
     if inputs.bench.is_some() {
@@ -195,6 +201,7 @@ fn whole(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Option<Table> {
     let mut table = Table::new("benchmark", "Benchmark", &columns);
     for (configuration, mesh) in meshes.in_order().filter(|(c, _)| holds(c.object)) {
         let mut row = vec![Cell::text(&mesh.id), (MESH_COLUMNS[0].2)(mesh)];
+        row.extend(matched.then(|| Cell::Number(mesh.spacing, 5)));
         row.extend(factors.iter().map(|&factor| level(study, mesh.id.method, factor)));
         row.extend(MESH_COLUMNS[1..].iter().map(|(_, _, cell)| cell(mesh)));
         if let Some(run) = inputs.bench {
@@ -215,5 +222,17 @@ fn whole(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Option<Table> {
          (zero area or a zero-length edge) are left out of it, and counted as 0 in the columns as published."
             .into(),
     );
+    table.notes.extend(budgets(inputs));
     (!table.rows.is_empty()).then_some(table)
+}
+
+/// Which methods have another spacing than their object, and why, in a sentence.
+pub(crate) fn budgets(inputs: &Inputs<'_>) -> Option<String> {
+    let with_budget = |method: &design::Method| {
+        let budget = method.budget?;
+        let [_, what] = budget.names();
+        Some(format!("{} to as much of {what} as {} has", method.id, budget.of()))
+    };
+    let found: Vec<String> = inputs.study.methods.iter().filter_map(with_budget).collect();
+    (!found.is_empty()).then(|| format!("Spacings were chosen for {}, object by object.", found.join(", ")))
 }
