@@ -72,7 +72,7 @@ fn make(study: &Study, number: usize, object: &ObjectSection) -> Result<Made> {
     let as_it_is = |field: Box<dyn ScalarField + Send>| Ok(Made { field, isovalue });
     match &object.field {
         FieldSection::Sphere { radius } => as_it_is(Box::new(Sphere { radius: *radius as f32 })),
-        FieldSection::Asteroid => as_it_is(Box::new(Asteroid::default())),
+        FieldSection::Asteroid => as_it_is(Box::<Asteroid>::default()),
         FieldSection::Mesh { allow_open: true, .. } => {
             let (source, path) = present_source(study, number, object)?;
             if source != MeshSourceSection::plain(&source.file) {

@@ -185,8 +185,8 @@ fn with_example(section: &Section) -> Table {
 
 /// The table of a section, the first of a list.
 fn place<'t>(study: &'t mut Table, section: &Section) -> Option<&'t mut Table> {
-    let path = section.table.split('.').filter(|name| !name.is_empty() && *name != "cpu");
-    path.fold(Some(study), |table, name| match table?.get_mut(name)? {
+    let mut path = section.table.split('.').filter(|name| !name.is_empty() && *name != "cpu");
+    path.try_fold(study, |table, name| match table.get_mut(name)? {
         Value::Table(table) => Some(table),
         Value::Array(list) => list.first_mut()?.as_table_mut(),
         _ => None,

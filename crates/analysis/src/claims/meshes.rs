@@ -17,9 +17,8 @@ const SAMPLES: Measure = Measure {
     ours: Ours::Mesh(|m| of_tetrahedra(m, |t| t.stored_samples)),
 };
 const DISCARD_AS_PUBLISHED: Measure =
-    Measure { published: |p| p.discard_fraction, ours: Ours::Mesh(|m| discarded_as_published(m)) };
-const DISCARD: Measure =
-    Measure { published: |p| p.discard_fraction, ours: Ours::Mesh(|m| mesh_set::discarded(m)) };
+    Measure { published: |p| p.discard_fraction, ours: Ours::Mesh(discarded_as_published) };
+const DISCARD: Measure = Measure { published: |p| p.discard_fraction, ours: Ours::Mesh(mesh_set::discarded) };
 const SAMPLES_STORED: Measure = Measure {
     published: |p| p.stored_samples as f64 / p.needed_samples as f64,
     ours: Ours::Mesh(|m| {

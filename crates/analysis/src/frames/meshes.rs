@@ -79,7 +79,10 @@ const TETRAHEDRA: [Named<TetrahedraCounts, u64>; 8] = [
     ("edge_bytes", |t| t.edge_bytes),
 ];
 
-const DISTRIBUTIONS: [(&str, fn(&MeshRecord) -> Option<&Distribution>); 9] = [
+/// What is distributed: its name in columns, and where it stands.
+type Described = (&'static str, fn(&MeshRecord) -> Option<&Distribution>);
+
+const DISTRIBUTIONS: [Described; 9] = [
     ("published_aspect_ratio", |m| Some(&m.quality.published_aspect_ratio)),
     ("edge_ratio", |m| Some(&m.quality.edge_ratio)),
     ("radius_ratio", |m| Some(&m.quality.radius_ratio)),

@@ -20,7 +20,10 @@ pub(super) fn times(run: &BenchRun) -> LongFrame {
     LongFrame { name: "times", frame: rows.frame(), texts: Vec::new() }
 }
 
-const STAGES: [(&str, fn(&BenchSample) -> f64); 7] = [
+/// A column of seconds, and where they stand.
+type Timed = (&'static str, fn(&BenchSample) -> f64);
+
+const STAGES: [Timed; 7] = [
     ("allocation_s", |s| s.allocation_s),
     ("sampling_s", |s| s.sampling_s),
     ("vertex_s", |s| s.vertex_s),

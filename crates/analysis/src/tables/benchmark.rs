@@ -201,7 +201,7 @@ fn whole(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Option<Table> {
     let mut table = Table::new("benchmark", "Benchmark", &columns);
     for (configuration, mesh) in meshes.in_order().filter(|(c, _)| holds(c.object)) {
         let mut row = vec![Cell::text(&mesh.id), (MESH_COLUMNS[0].2)(mesh)];
-        row.extend(matched.then(|| Cell::Number(mesh.spacing, 5)));
+        row.extend(matched.then_some(Cell::Number(mesh.spacing, 5)));
         row.extend(factors.iter().map(|&factor| level(study, mesh.id.method, factor)));
         row.extend(MESH_COLUMNS[1..].iter().map(|(_, _, cell)| cell(mesh)));
         if let Some(run) = inputs.bench {

@@ -149,14 +149,15 @@ fn factors(c: &Checker<'_>, sections: &[FactorSection]) -> Result<Vec<FactorSpec
             return c.refuse(format!("factors[{i}].levels"), "[...]", "must list at least two");
         }
         let levels: Vec<LevelSpec> = section.levels.iter().map(|level| spelt(name, level)).collect();
-        let texts: [(&str, fn(&LevelSpec) -> &String); 2] = [("name", |l| &l.label), ("code", |l| &l.code)];
-        for (key, text) in texts {
+        let named = |key: &str, text: fn(&LevelSpec) -> &String| -> Result<(), ConfigError> {
             let texts: Vec<String> = levels.iter().map(|level| text(level).clone()).collect();
             if let Some(j) = texts.iter().position(|text| text.trim().is_empty()) {
                 return c.refuse(format!("factors[{i}].levels[{j}].{key}"), "\"\"", "must be a text");
             }
-            c.distinct(|j| format!("factors[{i}].levels[{j}].{key}"), &texts)?;
-        }
+            c.distinct(|j| format!("factors[{i}].levels[{j}].{key}"), &texts)
+        };
+        named("name", |level| &level.label)?;
+        named("code", |level| &level.code)?;
         let taken = |level: &LevelSpec| {
             let others = factors.iter().flat_map(|of: &FactorSpec| &of.levels);
             others.into_iter().any(|other| other.code == level.code)
