@@ -67,13 +67,14 @@ impl Judgement {
 /// The samples of each configuration, in the order measured.
 pub(super) type Series<'a> = Vec<(&'a ConfigurationId, Vec<&'a BenchSample>)>;
 
-/// Samples by configuration, in the study's order, which is that of the memory measured; what has none comes after, as first
-/// measured.
+/// Samples by configuration, in the study's order, which is that of the memory measured; where none was, in that of ids.
 pub(super) fn by_configuration(run: &BenchRun) -> Series<'_> {
     let mut own: BTreeMap<&ConfigurationId, Vec<&BenchSample>> = BTreeMap::new();
     run.samples.iter().for_each(|sample| own.entry(&sample.id).or_default().push(sample));
-    let order = run.memory.iter().map(|memory| &memory.id).chain(run.samples.iter().map(|sample| &sample.id));
-    order.filter_map(|id| Some((id, own.remove(id)?))).collect()
+    let with_memory = run.memory.iter().map(|memory| &memory.id);
+    let mut series: Series<'_> = with_memory.filter_map(|id| Some((id, own.remove(id)?))).collect();
+    series.extend(own);
+    series
 }
 
 /// The samples of one configuration; `None` if it has none.
