@@ -178,7 +178,7 @@ fn any_method_on_any_object_from_file_to_report() {
     }
     // Another spacing stands in the table, and why under it and under the figures.
     assert_ne!(cell("fo_fp", "spacing"), cell("fo_bi", "spacing"));
-    let why = "Spacings were chosen for fp to as much of triangles as bi has";
+    let why = "Spacings were chosen for fp to have as many triangles as bi";
     for page in ["tables/benchmark.md", "index.html"] {
         assert!(fs::read_to_string(folder.path("out").join(page)).unwrap().contains(why), "{page}");
     }
@@ -271,6 +271,11 @@ fn bad_input_is_refused_before_any_work() {
             "recipe = { kind = \"tetrahedra\", arrangement = \"body-centred\", clustering = \"integrated\" }",
             "recipe = { kind = \"cones\" }",
             vec!["study.toml: methods[0].recipe", "cones", "tetrahedra", "program", "meshes"],
+        ),
+        (
+            "recipe = { kind = \"tetrahedra\", arrangement = \"face-centred\"",
+            "recipe = { kind = \"tetrahedra\", arrangement = \"diamond\"",
+            vec!["study.toml: methods[2].recipe", "diamond", "face-centred`\n"],
         ),
         ("- 0.25\" }", "+ 25\" }", vec!["study.toml: objects[0].field", "no surface"]),
         ("z^2) - 0.25", "z^2 - 0.25", vec!["study.toml: objects[0].field", "text"]),

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 /// An object's field.
-pub(crate) struct Made {
+pub(crate) struct ObjectField {
     /// Inside is above [`isovalue`](Self::isovalue), whatever the study says.
     pub(crate) field: Box<dyn ScalarField + Send>,
     pub(crate) isovalue: f32,
@@ -24,7 +24,7 @@ pub(crate) struct Made {
 /// The scalar fields of a study's objects, each made when it is first asked for.
 pub(crate) struct Fields<'a> {
     study: &'a Study,
-    made: Vec<OnceLock<Made>>,
+    made: Vec<OnceLock<ObjectField>>,
     inputs: Vec<OnceLock<String>>,
 }
 
@@ -50,7 +50,7 @@ impl<'a> Fields<'a> {
     ///
     /// # Errors
     /// If a file cannot be read, is not the one the study names, or has no inside; if a formula or a setting is none.
-    pub(crate) fn get(&self, object: usize) -> Result<&Made> {
+    pub(crate) fn get(&self, object: usize) -> Result<&ObjectField> {
         if self.made[object].get().is_none() {
             let section = &self.study.file.objects[object];
             let field = make(self.study, object, section)
@@ -67,9 +67,9 @@ pub(crate) fn bounds(object: &ObjectSection) -> Bounds {
     Bounds { min: corner(object.min), max: corner(object.max) }
 }
 
-fn make(study: &Study, number: usize, object: &ObjectSection) -> Result<Made> {
+fn make(study: &Study, number: usize, object: &ObjectSection) -> Result<ObjectField> {
     let isovalue = object.isovalue as f32;
-    let as_it_is = |field: Box<dyn ScalarField + Send>| Ok(Made { field, isovalue });
+    let as_it_is = |field: Box<dyn ScalarField + Send>| Ok(ObjectField { field, isovalue });
     match &object.field {
         FieldSection::Sphere { radius } => as_it_is(Box::new(Sphere { radius: *radius as f32 })),
         FieldSection::Asteroid => as_it_is(Box::<Asteroid>::default()),
@@ -99,8 +99,8 @@ fn make(study: &Study, number: usize, object: &ObjectSection) -> Result<Made> {
     }
 }
 
-fn of(source: source::Source) -> Made {
-    Made { field: source.field, isovalue: source.isovalue }
+fn of(source: source::Source) -> ObjectField {
+    ObjectField { field: source.field, isovalue: source.isovalue }
 }
 
 /// The object's box is its own, and so is its isovalue; its spacing belongs to each method.
@@ -292,7 +292,7 @@ pub(crate) fn check(study: &Study) -> Result<()> {
 const PROBES: u32 = 96;
 
 /// Whether a coarse grid, or the study's own where that is finer, finds both sides of the isovalue.
-fn has_both_sides(made: &Made, object: &ObjectSection) -> bool {
+fn has_both_sides(made: &ObjectField, object: &ObjectSection) -> bool {
     let bounds = bounds(object);
     let middle = made.field.sample(0.5 * (bounds.min + bounds.max));
     if let Some((low, high)) = made.field.range(bounds, middle)

@@ -30,6 +30,17 @@ impl<'a> Clock<'a> {
 
     /// Asks a program once, started before and with its samples written, neither of which is timed.
     fn ask(&mut self, number: usize, prepared: &Prepared<'_>, program: &Program) -> Result<Answer, String> {
+        let running = self.started(number, prepared, program)?;
+        let request = prepared.request(Samples::File(&running.samples), running.cells, None);
+        running.worker.extract(&request).map_err(|error| format!("{}: {error}", prepared.id))
+    }
+
+    fn started(
+        &mut self,
+        number: usize,
+        prepared: &Prepared<'_>,
+        program: &Program,
+    ) -> Result<&mut Running, String> {
         let text = |error: &dyn std::fmt::Display| format!("{}: {error}", prepared.id);
         if self.running.get(&number).is_none_or(|running| !running.worker.is_running()) {
             let cells = prepared.cells().map_err(|error| text(&format!("{error:#}")))?;
@@ -38,9 +49,7 @@ impl<'a> Clock<'a> {
             write_samples(&samples, &prepared.samples(cells)).map_err(|error| text(&error))?;
             self.running.insert(number, Running { worker, samples, cells });
         }
-        let running = self.running.get_mut(&number).ok_or_else(|| text(&"not started"))?;
-        let request = prepared.request(Samples::File(&running.samples), running.cells, None);
-        running.worker.extract(&request).map_err(|error| text(&error))
+        self.running.get_mut(&number).ok_or_else(|| text(&"not started"))
     }
 }
 
@@ -64,12 +73,12 @@ impl Measured for Clock<'_> {
             Recipe::Program(program) => {
                 // Started anew, so that no earlier extraction is in its peak.
                 self.running.remove(&number);
+                let before = self.started(number, &prepared, program)?.worker.memory();
                 let answer = self.ask(number, &prepared, program)?;
-                let after = self.running.get_mut(&number).and_then(|running| running.worker.memory());
-                Ok(after.or(answer.memory).map(|memory| PeakBytes {
-                    before_bytes: 0,
-                    peak_before_bytes: 0,
-                    peak_bytes: answer.peak_bytes.unwrap_or(memory.peak_bytes),
+                Ok(before.zip(answer.memory).map(|(before, after)| PeakBytes {
+                    before_bytes: before.resident_bytes,
+                    peak_before_bytes: before.peak_bytes,
+                    peak_bytes: after.peak_bytes,
                 }))
             }
             _ => extractor(&prepared)?.memory(threads),

@@ -105,11 +105,10 @@ fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
             let method = toml::Value::Table(keys).try_into().map_err(|error: toml::de::Error| {
                 let error = error.to_string();
                 let own = format!("`{PROGRAM}`, `{MESHES}`");
-                // The study's own kinds are kinds too.
-                anyhow::Error::msg(match error.split_once("unknown variant") {
-                    Some(_) => format!("{}, {own}", error.trim_end()),
-                    None => error.trim_end().to_owned(),
-                })
+                // The study's own kinds are kinds too; values of other keys have variants as well.
+                let is_kind = error.contains(&format!("unknown variant `{kind}`"));
+                let more = if is_kind { format!(", {own}") } else { String::new() };
+                anyhow::Error::msg(format!("{}{more}", error.trim_end()))
             })?;
             Ok(Recipe::Extractor(match (method, purpose) {
                 (Method::Tetrahedra(of), Purpose::Indexed) => {

@@ -6,7 +6,7 @@ use crate::published_ratio;
 use crate::stage_times::{StageTimes, conditions};
 use crate::table::{Cell, Table};
 use crate::tables::design::{level, method_columns};
-use design::config::FieldSection;
+use design::config::{BudgetSection, FieldSection};
 use design::record::{MeshRecord, Purpose};
 
 /// A column: name in CSV, heading, and its cell.
@@ -230,8 +230,11 @@ fn whole(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Option<Table> {
 pub(crate) fn budgets(inputs: &Inputs<'_>) -> Option<String> {
     let with_budget = |method: &design::Method| {
         let budget = method.budget?;
-        let [_, what] = budget.names();
-        Some(format!("{} to as much of {what} as {} has", method.id, budget.of()))
+        let what = match budget {
+            BudgetSection::TimeOf(of) => format!("as much time as {of}"),
+            _ => format!("as many {} as {}", budget.names()[1], budget.of()),
+        };
+        Some(format!("{} to have {what}", method.id))
     };
     let found: Vec<String> = inputs.study.methods.iter().filter_map(with_budget).collect();
     (!found.is_empty()).then(|| format!("Spacings were chosen for {}, object by object.", found.join(", ")))

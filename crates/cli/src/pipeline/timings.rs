@@ -206,7 +206,9 @@ impl Pipeline<'_> {
     pub(super) fn workload(&self, inputs: Inputs) -> Result<Inputs> {
         let recipes: Vec<_> = self.study.methods.iter().map(|method| (method.id, &method.recipe)).collect();
         let failed = self.failed();
-        let mut inputs = inputs.value("methods", &recipes).value("spacings", &*self.spacings());
+        let mut inputs = inputs
+            .value("methods", &recipes)
+            .value("spacings", &self.spacings().only_for(Purpose::Benchmark));
         if !failed.is_empty() {
             inputs = inputs.value("failed", &failed);
         }
