@@ -140,10 +140,10 @@ impl<const N: usize> Packed<N> {
     fn counts(mut self) -> PolarsResult<Counts<N>> {
         let numbers = UInt64Chunked::from_vec("number".into(), std::mem::take(&mut self.numbers));
         let sorted = numbers.sort(false).into_column();
-        let frame = DataFrame::new(sorted.len(), vec![sorted])?.lazy();
+        let frame = DataFrame::new(sorted.len(), vec![sorted])?;
         // Sorted before, and grouped in that order.
-        let counts = frame.group_by_stable([col("number")]).agg([len().alias("answers")]).collect()?;
-        let (numbers, answers) = (counts.column("number")?.u64()?, counts.column("answers")?.u32()?);
+        let counts = frame.group_by_stable(["number"])?.select(["number"]).count()?;
+        let (numbers, answers) = (counts.column("number")?.u64()?, counts.column("number_count")?.u32()?);
         let known = numbers.iter().zip(answers.iter());
         Ok(known.filter_map(|(number, answers)| Some((self.unpack(number?), answers?))).collect())
     }
@@ -193,13 +193,16 @@ fn by_method(study: &Study, questions: &[QuestionCount]) -> PolarsResult<Vec<Met
         "group" => counts.iter().map(|count| count.1).collect::<Vec<_>>(),
         "chosen" => counts.iter().map(|count| count.2).collect::<Vec<_>>(),
         "answers" => counts.iter().map(|count| count.3).collect::<Vec<_>>(),
-    )?
-    .lazy()
-    .filter(col("answers").gt(lit(0_u64)))
-    .group_by(keys.map(col))
-    .agg([col("answers").sum()])
-    .sort(keys, SortMultipleOptions::default())
-    .collect()?;
+    )?;
+    let added = added.filter(&added.column("answers")?.u64()?.gt(0))?;
+    if added.height() == 0 {
+        return Ok(Vec::new());
+    }
+    let sum = |group: DataFrame| {
+        let answers = group.column("answers")?.u64()?.sum().unwrap_or(0);
+        group.select(keys)?.head(Some(1)).hstack(&[Column::new("answers".into(), [answers])])
+    };
+    let added = added.group_by(keys)?.apply(sum)?.sort(keys, SortMultipleOptions::default())?;
     let [object, group, chosen] = keys.map(|key| added.column(key).and_then(|column| column.u32()));
     let (object, group, chosen, answers) = (object?, group?, chosen?, added.column("answers")?.u64()?);
     let row = |i| {
