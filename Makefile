@@ -1,6 +1,6 @@
 # The entries a reader needs. `make help` lists them.
 
-ISOSTUDY = cargo run --release --locked --quiet --package cli --bin isostudy --
+ISOSTUDY = cargo run --release --locked --quiet --package isostudy --bin isostudy --
 BUNNY ?=
 
 .PHONY: help study test test-long quick bench bench-sweep figures check bunny clean

@@ -1,7 +1,7 @@
 //! Digs holes into the asteroid, chunk by chunk, as a game would: after each edit only the chunks that it touches are
 //! extracted again. Prints the time of an edit, then checks that the chunks are still the mesh of the whole.
 //!
-//! `cargo run --release -p extract --example dig -- [cells along an axis] [cells of a chunk] [edits] [arrangement]`
+//! `cargo run --release -p isostudy-extract --example dig -- [cells along an axis] [cells of a chunk] [edits] [arrangement]`
 
 use std::time::Instant;
 

@@ -1,6 +1,6 @@
 //! A formula becomes a PLY file.
 //!
-//! cargo run --release -p expression --example formula_to_ply -- 'length(length(x, y) - 0.7, z) - 0.3' torus.ply
+//! cargo run --release -p isostudy-expression --example formula_to_ply -- 'length(length(x, y) - 0.7, z) - 0.3' torus.ply
 
 use std::env::args;
 use std::error::Error;

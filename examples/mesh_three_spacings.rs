@@ -1,6 +1,6 @@
 //! A mesh is extracted again from its distance field, at three spacings: even triangles, as many as are wanted.
 //!
-//! cargo run --release -p extract --example mesh_three_spacings -- scan.ply coarse
+//! cargo run --release -p isostudy-extract --example mesh_three_spacings -- scan.ply coarse
 
 use std::env::args;
 use std::error::Error;

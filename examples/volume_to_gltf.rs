@@ -1,6 +1,6 @@
 //! A volume becomes a binary glTF file, which browsers and game engines show.
 //!
-//! cargo run --release -p volume --example volume_to_gltf -- head.nrrd 300.5 head.glb
+//! cargo run --release -p isostudy-volume --example volume_to_gltf -- head.nrrd 300.5 head.glb
 
 use std::env::args;
 use std::error::Error;

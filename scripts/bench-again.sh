@@ -11,7 +11,7 @@ runs=${1:-7}
 dir=${2:-results/again}
 [ "$runs" -ge 2 ] || { echo "bench-again: a build is compared with itself: at least 2 runs, not $runs" >&2; exit 2; }
 scripts/fetch-bunny.sh >/dev/null
-cargo build --release --locked --quiet --package cli --bin isostudy
+cargo build --release --locked --quiet --package isostudy --bin isostudy
 isostudy="${CARGO_TARGET_DIR:-target}/release/isostudy"
 
 for run in $(seq "$runs"); do

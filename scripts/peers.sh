@@ -12,4 +12,4 @@ if [ ! -x cache/methods/bin/python ]; then
 fi
 cache/methods/bin/pip install --quiet --requirement scripts/methods/requirements.txt
 cargo build --release --quiet --manifest-path scripts/peers/Cargo.toml --target-dir target/peers
-exec cargo run --release --locked --quiet --package cli --bin isostudy -- bench configs/peers.toml --allow-programs "$@"
+exec cargo run --release --locked --quiet --package isostudy --bin isostudy -- bench configs/peers.toml --allow-programs "$@"

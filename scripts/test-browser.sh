@@ -16,6 +16,6 @@ mkdir -p "$MODULES"
 [ -f "$MODULES/package.json" ] || echo '{ "private": true }' >"$MODULES/package.json"
 npm install --prefix "$MODULES" --silent --no-audit --no-fund --no-save playwright-core@1.64.1 axe-core@4.14.1 ||
   skip "NPM COULD NOT INSTALL playwright-core AND axe-core"
-cargo build --release --locked --quiet --package cli
+cargo build --release --locked --quiet --package isostudy
 export ISOSTUDY=${CARGO_TARGET_DIR:-$PWD/target}/release/isostudy CHROMIUM MODULES
 node --test tests/browser/questionnaire.mjs

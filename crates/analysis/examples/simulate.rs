@@ -1,6 +1,6 @@
 //! Simulates answers to a study and writes them as its own table: one row a respondent, one column a question.
 //!
-//! `cargo run --release -p analysis --example simulate -- configs/paper.toml 100000 answers.csv [SEED]`
+//! `cargo run --release -p isostudy-analysis --example simulate -- configs/paper.toml 100000 answers.csv [SEED]`
 
 use design::Study;
 use statistics::Outcome;

@@ -1,4 +1,4 @@
-//! Field to mesh and samples to mesh, one thread; `cargo bench -p extract`, or a part of it by name.
+//! Field to mesh and samples to mesh, one thread; `cargo bench -p isostudy-extract`, or a part of it by name.
 //!
 //! `whole` calls the field where the surface can be; `all_samples` has the samples in memory; `stage_` and
 //! `all_samples_stage_` are single stages of the two, as the extractor times them itself. Body-centred, integrated, `CELLS` cells along the

@@ -1,7 +1,7 @@
 //! What each placement of vertices does to triangles and accuracy: the numbers of DESIGN.md, as a Markdown table.
 //! Arguments: cells along an axis (64; the bunny: the spacing that gives in a box of side 2), part of a row's name.
 //!
-//! Times are of the processor, best of a few. `cargo run --release -p extract --example placement`
+//! Times are of the processor, best of a few. `cargo run --release -p isostudy-extract --example placement`
 
 #[path = "../tests/bunny/mod.rs"]
 mod bunny;

@@ -1,6 +1,6 @@
 //! What the guard costs and what it saves, on the evaluation's sphere and asteroid: the numbers of DESIGN.md.
 //!
-//! `cargo run --release -p extract --example topology`
+//! `cargo run --release -p isostudy-extract --example topology`
 
 use extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, Topology, extract};
 use field::{Asteroid, ScalarField, Sphere};

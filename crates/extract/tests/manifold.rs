@@ -2,7 +2,7 @@
 //! loops of the unclustered surface.
 //!
 //! Each volume is extracted with every clustering. The unclustered surface is checked first, then the others against
-//! it, by this file's own survey and by the `mesh` crate's checker. `cargo test --release -p extract -- --ignored`
+//! it, by this file's own survey and by the `mesh` crate's checker. `cargo test --release -p isostudy-extract -- --ignored`
 //! runs the long form.
 
 mod fields;

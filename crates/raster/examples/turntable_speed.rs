@@ -1,5 +1,5 @@
 //! Times the stages of the study's turntables, and leaves pictures to look at:
-//! `cargo run --release -p raster --example turntable_speed -- FOLDER`
+//! `cargo run --release -p isostudy-raster --example turntable_speed -- FOLDER`
 
 #[path = "../tests/shapes/mod.rs"]
 mod shapes;

@@ -1,5 +1,5 @@
 //! What one laptop can do to a study, against a server of one's own, to see that people can answer all the same:
-//! `cargo run --release -p serve --example crowd -- 127.0.0.1:8080 3000 10000 60`
+//! `cargo run --release -p isostudy-serve --example crowd -- 127.0.0.1:8080 3000 10000 60`
 //!
 //! So many connections ask for an animation and never read it, each opened again when the server ends it; so many forms are asked
 //! for as fast as they are dealt; all of it ends after so many seconds. `--example load` meanwhile tells what others notice.

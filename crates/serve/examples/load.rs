@@ -1,5 +1,5 @@
 //! How long answers take to be acknowledged when many people answer at once:
-//! `cargo run --release -p serve --example load -- 127.0.0.1:8080 300 1.0`
+//! `cargo run --release -p isostudy-serve --example load -- 127.0.0.1:8080 300 1.0`
 //!
 //! So many participants begin within the first seconds, each with a connection of their own, and answer a form with this many
 //! seconds between answers. Prints quantiles of the time from sending an answer to its acknowledgement.

@@ -1,6 +1,6 @@
 //! How often intervals cover what is true and tests reject it, counted over simulated studies.
 //!
-//! `cargo test --release -p statistics coverage -- --ignored --nocapture` prints the table of docs/statistics.md.
+//! `cargo test --release -p isostudy-statistics coverage -- --ignored --nocapture` prints the table of docs/statistics.md.
 
 use super::*;
 use crate::{Metric, Participants, Scale, alpha_with_interval, scale};
