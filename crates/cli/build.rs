@@ -7,7 +7,7 @@ use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const ROOMS: [&str; 14] = [
+const ROOMS: [&str; 16] = [
     "mesh",
     "design",
     "responses",
@@ -19,6 +19,8 @@ const ROOMS: [&str; 14] = [
     "raster",
     "bench",
     "statistics",
+    "table",
+    "timing",
     "analysis",
     "serve",
     "cli",

@@ -12,10 +12,10 @@ mod shapes;
 pub(crate) mod times;
 
 use crate::inputs::Inputs;
-use crate::table::{Cell, Table};
 use crate::tally::Tally;
 use crate::verdict::{Verdict, prints_alike, relative_difference};
 use design::published::Claim;
+use table::{Cell, Table};
 
 /// What a claim comes to.
 #[derive(Debug, Clone)]

@@ -6,9 +6,9 @@ mod preferences;
 
 use crate::claims;
 use crate::inputs::Inputs;
-use crate::table::{Cell, Table};
 use crate::tally::Tally;
 use crate::verdict::Verdict;
+use table::{Cell, Table};
 
 /// One published number beside ours.
 #[derive(Debug, Clone)]

@@ -4,31 +4,15 @@ use crate::answered::Answered;
 use crate::inputs::Inputs;
 use design::Study;
 use design::config::FieldSection;
-use design::machine::{Machine, ProfileDifference};
 use design::published::BenchmarkRow;
 use design::record::*;
 use responses::{Mapping, Plan, Responses};
 use std::path::{Path, PathBuf};
 
-pub(crate) fn paper_path() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/paper.toml")
-}
+#[path = "../../timing/src/fixture.rs"]
+mod timed;
 
-/// The paper's study; its bunny is any file that is always there.
-pub(crate) fn study() -> Study {
-    study_with(&[])
-}
-
-/// The paper's study with passages of its file replaced.
-pub(crate) fn study_with(replacements: &[(&str, &str)]) -> Study {
-    let path = paper_path();
-    let mut text = std::fs::read_to_string(&path).unwrap().replace("../cache/bunny.ply", "paper.toml");
-    for (from, to) in replacements {
-        assert!(text.contains(from), "{from} is not in {}", path.display());
-        text = text.replace(from, to);
-    }
-    Study::parse(&text, &path).unwrap()
-}
+pub(crate) use timed::{bench, bench_of, crossed, paper_path, study, study_with, sweep_levels};
 
 pub(crate) fn answers(study: &Study) -> Responses {
     let text = std::fs::read_to_string(study.responses.as_deref().unwrap()).unwrap();
@@ -68,11 +52,6 @@ impl Everything {
             answers: Some(&self.answers),
         }
     }
-}
-
-/// The two letters of a published method.
-pub(crate) fn crossed(method: design::MethodId) -> design::Crossed {
-    design::Crossed::of(method).expect("two letters")
 }
 
 /// Records of all three purposes, one a published row.
@@ -211,71 +190,6 @@ fn spread(mean: f64, sd: f64, low: f64, count: u64, bins: (f64, f64, usize)) -> 
         q95: at(2.1),
         max: mean + 12.0 * sd,
         histogram: Histogram { low: start, high: end, counts, below: 0, above },
-    }
-}
-
-/// Five rounds with a little deterministic unrest, on another machine than the paper's.
-pub(crate) fn bench(study: &Study) -> BenchRun {
-    bench_of(study, 5)
-}
-
-/// The same of so many rounds.
-pub(crate) fn bench_of(study: &Study, rounds: u32) -> BenchRun {
-    let mut samples = Vec::new();
-    for iteration in 0..rounds {
-        for (place, row) in study.published.benchmark.iter().enumerate() {
-            let unrest = 1.4 + 0.03 * f64::from((iteration * 7 + place as u32 * 3) % 5);
-            let [a, s, v, g, n] =
-                [row.allocation_s, row.sampling_s, row.vertex_s, row.geometry_s, row.normals_s]
-                    .map(|t| t * unrest);
-            samples.push(BenchSample {
-                id: row.id.clone(),
-                sitting: 0,
-                iteration,
-                place: place as u32,
-                allocation_s: a,
-                sampling_s: s,
-                vertex_s: v,
-                geometry_s: g,
-                clustering_s: 0.0,
-                normals_s: n,
-                total_s: a + s + v + g + n,
-                reference_s: None,
-            });
-        }
-    }
-    BenchRun {
-        schema: BenchRun::SCHEMA,
-        study: study.file.study.id.clone(),
-        workload: None,
-        imported_from: None,
-        warmup: 1,
-        iterations: rounds,
-        aa_iterations: 0,
-        seed: 1,
-        threads: 2,
-        pinned: None,
-        target: study.target.clone(),
-        machine: Machine {
-            model: Some("Example CPU".into()),
-            cores: Some(2),
-            threads: 2,
-            memory_bytes: Some(8 << 30),
-            os: "linux".into(),
-            features: vec!["avx2".into()],
-            load: Some(0.1),
-            ..Machine::default()
-        },
-        differences: vec![ProfileDifference {
-            property: "model".into(),
-            target: "i7-11700".into(),
-            machine: "Example CPU".into(),
-        }],
-        samples,
-        aa_samples: Vec::new(),
-        load: Vec::new(),
-        memory: Vec::new(),
-        resumed: Vec::new(),
     }
 }
 

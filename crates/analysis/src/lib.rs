@@ -1,6 +1,6 @@
 //! Answers to preference factors, and a study's tables and figures.
 //!
-//! Takes plain records from [`design::record`] and answers that were read ([`responses::Responses`]); gives [`Table`]s that print
+//! Takes plain records from [`design::record`] and answers that were read ([`responses::Responses`]); gives [`table::Table`]s that print
 //! themselves as CSV, Markdown, LaTeX and HTML, and [`Figure`]s as SVG and PNG. Knows nothing of files to write, of
 //! geometry or of command lines. From the counts of answers on, preference factors are exact fractions ([`Fraction`]) until they
 //! are printed.
@@ -18,7 +18,6 @@ pub mod audit;
 mod ballots;
 mod claims;
 mod comparison;
-mod digits;
 mod figures;
 mod fraction;
 mod frames;
@@ -35,12 +34,8 @@ mod published_ratio;
 mod recorded;
 pub mod report;
 pub mod self_test;
-mod stage_times;
-pub mod sweep;
-mod table;
 mod tables;
 mod tally;
-pub mod timing;
 mod verdict;
 mod without_study;
 
@@ -57,7 +52,6 @@ pub use inputs::{AnalysisError, Inputs};
 pub use panel::{PANEL_SCHEMA, Panel, StageTime};
 pub use recorded::Recorded;
 pub use report::{Report, report, report_of_groups};
-pub use table::{Cell, Column, Table};
 pub use tables::audit::audit_table;
 pub use tables::contrasts::pair_tests;
 pub use tables::models::model_tables;

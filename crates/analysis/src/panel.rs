@@ -1,6 +1,5 @@
 //! One configuration at a glance: mesh, generation, timing, geometry.
 
-use crate::digits::counted;
 use design::machine::Machine;
 use design::record::{BenchSample, Distribution, MeshRecord};
 use design::{Configuration, Stage, Study};
@@ -8,6 +7,7 @@ use serde::Serialize;
 use statistics::interval::LEVEL;
 use statistics::{Median, median};
 use std::fmt::Write;
+use table::digits::counted;
 
 /// The version of [`Panel`] as JSON.
 ///

@@ -33,7 +33,6 @@ use crate::inputs::Inputs;
 use crate::omnibus::{self, Omnibus};
 use crate::prediction::Prediction;
 use crate::recorded::Recorded;
-use crate::table::Table;
 use crate::tables::scale::{self, GroupScale};
 use design::Study;
 use responses::Responses;
@@ -41,6 +40,7 @@ use statistics::DeclaredBallot;
 use statistics::ShownBallot;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
+use table::Table;
 use words::{counted, list};
 
 /// A report.

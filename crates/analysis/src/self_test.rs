@@ -15,8 +15,8 @@ pub use studies::Design;
 pub use truths::{truths, wrong_cells};
 
 use crate::audit::{Finding, Probe, Report};
-use crate::table::{Cell, Table};
 use rayon::prelude::*;
+use table::{Cell, Table};
 
 /// How often a probe has to speak up on its own defect.
 pub const OWN_AT_LEAST: f64 = 0.95;

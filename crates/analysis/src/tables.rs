@@ -21,8 +21,8 @@ use crate::ballots::ALL_METHODS;
 use crate::inputs::Inputs;
 use crate::prediction::Prediction;
 use crate::recorded::Recorded;
-use crate::table::Table;
 use crate::{audit as probes, claims, comparison};
+use table::Table;
 
 /// Every table whose inputs are there, in the order of the paper's and then our own.
 pub fn tables(inputs: &Inputs<'_>) -> Vec<Table> {

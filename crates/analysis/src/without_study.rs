@@ -2,12 +2,12 @@
 
 use crate::ballots::{BallotGroup, outcome, turned};
 use crate::recorded::Recorded;
-use crate::table::{Cell, Table};
 use crate::{audit, tables};
 use responses::{Answer, Responses};
 use statistics::ShownBallot;
 use statistics::interval;
 use std::collections::{BTreeMap, BTreeSet};
+use table::{Cell, Table};
 
 /// Every table about answers that no study explains: `answer_counts`, `tests`, `worths`, `models`, `respondents`, `screened`
 /// and `audit`, as far as they have rows. `groups` are [`open_groups`] of the same answers; `shown_s` is how long what a

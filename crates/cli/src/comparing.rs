@@ -3,13 +3,13 @@
 use crate::args::{Compare, Format, Import};
 use crate::store::write_whole;
 use crate::{Outcome, counted, input, run_file, say};
-use analysis::timing::{self, Comparison, Limits};
 use anyhow::{Context, Result, bail};
 use design::machine::CpuProfile;
 use design::published::read_benchmark;
 use design::record::BenchRun;
 use design::{ConfigurationId, Stage};
 use std::path::{Path, PathBuf};
+use timing::{Comparison, Limits};
 
 /// Where a results folder keeps its runs; the full one stands for the short one.
 const RUNS: [&str; 3] = ["bench/full/run.json", "bench/short/run.json", "run.json"];

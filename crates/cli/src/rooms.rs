@@ -9,6 +9,8 @@ const EXPRESSION: &str = env!("ISOSTUDY_ROOM_EXPRESSION");
 const VOLUME: &str = env!("ISOSTUDY_ROOM_VOLUME");
 const PROGRAM: &str = env!("ISOSTUDY_ROOM_PROGRAM");
 const STATISTICS: &str = env!("ISOSTUDY_ROOM_STATISTICS");
+const TABLE: &str = env!("ISOSTUDY_ROOM_TABLE");
+const TIMING: &str = env!("ISOSTUDY_ROOM_TIMING");
 const RASTER: &str = env!("ISOSTUDY_ROOM_RASTER");
 const BENCH: &str = env!("ISOSTUDY_ROOM_BENCH");
 const ANALYSIS: &str = env!("ISOSTUDY_ROOM_ANALYSIS");
@@ -23,10 +25,10 @@ pub(crate) const PICTURES: &[&str] = &[MESH, RASTER, CLI];
 /// What makes timings.
 pub(crate) const TIMINGS: &[&str] = &[MESH, FIELD, EXPRESSION, VOLUME, EXTRACT, PROGRAM, BENCH, CLI];
 /// What makes tables, figures and the report.
-pub(crate) const TABLES: &[&str] = &[DESIGN, RESPONSES, STATISTICS, ANALYSIS, CLI, PAGE];
+pub(crate) const TABLES: &[&str] = &[DESIGN, RESPONSES, STATISTICS, TABLE, TIMING, ANALYSIS, CLI, PAGE];
 /// What makes the key.
 pub(crate) const KEYS: &[&str] = &[DESIGN, CLI];
 /// What makes the bundle for participants.
-pub(crate) const BUNDLES: &[&str] = &[DESIGN, SERVE, CLI];
+pub(crate) const BUNDLES: &[&str] = &[DESIGN, RESPONSES, TABLE, SERVE, CLI];
 /// What makes the page.
 pub(crate) const PAGES: &[&str] = &[DESIGN, CLI, PAGE];

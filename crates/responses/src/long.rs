@@ -2,7 +2,6 @@
 
 use crate::collect::{Collector, Ids, MOST_COUNTED, Place, Reply};
 use crate::error::{Fault, shorten};
-use crate::escape::unescape;
 use crate::format::Format;
 use crate::mapping::Mapping;
 use crate::name;
@@ -15,6 +14,7 @@ use crate::value::{Answer, Responses, StimulusId};
 use crate::words::{is_na, normalise};
 use std::borrow::Cow;
 use std::num::IntErrorKind;
+use table::formula::unescape;
 
 mod columns;
 

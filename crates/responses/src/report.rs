@@ -78,7 +78,9 @@ impl Report {
             let column = column.map_or(String::new(), |column| column.to_string());
             let row = row.to_string();
             let cells = [file.as_str(), &row, &column, kind.name(), raw, action];
-            writer.write_record(cells.map(|cell| crate::escape::escape(cell).into_owned())).expect(in_memory);
+            writer
+                .write_record(cells.map(|cell| table::formula::escape(cell).into_owned()))
+                .expect(in_memory);
         }
         String::from_utf8(writer.into_inner().expect(in_memory)).expect("made of text")
     }

@@ -10,7 +10,6 @@ use crate::choice::Choice;
 use crate::collect::{Asking, Collector, Place, Reply};
 use crate::columns::{Assigned, assign};
 use crate::error::{Fault, number_of, shorten};
-use crate::escape::unescape;
 use crate::format::Format;
 use crate::layout::Layout;
 use crate::mapping::Mapping;
@@ -25,6 +24,7 @@ use crate::source::Source;
 use crate::value::{Answer, Question, Responses};
 use crate::words::normalise;
 use std::collections::HashMap;
+use table::formula::unescape;
 
 /// Reads every row under the header.
 ///

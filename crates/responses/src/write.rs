@@ -1,10 +1,10 @@
 //! Answers in the formats of other programs.
 
 use crate::choice::Choice;
-use crate::escape::escape;
 use crate::value::{Answer, Question, Responses};
 use design::forms::Role;
 use std::io::Write;
+use table::formula::escape;
 
 /// What to do with answers without preference where a format has none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -92,7 +92,7 @@ pub fn csv<T: Serialize>(lines: &[T], header: &[&str]) -> String {
         safe.write_record(header)?;
         let plain = plain.into_inner()?;
         for record in csv::ReaderBuilder::new().has_headers(false).from_reader(&plain[..]).records() {
-            safe.write_record(record?.iter().map(|cell| responses::escape(cell).into_owned()))?;
+            safe.write_record(record?.iter().map(|cell| table::formula::escape(cell).into_owned()))?;
         }
         Ok(String::from_utf8(safe.into_inner()?)?)
     };
@@ -129,7 +129,7 @@ mod tests {
         ));
         let mut reader = csv::Reader::from_reader(text.as_bytes());
         let back: Vec<String> =
-            reader.records().map(|row| responses::unescape(&row.unwrap()[0]).to_owned()).collect();
+            reader.records().map(|row| table::formula::unescape(&row.unwrap()[0]).to_owned()).collect();
         assert_eq!(back, names);
     }
 }

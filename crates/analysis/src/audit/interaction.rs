@@ -2,9 +2,9 @@
 
 use super::{ALARM, Audited, Probe, Report, list};
 use crate::ballots::BallotGroup;
-use crate::digits::{counted, number};
 use statistics::{Protocol, ShownBallot, Split, exchange, holm, screening_with};
 use std::collections::BTreeSet;
+use table::digits::{counted, number};
 
 /// One person's answers are no sample of what people think.
 const FEWEST_PEOPLE: usize = 2;

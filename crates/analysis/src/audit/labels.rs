@@ -6,8 +6,8 @@
 
 use super::dealt::{Dealt, Shown};
 use super::{Audited, list};
-use crate::digits::counted;
 use std::collections::{BTreeMap, BTreeSet};
+use table::digits::counted;
 
 /// Answers to a file below which it is not held against the forms.
 const FEWEST_OF_FILE: u64 = 3;

@@ -2,10 +2,10 @@
 
 use super::stimuli::{Stimuli, for_lower};
 use super::{ALARM, Audited, Probe, Report};
-use crate::digits::counted;
 use statistics::ScoreTest;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::{BTreeMap, BTreeSet};
+use table::digits::counted;
 
 /// From pairs seen in both orders of sides: each participant's mean pull to the left, what the items themselves are worth
 /// taken off, against zero as t. From controls: the exact sign-flip test of left against right. If there are both, the

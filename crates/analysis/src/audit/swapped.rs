@@ -8,8 +8,8 @@ use super::labels::Labels;
 use super::stimuli::{Stimuli, Stimulus};
 use super::turned::{Judged, judge};
 use super::{ALARM, Audited, Finding, Probe, Report, list};
-use crate::digits::{counted, number};
 use std::collections::BTreeSet;
+use table::digits::{counted, number};
 
 /// The report, and the questions whose answers may be about another order of sides than they say: those of which the probe
 /// speaks up, and those that are merely doubtful, since neither a side nor an object is to be blamed for what may be the key's.

@@ -3,11 +3,11 @@
 use crate::comparison::benchmark::{Cause, cause};
 use crate::inputs::Inputs;
 use crate::mesh_set::MeshSet;
-use crate::stage_times::StageTimes;
 use crate::verdict::relative_difference;
 use design::published::BenchmarkRow;
 use design::record::{MeshRecord, Purpose};
 use design::{Arrangement, Clustering, ConfigurationId, Crossed};
+use timing::stage_times::StageTimes;
 
 /// Published numbers are known to about this.
 const PRINTED: f64 = 1e-6;

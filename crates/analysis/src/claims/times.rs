@@ -3,7 +3,6 @@
 use super::Finding;
 use super::numbers::{Measure, Numbers, Ours, Pair, Side, mean, mean_change};
 use crate::inputs::Inputs;
-use crate::timing::NoiseFloor;
 use crate::verdict::Verdict;
 use design::Clustering::{self, EdgeCollapse, Integrated};
 use design::Stage;
@@ -11,6 +10,7 @@ use design::published::Claim;
 use design::record::BenchRun;
 use statistics::interval::{Interval, LEVEL};
 use statistics::median;
+use timing::NoiseFloor;
 
 const ALL: [Clustering; 3] = [Clustering::None, Integrated, EdgeCollapse];
 

@@ -4,12 +4,12 @@ use super::Compared;
 use crate::inputs::Inputs;
 use crate::mesh_set::{MeshSet, discarded, discarded_as_published, known};
 use crate::published_ratio;
-use crate::stage_times::StageTimes;
 use crate::verdict::{UNEXPLAINED, Verdict, prints_alike, relative_difference};
 use design::config::FieldSection;
 use design::published::BenchmarkRow;
 use design::record::{BenchRun, Counts, MeshRecord, Purpose};
 use design::{Arrangement, Crossed, Study};
+use timing::stage_times::StageTimes;
 
 /// Another bunny than the published one: its counts and shapes agree to about this.
 const OTHER_MESH: f64 = 0.03;

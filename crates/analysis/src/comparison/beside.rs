@@ -1,7 +1,7 @@
 //! The published benchmark with ours beside it: one row a configuration, two columns a quantity.
 
 use super::Compared;
-use crate::table::{Cell, Column, Table};
+use table::{Cell, Column, Table};
 
 /// The paper's four blocks, by quantity; in each, what is put right follows what is as published.
 const BLOCKS: [(&str, &[&str]); 4] = [

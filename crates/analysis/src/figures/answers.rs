@@ -45,7 +45,7 @@ pub(super) fn per_question(study: &Study, tally: &Tally, sides_differ: bool) -> 
     }
     let caption = format!(
         "Answers of {} to each question, centred on no preference. The configurations stand as the study lists them{}.",
-        crate::digits::counted(tally.people(), "participant"),
+        table::digits::counted(tally.people(), "participant"),
         match sides_differ {
             true => ", not on the side where each person saw them",
             false => ", and everybody saw them on these sides",

@@ -1,6 +1,6 @@
 //! Value axes: where a value falls, and which values are marked.
 
-use crate::digits::MINUS;
+use table::digits::MINUS;
 
 /// Steps that an axis is cut into, at most; a last one begun counts as a whole.
 const MOST_STEPS: f64 = 7.0;
@@ -119,7 +119,7 @@ fn round(value: f64, decimals: usize) -> f64 {
 
 /// A number with so many decimals and a true minus sign, thousands set apart by commas.
 pub(super) fn number(value: f64, decimals: usize) -> String {
-    let text = crate::digits::number(value, decimals);
+    let text = table::digits::number(value, decimals);
     let (whole, rest) =
         text.split_once('.').map_or((text.as_str(), String::new()), |(w, r)| (w, format!(".{r}")));
     let digits = whole.trim_start_matches(MINUS);

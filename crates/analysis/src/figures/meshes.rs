@@ -6,10 +6,10 @@ use super::legend::Swatch;
 use super::{Draft, WIDTH, canvas_with_legend, style};
 use crate::inputs::Inputs;
 use crate::mesh_set::{MeshSet, known};
-use crate::stage_times::StageTimes;
 use design::published::BenchmarkRow;
 use design::record::{MeshRecord, Purpose};
 use design::{ConfigurationId, Method};
+use timing::stage_times::StageTimes;
 
 /// Where the paper cuts the axis of aspect ratios.
 const CUT: f64 = 10.0;
@@ -113,7 +113,7 @@ pub(super) fn pass_times(inputs: &Inputs<'_>) -> Option<Draft> {
     legend.push((Swatch::Area(white), "vertex pass (left bar)".into()));
     legend.push((Swatch::Area(white.striped()), "geometry pass (right bar)".into()));
     let mut caption =
-        format!("Time of the vertex and the geometry pass. {}", crate::stage_times::conditions(run));
+        format!("Time of the vertex and the geometry pass. {}", timing::stage_times::conditions(run));
     if published {
         legend.push((Swatch::Diamond, "published".into()));
         if !run.differences.is_empty() {

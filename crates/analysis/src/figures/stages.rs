@@ -5,8 +5,8 @@ use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
 use super::legend::Swatch;
 use super::{Draft, WIDTH, canvas_with_legend, style};
 use crate::inputs::Inputs;
-use crate::stage_times::{StageTimes, conditions};
 use design::ConfigurationId;
+use timing::stage_times::{StageTimes, conditions};
 
 const ROW: f64 = 280.0;
 const PER_ROW: usize = 3;

@@ -6,8 +6,8 @@ use super::marks::{Filling, Mark};
 use super::scatter::Scatter;
 use super::{Draft, Figure, WIDTH, canvas_with_legend, style};
 use crate::inputs::AnalysisError;
-use crate::sweep::{Point, SpeedUp, Sweep};
 use design::{MethodId, Study};
+use timing::sweep::{Point, SpeedUp, Sweep};
 
 const ROW: f64 = 340.0;
 /// From one mark to the next at the same number of threads, in widths of the axis.
@@ -287,9 +287,15 @@ mod tests {
         }
     }
 
+    fn made_up() -> Sweep {
+        let (levels, meshes) = fixture::sweep_levels(&fixture::study());
+        let level = |(cells, threads, run)| timing::sweep::SweepLevel { cells, threads, run };
+        timing::sweep::sweep("test", &levels.into_iter().map(level).collect::<Vec<_>>(), &meshes)
+    }
+
     #[test]
     fn every_figure_is_drawn_within_its_frame() {
-        let (study, sweep) = (fixture::study(), crate::sweep::tests::made_up());
+        let (study, sweep) = (fixture::study(), made_up());
         let objects = objects(&sweep);
         let drafts = [
             time(&study, &sweep, &objects),

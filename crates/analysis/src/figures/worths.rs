@@ -6,8 +6,8 @@ use super::legend::Swatch;
 use super::marks::Mark;
 use super::{Draft, canvas_with_legend};
 use crate::ballots::BallotGroup;
-use crate::digits::number;
 use statistics::{Pairs, Participants, clustered_covariance, fit_on_one_scale};
+use table::digits::number;
 
 pub(super) fn draft(groups: &[BallotGroup]) -> Option<Draft> {
     let blocks: Vec<Block> = groups.iter().filter_map(block).collect();

@@ -5,9 +5,9 @@ use super::finding::{Finding, Standing};
 use super::words::{counted, list, p as p_value};
 use super::{Block, Evidence, names};
 use crate::audit::Finding as Probed;
-use crate::table::{Cell, Table};
 use statistics::{Flag, screening};
 use std::collections::BTreeMap;
+use table::{Cell, Table};
 
 /// Tests named at most.
 const NAMED: usize = 6;

@@ -1,7 +1,7 @@
 //! A report as Markdown.
 
 use super::{Block, Report};
-use crate::table::markdown::escape;
+use table::markdown::escape;
 
 impl Report {
     /// GitHub-flavoured Markdown; figures are links to `figures/<name>.svg` beside it.

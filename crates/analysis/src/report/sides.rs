@@ -4,7 +4,6 @@ use super::finding::{Finding, Standing};
 use super::words::{capital, counted, interval, list, number, p as p_value};
 use super::{Block, Evidence, asked, names};
 use crate::audit::{Finding as Verdict, Probe};
-use crate::table::Table;
 use design::Level;
 use design::contrast::{Over, contrasts};
 use statistics::{
@@ -12,6 +11,7 @@ use statistics::{
     fit, has_spread, separation, side_bound, side_design,
 };
 use std::collections::BTreeMap;
+use table::Table;
 
 /// What the probe for a side says, from the table of probes.
 struct Probed {

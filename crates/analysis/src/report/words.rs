@@ -1,7 +1,7 @@
 //! Numbers in words: p values, intervals, counts, lists.
 
-pub(super) use crate::digits::{counted, number};
 use statistics::interval::Interval;
+pub(super) use table::digits::{counted, number};
 
 /// Below this a p value is not printed in digits.
 const LEAST_P: f64 = 1e-6;

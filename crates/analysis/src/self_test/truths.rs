@@ -12,8 +12,8 @@ mod people;
 mod routes;
 mod sentences;
 
-use crate::table::{Cell, Table};
 use matrix::Outcome;
+use table::{Cell, Table};
 
 /// How many people a study has, unless a truth is about their number.
 const PEOPLE: usize = 36;

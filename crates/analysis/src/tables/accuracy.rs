@@ -3,8 +3,8 @@
 use super::mesh_quality::purpose_label;
 use crate::inputs::Inputs;
 use crate::mesh_set::{MeshSet, known};
-use crate::table::{Cell, Table};
 use design::record::{Distribution, Purpose};
+use table::{Cell, Table};
 
 /// Distances in units of the spacing, and errors of the vertices' normals, for meshes of every purpose.
 pub(super) fn accuracy(inputs: &Inputs<'_>) -> Option<Table> {

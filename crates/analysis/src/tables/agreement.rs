@@ -1,11 +1,11 @@
 //! Agreement of participants with each other and with themselves.
 
-use crate::table::{Cell, Table};
 use design::Study;
 use statistics::{
     DeclaredBallot, Metric, Protocol, ShownBallot, Triads, agreement as kendall, alpha_with_interval,
     outcome_counts, screening_with, triads, zetas,
 };
+use table::{Cell, Table};
 
 /// All questions, then each comparison group: agreement between participants, and circular triads within.
 pub(super) fn agreement(study: &Study, ballots: &[DeclaredBallot]) -> Table {

@@ -1,12 +1,12 @@
 //! The answers themselves, and how they fall on each question.
 
 use crate::ballots::is_asked;
-use crate::table::{Cell, Column, Table};
 use crate::tally::Tally;
 use design::Study;
 use responses::Responses;
 use statistics::interval;
 use std::collections::BTreeSet;
+use table::{Cell, Column, Table};
 
 /// More respondents than this make no table that anybody reads; the answers are in their file.
 const MOST_COLUMNS: usize = 200;

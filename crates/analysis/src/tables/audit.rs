@@ -1,7 +1,7 @@
 //! What the probes found.
 
 use crate::audit::Report;
-use crate::table::{Cell, Table};
+use table::{Cell, Table};
 
 /// One row a probe: its finding and the evidence.
 pub fn audit_table(reports: &[Report]) -> Table {

@@ -3,11 +3,11 @@
 use crate::inputs::Inputs;
 use crate::mesh_set::{MeshSet, discard_fraction, known};
 use crate::published_ratio;
-use crate::stage_times::{StageTimes, conditions};
-use crate::table::{Cell, Table};
 use crate::tables::design::{level, method_columns};
 use design::config::{BudgetSection, FieldSection};
 use design::record::{MeshRecord, Purpose};
+use table::{Cell, Table};
+use timing::stage_times::{StageTimes, conditions};
 
 /// A column: name in CSV, heading, and its cell.
 type Entry = (&'static str, &'static str, fn(&MeshRecord) -> Cell);

@@ -2,11 +2,11 @@
 
 use crate::ballots::BallotGroup;
 use crate::hypotheses::{self, Hypothesis, Subject};
-use crate::table::{Cell, Table};
 use rayon::prelude::*;
 use statistics::bootstrap::Resampling;
 use statistics::interval::Interval;
 use statistics::sign_test;
+use table::{Cell, Table};
 
 /// Every contrast of a study, then every question.
 pub(super) fn study_tests(hypotheses: &[Hypothesis]) -> Table {

@@ -1,7 +1,7 @@
 //! Tables that follow from the study file alone.
 
-use crate::table::{Cell, Table};
 use ::design::{Factor, MethodId, Study};
+use table::{Cell, Table};
 
 /// The factors that tell a method in a table: the declared ones, or what it is as a whole where these do not tell two apart.
 pub(super) fn method_columns(study: &Study) -> Vec<Factor> {

@@ -2,8 +2,8 @@
 
 use crate::inputs::Inputs;
 use crate::mesh_set::{MeshSet, known};
-use crate::table::{Cell, Column, Table};
 use design::record::{Distribution, MeshRecord, Purpose};
+use table::{Cell, Column, Table};
 
 pub(super) fn purpose_label(purpose: Purpose) -> &'static str {
     match purpose {

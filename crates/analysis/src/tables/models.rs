@@ -1,12 +1,12 @@
 //! Models of preference: worths with their errors, and what each model says about ties and sides.
 
 use crate::ballots::BallotGroup;
-use crate::table::{Cell, Table};
 use statistics::{
     FitError, Model, Pairs, Participants, Penalty, Separation, SideDesign, WorthFit, clustered_covariance,
     fit, separation, side_design,
 };
 use statrs::distribution::{ChiSquared, ContinuousCDF};
+use table::{Cell, Table};
 
 /// `worths` and `models` of every group, with every model.
 ///

@@ -1,9 +1,9 @@
 //! The table of Friedman's tests.
 
 use crate::omnibus::{Asked, Omnibus, tests};
-use crate::table::{Cell, Table};
 use design::{Level, Study};
 use statistics::DeclaredBallot;
+use table::{Cell, Table};
 
 /// Friedman's tests: does anything differ at all?
 pub(super) fn omnibus(study: &Study, ballots: &[DeclaredBallot]) -> Table {

@@ -1,7 +1,7 @@
 //! Power of a design: every number as a table for programs, contrasts by participants as one to read.
 
 use crate::power::{Assumptions, Power, QUESTIONS};
-use crate::table::{Cell, Table};
+use table::{Cell, Table};
 
 /// The tables `power`, a row a number, and `power_by_participants`, a column a number of participants, of [`power`](crate::power::power).
 pub fn power_tables(assumptions: &Assumptions, all: &[Power]) -> [Table; 2] {

@@ -1,8 +1,8 @@
 //! What predicts preference: metric by metric, together, object by object.
 
 use crate::prediction::{HeldOut, Prediction};
-use crate::table::{Cell, Column, Table};
 use design::Study;
+use table::{Cell, Column, Table};
 
 /// Metrics one by one, the model of all of them, predictions by object, and how the metrics hang together.
 pub(super) fn all(study: &Study, prediction: &Prediction) -> Vec<Table> {

@@ -1,11 +1,11 @@
 //! The preference factors: per group, overall, margins, per object, and the direct contest of arrangements.
 
-use crate::digits::counted;
 use crate::preference::{self, GroupFactor};
-use crate::table::{Cell, Column, Table};
 use crate::tally::{Tally, TallyRow};
 use design::{Factor, Level, MethodId, Study};
 use statistics::interval::{Interval, t_over_respondents, wilson};
+use table::digits::counted;
+use table::{Cell, Column, Table};
 
 pub(super) fn all(study: &Study, tally: &Tally) -> Vec<Table> {
     let factors = preference::group_factors(study, tally, |_| true);

@@ -1,12 +1,12 @@
 //! All items of a group on one scale: where each stands, every difference, and how well the model fits.
 
 use crate::ballots::BallotGroup;
-use crate::table::{Cell, Table};
 use rayon::prelude::*;
 use statistics::{
     Difference, FitError, Model, Omnibus, Pairs, Participants, Scale, closeness, fit, goodness, holm, jod,
     preferred, scale,
 };
+use table::{Cell, Table};
 
 /// A group's items on one scale, its first item at zero; what cannot be placed has the reason.
 pub(crate) struct GroupScale<'a> {

@@ -4,11 +4,11 @@ use crate::answered::Answered;
 use crate::ballots::{BallotGroup, declared};
 use crate::hypotheses::{self, Hypothesis};
 use crate::recorded::Recorded;
-use crate::table::{Cell, Table};
 use design::Study;
 use statistics::{DeclaredBallot, Flag, screening_with};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
+use table::{Cell, Table};
 
 /// Every contrast of a study with everybody, those included whom the study leaves out; single questions are left out.
 /// `recorded` is what is screened.

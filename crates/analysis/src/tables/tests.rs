@@ -1,6 +1,6 @@
 use super::*;
 use crate::fixture::{self, Everything};
-use crate::table::Cell;
+use table::Cell;
 
 fn named<'a>(tables: &'a [Table], name: &str) -> &'a Table {
     tables.iter().find(|table| table.name == name).unwrap_or_else(|| panic!("no table {name}"))

@@ -2,12 +2,13 @@
 
 use crate::store::Writer;
 use analysis::report::{Block, Finding};
-use analysis::{Figure, Report, Table};
+use analysis::{Figure, Report};
 use anyhow::Result;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
 use minijinja::{Environment, context};
 use serde::Serialize;
+use table::Table;
 
 const TEMPLATE: &str = include_str!("../page/report.html");
 

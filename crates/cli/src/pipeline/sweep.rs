@@ -6,7 +6,6 @@ use crate::prepare::{self, Wanted};
 use crate::progress::Step;
 use crate::store::{Inputs, Stamp, remove_if_there};
 use crate::{machine, rooms};
-use analysis::sweep::SweepLevel;
 use anyhow::{Context, Result, bail};
 use bench::Plan;
 use design::config::SweepSection;
@@ -14,6 +13,7 @@ use design::machine::Machine;
 use design::record::{Purpose, SweepMesh};
 use design::{Configuration, Study};
 use extract::Execution;
+use timing::sweep::SweepLevel;
 
 /// The configurations that a study's sweep is about. The measuring process counts them alike.
 pub(super) fn configurations<'s>(study: &'s Study, section: &SweepSection) -> Vec<&'s Configuration> {
@@ -43,8 +43,8 @@ impl Pipeline<'_> {
                 stamps.push(stamp);
             }
         }
-        let found = analysis::sweep::sweep(&file.study.id, &levels, &meshes);
-        let tables = analysis::sweep::sweep_tables(&found);
+        let found = timing::sweep::sweep(&file.study.id, &levels, &meshes);
+        let tables = timing::sweep::sweep_tables(&found);
         let mut inputs = Inputs::of_rooms(rooms::TABLES);
         for stamp in &stamps {
             inputs = inputs.stamp(stamp);
@@ -63,7 +63,7 @@ impl Pipeline<'_> {
             }
             Ok(())
         })?;
-        Ok(tables.iter().filter(|t| t.name != "sweep").map(analysis::Table::to_markdown).collect())
+        Ok(tables.iter().filter(|t| t.name != "sweep").map(table::Table::to_markdown).collect())
     }
 
     /// One resolution on so many threads.

@@ -4,13 +4,14 @@ use super::{Meshes, Pipeline};
 use crate::progress::Step;
 use crate::rooms;
 use crate::store::{Inputs, Stamp, Store, Writer, sha256};
-use analysis::{Answered, Figure, LongFrame, Table};
+use analysis::{Answered, Figure, LongFrame};
 use anyhow::{Context, Result};
 use design::Study;
 use design::config::ResponsesSection;
 use responses::Reading;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use table::Table;
 
 impl Pipeline<'_> {
     /// Every table and figure of the study.

@@ -9,7 +9,6 @@ use crate::progress::Step;
 use crate::recipe::{self, Recipe};
 use crate::store::{Inputs, Stamp, remove_if_there, sha256, write_whole};
 use crate::{input, machine, rooms, run_file};
-use analysis::timing;
 use anyhow::{Context, Result, bail};
 use bench::{BenchError, Entry, Plan, ProcessExecutor};
 use design::machine::Machine;
@@ -102,7 +101,7 @@ impl Pipeline<'_> {
             Ok(())
         })?;
         let short = timing::statement_tables_in_short(&run, &statements);
-        Ok(short.iter().map(analysis::Table::to_markdown).collect())
+        Ok(short.iter().map(table::Table::to_markdown).collect())
     }
 
     /// A finished run.

@@ -1,9 +1,9 @@
 //! Cells that are as they have to be, and those that are not.
 
 use super::oracle::Expected;
-use crate::table::Table;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
+use table::Table;
 
 /// A cell, or a number in a sentence, that says something else than it has to.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -12,7 +12,6 @@ use crate::ballots::BallotGroup;
 use crate::fixture;
 use crate::inputs::Inputs;
 use crate::self_test::allowance;
-use crate::table::{Cell, Table};
 use crate::tables::tables;
 use design::Study;
 use design::forms::{KeyEntry, Questionnaire, Role};
@@ -22,6 +21,7 @@ use rand_pcg::Pcg64;
 use responses::Plan;
 use statistics::{Outcome, ShownBallot};
 use std::collections::BTreeMap;
+use table::{Cell, Table};
 
 /// Studies of each kind, unless `STUDIES` says another number.
 fn studies() -> u64 {

@@ -9,12 +9,12 @@ use super::sentences::compare_sentences;
 use crate::answered::Answered;
 use crate::inputs::Inputs;
 use crate::report::{Report, report};
-use crate::table::Table;
 use crate::tables::tables;
 use design::Study;
 use design::forms::Role;
 use responses::{Choice, Plan, Responses};
 use std::collections::BTreeMap;
+use table::Table;
 
 /// One truth on one design.
 #[derive(Debug, Clone)]

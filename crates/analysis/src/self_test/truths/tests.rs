@@ -8,10 +8,10 @@ use super::people::{Given, Truth, answers};
 use super::routes::Route;
 use super::sentences::compare_sentences;
 use crate::report::Block;
-use crate::table::{Cell, Table};
 use design::Study;
 use responses::{Choice, Plan, Responses};
 use std::collections::BTreeSet;
+use table::{Cell, Table};
 
 #[test]
 fn every_cell_is_right() {

@@ -5,9 +5,9 @@ use super::exact::holm;
 use super::{Given, Oracle};
 use crate::self_test::truths::compare::{Cells, Compared};
 use crate::self_test::truths::people::Pressed;
-use crate::table::Table;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::collections::BTreeMap;
+use table::Table;
 
 /// Slope of a log-likelihood that counts as none.
 const FLAT: f64 = 2e-3;

@@ -1,6 +1,6 @@
 //! GitHub-flavoured Markdown.
 
-use super::Table;
+use crate::Table;
 
 impl Table {
     /// A bold caption, a pipe table (or one a part, under bold captions of their own), and the notes.
@@ -30,7 +30,7 @@ impl Table {
 }
 
 /// What Markdown would read as mark-up, and line breaks, which end a row.
-pub(crate) fn escape(text: &str) -> String {
+pub fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {

@@ -5,12 +5,12 @@ use super::differences::{commit, sources};
 use super::quiet::warnings;
 use super::series::by_configuration;
 use super::statements::Statements;
-use crate::digits::MINUS;
 use crate::stage_times::{circumstances, measured, target};
-use crate::table::{Cell, Table};
 use design::Stage;
 use design::record::BenchRun;
 use statistics::interval::Interval;
+use table::digits::MINUS;
+use table::{Cell, Table};
 
 const MS: f64 = 1e3;
 

@@ -1,6 +1,6 @@
 //! LaTeX for the `article` class or anything wider: the first layout, from plain to small to turned, that a table fits.
 
-use super::Table;
+use crate::Table;
 use crate::digits::MINUS;
 
 /// Rows beyond which a table is broken across pages.

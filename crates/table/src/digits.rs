@@ -1,15 +1,15 @@
 //! Numbers as people read them: in sentences, in the cells of printed tables, on axes. Files for machines have the plain ones.
 
 /// The sign that goes before a number; a hyphen is none.
-pub(crate) const MINUS: char = '\u{2212}';
+pub const MINUS: char = '\u{2212}';
 
 /// A number with so many decimals and a true minus sign; never minus zero.
-pub(crate) fn number(value: f64, decimals: usize) -> String {
+pub fn number(value: f64, decimals: usize) -> String {
     signed(&format!("{value:.decimals$}"))
 }
 
 /// Printed digits with a true minus sign for a hyphen; none for zero.
-pub(crate) fn signed(digits: &str) -> String {
+pub fn signed(digits: &str) -> String {
     match digits.strip_prefix('-') {
         Some(rest) if rest.chars().all(|c| c == '0' || c == '.') => rest.into(),
         Some(rest) => format!("{MINUS}{rest}"),
@@ -18,7 +18,7 @@ pub(crate) fn signed(digits: &str) -> String {
 }
 
 /// `1 answer`, `2 answers`.
-pub(crate) fn counted(count: usize, noun: &str) -> String {
+pub fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 

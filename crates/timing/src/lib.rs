@@ -4,6 +4,7 @@
 //! BenchRun ──┬── medians, outliers ──────────────┐
 //!            ├── A/A block ── NoiseFloor ── ratios ── Statements ── tables
 //!            └── load windows ── quiet ───────────┘
+//! BenchRun ── stage times
 //! BenchRun, BenchRun ── machine differences, compare ── Comparison ── tables, regressions
 //! ```
 //!
@@ -26,8 +27,13 @@ mod outliers;
 mod quiet;
 mod ratios;
 mod series;
+pub mod stage_times;
 mod statements;
+pub mod sweep;
 mod tables;
+
+#[cfg(test)]
+mod fixture;
 
 #[cfg(test)]
 mod simulation;

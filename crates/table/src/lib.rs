@@ -1,8 +1,10 @@
 //! A table that prints itself as CSV, Markdown, LaTeX and HTML.
 
+pub mod digits;
+pub mod formula;
 mod html;
 mod latex;
-pub(crate) mod markdown;
+pub mod markdown;
 
 use crate::digits::{number, signed};
 
@@ -49,26 +51,31 @@ pub struct Table {
 }
 
 impl Cell {
-    pub(crate) fn text(text: impl ToString) -> Self {
+    /// Text, whatever it is printed from.
+    pub fn text(text: impl ToString) -> Self {
         Self::Text(text.to_string())
     }
 
+    /// A whole number that was counted.
+    ///
     /// # Panics
     /// If the count is above 2^63.
-    pub(crate) fn count(count: u64) -> Self {
+    pub fn count(count: u64) -> Self {
         Self::Count(i64::try_from(count).expect("counts fit 63 bits"))
     }
 
-    pub(crate) fn number(value: Option<f64>, decimals: usize) -> Self {
+    /// A number with so many decimals for people, or nothing.
+    pub fn number(value: Option<f64>, decimals: usize) -> Self {
         value.map_or(Self::Missing, |value| Self::Number(value, decimals))
     }
 
-    pub(crate) fn p(value: Option<f64>, decimals: usize) -> Self {
+    /// A p value with so many decimals for people, or nothing.
+    pub fn p(value: Option<f64>, decimals: usize) -> Self {
         value.map_or(Self::Missing, |value| Self::P(value, decimals))
     }
 
     /// A sum of terms about as large as 1, or their mean: what is left of them below 1e-12 is their rounding, and zero.
-    pub(crate) fn of_sum(value: Option<f64>, decimals: usize) -> Self {
+    pub fn of_sum(value: Option<f64>, decimals: usize) -> Self {
         Self::number(value.map(|value| if value.abs() < 1e-12 { 0.0 } else { value }), decimals)
     }
 
@@ -87,7 +94,7 @@ impl Cell {
     /// In full, and no formula to a spreadsheet: names come from files of answers.
     fn in_csv(&self) -> String {
         match self {
-            Self::Text(text) => responses::escape(text).into_owned(),
+            Self::Text(text) => formula::escape(text).into_owned(),
             other => other.in_full(),
         }
     }
@@ -122,7 +129,7 @@ fn shortest(value: f64) -> String {
 
 impl Table {
     /// A table without rows; columns are `(name, heading)`.
-    pub(crate) fn new(name: &str, caption: impl Into<String>, columns: &[(&str, &str)]) -> Self {
+    pub fn new(name: &str, caption: impl Into<String>, columns: &[(&str, &str)]) -> Self {
         let column = |&(name, heading): &(&str, &str)| Column { name: name.into(), heading: heading.into() };
         Self {
             name: name.into(),
@@ -134,20 +141,22 @@ impl Table {
         }
     }
 
+    /// One more row.
+    ///
     /// # Panics
     /// If the row is not as long as the header.
-    pub(crate) fn push(&mut self, row: Vec<Cell>) {
+    pub fn push(&mut self, row: Vec<Cell>) {
         assert_eq!(row.len(), self.columns.len(), "table {}", self.name);
         self.rows.push(row);
     }
 
     /// Prints the table as blocks of some of its columns, by name; names that are not there are skipped.
-    pub(crate) fn print_in_blocks(&mut self, blocks: &[(&str, &[&str])]) {
+    pub fn print_in_blocks(&mut self, blocks: &[(&str, &[&str])]) {
         self.parts = blocks.iter().map(|(caption, columns)| self.block(caption, columns)).collect();
     }
 
     /// Some of the columns, by name, as a table without notes; names that are not there are skipped.
-    pub(crate) fn block(&self, caption: &str, columns: &[&str]) -> Self {
+    pub fn block(&self, caption: &str, columns: &[&str]) -> Self {
         let index = |name: &&str| self.columns.iter().position(|column| column.name == *name);
         let picked: Vec<usize> = columns.iter().filter_map(index).collect();
         Self {

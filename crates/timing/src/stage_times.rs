@@ -1,33 +1,37 @@
-//! Stage times of each configuration, over the samples of a benchmark run.
+//! Means of the stages of each configuration, over the samples of a benchmark run.
 
-use crate::digits::counted;
 use design::ConfigurationId;
 use design::machine::ProfileDifference;
 use design::record::{BenchRun, BenchSample};
+use table::digits::counted;
 
-/// Mean seconds a stage.
+/// Mean seconds per stage.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct StageTimes {
-    pub(crate) allocation_s: f64,
-    pub(crate) sampling_s: f64,
-    pub(crate) vertex_s: f64,
+pub struct StageTimes {
+    /// Making room for samples and edges.
+    pub allocation_s: f64,
+    /// Sampling the field.
+    pub sampling_s: f64,
+    /// Crossings and vertices.
+    pub vertex_s: f64,
     /// As published: making triangles, and the edge collapse.
-    pub(crate) geometry_s: f64,
+    pub geometry_s: f64,
     /// The edge collapse alone.
-    pub(crate) clustering_s: f64,
-    pub(crate) normals_s: f64,
+    pub clustering_s: f64,
+    /// Normals of vertices.
+    pub normals_s: f64,
     /// Median of the samples' totals without normals.
-    pub(crate) median_without_normals_s: f64,
+    pub median_without_normals_s: f64,
 }
 
 impl StageTimes {
     /// Means over a configuration's samples; `None` if it has none.
-    pub(crate) fn of(run: &BenchRun, id: &ConfigurationId) -> Option<Self> {
+    pub fn of(run: &BenchRun, id: &ConfigurationId) -> Option<Self> {
         Self::over(run.samples.iter().filter(|sample| sample.id == *id).collect())
     }
 
     /// Of one round alone; `None` if the configuration has no sample in it.
-    pub(crate) fn of_round(run: &BenchRun, id: &ConfigurationId, round: u32) -> Option<Self> {
+    pub fn of_round(run: &BenchRun, id: &ConfigurationId, round: u32) -> Option<Self> {
         Self::over(
             run.samples.iter().filter(|sample| sample.id == *id && sample.iteration == round).collect(),
         )
@@ -57,23 +61,23 @@ impl StageTimes {
     }
 
     /// The published total: the first four stages.
-    pub(crate) fn total_without_normals_s(&self) -> f64 {
+    pub fn total_without_normals_s(&self) -> f64 {
         self.allocation_s + self.sampling_s + self.vertex_s + self.geometry_s
     }
 }
 
 /// Where and how often a run was measured, for a note under a table of means.
-pub(crate) fn conditions(run: &BenchRun) -> String {
+pub fn conditions(run: &BenchRun) -> String {
     format!("Times: means over {}", circumstances(run))
 }
 
 /// How often and where a run was measured, and whether that is the target.
-pub(crate) fn circumstances(run: &BenchRun) -> String {
+pub fn circumstances(run: &BenchRun) -> String {
     format!("{}, {}.", measured(run), target(run))
 }
 
 /// How often, where and on how many threads.
-pub(crate) fn measured(run: &BenchRun) -> String {
+pub fn measured(run: &BenchRun) -> String {
     let (rounds, threads) = (run.iterations as usize, counted(run.threads as usize, "sampling thread"));
     match &run.imported_from {
         // What a profile says of a model is a part of its name.
@@ -92,7 +96,7 @@ pub(crate) fn measured(run: &BenchRun) -> String {
 }
 
 /// Whether the machine is the target, and what it has instead.
-pub(crate) fn target(run: &BenchRun) -> String {
+pub fn target(run: &BenchRun) -> String {
     if run.differences.is_empty() {
         return format!("which matches the target {}", run.target.name);
     }

@@ -1,52 +1,10 @@
 use super::*;
 use crate::fixture;
-use design::record::PeakMemory;
 
-/// A sweep whose law is known: every stage of every configuration grows as the square of the cells, twice the threads halve
-/// the time, memory grows as the cube; integrated clustering is the more regular and has a quarter of the triangles.
-pub(crate) fn made_up() -> Sweep {
-    let study = fixture::study();
-    let base = fixture::bench_of(&study, 9);
-    let (mut levels, mut meshes) = (Vec::new(), Vec::new());
-    for cells in [16_u32, 32, 64, 128] {
-        let size = f64::from(cells) / 32.0;
-        for threads in [1_u32, 2] {
-            let mut run = base.clone();
-            run.samples.retain(|sample| sample.id.object == "ss");
-            for sample in &mut run.samples {
-                let unrest = 1.0 + 0.01 * f64::from(sample.iteration % 3);
-                let stage = 1e-3 * size.powi(2) / f64::from(threads) * unrest;
-                (sample.allocation_s, sample.sampling_s, sample.vertex_s) = (stage, stage, stage);
-                (sample.geometry_s, sample.clustering_s, sample.normals_s) = (stage, stage, stage);
-                sample.total_s = 6.0 * stage;
-            }
-            run.memory = study
-                .configurations
-                .iter()
-                .map(|c| PeakMemory {
-                    id: c.id.clone(),
-                    before_bytes: 1000,
-                    peak_before_bytes: 1000,
-                    peak_bytes: 1000 + (1e6 * size.powi(3)) as u64,
-                })
-                .collect();
-            levels.push(SweepLevel { cells, threads, run });
-        }
-        for configuration in study.configurations.iter().filter(|c| c.id.object == "ss") {
-            let merged =
-                crate::fixture::crossed(configuration.id.method).clustering == design::Clustering::Integrated;
-            meshes.push(SweepMesh {
-                id: configuration.id.clone(),
-                cells,
-                needed_samples: u64::from(cells).pow(3),
-                vertices: 500,
-                triangles: (if merged { 1000.0 } else { 4000.0 } * size.powi(2)) as u64,
-                radius_ratio_mean: if merged { 0.9 } else { 0.6 },
-                edge_ratio_mean: 1.3,
-                published_aspect_ratio_mean: 1.2,
-            });
-        }
-    }
+fn made_up() -> Sweep {
+    let (levels, meshes) = fixture::sweep_levels(&fixture::study());
+    let level = |(cells, threads, run)| SweepLevel { cells, threads, run };
+    let levels: Vec<SweepLevel> = levels.into_iter().map(level).collect();
     sweep("test", &levels, &meshes)
 }
 

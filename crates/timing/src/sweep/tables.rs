@@ -2,8 +2,8 @@
 
 use super::budgets::Cost;
 use super::{FIT_FROM, Growth, Quantity, Sweep};
-use crate::table::{Cell, Table};
-use crate::timing::BUSY;
+use crate::BUSY;
+use table::{Cell, Table};
 
 const MS: f64 = 1e3;
 

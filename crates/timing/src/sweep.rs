@@ -14,7 +14,6 @@
 mod budgets;
 mod tables;
 
-use crate::timing;
 use design::record::{BenchRun, BenchSample, SweepMesh};
 use design::{ConfigurationId, Stage};
 use serde::Serialize;
@@ -230,7 +229,7 @@ fn speed_ups(levels: &[SweepLevel]) -> Vec<SpeedUp> {
             continue;
         };
         // B is the base: time there over time here.
-        let comparison = timing::compare(&level.run, &base.run, Vec::new());
+        let comparison = crate::compare(&level.run, &base.run, Vec::new());
         found.extend(comparison.of_stage(Stage::Total).filter_map(|row| {
             Some(SpeedUp {
                 id: row.id.clone(),
@@ -245,4 +244,4 @@ fn speed_ups(levels: &[SweepLevel]) -> Vec<SpeedUp> {
 }
 
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;

@@ -1,6 +1,6 @@
 //! HTML fragments.
 
-use super::Table;
+use crate::Table;
 
 impl Table {
     /// One `<table>` a part, class `number` on cells of number columns, then the notes as paragraphs of class `note`.
