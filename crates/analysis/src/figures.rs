@@ -50,7 +50,7 @@ pub struct Figure {
 /// # Errors
 /// If drawing fails, which is not to be expected.
 pub fn figures(inputs: &Inputs<'_>) -> Result<Vec<Figure>, AnalysisError> {
-    drafts(inputs).into_par_iter().map(Draft::finish).collect()
+    drafts(inputs).into_par_iter().map(Unfinished::finish).collect()
 }
 
 /// The figures that need nothing but answers: worths and respondents.
@@ -60,10 +60,10 @@ pub fn figures(inputs: &Inputs<'_>) -> Result<Vec<Figure>, AnalysisError> {
 pub fn figures_of_groups(groups: &[BallotGroup]) -> Result<Vec<Figure>, AnalysisError> {
     let ballots: Vec<ShownBallot> = groups.iter().flat_map(|group| group.ballots.iter().copied()).collect();
     let drafts = [worths::draft(groups), respondents::draft(&ballots)];
-    drafts.into_iter().flatten().map(Draft::finish).collect()
+    drafts.into_iter().flatten().map(Unfinished::finish).collect()
 }
 
-fn drafts(inputs: &Inputs<'_>) -> Vec<Draft> {
+fn drafts(inputs: &Inputs<'_>) -> Vec<Unfinished> {
     let mut drafts = Vec::new();
     drafts.extend(meshes::triangles(inputs));
     drafts.extend(meshes::pass_times(inputs));
@@ -91,13 +91,13 @@ fn drafts(inputs: &Inputs<'_>) -> Vec<Draft> {
 const WIDTH: f64 = 1000.0;
 
 /// A figure before it is painted.
-struct Draft {
+struct Unfinished {
     name: &'static str,
     caption: String,
     canvas: Canvas,
 }
 
-impl Draft {
+impl Unfinished {
     fn finish(self) -> Result<Figure, AnalysisError> {
         Ok(Figure {
             svg: self.canvas.to_svg(self.name)?,

@@ -7,7 +7,7 @@ use design::config::FieldSection;
 use design::published::BenchmarkRow;
 use design::record::*;
 use responses::{Mapping, Plan, Responses};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 #[path = "../../timing/src/fixture.rs"]
 mod timed;

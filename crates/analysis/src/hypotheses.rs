@@ -105,7 +105,7 @@ impl Rules {
 
 /// What a hypothesis is about.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Subject {
+pub(crate) enum Target {
     /// A contrast of the study.
     Contrast { levels: [Level; 2], over: Over },
     /// One question of the study, by index.
@@ -134,7 +134,7 @@ pub(crate) struct Hypothesis {
     pub(crate) contrast: String,
     /// Over which answers, such as `within B`.
     pub(crate) scope: String,
-    pub(crate) subject: Subject,
+    pub(crate) target: Target,
     pub(crate) test: ScoreTest,
     /// The sign-flip p, adjusted within the family.
     pub(crate) adjusted: f64,
@@ -153,12 +153,12 @@ pub(crate) struct Hypothesis {
 }
 
 impl Hypothesis {
-    fn new(contrast: String, scope: &str, subject: Subject, test: ScoreTest, rules: Rules) -> Self {
+    fn new(contrast: String, scope: &str, target: Target, test: ScoreTest, rules: Rules) -> Self {
         Self {
             family: String::new(),
             contrast,
             scope: scope.into(),
-            subject,
+            target,
             test,
             adjusted: 1.0,
             adjusted_over_all: None,
@@ -202,17 +202,17 @@ impl Hypothesis {
 
     /// Whether it is about one question alone, which is exploratory.
     pub(crate) fn is_question(&self) -> bool {
-        matches!(self.subject, Subject::Question(_))
+        matches!(self.target, Target::Question(_))
     }
 
     /// Whether it is about the difference of two preferences.
     pub(crate) fn is_difference(&self) -> bool {
-        match &self.subject {
-            Subject::Contrast { over, .. } => {
+        match &self.target {
+            Target::Contrast { over, .. } => {
                 matches!(over, Over::Difference(..) | Over::ObjectDifference(..))
             }
-            Subject::Items { on, .. } => matches!(on, On::Difference(_)),
-            Subject::Question(_) => false,
+            Target::Items { on, .. } => matches!(on, On::Difference(_)),
+            Target::Question(_) => false,
         }
     }
 
@@ -235,14 +235,8 @@ pub(crate) fn of_contrasts(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hyp
     let contrasts = contrasts(study);
     let families = families(&contrasts, &study.file.analysis);
     let of_contrast = |contrast: &Contrast| {
-        let subject = Subject::Contrast { levels: contrast.levels, over: contrast.over };
-        Hypothesis::new(
-            contrast.name.clone(),
-            &contrast.scope,
-            subject,
-            test(study, contrast, ballots),
-            rules,
-        )
+        let target = Target::Contrast { levels: contrast.levels, over: contrast.over };
+        Hypothesis::new(contrast.name.clone(), &contrast.scope, target, test(study, contrast, ballots), rules)
     };
     let mut all: Vec<Hypothesis> = contrasts.par_iter().map(of_contrast).collect();
     for family in &families {
@@ -284,7 +278,7 @@ fn mark_by_object(study: &Study, ballots: &[DeclaredBallot], all: &mut [Hypothes
         .map(|(_, levels, _)| levels)
         .collect();
     for hypothesis in all {
-        if let Subject::Contrast { levels, over: Over::All | Over::Within(_) } = hypothesis.subject {
+        if let Target::Contrast { levels, over: Over::All | Over::Within(_) } = hypothesis.target {
             hypothesis.by_object = depends.contains(&levels);
         }
     }
@@ -292,8 +286,8 @@ fn mark_by_object(study: &Study, ballots: &[DeclaredBallot], all: &mut [Hypothes
 
 /// Every contrast that was tested.
 pub(crate) fn contrasts_of(all: &[Hypothesis]) -> impl Iterator<Item = (&Hypothesis, [Level; 2], Over)> {
-    all.iter().filter(|h| h.is_tested()).filter_map(|h| match h.subject {
-        Subject::Contrast { levels, over } => Some((h, levels, over)),
+    all.iter().filter(|h| h.is_tested()).filter_map(|h| match h.target {
+        Target::Contrast { levels, over } => Some((h, levels, over)),
         _ => None,
     })
 }
@@ -325,7 +319,7 @@ fn of_questions(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hypothesis> {
     let of_question = |(q, comparison): (usize, &design::Comparison)| {
         let test = ScoreTest::of(of_one(ballots, q).iter().map(|b| (b.participant(), b.preference().sign())));
         let contrast = format!("{}-{}", comparison.left.method, comparison.right.method);
-        let mut of = Hypothesis::new(contrast, &comparison.question, Subject::Question(q), test, rules);
+        let mut of = Hypothesis::new(contrast, &comparison.question, Target::Question(q), test, rules);
         of.family = "questions".into();
         of.corrected_with = "questions".into();
         of
@@ -408,8 +402,8 @@ impl<'a> Pair<'a> {
     fn tested(&self, scope: &str, on: On, test: ScoreTest) -> Option<Hypothesis> {
         let [first, second] = self.items.map(|item| self.group.items[item].clone());
         let contrast = format!("{first}-{second}");
-        let subject = Subject::Items { group: self.group.name.clone(), first, second, on };
-        (test.participants() > 0).then(|| Hypothesis::new(contrast, scope, subject, test, Rules::default()))
+        let target = Target::Items { group: self.group.name.clone(), first, second, on };
+        (test.participants() > 0).then(|| Hypothesis::new(contrast, scope, target, test, Rules::default()))
     }
 
     fn pooled(&self) -> Option<Hypothesis> {

@@ -16,8 +16,6 @@
 mod answered;
 pub mod audit;
 mod ballots;
-mod claims;
-mod comparison;
 mod figures;
 mod fraction;
 mod frames;
@@ -27,6 +25,7 @@ mod leave_one_out;
 mod mesh_set;
 mod omnibus;
 mod panel;
+mod paper;
 pub mod power;
 mod prediction;
 pub mod preference;
@@ -34,22 +33,24 @@ mod published_ratio;
 mod recorded;
 pub mod report;
 pub mod self_test;
+mod statement;
 mod tables;
 mod tally;
-mod verdict;
 mod without_study;
+mod words;
 
 #[cfg(test)]
 mod fixture;
 
 pub use answered::Answered;
 pub use ballots::{BallotGroup, ballot_groups, ballots, declared};
-pub use comparison::unexplained_differences;
+
 pub use figures::{Figure, figures, figures_of_groups, power_figure, sweep_figures};
 pub use fraction::Fraction;
 pub use frames::{FrameError, LongFrame, answers_frame, frames};
 pub use inputs::{AnalysisError, Inputs};
 pub use panel::{PANEL_SCHEMA, Panel, StageTime};
+pub use paper::{Verdict, unexplained_differences};
 pub use recorded::Recorded;
 pub use report::{Report, report, report_of_groups};
 pub use tables::audit::audit_table;
@@ -59,5 +60,4 @@ pub use tables::power::power_tables;
 pub use tables::screened::screened_pair_tests;
 pub use tables::tables;
 pub use tally::{QuestionCount, Tally};
-pub use verdict::Verdict;
 pub use without_study::{answer_tables, open_groups};

@@ -195,7 +195,7 @@ impl Lines {
     }
 
     fn count(&mut self, name: &str, count: u64) {
-        self.line(name, &crate::report::whole(count), "");
+        self.line(name, &crate::words::whole(count), "");
     }
 
     fn share(&mut self, name: &str, part: u64, whole: u64, of: &str) {
@@ -204,7 +204,7 @@ impl Lines {
         } else {
             String::new()
         };
-        self.line(name, &crate::report::whole(part), &share);
+        self.line(name, &crate::words::whole(part), &share);
     }
 
     fn spread(&mut self, name: &str, of: &Distribution, decimals: usize) {

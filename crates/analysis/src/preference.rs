@@ -6,8 +6,8 @@
 //! The overall factor of a method is the sum of its group factors, and mixes these scales.
 
 use crate::fraction::Fraction;
-use crate::tally::{QuestionCount, Tally};
-use design::{Arrangement, Comparison, Crossed, Factor, Group, Level, MethodId, Study};
+use crate::tally::Tally;
+use design::{Factor, Group, Level, MethodId, Study};
 
 /// Answers that chose something, ties, and all answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,75 +115,6 @@ pub(crate) fn shared(study: &Study, group: &Group, factor: Factor) -> Option<Lev
 /// "a" or "an".
 pub(crate) fn article(noun: &str) -> &'static str {
     if noun.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }
-}
-
-/// One object's answers to the questions that differ in arrangement alone.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ArrangementContest {
-    /// Index of the object; `None` is all objects together.
-    pub object: Option<usize>,
-    /// Index of the group; `None` is all groups together.
-    pub group: Option<usize>,
-    /// Answers for body-centred.
-    pub body_centred: u64,
-    /// Answers without preference.
-    pub none: u64,
-    /// Answers for simple cubic.
-    pub simple_cubic: u64,
-}
-
-/// The lattices that a question compares, everything else equal; `None` if it does not.
-fn lattices(comparison: &Comparison) -> Option<[Arrangement; 2]> {
-    let (left, right) = (Crossed::of(comparison.left.method)?, Crossed::of(comparison.right.method)?);
-    let alone = left.clustering == right.clustering && left.arrangement != right.arrangement;
-    alone.then_some([left.arrangement, right.arrangement])
-}
-
-/// Whether a question compares the body-centred with the simple cubic lattice, everything else equal.
-fn is_direct(comparison: &Comparison) -> bool {
-    let papers = |a| matches!(a, Arrangement::BodyCentred | Arrangement::SimpleCubic);
-    lattices(comparison).is_some_and(|both| both.into_iter().all(papers))
-}
-
-/// How many questions compare lattices, everything else equal, and are not in [`arrangement_contests`], because one of the
-/// two is another lattice.
-pub fn other_arrangement_questions(study: &Study) -> usize {
-    study.comparisons.iter().filter(|c| lattices(c).is_some() && !is_direct(c)).count()
-}
-
-/// Body-centred against simple cubic where nothing else differs: by object and group, by object, then pooled. Counted are
-/// questions, whatever else their groups compare.
-///
-/// This is the direct evidence on arrangements; sums over clustering groups carry none, because the members of such a
-/// group share their arrangement. Empty if the study never compares the two.
-pub fn arrangement_contests(study: &Study, tally: &Tally) -> Vec<ArrangementContest> {
-    let direct: Vec<(&Comparison, &QuestionCount)> = study
-        .comparisons
-        .iter()
-        .zip(&tally.questions)
-        .filter(|(comparison, _)| is_direct(comparison))
-        .collect();
-    let contest = |object: Option<usize>, group: Option<usize>| {
-        let mut sum = ArrangementContest { object, group, body_centred: 0, none: 0, simple_cubic: 0 };
-        let own = direct.iter().filter(|(comparison, _)| {
-            object.is_none_or(|o| comparison.object == o) && group.is_none_or(|g| comparison.group == g)
-        });
-        for (comparison, count) in own {
-            let straight = lattices(comparison).is_some_and(|[left, _]| left == Arrangement::BodyCentred);
-            let (body, simple) = if straight { (count.left, count.right) } else { (count.right, count.left) };
-            sum.body_centred += body;
-            sum.none += count.none;
-            sum.simple_cubic += simple;
-        }
-        sum
-    };
-    let mut contests = Vec::new();
-    for object in (0..study.file.objects.len()).map(Some).chain([None]) {
-        contests.extend((0..study.groups.len()).map(|g| contest(object, Some(g))));
-        contests.push(contest(object, None));
-    }
-    contests.retain(|c| c.body_centred + c.none + c.simple_cubic > 0);
-    contests
 }
 
 #[cfg(test)]

@@ -5,8 +5,6 @@
 //! answers without a study, get other sentences.
 
 mod asked;
-mod bearing;
-mod benchmark;
 mod checks;
 mod declaration;
 mod factors;
@@ -15,15 +13,12 @@ mod markdown;
 mod names;
 mod prediction;
 mod preference;
-mod published;
+mod reliability;
 mod sides;
 mod tipping;
-mod words;
 mod worths;
 
-pub(crate) use words::whole;
-
-pub use finding::{Finding, Standing};
+pub use crate::statement::{Block, Finding, Section, Standing};
 
 use crate::answered::Answered;
 use crate::ballots::BallotGroup;
@@ -31,9 +26,11 @@ use crate::figures::Figure;
 use crate::hypotheses::{self, Hypothesis, Rules};
 use crate::inputs::Inputs;
 use crate::omnibus::{self, Omnibus};
+use crate::paper;
 use crate::prediction::Prediction;
 use crate::recorded::Recorded;
 use crate::tables::scale::{self, GroupScale};
+use crate::words::{capital, counted, list};
 use design::Study;
 use responses::Responses;
 use statistics::DeclaredBallot;
@@ -41,7 +38,6 @@ use statistics::ShownBallot;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use table::Table;
-use words::{counted, list};
 
 /// A report.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,32 +48,6 @@ pub struct Report {
     pub lead: Vec<String>,
     /// Its sections; none is empty.
     pub sections: Vec<Section>,
-}
-
-/// A section.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Section {
-    /// Name for links, unique in the report.
-    pub id: &'static str,
-    /// Its heading.
-    pub heading: &'static str,
-    /// What it holds, in order.
-    pub blocks: Vec<Block>,
-}
-
-/// A piece of a section.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Block {
-    /// A paragraph.
-    Text(String),
-    /// A statement with its verdict.
-    Finding(Finding),
-    /// A table.
-    Table(Table),
-    /// A table that need not be read at once.
-    Folded(Table),
-    /// A figure.
-    Figure(Figure),
 }
 
 /// What sentences are made from.
@@ -191,32 +161,30 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Repo
     let study = inputs.study;
     let evidence =
         Evidence { side_favoured: sides::is_favoured(tables), ..Evidence::of_study(study, inputs.answers) };
-    let mut press = Press::new(tables, figures);
+    let mut builder = Builder::new(tables, figures);
     let mut paper = Vec::new();
     for (name, at_once) in PAPER {
-        paper.extend(press.table(name).map(|t| if at_once { Block::Table(t) } else { Block::Folded(t) }));
+        paper.extend(builder.table(name).map(|t| if at_once { Block::Table(t) } else { Block::Folded(t) }));
     }
-    paper.extend(press.figures(&["preference_overall", "answers"]));
-    press.section("tables", "The tables of the study", paper);
+    paper.extend(builder.figures(&["preference_overall", "answers"]));
+    builder.section("tables", "The tables of the study", paper);
     if let Some(Answered { tally, shown, declared, .. }) = inputs.answers {
-        press.section("factors", "What the sums hide", factors::findings(study, tally, &evidence));
-        press.add_figures(&["factor_share", "preference_objects"]);
-        press.preferences(&evidence);
+        builder.section("factors", "What the sums hide", factors::findings(study, tally, &evidence));
+        builder.add_figures(&["factor_share", "preference_objects"]);
+        builder.preferences(&evidence);
         let predicted = Prediction::of(inputs, shown, declared);
-        press.section(
+        builder.section(
             "prediction",
             "What predicts preference",
             prediction::findings(study, predicted.as_ref()),
         );
-        press.add_figures(&["prediction"]);
-        press.add_tables(&["prediction", "prediction_objects", "prediction_correlations"]);
+        builder.add_figures(&["prediction"]);
+        builder.add_tables(&["prediction", "prediction_objects", "prediction_correlations"]);
     }
-    press.section("benchmark", "The published benchmark, checked", benchmark::findings(inputs));
-    press.add_tables(&["benchmark_beside"]);
-    press.section("published", "Published and recomputed", published::findings(inputs));
-    press.add_tables(&["claims"]);
+    let papers = paper::sections(inputs, |name| builder.table(name));
+    builder.sections.extend(papers);
     let (title, lead) = (study.file.study.title.clone(), lead(&evidence, tables));
-    press.finish(title, lead)
+    builder.finish(title, lead)
 }
 
 /// The report of answers without a study, as [`report`]; `groups` are their [`open_groups`](crate::open_groups).
@@ -245,9 +213,9 @@ pub fn report_of_groups(
         side_favoured: sides::is_favoured(tables),
         scales: scale::scales(groups),
     };
-    let mut press = Press::new(tables, figures);
-    press.preferences(&evidence);
-    press.finish(title.into(), lead(&evidence, tables))
+    let mut builder = Builder::new(tables, figures);
+    builder.preferences(&evidence);
+    builder.finish(title.into(), lead(&evidence, tables))
 }
 
 fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
@@ -275,7 +243,7 @@ fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
     });
     let mut lead = vec![format!(
         "{} gave {} to {}{about}.",
-        words::capital(&counted(people, "participant")),
+        capital(&counted(people, "participant")),
         counted(answers, "answer"),
         counted(questions, "question"),
     )];
@@ -290,7 +258,7 @@ fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
     if evidence.excluded > 0 {
         lead[0].push_str(&format!(
             " {} more broke a rule whose breakers the study leaves out.",
-            words::capital(&counted(evidence.excluded, "participant"))
+            capital(&counted(evidence.excluded, "participant"))
         ));
     }
     lead.extend(
@@ -313,13 +281,13 @@ fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
 }
 
 /// Puts sections together, and knows which tables and figures have not been printed.
-struct Press {
+struct Builder {
     tables: Vec<Table>,
     figures: Vec<Figure>,
     sections: Vec<Section>,
 }
 
-impl Press {
+impl Builder {
     fn new(tables: &[Table], figures: &[Figure]) -> Self {
         Self { tables: tables.to_vec(), figures: figures.to_vec(), sections: Vec::new() }
     }
@@ -383,7 +351,7 @@ impl Press {
             "What was fixed beforehand, and what was not",
             declaration::findings(evidence),
         );
-        self.section("bearing", "How far the answers can be relied on", bearing::findings(evidence));
+        self.section("bearing", "How far the answers can be relied on", reliability::findings(evidence));
         self.add_figures(&["respondents"]);
         self.add_tables(&["tests", "omnibus", "agreement", "answer_counts"]);
         let checks = checks::findings(evidence, |name| self.tables.iter().find(|table| table.name == name));

@@ -21,15 +21,13 @@ use crate::ballots::ALL_METHODS;
 use crate::inputs::Inputs;
 use crate::prediction::Prediction;
 use crate::recorded::Recorded;
-use crate::{audit as probes, claims, comparison};
+use crate::{audit as probes, paper};
 use table::Table;
 
 /// Every table whose inputs are there, in the order of the paper's and then our own.
 pub fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
-    let tally = inputs.answers.map(|answers| &answers.tally);
     let mut tables = vec![design::configurations(inputs.study)];
     tables.extend(benchmark::benchmark(inputs));
-    tables.extend(benchmark::asteroid(inputs));
     tables.extend(design::questionnaire(inputs.study));
     if let Some(answers) = inputs.answers {
         tables.extend(answers::answers(inputs.study, &answers.responses, &answers.excluded));
@@ -40,9 +38,7 @@ pub fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
     tables.extend(mesh_quality::quality(inputs));
     tables.extend(mesh_quality::topology(inputs));
     tables.extend(accuracy::accuracy(inputs));
-    tables.extend(mesh_quality::positions(inputs));
-    tables.extend(comparison::tables(inputs, tally));
-    tables.extend(claims::table(inputs, tally));
+    paper::add_tables(&mut tables, inputs);
     tables
 }
 

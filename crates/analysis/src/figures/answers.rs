@@ -3,7 +3,7 @@
 use super::canvas::{Align, BLACK, Canvas};
 use super::legend::Swatch;
 use super::style::{Fill, LEFT, NONE, RIGHT};
-use super::{Draft, WIDTH, canvas_with_legend};
+use super::{Unfinished, WIDTH, canvas_with_legend};
 use crate::tally::{QuestionCount, Tally};
 use design::Study;
 
@@ -12,7 +12,7 @@ const HEADING: f64 = 30.0;
 /// Room for a question's id and left configuration, and for its right configuration.
 const LABELS: (f64, f64) = (180.0, 90.0);
 
-pub(super) fn per_question(study: &Study, tally: &Tally, sides_differ: bool) -> Draft {
+pub(super) fn per_question(study: &Study, tally: &Tally, sides_differ: bool) -> Unfinished {
     let blocks: Vec<(usize, Vec<usize>)> = (0..study.file.objects.len())
         .map(|o| (o, (0..study.comparisons.len()).filter(|&c| study.comparisons[c].object == o).collect()))
         .filter(|(_, questions): &(usize, Vec<usize>)| !questions.is_empty())
@@ -51,7 +51,7 @@ pub(super) fn per_question(study: &Study, tally: &Tally, sides_differ: bool) -> 
             false => ", and everybody saw them on these sides",
         }
     );
-    Draft { name: "answers", caption, canvas }
+    Unfinished { name: "answers", caption, canvas }
 }
 
 /// Where zero lies and how wide an answer is.

@@ -4,13 +4,13 @@ use super::axis::Axis;
 use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
-use super::{Draft, canvas_with_legend};
+use super::{Unfinished, canvas_with_legend};
 use design::Level;
 use design::Study;
 use design::contrast::{Contrast, Over, contrasts};
 use statistics::{DeclaredBallot, ScoreTest};
 
-pub(super) fn by_object(study: &Study, ballots: &[DeclaredBallot]) -> Option<Draft> {
+pub(super) fn by_object(study: &Study, ballots: &[DeclaredBallot]) -> Option<Unfinished> {
     let pooled = contrasts(study).into_iter().filter(|c| c.over == Over::All);
     let blocks: Vec<Block> = pooled.filter_map(|contrast| block(study, ballots, &contrast)).collect();
     if blocks.is_empty() {
@@ -32,7 +32,7 @@ pub(super) fn by_object(study: &Study, ballots: &[DeclaredBallot]) -> Option<Dra
                    their answers to these questions. On the right the answers for the first, without preference, and for the \
                    second. Intervals are cut at \u{2212}1 and 1."
         .into();
-    Some(Draft { name: "object_interaction", caption, canvas })
+    Some(Unfinished { name: "object_interaction", caption, canvas })
 }
 
 fn block(study: &Study, ballots: &[DeclaredBallot], contrast: &Contrast) -> Option<Block> {

@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::bars::frame;
 use super::canvas::{Align, BLACK, Canvas};
 use super::meshes::method_legend;
-use super::{Draft, WIDTH, canvas_with_legend, style};
+use super::{Unfinished, WIDTH, canvas_with_legend, style};
 use crate::inputs::Inputs;
 use crate::mesh_set::MeshSet;
 use design::record::{Distribution, MeshRecord, Purpose};
@@ -20,7 +20,7 @@ const MEASURES: [Measure; 2] = [
     ("published ratio", |m| &m.quality.published_aspect_ratio),
 ];
 
-pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Draft> {
+pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Unfinished> {
     let meshes = MeshSet::of(inputs, Purpose::Benchmark);
     if meshes.is_empty() {
         return None;
@@ -54,7 +54,7 @@ pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Draft> {
                    logarithmic scale. Above: longest over shortest of all three edges; below: the published ratio of \
                    the two edges at the first corner. Degenerate triangles are left out."
         .into();
-    Some(Draft { name: "aspect_ratio_distributions", caption, canvas })
+    Some(Unfinished { name: "aspect_ratio_distributions", caption, canvas })
 }
 
 fn panel(

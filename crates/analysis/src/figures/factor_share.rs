@@ -5,7 +5,7 @@ use super::canvas::BLACK;
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
-use super::{Draft, WIDTH, canvas_with_legend};
+use super::{Unfinished, WIDTH, canvas_with_legend};
 use crate::fraction::Fraction;
 use crate::preference::group_factors;
 use crate::tally::Tally;
@@ -13,7 +13,7 @@ use design::Study;
 
 const HEIGHT: f64 = 430.0;
 
-pub(super) fn draft(study: &Study, tally: &Tally) -> Option<Draft> {
+pub(super) fn draft(study: &Study, tally: &Tally) -> Option<Unfinished> {
     let factors = group_factors(study, tally, |_| true);
     let mut caps: Vec<Fraction> = Vec::new();
     for factor in &factors {
@@ -73,5 +73,5 @@ pub(super) fn draft(study: &Study, tally: &Tally) -> Option<Draft> {
     let caption = "Preference factors against shares: a configuration's wins over all answers to its group's questions, as published, \
                    and over the answers to those questions that show it. Lines of different slope are factors on different scales."
         .into();
-    Some(Draft { name: "factor_share", caption, canvas })
+    Some(Unfinished { name: "factor_share", caption, canvas })
 }

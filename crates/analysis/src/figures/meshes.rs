@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
 use super::legend::Swatch;
-use super::{Draft, WIDTH, canvas_with_legend, style};
+use super::{Unfinished, WIDTH, canvas_with_legend, style};
 use crate::inputs::Inputs;
 use crate::mesh_set::{MeshSet, known};
 use design::published::BenchmarkRow;
@@ -47,10 +47,10 @@ fn clusters(
     study.file.objects.iter().map(cluster).collect()
 }
 
-fn draft(name: &'static str, caption: String, panel: &BarPanel, legend: &[(Swatch, String)]) -> Draft {
+fn draft(name: &'static str, caption: String, panel: &BarPanel, legend: &[(Swatch, String)]) -> Unfinished {
     let (mut canvas, top) = canvas_with_legend(legend, HEIGHT);
     panel.draw(&mut canvas, (0.0, top), (WIDTH, top + HEIGHT));
-    Draft { name, caption, canvas }
+    Unfinished { name, caption, canvas }
 }
 
 /// One bar a configuration, from its benchmark mesh.
@@ -76,7 +76,7 @@ fn has_published(clusters: &[Cluster]) -> bool {
     clusters.iter().flat_map(|c| &c.slots).flat_map(|s| &s.bars).any(|bar| bar.published.is_some())
 }
 
-pub(super) fn triangles(inputs: &Inputs<'_>) -> Option<Draft> {
+pub(super) fn triangles(inputs: &Inputs<'_>) -> Option<Unfinished> {
     let clusters = mesh_clusters(inputs, |m| Some(m.counts.triangles as f64), |p| p.triangles as f64)?;
     let published = has_published(&clusters);
     let panel = BarPanel {
@@ -91,7 +91,7 @@ pub(super) fn triangles(inputs: &Inputs<'_>) -> Option<Draft> {
     Some(draft("triangles", caption, &panel, &method_legend(inputs, published)))
 }
 
-pub(super) fn pass_times(inputs: &Inputs<'_>) -> Option<Draft> {
+pub(super) fn pass_times(inputs: &Inputs<'_>) -> Option<Unfinished> {
     let run = inputs.bench?;
     let clusters = clusters(inputs, |id, row| {
         let times = StageTimes::of(run, id);
@@ -131,7 +131,7 @@ pub(super) fn pass_times(inputs: &Inputs<'_>) -> Option<Draft> {
     Some(draft("pass_times", caption, &panel, &legend))
 }
 
-pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Draft> {
+pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Unfinished> {
     let clusters = mesh_clusters(
         inputs,
         |m| known(&m.quality.published_aspect_ratio, |d| d.mean),

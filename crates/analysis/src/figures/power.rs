@@ -5,7 +5,7 @@ use super::canvas::BLACK;
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
-use super::{Draft, Figure, WIDTH, canvas_with_legend};
+use super::{Figure, Unfinished, WIDTH, canvas_with_legend};
 use crate::inputs::AnalysisError;
 use crate::power::{Assumptions, Power};
 
@@ -47,7 +47,7 @@ pub fn power_figure(assumptions: &Assumptions, all: &[Power]) -> Result<Figure, 
                    contrasts of a family that have as many questions, which differ by chance alone. Lines and filled marks: \
                    each test by itself; hollow marks: adjusted for all tests of the family."
         .into();
-    Draft { name: "power", caption, canvas }.finish()
+    Unfinished { name: "power", caption, canvas }.finish()
 }
 
 fn panel(assumptions: &Assumptions, all: &[Power], share: f64, kinds: &[(&str, usize)]) -> Scatter {

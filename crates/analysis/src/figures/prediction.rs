@@ -5,7 +5,7 @@ use super::canvas::BLACK;
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
-use super::{Draft, WIDTH, canvas_with_legend};
+use super::{Unfinished, WIDTH, canvas_with_legend};
 use crate::inputs::Inputs;
 use crate::prediction::{MetricPrediction, Prediction, Scale};
 use crate::preference;
@@ -19,7 +19,7 @@ pub(super) fn draft(
     inputs: &Inputs<'_>,
     shown: &[ShownBallot],
     declared: &[DeclaredBallot],
-) -> Option<Draft> {
+) -> Option<Unfinished> {
     let (study, prediction) = (inputs.study, Prediction::of(inputs, shown, declared)?);
     let counts = outcome_counts(declared);
     let mut legend: Vec<(Swatch, String)> = Vec::new();
@@ -48,7 +48,7 @@ pub(super) fn draft(
                    above the dashed line: the better value won. The line is the share that Davidson's model on this metric \
                    alone expects. Pairs without a decided answer or a difference are left out."
         .into();
-    Some(Draft { name: "prediction", caption, canvas })
+    Some(Unfinished { name: "prediction", caption, canvas })
 }
 
 /// Whether a question's methods differ in the first of two factors.

@@ -5,7 +5,7 @@ use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
 use super::canvas::{BLACK, WHITE};
 use super::legend::Swatch;
 use super::style::{self, Fill};
-use super::{Draft, WIDTH, canvas_with_legend};
+use super::{Unfinished, WIDTH, canvas_with_legend};
 use crate::preference::{self, GroupFactor};
 use crate::tables::preferences::interval;
 use crate::tally::Tally;
@@ -19,7 +19,7 @@ fn legend_of(study: &Study) -> Vec<(Swatch, String)> {
     study.methods.iter().map(entry).collect()
 }
 
-pub(super) fn per_object(study: &Study, tally: &Tally) -> Draft {
+pub(super) fn per_object(study: &Study, tally: &Tally) -> Unfinished {
     let mut legend = legend_of(study);
     legend.push((Swatch::Whisker, "95 % interval over respondents".into()));
     legend.push((Swatch::Dashes, "largest possible".into()));
@@ -36,7 +36,7 @@ pub(super) fn per_object(study: &Study, tally: &Tally) -> Draft {
                    the group's questions. Intervals count each respondent as one observation; they are cut at 0 and \
                    at the largest possible factor."
         .into();
-    Draft { name: "preference_objects", caption, canvas }
+    Unfinished { name: "preference_objects", caption, canvas }
 }
 
 /// Groups with questions, in rows of up to three; a row holds groups of one size.
@@ -114,7 +114,7 @@ fn weights(study: &Study, factors: &[GroupFactor]) -> String {
     )
 }
 
-pub(super) fn overall(study: &Study, tally: &Tally) -> Draft {
+pub(super) fn overall(study: &Study, tally: &Tally) -> Unfinished {
     let factors = preference::group_factors(study, tally, |_| true);
     let published = |method: MethodId| {
         let mut cells = study.published.preferences.iter();
@@ -165,5 +165,5 @@ pub(super) fn overall(study: &Study, tally: &Tally) -> Draft {
     let mut caption =
         String::from("Overall preference: the sum of a configuration's factors over its comparison groups.");
     caption.push_str(&weights(study, &factors));
-    Draft { name: "preference_overall", caption, canvas }
+    Unfinished { name: "preference_overall", caption, canvas }
 }

@@ -6,7 +6,7 @@ use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::style::{Fill, LEFT};
-use super::{Draft, WIDTH, canvas_with_legend};
+use super::{Unfinished, WIDTH, canvas_with_legend};
 use statistics::{Screening, ShownBallot, screening};
 
 /// Up to so many people have a row of their own; more are counted in steps of a twentieth.
@@ -14,7 +14,7 @@ const ROWS: usize = 60;
 const STEPS: usize = 20;
 const NAME: &str = "respondents";
 
-pub(super) fn draft(ballots: &[ShownBallot]) -> Option<Draft> {
+pub(super) fn draft(ballots: &[ShownBallot]) -> Option<Unfinished> {
     let mut screened = screening(ballots);
     screened.retain(|s| s.comparable > 0);
     if screened.is_empty() {
@@ -26,7 +26,7 @@ pub(super) fn draft(ballots: &[ShownBallot]) -> Option<Draft> {
 const SAYS: &str = "share of a respondent's decided answers that side with the majority of the others, where they have one; half \
                     is what answering by chance gives.";
 
-fn one_by_one(mut screened: Vec<Screening>) -> Draft {
+fn one_by_one(mut screened: Vec<Screening>) -> Unfinished {
     screened.sort_by(|a, b| {
         let share = |s: &Screening| s.agreement().unwrap_or_default();
         share(b).total_cmp(&share(a)).then(a.participant.cmp(&b.participant))
@@ -50,10 +50,10 @@ fn one_by_one(mut screened: Vec<Screening>) -> Draft {
     ];
     let (mut canvas, top) = canvas_with_legend(&legend, forest::height(&blocks));
     forest::draw(&mut canvas, &blocks, &Axis::up_to(1.0), "agreement with the others", 0.5, top);
-    Draft { name: NAME, caption: format!("Agreement between respondents: {SAYS}"), canvas }
+    Unfinished { name: NAME, caption: format!("Agreement between respondents: {SAYS}"), canvas }
 }
 
-fn counted(screened: &[Screening]) -> Draft {
+fn counted(screened: &[Screening]) -> Unfinished {
     let mut counts = [0_u64; STEPS];
     for share in screened.iter().filter_map(Screening::agreement) {
         counts[((share * STEPS as f64) as usize).min(STEPS - 1)] += 1;
@@ -76,5 +76,9 @@ fn counted(screened: &[Screening]) -> Draft {
     };
     let (mut canvas, top) = canvas_with_legend(&[], 340.0);
     panel.draw(&mut canvas, (0.0, top), (WIDTH, top + 340.0));
-    Draft { name: NAME, caption: format!("Agreement between {} respondents: {SAYS}", screened.len()), canvas }
+    Unfinished {
+        name: NAME,
+        caption: format!("Agreement between {} respondents: {SAYS}", screened.len()),
+        canvas,
+    }
 }

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
 use super::legend::Swatch;
-use super::{Draft, WIDTH, canvas_with_legend, style};
+use super::{Unfinished, WIDTH, canvas_with_legend, style};
 use crate::inputs::Inputs;
 use design::ConfigurationId;
 use timing::stage_times::{StageTimes, conditions};
@@ -11,7 +11,7 @@ use timing::stage_times::{StageTimes, conditions};
 const ROW: f64 = 280.0;
 const PER_ROW: usize = 3;
 
-pub(super) fn stage_times(inputs: &Inputs<'_>) -> Option<Draft> {
+pub(super) fn stage_times(inputs: &Inputs<'_>) -> Option<Unfinished> {
     let run = inputs.bench?;
     let with_samples: Vec<usize> = (0..inputs.study.file.objects.len())
         .filter(|&o| run.samples.iter().any(|sample| sample.id.object == inputs.study.file.objects[o].id))
@@ -38,7 +38,7 @@ pub(super) fn stage_times(inputs: &Inputs<'_>) -> Option<Draft> {
         "Time of each stage, stacked; above with, below without sampling the field. Every panel has its own scale. {}",
         conditions(run)
     );
-    Some(Draft { name: "stage_times", caption, canvas })
+    Some(Unfinished { name: "stage_times", caption, canvas })
 }
 
 fn panel(inputs: &Inputs<'_>, object: usize, sampling: bool) -> BarPanel {

@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::legend::Swatch;
 use super::marks::{Filling, Mark};
 use super::scatter::Scatter;
-use super::{Draft, Figure, WIDTH, canvas_with_legend, style};
+use super::{Figure, Unfinished, WIDTH, canvas_with_legend, style};
 use crate::inputs::AnalysisError;
 use design::{MethodId, Study};
 use timing::sweep::{Point, SpeedUp, Sweep};
@@ -28,7 +28,7 @@ pub fn sweep_figures(study: &Study, sweep: &Sweep) -> Result<Vec<Figure>, Analys
         speed_up(study, sweep, &objects),
         quality(study, sweep, &objects),
     ];
-    drafts.into_iter().flatten().map(Draft::finish).collect()
+    drafts.into_iter().flatten().map(Unfinished::finish).collect()
 }
 
 fn objects(sweep: &Sweep) -> Vec<&str> {
@@ -114,7 +114,7 @@ fn draw(
     caption: String,
     legend: &[(Swatch, String)],
     rows: &[Vec<Scatter>],
-) -> Option<Draft> {
+) -> Option<Unfinished> {
     let (mut canvas, top) = canvas_with_legend(legend, ROW * rows.len() as f64);
     for (row, panels) in (0_u32..).zip(rows) {
         let (width, y) = (WIDTH / panels.len() as f64, top + ROW * f64::from(row));
@@ -123,14 +123,14 @@ fn draw(
             panel.draw(&mut canvas, (x, y), (x + width, y + ROW));
         }
     }
-    (!rows.is_empty()).then_some(Draft { name, caption, canvas })
+    (!rows.is_empty()).then_some(Unfinished { name, caption, canvas })
 }
 
 fn threads(count: u32) -> String {
     if count == 1 { "1 thread".into() } else { format!("{count} threads") }
 }
 
-fn time(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
+fn time(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Unfinished> {
     let panel = |object: &&str| {
         let labels = Labels {
             heading: object_name(study, object).into(),
@@ -147,7 +147,7 @@ fn time(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
     draw("sweep_time", caption, &legend(study), &[objects.iter().map(panel).collect()])
 }
 
-fn per_triangle(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
+fn per_triangle(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Unfinished> {
     let panel = |object: &&str| {
         let labels = Labels {
             heading: object_name(study, object).into(),
@@ -166,7 +166,7 @@ fn per_triangle(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft>
 }
 
 /// At the middle and at the finest resolution.
-fn speed_up(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
+fn speed_up(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Unfinished> {
     let mut cells: Vec<u32> = sweep.speed_ups.iter().map(|found| found.cells).collect();
     cells.sort_unstable();
     cells.dedup();
@@ -217,7 +217,7 @@ fn speed_up(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
     draw("sweep_speed_up", caption, &legend, &rows)
 }
 
-fn quality(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Draft> {
+fn quality(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Unfinished> {
     let q: Value = |p| p.radius_ratio;
     let rows = objects.iter().map(|object| {
         let panel = |x: String, value: Value| {

@@ -4,12 +4,12 @@ use super::axis::Axis;
 use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
-use super::{Draft, canvas_with_legend};
+use super::{Unfinished, canvas_with_legend};
 use crate::ballots::BallotGroup;
 use statistics::{Pairs, Participants, clustered_covariance, fit_on_one_scale};
 use table::digits::number;
 
-pub(super) fn draft(groups: &[BallotGroup]) -> Option<Draft> {
+pub(super) fn draft(groups: &[BallotGroup]) -> Option<Unfinished> {
     let blocks: Vec<Block> = groups.iter().filter_map(block).collect();
     if blocks.is_empty() {
         return None;
@@ -26,7 +26,7 @@ pub(super) fn draft(groups: &[BallotGroup]) -> Option<Draft> {
     let caption = "Worths by Davidson's model, with a bonus for a side where pairs were shown in both orders: log-odds of being preferred to the group's first item. Intervals take participants \
                    as clusters; where answers separate the items, half a win each way was added and no interval is given."
         .into();
-    Some(Draft { name: "worths", caption, canvas })
+    Some(Unfinished { name: "worths", caption, canvas })
 }
 
 fn block(group: &BallotGroup) -> Option<Block> {

@@ -79,22 +79,6 @@ fn wins_per_object() {
 }
 
 #[test]
-fn direct_contests_of_arrangements() {
-    let study = fixture::study();
-    let contests = arrangement_contests(&study, &counted(&study));
-    let find = |object, group| {
-        let contest = contests.iter().find(|c| c.object == object && c.group == group).unwrap();
-        (contest.body_centred, contest.none, contest.simple_cubic)
-    };
-    // Counted by hand.
-    assert_eq!(find(None, None), (84, 22, 56));
-    assert_eq!(find(Some(0), None), (44, 5, 5));
-    let (asteroid, bunny) = (find(Some(1), None), find(Some(2), None));
-    assert_eq!((asteroid.0 + bunny.0, asteroid.1 + bunny.1, asteroid.2 + bunny.2), (40, 17, 51));
-    assert_eq!([2, 3, 4].map(|g| find(None, Some(g))), [(36, 8, 10), (20, 7, 27), (28, 7, 19)]);
-}
-
-#[test]
 fn pooled_sides_and_pairs() {
     let study = fixture::study();
     let tally = counted(&study);

@@ -1,10 +1,10 @@
 //! Checks of the answers: who broke a rule of screening and what the tests are without them, and what probes found. Said from
 //! the tables, which hold both.
 
-use super::finding::{Finding, Standing};
-use super::words::{counted, list, p as p_value};
 use super::{Block, Evidence, names};
 use crate::audit::Finding as Probed;
+use crate::statement::{Finding, Standing};
+use crate::words::{counted, list, p as p_value};
 use statistics::{Flag, screening};
 use std::collections::BTreeMap;
 use table::{Cell, Table};

@@ -1,9 +1,9 @@
 //! What of the analysis is a choice, who made it when, and what would come out under another choice.
 
-use super::finding::{Finding, Standing};
-use super::words::{counted, list, p};
 use super::{Block, Evidence, names};
 use crate::hypotheses::Hypothesis;
+use crate::statement::{Finding, Standing};
+use crate::words::{counted, list, p};
 use design::Study;
 use design::config::{Declaration, FamilyRule};
 

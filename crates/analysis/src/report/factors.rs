@@ -1,12 +1,12 @@
 //! What the published sums of preference factors hide.
 
-use super::finding::{Finding, Standing};
-use super::words::{against, capital, counted, list, number};
 use super::{Block, Evidence, names};
 use crate::fraction::Fraction;
-use crate::hypotheses::Subject;
+use crate::hypotheses::Target;
 use crate::preference::{self, GroupFactor, group_factors, margins, overall, two_factors};
+use crate::statement::{Finding, Standing};
 use crate::tally::Tally;
+use crate::words::{against, capital, counted, list, number};
 use design::contrast::Over;
 use design::{Level, MethodId, Study};
 
@@ -126,11 +126,11 @@ fn difference(study: &Study, factors: &[GroupFactor], evidence: &Evidence<'_>) -
     }
     let by_ties = half(first, false) - half(second, false);
     let direct = half(first, true) - half(second, true);
-    let of_contrast = evidence.hypotheses.iter().find(|h| match h.subject {
-        Subject::Contrast { levels, over } => over == Over::All && levels[0].factor == outer,
+    let of_contrast = evidence.hypotheses.iter().find(|h| match h.target {
+        Target::Contrast { levels, over } => over == Over::All && levels[0].factor == outer,
         _ => false,
     })?;
-    let Subject::Contrast { levels, .. } = of_contrast.subject else { return None };
+    let Target::Contrast { levels, .. } = of_contrast.target else { return None };
     let counts = of_contrast.test.counts?;
     let [one, other] = [first, second].map(|level| names::level(study, level));
     Some(format!(

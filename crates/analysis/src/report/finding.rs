@@ -1,65 +1,19 @@
-//! A statement with its verdict, and the sentences of tests of preference.
+//! Sentences of tests of preference.
 
-use super::words::{against, capital, counted, interval, number, p};
-use crate::hypotheses::{Conclusion, Hypothesis, Subject};
+use crate::hypotheses::{Conclusion, Hypothesis, Target};
+use crate::statement::{Finding, Standing};
+use crate::words::{against, capital, counted, interval, number, p};
 use statistics::ScoreTest;
 use statistics::interval::{Interval, unanimous};
 
-/// What a statement is worth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Standing {
-    /// It holds at the stated level.
-    Holds,
-    /// The opposite of what was stated is there.
-    Fails,
-    /// What is there is smaller than the declared margin.
-    Equal,
-    /// Neither a difference nor equality was shown.
-    Open,
-    /// No outcome of so few people could have shown anything.
-    TooFew,
-    /// The design does not allow an answer.
-    NotAnswerable,
-    /// A description, which no test judges.
-    Noted,
-}
-
-impl Standing {
-    /// In a word or two.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Holds => "holds",
-            Self::Fails => "does not hold",
-            Self::Equal => "equal",
-            Self::Open => "open",
-            Self::TooFew => "too few",
-            Self::NotAnswerable => "not answerable",
-            Self::Noted => "noted",
-        }
-    }
-}
-
-/// A statement with its verdict.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Finding {
-    /// What it is worth.
-    pub standing: Standing,
-    /// The statement, with counts, estimate, interval and test.
-    pub text: String,
-}
-
 impl Finding {
-    pub(super) fn new(standing: Standing, text: impl Into<String>) -> Self {
-        Self { standing, text: text.into() }
-    }
-
     /// Whether the first was preferred to the second; `scope` says over which answers, with a space before it.
     pub(super) fn of_preference(hypothesis: &Hypothesis, first: &str, second: &str, scope: &str) -> Self {
         let (test, margin) = (&hypothesis.test, hypothesis.rules.margin);
         let counts = test.counts.unwrap_or_default();
         // A name that somebody gave stays as it is, at the head of a sentence too.
-        let opening = |name: &str| match hypothesis.subject {
-            Subject::Items { .. } => name.to_owned(),
+        let opening = |name: &str| match hypothesis.target {
+            Target::Items { .. } => name.to_owned(),
             _ => capital(name),
         };
         let towards_first = test.mean >= 0.0;

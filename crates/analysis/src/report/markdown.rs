@@ -22,7 +22,7 @@ impl Report {
                 match block {
                     Block::Text(paragraph) => text.push_str(&format!("{}\n", escape(paragraph))),
                     Block::Finding(finding) => {
-                        let label = super::words::capital(finding.standing.label());
+                        let label = crate::words::capital(finding.standing.label());
                         text.push_str(&format!("- **{label}.** {}\n", escape(&finding.text)));
                     }
                     Block::Table(table) | Block::Folded(table) => text.push_str(&table.to_markdown()),

@@ -1,7 +1,7 @@
 //! What things are called in a sentence.
 
 use super::Evidence;
-use crate::hypotheses::{Hypothesis, On, Subject};
+use crate::hypotheses::{Hypothesis, On, Target};
 use design::contrast::Over;
 use design::{Level, Study};
 
@@ -45,12 +45,12 @@ pub(super) fn on_object(on: &On) -> String {
 
 /// What is compared with what, and where: `edge collapse against no clustering on the simple cubic lattice`.
 pub(super) fn hypothesis(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> String {
-    match (&hypothesis.subject, evidence.study) {
-        (Subject::Contrast { levels, over }, Some(study)) => {
+    match (&hypothesis.target, evidence.study) {
+        (Target::Contrast { levels, over }, Some(study)) => {
             let [first, second] = levels.map(|level| self::level(study, level));
             format!("{first} against {second}{}", self::over(study, *over))
         }
-        (Subject::Items { first, second, group, on }, _) => {
+        (Target::Items { first, second, group, on }, _) => {
             format!("{first} against {second}{}{}", on_object(on), in_group(evidence, group))
         }
         _ => format!("question {}", hypothesis.scope),

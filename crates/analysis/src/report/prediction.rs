@@ -1,10 +1,10 @@
 //! What predicts preference, what 27 pairs can show of it, and what they cannot.
 
 use super::Block;
-use super::finding::{Finding, Standing};
-use super::words::{capital, counted, interval, list, number, p, percent, percents};
 use crate::hypotheses::ALPHA;
 use crate::prediction::{MetricPrediction, Prediction};
+use crate::statement::{Finding, Standing};
+use crate::words::{capital, counted, interval, list, number, p, percent, percents};
 use design::Study;
 use design::forms::Questionnaire;
 

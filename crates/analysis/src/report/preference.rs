@@ -1,10 +1,11 @@
 //! What was preferred to what: sorted by what holds, what depends on something else, and what is open.
 
-use super::finding::{Finding, Standing, over_all, score, tested};
-use super::words::{against, capital, counted, list, number, p};
+use super::finding::{over_all, score, tested};
 use super::{Block, Evidence, names, tipping, worths};
-use crate::hypotheses::{self, Conclusion, Hypothesis, On, Subject};
+use crate::hypotheses::{self, Conclusion, Hypothesis, On, Target};
 use crate::omnibus::{self, Asked, Omnibus};
+use crate::statement::{Finding, Standing};
+use crate::words::{against, capital, counted, list, number, p};
 use design::Level;
 use design::Study;
 use design::contrast::{Over, contrasts};
@@ -122,7 +123,7 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
 fn of_items(evidence: &Evidence<'_>, mut sorted: Sorted, level: f64) -> Sorted {
     let (mut pooled, mut by_object) = (0, Vec::new());
     for hypothesis in evidence.hypotheses {
-        let Subject::Items { group, first, second, on } = &hypothesis.subject else { continue };
+        let Target::Items { group, first, second, on } = &hypothesis.target else { continue };
         let scope = format!("{}{}", names::on_object(on), names::in_group(evidence, group));
         match on {
             On::All => {
@@ -135,7 +136,7 @@ fn of_items(evidence: &Evidence<'_>, mut sorted: Sorted, level: f64) -> Sorted {
                     hypothesis.differs(),
                 ));
                 let between = evidence.hypotheses.iter().filter(|of| {
-                    let same = matches!(&of.subject, Subject::Items { group: own, on: On::Difference(_), .. } if own == group);
+                    let same = matches!(&of.target, Target::Items { group: own, on: On::Difference(_), .. } if own == group);
                     same && of.contrast == hypothesis.contrast && of.adjusted <= level
                 });
                 let clearest = between.min_by(|a, b| a.test.sign_flip.ln_p.total_cmp(&b.test.sign_flip.ln_p));
@@ -355,27 +356,26 @@ type Parts<'a> = ([String; 2], [(String, &'a ScoreTest); 2]);
 
 /// The two preferences that a difference is of.
 fn parts<'a>(evidence: &'a Evidence<'_>, hypothesis: &Hypothesis) -> Option<Parts<'a>> {
-    let test_of = |subject: Subject| {
-        evidence.hypotheses.iter().find(|of| of.is_tested() && of.subject == subject).map(|of| &of.test)
+    let test_of = |target: Target| {
+        evidence.hypotheses.iter().find(|of| of.is_tested() && of.target == target).map(|of| &of.test)
     };
-    match (&hypothesis.subject, evidence.study) {
-        (Subject::Contrast { levels, over }, Some(study)) => {
+    match (&hypothesis.target, evidence.study) {
+        (Target::Contrast { levels, over }, Some(study)) => {
             let (a, b) = match *over {
                 Over::Difference(a, b) => (Over::Within(a), Over::Within(b)),
                 Over::ObjectDifference(a, b) => (Over::Object(a), Over::Object(b)),
                 _ => return None,
             };
-            let part = |over| {
-                Some((names::over(study, over), test_of(Subject::Contrast { levels: *levels, over })?))
-            };
+            let part =
+                |over| Some((names::over(study, over), test_of(Target::Contrast { levels: *levels, over })?));
             Some((levels.map(|level| names::level(study, level)), [part(a)?, part(b)?]))
         }
-        (Subject::Items { group, first, second, on: On::Difference(objects) }, _) => {
+        (Target::Items { group, first, second, on: On::Difference(objects) }, _) => {
             let part = |object: &String| {
                 let on = On::Object(object.clone());
                 let place = format!("{}{}", names::on_object(&on), names::in_group(evidence, group));
                 let [group, first, second] = [group, first, second].map(String::clone);
-                Some((place, test_of(Subject::Items { group, first, second, on })?))
+                Some((place, test_of(Target::Items { group, first, second, on })?))
             };
             let [a, b] = objects;
             Some(([first.clone(), second.clone()], [part(a)?, part(b)?]))

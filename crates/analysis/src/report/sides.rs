@@ -1,9 +1,9 @@
 //! What the design cannot answer: sides, other objects, other people.
 
-use super::finding::{Finding, Standing};
-use super::words::{capital, counted, interval, list, number, p as p_value};
 use super::{Block, Evidence, asked, names};
 use crate::audit::{Finding as Verdict, Probe};
+use crate::statement::{Finding, Standing};
+use crate::words::{capital, counted, interval, list, number, p as p_value};
 use design::Level;
 use design::contrast::{Over, contrasts};
 use statistics::{

@@ -13,9 +13,9 @@ fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'stati
     }
     let answered = Answered::of(&study, answers).unwrap();
     let evidence = Evidence::of_study(&study, Some(&answered));
-    let mut press = Press::new(&[], &[]);
-    press.preferences(&evidence);
-    let report = press.finish("A test".into(), lead(&evidence, &[]));
+    let mut builder = Builder::new(&[], &[]);
+    builder.preferences(&evidence);
+    let report = builder.finish("A test".into(), lead(&evidence, &[]));
     let findings = |s: &Section| {
         let of =
             s.blocks.iter().filter_map(|b| if let Block::Finding(f) = b { Some(f.clone()) } else { None });

@@ -1,8 +1,8 @@
 //! How large a liking for a side would undo a result, where methods and sides go together.
 
 use super::Evidence;
-use super::words::number;
-use crate::hypotheses::{Hypothesis, Subject};
+use crate::hypotheses::{Hypothesis, Target};
+use crate::words::number;
 use design::contrast::Over;
 use design::{Level, MethodId, Study};
 use statistics::{
@@ -16,7 +16,7 @@ const MOST_PEOPLE: usize = 50_000;
 
 /// Said after a result that holds; empty where sides cannot have made it, and where nothing can be said.
 pub(super) fn sentence(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> String {
-    let Subject::Contrast { levels, over } = hypothesis.subject else { return String::new() };
+    let Target::Contrast { levels, over } = hypothesis.target else { return String::new() };
     let Some(study) = evidence.study.filter(|_| hypothesis.test.participants() <= MOST_PEOPLE) else {
         return String::new();
     };

@@ -1,9 +1,9 @@
 //! What the models say: all items on one scale, and how well the models fit.
 
-use super::finding::{Finding, Standing};
-use super::words::{counted, interval, list, number, p};
 use super::{Block, Evidence};
+use crate::statement::{Finding, Standing};
 use crate::tables::scale::GroupScale;
+use crate::words::{counted, interval, list, number, p};
 use statistics::{Difference, Model, Pairs, Scale, fit, goodness};
 
 /// Log-odds that differ by less differ by rounding.

@@ -4,7 +4,7 @@ use crate::inputs::Inputs;
 use crate::mesh_set::{MeshSet, discard_fraction, known};
 use crate::published_ratio;
 use crate::tables::design::{level, method_columns};
-use design::config::{BudgetSection, FieldSection};
+use design::config::BudgetSection;
 use design::record::{MeshRecord, Purpose};
 use table::{Cell, Table};
 use timing::stage_times::{StageTimes, conditions};
@@ -161,28 +161,8 @@ pub(super) fn benchmark(inputs: &Inputs<'_>) -> Option<Table> {
     Some(table)
 }
 
-/// The paper's extract: the asteroid alone, in fewer columns. `None` for a study without an asteroid.
-pub(super) fn asteroid(inputs: &Inputs<'_>) -> Option<Table> {
-    const COLUMNS: &[&str] = &[
-        "id",
-        "vertex_s",
-        "geometry_s",
-        "vertices",
-        "triangles",
-        "aspect_ratio_mean",
-        "aspect_ratio_sd",
-        "discard_fraction",
-        "discard_fraction_as_published",
-    ];
-    let is_asteroid = |o: usize| matches!(inputs.study.file.objects[o].field, FieldSection::Asteroid);
-    let whole = whole(inputs, is_asteroid)?;
-    let mut table = whole.block("Benchmark of the asteroid", COLUMNS);
-    table.name = "asteroid".into();
-    table.notes = whole.notes;
-    Some(table)
-}
-
-fn whole(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Option<Table> {
+/// The rows of the objects that `holds` picks, as one wide table.
+pub(crate) fn whole(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Option<Table> {
     let meshes = MeshSet::of(inputs, Purpose::Benchmark);
     let study = inputs.study;
     let factors = method_columns(study);

@@ -1,7 +1,7 @@
 //! Tests of preference, by family.
 
 use crate::ballots::BallotGroup;
-use crate::hypotheses::{self, Hypothesis, Subject};
+use crate::hypotheses::{self, Hypothesis, Target};
 use rayon::prelude::*;
 use statistics::bootstrap::Resampling;
 use statistics::interval::Interval;
@@ -116,7 +116,7 @@ fn table(rows: &[Hypothesis]) -> Table {
 }
 
 fn cells(row: &Hypothesis) -> Vec<Cell> {
-    let (test, question) = (&row.test, matches!(row.subject, Subject::Question(_)));
+    let (test, question) = (&row.test, matches!(row.target, Target::Question(_)));
     let cut = |i: Interval| i.cut(-test.reach, test.reach);
     let resampling = Resampling::default();
     let of_studentised = if question { None } else { test.studentised(resampling) };

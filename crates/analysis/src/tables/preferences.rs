@@ -1,17 +1,15 @@
-//! The preference factors: per group, overall, margins, per object, and the direct contest of arrangements.
+//! The preference factors: per group, overall, margins, and per object.
 
 use crate::preference::{self, GroupFactor};
 use crate::tally::{Tally, TallyRow};
 use design::{Factor, Level, MethodId, Study};
 use statistics::interval::{Interval, t_over_respondents, wilson};
-use table::digits::counted;
 use table::{Cell, Column, Table};
 
 pub(super) fn all(study: &Study, tally: &Tally) -> Vec<Table> {
     let factors = preference::group_factors(study, tally, |_| true);
     let mut tables = vec![groups(study, &factors), overall(study, &factors), margins(study, &factors)];
     tables.push(objects(study, tally));
-    tables.extend(contests(study, tally));
     tables.retain(|table| !table.rows.is_empty());
     tables
 }
@@ -194,34 +192,4 @@ fn wins_of_answers(tally: &Tally, factor: &GroupFactor, object: usize) -> Vec<[u
     }
     own.retain(|&[_, answers]| answers > 0);
     own
-}
-
-fn contests(study: &Study, tally: &Tally) -> Option<Table> {
-    let mut table = Table::new(
-        "preference_arrangements",
-        "Body-centred against simple cubic, where nothing else differs",
-        &[
-            ("object", "Object"),
-            ("group", "Group"),
-            ("body_centred", "Body-centred"),
-            ("no_preference", "No preference"),
-            ("simple_cubic", "Simple cubic"),
-        ],
-    );
-    for contest in preference::arrangement_contests(study, tally) {
-        table.push(vec![
-            Cell::text(contest.object.map_or("all", |o| &study.file.objects[o].name)),
-            Cell::text(contest.group.map_or("all", |g| &study.groups[g].id)),
-            Cell::count(contest.body_centred),
-            Cell::count(contest.none),
-            Cell::count(contest.simple_cubic),
-        ]);
-    }
-    table.notes.push("Counts of answers; the direct evidence on arrangements.".into());
-    let others = preference::other_arrangement_questions(study);
-    if others > 0 {
-        let noun = counted(others, "question");
-        table.notes.push(format!("Left out: {noun} on other lattices. The table of tests has every pair."));
-    }
-    (!table.rows.is_empty()).then_some(table)
 }

@@ -3,7 +3,7 @@
 use super::Finding;
 use super::numbers::{Measure, Numbers, Ours, Pair, Side, mean, mean_change};
 use crate::inputs::Inputs;
-use crate::verdict::Verdict;
+use crate::paper::verdict::Verdict;
 use design::Clustering::{self, EdgeCollapse, Integrated};
 use design::Stage;
 use design::published::Claim;

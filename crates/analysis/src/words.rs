@@ -1,13 +1,13 @@
 //! Numbers in words: p values, intervals, counts, lists.
 
 use statistics::interval::Interval;
-pub(super) use table::digits::{counted, number};
+pub(crate) use table::digits::{counted, number};
 
 /// Below this a p value is not printed in digits.
 const LEAST_P: f64 = 1e-6;
 
 /// `p = 0.0094`: two digits that count, no more; `p < 0.000001` below that.
-pub(super) fn p(p: f64) -> String {
+pub(crate) fn p(p: f64) -> String {
     match p {
         p if p < LEAST_P => "p < 0.000001".into(),
         p if p > 0.995 => "p = 1".into(),
@@ -19,12 +19,12 @@ pub(super) fn p(p: f64) -> String {
 }
 
 /// `0.06 to 0.29`.
-pub(super) fn interval(interval: Interval, decimals: usize) -> String {
+pub(crate) fn interval(interval: Interval, decimals: usize) -> String {
     format!("{} to {}", number(interval.low, decimals), number(interval.high, decimals))
 }
 
 /// `+12.07 %`.
-pub(super) fn change(percent: f64) -> String {
+pub(crate) fn change(percent: f64) -> String {
     let text = number(percent, 2);
     if text.starts_with('\u{2212}') { format!("{text} %") } else { format!("+{text} %") }
 }
@@ -38,18 +38,18 @@ pub(crate) fn whole(count: u64) -> String {
 }
 
 /// `73 %`.
-pub(super) fn percent(share: f64) -> String {
+pub(crate) fn percent(share: f64) -> String {
     format!("{} %", number(100.0 * share, 0))
 }
 
 /// `66 to 81 %`, cut to what is possible.
-pub(super) fn percents(interval: Interval) -> String {
+pub(crate) fn percents(interval: Interval) -> String {
     let end = |x: f64| number(100.0 * x.clamp(0.0, 1.0), 0);
     format!("{} to {} %", end(interval.low), end(interval.high))
 }
 
 /// `a, b and c`.
-pub(super) fn list<T: AsRef<str>>(items: &[T]) -> String {
+pub(crate) fn list<T: AsRef<str>>(items: &[T]) -> String {
     match items {
         [] => String::new(),
         [only] => only.as_ref().into(),
@@ -61,13 +61,13 @@ pub(super) fn list<T: AsRef<str>>(items: &[T]) -> String {
 }
 
 /// With its first letter upper case.
-pub(super) fn capital(text: &str) -> String {
+pub(crate) fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// `36 answers against 10, 8 without preference`.
-pub(super) fn against([first, ties, second]: [u64; 3]) -> String {
+pub(crate) fn against([first, ties, second]: [u64; 3]) -> String {
     let ties = if ties == 0 { "none".into() } else { ties.to_string() };
     let answers = if first == 1 { "answer" } else { "answers" };
     format!("{first} {answers} against {second}, {ties} without preference")

@@ -1,10 +1,10 @@
 //! How much the answers can bear: agreement, consistency, odd respondents, single questions.
 
-use super::finding::{Finding, Standing};
-use super::words::{counted, interval, list, number, p, percent};
 use super::{Block, Evidence, names};
 use crate::hypotheses::Hypothesis;
 use crate::leave_one_out::WithoutOne;
+use crate::statement::{Finding, Standing};
+use crate::words::{counted, interval, list, number, p, percent};
 use statistics::{
     DeclaredBallot, Metric, Screening, Triads, agreement, alpha_with_interval, outcome_counts, screening,
     sign_test, triads,

@@ -73,7 +73,7 @@ fn an_unknown_difference_is_not_explained_away() {
 #[test]
 fn what_is_not_explained_is_listed() {
     let mut everything = Everything::of(fixture::study());
-    let listed = |everything: &Everything| unexplained_differences(&everything.inputs());
+    let listed = |everything: &Everything| crate::paper::unexplained_differences(&everything.inputs());
     assert_eq!(listed(&everything), Vec::<String>::new());
     everything.meshes[0].counts.vertices += 100;
     let claims = &mut everything.study.published.claims;

@@ -2,9 +2,10 @@
 
 use super::Finding;
 use crate::fraction::Fraction;
-use crate::preference::{self, ArrangementContest, GroupFactor};
+use crate::paper::lattices::{ArrangementContest, arrangement_contests};
+use crate::paper::verdict::Verdict;
+use crate::preference::{self, GroupFactor};
 use crate::tally::Tally;
-use crate::verdict::Verdict;
 use design::config::{FieldSection, ObjectSection};
 use design::published::{Claim, PreferenceKind};
 use design::{Arrangement, Clustering, Comparison, Crossed, Study};
@@ -38,7 +39,7 @@ fn numeric(value: f64, from_published: Option<f64>, exact: Fraction, verdict: Ve
         ours: Some(exact.value()),
         decimals: 3,
         remark: String::new(),
-        verdict: if equal { verdict } else { Verdict::differs(crate::verdict::UNEXPLAINED) },
+        verdict: if equal { verdict } else { Verdict::differs(crate::paper::verdict::UNEXPLAINED) },
     }
 }
 
@@ -53,7 +54,7 @@ fn mean_preference(
     let margins = preference::margins(study, &preference::overall(study, factors));
     let &(_, mean) = margins.iter().find(|(level, _)| study.level(*level).label == arrangement.label())?;
     let from = published(study, PreferenceKind::ArrangementMean, &arrangement.code().to_string());
-    let all = preference::arrangement_contests(study, tally);
+    let all = arrangement_contests(study, tally);
     let evidence = all.iter().find(|c| c.object.is_none() && c.group.is_none()).map_or(String::new(), counts);
     let reason = format!("the sum counts ties of the clustering groups; directly: {evidence}");
     Some(Finding { remark: reason, ..numeric(claim.value?, from, mean, Verdict::Equal) })
@@ -135,7 +136,7 @@ fn arrangement_on(
     holds: fn(&FieldSection) -> bool,
 ) -> Option<Finding> {
     let mut sum = ArrangementContest { object: None, group: None, body_centred: 0, none: 0, simple_cubic: 0 };
-    for contest in preference::arrangement_contests(study, tally) {
+    for contest in arrangement_contests(study, tally) {
         let (Some(object), None) = (contest.object, contest.group) else { continue };
         if holds(&study.file.objects[object].field) {
             sum.body_centred += contest.body_centred;

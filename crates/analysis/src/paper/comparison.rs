@@ -4,10 +4,9 @@ pub(crate) mod benchmark;
 mod beside;
 mod preferences;
 
-use crate::claims;
 use crate::inputs::Inputs;
+use crate::paper::verdict::Verdict;
 use crate::tally::Tally;
-use crate::verdict::Verdict;
 use table::{Cell, Table};
 
 /// One published number beside ours.
@@ -31,31 +30,6 @@ pub(crate) fn all(inputs: &Inputs<'_>, tally: Option<&Tally>) -> Vec<Compared> {
     let mut all = benchmark::compare(inputs);
     all.extend(tally.into_iter().flat_map(|tally| preferences::compare(inputs.study, tally)));
     all
-}
-
-/// Published numbers and claims of the text that ours differ from without a known reason: table, row and quantity of
-/// each, both numbers, and what is known. A study is sound if there are none.
-pub fn unexplained_differences(inputs: &Inputs<'_>) -> Vec<String> {
-    let tally = inputs.answers.map(|answers| &answers.tally);
-    let name = |of: String, published: Option<f64>, ours: Option<f64>, decimals: usize, verdict: &Verdict| {
-        let [published, ours] = [published, ours].map(|value| match value {
-            Some(value) => format!("{value:.decimals$}"),
-            None => "nothing".into(),
-        });
-        let reason = verdict.reason();
-        verdict.is_unexplained().then(|| format!("{of}: {published} published, {ours} here; {reason}"))
-    };
-    let numbers = all(inputs, tally);
-    let numbers = numbers.iter().filter_map(|c| {
-        let of = format!("{}, {}, {}", c.source, c.row, c.quantity);
-        name(of, Some(c.published), c.ours, c.decimals, &c.verdict)
-    });
-    let claims = claims::all(inputs, tally);
-    let claims = claims.iter().filter_map(|(claim, found)| {
-        let of = format!("claims, {}, {}", claim.id, claim.statement);
-        name(of, claim.value, found.ours, found.decimals, &found.verdict)
-    });
-    numbers.chain(claims).collect()
 }
 
 /// The comparison number by number, and a summary by quantity; nothing if nothing was published.

@@ -3,8 +3,8 @@
 use super::Compared;
 use crate::inputs::Inputs;
 use crate::mesh_set::{MeshSet, discarded, discarded_as_published, known};
+use crate::paper::verdict::{UNEXPLAINED, Verdict, prints_alike, relative_difference};
 use crate::published_ratio;
-use crate::verdict::{UNEXPLAINED, Verdict, prints_alike, relative_difference};
 use design::config::FieldSection;
 use design::published::BenchmarkRow;
 use design::record::{BenchRun, Counts, MeshRecord, Purpose};

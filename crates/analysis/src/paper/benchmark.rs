@@ -1,14 +1,14 @@
 //! What the published benchmark was said to show, sentence by sentence, with its numbers and ours.
 
-use super::Block;
-use super::finding::{Finding, Standing};
-use super::words::{change, counted, interval, list, number, whole};
-use crate::claims;
-use crate::claims::numbers::{Measure, Numbers, Ours, Pair, Side, mean};
-use crate::claims::times::{Change, Direction, GEOMETRY, VERTEX, WHOLE, by_round};
 use crate::inputs::Inputs;
 use crate::mesh_set::{discarded, discarded_as_published, known};
-use crate::verdict::{Verdict, prints_alike};
+use crate::paper::claims;
+use crate::paper::claims::numbers::{Measure, Numbers, Ours, Pair, Side, mean};
+use crate::paper::claims::times::{Change, Direction, GEOMETRY, VERTEX, WHOLE, by_round};
+use crate::paper::verdict::{Verdict, prints_alike};
+use crate::statement::Block;
+use crate::statement::{Finding, Standing};
+use crate::words::{change, counted, interval, list, number, whole};
 use design::Clustering::{self, EdgeCollapse, Integrated, None as Unclustered};
 use design::published::Claim;
 use design::record::Purpose;
@@ -162,18 +162,23 @@ fn reduction(numbers: &Numbers<'_>, clustering: Clustering) -> Option<Finding> {
 }
 
 /// Integrated and edge collapse of one lattice and object.
-struct Duel {
+struct ClusteringPair {
     name: String,
     integrated: f64,
     collapsed: f64,
 }
 
-fn duels(numbers: &Numbers<'_>, side: Side, measure: Measure, arrangement: Arrangement) -> Vec<Duel> {
+fn duels(
+    numbers: &Numbers<'_>,
+    side: Side,
+    measure: Measure,
+    arrangement: Arrangement,
+) -> Vec<ClusteringPair> {
     let of = |(object, own): (usize, Arrangement)| {
         let get = |clustering| numbers.get(side, measure, object, Crossed { arrangement, clustering });
         let name = numbers.object_name(object).to_owned();
         (own == arrangement).then_some(())?;
-        Some(Duel { name, integrated: get(Integrated)?, collapsed: get(EdgeCollapse)? })
+        Some(ClusteringPair { name, integrated: get(Integrated)?, collapsed: get(EdgeCollapse)? })
     };
     numbers.lattice_cases().into_iter().filter_map(of).collect()
 }
@@ -207,24 +212,26 @@ fn triangles_left(inputs: &Inputs<'_>, numbers: &Numbers<'_>) -> Option<Finding>
 }
 
 /// Each lattice and object with its name.
-fn all_duels(numbers: &Numbers<'_>, side: Side, measure: Measure) -> Vec<Duel> {
+fn all_pairs(numbers: &Numbers<'_>, side: Side, measure: Measure) -> Vec<ClusteringPair> {
     let named = |arrangement: Arrangement| {
         let of = duels(numbers, side, measure, arrangement).into_iter();
-        of.map(move |d| Duel { name: format!("{} {}", d.name, arrangement.label()), ..d })
+        of.map(move |d| ClusteringPair { name: format!("{} {}", d.name, arrangement.label()), ..d })
     };
     [Arrangement::BodyCentred, Arrangement::SimpleCubic].into_iter().flat_map(named).collect()
 }
 
 /// In how many integrated clustering has the lower value, and where it has not.
-fn lower(duels: &[Duel]) -> (usize, String) {
-    let lost: Vec<&Duel> = duels.iter().filter(|d| d.integrated >= d.collapsed).collect();
+fn lower(duels: &[ClusteringPair]) -> (usize, String) {
+    let lost: Vec<&ClusteringPair> = duels.iter().filter(|d| d.integrated >= d.collapsed).collect();
     let won = duels.len() - lost.len();
     let but = if lost.is_empty() { String::new() } else { format!(", all but {}", told(lost)) };
     (won, format!("{won} of {}{but}", duels.len()))
 }
 
-fn told<'a>(duels: impl IntoIterator<Item = &'a Duel>) -> String {
-    let one = |d: &Duel| format!("{} {} against {}", d.name, number(d.integrated, 3), number(d.collapsed, 3));
+fn told<'a>(duels: impl IntoIterator<Item = &'a ClusteringPair>) -> String {
+    let one = |d: &ClusteringPair| {
+        format!("{} {} against {}", d.name, number(d.integrated, 3), number(d.collapsed, 3))
+    };
     list(&duels.into_iter().map(one).collect::<Vec<_>>())
 }
 
@@ -292,12 +299,12 @@ fn ratio_ranges(claims: &[(&Claim, claims::Finding)]) -> Vec<Finding> {
 }
 
 fn regularity(inputs: &Inputs<'_>, numbers: &Numbers<'_>) -> Option<Finding> {
-    let three = all_duels(numbers, Side::Ours, THREE_EDGES);
-    let radius = all_duels(numbers, Side::Ours, RADIUS_RATIO);
+    let three = all_pairs(numbers, Side::Ours, THREE_EDGES);
+    let radius = all_pairs(numbers, Side::Ours, RADIUS_RATIO);
     let rounder = radius.iter().filter(|d| d.integrated > d.collapsed).count();
     let (won, of_three) = lower(&three);
-    let (_, of_two) = lower(&all_duels(numbers, Side::Ours, TWO_EDGES));
-    let (_, of_published) = lower(&all_duels(numbers, Side::Published, TWO_EDGES));
+    let (_, of_two) = lower(&all_pairs(numbers, Side::Ours, TWO_EDGES));
+    let (_, of_published) = lower(&all_pairs(numbers, Side::Published, TWO_EDGES));
     let mut text = format!(
         "Edge collapse is said to give the more uniform triangles. By the mean radius ratio integrated clustering is the more regular \
          in {rounder} of {} ({}). By the mean ratio of longest to shortest of all three edges it is in {of_three}; by the published \
@@ -307,7 +314,7 @@ fn regularity(inputs: &Inputs<'_>, numbers: &Numbers<'_>) -> Option<Finding> {
     );
     // A few slivers where rounding decides whether a surface meets its volume outweigh every other triangle of a mean.
     let indexed = Numbers::of_purpose(inputs, Purpose::Indexed);
-    let three_indexed = all_duels(&indexed, Side::Ours, THREE_EDGES);
+    let three_indexed = all_pairs(&indexed, Side::Ours, THREE_EDGES);
     if won < three.len() && !three_indexed.is_empty() {
         let (_, of_indexed) = lower(&three_indexed);
         text.push_str(&format!(

@@ -12,8 +12,8 @@ mod shapes;
 pub(crate) mod times;
 
 use crate::inputs::Inputs;
+use crate::paper::verdict::{Verdict, prints_alike, relative_difference};
 use crate::tally::Tally;
-use crate::verdict::{Verdict, prints_alike, relative_difference};
 use design::published::Claim;
 use table::{Cell, Table};
 

@@ -1,9 +1,9 @@
 //! The numbers of each case, from the published benchmark or from ours, under one roof.
 
-use crate::comparison::benchmark::{Cause, cause};
 use crate::inputs::Inputs;
 use crate::mesh_set::MeshSet;
-use crate::verdict::relative_difference;
+use crate::paper::comparison::benchmark::{Cause, cause};
+use crate::paper::verdict::relative_difference;
 use design::published::BenchmarkRow;
 use design::record::{MeshRecord, Purpose};
 use design::{Arrangement, Clustering, ConfigurationId, Crossed};

@@ -2,9 +2,9 @@
 
 use super::numbers::{Measure, Numbers, Ours, Side, mean, mean_change};
 use super::{Finding, judge};
-use crate::comparison::benchmark::double_count;
 use crate::inputs::Inputs;
 use crate::mesh_set::{self, discarded_as_published, of_tetrahedra};
+use crate::paper::comparison::benchmark::double_count;
 use design::published::Claim;
 use design::{Arrangement, Clustering, Crossed};
 
@@ -48,8 +48,8 @@ pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
                 decimals: 2,
                 remark: String::new(),
                 verdict: match (ours - value).abs() <= 0.15 {
-                    true => crate::verdict::Verdict::within("0.15", near),
-                    false => crate::verdict::Verdict::differs(near),
+                    true => crate::paper::verdict::Verdict::within("0.15", near),
+                    false => crate::paper::verdict::Verdict::differs(near),
                 },
             })
         }
@@ -65,7 +65,7 @@ fn discarded(numbers: &Numbers<'_>, value: f64, clustering: Clustering) -> Optio
     let as_published = percent(Side::Ours, DISCARD_AS_PUBLISHED)?;
     let far = match as_published > ours {
         true => double_count(format!("{:.2} points", as_published - ours)),
-        false => crate::verdict::UNEXPLAINED.into(),
+        false => crate::paper::verdict::UNEXPLAINED.into(),
     };
     Some(Finding {
         from_published: percent(Side::Published, DISCARD_AS_PUBLISHED),

@@ -1,7 +1,7 @@
 //! Claims about how the animations were made, checked against the study file.
 
 use super::Finding;
-use crate::verdict::Verdict;
+use crate::paper::verdict::Verdict;
 use design::Study;
 use design::published::Claim;
 

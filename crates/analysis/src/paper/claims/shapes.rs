@@ -2,11 +2,11 @@
 
 use super::numbers::{Measure, Numbers, Ours, Side};
 use super::{Finding, judge};
-use crate::comparison::benchmark::zero_ratios;
 use crate::inputs::Inputs;
 use crate::mesh_set::known;
+use crate::paper::comparison::benchmark::zero_ratios;
+use crate::paper::verdict::{UNEXPLAINED, Verdict, prints_alike};
 use crate::published_ratio;
-use crate::verdict::{UNEXPLAINED, Verdict, prints_alike};
 use design::Clustering::{self, EdgeCollapse, Integrated};
 use design::published::Claim;
 

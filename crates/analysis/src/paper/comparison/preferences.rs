@@ -2,9 +2,9 @@
 
 use super::Compared;
 use crate::fraction::Fraction;
+use crate::paper::verdict::{UNEXPLAINED, Verdict};
 use crate::preference::{self, GroupFactor};
 use crate::tally::Tally;
-use crate::verdict::{UNEXPLAINED, Verdict};
 use design::Study;
 use design::published::{PreferenceCell, PreferenceKind};
 

@@ -1,12 +1,12 @@
 //! Published numbers and claims beside ours, counted by verdict.
 
-use super::Block;
-use super::finding::{Finding, Standing};
-use super::words::{counted, list, number};
-use crate::claims;
-use crate::comparison;
 use crate::inputs::Inputs;
-use crate::verdict::Verdict;
+use crate::paper::claims;
+use crate::paper::comparison;
+use crate::paper::verdict::Verdict;
+use crate::statement::Block;
+use crate::statement::{Finding, Standing};
+use crate::words::{counted, list, number};
 
 pub(super) fn findings(inputs: &Inputs<'_>) -> Vec<Block> {
     let tally = inputs.answers.map(|answers| &answers.tally);
