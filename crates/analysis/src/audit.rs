@@ -18,7 +18,9 @@ mod turned;
 pub use dealt::Dealt;
 
 use crate::ballots::BallotGroup;
-use statistics::{Circumstances, Pairs, Separation, ShownBallot, oddness, screening, separation};
+use statistics::{
+    Circumstances, Pairs, Screening, Separation, ShownBallot, outlying_respondents, screening, separation,
+};
 use stimuli::Stimuli;
 
 /// A probe speaks up at this p, adjusted for all that it looks at.
@@ -187,14 +189,15 @@ fn list(names: &[String]) -> String {
     }
 }
 
-/// See [`oddness`].
+/// See [`outlying_respondents`].
 fn odd_respondent(ballots: &[ShownBallot]) -> Report {
-    let judged = oddness(&screening(ballots));
+    let agreeing: Vec<_> = screening(ballots).iter().map(Screening::with_majority).collect();
+    let judged = outlying_respondents(&agreeing);
     let Some(least) = judged.first() else {
         let reason = "fewer than five people decided ten questions on which the others have a majority";
         return Report::not_answerable(Probe::OddRespondent, reason);
     };
-    let name = |odd: &statistics::Oddness| {
+    let name = |odd: &statistics::Outlying| {
         format!(
             "respondent {} agrees with the others' majority on {:.0} %",
             odd.participant + 1,

@@ -8,9 +8,9 @@ mod rows;
 mod times;
 
 pub(crate) use answers::{COLUMNS, answers};
+pub(crate) use meshes::meshes;
+pub(crate) use times::times;
 
-use crate::answered::Answered;
-use crate::inputs::Inputs;
 use polars::prelude::{DataFrame, PolarsError};
 use responses::Responses;
 use std::collections::BTreeSet;
@@ -50,17 +50,6 @@ impl LongFrame {
     pub fn to_parquet(&self) -> Result<Vec<u8>, FrameError> {
         parquet::bytes(self).map_err(|source| FrameError { name: self.name, source })
     }
-}
-
-/// The frames of a study: `answers`, `meshes` and `times`, without those that it has no rows of.
-pub fn frames(inputs: &Inputs<'_>) -> Vec<LongFrame> {
-    let of_answers =
-        |answered: &Answered| answers(Some(inputs.study), &answered.responses, &answered.excluded, &COLUMNS);
-    let mut frames: Vec<LongFrame> = inputs.answers.map(of_answers).into_iter().collect();
-    frames.push(meshes::meshes(inputs.study, inputs.meshes));
-    frames.extend(inputs.bench.map(times::times));
-    frames.retain(|frame| frame.height() > 0);
-    frames
 }
 
 /// The frame of answers without a study: items are named as in their file.

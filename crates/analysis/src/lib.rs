@@ -16,6 +16,7 @@
 mod answered;
 pub mod audit;
 mod ballots;
+mod data;
 mod figures;
 mod fraction;
 mod frames;
@@ -45,9 +46,10 @@ mod fixture;
 pub use answered::Answered;
 pub use ballots::{BallotGroup, ballot_groups, ballots, declared};
 
+pub use data::frames;
 pub use figures::{Figure, figures, figures_of_groups, power_figure, sweep_figures};
 pub use fraction::Fraction;
-pub use frames::{FrameError, LongFrame, answers_frame, frames};
+pub use frames::{FrameError, LongFrame, answers_frame};
 pub use inputs::{AnalysisError, Inputs};
 pub use panel::{PANEL_SCHEMA, Panel, StageTime};
 pub use paper::{Verdict, unexplained_differences};

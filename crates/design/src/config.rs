@@ -10,11 +10,12 @@ mod methods;
 mod pictures;
 mod responses;
 
+pub use crate::method::{BudgetSection, StimulusLook};
 pub use analysis::{AnalysisSection, Declaration, Exclusion, FamilyRule};
 pub use field::{FieldSection, Inside, MeshSourceSection};
 pub use forms::{FormsSection, OrderRule, ShownNames, SideRule, TrainingSection};
-pub use methods::{BudgetSection, FactorSection, LevelSection, MethodSection, SpeltLevel};
-pub use pictures::{LightFollows, Look, ShadingSection, StillSection, StimulusLook, TurntableSection};
+pub use methods::{FactorSection, LevelSection, MethodSection, SpeltLevel};
+pub use pictures::{LightFollows, Look, ShadingSection, StillSection, TurntableSection};
 pub use responses::{PairSection, ResponsesSection, SynonymsSection};
 
 use crate::method::{Arrangement, Clustering, ConfigurationId, MethodId};

@@ -36,6 +36,7 @@ mod order;
 mod sides;
 mod split;
 mod spread;
+mod stimuli;
 
 pub use file::{FormEntry, FormFile, KeyEntry, Stimulus};
 

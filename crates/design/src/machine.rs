@@ -55,7 +55,7 @@ impl CpuProfile {
     /// # Errors
     /// As [`CpuProfile::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, ConfigError> {
-        crate::study::parse_toml(text, path)
+        crate::read::parse_toml(text, path)
     }
 }
 

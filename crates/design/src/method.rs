@@ -1,15 +1,18 @@
 //! What a study compares: methods, the objects that they are applied to, and the factors in which methods differ.
 
+mod budget;
 mod crossing;
 mod factor;
+mod look;
 mod recipe;
 
+pub use budget::BudgetSection;
 pub use crossing::{Arrangement, Clustering, Crossed};
 pub(crate) use crossing::{expand, is_summed};
 pub use factor::{Factor, FactorSpec, Level, LevelSpec};
+pub use look::StimulusLook;
 pub use recipe::{Recipe, TETRAHEDRA};
 
-use crate::config::{BudgetSection, StimulusLook};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;

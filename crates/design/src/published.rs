@@ -51,7 +51,7 @@ pub struct BenchmarkRow {
 /// # Errors
 /// If the file cannot be read or a row or column is not as it should be, naming file, row and column.
 pub fn read_benchmark(path: &Path) -> Result<Vec<BenchmarkRow>, ConfigError> {
-    crate::study::read_table(path)
+    crate::read::read_table(path)
 }
 
 /// What a published preference number is.

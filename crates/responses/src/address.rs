@@ -1,6 +1,6 @@
 //! E-mail addresses: they tell that two rows are one person's, and are neither shown nor kept.
 
-use crate::records::{is_blank, trim};
+use crate::decode::records::{is_blank, trim};
 use crate::words::normalise;
 
 /// Headers of columns with the e-mail address of whoever answered, as forms and people call them.

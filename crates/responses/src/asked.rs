@@ -1,11 +1,11 @@
 //! What a row asks: its question, and which item was on which side.
 
 use crate::collect::Asking;
+use crate::decode::records::Record;
 use crate::error::{Fault, shorten};
-use crate::long::Rows;
+use crate::formats::long::Rows;
 use crate::natural;
 use crate::plan::{Plan, REPEAT, is_training};
-use crate::records::Record;
 use crate::report::Kind;
 use crate::shown::Sheet;
 use crate::sides::SidesSource;

@@ -1,26 +1,26 @@
 //! Reading: bytes, text, rows, format, answers.
 
-use crate::archive::{self, Archive};
-use crate::arenakit;
-use crate::detect;
+use crate::decode::archive::{self, Archive};
+use crate::decode::source::Source;
+use crate::decode::text;
+use crate::decode::workbook;
 use crate::error::{Fault, ReadError, shorten};
 use crate::format::Format;
-use crate::layout::Detected;
-use crate::long;
+use crate::formats::arenakit;
+use crate::formats::detect;
+use crate::formats::layout::Detected;
+use crate::formats::long;
+use crate::formats::pwcmp;
+use crate::formats::surveys;
+use crate::formats::trials;
+use crate::formats::webmushra;
+use crate::formats::wide;
 use crate::mapping::Mapping;
 use crate::name;
 use crate::plan::Plan;
-use crate::pwcmp;
 use crate::report::Report;
 use crate::sides::SidesSource;
-use crate::source::Source;
-use crate::surveys;
-use crate::text;
-use crate::trials;
 use crate::value::Responses;
-use crate::webmushra;
-use crate::wide;
-use crate::workbook;
 use std::path::Path;
 
 /// Largest file that is read, in bytes.
@@ -131,7 +131,7 @@ fn text(
     report: &mut Report,
 ) -> Result<Responses, Fault> {
     let (text, encoding) = text::decode(bytes)?;
-    if crate::records::is_blank(&text) {
+    if crate::decode::records::is_blank(&text) {
         return Err(Fault::Empty);
     }
     if let Some(format) = trials::json_format(&text, mapping.format) {

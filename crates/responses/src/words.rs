@@ -176,7 +176,7 @@ impl Words {
 
     /// Whether a cell says that there is no answer.
     pub(crate) fn is_blank(&self, cell: &str) -> bool {
-        crate::records::is_blank(cell)
+        crate::decode::records::is_blank(cell)
             || self.is_missing(cell)
             || self.blank.as_ref().is_some_and(|word| cell.len() < 99 && normalise(cell) == *word)
     }
@@ -201,7 +201,7 @@ impl Words {
 
 /// Whether a cell holds what R writes for a missing value.
 pub(crate) fn is_na(cell: &str) -> bool {
-    crate::records::trim(cell).eq_ignore_ascii_case("na")
+    crate::decode::records::trim(cell).eq_ignore_ascii_case("na")
 }
 
 /// A text as it is compared: lower case, one space between words, straight quotes, no mark of a compulsory question.

@@ -2,7 +2,7 @@
 
 use super::ballot::{DeclaredBallot, Outcome, ShownBallot};
 use super::kendall::outcome_counts;
-use super::odd::oddness;
+use super::outlying::{WithMajority, outlying_respondents};
 
 /// How an answer was given, as far as it is known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -59,7 +59,7 @@ pub struct Screening {
     pub timed: u64,
     /// Sum of these times in milliseconds.
     pub time_ms: f64,
-    /// One-sided p of agreeing so much less than the others, see [`oddness`]; `None` if not judged.
+    /// One-sided p of agreeing so much less than the others, see [`outlying_respondents`]; `None` if not judged.
     pub odd_p: Option<f64>,
 }
 
@@ -96,6 +96,12 @@ impl Flag {
 }
 
 impl Screening {
+    /// How often the participant agrees with the others.
+    pub fn with_majority(&self) -> WithMajority {
+        let Self { participant, comparable, agreeing, .. } = *self;
+        WithMajority { participant, comparable, agreeing }
+    }
+
     /// Share of comparable questions answered with the others' majority; `None` of nothing. About 0.5 by chance.
     pub fn agreement(&self) -> Option<f64> {
         (self.comparable > 0).then(|| self.agreeing as f64 / self.comparable as f64)
@@ -207,7 +213,7 @@ pub fn screening_with(ballots: &[ShownBallot], protocol: &Protocol<'_>) -> Vec<S
     };
     let same = |a: &usize, b: &usize| ballots[*a].participant() == ballots[*b].participant();
     let mut screened: Vec<Screening> = places.chunk_by(same).map(of_participant).collect();
-    for odd in oddness(&screened) {
+    for odd in outlying_respondents(&screened.iter().map(Screening::with_majority).collect::<Vec<_>>()) {
         let place = screened.binary_search_by_key(&odd.participant, |s| s.participant).expect("one of them");
         screened[place].odd_p = Some(odd.p);
     }

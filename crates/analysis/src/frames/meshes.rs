@@ -9,7 +9,7 @@ use design::{Level, Study};
 /// Records by purpose, then in the study's order.
 ///
 /// Statistics of a distribution of nothing are missing.
-pub(super) fn meshes(study: &Study, records: &[MeshRecord]) -> LongFrame {
+pub(crate) fn meshes(study: &Study, records: &[MeshRecord]) -> LongFrame {
     let mut sorted: Vec<&MeshRecord> = records.iter().collect();
     let place = |mesh: &MeshRecord| study.configurations.iter().position(|c| c.id == mesh.id);
     sorted.sort_by_key(|mesh| (mesh.purpose, place(mesh), mesh.id.clone()));

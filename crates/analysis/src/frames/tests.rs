@@ -1,5 +1,7 @@
 use super::*;
+use crate::data::frames;
 use crate::fixture::{self, Everything};
+use crate::inputs::Inputs;
 use crate::tally::{QuestionCount, Tally};
 use design::Study;
 use design::record::BenchSample;

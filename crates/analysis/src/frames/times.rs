@@ -5,7 +5,7 @@ use super::rows::Rows;
 use design::record::{BenchRun, BenchSample};
 
 /// The samples of a run in the order measured, those of the A/A block after the others.
-pub(super) fn times(run: &BenchRun) -> LongFrame {
+pub(crate) fn times(run: &BenchRun) -> LongFrame {
     let measured = run.samples.iter().map(|sample| ("measured", sample));
     let mut rows = Rows::of(measured.chain(run.aa_samples.iter().map(|sample| ("aa", sample))));
     rows.text("id", |(_, sample)| Some(sample.id.to_string()));

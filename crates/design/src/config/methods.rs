@@ -1,7 +1,6 @@
 //! `[[methods]]` and `[[factors]]`: what is compared, and what it differs in.
 
-use crate::config::StimulusLook;
-use crate::method::{MethodId, Recipe};
+use crate::method::{BudgetSection, MethodId, Recipe, StimulusLook};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -24,36 +23,6 @@ pub struct MethodSection {
     /// How its meshes look in animations; as all do unless given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub look: Option<StimulusLook>,
-}
-
-/// Another method of the study whose mesh must be met, by choice of the spacing: one of the three.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum BudgetSection {
-    /// As many triangles, to 1 %.
-    TrianglesOf(MethodId),
-    /// As many samples, to 1 %.
-    SamplesOf(MethodId),
-    /// As much time for an extraction, to 5 %.
-    TimeOf(MethodId),
-}
-
-impl BudgetSection {
-    /// The method whose mesh must be met.
-    pub fn of(self) -> MethodId {
-        match self {
-            Self::TrianglesOf(id) | Self::SamplesOf(id) | Self::TimeOf(id) => id,
-        }
-    }
-
-    /// The key, and what is as much, for people.
-    pub fn names(self) -> [&'static str; 2] {
-        match self {
-            Self::TrianglesOf(_) => ["triangles_of", "triangles"],
-            Self::SamplesOf(_) => ["samples_of", "samples"],
-            Self::TimeOf(_) => ["time_of", "time"],
-        }
-    }
 }
 
 /// What some methods of a study differ in.

@@ -1,7 +1,7 @@
 //! How surfaces are shown: `[turntable]`, `[shading]`, `[[stills]]`.
 
 use super::whole;
-use crate::method::ConfigurationId;
+use crate::method::{ConfigurationId, StimulusLook};
 use serde::{Deserialize, Serialize};
 
 /// How the animations are taken.
@@ -31,19 +31,6 @@ pub struct TurntableSection {
     /// How the animations show the surface, and so the pairs.
     #[serde(default, skip_serializing_if = "is_default")]
     pub look: StimulusLook,
-}
-
-/// How an animation that people are shown shows the surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum StimulusLook {
-    /// Interpolated vertex normals, as published.
-    #[default]
-    Smooth,
-    /// One normal a triangle.
-    Flat,
-    /// Smooth with triangle edges on top.
-    SmoothWireframe,
 }
 
 impl From<StimulusLook> for Look {

@@ -48,7 +48,7 @@ impl ResponsesSection {
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
         let text = std::fs::read_to_string(path)
             .map_err(|source| ConfigError::Read { file: path.into(), source })?;
-        let section: Self = crate::study::parse_toml(&text, path)?;
+        let section: Self = crate::read::parse_toml(&text, path)?;
         match &section.file {
             None => Ok(section),
             Some(file) => {

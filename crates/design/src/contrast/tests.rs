@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::config::{AnalysisSection, FamilyRule};
+use crate::load::tests::{cross, load, paper_with};
 use crate::method::{Arrangement, Clustering, ConfigurationId, Crossed, MethodId};
-use crate::study::tests::{cross, load, paper_with};
 use crate::study::{Comparison, Group};
 use proptest::prelude::*;
 

@@ -153,7 +153,7 @@ pub struct Stimulus {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::tests::load;
+    use crate::load::tests::load;
 
     #[test]
     fn the_file_tells_nothing_and_the_key_everything() {

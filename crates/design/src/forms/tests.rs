@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::config::FormsSection;
+use crate::load::tests::paper_with;
 use crate::method::MethodId;
-use crate::study::tests::paper_with;
 use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -292,7 +292,7 @@ fn forms_of_one_block_are_what_they_always_were() {
         ("paper.toml", 13_967_142_664_581_063_407),
     ];
     for (name, digest) in known {
-        let study = crate::study::tests::load(name);
+        let study = crate::load::tests::load(name);
         let forms = Questionnaire::of(&study).unwrap().planned();
         let text: String = forms
             .iter()

@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::config::{FormsSection, ShownNames};
+use crate::load::tests::{cross, load, paper_with};
 use crate::method::ConfigurationId;
 use crate::method::{Arrangement, Clustering};
-use crate::study::tests::{cross, load, paper_with};
 
 fn balanced() -> Study {
     load("balanced.toml")

@@ -1,5 +1,5 @@
 use super::*;
-use crate::study::tests::load;
+use crate::load::tests::load;
 use crate::{ConfigError, Study};
 use std::path::Path;
 

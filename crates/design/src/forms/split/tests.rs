@@ -3,8 +3,8 @@
 use super::*;
 use crate::contrast::Contrast;
 use crate::forms::{Questionnaire, Role};
+use crate::load::tests::{cross, load};
 use crate::method::{Arrangement, Clustering, Crossed, Factor, MethodId};
-use crate::study::tests::{cross, load};
 use proptest::prelude::*;
 use rand::SeedableRng;
 use std::collections::BTreeSet;

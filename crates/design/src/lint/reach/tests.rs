@@ -4,9 +4,9 @@ use super::*;
 use crate::config::FamilyRule;
 use crate::contrast::Family;
 use crate::lint::lint;
+use crate::load::tests::load;
 use crate::method::{ConfigurationId, MethodId};
 use crate::study::Comparison;
-use crate::study::tests::load;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 

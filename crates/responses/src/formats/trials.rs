@@ -1,14 +1,14 @@
 //! jsPsych's data, one row or JSON object a trial, and JATOS result text, which is one such array a participant.
 
 use crate::collect::Ids;
-use crate::detect::Head;
+use crate::decode::source::Source;
 use crate::error::{Fault, shorten};
 use crate::format::Format;
-use crate::long::{self, Columns};
+use crate::formats::layout::Head;
+use crate::formats::long::{self, Columns};
 use crate::mapping::Mapping;
 use crate::plan::Plan;
 use crate::report::{Kind, Report};
-use crate::source::Source;
 use crate::value::Responses;
 use crate::words::normalise;
 use serde_json::Value;

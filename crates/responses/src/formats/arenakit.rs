@@ -5,14 +5,14 @@
 //! different people. Source: arenakit 0.1.1, `schema.py`.
 
 use crate::collect::Ids;
-use crate::detect::Head;
+use crate::decode::source::Source;
 use crate::error::{Fault, shorten};
 use crate::format::Format;
-use crate::long::{self, Columns};
+use crate::formats::layout::Head;
+use crate::formats::long::{self, Columns};
 use crate::mapping::Mapping;
 use crate::plan::Plan;
 use crate::report::{Kind, Report};
-use crate::source::Source;
 use crate::value::Responses;
 use crate::words::normalise;
 

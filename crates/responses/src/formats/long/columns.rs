@@ -1,9 +1,9 @@
 //! The columns of files with one row an answer.
 
 use crate::collect::Ids;
+use crate::decode::records::is_blank;
 use crate::error::Fault;
 use crate::plan::Plan;
-use crate::records::is_blank;
 use crate::report::{Kind, Report};
 use crate::sides::SidesSource;
 use crate::words::normalise;

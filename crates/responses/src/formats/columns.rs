@@ -1,12 +1,12 @@
 //! Which column answers which question.
 
+use crate::decode::records::is_blank;
+use crate::decode::source::Source;
 use crate::error::{Fault, number_of, shorten};
 use crate::format::Format;
-use crate::layout::Layout;
+use crate::formats::layout::Layout;
 use crate::mapping::Mapping;
 use crate::plan::{Plan, is_training};
-use crate::records::is_blank;
-use crate::source::Source;
 use crate::words::normalise;
 
 /// A column (from 0) with its question.

@@ -1,7 +1,7 @@
 //! Rows of a file, whether they come from text or from a workbook.
 
+use crate::decode::records::{Record, Records};
 use crate::error::Fault;
-use crate::records::{Record, Records};
 use std::borrow::Cow;
 
 /// A table of cells.
@@ -20,8 +20,10 @@ impl Source<'_> {
         match self {
             Self::Text { text, separator } => {
                 let mut records = Records::new(text, *separator);
-                let unclosed =
-                    |at: crate::records::Unclosed| Fault::UnclosedQuote { row: at.row, column: at.column };
+                let unclosed = |at: crate::decode::records::Unclosed| Fault::UnclosedQuote {
+                    row: at.row,
+                    column: at.column,
+                };
                 while records.read(&mut record).map_err(unclosed)? {
                     visit(&record)?;
                 }

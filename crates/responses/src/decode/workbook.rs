@@ -4,7 +4,7 @@
 //! zip backend that would change the PNG writer of the whole workspace. Values are taken as stored, so that a time is
 //! the serial number that it is; no format here is needed to read an answer.
 
-use crate::archive::Archive;
+use crate::decode::archive::Archive;
 use crate::error::Fault;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -228,7 +228,7 @@ fn attribute(tag: &BytesStart<'_>, name: &str) -> Option<String> {
 
 /// Visits every event of a part.
 fn each(xml: &[u8], path: &str, mut visit: impl FnMut(&Event<'_>) -> Result<(), Fault>) -> Result<(), Fault> {
-    let (xml, _) = crate::text::decode(xml)?;
+    let (xml, _) = crate::decode::text::decode(xml)?;
     let mut reader = Reader::from_str(&xml);
     loop {
         match reader.read_event() {

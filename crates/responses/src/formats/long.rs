@@ -1,15 +1,15 @@
 //! The long format: one row an answer, or, with a `count`, one row for several people's.
 
 use crate::collect::{Collector, Ids, MOST_COUNTED, Place, Reply};
+use crate::decode::records::{Record, is_blank, trim};
+use crate::decode::source::Source;
 use crate::error::{Fault, shorten};
 use crate::format::Format;
 use crate::mapping::Mapping;
 use crate::name;
 use crate::plan::Plan;
-use crate::records::{Record, is_blank, trim};
 use crate::report::{Kind, Report};
 use crate::sides::SidesSource;
-use crate::source::Source;
 use crate::value::{Answer, Responses, StimulusId};
 use crate::words::{is_na, normalise};
 use std::borrow::Cow;

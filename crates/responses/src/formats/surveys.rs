@@ -1,11 +1,11 @@
 //! Exports of survey tools with one row a participant: how each is known, and what of its header is the tool's own.
 
 use crate::address;
-use crate::detect::{Head, is_form};
+use crate::decode::records::is_blank;
 use crate::error::Fault;
 use crate::format::Format;
-use crate::layout::{Layout, Sign};
-use crate::records::is_blank;
+use crate::formats::layout::{Head, is_form};
+use crate::formats::layout::{Layout, Sign};
 use crate::words::normalise;
 
 /// Header of Google Forms' first column, in the languages of its users.
@@ -180,7 +180,7 @@ pub(crate) fn mark(format: Format, head: &Head) -> Option<String> {
             .all(has)
             .then(|| "the headers have model_a, model_b and winner".into()),
         Format::Pwcmp => {
-            (has("condition_a") && has("condition_b") && crate::pwcmp::SELECTED.into_iter().any(has))
+            (has("condition_a") && has("condition_b") && crate::formats::pwcmp::SELECTED.into_iter().any(has))
                 .then(|| "the headers have condition_A, condition_B and is_A_selected".into())
         }
         Format::Table | Format::Long | Format::Jatos => None,
@@ -199,7 +199,7 @@ pub(crate) fn layout(format: Format, head: &Head) -> Result<Layout, Fault> {
         Format::LimeSurvey => lime_survey(head),
         Format::SurveyMonkey => survey_monkey(head),
         Format::RedCap => red_cap(head),
-        _ => return Ok(crate::detect::own_table(head)),
+        _ => return Ok(crate::formats::layout::own_table(head)),
     };
     let address = |column: &usize| layout.titles[*column].iter().any(|title| address::is_title(title));
     layout.addresses = (0..layout.titles.len()).filter(address).collect();

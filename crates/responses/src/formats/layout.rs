@@ -1,6 +1,10 @@
 //! What the header of an export with one row a participant says.
 
 use crate::format::Format;
+use crate::words::normalise;
+
+/// The first rows that are not blank, with their numbers.
+pub(crate) type Head = [(u64, Vec<String>)];
 
 /// Where things are in a file with one row a participant and one column a question. Columns are counted from 0.
 #[derive(Debug, Clone, Default)]
@@ -53,4 +57,21 @@ impl Layout {
 pub(crate) struct Detected {
     pub(crate) format: Format,
     pub(crate) rule: String,
+}
+
+pub(crate) fn is_participant(title: &str) -> bool {
+    ["participant", "respondent", "id"].contains(&normalise(title).as_str())
+}
+
+pub(crate) fn is_form(title: &str) -> bool {
+    normalise(title) == "form"
+}
+
+/// The layout of a study's own table.
+pub(crate) fn own_table(head: &Head) -> Layout {
+    let (row, header) = &head[0];
+    let mut layout = Layout::of_header(*row, header);
+    layout.participant = header.iter().position(|title| is_participant(title));
+    layout.form = header.iter().position(|title| is_form(title));
+    layout
 }

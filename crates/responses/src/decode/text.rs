@@ -1,7 +1,7 @@
 //! From bytes to text: encodings and separators.
 
+use crate::decode::records::{Record, Records};
 use crate::error::Fault;
-use crate::records::{Record, Records};
 use encoding_rs::{UTF_16BE, UTF_16LE, WINDOWS_1252};
 use std::borrow::Cow;
 

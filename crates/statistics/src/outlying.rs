@@ -1,6 +1,5 @@
 //! Does one participant answer unlike the others?
 
-use super::screening::Screening;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Comparable answers below which nobody is judged.
@@ -11,9 +10,20 @@ const FEWEST_PEOPLE: usize = 5;
 /// What chance makes of the smallest share is trusted within this factor: shares of a few dozen answers are skewed.
 const ALLOWANCE: f64 = 5.0;
 
+/// How often one participant agrees with the others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WithMajority {
+    /// The participant.
+    pub participant: usize,
+    /// Decided answers of questions whose majority among the others is decided.
+    pub comparable: u64,
+    /// How many of these agree with that majority.
+    pub agreeing: u64,
+}
+
 /// How far one participant's agreement lies below the others'.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Oddness {
+pub struct Outlying {
     /// The participant.
     pub participant: usize,
     /// Share of comparable answers that agree with the others' majority.
@@ -28,8 +38,8 @@ pub struct Oddness {
 /// Weisberg 1982, section 2.2). Empty for fewer than five people.
 ///
 /// Nobody who agrees with the majority on half of the answers or more is odd, however alike the others are.
-pub fn oddness(screened: &[Screening]) -> Vec<Oddness> {
-    let judged: Vec<&Screening> = screened.iter().filter(|s| s.comparable >= FEWEST_ANSWERS).collect();
+pub fn outlying_respondents(screened: &[WithMajority]) -> Vec<Outlying> {
+    let judged: Vec<&WithMajority> = screened.iter().filter(|s| s.comparable >= FEWEST_ANSWERS).collect();
     if judged.len() < FEWEST_PEOPLE {
         return Vec::new();
     }
@@ -37,7 +47,7 @@ pub fn oddness(screened: &[Screening]) -> Vec<Oddness> {
     let m = all.len() as f64;
     let (sum, squares) = all.iter().fold((0.0, 0.0), |(sum, squares), x| (sum + x, squares + x * x));
     let t = StudentsT::new(0.0, 1.0, m - 2.0).expect("five people or more");
-    let judge = |(s, &agreement): (&&Screening, &f64)| {
+    let judge = |(s, &agreement): (&&WithMajority, &f64)| {
         let others = (sum - agreement) / (m - 1.0);
         let p = if agreement < 0.5 && agreement < others {
             let rest = squares - agreement * agreement - (m - 1.0) * others * others;
@@ -47,9 +57,9 @@ pub fn oddness(screened: &[Screening]) -> Vec<Oddness> {
         } else {
             1.0
         };
-        Oddness { participant: s.participant, agreement, p }
+        Outlying { participant: s.participant, agreement, p }
     };
-    let mut found: Vec<Oddness> = judged.iter().zip(&all).map(judge).collect();
+    let mut found: Vec<Outlying> = judged.iter().zip(&all).map(judge).collect();
     found.sort_by(|a, b| a.p.total_cmp(&b.p).then(a.participant.cmp(&b.participant)));
     found
 }
@@ -57,12 +67,14 @@ pub fn oddness(screened: &[Screening]) -> Vec<Oddness> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{golden, screening};
+    use crate::{Screening, golden, screening};
 
     #[test]
     fn the_papers_respondent_sixteen() {
         let study = golden::study();
-        let odd = oddness(&screening(&golden::ballots(&study)));
+        let odd = outlying_respondents(
+            &screening(&golden::ballots(&study)).iter().map(Screening::with_majority).collect::<Vec<_>>(),
+        );
         assert_eq!((odd.len(), odd[0].participant), (18, 15));
         assert!(odd[0].p < 0.01 && odd[1].p == 1.0, "{odd:?}");
     }
@@ -71,17 +83,12 @@ mod tests {
     fn as_scipy_has_it() {
         // NumPy and SciPy 1.17.1: x = .2 against o = (.9, .75, .85, .8):
         // 5 * 5 * t.cdf((x - o.mean()) / (o.std(ddof=1) * sqrt(5 / 4)), 3).
-        let seen = |(participant, agreeing)| Screening {
-            participant,
-            agreeing,
-            comparable: 20,
-            ..Screening::default()
-        };
-        let all: Vec<Screening> = [18, 15, 17, 16, 4].into_iter().enumerate().map(seen).collect();
-        let odd = oddness(&all);
+        let seen = |(participant, agreeing)| WithMajority { participant, agreeing, comparable: 20 };
+        let all: Vec<WithMajority> = [18, 15, 17, 16, 4].into_iter().enumerate().map(seen).collect();
+        let odd = outlying_respondents(&all);
         assert_eq!((odd[0].participant, odd[0].agreement), (4, 0.2));
         assert!((odd[0].p - 0.040_487_963_456_805_2).abs() < 1e-12, "{odd:?}");
         assert!(odd[1..].iter().all(|o| o.p == 1.0));
-        assert!(oddness(&all[..4]).is_empty());
+        assert!(outlying_respondents(&all[..4]).is_empty());
     }
 }

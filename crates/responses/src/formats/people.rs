@@ -2,10 +2,10 @@
 
 use crate::address;
 use crate::choice::Choice;
+use crate::decode::records::{Record, trim};
 use crate::error::{Fault, number_of, shorten};
-use crate::layout::Layout;
+use crate::formats::layout::Layout;
 use crate::mapping::{Duplicates, Mapping};
-use crate::records::{Record, trim};
 use crate::report::{Kind, Report};
 use std::collections::HashMap;
 

@@ -2,14 +2,10 @@
 
 use crate::error::{Fault, shorten};
 use crate::format::Format;
-use crate::layout::{Detected, Layout};
-use crate::long;
+use crate::formats::layout::{Detected, Head, is_form, is_participant};
+use crate::formats::long;
+use crate::formats::surveys;
 use crate::plan::{Plan, is_training};
-use crate::surveys;
-use crate::words::normalise;
-
-/// The first rows that are not blank, with their numbers.
-pub(crate) type Head = [(u64, Vec<String>)];
 
 /// The format with whose marks the rows begin.
 ///
@@ -52,21 +48,4 @@ fn fallback(head: &Head, plan: Option<&Plan>) -> Result<Detected, Fault> {
     }
     let first: Vec<String> = header.iter().take(4).map(|title| format!("\"{}\"", shorten(title))).collect();
     Err(Fault::UnknownFormat { header: first.join(", "), formats: Format::names() })
-}
-
-fn is_participant(title: &str) -> bool {
-    ["participant", "respondent", "id"].contains(&normalise(title).as_str())
-}
-
-pub(crate) fn is_form(title: &str) -> bool {
-    normalise(title) == "form"
-}
-
-/// The layout of a study's own table.
-pub(crate) fn own_table(head: &Head) -> Layout {
-    let (row, header) = &head[0];
-    let mut layout = Layout::of_header(*row, header);
-    layout.participant = header.iter().position(|title| is_participant(title));
-    layout.form = header.iter().position(|title| is_form(title));
-    layout
 }

@@ -4,14 +4,14 @@
 //! `correct` for the reference, `incorrect` for the other, `undecided`, or `unknown` if there was none.
 
 use crate::collect::Ids;
-use crate::detect::Head;
+use crate::decode::source::Source;
 use crate::error::{Fault, shorten};
 use crate::format::Format;
-use crate::long::{self, Columns};
+use crate::formats::layout::Head;
+use crate::formats::long::{self, Columns};
 use crate::mapping::Mapping;
 use crate::plan::Plan;
 use crate::report::Report;
-use crate::source::Source;
 use crate::value::Responses;
 use crate::words::normalise;
 

@@ -7,14 +7,14 @@
 //! software for analysing pairwise comparison experiments" (2017), and the examples of their pwcmp.
 
 use crate::collect::Ids;
-use crate::detect::Head;
+use crate::decode::source::Source;
 use crate::error::Fault;
 use crate::format::Format;
-use crate::long::{self, Columns};
+use crate::formats::layout::Head;
+use crate::formats::long::{self, Columns};
 use crate::mapping::Mapping;
 use crate::plan::Plan;
 use crate::report::{Kind, Report};
-use crate::source::Source;
 use crate::value::Responses;
 use crate::words::normalise;
 use std::collections::HashMap;
@@ -104,7 +104,7 @@ fn sessions(source: &Source<'_>, header: u64, observer: usize, session: usize) -
     let (mut several, mut only) = (false, true);
     source.each(|record| {
         if record.row > header && !record.is_blank() {
-            let session = crate::records::trim(record.cell(session));
+            let session = crate::decode::records::trim(record.cell(session));
             only &= session == ONLY_SESSION;
             match of.get(record.cell(observer)) {
                 Some(first) => several |= first != session,

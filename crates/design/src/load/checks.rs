@@ -1,11 +1,11 @@
 //! What may stand in each section of a study file.
 
-use super::{Configuration, Study};
 use crate::Arrangement;
 use crate::check::{Checker, ConfigError, short};
 use crate::config::{FieldSection, ObjectSection, StudyFile, SweepSection};
 use crate::contrast::contrasts;
 use crate::method::is_summed;
+use crate::study::{Configuration, Study};
 
 /// Everything that does not need another section to judge.
 pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigError> {
