@@ -1,7 +1,5 @@
 //! How often the item with the better value was chosen.
 
-use statistics::bootstrap::{Resampling, percentile};
-use statistics::interval::Interval;
 use statistics::{ClusteredShare, DeclaredBallot, ScoreTest, clustered_share};
 use std::collections::BTreeMap;
 
@@ -16,13 +14,6 @@ pub(crate) struct PairCount {
     pub(crate) worse: usize,
 }
 
-impl PairCount {
-    fn share(self) -> Option<f64> {
-        let decided = self.better + self.worse;
-        (decided > 0).then(|| self.better as f64 / decided as f64)
-    }
-}
-
 /// How answers fall between better and worse values.
 #[derive(Debug, Clone)]
 pub(crate) struct Better {
@@ -32,8 +23,6 @@ pub(crate) struct Better {
     pub(crate) share: Option<ClusteredShare>,
     /// Pairs by winner.
     pub(crate) pairs: PairCount,
-    /// Percentile interval for the share of decided pairs won by the better value, resampling participants.
-    pub(crate) pairs_interval: Option<Interval>,
 }
 
 impl Better {
@@ -61,20 +50,14 @@ impl Better {
             let [hits, misses] = of.values().fold([0, 0], |[a, b], [x, y]| [a + x, b + y]);
             (hits as f64, (hits + misses) as f64)
         });
-        // People who answered alike are interchangeable.
-        let mut kinds: BTreeMap<&BTreeMap<usize, [u64; 2]>, u64> = BTreeMap::new();
-        people.iter().for_each(|of| *kinds.entry(of).or_default() += 1);
-        let (kinds, counts): (Vec<_>, Vec<u64>) = kinds.into_iter().unzip();
-        let surplus = |of: &BTreeMap<usize, [u64; 2]>| {
-            of.iter().map(|(&question, &[hits, misses])| (question, hits as i64 - misses as i64)).collect()
-        };
-        let kinds: Vec<Vec<(usize, i64)>> = kinds.into_iter().map(surplus).collect();
-        let resampled = percentile(&counts, Resampling::default(), |weights| pairs(&kinds, weights).share());
+        let mut net: BTreeMap<usize, i64> = BTreeMap::new();
+        for (&question, &[hits, misses]) in people.iter().flatten() {
+            *net.entry(question).or_default() += hits as i64 - misses as i64;
+        }
         Self {
             test: ScoreTest::of(ballots.iter().filter_map(signed)),
             share: clustered_share(answers),
-            pairs: pairs(&kinds, &counts),
-            pairs_interval: resampled.map(|r| r.interval),
+            pairs: pairs(net.into_values()),
         }
     }
 
@@ -84,17 +67,10 @@ impl Better {
     }
 }
 
-/// Who wins each pair among so many people of each kind.
-fn pairs(kinds: &[Vec<(usize, i64)>], weights: &[u64]) -> PairCount {
-    let questions = kinds.iter().flatten().map(|&(question, _)| question + 1).max().unwrap_or(0);
-    let mut net: Vec<Option<i64>> = vec![None; questions];
-    for (kind, &weight) in kinds.iter().zip(weights).filter(|(_, weight)| **weight > 0) {
-        for &(question, surplus) in kind {
-            *net[question].get_or_insert(0) += weight as i64 * surplus;
-        }
-    }
+/// Who wins each pair, from its answers for the better value less those for the worse.
+fn pairs(net: impl Iterator<Item = i64>) -> PairCount {
     let mut count = PairCount::default();
-    for net in net.into_iter().flatten() {
+    for net in net {
         match net.signum() {
             1 => count.better += 1,
             -1 => count.worse += 1,
@@ -143,6 +119,6 @@ mod tests {
     #[test]
     fn of_nothing() {
         let found = Better::of(&[Some(1.0)], &[]);
-        assert_eq!((found.share, found.pairs_interval, found.pair_count()), (None, None, 0));
+        assert_eq!((found.share, found.pair_count()), (None, 0));
     }
 }

@@ -1,8 +1,9 @@
 //! A model judged on objects that it was not fitted to.
 
 use design::Study;
-use statistics::interval::{Interval, t_over_respondents};
+use statistics::interval::unanimous;
 use statistics::{Answer, ClusteredShare, clustered_share, regression};
+use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Predictions of each object's answers from a fit to the other objects'.
@@ -14,8 +15,9 @@ pub(crate) struct HeldOut {
     pub(crate) log_loss: f64,
     /// The same for the constant: both sides alike, ties as often as in the other objects.
     pub(crate) constant_log_loss: f64,
-    /// t interval over participants for the mean of `constant_log_loss - log_loss`: above zero, the model is of use.
-    pub(crate) gain: Option<Interval>,
+    /// One-sided p of a t test over participants that the mean of `constant_log_loss - log_loss` is zero or less: small, the model is of
+    /// use. `None` for fewer than two people, or if all gain the same.
+    pub(crate) gain_p: Option<f64>,
     /// Object, decided answers foretold, decided answers.
     pub(crate) objects: Vec<(usize, f64, f64)>,
 }
@@ -68,13 +70,25 @@ impl HeldOut {
         let accuracy = clustered_share(people.iter().map(|p| (p.hits, p.decided)))?;
         let finite = log_loss.is_finite() && constant_log_loss.is_finite();
         finite.then(|| Self {
-            gain: t_over_respondents(&gains),
+            gain_p: gain_p(&gains),
             objects: of_objects,
             accuracy,
             log_loss,
             constant_log_loss,
         })
     }
+}
+
+/// See [`HeldOut::gain_p`].
+fn gain_p(gains: &[f64]) -> Option<f64> {
+    if gains.len() < 2 || unanimous(gains).is_some() {
+        return None;
+    }
+    let n = gains.len() as f64;
+    let mean = gains.iter().sum::<f64>() / n;
+    let variance = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    let t = StudentsT::new(0.0, 1.0, n - 1.0).expect("two people or more");
+    Some(t.sf(mean / (variance / n).sqrt()))
 }
 
 /// One participant's sums.

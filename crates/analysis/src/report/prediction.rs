@@ -2,7 +2,7 @@
 
 use super::Block;
 use crate::hypotheses::ALPHA;
-use crate::prediction::{MetricPrediction, Prediction};
+use crate::prediction::{HeldOut, MetricPrediction, Prediction};
 use crate::statement::{Finding, Standing};
 use crate::words::{capital, counted, interval, list, number, p, percent, percents};
 use design::Study;
@@ -80,8 +80,11 @@ fn held_out(study: &Study, prediction: &Prediction) -> Vec<Finding> {
             format!("{} of {of} on the {}", number(*hits, 1).trim_end_matches(".0"), names[*o])
         })
         .collect();
-    let gain = best.gain.map_or(String::new(), |i| format!(" (fall {}, 95 % t interval)", interval(i, 3)));
-    let better = best.gain.is_some_and(|i| i.low > 0.0);
+    let gain = best
+        .gain_p
+        .map_or(String::new(), |gain| format!(" (one-sided t test over participants, {})", p(gain)));
+    let is_better = |held_out: &HeldOut| held_out.gain_p.is_some_and(|p| p <= ALPHA / 2.0);
+    let better = is_better(best);
     let text = format!(
         "Fitted to the other objects, {} foretells an object's answers {}: {} of the decided ones right, {}; mean log loss {} \
          against {} of a constant{gain}.",
@@ -97,11 +100,8 @@ fn held_out(study: &Study, prediction: &Prediction) -> Vec<Finding> {
         number(best.constant_log_loss, 3)
     );
     found.push(Finding::new(if better { Standing::Holds } else { Standing::Open }, text));
-    let failing: Vec<&str> = judged
-        .iter()
-        .filter(|(_, h)| h.gain.is_none_or(|i| i.low <= 0.0))
-        .map(|(m, _)| m.metric.label)
-        .collect();
+    let failing: Vec<&str> =
+        judged.iter().filter(|(_, h)| !is_better(h)).map(|(m, _)| m.metric.label).collect();
     if !failing.is_empty() {
         let text = format!("Not better than guessing on objects left out, by log loss: {}.", list(&failing));
         found.push(Finding::new(Standing::Open, text));

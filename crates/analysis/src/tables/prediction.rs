@@ -28,8 +28,6 @@ fn metrics(prediction: &Prediction) -> Table {
             ("pairs_won", "won by the better"),
             ("pairs_drawn", "drawn"),
             ("pairs_won_share", "Share of decided pairs"),
-            ("pairs_won_low", "from"),
-            ("pairs_won_high", "to"),
             ("better_right", "Answers with the better on the right"),
             ("showings", "of"),
             ("unit", "Unit"),
@@ -39,12 +37,9 @@ fn metrics(prediction: &Prediction) -> Table {
             ("coefficient_high", "to"),
             ("coefficient_p", "p"),
             ("accuracy", "Left-out accuracy"),
-            ("accuracy_low", "from"),
-            ("accuracy_high", "to"),
             ("log_loss", "Log loss"),
             ("constant_log_loss", "of the constant"),
-            ("gain_low", "gain from"),
-            ("gain_high", "gain to"),
+            ("gain_p", "p of a gain"),
         ],
     );
     for found in &prediction.metrics {
@@ -68,8 +63,6 @@ fn metrics(prediction: &Prediction) -> Table {
             Cell::count(better.pairs.better as u64),
             Cell::count(better.pairs.drawn as u64),
             Cell::number((decided > 0).then(|| better.pairs.better as f64 / decided as f64), 3),
-            Cell::number(better.pairs_interval.map(|i| i.low), 3),
-            Cell::number(better.pairs_interval.map(|i| i.high), 3),
             Cell::count(found.better_right),
             Cell::count(found.showings),
             Cell::Number(found.unit, 4),
@@ -85,13 +78,12 @@ fn metrics(prediction: &Prediction) -> Table {
     table.notes.push(
         "Metrics are of the meshes that were shown. Share of decided: answers for the side with the better value over all \
          answers but no preference; t interval at 95 % over participants. p: exact sign-flip test over participants, adjusted \
-         by Holm over the metrics. A pair is won by the side with more answers; from and to: 95 % of 2000 resamples of participants, which say how firm the winners are and \
-         not what share many more people would show. Log-odds: \
+         by Holm over the metrics. A pair is won by the side with more answers. Log-odds: \
          Davidson's model with the metric's difference for the worths, in units of the root mean square of the differences \
          (differences of ratios and angles, logarithms of quotients for the rest); standard error, t interval and p clustered \
          on participants. Left-out: each object predicted from a fit to the others; the constant knows the share of ties and \
-         no more; the gain is the mean fall in log loss. The t intervals over participants of accuracy and gain are about these fits: fits to \
-         more people foretell better. Intervals of shares are cut at 0 and 1."
+         no more; the gain is the mean fall in log loss, p one-sided by a t test over participants. Pairs won and accuracy have no interval: \
+         more people would fit better and win other pairs, and no interval tried covers what they would show. Intervals of shares are cut at 0 and 1."
             .into(),
     );
     let blocks: [(&str, &[&str]); 3] = [
@@ -112,17 +104,7 @@ fn metrics(prediction: &Prediction) -> Table {
         ),
         (
             "Pairs",
-            &[
-                "metric",
-                "pairs",
-                "pairs_won",
-                "pairs_drawn",
-                "pairs_won_share",
-                "pairs_won_low",
-                "pairs_won_high",
-                "better_right",
-                "showings",
-            ],
+            &["metric", "pairs", "pairs_won", "pairs_drawn", "pairs_won_share", "better_right", "showings"],
         ),
         (
             "Model",
@@ -134,12 +116,9 @@ fn metrics(prediction: &Prediction) -> Table {
                 "coefficient_high",
                 "coefficient_p",
                 "accuracy",
-                "accuracy_low",
-                "accuracy_high",
                 "log_loss",
                 "constant_log_loss",
-                "gain_low",
-                "gain_high",
+                "gain_p",
             ],
         ),
     ];
@@ -147,18 +126,13 @@ fn metrics(prediction: &Prediction) -> Table {
     table
 }
 
-/// Accuracy with its interval, log losses, and the interval of the gain.
-fn judged(held_out: Option<&HeldOut>) -> [Cell; 7] {
-    let accuracy = held_out.and_then(|h| h.accuracy.interval).map(|i| i.cut(0.0, 1.0));
-    let gain = held_out.and_then(|h| h.gain);
+/// Accuracy, log losses, and whether there is a gain.
+fn judged(held_out: Option<&HeldOut>) -> [Cell; 4] {
     [
         Cell::number(held_out.map(|h| h.accuracy.share), 3),
-        Cell::number(accuracy.map(|i| i.low), 3),
-        Cell::number(accuracy.map(|i| i.high), 3),
         Cell::number(held_out.map(|h| h.log_loss), 4),
         Cell::number(held_out.map(|h| h.constant_log_loss), 4),
-        Cell::number(gain.map(|i| i.low), 4),
-        Cell::number(gain.map(|i| i.high), 4),
+        Cell::p(held_out.and_then(|h| h.gain_p), 4),
     ]
 }
 
