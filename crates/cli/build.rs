@@ -1,4 +1,4 @@
-//! Digests the sources of every room, so that results made by other code are known to be stale, and names the commit.
+//! Digests the sources of every crate, so that results made by other code are known to be stale, and names the commit.
 //!
 //! Sources, not the executable: the same sources may be linked into different executables (for tests, say), and must
 //! not redo a study then.
@@ -7,7 +7,7 @@ use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const ROOMS: [&str; 16] = [
+const CRATES: [&str; 16] = [
     "mesh",
     "design",
     "responses",
@@ -26,53 +26,60 @@ const ROOMS: [&str; 16] = [
     "cli",
 ];
 
+/// The pages that people read: a digest of their own.
+const PAGES: &str = "pipeline/pages";
+/// Modules of the command that change no result: what is asked, what is said meanwhile, and how it ended.
+const ASIDE: [&str; 4] = ["main", "commands", "outcome", "terminal"];
+
 fn main() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let shared = [root.join("Cargo.lock"), root.join("assets")];
     for path in &shared {
         println!("cargo::rerun-if-changed={}", path.display());
     }
-    for room in ROOMS {
-        let folder = root.join("crates").join(room);
+    for name in CRATES {
+        let folder = root.join("crates").join(name);
         println!("cargo::rerun-if-changed={}", folder.join("src").display());
-        let mut files = Vec::new();
-        // Only one room has a page, and the command's own pages are among its sources.
+        // Only one crate has a page.
         let page = Some(folder.join("page")).filter(|page| page.is_dir());
-        for path in shared.iter().cloned().chain([folder.join("src"), folder.join("Cargo.toml")]).chain(page)
-        {
-            collect(&path, &mut files);
+        let own = [folder.join("src"), folder.join("Cargo.toml")].into_iter().chain(page);
+        let mut files: Vec<PathBuf> =
+            shared.iter().cloned().chain(own).flat_map(|path| files(&path)).collect();
+        if name == "cli" {
+            let src = folder.join("src");
+            let pages = take_module(&mut files, &src, PAGES);
+            ASIDE.iter().for_each(|module| drop(take_module(&mut files, &src, module)));
+            name_digest("page", &root, pages);
         }
-        // Arguments, progress, pages and surfaces without a study change no other result; the pages' digest is a room of its own.
-        let aside = [
-            "args.rs",
-            "main.rs",
-            "surface.rs",
-            "turning.rs",
-            "progress.rs",
-            "page.rs",
-            "index.html",
-            "report.rs",
-            "report.html",
-        ];
-        files.retain(|file| room != "cli" || !aside.iter().any(|name| file.ends_with(name)));
-        files.sort();
-        let mut parts = Vec::new();
-        for file in files {
-            parts.push(file.strip_prefix(&root).unwrap_or(&file).to_string_lossy().into_owned().into_bytes());
-            parts.push(read(&file));
-        }
-        let parts: Vec<&[u8]> = parts.iter().map(Vec::as_slice).collect();
-        println!("cargo::rustc-env=ISOSTUDY_ROOM_{}={:016x}", room.to_uppercase(), digest(&parts));
+        name_digest(name, &root, files);
     }
-    let pages = ["page/index.html", "pipeline/page.rs", "page/report.html", "pipeline/report.rs"];
-    let pages = pages.map(|path| root.join("crates/cli/src").join(path));
-    let text = pages.map(|path| read(&path)).concat();
-    println!("cargo::rustc-env=ISOSTUDY_ROOM_PAGE={:016x}", digest(&[&text]));
     name_commit(&root);
 }
 
+/// Takes a module's files out of a list: `x.rs` and all in `x`.
+fn take_module(files: &mut Vec<PathBuf>, src: &Path, module: &str) -> Vec<PathBuf> {
+    let (file, folder) = (src.join(module).with_extension("rs"), src.join(module));
+    let (taken, left) = files.drain(..).partition(|path| *path == file || path.starts_with(&folder));
+    *files = left;
+    let taken: Vec<PathBuf> = taken;
+    assert!(!taken.is_empty(), "{module}: there is no such module; it has moved, and this list must follow");
+    taken
+}
+
+/// The digest of sources, by their paths from the root and their contents, as an environment variable of the build.
+fn name_digest(name: &str, root: &Path, mut files: Vec<PathBuf>) {
+    files.sort();
+    let mut parts = Vec::new();
+    for file in files {
+        parts.push(file.strip_prefix(root).unwrap_or(&file).to_string_lossy().into_owned().into_bytes());
+        parts.push(read(&file));
+    }
+    let parts: Vec<&[u8]> = parts.iter().map(Vec::as_slice).collect();
+    println!("cargo::rustc-env=ISOSTUDY_SOURCES_{}={:016x}", name.to_uppercase(), digest(&parts));
+}
+
 /// The commit, and whether what is built has changes on top of it; empty without version control. Looked up again after a
-/// commit or a change of a room, not at every build.
+/// commit or a change of a crate, not at every build.
 fn name_commit(root: &Path) {
     let git = |arguments: &[&str]| -> Option<String> {
         let output = Command::new("git").arg("-C").arg(root).args(arguments).output().ok()?;
@@ -94,20 +101,25 @@ fn name_commit(root: &Path) {
     }
 }
 
-/// A source that is not there would leave its results for up to date for ever: no build without it.
+/// A source that cannot be read would leave its results for up to date for ever: no build without it.
 fn read(path: &Path) -> Vec<u8> {
-    std::fs::read(path)
-        .unwrap_or_else(|error| panic!("{}, a source that is digested: {error}", path.display()))
+    std::fs::read(path).unwrap_or_else(|error| unreadable(path, &error))
 }
 
-fn collect(path: &Path, files: &mut Vec<PathBuf>) {
-    if path.is_dir() {
-        for entry in std::fs::read_dir(path).into_iter().flatten().flatten() {
-            collect(&entry.path(), files);
-        }
-    } else {
-        files.push(path.into());
+/// Every file at or below a path.
+fn files(path: &Path) -> Vec<PathBuf> {
+    if !path.is_dir() {
+        return vec![path.into()];
     }
+    let entries = std::fs::read_dir(path).unwrap_or_else(|error| unreadable(path, &error));
+    let below = |entry: std::io::Result<std::fs::DirEntry>| {
+        files(&entry.unwrap_or_else(|error| unreadable(path, &error)).path())
+    };
+    entries.flat_map(below).collect()
+}
+
+fn unreadable(path: &Path, error: &std::io::Error) -> ! {
+    panic!("{}, a source that is digested: {error}", path.display())
 }
 
 /// A fixed-key hash: nobody forges a source file here, it only has to notice change.

@@ -47,6 +47,22 @@ pub(crate) fn study(path: &Path) -> Result<Study> {
     Ok(study)
 }
 
+/// The files of a folder with an extension, in the order of names; none where there is no folder.
+///
+/// # Errors
+/// If the folder cannot be read.
+pub(crate) fn files_of(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    if folder.is_dir() {
+        for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
+            let path = entry?.path();
+            files.extend(path.extension().is_some_and(|e| e == extension).then_some(path));
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
 /// Whether two paths lead to one file, which need not be there.
 pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
     match (resolved(a), resolved(b)) {

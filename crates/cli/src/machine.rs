@@ -1,6 +1,6 @@
 //! The machine, and the program that was built from these sources.
 
-use crate::rooms;
+use crate::source_digests;
 use crate::store::Inputs;
 use design::machine::Machine;
 
@@ -10,6 +10,6 @@ pub(crate) fn read() -> Machine {
     let told = |text: &'static str| (!text.is_empty()).then_some(text);
     machine.build.commit = told(env!("ISOSTUDY_COMMIT")).map(Into::into);
     machine.build.dirty = told(env!("ISOSTUDY_DIRTY")).map(|dirty| dirty == "yes");
-    machine.build.sources = Some(Inputs::of_rooms(rooms::TIMINGS).finish());
+    machine.build.sources = Some(Inputs::of_sources(source_digests::TIMINGS).finish());
     machine
 }

@@ -29,14 +29,14 @@ struct ManifestFile<'a> {
     sha256: &'a str,
 }
 
-/// What the results are about: a study file, or a file of answers.
-pub(crate) struct Subject<'a> {
+/// What results are made from: a study file, or a file of answers.
+pub(crate) struct Origin<'a> {
     pub(crate) name: &'a str,
     pub(crate) sha256: String,
     pub(crate) seed: Option<u64>,
 }
 
-impl<'a> Subject<'a> {
+impl<'a> Origin<'a> {
     /// A study.
     ///
     /// # Errors
@@ -51,7 +51,7 @@ impl<'a> Subject<'a> {
 ///
 /// # Errors
 /// If a stamp cannot be read, or the file cannot be written.
-pub(crate) fn write(subject: &Subject<'_>, store: &Store) -> Result<()> {
+pub(crate) fn write(origin: &Origin<'_>, store: &Store) -> Result<()> {
     let stamps = store.stamps()?;
     let files = stamps.iter().flat_map(|stamp| &stamp.files);
     let files = files.map(|f| (f.path.as_str(), ManifestFile { bytes: f.bytes, sha256: &f.sha256 }));
@@ -59,9 +59,9 @@ pub(crate) fn write(subject: &Subject<'_>, store: &Store) -> Result<()> {
         schema: 1,
         tool: "isostudy",
         version: env!("CARGO_PKG_VERSION"),
-        study: subject.name,
-        study_sha256: subject.sha256.clone(),
-        seed: subject.seed,
+        study: origin.name,
+        study_sha256: origin.sha256.clone(),
+        seed: origin.seed,
         // How busy the machine is now says nothing about results made earlier.
         machine: bench::read_machine().lasting(),
         files: files.collect(),

@@ -11,18 +11,19 @@
 mod budgets;
 mod bundle;
 mod meshes;
-mod page;
-mod report;
+mod pages;
 mod stimuli;
 mod sweep;
 mod tables;
 mod timings;
+mod worker;
 
 pub(crate) use bundle::forms_digest;
 pub(crate) use meshes::Meshes;
 pub(crate) use stimuli::MadeWith;
 pub(crate) use tables::{write_answers_only, write_without_study};
-pub(crate) use timings::{PlanLength, measure};
+pub(crate) use timings::PlanLength;
+pub(crate) use worker::{Invocation, measure};
 
 use crate::fields::Fields;
 use crate::made;
@@ -127,7 +128,7 @@ impl<'a> Pipeline<'a> {
     /// Clears away what is no longer part of the study, and writes the manifest of what is.
     pub(crate) fn finish(&self) -> Result<()> {
         self.store.remove_retired()?;
-        crate::manifest::write(&crate::manifest::Subject::of(self.study)?, &self.store)
+        crate::manifest::write(&crate::manifest::Origin::of(self.study)?, &self.store)
     }
 
     /// Does a stage that makes meshes, animations or timings; when frozen, only looks it up.

@@ -11,8 +11,28 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 /// The kinds of recipes that are the study's own, and never the extractor's: a game's library must not be able to start processes.
-const PROGRAM: &str = "program";
-const MESHES: &str = "meshes";
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum StudyKind {
+    Program,
+    Meshes,
+}
+
+impl StudyKind {
+    const ALL: [Self; 2] = [Self::Program, Self::Meshes];
+
+    /// What `kind = ...` calls it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Program => "program",
+            Self::Meshes => "meshes",
+        }
+    }
+
+    /// The kind of a name; `None` for the extractor's kinds, and for what is none.
+    pub(crate) fn of(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+}
 
 /// How the meshes of a method come to be.
 #[derive(Debug, Clone)]
@@ -71,8 +91,8 @@ pub(crate) fn key(study: &Study, id: MethodId) -> String {
 fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
     let recipe = &study.method(id).recipe;
     let keys = recipe.settings.clone();
-    match recipe.kind.as_str() {
-        PROGRAM => {
+    match StudyKind::of(&recipe.kind) {
+        Some(StudyKind::Program) => {
             let keys: ProgramKeys = toml::Value::Table(keys).try_into()?;
             for (name, value, most) in
                 [("time_limit_s", keys.time_limit_s, 86_400.0), ("memory_gib", keys.memory_gib, 1024.0)]
@@ -88,7 +108,7 @@ fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
                 memory_limit_bytes: Some((keys.memory_gib * (1u64 << 30) as f64) as u64),
             }))
         }
-        MESHES => {
+        Some(StudyKind::Meshes) => {
             let keys: MeshKeys = toml::Value::Table(keys).try_into()?;
             let objects: Vec<&str> = study.file.objects.iter().map(|object| object.id.as_str()).collect();
             if let Some(other) = keys.files.keys().find(|id| !objects.contains(&id.as_str())) {
@@ -99,12 +119,12 @@ fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
             }
             Ok(Recipe::Meshes(keys.files.into_iter().map(|(id, file)| (id, study.resolve(&file))).collect()))
         }
-        kind => {
-            let mut keys = keys;
+        None => {
+            let (kind, mut keys) = (recipe.kind.as_str(), keys);
             keys.insert("kind".into(), kind.into());
             let method = toml::Value::Table(keys).try_into().map_err(|error: toml::de::Error| {
                 let error = error.to_string();
-                let own = format!("`{PROGRAM}`, `{MESHES}`");
+                let own = StudyKind::ALL.map(|kind| format!("`{}`", kind.name())).join(", ");
                 // The study's own kinds are kinds too; values of other keys have variants as well.
                 let is_kind = error.contains(&format!("unknown variant `{kind}`"));
                 let more = if is_kind { format!(", {own}") } else { String::new() };

@@ -214,9 +214,9 @@ impl Store {
 }
 
 impl Inputs {
-    /// Starts from the sources of the rooms whose code makes the files.
-    pub(crate) fn of_rooms(rooms: &[&str]) -> Self {
-        rooms.iter().fold(Self::default(), |inputs, room| inputs.text("room", room))
+    /// Starts from the sources of the crates that make the files.
+    pub(crate) fn of_sources(digests: &[&str]) -> Self {
+        digests.iter().fold(Self::default(), |inputs, digest| inputs.text("sources", digest))
     }
 
     /// Adds a text.

@@ -161,7 +161,7 @@ fn root() -> PathBuf {
 
 /// What `isostudy new` writes, with the example of a section in the place of its own.
 fn with_example(section: &Section) -> Table {
-    let text = std::fs::read_to_string(root().join("crates/cli/src/new/study.toml")).unwrap();
+    let text = std::fs::read_to_string(root().join("crates/cli/src/commands/new/study.toml")).unwrap();
     let mut study: Table = text.parse().unwrap();
     // Not every example has the names of the levels that it is made of.
     study["analysis"].as_table_mut().unwrap().remove("primary");

@@ -3,8 +3,8 @@
 use super::Pipeline;
 use super::meshes::purpose_name;
 use crate::prepare::{self, Wanted};
-use crate::progress::Step;
 use crate::recipe::Recipe;
+use crate::terminal::progress::Step;
 use anyhow::{Context, Result, bail};
 use design::config::BudgetSection;
 use design::record::Purpose;

@@ -2,9 +2,9 @@
 
 use super::{Meshes, Pipeline};
 use crate::picture;
-use crate::progress::Step;
-use crate::rooms;
+use crate::source_digests;
 use crate::store::{Inputs, Stamp, sha256};
+use crate::terminal::progress::Step;
 use anyhow::Result;
 use design::ConfigurationId;
 use design::forms::{FormFile, Questionnaire, Stimulus};
@@ -45,7 +45,7 @@ impl Pipeline<'_> {
     /// nobody.
     pub(crate) fn forms(&self) -> Result<Option<Stamp>> {
         let Some(questionnaire) = Questionnaire::of(self.study) else { return Ok(None) };
-        let inputs = Inputs::of_rooms(rooms::KEYS).value("study", &self.study.file);
+        let inputs = Inputs::of_sources(source_digests::KEYS).value("study", &self.study.file);
         let stamp = self.store.stage("forms", inputs, |writer| {
             writer.write_json("forms/forms.json", &questionnaire.file())?;
             let mut key = csv::Writer::from_writer(Vec::new());
@@ -63,7 +63,7 @@ impl Pipeline<'_> {
         let shown = [pairs, videos].concat();
         let step = Step::begin("bundle", 1, shown.len());
         let seed = self.study.file.study.seed;
-        let mut inputs = Inputs::of_rooms(rooms::BUNDLES).value("seed", &seed).stamp(forms);
+        let mut inputs = Inputs::of_sources(source_digests::BUNDLES).value("seed", &seed).stamp(forms);
         for stamp in &shown {
             inputs = inputs.stamp(stamp);
         }
@@ -110,7 +110,7 @@ impl Pipeline<'_> {
     pub(crate) fn contact_sheet(&self, meshes: &Meshes) -> Result<Stamp> {
         const HALF_PX: u32 = 128;
         let stimuli = self.study.stimuli();
-        let mut inputs = Inputs::of_rooms(rooms::PICTURES).value("study", &self.study.file);
+        let mut inputs = Inputs::of_sources(source_digests::PICTURES).value("study", &self.study.file);
         for configuration in &self.study.configurations {
             inputs = inputs.stamp(meshes.stamp(&configuration.id, Purpose::Stimulus));
         }

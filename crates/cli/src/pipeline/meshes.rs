@@ -3,10 +3,10 @@
 use super::Pipeline;
 use crate::made::Made;
 use crate::prepare::{Prepared, Wanted};
-use crate::progress::Step;
 use crate::records::mesh_record;
 use crate::store::{Inputs, Stamp};
-use crate::{recipe, rooms};
+use crate::terminal::progress::Step;
+use crate::{recipe, source_digests};
 use anyhow::{Context, Result};
 use design::record::{MeshRecord, Purpose};
 use design::{Configuration, ConfigurationId};
@@ -113,7 +113,7 @@ impl Pipeline<'_> {
         purpose: Purpose,
     ) -> Result<Inputs> {
         let object = self.study.object(configuration);
-        Ok(Inputs::of_rooms(rooms::MESHES)
+        Ok(Inputs::of_sources(source_digests::MESHES)
             .value("id", &configuration.id)
             .value("purpose", &purpose)
             .value("volume", &(object.min, object.max))

@@ -4,9 +4,9 @@ use super::meshes::TICKS_A_MESH;
 use super::{Meshes, Pipeline};
 use crate::picture::{self, Drawn};
 use crate::prepare::Wanted;
-use crate::progress::Step;
 use crate::store::{Inputs, Stamp};
-use crate::{error_colours, rooms, video};
+use crate::terminal::progress::Step;
+use crate::{error_colours, source_digests, video};
 use anyhow::{Context, Result};
 use design::config::{Look, StillSection};
 use design::forms::Stimulus;
@@ -81,7 +81,7 @@ impl Pipeline<'_> {
     ) -> Result<Stamp> {
         let object = self.study.object(configuration);
         let mesh = meshes.stamp(&configuration.id, Purpose::Stimulus);
-        let inputs = Inputs::of_rooms(rooms::PICTURES)
+        let inputs = Inputs::of_sources(source_digests::PICTURES)
             .stamp(mesh)
             .text("code", code)
             .value("settings", &MadeWith::of(self.study, configuration))
@@ -122,7 +122,7 @@ impl Pipeline<'_> {
     fn pair(&self, stimulus: &Stimulus, left: &Stamp, right: &Stamp) -> Result<Stamp> {
         let Stimulus { code, left: left_id, right: right_id } = stimulus;
         let scale = self.study.file.stimuli.pair_scale;
-        let inputs = Inputs::of_rooms(rooms::PICTURES)
+        let inputs = Inputs::of_sources(source_digests::PICTURES)
             .stamp(left)
             .stamp(right)
             .text("code", code)
@@ -168,7 +168,11 @@ impl Pipeline<'_> {
     /// Name, path and inputs of a pair's video.
     fn video(pair: &Stamp) -> (String, String, Inputs) {
         let name = format!("video/{}", pair.stage.trim_start_matches("pair/"));
-        (name, pair.file(".gif").replace(".gif", ".mp4"), Inputs::of_rooms(rooms::PICTURES).stamp(pair))
+        (
+            name,
+            pair.file(".gif").replace(".gif", ".mp4"),
+            Inputs::of_sources(source_digests::PICTURES).stamp(pair),
+        )
     }
 
     fn read_animation(&self, stamp: &Stamp) -> Result<Animation> {
@@ -191,7 +195,7 @@ impl Pipeline<'_> {
             let question = self.study.comparisons.iter().find(shows).map_or("", |c| c.question.as_str());
             key += &format!("{PAIRS}/{code}.gif,{question},{left},{right}\n");
         }
-        let inputs = Inputs::of_rooms(rooms::KEYS).text("key", &key);
+        let inputs = Inputs::of_sources(source_digests::KEYS).text("key", &key);
         self.store.stage("key", inputs, |writer| writer.write("key/stimuli.csv", key.as_bytes()))
     }
 
@@ -217,7 +221,7 @@ impl Pipeline<'_> {
         let object = self.study.object(configuration);
         let inputs = self
             .extraction_inputs(configuration, Purpose::Stimulus)?
-            .text("room", &rooms::PICTURES.concat())
+            .text("sources", &source_digests::PICTURES.concat())
             .value("still", still)
             .value("camera", &object.camera)
             .value("turntable", &self.study.file.turntable)

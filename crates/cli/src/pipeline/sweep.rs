@@ -1,25 +1,19 @@
 //! The sweep over resolutions and threads: each pair of them a benchmark run of its own, so that a killed sweep goes on.
 
 use super::Pipeline;
-use super::timings::Bout;
+use super::worker::{Job, swept};
 use crate::prepare::{self, Wanted};
-use crate::progress::Step;
 use crate::store::{Inputs, Stamp, remove_if_there};
-use crate::{machine, rooms};
+use crate::terminal::progress::Step;
+use crate::{machine, source_digests};
 use anyhow::{Context, Result, bail};
 use bench::Plan;
+use design::Configuration;
 use design::config::SweepSection;
 use design::machine::Machine;
 use design::record::{Purpose, SweepMesh};
-use design::{Configuration, Study};
 use extract::Execution;
 use timing::sweep::SweepLevel;
-
-/// The configurations that a study's sweep is about. The measuring process counts them alike.
-pub(super) fn configurations<'s>(study: &'s Study, section: &SweepSection) -> Vec<&'s Configuration> {
-    let swept = |c: &&Configuration| section.objects.contains(&c.id.object);
-    study.configurations.iter().filter(swept).collect()
-}
 
 impl Pipeline<'_> {
     /// Measures what is not up to date, writes tables and figures, and returns the tables as Markdown.
@@ -45,7 +39,7 @@ impl Pipeline<'_> {
         }
         let found = timing::sweep::sweep(&file.study.id, &levels, &meshes);
         let tables = timing::sweep::sweep_tables(&found);
-        let mut inputs = Inputs::of_rooms(rooms::TABLES);
+        let mut inputs = Inputs::of_sources(source_digests::TABLES);
         for stamp in &stamps {
             inputs = inputs.stamp(stamp);
         }
@@ -74,9 +68,9 @@ impl Pipeline<'_> {
         threads: u32,
         machine: &Machine,
     ) -> Result<Stamp> {
-        let configurations = configurations(self.study, section);
+        let configurations = swept(self.study, section);
         let inputs = || -> Result<Inputs> {
-            let inputs = Inputs::of_rooms(rooms::TIMINGS).value("machine", &machine.lasting());
+            let inputs = Inputs::of_sources(source_digests::TIMINGS).value("machine", &machine.lasting());
             Ok(self
                 .sweep_inputs(inputs, section, cells)?
                 .value("plan", &self.sweep_plan(section, cells, threads)?))
@@ -86,9 +80,9 @@ impl Pipeline<'_> {
         let (journal, key) = (self.store.journal(&name), inputs()?.finish());
         tell!("sweep: {cells} cells per axis, threads: {threads}");
         let step = Step::begin("sweep", configurations.len() * plan.iterations as usize, 0);
-        let bout = Bout { plan: &plan, configurations, cells: Some(cells) };
+        let job = Job { plan: &plan, configurations, cells: Some(cells) };
         let stamp = self.stage(&name, inputs()?, |writer| {
-            let run = self.run(&bout, machine.clone(), &journal, &key, &step)?;
+            let run = self.run(&job, machine.clone(), &journal, &key, &step)?;
             writer.write_json(&format!("{name}/run.json"), &run)?;
             writer.write(&format!("{name}/samples.csv"), bench::samples_csv(&run.samples).as_bytes())
         })?;
@@ -121,8 +115,8 @@ impl Pipeline<'_> {
 
     /// What is extracted at a resolution, untimed.
     fn sweep_meshes(&self, section: &SweepSection, cells: u32) -> Result<Stamp> {
-        let inputs = self.sweep_inputs(Inputs::of_rooms(rooms::MESHES), section, cells)?;
-        let configurations = configurations(self.study, section);
+        let inputs = self.sweep_inputs(Inputs::of_sources(source_digests::MESHES), section, cells)?;
+        let configurations = swept(self.study, section);
         self.stage(&format!("bench/sweep/{cells:04}-meshes"), inputs, |writer| {
             let meshes: Result<Vec<SweepMesh>> =
                 configurations.iter().map(|configuration| self.sweep_mesh(configuration, cells)).collect();

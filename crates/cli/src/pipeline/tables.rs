@@ -1,9 +1,10 @@
 //! Tables, figures and the report, from records, timings and answers.
 
+use super::pages::write_report;
 use super::{Meshes, Pipeline};
-use crate::progress::Step;
-use crate::rooms;
+use crate::source_digests;
 use crate::store::{Inputs, Stamp, Store, Writer, sha256};
+use crate::terminal::progress::Step;
 use analysis::{Answered, Figure, LongFrame};
 use anyhow::{Context, Result};
 use design::Study;
@@ -24,7 +25,7 @@ impl Pipeline<'_> {
         let stamp = self.store.stage("tables", inputs, |writer| {
             let records = self.mesh_records(meshes)?;
             let run = self.bench_run(timings)?;
-            let answers = crate::answers::of_study(self.study)?;
+            let answers = crate::answer_files::of_study(self.study)?;
             let answers = answers.and_then(|reading| Answered::of(self.study, reading.responses));
             let inputs = analysis::Inputs {
                 study: self.study,
@@ -75,7 +76,9 @@ pub(crate) fn write_without_study(
     store: &Store,
 ) -> Result<Vec<Table>> {
     let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
-    let inputs = Inputs::of_rooms(rooms::TABLES).value("mapping", section).text("responses", &sha256(&bytes));
+    let inputs = Inputs::of_sources(source_digests::TABLES)
+        .value("mapping", section)
+        .text("responses", &sha256(&bytes));
     let items = &reading.responses.items;
     if let Some(reference) = section.reference.as_ref().filter(|reference| !items.contains(reference)) {
         anyhow::bail!("reference = {reference:?}: no item has this name; there are {}", items.join(", "));
@@ -89,7 +92,7 @@ pub(crate) fn write_without_study(
         let figures = analysis::figures_of_groups(&groups).context("figures")?;
         write_figures(writer, &figures)?;
         write_frames(writer, &[analysis::answers_frame(&reading.responses)])?;
-        super::report::write(
+        write_report(
             writer,
             &analysis::report_of_groups(&title, &reading.responses, &groups, &tables, &figures),
             false,
@@ -126,7 +129,7 @@ fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>, gallery: bool) 
     let figures = analysis::figures(inputs).context("figures")?;
     write_figures(writer, &figures)?;
     let report = analysis::report(inputs, &tables, &figures);
-    super::report::write(writer, &report, gallery)?;
+    write_report(writer, &report, gallery)?;
     write_frames(writer, &analysis::frames(inputs))?;
     Ok(tables)
 }
@@ -165,7 +168,7 @@ fn write_tables(writer: &mut Writer<'_>, tables: &[Table]) -> Result<()> {
 /// The study file, its answers and its published numbers.
 fn study_inputs(study: &Study) -> Result<Inputs> {
     let published = &study.published;
-    let mut inputs = Inputs::of_rooms(rooms::TABLES)
+    let mut inputs = Inputs::of_sources(source_digests::TABLES)
         .value("study", &study.file)
         .value("benchmark", &published.benchmark)
         .value("preferences", &published.preferences)

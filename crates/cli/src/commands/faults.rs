@@ -1,69 +1,22 @@
-//! What `isostudy design` says of a questionnaire. What is wrong is decided in `design::lint`, what can be found in
-//! `analysis::power`.
+//! The faults of a questionnaire and of the animations that it shows. What is a fault is decided in `design::lint`.
 
-use crate::args::{Check, Power};
+use crate::input;
 use crate::pipeline::MadeWith;
-use crate::progress::Step;
-use crate::{Outcome, counted, default_folder, input, say, store};
-use analysis::power::{Assumptions, power as simulated};
-use anyhow::{Context, Result, ensure};
+use crate::terminal::counted;
+use anyhow::{Context, Result};
 use design::lint::{Fault, Rule, StimulusFacts, lint, lint_stimuli};
 use design::{Configuration, Study};
 use raster::Animation;
 use rayon::prelude::*;
-use serde::Serialize;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-
-/// A fault as JSON.
-#[derive(Serialize)]
-struct FaultEntry<'a> {
-    rule: &'static str,
-    place: &'a str,
-    evidence: &'a str,
-}
-
-/// Prints the faults of a study's forms, and of its animations where they have been made.
-///
-/// # Errors
-/// If the study or an animation cannot be read.
-pub(crate) fn check(arguments: &Check) -> Result<Outcome> {
-    let study = input::study(&arguments.study)?;
-    forms_of(&study)?;
-    let mut faults = lint(&study);
-    let results = arguments.results.clone().unwrap_or_else(|| default_folder(&study));
-    match stimulus_faults(&study, &results)? {
-        Some(found) => faults.extend(found),
-        None => tell!(
-            "no animations in {}: {} not judged; `isostudy pairs` makes them",
-            results.display(),
-            Rule::StimuliDiffer.id()
-        ),
-    }
-    faults.extend(bundle_faults(&study, &results.join("bundle/stimuli"))?);
-    faults.sort_by_key(|fault| fault.rule);
-    if arguments.json {
-        let entry = |fault: &Fault| {
-            serde_json::to_value(FaultEntry {
-                rule: fault.rule.id(),
-                place: &fault.place,
-                evidence: &fault.evidence,
-            })
-        };
-        let entries = faults.iter().map(entry).collect::<Result<Vec<_>, _>>()?;
-        say(&serde_json::to_string_pretty(&entries)?)?;
-    } else {
-        say(&faults_text(&study, &faults))?;
-    }
-    Ok(if faults.is_empty() { Outcome::Sound } else { Outcome::CheckFailed })
-}
 
 /// Whether a study's participants may be given what was asked for: faults of its forms, or of the animations in `results`
 /// where that is given, are printed and forbid it unless they are `allowed`.
 ///
 /// # Errors
 /// If an animation cannot be read.
-pub(crate) fn fit_to_show(study: &Study, results: Option<&Path>, allowed: bool) -> Result<bool> {
+pub(super) fn fit_to_show(study: &Study, results: Option<&Path>, allowed: bool) -> Result<bool> {
     let faults = match results {
         None => lint(study),
         Some(results) => stimulus_faults(study, results)?.unwrap_or_default(),
@@ -78,7 +31,8 @@ pub(crate) fn fit_to_show(study: &Study, results: Option<&Path>, allowed: bool) 
     Ok(allowed)
 }
 
-fn faults_text(study: &Study, faults: &[Fault]) -> String {
+/// The faults by rule, as text.
+pub(super) fn faults_text(study: &Study, faults: &[Fault]) -> String {
     let mut text = String::new();
     for of_rule in faults.chunk_by(|a, b| a.rule == b.rule) {
         let rule = of_rule[0].rule;
@@ -98,76 +52,12 @@ fn faults_text(study: &Study, faults: &[Fault]) -> String {
     }
 }
 
-/// Prints the rules.
-///
-/// # Errors
-/// If standard output cannot be written.
-pub(crate) fn rules() -> Result<()> {
-    Rule::ALL.into_iter().try_for_each(|rule| {
-        say(&format!("{}\n  {}\n  remedy: {}", rule.id(), rule.meaning(), rule.remedy()))
-    })
-}
-
-/// Prints and writes how likely the study is to find a preference.
-///
-/// # Errors
-/// If the study cannot be read or has no forms, or a file cannot be written.
-pub(crate) fn power(arguments: &Power) -> Result<()> {
-    let study = input::study(&arguments.study)?;
-    let planned = forms_of(&study)?.participants as usize;
-    let mut participants: Vec<usize> = arguments.participants.iter().map(|&n| n as usize).collect();
-    if participants.is_empty() {
-        // In twelfths of the plan: from a sixth to twice.
-        participants = [2, 4, 6, 8, 12, 16, 24].map(|twelfths| (planned * twelfths).div_ceil(12)).into();
-    }
-    participants.sort_unstable();
-    participants.dedup();
-    let assumptions = Assumptions {
-        participants,
-        shares: arguments.shares.clone(),
-        person_sd: arguments.person_sd,
-        object_sd: arguments.object_sd,
-        ties: arguments.ties,
-        studies: arguments.studies,
-        seed: arguments.seed,
-    };
-    let studies = assumptions.shares.len() * assumptions.studies as usize;
-    let step = Step::begin("studies", studies, studies);
-    let found = simulated(&study, &assumptions, &|| step.tick(1)).unwrap_or_default();
-    step.count_all(true);
-    step.end();
-    ensure!(!found.is_empty(), "{}: there is no comparison to simulate", study.path.display());
-
-    let tables = analysis::power_tables(&assumptions, &found);
-    let figure = analysis::power_figure(&assumptions, &found)?;
-    let folder = || Path::new("results").join(format!("{}-power", study.file.study.id));
-    let out = arguments.out.clone().unwrap_or_else(folder);
-    std::fs::create_dir_all(&out).with_context(|| out.display().to_string())?;
-    let mut files =
-        vec![("power.svg".to_owned(), figure.svg.into_bytes()), ("power.png".to_owned(), figure.png)];
-    for table in &tables {
-        files.push((format!("{}.csv", table.name), table.to_csv().into_bytes()));
-        files.push((format!("{}.md", table.name), table.to_markdown().into_bytes()));
-    }
-    for (name, bytes) in &files {
-        store::write_whole(&out.join(name), bytes)?;
-    }
-    say(&tables[1].to_markdown())?;
-    say(&out.display().to_string())
-}
-
-fn forms_of(study: &Study) -> Result<&design::config::FormsSection> {
-    study.file.forms.as_ref().with_context(|| {
-        format!("{}: no [forms] section; configs/balanced.toml has one to copy", study.path.display())
-    })
-}
-
 /// The faults of the animations in a folder of results: of both sides of every pair, and of the pairs where they have
 /// been made. `None` unless every turntable is there.
 ///
 /// # Errors
 /// If a file cannot be read.
-fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Vec<Fault>>> {
+pub(super) fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Vec<Fault>>> {
     let (codes, _) = study.code_names();
     let path = |code: &String| results.join("stimuli/turntables").join(format!("{code}.gif"));
     let files: Vec<_> = codes.iter().map(path).collect();
@@ -208,11 +98,11 @@ fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Vec<Fault>>> 
 }
 
 /// The faults of what participants get: text in the files, and sizes that differ.
-fn bundle_faults(study: &Study, folder: &Path) -> Result<Vec<Fault>> {
+pub(super) fn bundle_faults(study: &Study, folder: &Path) -> Result<Vec<Fault>> {
     let mut faults = said_by_files(study, folder)?;
     for ending in ["gif", "mp4"] {
         let mut sizes = Vec::new();
-        for file in files_of(folder, ending)? {
+        for file in input::files_of(folder, ending)? {
             sizes.push((std::fs::metadata(&file)?.len(), file));
         }
         sizes.sort();
@@ -231,29 +121,16 @@ fn bundle_faults(study: &Study, folder: &Path) -> Result<Vec<Fault>> {
 /// Configurations that GIFs name in the text they hold.
 fn said_by_files(study: &Study, folder: &Path) -> Result<Vec<Fault>> {
     let mut faults = Vec::new();
-    for file in files_of(folder, "gif")? {
+    for file in input::files_of(folder, "gif")? {
         let bytes = std::fs::read(&file).with_context(|| file.display().to_string())?;
         for text in raster::gif_texts(&bytes) {
-            let told = study.configurations.iter().find(|c| text.contains(&c.id.to_string()));
-            let evidence = told.map(|c| format!("\"{text}\" names {}", c.id));
+            let named = study.configurations.iter().find(|c| text.contains(&c.id.to_string()));
+            let evidence = named.map(|c| format!("\"{text}\" names {}", c.id));
             let place = file.display().to_string();
             faults.extend(evidence.map(|evidence| Fault { rule: Rule::NamesReveal, place, evidence }));
         }
     }
     Ok(faults)
-}
-
-/// The files of a folder with an extension, in the order of names; none where there is no folder.
-pub(crate) fn files_of(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    if folder.is_dir() {
-        for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
-            let path = entry?.path();
-            files.extend(path.extension().is_some_and(|e| e == extension).then_some(path));
-        }
-    }
-    files.sort();
-    Ok(files)
 }
 
 /// What a turntable was made with; `None` where that was not written down, or by another version.

@@ -1,19 +1,46 @@
-//! One configuration at one resolution: extracted, measured, timed, printed.
+//! `isostudy inspect`: one configuration at one resolution, extracted, measured, timed, printed.
 
-use crate::args::Inspect;
 use crate::fields::Fields;
+use crate::outcome::Outcome;
 use crate::prepare::{self, Spacings, Wanted, prepare};
 use crate::records::{self, mesh_record};
-use crate::{input, machine, say};
+use crate::terminal::say;
+use crate::{input, machine};
 use analysis::Panel;
 use anyhow::{Context, Result, bail};
 use bench::{Prepared, StageSeconds};
+use clap::Args;
 use design::ConfigurationId;
 use design::record::Purpose;
 use extract::Execution;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Configuration, such as ss_bi
+    id: String,
+    /// Cells along the longest axis of the volume [default: those of the benchmark]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    resolution: Option<u32>,
+    /// Study that has the configuration
+    #[arg(long, value_name = "TOML", default_value = "configs/paper.toml")]
+    study: PathBuf,
+    /// Extractions to take the median time of, after one of warm-up
+    #[arg(long, value_name = "N", default_value_t = 11, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    iterations: u32,
+    /// Threads in the sampling stage; 0 takes every core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..=1024))]
+    threads: u32,
+    /// Print JSON instead
+    #[arg(long)]
+    json: bool,
+}
 
 /// Prints the panel.
-pub(crate) fn inspect(arguments: &Inspect) -> Result<()> {
+///
+/// # Errors
+/// If the study has no such configuration, or it cannot be extracted.
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let study = input::study(&arguments.study)?;
     let id: ConfigurationId = arguments.id.parse().with_context(|| arguments.id.clone())?;
     let Some(configuration) = study.configurations.iter().find(|configuration| configuration.id == id) else {
@@ -57,5 +84,6 @@ pub(crate) fn inspect(arguments: &Inspect) -> Result<()> {
         threads => threads,
     };
     let panel = Panel::new(&study, configuration, machine, record, &samples, threads);
-    say(&if arguments.json { serde_json::to_string_pretty(&panel)? } else { panel.to_text() })
+    say(&if arguments.json { serde_json::to_string_pretty(&panel)? } else { panel.to_text() })?;
+    Ok(Outcome::Done)
 }

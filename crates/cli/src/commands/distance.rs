@@ -1,24 +1,72 @@
-//! How far two surfaces are from each other: `isostudy distance`.
+//! `isostudy distance`: how far two surfaces are from each other.
 
-use crate::args::Distance;
+use super::source_arguments::SourceArguments;
 use crate::fields::Fields;
-use crate::{input, mesh_file, prepare, say, significant};
+use crate::outcome::Outcome;
+use crate::terminal::{say, significant};
+use crate::{input, mesh_file, prepare};
 use anyhow::{Context, Result, bail};
+use clap::{ArgGroup, Args};
 use extract::{Arrangement, Execution, Grid, Method, Tetrahedra};
 use field::ScalarField;
 use mesh::metro::{Amount, Deviation, Metro, Sampling, Surface};
 use serde::Serialize;
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The version of the JSON.
 const SCHEMA: u32 = 1;
+
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("second").args(["b", "field", "volume", "mesh", "object"]).required(true)))]
+#[command(
+    override_usage = "isostudy distance [OPTIONS] <A> <B|--field <FORMULA>|--volume <FILE>|--mesh <FILE>|--object <ID>>"
+)]
+#[command(after_help = "\
+Examples:
+  isostudy distance coarse.ply fine.ply
+  isostudy distance ball.ply --field 'sqrt(x^2+y^2+z^2) - 1' --bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2
+  isostudy distance head.ply --volume head.nrrd --isovalue 300.5
+  isostudy distance bunny.ply --object bs --study configs/paper.toml")]
+pub(crate) struct Arguments {
+    /// Mesh: .obj, .ply or .stl
+    a: PathBuf,
+    /// Mesh to compare it with. The diagonal of its bounding box, or of the isosurface's, is the yardstick
+    #[arg(conflicts_with_all = ["bounds", "spacing", "cells", "isovalue", "inside", "close", "allow_open", "memory"])]
+    b: Option<PathBuf>,
+    /// The isosurface of this object of a study instead; --spacing is the study's for its benchmark if not given
+    #[arg(long, value_name = "ID", conflicts_with_all = ["bounds", "cells", "isovalue", "inside", "close", "allow_open"])]
+    object: Option<String>,
+    /// Study that has the object
+    #[arg(long, value_name = "TOML", default_value = "configs/paper.toml", requires = "object")]
+    study: PathBuf,
+    /// Samples on each surface, spread over its area; its vertices come on top
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..=mesh::metro::MOST_SAMPLES))]
+    samples: u64,
+    /// Samples per unit of area, instead of a number for each surface
+    #[arg(long, value_name = "N", conflicts_with = "samples")]
+    density: Option<f64>,
+    /// Seed of the samples' places; the same seed gives the same numbers on any number of threads
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+    /// Threads to work with; 0 takes every core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..=1024))]
+    threads: u32,
+    /// Print JSON instead
+    #[arg(long)]
+    json: bool,
+    #[command(
+        flatten,
+        next_help_heading = "An isosurface to compare it with instead; the spacing sets how closely it is looked at"
+    )]
+    source: SourceArguments,
+}
 
 /// Measures both ways and prints.
 ///
 /// # Errors
 /// If a surface cannot be had or not be sampled.
-pub(crate) fn distance(arguments: &Distance) -> Result<()> {
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let amount = match arguments.density {
         Some(density) => Amount::Density(density),
         None => Amount::Samples(arguments.samples),
@@ -32,12 +80,14 @@ pub(crate) fn distance(arguments: &Distance) -> Result<()> {
     };
     if arguments.json {
         let report = Report::new([arguments.a.display().to_string(), name], &metro, arguments.seed);
-        return say(&serde_json::to_string_pretty(&report)?);
+        say(&serde_json::to_string_pretty(&report)?)?;
+    } else {
+        say(text(&metro, arguments.seed).trim_end())?;
     }
-    say(text(&metro, arguments.seed).trim_end())
+    Ok(Outcome::Done)
 }
 
-fn to_mesh(arguments: &Distance, a: &Surface, path: &Path, sampling: &Sampling) -> Result<Metro> {
+fn to_mesh(arguments: &Arguments, a: &Surface, path: &Path, sampling: &Sampling) -> Result<Metro> {
     let b = surface(path)?;
     let way = |from: &Surface, to: &Surface, path: &Path| {
         from.deviation_from(to, sampling).with_context(|| path.display().to_string())
@@ -50,7 +100,7 @@ fn to_mesh(arguments: &Distance, a: &Surface, path: &Path, sampling: &Sampling) 
 }
 
 /// Against the isosurface of a study's object, in the object's volume.
-fn to_object(arguments: &Distance, a: &Surface, id: &str, sampling: &Sampling) -> Result<Metro> {
+fn to_object(arguments: &Arguments, a: &Surface, id: &str, sampling: &Sampling) -> Result<Metro> {
     let study = input::study(&arguments.study)?;
     let objects = &study.file.objects;
     let Some(index) = objects.iter().position(|object| object.id == id) else {
@@ -67,7 +117,7 @@ fn to_object(arguments: &Distance, a: &Surface, id: &str, sampling: &Sampling) -
 }
 
 /// Against the isosurface of a formula, a volume or a mesh's distance, in its box.
-fn to_source(arguments: &Distance, a: &Surface, sampling: &Sampling) -> Result<(String, Metro)> {
+fn to_source(arguments: &Arguments, a: &Surface, sampling: &Sampling) -> Result<(String, Metro)> {
     let source = arguments.source.read()?.context("something to compare with is needed")?;
     let field: (&dyn ScalarField, u64) = (&*source.field, source.held);
     let metro = to_isosurface(arguments, a, field, source.isovalue, &source.grid(), sampling)
@@ -77,7 +127,7 @@ fn to_source(arguments: &Distance, a: &Surface, sampling: &Sampling) -> Result<(
 
 /// `held` bytes are the field's.
 fn to_isosurface(
-    arguments: &Distance,
+    arguments: &Arguments,
     a: &Surface,
     (field, held): (&dyn ScalarField, u64),
     isovalue: f32,

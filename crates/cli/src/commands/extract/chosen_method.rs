@@ -1,26 +1,16 @@
 //! A method on the command line: by its name, or by the recipe that a study file would have for it.
 
+use crate::recipe::StudyKind;
 use extract::{Method, Preset, presets};
 use serde::{Deserialize, Serialize};
 use toml::de::ValueDeserializer;
 
-/// The kinds of recipe that a study alone can have, and why.
-const OF_A_STUDY: [(&str, &str); 2] = [
-    (
-        "program",
-        "programs are methods of a study, in whose folder they are found and by whose limits they are held; see `isostudy study`",
-    ),
-    (
-        "meshes",
-        "finished meshes belong to the objects of a study; what is extracted here is none of them. See `isostudy study`",
-    ),
-];
 /// The kinds that go without one.
 const KINDS: &str = "tetrahedra";
 
 /// A method as reports name it.
 #[derive(Debug, Serialize)]
-pub(crate) struct Told {
+pub(super) struct Described {
     /// The name of the preset that it is, if it is one.
     id: Option<&'static str>,
     /// The same in words.
@@ -29,9 +19,9 @@ pub(crate) struct Told {
     recipe: Method,
 }
 
-impl Told {
+impl Described {
     /// Looks for the preset that makes the same meshes.
-    pub(crate) fn of(method: Method) -> Self {
+    pub(super) fn of(method: Method) -> Self {
         let preset = presets().iter().find(|preset| preset.method == method);
         Self { id: preset.map(|of| of.id), label: preset.map(|of| of.label), recipe: method }
     }
@@ -40,7 +30,7 @@ impl Told {
     ///
     /// # Errors
     /// If the recipe cannot be written as TOML, which each can.
-    pub(crate) fn to_text(&self) -> Result<String, toml::ser::Error> {
+    pub(super) fn to_text(&self) -> Result<String, toml::ser::Error> {
         match (self.id, self.label) {
             (Some(id), Some(label)) => Ok(format!("{id}: {label}")),
             _ => Ok(toml::Value::try_from(self.recipe)?.to_string()),
@@ -52,7 +42,7 @@ impl Told {
 ///
 /// # Errors
 /// If no preset has it; those that there are are named.
-pub(crate) fn preset(id: &str) -> Result<Method, String> {
+pub(super) fn preset(id: &str) -> Result<Method, String> {
     let found = presets().iter().find(|preset| preset.id == id);
     let known = || presets().iter().map(|Preset { id, .. }| *id).collect::<Vec<_>>().join(", ");
     found.map(|preset| preset.method).ok_or_else(|| {
@@ -64,7 +54,7 @@ pub(crate) fn preset(id: &str) -> Result<Method, String> {
 ///
 /// # Errors
 /// If it is no TOML, no table, or of a kind that goes with studies alone; if a key or a value is unknown, with those that are known.
-pub(crate) fn recipe(text: &str) -> Result<Method, String> {
+pub(super) fn recipe(text: &str) -> Result<Method, String> {
     let value = ValueDeserializer::parse(text).and_then(toml::Value::deserialize);
     let value = value.map_err(|error| error.to_string().trim_end().to_owned())?;
     let toml::Value::Table(table) = &value else {
@@ -77,8 +67,8 @@ pub(crate) fn recipe(text: &str) -> Result<Method, String> {
         Some(other) => return Err(format!("kind = {other}: allowed: \"{KINDS}\"")),
         None => return Err(format!("kind is missing; allowed: \"{KINDS}\"")),
     };
-    if let Some((_, why)) = OF_A_STUDY.iter().find(|(of, _)| *of == kind) {
-        return Err(format!("kind = \"{kind}\": {why}; allowed here: \"{KINDS}\""));
+    if let Some(of) = StudyKind::of(kind) {
+        return Err(format!("kind = \"{kind}\": {}; allowed here: \"{KINDS}\"", why_not(of)));
     }
     // Errors in values do not say their key, for what has a kind is read twice.
     let known = Method::deserialize(value.clone()).map_err(|error| error.message().to_owned());
@@ -86,6 +76,20 @@ pub(crate) fn recipe(text: &str) -> Result<Method, String> {
         Some((key, value)) => format!("{key} = {value}: {error}"),
         None => error,
     })
+}
+
+/// Why a study alone can have recipes of a kind.
+fn why_not(kind: StudyKind) -> &'static str {
+    match kind {
+        StudyKind::Program => {
+            "programs are methods of a study, in whose folder they are found and by whose limits they are held; \
+             see `isostudy study`"
+        }
+        StudyKind::Meshes => {
+            "finished meshes belong to the objects of a study; what is extracted here is none of them. \
+             See `isostudy study`"
+        }
+    }
 }
 
 /// The one key whose removal mends a recipe, or whose value alone is wrong.
@@ -113,16 +117,19 @@ mod tests {
     }
 
     #[test]
-    fn what_is_told_is_read_again() {
+    fn what_is_described_is_read_again() {
         for preset in presets() {
-            let told = Told::of(preset.method);
-            assert_eq!((told.id, told.label), (Some(preset.id), Some(preset.label)));
-            assert_eq!(told.to_text().unwrap(), format!("{}: {}", preset.id, preset.label));
-            assert_eq!(recipe(&toml::Value::try_from(told.recipe).unwrap().to_string()), Ok(preset.method));
+            let described = Described::of(preset.method);
+            assert_eq!((described.id, described.label), (Some(preset.id), Some(preset.label)));
+            assert_eq!(described.to_text().unwrap(), format!("{}: {}", preset.id, preset.label));
+            assert_eq!(
+                recipe(&toml::Value::try_from(described.recipe).unwrap().to_string()),
+                Ok(preset.method)
+            );
         }
         let own = Tetrahedra { refine_crossings: true, ..Tetrahedra::new(Arrangement::SimpleCubic) };
-        let told = Told::of(Method::Tetrahedra(own));
-        assert_eq!((told.id, told.label), (None, None));
-        assert_eq!(recipe(&told.to_text().unwrap()), Ok(Method::Tetrahedra(own)));
+        let described = Described::of(Method::Tetrahedra(own));
+        assert_eq!((described.id, described.label), (None, None));
+        assert_eq!(recipe(&described.to_text().unwrap()), Ok(Method::Tetrahedra(own)));
     }
 }

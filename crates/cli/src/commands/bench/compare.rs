@@ -1,11 +1,10 @@
-//! Two finished runs side by side, and published tables made into runs.
+//! `isostudy bench compare`: two finished runs side by side.
 
-use crate::args::{Compare, Format, Import};
-use crate::store::write_whole;
-use crate::{Outcome, counted, input, run_file, say};
+use crate::outcome::Outcome;
+use crate::run_file;
+use crate::terminal::{counted, say};
 use anyhow::{Context, Result, bail};
-use design::machine::CpuProfile;
-use design::published::read_benchmark;
+use clap::{Args, ValueEnum};
 use design::record::BenchRun;
 use design::{ConfigurationId, Stage};
 use std::path::{Path, PathBuf};
@@ -14,11 +13,52 @@ use timing::{Comparison, Limits};
 /// Where a results folder keeps its runs; the full one stands for the short one.
 const RUNS: [&str; 3] = ["bench/full/run.json", "bench/short/run.json", "run.json"];
 
-/// In the program, so that a table can be imported from any folder.
-const PAPERS_MACHINE: &str = include_str!("../../../configs/cpu/i7-11700.toml");
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Results folder, or a run.json in it: what B is compared with
+    a: PathBuf,
+    /// Results folder, or a run.json in it
+    b: PathBuf,
+    /// A slower configuration is a regression beyond this share of its time in A ...
+    ///
+    /// What is within the noise is never told, however small the share: the column "Told from" says how large that is.
+    #[arg(long, default_value_t = 0.05, value_name = "SHARE", value_parser = not_negative)]
+    relative: f64,
+    /// ... and beyond this many seconds
+    #[arg(long, default_value_t = 0.0001, value_name = "SECONDS", value_parser = not_negative)]
+    absolute: f64,
+    /// Compare runs of machines that differ, in their settings too; every heading and verdict then says so
+    #[arg(long)]
+    across_machines: bool,
+    /// What to print
+    #[arg(long, default_value = "markdown")]
+    format: Format,
+}
+
+/// How a table is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Markdown,
+    Csv,
+    Latex,
+    Json,
+}
+
+/// A number that is finite and not negative.
+fn not_negative(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "is not a number".to_owned())?;
+    if number.is_finite() && number >= 0.0 {
+        Ok(number)
+    } else {
+        Err("must be finite and not negative".into())
+    }
+}
 
 /// Prints the comparison; a regression is a check that failed.
-pub(crate) fn compare(arguments: &Compare) -> Result<Outcome> {
+///
+/// # Errors
+/// If the runs cannot be read or compared.
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let [a, b] = [&arguments.a, &arguments.b].map(|path| run_file::read(&run_at(path)?));
     let (a, b) = (a?, b?);
     if let (Some(of_a), Some(of_b)) = (&a.workload, &b.workload)
@@ -84,32 +124,13 @@ pub(crate) fn compare(arguments: &Compare) -> Result<Outcome> {
     for id in &missing {
         tell!("missing: {id} is in A and not in B");
     }
-    Ok(if regressions.is_empty() && missing.is_empty() { Outcome::Sound } else { Outcome::CheckFailed })
+    Ok(Outcome::of_check(regressions.is_empty() && missing.is_empty()))
 }
 
 /// What B should have been measured for and was not; an imported table may have fewer rows.
 fn missing_in_b<'a>(a: &BenchRun, comparison: &'a Comparison) -> Vec<&'a ConfigurationId> {
     let of_a = |id: &&ConfigurationId| a.samples.iter().any(|sample| sample.id == **id);
     comparison.unmatched.iter().filter(of_a).collect()
-}
-
-/// Writes the run that a table of means makes.
-pub(crate) fn import(arguments: &Import) -> Result<()> {
-    input::regular(&arguments.table)?;
-    let rows = read_benchmark(&arguments.table)?;
-    let machine = match &arguments.machine {
-        Some(path) => {
-            input::regular(path)?;
-            CpuProfile::load(path)?
-        }
-        None => CpuProfile::parse(PAPERS_MACHINE, Path::new("configs/cpu/i7-11700.toml"))?,
-    };
-    let run = bench::import(&rows, &arguments.source, arguments.iterations, arguments.threads, &machine)
-        .with_context(|| arguments.table.display().to_string())?;
-    let mut json = serde_json::to_vec_pretty(&run)?;
-    json.push(b'\n');
-    write_whole(&arguments.out, &json)?;
-    say(&arguments.out.display().to_string())
 }
 
 /// The file of a run, or that in the results folder that has one.

@@ -1,6 +1,7 @@
 //! `isostudy methods`: what the methods that have a name are called, what they promise, and where they come from.
 
-use crate::say;
+use crate::outcome::Outcome;
+use crate::terminal::say;
 use anyhow::Result;
 use clap::Args;
 use extract::{Method, Preset, Promises, presets};
@@ -54,7 +55,7 @@ const PROMISES: [Promise; 5] = [
 ];
 
 #[derive(Debug, Args)]
-pub(crate) struct Methods {
+pub(crate) struct Arguments {
     /// Print JSON instead
     #[arg(long)]
     json: bool,
@@ -64,7 +65,7 @@ pub(crate) struct Methods {
 ///
 /// # Errors
 /// If standard output cannot be written.
-pub(crate) fn methods(arguments: &Methods) -> Result<()> {
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     say(&if arguments.json {
         serde_json::to_string_pretty(&List {
             schema: SCHEMA,
@@ -72,7 +73,8 @@ pub(crate) fn methods(arguments: &Methods) -> Result<()> {
         })?
     } else {
         text()
-    })
+    })?;
+    Ok(Outcome::Done)
 }
 
 #[derive(Serialize)]

@@ -1,25 +1,25 @@
-//! `isostudy extract` without a study: a formula, a volume or a mesh becomes a surface in a file.
+//! `isostudy extract`: the meshes of a study, or the surface of a formula, a volume or a mesh in a file.
 
-use crate::args::{Run, Selection};
-use crate::chosen_method::{self, Told};
-use crate::source::{Inside, Source, SourceArguments, place};
+mod chosen_method;
+mod quality_report;
+
+use super::named::named;
+use super::source_arguments::SourceArguments;
+use super::study_run::{Run, Selection, with_selection};
+use crate::outcome::Outcome;
+use crate::source::place;
 use crate::store::{write_whole, write_whole_by};
-use crate::{Outcome, counted, input, mesh_file, prepare, records, say, significant};
+use crate::terminal::{counted, say};
+use crate::{input, mesh_file, prepare};
 use anyhow::{Context, Result, bail};
 use clap::{ArgGroup, Args};
-use design::record::{Accuracy, Counts, Distribution, Quality, Topology};
-use extract::{Arrangement, Clustering, Execution, Extraction, Extractor, Grid, Method, Tetrahedra};
+use extract::{Arrangement, Clustering, Execution, Extractor, Method, Tetrahedra};
 use field::ScalarField;
 use mesh::TriangleMesh;
+use quality_report::QualityReport;
 use raster::{Camera, Look, Shading, Viewport};
-use serde::de::IntoDeserializer;
-use serde::de::value::{Error as NameError, StrDeserializer};
-use serde::{Deserialize, Serialize};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
-
-/// The version of the JSON.
-const SCHEMA: u32 = 1;
 
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("source").args(["study", "field", "volume", "mesh"]).required(true)))]
@@ -29,7 +29,7 @@ Examples:
   isostudy extract --volume head.nrrd --isovalue 300.5 -o head.glb --quality
   isostudy extract --mesh scan.stl --cells 200 -o even.obj --picture even.png --method bi-relaxed
   isostudy extract configs/paper.toml --only ss_bi")]
-pub(crate) struct Extract {
+pub(crate) struct Arguments {
     /// Study file, such as configs/paper.toml: extract its meshes and measure them
     #[arg(conflicts_with_all = ["bounds", "spacing", "cells", "isovalue", "inside", "close", "allow_open", "memory"])]
     study: Option<PathBuf>,
@@ -74,9 +74,9 @@ pub(crate) struct Extract {
     only: Vec<String>,
 }
 
-impl Extract {
+impl Arguments {
     /// What is asked of a study, if one is given.
-    pub(crate) fn of_study(&self) -> Option<Selection> {
+    fn of_study(&self) -> Option<Selection> {
         let study = self.study.clone()?;
         let run = Run {
             study,
@@ -99,17 +99,25 @@ impl Extract {
     }
 }
 
-/// What a study calls it.
-pub(crate) fn named<T: for<'de> Deserialize<'de>>(text: &str) -> Result<T, String> {
-    let name: StrDeserializer<'_, NameError> = text.into_deserializer();
-    T::deserialize(name).map_err(|error| error.to_string())
+/// Extracts a study's meshes, or one surface.
+///
+/// # Errors
+/// If the input is wrong or a file cannot be written.
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let Some(selection) = arguments.of_study() else {
+        return extract(arguments);
+    };
+    with_selection(&selection, |pipeline, only, out| {
+        pipeline.all_meshes(only)?;
+        say(&out.join("meshes").display().to_string())
+    })
 }
 
 /// Extracts, writes and reports. A surface that was to be closed and is not fails the check.
 ///
 /// # Errors
 /// If the input cannot be read, has no inside, or has no surface there; if a file cannot be written.
-pub(crate) fn extract(arguments: &Extract) -> Result<Outcome> {
+fn extract(arguments: &Arguments) -> Result<Outcome> {
     let out = arguments.out.as_deref().context("-o is needed")?;
     let format = mesh_file::format_to_write(out).with_context(|| out.display().to_string())?;
     check_outputs(arguments, out)?;
@@ -138,7 +146,7 @@ pub(crate) fn extract(arguments: &Extract) -> Result<Outcome> {
         let accuracy =
             extract::accuracy(&extraction.mesh, &*source.field, source.isovalue, &grid, &execution)?;
         let cells = method.cells(&grid)?;
-        let report = Report::new(method, &source, (&grid, cells), &extraction, &accuracy);
+        let report = QualityReport::new(method, &source, (&grid, cells), &extraction, &accuracy);
         say(&if arguments.json { serde_json::to_string_pretty(&report)? } else { report.to_text()? })?;
     }
     // With --json standard output is JSON and nothing else.
@@ -151,7 +159,7 @@ pub(crate) fn extract(arguments: &Extract) -> Result<Outcome> {
         tell!("isostudy: {}: the surface was to be closed and has {found}", out.display());
         return Ok(Outcome::CheckFailed);
     }
-    Ok(Outcome::Sound)
+    Ok(Outcome::Done)
 }
 
 /// How many boundary edges a mesh has, and where one of them is; `None` if it has none.
@@ -162,7 +170,7 @@ fn open_edges(mesh: &TriangleMesh) -> Option<String> {
 }
 
 /// Nothing that was given is written over; and no output over another, since no mesh ends as pictures do.
-fn check_outputs(arguments: &Extract, out: &Path) -> Result<()> {
+fn check_outputs(arguments: &Arguments, out: &Path) -> Result<()> {
     let outputs = [Some(out), arguments.picture.as_deref()];
     for output in outputs.into_iter().flatten() {
         if arguments.source.file().is_some_and(|file| input::is_same(file, output)) {
@@ -182,131 +190,6 @@ fn picture(mesh: &TriangleMesh) -> Result<Vec<u8>> {
     let picture =
         raster::render(mesh, &Camera::around(&bounds), viewport, &Shading::default(), Look::Smooth)?;
     Ok(raster::pixmap_to_png(&picture))
-}
-
-/// What a mesh is worth.
-#[derive(Serialize)]
-struct Report {
-    schema: u32,
-    /// The formula or the file.
-    source: String,
-    bounds: [[f32; 3]; 2],
-    method: Told,
-    /// What tetrahedra have; no key where the method is none of them.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    arrangement: Option<Arrangement>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    clustering: Option<Clustering>,
-    isovalue: f32,
-    inside: Inside,
-    spacing: f32,
-    cells: [u32; 3],
-    /// Wall-clock time of the extraction, seconds.
-    extraction_s: f64,
-    area: f64,
-    /// The enclosed volume, if the mesh is closed.
-    volume: Option<f64>,
-    counts: Counts,
-    quality: Quality,
-    topology: Topology,
-    boundary_loops: u64,
-    accuracy: Accuracy,
-}
-
-impl Report {
-    fn new(
-        method: Method,
-        source: &Source,
-        (grid, cells): (&Grid, [u32; 3]),
-        extraction: &Extraction,
-        accuracy: &extract::Accuracy,
-    ) -> Self {
-        let topology = mesh::topology::topology(&extraction.mesh);
-        let is_closed = topology.boundary_edges == 0;
-        let of = match method {
-            Method::Tetrahedra(of) => Some(of),
-            _ => None,
-        };
-        Self {
-            schema: SCHEMA,
-            source: source.name.clone(),
-            bounds: [source.bounds.min.to_array(), source.bounds.max.to_array()],
-            method: Told::of(method),
-            arrangement: of.map(|of| of.arrangement),
-            clustering: of.map(|of| of.clustering),
-            isovalue: source.asked_isovalue(),
-            inside: source.inside,
-            spacing: grid.spacing,
-            cells,
-            extraction_s: extraction.times.total().as_secs_f64(),
-            area: extraction.mesh.area(),
-            volume: is_closed.then(|| extraction.mesh.volume()),
-            counts: records::counts(&extraction.counts),
-            quality: records::quality(&mesh::quality::quality(&extraction.mesh)),
-            boundary_loops: topology.boundary_loops,
-            topology: records::topology(&topology),
-            accuracy: records::accuracy(accuracy),
-        }
-    }
-
-    fn to_text(&self) -> Result<String> {
-        let [x, y, z] = self.cells;
-        let (q, t) = (&self.quality, &self.topology);
-        let faults = [
-            ("boundary edges", t.boundary_edges),
-            ("edges with more than two triangles", t.non_manifold_edges),
-            ("edges between opposite sides", t.misoriented_edges),
-            ("vertices with more than one fan", t.non_manifold_vertices),
-            ("triangles twice", t.duplicate_faces),
-        ];
-        let faults: Vec<String> =
-            faults.iter().filter(|f| f.1 > 0).map(|(name, count)| format!("{count} {name}")).collect();
-        let state = if faults.is_empty() { "closed manifold".to_owned() } else { faults.join(", ") };
-        let lattice = self.arrangement.map_or_else(String::new, |of| format!("{of}, "));
-        let rows = [
-            ("method", self.method.to_text()?),
-            ("lattice", format!("{lattice}{x} x {y} x {z} cubes of {}", self.spacing)),
-            ("clustering", self.clustering.map_or_else(|| "none".into(), |of| of.to_string())),
-            ("time", format!("{:.3} s", self.extraction_s)),
-            ("vertices", t.vertices.to_string()),
-            ("triangles", q.triangles.to_string()),
-            (
-                "topology",
-                format!(
-                    "{state}; {}, Euler characteristic {}, {}",
-                    counted(t.components, "component"),
-                    t.euler_characteristic,
-                    counted(self.boundary_loops, "boundary loop")
-                ),
-            ),
-            ("area", significant(self.area)),
-            ("volume", self.volume.map_or_else(|| "none: the surface is open".into(), significant)),
-            (
-                "radius ratio",
-                format!(
-                    "mean {:.4}, 5 % below {:.4}, smallest {:.4}",
-                    q.radius_ratio.mean, q.radius_ratio.q05, q.radius_ratio.min
-                ),
-            ),
-            (
-                "smallest angle",
-                format!("mean {:.1} deg, smallest {:.2} deg", q.min_angle_deg.mean, q.min_angle_deg.min),
-            ),
-            ("without area", format!("{} triangles", q.degenerate)),
-            ("to the surface", way(&self.accuracy.distance) + &lost(self.accuracy.lost_points)),
-            ("from it", self.accuracy.distance_to_mesh.as_ref().map_or_else(String::new, way)),
-        ];
-        Ok(rows.map(|(name, value)| format!("{name:<15} {value}")).join("\n"))
-    }
-}
-
-/// Distances one way.
-fn way(distances: &Distribution) -> String {
-    format!("mean {:.3e}, largest {:.3e} (over {} points)", distances.mean, distances.max, distances.count)
-}
-
-fn lost(points: u64) -> String {
-    if points == 0 { String::new() } else { format!(", {} without a distance", counted(points, "point")) }
 }
 
 #[cfg(test)]

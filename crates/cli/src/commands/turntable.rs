@@ -1,12 +1,14 @@
-//! `isostudy turntable` without a study: a mesh in a file becomes an animation, in any look.
+//! `isostudy turntable`: the animations of a study, or one of a mesh in a file, in any look.
 
-use crate::args::{Run, Selection};
+use super::named::named;
+use super::source_arguments::SourceArguments;
+use super::study_run::{Run, Selection, with_selection};
 use crate::fields::Fields;
+use crate::outcome::Outcome;
 use crate::picture::{self, Drawn};
-use crate::source::SourceArguments;
 use crate::store::write_whole;
-use crate::surface::named;
-use crate::{error_colours, input, mesh_file, say};
+use crate::terminal::say;
+use crate::{error_colours, input, mesh_file};
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use design::config::{LightFollows, Look, StimulusLook};
@@ -31,7 +33,7 @@ Examples:
   isostudy turntable bunny.ply -o bunny.gif --look flat
   isostudy turntable bunny.ply -o quality.gif --colour quality
   isostudy turntable ball.ply -o error.gif --colour error --field 'sqrt(x^2+y^2+z^2) - 1' --bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2")]
-pub(crate) struct Turn {
+pub(crate) struct Arguments {
     /// Study file, such as configs/paper.toml, whose configurations are rendered; or a mesh: .obj, .ply or .stl, z up
     input: PathBuf,
     /// Of a study, the folder for results [default: results/<study id>]; of a mesh, the .gif to write
@@ -127,12 +129,12 @@ impl OfMesh {
     }
 }
 
-impl Turn {
+impl Arguments {
     /// What is asked of a study, if the input is one.
     ///
     /// # Errors
     /// If an option is for the other kind of input.
-    pub(crate) fn of_study(&self) -> Result<Option<Selection>> {
+    fn of_study(&self) -> Result<Option<Selection>> {
         let input = self.input.display();
         if !self.input.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
             if self.force || !self.only.is_empty() {
@@ -152,11 +154,27 @@ impl Turn {
     }
 }
 
+/// Renders a study's configurations, or the mesh.
+///
+/// # Errors
+/// If the input is wrong or a file cannot be written.
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let Some(selection) = arguments.of_study()? else {
+        turn(arguments)?;
+        return Ok(Outcome::Done);
+    };
+    with_selection(&selection, |pipeline, only, out| {
+        let meshes = pipeline.stimulus_meshes(only)?;
+        pipeline.turntables(&meshes, only)?;
+        say(&out.join("stimuli/turntables").display().to_string())
+    })
+}
+
 /// Reads the mesh, draws one turn and writes it.
 ///
 /// # Errors
 /// If the mesh or the isosurface cannot be had, or the file not be written.
-pub(crate) fn turn(arguments: &Turn) -> Result<()> {
+fn turn(arguments: &Arguments) -> Result<()> {
     let (path, own) = (&arguments.input, &arguments.own);
     let out = arguments.out.as_deref().context("-o is needed: the .gif to write")?;
     if !out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gif")) {
@@ -219,7 +237,7 @@ fn framed(mesh: &mut TriangleMesh, path: &Path, own: &OfMesh) -> Result<Turntabl
 }
 
 /// Distances to the isosurface of a study's object, a formula, a volume or another mesh.
-fn error_colouring(arguments: &Turn, mesh: &TriangleMesh) -> Result<Colouring> {
+fn error_colouring(arguments: &Arguments, mesh: &TriangleMesh) -> Result<Colouring> {
     let (own, threads) = (&arguments.own, arguments.threads as usize);
     let most = own.error_scale.unwrap_or(ERROR_SCALE);
     if let Some(id) = &own.object {

@@ -10,7 +10,7 @@ use minijinja::{Environment, context};
 use serde::Serialize;
 use table::Table;
 
-const TEMPLATE: &str = include_str!("../page/report.html");
+const TEMPLATE: &str = include_str!("report.html");
 
 /// A block as the template sees it.
 #[derive(Serialize)]
@@ -31,7 +31,7 @@ struct Part<'a> {
 
 /// Writes `report.html`, one file that needs no other, and `report.md`, whose pictures are those in `figures/`.
 /// `gallery` says whether there is an `index.html` to link to.
-pub(super) fn write(writer: &mut Writer<'_>, report: &Report, gallery: bool) -> Result<()> {
+pub(in crate::pipeline) fn write(writer: &mut Writer<'_>, report: &Report, gallery: bool) -> Result<()> {
     let mut environment = Environment::new();
     environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build()?);
     environment.add_template("report.html", TEMPLATE)?;

@@ -1,6 +1,8 @@
 //! `isostudy new`: a study file of one's own to begin with.
 
-use crate::{say, store};
+use crate::outcome::Outcome;
+use crate::store;
+use crate::terminal::say;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::ffi::OsStr;
@@ -12,14 +14,14 @@ const STUDY: &str = include_str!("new/study.toml");
 const ID: &str = "id = \"my-study\"";
 /// What `benchmark.target` in it names.
 const TARGET: &str = "cpu/x86-64-v3.toml";
-const TARGET_TEXT: &str = include_str!("../../../configs/cpu/x86-64-v3.toml");
+const TARGET_TEXT: &str = include_str!("../../../../configs/cpu/x86-64-v3.toml");
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
   isostudy new my-study
   isostudy design check my-study/study.toml")]
-pub(crate) struct New {
+pub(crate) struct Arguments {
     /// Folder to write study.toml and cpu/x86-64-v3.toml to; its name becomes the study's id
     #[arg(value_name = "DIR")]
     folder: PathBuf,
@@ -29,7 +31,7 @@ pub(crate) struct New {
 ///
 /// # Errors
 /// If something is there already; nothing is written over and nothing is written then. If a file cannot be written.
-pub(crate) fn new(arguments: &New) -> Result<()> {
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let folder = &arguments.folder;
     let (study, target) = (folder.join("study.toml"), folder.join(TARGET));
     for place in [folder.as_path(), &folder.join("cpu")] {
@@ -65,7 +67,7 @@ pub(crate) fn new(arguments: &New) -> Result<()> {
     ] {
         tell!("  {command}\n      {what}");
     }
-    Ok(())
+    Ok(Outcome::Done)
 }
 
 /// The folder's name, as far as it is one for a study.

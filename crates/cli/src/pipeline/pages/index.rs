@@ -1,10 +1,10 @@
 //! The page that shows a study.
 
-use super::tables::{FIGURE_CONTENTS, FigureEntry, TABLE_CONTENTS, TableEntry};
-use super::{Meshes, Pipeline};
-use crate::progress::Step;
-use crate::rooms;
+use crate::pipeline::tables::{FIGURE_CONTENTS, FigureEntry, TABLE_CONTENTS, TableEntry};
+use crate::pipeline::{Meshes, Pipeline};
+use crate::source_digests;
 use crate::store::{Inputs, Stamp};
+use crate::terminal::progress::Step;
 use anyhow::{Context, Result};
 use design::config::SideRule;
 use design::{Comparison, Configuration, Study};
@@ -14,7 +14,7 @@ use minijinja::{Environment, context};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-const TEMPLATE: &str = include_str!("../page/index.html");
+const TEMPLATE: &str = include_str!("index.html");
 
 /// A turntable or a pair on the page.
 #[derive(Serialize)]
@@ -26,9 +26,9 @@ struct Card {
 
 impl Pipeline<'_> {
     /// Writes `index.html`. `made` are the stamps of all stages but the meshes'.
-    pub(super) fn page(&self, meshes: &Meshes, made: &[Stamp]) -> Result<()> {
+    pub(in crate::pipeline) fn page(&self, meshes: &Meshes, made: &[Stamp]) -> Result<()> {
         let step = Step::begin("page", 1, 1);
-        let mut inputs = Inputs::of_rooms(rooms::PAGES).value("study", &self.study.file);
+        let mut inputs = Inputs::of_sources(source_digests::PAGES).value("study", &self.study.file);
         for stamp in meshes.stamps().chain(made) {
             inputs = inputs.stamp(stamp);
         }

@@ -1,0 +1,30 @@
+//! The commands, one per verb: each has its arguments and its `run`.
+
+pub(crate) mod analyse;
+pub(crate) mod bench;
+pub(crate) mod bundle;
+pub(crate) mod collect;
+pub(crate) mod convert;
+pub(crate) mod deidentify;
+pub(crate) mod design;
+pub(crate) mod distance;
+pub(crate) mod extract;
+pub(crate) mod inspect;
+pub(crate) mod methods;
+pub(crate) mod new;
+pub(crate) mod pairs;
+pub(crate) mod report;
+pub(crate) mod serve;
+pub(crate) mod study;
+pub(crate) mod turntable;
+pub(crate) mod validate;
+
+// What several of them share.
+mod checked_study;
+mod faults;
+mod given_answers;
+mod named;
+mod reading_rules;
+mod source_arguments;
+mod study_forms;
+mod study_run;

@@ -1,0 +1,192 @@
+//! Measuring processes: the command line that starts one, the run that drives it, and what it does itself.
+
+use super::Pipeline;
+use crate::fields::Fields;
+use crate::input;
+use crate::measured::Clock;
+use crate::prepare::{Prepared, Spacings, Wanted, prepare};
+use crate::recipe::{Recipe, recipe};
+use crate::store::{sha256, write_whole};
+use crate::terminal::progress::Step;
+use anyhow::{Context, Result, bail};
+use bench::{BenchError, Entry, Plan, ProcessExecutor};
+use clap::Args;
+use design::config::SweepSection;
+use design::machine::Machine;
+use design::record::{BenchRun, Purpose};
+use design::{Configuration, ConfigurationId, Study};
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What a measuring process is told, as options of `isostudy bench worker`: written by [`Invocation::command`], read by clap.
+#[derive(Debug, Args)]
+pub(crate) struct Invocation {
+    study: PathBuf,
+    /// Digest that the study file must have
+    #[arg(long)]
+    sha256: String,
+    #[arg(long)]
+    threads: u32,
+    #[arg(long)]
+    pin: bool,
+    /// The study's sweep at so many cells per axis, instead of its benchmark
+    #[arg(long)]
+    cells: Option<u32>,
+    /// Configurations that failed and are not counted
+    #[arg(long)]
+    without: Vec<String>,
+    /// Spacings that were found for methods with a budget
+    #[arg(long)]
+    spacings: Option<PathBuf>,
+}
+
+impl Invocation {
+    /// The command that starts the process.
+    fn command(&self, program: &Path) -> Command {
+        let mut command = Command::new(program);
+        command.args(["bench", "worker"]).arg(&self.study);
+        command.args(["--sha256", &self.sha256, "--threads", &self.threads.to_string()]);
+        command.args(self.pin.then_some("--pin"));
+        if let Some(cells) = self.cells {
+            command.args(["--cells", &cells.to_string()]);
+        }
+        for id in &self.without {
+            command.args(["--without", id]);
+        }
+        if let Some(spacings) = &self.spacings {
+            command.arg("--spacings").arg(spacings);
+        }
+        command
+    }
+}
+
+/// What one run measures: the configurations of a plan, in processes of their own.
+pub(super) struct Job<'a> {
+    pub(super) plan: &'a Plan,
+    /// In the order that the measuring process counts them.
+    pub(super) configurations: Vec<&'a Configuration>,
+    /// Cells per axis of the study's sweep; `None` for the benchmark's own spacing.
+    pub(super) cells: Option<u32>,
+}
+
+impl Job<'_> {
+    fn ids(&self) -> Vec<ConfigurationId> {
+        self.configurations.iter().map(|configuration| configuration.id.clone()).collect()
+    }
+}
+
+impl Pipeline<'_> {
+    pub(super) fn run(
+        &self,
+        job: &Job<'_>,
+        machine: Machine,
+        journal: &Path,
+        key: &str,
+        step: &Step,
+    ) -> Result<BenchRun> {
+        let plan = job.plan;
+        let done = self.take_up(journal, key, job)?;
+        let lines: String = [Entry::Begun { key: key.into() }].iter().chain(&done).map(Entry::line).collect();
+        write_whole(journal, lines.as_bytes())?;
+        let mut file = File::options().append(true).open(journal)?;
+        let program = std::env::current_exe().context("cannot find this program to start it again")?;
+        let mut spacings = tempfile::NamedTempFile::new()?;
+        spacings.write_all(&serde_json::to_vec(&*self.spacings())?)?;
+        let invocation = Invocation {
+            study: self.study.path.clone(),
+            sha256: sha256(&std::fs::read(&self.study.path)?),
+            threads: plan.threads,
+            pin: plan.pin,
+            cells: job.cells,
+            without: self.failed().iter().map(ToString::to_string).collect(),
+            spacings: Some(spacings.path().to_owned()),
+        };
+        let worker = || invocation.command(&program);
+        let mut record = |entry: &Entry| file.write_all(entry.line().as_bytes());
+        let mut executor = ProcessExecutor::new(&worker);
+        let on_turn = &mut |done, all| step.set(done, all);
+        Ok(bench::run(plan, &job.ids(), &mut executor, machine, done, &mut record, on_turn)?)
+    }
+
+    /// What a killed run of the same plan, machine and code left behind.
+    fn take_up(&self, journal: &Path, key: &str, job: &Job<'_>) -> Result<Vec<Entry>> {
+        let Ok(text) = std::fs::read_to_string(journal) else { return Ok(Vec::new()) };
+        if self.store.forced() {
+            tell!("timings: begun anew, as --force says; an unfinished run is not gone on with");
+            return Ok(Vec::new());
+        }
+        let read = bench::read_journal(&text, key).map_err(BenchError::from);
+        match read.and_then(|done| bench::check_journal(job.plan, &job.ids(), &done).map(|()| done)) {
+            Ok(done) => {
+                if !done.is_empty() {
+                    tell!("timings: an unfinished run is gone on with ({} entries)", done.len());
+                }
+                Ok(done)
+            }
+            Err(error) => {
+                let error = anyhow::Error::from(error);
+                tell!("timings: begun anew; {} is not gone on from: {error:#}", journal.display());
+                Ok(Vec::new())
+            }
+        }
+    }
+}
+
+/// The configurations that can be timed: all but those whose meshes are there.
+pub(super) fn timed(study: &Study) -> Result<Vec<&Configuration>> {
+    let mut timed = Vec::new();
+    for configuration in &study.configurations {
+        match recipe(study, configuration.id.method, Purpose::Benchmark)? {
+            Recipe::Meshes(_) => {}
+            Recipe::Extractor(_) | Recipe::Program(_) => timed.push(configuration),
+        }
+    }
+    Ok(timed)
+}
+
+/// The configurations that a study's sweep is about.
+pub(super) fn swept<'s>(study: &'s Study, section: &SweepSection) -> Vec<&'s Configuration> {
+    let swept = |c: &&Configuration| section.objects.contains(&c.id.object);
+    study.configurations.iter().filter(swept).collect()
+}
+
+/// The measuring process: answers requests on standard input until there are no more.
+pub(crate) fn measure(invocation: &Invocation) -> Result<()> {
+    let pinned = if invocation.pin { bench::pin(invocation.threads) } else { None };
+    let study = input::study(&invocation.study)?;
+    if sha256(&std::fs::read(&study.path)?) != invocation.sha256 {
+        bail!("{} was changed while the benchmark ran", study.path.display());
+    }
+    let fields = Fields::new(&study);
+    let sweep = match (invocation.cells, &study.file.benchmark.sweep) {
+        (Some(cells), Some(section)) => Some((cells, section)),
+        (Some(_), None) => bail!("{}: there is no [benchmark.sweep]", study.path.display()),
+        (None, _) => None,
+    };
+    let configurations: Vec<&Configuration> = match sweep {
+        Some((_, section)) => swept(&study, section),
+        None => {
+            let mut timed = timed(&study)?;
+            timed.retain(|configuration| !invocation.without.contains(&configuration.id.to_string()));
+            timed
+        }
+    };
+    let spacings: Spacings = match &invocation.spacings {
+        Some(path) => {
+            serde_json::from_slice(&input::bytes(path)?).with_context(|| path.display().to_string())?
+        }
+        None => Spacings::default(),
+    };
+    let prepared = |number: usize| -> Result<Prepared<'_>, String> {
+        let configuration = *configurations.get(number).ok_or("there is no such configuration")?;
+        let wanted = match sweep {
+            Some((cells, _)) => Wanted::Cells(cells, Purpose::Indexed),
+            None => Wanted::For(Purpose::Benchmark),
+        };
+        prepare(&study, &fields, &spacings, configuration, wanted).map_err(|error| format!("{error:#}"))
+    };
+    let (requests, replies) = (std::io::stdin().lock(), std::io::stdout().lock());
+    Ok(bench::serve(requests, replies, pinned, invocation.threads, &mut Clock::new(prepared))?)
+}

@@ -1,0 +1,34 @@
+//! Digests of the sources that make each kind of result; see `build.rs`.
+
+const MESH: &str = env!("ISOSTUDY_SOURCES_MESH");
+const DESIGN: &str = env!("ISOSTUDY_SOURCES_DESIGN");
+const RESPONSES: &str = env!("ISOSTUDY_SOURCES_RESPONSES");
+const FIELD: &str = env!("ISOSTUDY_SOURCES_FIELD");
+const EXTRACT: &str = env!("ISOSTUDY_SOURCES_EXTRACT");
+const EXPRESSION: &str = env!("ISOSTUDY_SOURCES_EXPRESSION");
+const VOLUME: &str = env!("ISOSTUDY_SOURCES_VOLUME");
+const PROGRAM: &str = env!("ISOSTUDY_SOURCES_PROGRAM");
+const STATISTICS: &str = env!("ISOSTUDY_SOURCES_STATISTICS");
+const TABLE: &str = env!("ISOSTUDY_SOURCES_TABLE");
+const TIMING: &str = env!("ISOSTUDY_SOURCES_TIMING");
+const RASTER: &str = env!("ISOSTUDY_SOURCES_RASTER");
+const BENCH: &str = env!("ISOSTUDY_SOURCES_BENCH");
+const ANALYSIS: &str = env!("ISOSTUDY_SOURCES_ANALYSIS");
+const SERVE: &str = env!("ISOSTUDY_SOURCES_SERVE");
+const PAGE: &str = env!("ISOSTUDY_SOURCES_PAGE");
+const CLI: &str = env!("ISOSTUDY_SOURCES_CLI");
+
+/// What makes meshes.
+pub(crate) const MESHES: &[&str] = &[MESH, FIELD, EXPRESSION, VOLUME, EXTRACT, PROGRAM, CLI];
+/// What makes pictures of meshes.
+pub(crate) const PICTURES: &[&str] = &[MESH, RASTER, CLI];
+/// What makes timings.
+pub(crate) const TIMINGS: &[&str] = &[MESH, FIELD, EXPRESSION, VOLUME, EXTRACT, PROGRAM, BENCH, CLI];
+/// What makes tables, figures and the report.
+pub(crate) const TABLES: &[&str] = &[DESIGN, RESPONSES, STATISTICS, TABLE, TIMING, ANALYSIS, CLI, PAGE];
+/// What makes the key.
+pub(crate) const KEYS: &[&str] = &[DESIGN, CLI];
+/// What makes the bundle for participants.
+pub(crate) const BUNDLES: &[&str] = &[DESIGN, RESPONSES, TABLE, SERVE, CLI];
+/// What makes the page.
+pub(crate) const PAGES: &[&str] = &[DESIGN, CLI, PAGE];

@@ -1,0 +1,40 @@
+//! What is said on standard output and standard error.
+
+use anyhow::Result;
+use std::io::{ErrorKind, Write};
+
+/// As `eprintln!`, which panics where a line cannot be written: on a full disk, or to a reader that has gone.
+macro_rules! tell {
+    ($($words:tt)*) => {
+        drop(std::io::Write::write_fmt(&mut std::io::stderr(), format_args!("{}\n", format_args!($($words)*))))
+    };
+}
+
+// After the macro, which it uses.
+pub(crate) mod progress;
+
+/// Prints a line on standard output. A reader that has gone away is no error.
+///
+/// # Errors
+/// If standard output cannot be written.
+pub(crate) fn say(line: &str) -> Result<()> {
+    match writeln!(std::io::stdout(), "{line}") {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
+    }
+}
+
+/// `1 answer`, `2 answers`.
+pub(crate) fn counted(number: u64, word: &str) -> String {
+    format!("{number} {word}{}", if number == 1 { "" } else { "s" })
+}
+
+/// A number with seven significant digits.
+pub(crate) fn significant(value: f64) -> String {
+    let size = value.abs();
+    if value != 0.0 && !(1e-4..1e7).contains(&size) {
+        return format!("{value:.6e}");
+    }
+    let decimals = if value == 0.0 { 0 } else { (6.0 - size.log10().floor()) as usize };
+    format!("{value:.decimals$}")
+}
