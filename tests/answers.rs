@@ -1,18 +1,12 @@
 //! Answers as people send them, analysed with a study and without.
 
-use crate::fixture::{Fixture, Run};
+use crate::command::{Run, isostudy};
+use crate::fixture::Fixture;
 use std::path::Path;
-use std::process::Command;
 
 /// Runs the command on a file of answers that no study explains.
 pub(crate) fn analyse(arguments: &[&str]) -> Run {
-    let output =
-        Command::new(env!("CARGO_BIN_EXE_isostudy")).arg("analyse").args(arguments).output().unwrap();
-    Run {
-        code: output.status.code(),
-        stdout: String::from_utf8(output.stdout).unwrap(),
-        stderr: String::from_utf8(output.stderr).unwrap(),
-    }
+    Run::of(isostudy().arg("analyse").args(arguments))
 }
 
 /// The study's answers in the long format, with what its forms add: two controls and two repeats with exchanged sides for
@@ -21,16 +15,9 @@ pub(crate) fn analyse(arguments: &[&str]) -> Run {
 fn recorded(fixture: &Fixture) -> String {
     let plain = fixture.folder().join("plain.csv");
     let answers = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../study/paper/responses.csv");
-    let output = Command::new(env!("CARGO_BIN_EXE_isostudy"))
-        .arg("convert")
-        .arg(answers)
-        .arg("--study")
-        .arg(fixture.config())
-        .args(["--to", "long", "--out"])
-        .arg(&plain)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let mut convert = isostudy();
+    convert.arg("convert").arg(answers).arg("--study").arg(fixture.config());
+    Run::succeed(convert.args(["--to", "long", "--out"]).arg(&plain));
     let text = std::fs::read_to_string(plain).unwrap();
     let mut lines = text.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
@@ -152,8 +139,7 @@ fn the_same_without_a_study() {
 #[test]
 fn help_names_every_format_and_column() {
     let help = |command: &str| {
-        let output = Command::new(env!("CARGO_BIN_EXE_isostudy")).args([command, "--help"]).output().unwrap();
-        let text = String::from_utf8(output.stdout).unwrap();
+        let text = Run::succeed(isostudy().args([command, "--help"])).stdout;
         text.split_whitespace().collect::<Vec<_>>().join(" ")
     };
     let (analyse, convert) = (help("analyse"), help("convert"));
@@ -173,10 +159,10 @@ fn what_is_written_for_pwcmp_is_read_again() {
     let answers = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../study/paper/responses.csv");
     let file = |name: &str| fixture.folder().join(name);
     let convert = |from: &Path, more: &[&str], to: &Path| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
+        let mut command = isostudy();
         command.arg("convert").arg(from).arg("--study").arg(fixture.config()).args(more).arg("--out").arg(to);
-        let output = command.output().unwrap();
-        (output.status.success(), String::from_utf8(output.stderr).unwrap())
+        let run = Run::of(&mut command);
+        (run.code == Some(0), run.stderr)
     };
     let (split, again, straight) = (file("split.csv"), file("again.csv"), file("straight.csv"));
     let (done, said) = convert(&answers, &["--to", "pwcmp"], &split);

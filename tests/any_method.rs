@@ -1,32 +1,37 @@
 //! A study may compare any method on any object: everything at once, from a study file to a report whose tests are about methods; and
 //! what is said where something is wrong with it.
 
+mod command;
+
+use command::Folder;
 use std::collections::BTreeSet;
 use std::fs;
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
-use std::process::Command;
-use tempfile::TempDir;
 
 const STUDY: &str = include_str!("any_method/study.toml");
 const METHODS: [&str; 5] = ["bi", "bi-relaxed", "fp", "cuberille", "artist"];
 const OBJECTS: [&str; 3] = ["fo", "te", "vo"];
 
-struct Folder(TempDir);
+/// The study with all that it names, in a folder of its own.
+struct Study(Folder);
 
-struct Ran {
-    code: Option<i32>,
-    stdout: String,
-    stderr: String,
+impl Deref for Study {
+    type Target = Folder;
+
+    fn deref(&self) -> &Folder {
+        &self.0
+    }
 }
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap()
 }
 
-impl Folder {
+impl Study {
     /// The study with its files: a program, a scan, and meshes made by hand.
     fn new() -> Self {
-        let folder = Self(tempfile::tempdir().unwrap());
+        let folder = Self(Folder::new());
         let mut comparisons = String::from("comparisons = [\n");
         let mut number = 0;
         for object in OBJECTS {
@@ -64,31 +69,10 @@ impl Folder {
         folder
     }
 
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn write(&self, name: &str, text: &str) {
-        fs::write(self.path(name), text).unwrap();
-    }
-
     fn edit(&self, from: &str, to: &str) {
         let text = fs::read_to_string(self.path("study.toml")).unwrap();
         assert!(text.contains(from), "{from} is not in the study");
         self.write("study.toml", &text.replacen(from, to, 1));
-    }
-
-    fn run(&self, arguments: &[&str]) -> Ran {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
-        let output = command.args(arguments).current_dir(self.0.path()).output().unwrap();
-        let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-        Ran { code: output.status.code(), stdout: text(&output.stdout), stderr: text(&output.stderr) }
-    }
-
-    fn succeed(&self, arguments: &[&str]) -> Ran {
-        let ran = self.run(arguments);
-        assert_eq!(ran.code, Some(0), "{arguments:?}: {}{}", ran.stdout, ran.stderr);
-        ran
     }
 
     fn extract(&self, arguments: &[&str]) {
@@ -137,7 +121,7 @@ fn scan() -> Vec<u8> {
 
 #[test]
 fn any_method_on_any_object_from_file_to_report() {
-    let folder = Folder::new();
+    let folder = Study::new();
     let faults = folder.run(&["design", "check", "study.toml"]);
     assert_eq!(faults.code, Some(0), "{}{}", faults.stdout, faults.stderr);
     folder.succeed(&["validate", "study.toml"]);
@@ -199,7 +183,7 @@ fn any_method_on_any_object_from_file_to_report() {
 }
 
 /// Everybody likes relaxed vertices wherever they see them, and has no preference else. The tests are about methods.
-fn answered(folder: &Folder) {
+fn answered(folder: &Study) {
     let study: toml::Table = fs::read_to_string(folder.path("study.toml")).unwrap().parse().unwrap();
     let mut long = String::from("participant,question,left,right,choice\n");
     for person in 0..24 {
@@ -314,7 +298,7 @@ fn bad_input_is_refused_before_any_work() {
             vec!["vertices_of", "triangles_of", "samples_of", "time_of"],
         ),
     ] {
-        let folder = Folder::new();
+        let folder = Study::new();
         folder.edit(from, to);
         let ran = folder.run(&["study", "study.toml", "--out", "out", "--allow-programs"]);
         assert_eq!(ran.code, Some(2), "{to}: {}{}", ran.stdout, ran.stderr);
@@ -328,7 +312,7 @@ fn bad_input_is_refused_before_any_work() {
 /// A budget that no spacing meets, since counts jump where one more cell fits into the box; and one in what the other has not.
 #[test]
 fn a_budget_that_cannot_be_met_is_said() {
-    let folder = Folder::new();
+    let folder = Study::new();
     folder.edit("benchmark_spacing = 0.1\nstimulus_spacing = 0.11\ncamera = { distance = 2.0, vertical_fov_rad = 0.6 }\n\n[[objects]]\nid = \"vo\"", "benchmark_spacing = 0.1\nstimulus_spacing = 0.125\ncamera = { distance = 2.0, vertical_fov_rad = 0.6 }\n\n[[objects]]\nid = \"vo\"");
     let ran = folder.run(&["extract", "study.toml", "--out", "out", "--allow-programs"]);
     assert_eq!(ran.code, Some(2), "{}", ran.stderr);
@@ -351,7 +335,7 @@ fn a_program_that_fails_is_left_out_by_name() {
         ),
         ("print('hello', flush=True)\ninput()\n", "`hello`"),
     ] {
-        let folder = Folder::new();
+        let folder = Study::new();
         folder.write("example.py", program);
         folder.edit("time_limit_s = 60", "time_limit_s = 1");
         let ran = folder.run(&["study", "study.toml", "--out", "out", "--allow-programs"]);

@@ -1,6 +1,7 @@
 //! The questionnaire as a researcher makes it and as participants get it.
 
-use crate::fixture::{Fixture, Run, files};
+use crate::command::{Run, isostudy};
+use crate::fixture::{Fixture, files};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 use std::path::Path;
@@ -27,16 +28,8 @@ fn stimuli_say_nothing_about_what_they_show() {
 #[test]
 fn a_design_is_judged_before_anyone_answers() {
     let check = |study: &str, arguments: &[&str]| {
-        let output = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"))
-            .args(["design", "check", study])
-            .args(arguments)
-            .output()
-            .unwrap();
-        (
-            output.status.code(),
-            String::from_utf8(output.stdout).unwrap(),
-            String::from_utf8(output.stderr).unwrap(),
-        )
+        let run = Run::of(isostudy().args(["design", "check", study]).args(arguments));
+        (run.code, run.stdout, run.stderr)
     };
     let fixture = Fixture::balanced();
     let (config, out) = (fixture.config(), fixture.out().to_str().unwrap());
@@ -89,12 +82,9 @@ fn finished_files_are_judged() {
     let fixture = Fixture::balanced();
     fixture.succeed("bundle", &[]);
     let faults = || -> Vec<(String, String, String)> {
-        let output = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"))
-            .args(["design", "check", "--json", "--results"])
-            .args([fixture.out(), &fixture.config()])
-            .output()
-            .unwrap();
-        let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let check = ["design", "check", "--json", "--results"];
+        let run = Run::of(isostudy().args(check).args([fixture.out(), &fixture.config()]));
+        let found: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
         let text = |fault: &serde_json::Value, key: &str| fault[key].as_str().unwrap().to_owned();
         let all = found.as_array().unwrap().iter();
         all.map(|f| (text(f, "rule"), text(f, "place"), text(f, "evidence"))).collect()
@@ -135,10 +125,9 @@ fn outdated_animations_are_said_to_be() {
     let fixture = Fixture::balanced();
     fixture.succeed("pairs", &[]);
     let check = || {
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
         let words = [fixture.config(), "--results".into(), fixture.out().into()];
-        let output = command.args(["design", "check"]).args(words).output().unwrap();
-        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+        let run = Run::of(isostudy().args(["design", "check"]).args(words));
+        (run.code, run.stderr)
     };
     assert_eq!(check(), (Some(0), String::new()));
     fixture.edit("frames = 12", "frames = 10");
@@ -161,12 +150,11 @@ fn a_design_is_judged_without_meshes() {
     let fixture = Fixture::balanced();
     fixture.edit("solid.obj", "nothing.obj");
     let run = |verb: &str, words: &[&str]| {
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
-        command.args(["design", verb]).arg(fixture.config()).args(words).output().unwrap()
+        Run::of(isostudy().args(["design", verb]).arg(fixture.config()).args(words))
     };
     let out = fixture.out().to_str().unwrap();
-    assert_eq!(run("check", &["--results", out]).status.code(), Some(0));
-    assert!(run("power", &["--studies", "100", "--participants", "6", "--out", out]).status.success());
+    assert_eq!(run("check", &["--results", out]).code, Some(0));
+    assert_eq!(run("power", &["--studies", "100", "--participants", "6", "--out", out]).code, Some(0));
     let Run { code, stderr, .. } = fixture.run("bundle", &[]);
     assert!(code == Some(2) && stderr.contains("nothing.obj: no such file; `make bunny`"), "{stderr}");
 }
@@ -218,14 +206,9 @@ fn the_smallest_study_is_sound_and_says_its_power() {
     let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/two-methods.toml");
     let out = tempfile::tempdir().unwrap();
     let run = |arguments: &[&str]| {
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
-        let output =
-            command.args(["design", arguments[0]]).arg(&config).args(&arguments[1..]).output().unwrap();
-        (
-            output.status.code(),
-            String::from_utf8(output.stdout).unwrap(),
-            String::from_utf8(output.stderr).unwrap(),
-        )
+        let mut command = isostudy();
+        let run = Run::of(command.args(["design", arguments[0]]).arg(&config).args(&arguments[1..]));
+        (run.code, run.stdout, run.stderr)
     };
     let (code, said, _) = run(&["check", "--results", out.path().to_str().unwrap()]);
     assert!(code == Some(0) && said.ends_with(": no faults\n"), "{said}");

@@ -1,11 +1,13 @@
 //! The benchmark as a user runs it: killed and gone on with, compared, imported. No test here judges a measured time.
 
+mod command;
 mod fixture;
 
-use fixture::{Fixture, Run};
+use command::Run;
+use fixture::Fixture;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::Duration;
 
 const STAGES: [&str; 6] = ["allocation", "sampling", "vertex", "geometry", "clustering", "normals"];
@@ -152,10 +154,7 @@ impl Pair {
 }
 
 fn isostudy(arguments: &[&str]) -> Run {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
-    let output = command.args(arguments).current_dir(std::env::temp_dir()).output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    Run { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+    Run::of(command::isostudy().args(arguments).current_dir(std::env::temp_dir()))
 }
 
 #[test]

@@ -1,7 +1,9 @@
 //! `isostudy distance` as a user runs it.
 
+mod command;
+
+use command::{Folder, Run};
 use std::path::Path;
-use std::process::{Command, Output};
 
 /// Two triangles: a square from the origin to `(side, side)` at the height `z`.
 fn write_square(path: &Path, side: f64, z: f64) {
@@ -9,23 +11,17 @@ fn write_square(path: &Path, side: f64, z: f64) {
     std::fs::write(path, text).unwrap();
 }
 
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
-    command.current_dir(folder).arg("distance").args(arguments).output().unwrap()
-}
-
-fn json(folder: &Path, arguments: &[&str]) -> serde_json::Value {
-    let output = run(folder, &[arguments, &["--json"]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
+fn json(folder: &Folder, arguments: &[&str]) -> serde_json::Value {
+    let run = folder.succeed(&[arguments, &["--json"]].concat());
+    serde_json::from_str(&run.stdout).unwrap()
 }
 
 #[test]
 fn both_ways_in_units_and_of_the_diagonal_with_places() {
-    let folder = tempfile::tempdir().unwrap();
-    write_square(&folder.path().join("small.obj"), 1.0, 0.0);
-    write_square(&folder.path().join("large.obj"), 3.0, 4.0);
-    let found = json(folder.path(), &["small.obj", "large.obj", "--density", "5000"]);
+    let folder = Folder::of("distance");
+    write_square(&folder.path("small.obj"), 1.0, 0.0);
+    write_square(&folder.path("large.obj"), 3.0, 4.0);
+    let found = json(&folder, &["small.obj", "large.obj", "--density", "5000"]);
     let number = |pointer: &str| found.pointer(pointer).and_then(|v| v.as_f64()).unwrap();
     assert_eq!((number("/a_to_b/max"), number("/a_to_b/mean"), number("/a_to_b/rms")), (4.0, 4.0, 4.0));
     assert_eq!((number("/a_to_b/samples"), number("/b_to_a/samples")), (5_000.0, 45_000.0));
@@ -40,8 +36,8 @@ fn both_ways_in_units_and_of_the_diagonal_with_places() {
         (vec![3.0, 3.0, 4.0], vec![1.0, 1.0, 0.0])
     );
 
-    let text = run(folder.path(), &["small.obj", "large.obj", "--density", "5000"]);
-    let text = String::from_utf8(text.stdout).unwrap();
+    let text = folder.run(&["small.obj", "large.obj", "--density", "5000"]);
+    let text = text.stdout;
     assert!(
         text.contains(
             "farthest vertex (3.000000, 3.000000, 4.000000), nearest point (1.000000, 1.000000, 0)"
@@ -50,20 +46,18 @@ fn both_ways_in_units_and_of_the_diagonal_with_places() {
     );
     assert!(text.contains("Hausdorff distance          4.898979     115.4701 %"), "{text}");
     for threads in ["1", "3"] {
-        let again =
-            json(folder.path(), &["small.obj", "large.obj", "--density", "5000", "--threads", threads]);
+        let again = json(&folder, &["small.obj", "large.obj", "--density", "5000", "--threads", threads]);
         assert_eq!(again, found);
     }
 }
 
 #[test]
 fn a_mesh_against_an_object_of_a_study() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = Folder::of("distance");
     let study = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/two-methods.toml");
-    std::fs::write(folder.path().join("octahedron.obj"), octahedron(0.9)).unwrap();
+    std::fs::write(folder.path("octahedron.obj"), octahedron(0.9)).unwrap();
     let study = study.to_str().unwrap();
-    let found =
-        json(folder.path(), &["octahedron.obj", "--object", "ss", "--study", study, "--samples", "20000"]);
+    let found = json(&folder, &["octahedron.obj", "--object", "ss", "--study", study, "--samples", "20000"]);
     let number = |pointer: &str| found.pointer(pointer).and_then(|v| v.as_f64()).unwrap();
     // The middle of a face.
     let want = 0.9 * (1.0 - 1.0 / f64::sqrt(3.0));
@@ -71,9 +65,9 @@ fn a_mesh_against_an_object_of_a_study() {
         assert!((number(way) - want).abs() < 1e-3, "{} is not {want}", number(way));
     }
     assert_eq!(number("/a_to_b/lost_samples"), 0.0);
-    let unknown = run(folder.path(), &["octahedron.obj", "--object", "cube", "--study", study]);
-    assert_eq!(unknown.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&unknown.stderr).contains("--object cube: "));
+    let unknown = folder.run(&["octahedron.obj", "--object", "cube", "--study", study]);
+    assert_eq!(unknown.code, Some(2));
+    assert!(unknown.stderr.contains("--object cube: "));
 }
 
 /// An octahedron in a sphere: the middle of a face is the farthest from it, a corner lies on it.
@@ -89,12 +83,12 @@ fn octahedron(radius: f64) -> String {
 
 #[test]
 fn a_mesh_against_a_formula_a_volume_and_a_mesh_s_distance() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = |name: &str| folder.path().join(name);
+    let folder = Folder::of("distance");
+    let path = |name: &str| folder.path(name);
     std::fs::write(path("octahedron.obj"), octahedron(0.9)).unwrap();
     let found = |arguments: &[&str]| {
         let all = [&["octahedron.obj", "--samples", "20000"], arguments].concat();
-        let found = json(folder.path(), &all);
+        let found = json(&folder, &all);
         ["/a_to_b/max", "/b_to_a/max"].map(|way| found.pointer(way).and_then(|v| v.as_f64()).unwrap())
     };
     let to_sphere = 0.9 * (1.0 - 1.0 / f64::sqrt(3.0));
@@ -122,8 +116,8 @@ fn a_mesh_against_a_formula_a_volume_and_a_mesh_s_distance() {
 
 #[test]
 fn what_cannot_be_measured_is_said() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = |name: &str| folder.path().join(name);
+    let folder = Folder::of("distance");
+    let path = |name: &str| folder.path(name);
     write_square(&path("good.obj"), 1.0, 0.0);
     std::fs::write(path("points.obj"), "v 0 0 0\nv 1 0 0\n").unwrap();
     std::fs::write(path("line.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n").unwrap();
@@ -150,9 +144,8 @@ fn what_cannot_be_measured_is_said() {
             "good.obj and x^2+1: the isosurface: the mesh has no triangles",
         ),
     ] {
-        let output = run(folder.path(), arguments);
-        let stderr = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+        let Run { code, stderr, .. } = folder.run(arguments);
+        assert_eq!(code, Some(2), "{arguments:?}: {stderr}");
         assert!(stderr.contains(message), "{arguments:?}: {stderr}");
     }
 }

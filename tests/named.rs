@@ -4,80 +4,46 @@
 #[path = "../crates/design/tests/page/mod.rs"]
 mod page;
 
+mod command;
+
+use command::Folder;
 use extract::{Method, presets};
 use page::{Row, Section, sections};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
-use std::process::Command;
 use toml::Table;
 
-struct Folder(tempfile::TempDir);
-
-struct Said {
-    code: i32,
-    out: String,
-    err: String,
+/// A ball of 10 cells, by a method; what is told of it.
+fn ball(folder: &Folder, method: &[&str]) -> Value {
+    let ball = ["extract", "--field", "sqrt(x^2+y^2+z^2) - 1", "--bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2"];
+    let said = folder.succeed(&[&ball[..], &["--cells", "10", "-o", "ball.ply", "--json"], method].concat());
+    serde_json::from_str(&said.stdout).unwrap()
 }
 
-impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn read(&self, name: &str) -> String {
-        std::fs::read_to_string(self.path(name)).unwrap()
-    }
-
-    fn run(&self, arguments: &[&str]) -> Said {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
-        let output = command.args(arguments).current_dir(self.0.path()).output().unwrap();
-        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-        Said { code: output.status.code().unwrap(), out: text(&output.stdout), err: text(&output.stderr) }
-    }
-
-    fn succeed(&self, arguments: &[&str]) -> Said {
-        let said = self.run(arguments);
-        assert_eq!(said.code, 0, "{arguments:?}: {} {}", said.out, said.err);
-        said
-    }
-
-    /// A ball of 10 cells, by a method; what is told of it.
-    fn ball(&self, method: &[&str]) -> Value {
-        let ball = ["extract", "--field", "sqrt(x^2+y^2+z^2) - 1", "--bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2"];
-        let said =
-            self.succeed(&[&ball[..], &["--cells", "10", "-o", "ball.ply", "--json"], method].concat());
-        serde_json::from_str(&said.out).unwrap()
-    }
-
-    /// What is said of a recipe that is refused; nothing is written then.
-    fn refused(&self, recipe: &str) -> String {
-        let ball = ["extract", "--field", "x", "--bounds=-1,-1,-1,1,1,1", "-o", "a.ply", "--recipe", recipe];
-        let said = self.run(&ball);
-        assert!(said.code == 2 && !self.path("a.ply").exists(), "{recipe}: {}", said.err);
-        said.err
-    }
+/// What is said of a recipe that is refused; nothing is written then.
+fn refused(folder: &Folder, recipe: &str) -> String {
+    let ball = ["extract", "--field", "x", "--bounds=-1,-1,-1,1,1,1", "-o", "a.ply", "--recipe", recipe];
+    let said = folder.run(&ball);
+    assert!(said.code == Some(2) && !folder.path("a.ply").exists(), "{recipe}: {}", said.stderr);
+    said.stderr
 }
 
 #[test]
 fn every_method_of_the_list_makes_a_ball() {
     let folder = Folder::new();
-    let list: Value = serde_json::from_str(&folder.succeed(&["methods", "--json"]).out).unwrap();
+    let list: Value = serde_json::from_str(&folder.succeed(&["methods", "--json"]).stdout).unwrap();
     let methods = list["methods"].as_array().unwrap();
     let ids: Vec<&str> = methods.iter().map(|method| method["id"].as_str().unwrap()).collect();
     assert_eq!(ids, presets().iter().map(|preset| preset.id).collect::<Vec<_>>());
-    let text = folder.succeed(&["methods"]).out;
+    let text = folder.succeed(&["methods"]).stdout;
     for method in methods {
         let id = method["id"].as_str().unwrap();
         let label = method["label"].as_str().unwrap();
         let lines =
             text.lines().filter(|line| line.split_whitespace().next() == Some(id) && line.ends_with(label));
         assert_eq!(lines.count(), 1, "{id} in the text");
-        let report = folder.ball(&["--method", id]);
+        let report = ball(&folder, &["--method", id]);
         assert_eq!(report["method"]["id"], id);
         assert_eq!(report["method"]["recipe"], method["recipe"]);
         assert_eq!(report["arrangement"], method["recipe"]["arrangement"]);
@@ -100,18 +66,18 @@ fn a_recipe_is_the_method_that_it_spells() {
     let folder = Folder::new();
     let bytes = || std::fs::read(folder.path("ball.ply")).unwrap();
     let relaxed = "{ kind = \"tetrahedra\", arrangement = \"body-centred\", placement = \"relaxed\" }";
-    let report = folder.ball(&["--recipe", relaxed]);
+    let report = ball(&folder, &["--recipe", relaxed]);
     assert_eq!(report["method"]["label"], "body-centred, integrated, relaxed");
     let spelt = bytes();
-    folder.ball(&["--method", "bi-relaxed"]);
+    ball(&folder, &["--method", "bi-relaxed"]);
     assert_eq!(bytes(), spelt);
     // Another mesh; and the older words name the method as well.
-    let report = folder.ball(&["--arrangement", "simple-cubic", "--clustering", "none"]);
+    let report = ball(&folder, &["--arrangement", "simple-cubic", "--clustering", "none"]);
     assert_eq!((&report["method"]["id"], &report["clustering"]), (&"su".into(), &"none".into()));
     assert_ne!(bytes(), spelt);
     // A method without a name is told by its recipe.
     let own = "{ kind = \"tetrahedra\", arrangement = \"simple-cubic\", refine_crossings = true }";
-    let report = folder.ball(&["--recipe", own]);
+    let report = ball(&folder, &["--recipe", own]);
     assert!(report["method"]["id"].is_null() && report["method"]["recipe"]["refine_crossings"] == true);
     let said = folder.succeed(&[
         "extract",
@@ -124,7 +90,7 @@ fn a_recipe_is_the_method_that_it_spells() {
         "--recipe",
         own,
     ]);
-    let line = said.out.lines().find(|line| line.starts_with("method ")).unwrap();
+    let line = said.stdout.lines().find(|line| line.starts_with("method ")).unwrap();
     assert!(line.contains("refine_crossings = true") && line.contains("simple-cubic"), "{line}");
 }
 
@@ -147,7 +113,7 @@ fn what_is_no_recipe_is_refused_with_its_place_and_what_is_allowed() {
         ("{ kind = \"program\", command = [\"a\"] }".into(), &["kind = \"program\"", "of a study"]),
         ("{ kind = \"meshes\", files = {} }".into(), &["kind = \"meshes\"", "of a study"]),
     ] {
-        let error = folder.refused(&recipe);
+        let error = refused(&folder, &recipe);
         assert!(
             error.contains("--recipe") && parts.iter().all(|part| error.contains(part)),
             "{recipe}: {error}"
@@ -172,32 +138,48 @@ fn what_is_no_recipe_is_refused_with_its_place_and_what_is_allowed() {
                 ]
                 .concat(),
             );
-        assert!(said.code == 2 && said.err.contains("cannot be used with"), "{other:?}: {}", said.err);
+        assert!(
+            said.code == Some(2) && said.stderr.contains("cannot be used with"),
+            "{other:?}: {}",
+            said.stderr
+        );
     }
     let said =
         folder.run(&["extract", "--field", "x", "--bounds=-1,-1,-1,1,1,1", "-o", "a.ply", "--method", "no"]);
-    assert!(said.code == 2 && said.err.contains("bi-relaxed") && said.err.contains("isostudy methods"));
+    assert!(
+        said.code == Some(2)
+            && said.stderr.contains("bi-relaxed")
+            && said.stderr.contains("isostudy methods")
+    );
 }
 
 #[test]
 fn a_new_study_passes_every_check() {
     let folder = Folder::new();
     let said = folder.succeed(&["new", "my terrain"]);
-    assert_eq!(said.out, "my terrain/study.toml\n");
+    assert_eq!(said.stdout, "my terrain/study.toml\n");
     for next in ["design check", "study", "serve"] {
-        assert!(said.err.contains(&format!("isostudy {next} 'my terrain/study.toml'\n")), "{}", said.err);
+        assert!(
+            said.stderr.contains(&format!("isostudy {next} 'my terrain/study.toml'\n")),
+            "{}",
+            said.stderr
+        );
     }
     let check = folder.succeed(&["design", "check", "my terrain/study.toml"]);
-    assert_eq!(check.out, "my terrain/study.toml: no faults\n");
+    assert_eq!(check.stdout, "my terrain/study.toml: no faults\n");
     let valid = folder.succeed(&["validate", "my terrain/study.toml"]);
-    assert!(valid.out.ends_with("study.toml: valid; 2 questions in 1 groups, no answers\n"), "{}", valid.out);
+    assert!(
+        valid.stdout.ends_with("study.toml: valid; 2 questions in 1 groups, no answers\n"),
+        "{}",
+        valid.stdout
+    );
     // It needs nothing but its folder, and has surfaces in the middle of their boxes.
     std::fs::rename(folder.path("my terrain"), folder.path("moved")).unwrap();
     folder.succeed(&["validate", "moved/study.toml"]);
     for id in ["torus_bi", "torus_bi-relaxed", "cliffs_bi", "cliffs_bi-relaxed"] {
         let panel =
             folder.succeed(&["inspect", id, "--study", "moved/study.toml", "--iterations", "1", "--json"]);
-        assert!(panel.out.contains("\"boundary_edges\": 0"), "{id}: {}", panel.out);
+        assert!(panel.stdout.contains("\"boundary_edges\": 0"), "{id}: {}", panel.stdout);
     }
     let id = |name: &str| folder.read(name).parse::<Table>().unwrap()["study"]["id"].clone();
     assert_eq!(id("moved/study.toml").as_str(), Some("my-terrain"));
@@ -218,18 +200,30 @@ fn nothing_is_written_over() {
     };
     let before = listing();
     let said = folder.run(&["new", "a/b"]);
-    assert!(said.code == 2 && said.err.contains("a/b/study.toml: is there already"), "{}", said.err);
+    assert!(
+        said.code == Some(2) && said.stderr.contains("a/b/study.toml: is there already"),
+        "{}",
+        said.stderr
+    );
     // The profile alone is in the way as well; and the study is not written then.
     std::fs::remove_file(folder.path("a/b/study.toml")).unwrap();
     let said = folder.run(&["new", "a/b"]);
-    assert!(said.code == 2 && said.err.contains("x86-64-v3.toml: is there already"), "{}", said.err);
+    assert!(
+        said.code == Some(2) && said.stderr.contains("x86-64-v3.toml: is there already"),
+        "{}",
+        said.stderr
+    );
     std::fs::write(folder.path("a/b/study.toml"), "mine").unwrap();
     assert_eq!((listing(), folder.read("a/b/study.toml").as_str()), (before, "mine"));
     for (file, name) in [("file", "file"), ("c/cpu", "c")] {
         std::fs::create_dir_all(folder.path(file).parent().unwrap()).unwrap();
         std::fs::write(folder.path(file), "mine").unwrap();
         let said = folder.run(&["new", name]);
-        assert!(said.code == 2 && said.err.contains(&format!("{file}: is not a folder")), "{}", said.err);
+        assert!(
+            said.code == Some(2) && said.stderr.contains(&format!("{file}: is not a folder")),
+            "{}",
+            said.stderr
+        );
         assert_eq!(folder.read(file), "mine");
         assert!(!folder.path("c/study.toml").exists());
     }
@@ -314,12 +308,12 @@ fn the_page_has_the_keys_of_what_the_study_hands_on() {
     ] {
         std::fs::write(folder.path("a/other.toml"), study.replacen(from, to, 1)).unwrap();
         let said = folder.run(&["validate", "a/other.toml"]);
-        assert_eq!(said.code, 2);
+        assert_eq!(said.code, Some(2));
         assert_eq!(
             keys(&section(table, kind)),
-            quoted(&said.err).into_iter().collect(),
+            quoted(&said.stderr).into_iter().collect(),
             "{kind}: {}",
-            said.err
+            said.stderr
         );
     }
 }

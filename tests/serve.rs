@@ -1,9 +1,11 @@
 //! The questionnaire's server as participants, and those who mean ill, meet it.
 
+mod command;
 mod fixture;
 mod http;
 mod server;
 
+use command::{Run, isostudy};
 use fixture::Fixture;
 use http::{get, post, raw};
 use serde_json::{Value, json};
@@ -12,7 +14,7 @@ use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -212,12 +214,9 @@ fn answers_outlive_changes_of_the_study_file() {
     assert_eq!(post(server.address, "/api/answers", &answer(&session, 0, "R")).unwrap().0, 200);
     let shared = fixture.folder().join("shared");
     let deidentify = || {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
         let answers = fixture.folder().join("answers");
         let words = [fixture.config(), "--answers".into(), answers, "--out".into(), shared.clone()];
-        let output = command.arg("deidentify").args(words).output().unwrap();
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert!(output.status.success(), "{said}");
+        let said = Run::succeed(isostudy().arg("deidentify").args(words)).stderr;
         assert_eq!(std::fs::read_to_string(shared.join("answers.csv")).unwrap().lines().count(), 2);
         (said, std::fs::read_to_string(shared.join("codebook.md")).unwrap())
     };
@@ -319,32 +318,22 @@ fn a_download_brings_no_formula() {
         format!("participant,form,order,stimulus,choice,rt_ms\n=1+1,{number},{order},{stimulus},NP,812\n");
     std::fs::write(&download, row).unwrap();
     let collect = |download: &Path| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
-        command.arg("collect").arg(fixture.config()).arg(download).arg("--out").arg(&out).output().unwrap()
+        Run::of(isostudy().arg("collect").arg(fixture.config()).arg(download).arg("--out").arg(&out))
     };
-    assert!(collect(&download).status.success());
+    assert_eq!(collect(&download).code, Some(0));
     let text = std::fs::read_to_string(&out).unwrap();
     assert!(text.lines().nth(1).unwrap().starts_with("'=1+1,"), "{text}");
     // A download is not written over, and a file without answers is none.
-    let over = Command::new(env!("CARGO_BIN_EXE_isostudy"))
-        .arg("collect")
-        .arg(fixture.config())
-        .args([&download, Path::new("--out"), &download])
-        .output()
-        .unwrap();
-    assert_eq!(over.status.code(), Some(2));
-    assert!(
-        String::from_utf8_lossy(&over.stderr)
-            .contains("download.csv: is a download; it would be written over")
-    );
+    let onto_itself = [&download, Path::new("--out"), &download];
+    let over = Run::of(isostudy().arg("collect").arg(fixture.config()).args(onto_itself));
+    assert_eq!(over.code, Some(2));
+    assert!(over.stderr.contains("download.csv: is a download; it would be written over"), "{}", over.stderr);
     for nothing in ["", "hello\n", "[1,2]\n"] {
         let empty = fixture.folder().join("empty.csv");
         std::fs::write(&empty, nothing).unwrap();
-        let refused = collect(&empty);
-        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
-        assert!(refused.status.code() == Some(2) && said.contains("empty.csv: no answers in it"), "{said}");
+        let Run { code, stderr: said, .. } = collect(&empty);
+        assert!(code == Some(2) && said.contains("empty.csv: no answers in it"), "{said}");
     }
-    let refused = collect(Path::new("/dev/null"));
-    let said = String::from_utf8(refused.stderr).unwrap();
-    assert!(refused.status.code() == Some(2) && said == "isostudy: /dev/null: not a file\n", "{said}");
+    let Run { code, stderr: said, .. } = collect(Path::new("/dev/null"));
+    assert!(code == Some(2) && said == "isostudy: /dev/null: not a file\n", "{said}");
 }

@@ -2,12 +2,14 @@
 
 mod answers;
 mod asking;
+mod command;
 mod data;
 mod fixture;
 mod football;
 mod page;
 
-use fixture::{Fixture, Run, files, without_measured_times};
+use command::{Run, isostudy};
+use fixture::{Fixture, files, without_measured_times};
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Stdio;
 use std::time::Duration;
@@ -318,9 +320,8 @@ fn memory_is_checked_for_the_extractor_that_runs() {
         fixture.edit("benchmark_spacing = 0.125", "benchmark_spacing = 0.002");
         fixture.edit("positions = \"accumulated\"", "positions = \"indexed\"");
         fixture.edit("memory_gib = 8.0", limit);
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
-        let output = command.arg("validate").arg(fixture.config()).output().unwrap();
-        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+        let run = Run::of(isostudy().arg("validate").arg(fixture.config()));
+        (run.code, run.stderr)
     };
     assert_eq!(validated("memory_gib = 1.0"), (Some(0), String::new()));
     let (code, said) = validated("memory_gib = 0.001");
@@ -343,12 +344,7 @@ fn a_mesh_with_another_digest_is_refused() {
     assert_eq!(code, Some(2));
     assert!(said.contains("solid.obj") && said.contains("has SHA-256"), "{said}");
     assert!(!fixture.out().exists(), "something was written");
-    let validated = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"))
-        .arg("validate")
-        .arg(fixture.config())
-        .output()
-        .unwrap();
-    assert_eq!(validated.status.code(), Some(2));
+    assert_eq!(Run::of(isostudy().arg("validate").arg(fixture.config())).code, Some(2));
 }
 
 #[test]
@@ -464,9 +460,8 @@ fn what_is_no_file_is_not_read() {
         &["extract", "--mesh", link, "--out", surface],
     ];
     for words in refused {
-        let output = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy")).args(words).output().unwrap();
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert!(output.status.code() == Some(2) && said.ends_with(": not a file\n"), "{words:?}: {said}");
+        let Run { code, stderr: said, .. } = Run::of(isostudy().args(words));
+        assert!(code == Some(2) && said.ends_with(": not a file\n"), "{words:?}: {said}");
     }
 }
 

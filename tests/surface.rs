@@ -1,52 +1,17 @@
 //! `isostudy extract` without a study, as a user runs it: formulas, volumes, meshes; what is written and what is refused.
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
+mod command;
 
+use command::{Folder, Run};
 use mesh::topology::topology;
 use mesh::{MeshFormat, TriangleMesh};
+use std::path::Path;
 
-struct Folder(tempfile::TempDir);
-
-struct Said {
-    code: i32,
-    out: String,
-    err: String,
-}
-
-impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
-        std::fs::write(self.path(name), bytes).unwrap();
-    }
-
-    fn run(&self, arguments: &[&str]) -> Said {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
-        let output = command.arg("extract").args(arguments).current_dir(self.0.path()).output().unwrap();
-        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-        Said { code: output.status.code().unwrap(), out: text(&output.stdout), err: text(&output.stderr) }
-    }
-
-    fn succeed(&self, arguments: &[&str]) -> Said {
-        let said = self.run(arguments);
-        assert_eq!(said.code, 0, "{arguments:?}: {}", said.err);
-        said
-    }
-
-    fn mesh(&self, name: &str) -> TriangleMesh {
-        let extension = Path::new(name).extension().unwrap().to_str().unwrap();
-        MeshFormat::from_extension(extension)
-            .unwrap()
-            .read(&*std::fs::read(self.path(name)).unwrap())
-            .unwrap()
-    }
+/// A mesh that was written.
+fn mesh_of(folder: &Folder, name: &str) -> TriangleMesh {
+    let extension = Path::new(name).extension().unwrap().to_str().unwrap();
+    let format = MeshFormat::from_extension(extension).unwrap();
+    format.read(&*std::fs::read(folder.path(name)).unwrap()).unwrap()
 }
 
 const BALL: [&str; 6] = [
@@ -65,18 +30,18 @@ fn ball(more: &[&'static str]) -> Vec<&'static str> {
 
 #[test]
 fn a_formula_becomes_a_mesh_in_every_format_and_on_any_number_of_threads() {
-    let folder = Folder::new();
+    let folder = Folder::of("extract");
     let arrangement = ["--arrangement", "body-centred", "--clustering", "integrated", "-o"];
     for name in ["ball.ply", "ball.obj", "ball.stl", "ball.glb"] {
         let said = folder.succeed(&[&ball(&arrangement)[..], &[name]].concat());
-        assert_eq!(said.out, format!("{name}\n"));
+        assert_eq!(said.stdout, format!("{name}\n"));
     }
-    let ply = folder.mesh("ball.ply");
+    let ply = mesh_of(&folder, "ball.ply");
     assert!(topology(&ply).is_closed_manifold());
     // Triangles face outward, though the formula is negative inside.
     assert!((ply.volume() - BALL_VOLUME).abs() < 0.02, "{}", ply.volume());
-    assert_eq!(folder.mesh("ball.obj"), ply);
-    let stl = folder.mesh("ball.stl");
+    assert_eq!(mesh_of(&folder, "ball.obj"), ply);
+    let stl = mesh_of(&folder, "ball.stl");
     assert_eq!(stl.triangles.len(), ply.triangles.len());
     assert!(topology(&stl).is_closed_manifold() && (stl.volume() - ply.volume()).abs() < 1e-6);
     assert!(std::fs::read(folder.path("ball.glb")).unwrap().starts_with(b"glTF\x02\0\0\0"));
@@ -89,7 +54,7 @@ fn a_formula_becomes_a_mesh_in_every_format_and_on_any_number_of_threads() {
 
 #[test]
 fn inside_is_the_side_that_is_asked_for() {
-    let folder = Folder::new();
+    let folder = Folder::of("extract");
     for (formula, side, isovalue) in [
         ("1 - length(x,y,z)", "above", "0"),
         ("length(x,y,z)", "below", "1"),
@@ -98,24 +63,24 @@ fn inside_is_the_side_that_is_asked_for() {
         let arguments =
             ["--field", formula, BALL[2], "--cells", "40", "--inside", side, "--isovalue", isovalue];
         folder.succeed(&[&arguments[..], &["-o", "a.ply"]].concat());
-        let volume = folder.mesh("a.ply").volume();
+        let volume = mesh_of(&folder, "a.ply").volume();
         assert!((volume - BALL_VOLUME).abs() < 0.05, "{formula} {side}: {volume}");
     }
 }
 
 #[test]
 fn the_report_is_text_or_json() {
-    let folder = Folder::new();
+    let folder = Folder::of("extract");
     let said = folder.succeed(&ball(&["-o", "ball.ply", "--quality", "--picture", "ball.png"]));
     assert!(
-        said.out.contains("closed manifold; 1 component, Euler characteristic 2, 0 boundary loops"),
+        said.stdout.contains("closed manifold; 1 component, Euler characteristic 2, 0 boundary loops"),
         "{}",
-        said.out
+        said.stdout
     );
-    assert!(said.out.ends_with("ball.ply\n"));
+    assert!(said.stdout.ends_with("ball.ply\n"));
     assert!(std::fs::read(folder.path("ball.png")).unwrap().starts_with(b"\x89PNG"));
     let said = folder.succeed(&ball(&["-o", "ball.ply", "--json"]));
-    let report: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&said.stdout).unwrap();
     assert_eq!(report["schema"], 1);
     assert_eq!(report["source"], "sqrt(x^2+y^2+z^2) - 1");
     assert_eq!(report["topology"]["euler_characteristic"], 2);
@@ -140,35 +105,39 @@ fn ball_volume(folder: &Folder, name: &str) {
 
 #[test]
 fn a_volume_becomes_a_mesh() {
-    let folder = Folder::new();
+    let folder = Folder::of("extract");
     ball_volume(&folder, "ball.nrrd");
     folder.succeed(&["--volume", "ball.nrrd", "--isovalue", "50", "-o", "ball.ply"]);
-    let mesh = folder.mesh("ball.ply");
+    let mesh = mesh_of(&folder, "ball.ply");
     assert!(topology(&mesh).is_closed_manifold());
     assert!((mesh.volume() - BALL_VOLUME).abs() < 0.1, "{}", mesh.volume());
     // Outside of the ball is solid as well, and ends where the volume ends, or is closed there.
     let around = ["--volume", "ball.nrrd", "--isovalue", "50", "--inside", "below"];
     folder.succeed(&[&around[..], &["-o", "open.ply"]].concat());
-    let open = topology(&folder.mesh("open.ply"));
+    let open = topology(&mesh_of(&folder, "open.ply"));
     folder.succeed(&[&around[..], &["-o", "closed.ply", "--close"]].concat());
-    let closed = folder.mesh("closed.ply");
+    let closed = mesh_of(&folder, "closed.ply");
     assert!(topology(&closed).is_closed_manifold() && open.components == 1);
     // It ends less than a step of 0.1 beyond the last sample on each side.
     let whole = closed.volume() + BALL_VOLUME;
     assert!((3.1f64.powi(3)..3.3f64.powi(3)).contains(&whole), "{whole}");
 
     let said = folder.run(&["--volume", "ball.nrrd", "-o", "a.ply"]);
-    assert!(said.code == 2 && said.err.contains("--isovalue"), "{}", said.err);
+    assert!(said.code == Some(2) && said.stderr.contains("--isovalue"), "{}", said.stderr);
     let said = folder.run(&["--volume", "ball.nrrd", "--isovalue", "500", "-o", "a.ply"]);
     assert!(
-        said.code == 2
-            && said.err.contains("every sample lies on one side; the volume's samples run from 0 to 96"),
+        said.code == Some(2)
+            && said.stderr.contains("every sample lies on one side; the volume's samples run from 0 to 96"),
         "{}",
-        said.err
+        said.stderr
     );
     folder.write("short.nrrd", &std::fs::read(folder.path("ball.nrrd")).unwrap()[..20_000]);
     let said = folder.run(&["--volume", "short.nrrd", "--isovalue", "50", "-o", "a.ply"]);
-    assert!(said.code == 2 && said.err.contains("short.nrrd: the data ends after 19"), "{}", said.err);
+    assert!(
+        said.code == Some(2) && said.stderr.contains("short.nrrd: the data ends after 19"),
+        "{}",
+        said.stderr
+    );
 }
 
 /// Text, so that a header of any steps can be written by hand.
@@ -182,12 +151,12 @@ fn text_volume(folder: &Folder, name: &str, sizes: [usize; 3], geometry: &str, v
 
 #[test]
 fn close_closes_whatever_the_steps_the_box_and_the_lattice() {
-    let folder = Folder::new();
+    let folder = Folder::of("extract");
     let closed = |arguments: &[&str]| {
         let said = folder.succeed(&[arguments, &["-o", "a.ply", "--quality"]].concat());
-        assert!(said.out.contains("closed manifold"), "{arguments:?}: {}", said.out);
-        assert!(said.out.contains("without area    0 triangles"), "{arguments:?}: {}", said.out);
-        (folder.mesh("a.ply"), said)
+        assert!(said.stdout.contains("closed manifold"), "{arguments:?}: {}", said.stdout);
+        assert!(said.stdout.contains("without area    0 triangles"), "{arguments:?}: {}", said.stdout);
+        (mesh_of(&folder, "a.ply"), said)
     };
     // A CT with thick slices.
     let dark_end = |i: usize| if i == 63 { -1000 } else { 1000 };
@@ -243,7 +212,7 @@ fn close_closes_whatever_the_steps_the_box_and_the_lattice() {
     text_volume(&folder, "turned.nrrd", [4; 3], geometry, |_| 1);
     for cells in ["20", "40", "80"] {
         let (_, said) = closed(&["--volume", "turned.nrrd", "--isovalue", "0.01", "--cells", cells]);
-        assert!(said.err.contains("closed where it leaves it"), "{}", said.err);
+        assert!(said.stderr.contains("closed where it leaves it"), "{}", said.stderr);
         closed(&[
             "--volume",
             "turned.nrrd",
@@ -259,32 +228,32 @@ fn close_closes_whatever_the_steps_the_box_and_the_lattice() {
 
 #[test]
 fn a_terrain_has_no_scraps_at_the_border() {
-    let folder = Folder::new();
+    let folder = Folder::of("extract");
     let terrain =
         ["--field", "z - 2*sin(x*0.7)*cos(y*0.5)", "--bounds=-8,-8,-4,8,8,4", "-o", "a.ply", "--quality"];
     for lattice in [["--cells", "64"], ["--spacing", "0.3"]] {
         for arrangement in ["body-centred", "simple-cubic", "five-tetrahedra", "face-centred"] {
             let said = folder.succeed(&[&terrain[..], &lattice, &["--arrangement", arrangement]].concat());
             let one = "; 1 component, Euler characteristic 1, 1 boundary loop";
-            assert!(said.out.contains(one), "{lattice:?} {arrangement}: {}", said.out);
+            assert!(said.stdout.contains(one), "{lattice:?} {arrangement}: {}", said.stdout);
         }
     }
 }
 
 #[test]
 fn a_mesh_becomes_another() {
-    let folder = Folder::new();
+    let folder = Folder::of("extract");
     folder.succeed(&ball(&["-o", "ball.stl"]));
     folder.succeed(&["--mesh", "ball.stl", "--cells", "40", "-o", "again.ply"]);
-    let again = folder.mesh("again.ply");
+    let again = mesh_of(&folder, "again.ply");
     assert!(topology(&again).is_closed_manifold());
     assert!((again.volume() - BALL_VOLUME).abs() < 0.06, "{}", again.volume());
     // Half a unit thicker.
     folder.succeed(&["--mesh", "ball.stl", "--cells", "40", "--isovalue", "-0.5", "-o", "thick.ply"]);
-    let thick = folder.mesh("thick.ply").volume() / BALL_VOLUME;
+    let thick = mesh_of(&folder, "thick.ply").volume() / BALL_VOLUME;
     assert!((thick - 1.5f64.powi(3)).abs() < 0.1, "{thick}");
 
-    let mut open = mesh::weld(&folder.mesh("ball.stl"));
+    let mut open = mesh::weld(&mesh_of(&folder, "ball.stl"));
     let top = |t: &[u32; 3]| t.iter().any(|&v| open.positions[v as usize].z > 0.8);
     let kept = open.triangles.iter().copied().filter(|t| !top(t)).collect();
     open.triangles = kept;
@@ -295,16 +264,20 @@ fn a_mesh_becomes_another() {
     };
     write("open.ply", &open);
     let said = folder.run(&["--mesh", "open.ply", "-o", "a.ply"]);
-    assert_eq!(said.code, 2);
-    assert!(said.err.contains("edges at holes") && said.err.contains("--allow-open"), "{}", said.err);
+    assert_eq!(said.code, Some(2));
+    assert!(
+        said.stderr.contains("edges at holes") && said.stderr.contains("--allow-open"),
+        "{}",
+        said.stderr
+    );
     folder.succeed(&["--mesh", "open.ply", "--allow-open", "--cells", "40", "-o", "a.ply"]);
-    let spanned = folder.mesh("a.ply");
+    let spanned = mesh_of(&folder, "a.ply");
     assert!(topology(&spanned).is_closed_manifold() && spanned.volume() > 0.85 * BALL_VOLUME);
 
     write("inward.ply", &mesh::repair::flip(&again));
     let said = folder.succeed(&["--mesh", "inward.ply", "--cells", "40", "-o", "a.ply"]);
-    assert!(said.err.contains("inward.ply: its triangles face inward: turned round"), "{}", said.err);
-    assert!(folder.mesh("a.ply").volume() > 4.0);
+    assert!(said.stderr.contains("inward.ply: its triangles face inward: turned round"), "{}", said.stderr);
+    assert!(mesh_of(&folder, "a.ply").volume() > 4.0);
     // Of two balls, the second faces inward and is no cavity of the first.
     let apart = mesh::repair::flip(&again.transformed(|p| p * 0.5 + glam::Vec3::new(3.0, 0.0, 0.0)));
     let moved = |t: &[u32; 3]| t.map(|v| v + again.positions.len() as u32);
@@ -317,16 +290,20 @@ fn a_mesh_becomes_another() {
         },
     );
     let said = folder.succeed(&["--mesh", "two.ply", "--cells", "60", "-o", "a.ply"]);
-    assert!(said.err.contains("two.ply: part 2 of 2, from ["), "{}", said.err);
-    assert!((folder.mesh("a.ply").volume() - again.volume()).abs() < 0.1);
+    assert!(said.stderr.contains("two.ply: part 2 of 2, from ["), "{}", said.stderr);
+    assert!((mesh_of(&folder, "a.ply").volume() - again.volume()).abs() < 0.1);
     folder.write("nan.obj", "v 0 0 0\nv 1 nan 0\n");
     let said = folder.run(&["--mesh", "nan.obj", "-o", "a.ply"]);
-    assert!(said.code == 2 && said.err.contains("nan.obj: line 2: `nan` is not a finite"), "{}", said.err);
+    assert!(
+        said.code == Some(2) && said.stderr.contains("nan.obj: line 2: `nan` is not a finite"),
+        "{}",
+        said.stderr
+    );
 }
 
 #[test]
 fn every_arrangement_has_a_clustering_of_its_own() {
-    let folder = Folder::new();
+    let folder = Folder::of("extract");
     for (arrangement, clustering) in [
         ("body-centred", "integrated"),
         ("simple-cubic", "integrated"),
@@ -334,7 +311,7 @@ fn every_arrangement_has_a_clustering_of_its_own() {
         ("face-centred", "edge-collapse"),
     ] {
         let said = folder.succeed(&ball(&["-o", "a.ply", "--json", "--arrangement", arrangement]));
-        let report: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&said.stdout).unwrap();
         assert_eq!(report["clustering"], clustering, "{arrangement}");
         assert!((report["volume"].as_f64().unwrap() - BALL_VOLUME).abs() < 0.02, "{arrangement}");
     }
@@ -343,7 +320,7 @@ fn every_arrangement_has_a_clustering_of_its_own() {
 /// A vertex that no triangle uses may lie anywhere; scanners leave some.
 #[test]
 fn what_no_triangle_uses_does_not_count() {
-    let folder = Folder::new();
+    let folder = Folder::of("extract");
     folder.succeed(&ball(&["-o", "ball.obj"]));
     let mut text = std::fs::read_to_string(folder.path("ball.obj")).unwrap();
     text += "v 0 0 500\n";
@@ -351,22 +328,26 @@ fn what_no_triangle_uses_does_not_count() {
     for (input, output) in [("ball.obj", "a.ply"), ("far.obj", "b.ply")] {
         folder.succeed(&["--mesh", input, "--cells", "30", "-o", output]);
     }
-    assert_eq!(folder.mesh("a.ply"), folder.mesh("b.ply"));
+    assert_eq!(mesh_of(&folder, "a.ply"), mesh_of(&folder, "b.ply"));
 }
 
 #[test]
 fn nothing_is_written_over_that_was_given() {
-    let folder = Folder::new();
+    let folder = Folder::of("extract");
     folder.succeed(&ball(&["-o", "ball.ply"]));
     let before = std::fs::read(folder.path("ball.ply")).unwrap();
     std::fs::create_dir(folder.path("below")).unwrap();
     for out in ["ball.ply", "./ball.ply", "below/../ball.ply"] {
         let said = folder.run(&["--mesh", "ball.ply", "-o", out]);
-        assert!(said.code == 2 && said.err.contains("is the input"), "{out}: {}", said.err);
+        assert!(said.code == Some(2) && said.stderr.contains("is the input"), "{out}: {}", said.stderr);
     }
     for picture in ["ball.ply", "ball.jpg", "ball"] {
         let said = folder.run(&ball(&["-o", "ball.ply", "--picture", picture]));
-        assert!(said.code == 2 && said.err.contains("pictures are .png"), "{picture}: {}", said.err);
+        assert!(
+            said.code == Some(2) && said.stderr.contains("pictures are .png"),
+            "{picture}: {}",
+            said.stderr
+        );
     }
     assert_eq!(std::fs::read(folder.path("ball.ply")).unwrap(), before);
 }
@@ -374,22 +355,22 @@ fn nothing_is_written_over_that_was_given() {
 /// A slab of four samples a side whose slices lie far apart would take a million cubes for each of them.
 #[test]
 fn a_lattice_far_finer_than_the_samples_is_asked_for_or_not_made() {
-    let folder = Folder::new();
+    let folder = Folder::of("extract");
     let header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 4 4 4\nencoding: raw\nspacings: 1 1 1e6\n\n";
     let values: Vec<u8> = (0..64).map(|i| if i < 32 { 0 } else { 100 }).collect();
     folder.write("far.nrrd", [header.as_bytes(), &values].concat());
     let said = folder.run(&["--volume", "far.nrrd", "--isovalue", "50.5", "-o", "a.ply"]);
     assert!(
-        said.code == 2 && said.err.contains("far.nrrd: cubes as small as its smallest step, 1.0"),
+        said.code == Some(2) && said.stderr.contains("far.nrrd: cubes as small as its smallest step, 1.0"),
         "{}",
-        said.err
+        said.stderr
     );
     folder.succeed(&["--volume", "far.nrrd", "--isovalue", "50.5", "--spacing", "100000", "-o", "a.ply"]);
 }
 
 #[test]
 fn what_cannot_be_done_is_said_in_one_line() {
-    let folder = Folder::new();
+    let folder = Folder::of("extract");
     #[cfg(unix)]
     std::os::unix::fs::symlink("/dev/zero", folder.path("zeros.stl")).unwrap();
     for (arguments, want) in [
@@ -431,15 +412,15 @@ fn what_cannot_be_done_is_said_in_one_line() {
         (vec!["--mesh", "zeros.stl", "-o", "a.ply"], "zeros.stl: not a file"),
     ] {
         let said = folder.run(&arguments);
-        assert_eq!(said.code, 2, "{arguments:?}: {}", said.err);
-        assert!(said.err.contains(want), "{arguments:?}: {}", said.err);
-        assert!(!said.err.contains("panicked") && said.out.is_empty(), "{}", said.err);
+        assert_eq!(said.code, Some(2), "{arguments:?}: {}", said.stderr);
+        assert!(said.stderr.contains(want), "{arguments:?}: {}", said.stderr);
+        assert!(!said.stderr.contains("panicked") && said.stdout.is_empty(), "{}", said.stderr);
     }
     // Deep or endless input ends, and nothing is left behind.
     let deep = format!("{}x{}", "(".repeat(5000), ")".repeat(5000));
     let said = folder.run(&["--field", &deep, BALL[2], "-o", "a.ply"]);
-    assert!(said.code == 2 && said.err.contains("nested deeper than 200 levels"));
-    assert_eq!(std::fs::read_dir(folder.0.path()).unwrap().count(), usize::from(cfg!(unix)));
+    assert!(said.code == Some(2) && said.stderr.contains("nested deeper than 200 levels"));
+    assert_eq!(std::fs::read_dir(folder.root()).unwrap().count(), usize::from(cfg!(unix)));
 }
 
 /// A header that claims so many bytes along each axis, as gzip.
@@ -450,7 +431,7 @@ fn claim(side: u32) -> Vec<u8> {
 
 #[test]
 fn memory_has_a_limit_that_is_named() {
-    let folder = Folder::new();
+    let folder = Folder::of("extract");
     // Four bytes a sample: 27,000 samples of a ball in a cube need 108,000, and what is known of blocks of them.
     let n = 30u8;
     let distance = |i: u8| f64::from(i) - f64::from(n - 1) / 2.0;
@@ -492,8 +473,8 @@ fn memory_has_a_limit_that_is_named() {
         (vec!["study.toml", "--memory", "4GiB"], "cannot be used with"),
     ] {
         let said = folder.run(&arguments);
-        assert!(said.code == 2 && said.out.is_empty(), "{arguments:?}: {}", said.err);
-        assert!(said.err.contains(want), "{arguments:?}: {}", said.err);
+        assert!(said.code == Some(2) && said.stdout.is_empty(), "{arguments:?}: {}", said.stderr);
+        assert!(said.stderr.contains(want), "{arguments:?}: {}", said.stderr);
     }
     assert!(!folder.path("a.ply").exists());
     folder.succeed(&of("ball.nrrd", &["--memory", "5MB", "--threads", "1"]));
@@ -503,9 +484,9 @@ fn memory_has_a_limit_that_is_named() {
 #[cfg(unix)]
 #[test]
 fn pipes_and_devices_are_not_read() {
-    let folder = Folder::new();
+    let folder = Folder::of("extract");
     for pipe in ["pipe.ply", "pipe.nrrd", "pipe.mha", "pipe.raw", "pipe.toml"] {
-        assert!(Command::new("mkfifo").arg(folder.path(pipe)).status().unwrap().success());
+        assert!(std::process::Command::new("mkfifo").arg(folder.path(pipe)).status().unwrap().success());
     }
     for device in ["zero.obj", "zero.nhdr", "zero.raw"] {
         std::os::unix::fs::symlink("/dev/zero", folder.path(device)).unwrap();
@@ -533,17 +514,15 @@ fn pipes_and_devices_are_not_read() {
     let all =
         volumes.map(of_volume).into_iter().chain(meshes.map(of_mesh)).chain(distances).chain(of_volumes);
     for (words, name) in all {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_isostudy"));
-        let output = command.args(&words).current_dir(folder.0.path()).output().unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
+        let said = Run::of(folder.isostudy().args(&words));
         let data = match name {
             "to-pipe.nhdr" => "pipe.raw",
             "to-device.nhdr" => "zero.raw",
             _ => name,
         };
         assert_eq!(
-            (output.status.code(), &*said),
-            (Some(2), &*format!("isostudy: {data}: not a file\n")),
+            (said.code, said.stderr),
+            (Some(2), format!("isostudy: {data}: not a file\n")),
             "{words:?}"
         );
     }
@@ -552,14 +531,13 @@ fn pipes_and_devices_are_not_read() {
 #[cfg(target_os = "linux")]
 #[test]
 fn what_cannot_be_said_ends_nothing() {
-    let folder = Folder::new();
+    let folder = Folder::of("extract");
     let turned =
         "space dimension: 3\nspace origin: (0,0,0)\nspace directions: (0.6,0.8,0) (-0.8,0.6,0) (0,0,1)";
     text_volume(&folder, "turned.nrrd", [4; 3], turned, |_| 1);
     let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
-    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_isostudy"));
     let words = ["extract", "--volume", "turned.nrrd", "--isovalue", "0.5", "-o", "a.ply"];
-    let ended = command.args(words).current_dir(folder.0.path()).stderr(full).status().unwrap();
+    let ended = folder.isostudy().args(words).stderr(full).status().unwrap();
     assert!(ended.success(), "{ended}");
     assert!(folder.path("a.ply").is_file());
 }

@@ -1,24 +1,24 @@
 //! Planted truths, through the command and the files that people use. Every number of the tables is proved by
 //! `isostudy analyse --self-test`; here it is proved that forms, page, server and files lead to the same tables.
 
+mod command;
 mod fixture;
 mod http;
 mod server;
 
+use command::Run;
 use fixture::Fixture;
 use serde_json::{Value, json};
 use server::{Server, TOKEN, answer, begin};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 /// A line of a table, by column.
 type Row = BTreeMap<String, String>;
 
 /// Runs the command, which must end well.
 fn isostudy<S: AsRef<std::ffi::OsStr>>(words: &[S]) {
-    let output = Command::new(env!("CARGO_BIN_EXE_isostudy")).args(words).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Run::succeed(command::isostudy().args(words));
 }
 
 /// The rows of a CSV without quoted cells.

@@ -7,9 +7,9 @@ use design::machine::Machine;
 /// The machine, and the commit and the sources that this program was built from.
 pub(crate) fn read() -> Machine {
     let mut machine = bench::read_machine();
-    let told = |text: &'static str| (!text.is_empty()).then_some(text);
-    machine.build.commit = told(env!("ISOSTUDY_COMMIT")).map(Into::into);
-    machine.build.dirty = told(env!("ISOSTUDY_DIRTY")).map(|dirty| dirty == "yes");
+    let known = |text: &'static str| (!text.is_empty()).then_some(text);
+    machine.build.commit = known(env!("ISOSTUDY_COMMIT")).map(Into::into);
+    machine.build.dirty = known(env!("ISOSTUDY_DIRTY")).map(|dirty| dirty == "yes");
     machine.build.sources = Some(Inputs::of_sources(source_digests::TIMINGS).finish());
     machine
 }

@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What a measuring process is told, as options of `isostudy bench worker`: written by [`Invocation::command`], read by clap.
-#[derive(Debug, Args)]
+#[derive(Debug, PartialEq, Args)]
 pub(crate) struct Invocation {
     study: PathBuf,
     /// Digest that the study file must have
@@ -78,6 +78,11 @@ impl Job<'_> {
 }
 
 impl Pipeline<'_> {
+    /// Does a job, in measuring processes that this program starts of itself. What a killed run left in the journal is not
+    /// measured again.
+    ///
+    /// # Errors
+    /// If a process cannot be started or refuses, or the journal cannot be written.
     pub(super) fn run(
         &self,
         job: &Job<'_>,
@@ -153,6 +158,9 @@ pub(super) fn swept<'s>(study: &'s Study, section: &SweepSection) -> Vec<&'s Con
 }
 
 /// The measuring process: answers requests on standard input until there are no more.
+///
+/// # Errors
+/// If the study was changed meanwhile, or a request cannot be read or answered.
 pub(crate) fn measure(invocation: &Invocation) -> Result<()> {
     let pinned = if invocation.pin { bench::pin(invocation.threads) } else { None };
     let study = input::study(&invocation.study)?;
@@ -189,4 +197,44 @@ pub(crate) fn measure(invocation: &Invocation) -> Result<()> {
     };
     let (requests, replies) = (std::io::stdin().lock(), std::io::stdout().lock());
     Ok(bench::serve(requests, replies, pinned, invocation.threads, &mut Clock::new(prepared))?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        invocation: Invocation,
+    }
+
+    #[test]
+    fn what_a_process_is_told_is_what_it_reads() {
+        let least = Invocation {
+            study: "a study.toml".into(),
+            sha256: "00ff".into(),
+            threads: 3,
+            pin: false,
+            cells: None,
+            without: Vec::new(),
+            spacings: None,
+        };
+        let most = Invocation {
+            study: "study.toml".into(),
+            sha256: "ab".into(),
+            threads: 1,
+            pin: true,
+            cells: Some(50),
+            without: vec!["ss_bi".into(), "as_fp".into()],
+            spacings: Some("spacings.json".into()),
+        };
+        for invocation in [least, most] {
+            let command = invocation.command(Path::new("isostudy"));
+            let words: Vec<_> = command.get_args().collect();
+            assert_eq!(words[..2], ["bench", "worker"]);
+            assert_eq!(Line::parse_from(&words[1..]).invocation, invocation);
+        }
+    }
 }
