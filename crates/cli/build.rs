@@ -34,17 +34,16 @@ const ASIDE: [&str; 4] = ["main", "commands", "outcome", "terminal"];
 fn main() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let shared = [root.join("Cargo.lock"), root.join("assets")];
-    for path in &shared {
-        println!("cargo::rerun-if-changed={}", path.display());
-    }
     for name in CRATES {
         let folder = root.join("crates").join(name);
-        println!("cargo::rerun-if-changed={}", folder.join("src").display());
         // Only one crate has a page.
         let page = Some(folder.join("page")).filter(|page| page.is_dir());
         let own = [folder.join("src"), folder.join("Cargo.toml")].into_iter().chain(page);
-        let mut files: Vec<PathBuf> =
-            shared.iter().cloned().chain(own).flat_map(|path| files(&path)).collect();
+        let mut files = Vec::new();
+        for path in shared.iter().cloned().chain(own) {
+            println!("cargo::rerun-if-changed={}", path.display());
+            files.extend(files_at(&path));
+        }
         if name == "cli" {
             let src = folder.join("src");
             let pages = take_module(&mut files, &src, PAGES);
@@ -59,9 +58,8 @@ fn main() {
 /// Takes a module's files out of a list: `x.rs` and all in `x`.
 fn take_module(files: &mut Vec<PathBuf>, src: &Path, module: &str) -> Vec<PathBuf> {
     let (file, folder) = (src.join(module).with_extension("rs"), src.join(module));
-    let (taken, left) = files.drain(..).partition(|path| *path == file || path.starts_with(&folder));
-    *files = left;
-    let taken: Vec<PathBuf> = taken;
+    let taken: Vec<PathBuf> =
+        files.extract_if(.., |path| *path == file || path.starts_with(&folder)).collect();
     assert!(!taken.is_empty(), "{module}: there is no such module; it has moved, and this list must follow");
     taken
 }
@@ -107,13 +105,13 @@ fn read(path: &Path) -> Vec<u8> {
 }
 
 /// Every file at or below a path.
-fn files(path: &Path) -> Vec<PathBuf> {
+fn files_at(path: &Path) -> Vec<PathBuf> {
     if !path.is_dir() {
         return vec![path.into()];
     }
     let entries = std::fs::read_dir(path).unwrap_or_else(|error| unreadable(path, &error));
     let below = |entry: std::io::Result<std::fs::DirEntry>| {
-        files(&entry.unwrap_or_else(|error| unreadable(path, &error)).path())
+        files_at(&entry.unwrap_or_else(|error| unreadable(path, &error)).path())
     };
     entries.flat_map(below).collect()
 }
