@@ -44,7 +44,7 @@ impl Study {
                 }
             }
         }
-        folder.write("study.toml", &STUDY.replace("schema = 1\n", &format!("schema = 1\n{comparisons}]\n")));
+        folder.write("study.toml", STUDY.replace("schema = 1\n", &format!("schema = 1\n{comparisons}]\n")));
         fs::copy(root().join("scripts/methods/example.py"), folder.path("example.py")).unwrap();
         fs::copy(root().join("configs/cpu/x86-64-v3.toml"), folder.path("cpu.toml")).unwrap();
         fs::write(folder.path("scan.nrrd"), scan()).unwrap();
@@ -72,7 +72,7 @@ impl Study {
     fn edit(&self, from: &str, to: &str) {
         let text = fs::read_to_string(self.path("study.toml")).unwrap();
         assert!(text.contains(from), "{from} is not in the study");
-        self.write("study.toml", &text.replacen(from, to, 1));
+        self.write("study.toml", text.replacen(from, to, 1));
     }
 
     fn extract(&self, arguments: &[&str]) {

@@ -36,8 +36,7 @@ fn both_ways_in_units_and_of_the_diagonal_with_places() {
         (vec![3.0, 3.0, 4.0], vec![1.0, 1.0, 0.0])
     );
 
-    let text = folder.run(&["small.obj", "large.obj", "--density", "5000"]);
-    let text = text.stdout;
+    let text = folder.run(&["small.obj", "large.obj", "--density", "5000"]).stdout;
     assert!(
         text.contains(
             "farthest vertex (3.000000, 3.000000, 4.000000), nearest point (1.000000, 1.000000, 0)"
