@@ -24,6 +24,7 @@ mod checked_study;
 mod faults;
 mod given_answers;
 mod named;
+mod object_of_study;
 mod reading_rules;
 mod source_arguments;
 mod study_forms;

@@ -10,6 +10,7 @@
 
 mod budgets;
 mod bundle;
+mod formats;
 mod meshes;
 mod pages;
 mod stimuli;

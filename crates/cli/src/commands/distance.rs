@@ -1,11 +1,12 @@
 //! `isostudy distance`: how far two surfaces are from each other.
 
+use super::object_of_study::object_of_study;
 use super::source_arguments::SourceArguments;
 use crate::fields::Fields;
 use crate::outcome::Outcome;
 use crate::terminal::{say, significant};
 use crate::{input, mesh_file, prepare};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::{ArgGroup, Args};
 use extract::{Arrangement, Execution, Grid, Method, Tetrahedra};
 use field::ScalarField;
@@ -102,12 +103,8 @@ fn to_mesh(arguments: &Arguments, a: &Surface, path: &Path, sampling: &Sampling)
 /// Against the isosurface of a study's object, in the object's volume.
 fn to_object(arguments: &Arguments, a: &Surface, id: &str, sampling: &Sampling) -> Result<Metro> {
     let study = input::study(&arguments.study)?;
-    let objects = &study.file.objects;
-    let Some(index) = objects.iter().position(|object| object.id == id) else {
-        let known: Vec<&str> = objects.iter().map(|object| object.id.as_str()).collect();
-        bail!("--object {id}: {} has {}", study.path.display(), known.join(", "));
-    };
-    let object = &objects[index];
+    let index = object_of_study(&study, id)?;
+    let object = &study.file.objects[index];
     let spacing = arguments.source.spacing.map_or(object.benchmark_spacing, f64::from);
     let grid = prepare::grid(object, spacing);
     let fields = Fields::new(&study);

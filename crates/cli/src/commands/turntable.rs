@@ -1,6 +1,7 @@
 //! `isostudy turntable`: the animations of a study, or one of a mesh in a file, in any look.
 
 use super::named::named;
+use super::object_of_study::object_of_study;
 use super::source_arguments::SourceArguments;
 use super::study_run::{Run, Selection, with_selection};
 use crate::fields::Fields;
@@ -242,12 +243,8 @@ fn error_colouring(arguments: &Arguments, mesh: &TriangleMesh) -> Result<Colouri
     let most = own.error_scale.unwrap_or(ERROR_SCALE);
     if let Some(id) = &own.object {
         let study = input::study(&own.study)?;
-        let objects = &study.file.objects;
-        let Some(index) = objects.iter().position(|object| object.id == *id) else {
-            let known: Vec<&str> = objects.iter().map(|object| object.id.as_str()).collect();
-            bail!("--object {id}: {} has {}", study.path.display(), known.join(", "));
-        };
-        let object = &objects[index];
+        let index = object_of_study(&study, id)?;
+        let object = &study.file.objects[index];
         let spacing = arguments.source.spacing.unwrap_or(object.stimulus_spacing as f32);
         let fields = Fields::new(&study);
         let made = fields.get(index)?;

@@ -1,6 +1,7 @@
 //! The sweep over resolutions and threads: each pair of them a benchmark run of its own, so that a killed sweep goes on.
 
 use super::Pipeline;
+use super::formats::{write_figure, write_table};
 use super::worker::{Job, swept};
 use crate::prepare::{self, Wanted};
 use crate::store::{Inputs, Stamp, remove_if_there};
@@ -46,14 +47,10 @@ impl Pipeline<'_> {
         self.store.stage("bench/sweep", inputs, |writer| {
             writer.write_json("bench/sweep/sweep.json", &found)?;
             for table in &tables {
-                let path = format!("bench/sweep/{}", table.name);
-                writer.write(&format!("{path}.csv"), table.to_csv().as_bytes())?;
-                writer.write(&format!("{path}.md"), table.to_markdown().as_bytes())?;
-                writer.write(&format!("{path}.tex"), table.to_latex().as_bytes())?;
+                write_table(writer, "bench/sweep", table)?;
             }
             for figure in analysis::sweep_figures(self.study, &found)? {
-                writer.write(&format!("bench/sweep/{}.svg", figure.name), figure.svg.as_bytes())?;
-                writer.write(&format!("bench/sweep/{}.png", figure.name), &figure.png)?;
+                write_figure(writer, "bench/sweep", &figure)?;
             }
             Ok(())
         })?;

@@ -1,5 +1,6 @@
 //! Tables, figures and the report, from records, timings and answers.
 
+use super::formats::{write_figure, write_table};
 use super::pages::write_report;
 use super::{Meshes, Pipeline};
 use crate::source_digests;
@@ -144,10 +145,9 @@ fn write_frames(writer: &mut Writer<'_>, frames: &[LongFrame]) -> Result<()> {
 
 fn write_figures(writer: &mut Writer<'_>, figures: &[Figure]) -> Result<()> {
     let mut entries = Vec::new();
-    for Figure { name, caption, svg, png } in figures {
-        writer.write(&format!("figures/{name}.svg"), svg.as_bytes())?;
-        writer.write(&format!("figures/{name}.png"), png)?;
-        entries.push(FigureEntry { name: name.clone(), caption: caption.clone() });
+    for figure in figures {
+        write_figure(writer, "figures", figure)?;
+        entries.push(FigureEntry { name: figure.name.clone(), caption: figure.caption.clone() });
     }
     writer.write_json(FIGURE_CONTENTS, &entries)
 }
@@ -155,10 +155,7 @@ fn write_figures(writer: &mut Writer<'_>, figures: &[Figure]) -> Result<()> {
 fn write_tables(writer: &mut Writer<'_>, tables: &[Table]) -> Result<()> {
     let mut entries = Vec::new();
     for table in tables {
-        let path = format!("tables/{}", table.name);
-        writer.write(&format!("{path}.csv"), table.to_csv().as_bytes())?;
-        writer.write(&format!("{path}.md"), table.to_markdown().as_bytes())?;
-        writer.write(&format!("{path}.tex"), table.to_latex().as_bytes())?;
+        write_table(writer, "tables", table)?;
         let (name, caption) = (table.name.clone(), table.caption.clone());
         entries.push(TableEntry { name, caption, html: table.to_html() });
     }

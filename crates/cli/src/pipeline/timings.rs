@@ -1,6 +1,7 @@
 //! The benchmark: every configuration timed, in rounds, in processes of its own; and what follows from the samples.
 
 use super::Pipeline;
+use super::formats::write_table;
 use super::worker::{Job, timed};
 use crate::store::{Inputs, Stamp, remove_if_there};
 use crate::terminal::progress::Step;
@@ -71,10 +72,7 @@ impl Pipeline<'_> {
             let folder = &timings.stage;
             writer.write_json(&format!("{folder}/statements.json"), &statements)?;
             for table in &tables {
-                let path = format!("{folder}/{}", table.name);
-                writer.write(&format!("{path}.csv"), table.to_csv().as_bytes())?;
-                writer.write(&format!("{path}.md"), table.to_markdown().as_bytes())?;
-                writer.write(&format!("{path}.tex"), table.to_latex().as_bytes())?;
+                write_table(writer, folder, table)?;
             }
             Ok(())
         })?;
