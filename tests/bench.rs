@@ -221,17 +221,34 @@ fn comparisons_end_as_scripts_expect() {
 }
 
 #[test]
+fn only_what_did_the_same_work_is_compared() {
+    let pair = Pair::new();
+    pair.change_b(|run| run["workloads"][0]["digest"] = "other".into());
+    let compared = pair.compare(&["--format", "json"]);
+    let found: Value = serde_json::from_str(&compared.stdout).unwrap();
+    let of_run: Value = serde_json::from_slice(&std::fs::read(&pair.a).unwrap()).unwrap();
+    let changed = &of_run["workloads"][0]["id"];
+    assert_eq!(found["changed"], serde_json::json!([changed]));
+    let rows = found["rows"].as_array().unwrap();
+    assert!(!rows.is_empty() && rows.iter().all(|row| row["id"] != *changed), "{found}");
+    let named = pair.compare(&[]);
+    assert!(named.stdout.contains("Asked for different extractions"), "{}", named.stdout);
+}
+
+#[test]
 fn what_cannot_be_compared_is_refused_by_name() {
     let pair = Pair::new();
-    pair.change_b(|run| run["workload"] = "other".into());
+    pair.change_b(|run| {
+        run["workloads"].as_array_mut().unwrap().iter_mut().for_each(|of| of["digest"] = "other".into());
+    });
     let refused = pair.compare(&["--across-machines"]);
     assert_eq!(refused.code, Some(2));
     assert!(refused.stderr.contains("different extractions"), "{}", refused.stderr);
     pair.change_b(|run| run["schema"] = 1.into());
     let refused = pair.compare(&[]);
     assert_eq!(refused.code, Some(2));
-    assert!(refused.stderr.contains("b.json: schema = 1: this version reads 2"), "{}", refused.stderr);
-    pair.change_b(|run| run["schema"] = 2.into());
+    assert!(refused.stderr.contains("b.json: schema = 1: this version reads 3"), "{}", refused.stderr);
+    pair.change_b(|run| run["schema"] = 3.into());
     pair.change_b(|run| run["samples"][3]["vertex_s"] = (-0.5).into());
     let refused = pair.compare(&[]);
     assert_eq!(refused.code, Some(2));

@@ -36,7 +36,7 @@ pub fn import(
     Ok(BenchRun {
         schema: BenchRun::SCHEMA,
         study: source.into(),
-        workload: None,
+        workloads: Vec::new(),
         imported_from: Some(source.into()),
         warmup: 0,
         iterations,

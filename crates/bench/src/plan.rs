@@ -1,6 +1,7 @@
 //! What is run, how often, and in which order.
 
 use design::machine::CpuProfile;
+use design::record::Workload;
 use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -23,8 +24,8 @@ const AA_ORDERS: u32 = 1 << 31;
 pub struct Plan {
     /// The study's id.
     pub study: String,
-    /// Digest of what the configurations ask of the extractor.
-    pub workload: String,
+    /// What the configurations ask of the extractor.
+    pub workloads: Vec<Workload>,
     /// Rounds run and thrown away at the start of every sitting.
     pub warmup: u32,
     /// Rounds measured; at least 1.

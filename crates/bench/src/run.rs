@@ -171,7 +171,7 @@ fn empty(plan: &Plan, machine: Machine) -> BenchRun {
     BenchRun {
         schema: BenchRun::SCHEMA,
         study: plan.study.clone(),
-        workload: Some(plan.workload.clone()),
+        workloads: plan.workloads.clone(),
         imported_from: None,
         warmup: plan.warmup,
         iterations: plan.iterations,

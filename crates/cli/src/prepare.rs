@@ -113,11 +113,6 @@ impl Spacings {
         self.0.iter().find(|(of, for_, _)| of == id && *for_ == purpose).map(|(.., spacing)| *spacing)
     }
 
-    /// Those for one purpose.
-    pub(crate) fn only_for(&self, purpose: Purpose) -> Self {
-        Self(self.0.iter().filter(|(_, of, _)| *of == purpose).cloned().collect())
-    }
-
     /// Whether nothing was looked for.
     pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()

@@ -215,6 +215,15 @@ pub struct SweepMesh {
     pub published_aspect_ratio_mean: f64,
 }
 
+/// What was asked of the extractor for one configuration: times of different work say nothing of each other.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Workload {
+    /// Which configuration.
+    pub id: ConfigurationId,
+    /// Digest of the field, the box, the spacing, the isovalue and the recipe.
+    pub digest: String,
+}
+
 /// A benchmark run: every sample, the plan it followed, the machine it ran on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BenchRun {
@@ -222,9 +231,8 @@ pub struct BenchRun {
     pub schema: u32,
     /// The study's id.
     pub study: String,
-    /// Digest of everything that was asked of the extractor; runs of different work cannot be compared. `None` if it is not
-    /// known.
-    pub workload: Option<String>,
+    /// What was asked of the extractor, configuration by configuration; empty if it is not known.
+    pub workloads: Vec<Workload>,
     /// Where the numbers are from if they were not measured here: each sample is then a mean that somebody published.
     pub imported_from: Option<String>,
     /// Rounds run and thrown away at the start of every sitting.
@@ -260,7 +268,7 @@ pub struct BenchRun {
 impl BenchRun {
     /// The version of the layout that is written and read here. 2 has the edge collapse as a stage of its own, the A/A
     /// block, load, memory and resumptions.
-    pub const SCHEMA: u32 = 2;
+    pub const SCHEMA: u32 = 3;
 }
 
 /// One timed extraction. The six stages add up to the total.

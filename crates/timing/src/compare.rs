@@ -28,6 +28,8 @@ pub struct Comparison {
     pub rows: Vec<Row>,
     /// Configurations that only one of the runs has.
     pub unmatched: Vec<ConfigurationId>,
+    /// Configurations of which other extractions were asked in B: another field, spacing, isovalue or recipe.
+    pub changed: Vec<ConfigurationId>,
 }
 
 /// One stage of one configuration in both runs.
@@ -64,7 +66,7 @@ pub struct Limits {
     pub absolute_s: f64,
 }
 
-/// Compares run B with run A. `across` are the differences of their machines, if they are to be compared nevertheless.
+/// Compares run B with run A, where both did the same work. `across` are the differences of their machines, if they are to be compared nevertheless.
 ///
 /// The interval of a ratio is made from the order-statistic intervals of both medians, each end at its own distance, by the
 /// rule for differences of independent estimates (Zou & Donner 2008), on logarithms. It speaks of the rounds that were
@@ -73,7 +75,11 @@ pub fn compare(a: &BenchRun, b: &BenchRun, across: Vec<String>) -> Comparison {
     let floors = [a, b].map(NoiseFloor::of);
     let shift = speed_shift(a, b);
     let (in_a, in_b) = (by_configuration(a), by_configuration(b));
-    let both: Vec<_> = in_a.iter().filter_map(|(id, a)| Some((*id, [a, series::of(&in_b, id)?]))).collect();
+    let mut both: Vec<_> =
+        in_a.iter().filter_map(|(id, a)| Some((*id, [a, series::of(&in_b, id)?]))).collect();
+    let changed: Vec<_> =
+        both.iter().map(|(id, _)| *id).filter(|id| asks_otherwise(a, b, id)).cloned().collect();
+    both.retain(|(id, _)| !changed.contains(id));
     let without = |one: &[(&'_ ConfigurationId, Vec<&BenchSample>)], other: &Series<'_>| {
         let alone = one.iter().filter(|(id, _)| series::of(other, id).is_none());
         alone.map(|(id, _)| (*id).clone()).collect::<Vec<_>>()
@@ -93,7 +99,14 @@ pub fn compare(a: &BenchRun, b: &BenchRun, across: Vec<String>) -> Comparison {
         speed_shift: shift,
         rows: stages.into_iter().flat_map(of_stage).collect(),
         unmatched: alone,
+        changed,
     }
+}
+
+/// Whether both runs tell what a configuration asked of the extractor, and it is not the same.
+fn asks_otherwise(a: &BenchRun, b: &BenchRun, id: &ConfigurationId) -> bool {
+    let [a, b] = [a, b].map(|run| run.workloads.iter().find(|workload| workload.id == *id));
+    a.zip(b).is_some_and(|(a, b)| a.digest != b.digest)
 }
 
 impl Comparison {

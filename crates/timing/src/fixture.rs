@@ -63,7 +63,7 @@ pub(crate) fn bench_of(study: &Study, rounds: u32) -> BenchRun {
     BenchRun {
         schema: BenchRun::SCHEMA,
         study: study.file.study.id.clone(),
-        workload: None,
+        workloads: Vec::new(),
         imported_from: None,
         warmup: 1,
         iterations: rounds,

@@ -179,7 +179,7 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
             comparison.across.join("; ")
         ));
     }
-    if a.workload.is_none() || b.workload.is_none() {
+    if a.workloads.is_empty() || b.workloads.is_empty() {
         totals.notes.push(
             "One of them does not tell what was asked of the extractor: see to it that resolutions are the same.".into(),
         );
@@ -194,6 +194,13 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
     if !comparison.unmatched.is_empty() {
         let ids: Vec<String> = comparison.unmatched.iter().map(ToString::to_string).collect();
         totals.notes.push(format!("In one of the runs only: {}.", ids.join(", ")));
+    }
+    if !comparison.changed.is_empty() {
+        let ids: Vec<String> = comparison.changed.iter().map(ToString::to_string).collect();
+        totals.notes.push(format!(
+            "Asked for different extractions (another field, spacing, isovalue or recipe), and left out: {}.",
+            ids.join(", ")
+        ));
     }
     for (name, run) in [("A", a), ("B", b)] {
         totals.notes.extend(warnings(run).into_iter().map(|warning| format!("{name}: {warning}")));

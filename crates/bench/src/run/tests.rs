@@ -86,7 +86,7 @@ pub(crate) fn machine() -> Machine {
 pub(crate) fn plan() -> Plan {
     Plan {
         study: "mock".into(),
-        workload: "spheres".into(),
+        workloads: Vec::new(),
         warmup: 2,
         iterations: 5,
         aa_iterations: 2,

@@ -93,7 +93,7 @@ impl Pipeline<'_> {
         let benchmark = &self.study.file.benchmark;
         Ok(Plan {
             study: self.study.file.study.id.clone(),
-            workload: self.sweep_inputs(Inputs::default(), section, cells)?.finish(),
+            workloads: self.workloads(&swept(self.study, section), Some(cells))?,
             warmup: benchmark.warmup,
             iterations: section.iterations,
             aa_iterations: 0,
@@ -107,7 +107,7 @@ impl Pipeline<'_> {
 
     /// What is asked of the extractor at a resolution.
     fn sweep_inputs(&self, inputs: Inputs, section: &SweepSection, cells: u32) -> Result<Inputs> {
-        Ok(self.workload(inputs)?.value("objects", &section.objects).value("cells", &cells))
+        Ok(inputs.value("workloads", &self.workloads(&swept(self.study, section), Some(cells))?))
     }
 
     /// What is extracted at a resolution, untimed.

@@ -10,7 +10,7 @@ use anyhow::Result;
 use bench::Plan;
 use design::Configuration;
 use design::machine::Machine;
-use design::record::{BenchRun, Purpose};
+use design::record::{BenchRun, Purpose, Workload};
 
 /// How many rounds are run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,7 +90,7 @@ impl Pipeline<'_> {
         let full = length == PlanLength::Full;
         Ok(Plan {
             study: self.study.file.study.id.clone(),
-            workload: self.workload(Inputs::default())?.finish(),
+            workloads: self.workloads(&self.timed()?, None)?,
             warmup: section.warmup,
             iterations: if full { section.iterations } else { section.short_iterations },
             aa_iterations: if full { section.aa_iterations } else { 0 },
@@ -104,10 +104,9 @@ impl Pipeline<'_> {
 
     /// What a run depends on: the extractions, the plan, and the machine, but not how busy the machine is.
     fn inputs(&self, length: PlanLength, machine: &Machine) -> Result<Inputs> {
-        let inputs = Inputs::of_sources(source_digests::TIMINGS)
+        Ok(Inputs::of_sources(source_digests::TIMINGS)
             .value("machine", &machine.lasting())
-            .value("plan", &self.plan(length)?);
-        self.workload(inputs)
+            .value("plan", &self.plan(length)?))
     }
 
     /// What has a time and has not failed.
@@ -117,27 +116,28 @@ impl Pipeline<'_> {
         Ok(timed)
     }
 
-    /// What is asked of the extractor.
-    pub(super) fn workload(&self, inputs: Inputs) -> Result<Inputs> {
-        let recipes: Vec<_> = self.study.methods.iter().map(|method| (method.id, &method.recipe)).collect();
-        let failed = self.failed();
-        let mut inputs = inputs
-            .value("methods", &recipes)
-            .value("spacings", &self.spacings().only_for(Purpose::Benchmark));
-        if !failed.is_empty() {
-            inputs = inputs.value("failed", &failed);
-        }
-        for method in &self.study.methods {
-            for digest in recipe::inputs(self.study, method.id)? {
-                inputs = inputs.text("recipe file", &digest);
-            }
-        }
-        for (number, object) in self.study.file.objects.iter().enumerate() {
-            inputs = inputs
-                .value("volume", &(object.min, object.max, object.benchmark_spacing, object.isovalue))
-                .text("field", self.fields.inputs(number)?);
-        }
-        Ok(inputs)
+    /// What is asked of the extractor for each configuration: at so many cells along the longest axis, or at the benchmark's spacing.
+    pub(super) fn workloads(
+        &self,
+        configurations: &[&Configuration],
+        cells: Option<u32>,
+    ) -> Result<Vec<Workload>> {
+        let workload = |configuration: &&Configuration| {
+            let object = self.study.object(configuration);
+            let method = configuration.id.method;
+            let spacing = self.spacings().of(&configuration.id, Purpose::Benchmark);
+            let mut inputs = Inputs::default()
+                .value("volume", &(object.min, object.max, object.isovalue))
+                .text("field", self.fields.inputs(configuration.object)?)
+                .value("recipe", &self.study.method(method).recipe)
+                .value("recipe files", &recipe::inputs(self.study, method)?);
+            inputs = match cells {
+                Some(cells) => inputs.value("cells", &cells),
+                None => inputs.value("spacing", &spacing.unwrap_or(object.benchmark_spacing)),
+            };
+            Ok(Workload { id: configuration.id.clone(), digest: inputs.finish() })
+        };
+        configurations.iter().map(workload).collect()
     }
 }
 

@@ -237,7 +237,7 @@ mod tests {
         BenchRun {
             schema: BenchRun::SCHEMA,
             study: "s".into(),
-            workload: None,
+            workloads: Vec::new(),
             imported_from: None,
             warmup: 1,
             iterations: 3,
