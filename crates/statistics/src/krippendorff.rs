@@ -1,6 +1,8 @@
 //! Krippendorff's alpha over questions (units) and participants (raters), with its interval.
 
 mod by_odds;
+mod jackknife;
+mod printed;
 mod shared;
 
 use super::ballot::DeclaredBallot;
@@ -21,8 +23,7 @@ pub enum Metric {
 pub struct Alpha {
     /// 1 in full agreement, 0 by chance, negative below.
     pub value: f64,
-    /// At [`LEVEL`](crate::interval::LEVEL), within -1 and 1: see [`alpha_with_interval`]. `None` for fewer than four
-    /// participants, where all agree on everything, and where leaving one out leaves nothing.
+    /// At [`LEVEL`](crate::interval::LEVEL), within -1 and 1: see [`alpha_with_interval`], which says where it is withheld.
     pub interval: Option<Interval>,
 }
 
@@ -41,8 +42,17 @@ pub fn alpha(questions: &[[u64; 3]], metric: Metric) -> Option<f64> {
     table.alpha(metric)
 }
 
-/// [`alpha`] with an interval for what so many more people of the kind would show. All questions are the same for everybody,
-/// so it speaks of other people, not of other questions.
+/// [`alpha`] with an interval for what so many more people of the kind would show, asked what these were asked. It speaks of other
+/// people, not of other questions.
+///
+/// The interval is withheld where simulation does not bear it out. It takes all of:
+///
+/// - four questions or more;
+/// - 12 people per question, on average, or more;
+/// - questions times (1 - alpha) of 3 or more: people disagree as much as chance would on three questions.
+///
+/// Questions with fewer than two answers do not count. The interval is also `None` where all agree on everything, and where
+/// leaving one out leaves nothing.
 ///
 /// Alpha estimates a sum of squares: near 0 it is skewed, and its standard error rises and falls with it. So the interval is
 /// not alpha -+ t s, but all x that a test does not reject, with the variance that x would give. Of the odds o = alpha / (1 - alpha),
@@ -50,17 +60,19 @@ pub fn alpha(questions: &[[u64; 3]], metric: Metric) -> Option<f64> {
 ///
 /// - o + b has mean x + b and variance v = 2 b^2 / f + s^2 / (1 - alpha)^4 x / (o + b), x of the second part cut at 0;
 /// - s is the jackknife's standard error of alpha over the m participants (Efron and Tibshirani 1993, *An Introduction to the
-///   Bootstrap*, chapter 11);
+///   Bootstrap*, chapter 11). From what leaving a participant out does, the mean effect of one answer less is taken off for each
+///   question that the participant answered: who was asked what is fixed, and no chance;
 /// - f counts independent deviations of the questions' shares: trace squared over trace of the square of their covariance over
 ///   participants (Satterthwaite 1946), the latter unbiased (Himeno and Yamada 2014, *J. Multivariate Analysis* 130);
 /// - the cube root of a sum of squares is nearly normal (Wilson and Hilferty 1931; Abdel-Aty 1954): with h = v / (9 (x + b)^2), z =
 ///   (((o + b) / (x + b))^(1/3) - 1 + h) / sqrt h is compared with t, on as many degrees as v has: (m - 1) f of its first part
-///   and m - 1 of its second (Satterthwaite). Below x = 0 everything is as at 0, but moved.
+///   and a - 1 of its second (Satterthwaite), a the people per question. Below x = 0 everything is as at 0, but moved;
+/// - the rule prints low estimates and withholds high ones. So the upper end is of a test among estimates that are printed: x is
+///   rejected below if P(z) <= 0.0375 P(c) - max(0, P(c) - 0.975) / 2, P(c) the chance under x to be printed. That is 0.025 where
+///   P(c) is 1, and takes half of what the lower end leaves over where it is not. The upper end is the least x so rejected, or 1.
 ///
-/// Simulated over 140 populations (docs/statistics.md has the table), it covers 94 to 97 % on average from 12 people on, whatever
-/// alpha, where alpha -+ t s covers 89 to 98 %. Least, 81 %, is where of 12 people's questions all but one are nearly unanimous;
-/// where 4 people answer a question it covers up to 100 %. The bootstrap does not serve: resamples have people more than
-/// once, who agree with themselves, and alpha rises.
+/// Simulated (docs/statistics.md has the table), intervals that are printed cover 95 % of what they are for, whatever alpha. The
+/// bootstrap does not serve: resamples have people more than once, who agree with themselves, and alpha rises.
 ///
 /// Takes time in proportion to the sum over participants of their answers squared, and memory to the square of the questions'
 /// number. The order of ballots makes no difference. Questions are numbered from 0.
@@ -71,36 +83,17 @@ pub fn alpha_with_interval(ballots: &[DeclaredBallot], metric: Metric) -> Option
     let value = all.alpha(metric)?;
     let mut sorted = ballots.to_vec();
     sorted.sort_unstable();
-    let without = |own: &[DeclaredBallot]| {
-        let mut table = all;
-        for of_question in own.chunk_by(|a, b| a.question() == b.question()) {
-            let mut left = counts[of_question[0].question()];
-            table.add(&left, -1.0);
-            of_question.iter().for_each(|ballot| left[ballot.preference().index()] -= 1);
-            table.add(&left, 1.0);
-        }
-        table.alpha(metric)
-    };
-    let left_out: Option<Vec<f64>> =
-        sorted.chunk_by(|a, b| a.participant() == b.participant()).map(without).collect();
-    let interval = left_out.and_then(|mut left_out| {
-        // Sums of doubles depend on their order, and people come in any.
-        left_out.sort_by(f64::total_cmp);
+    let interval = printed::most(&sorted, &counts).filter(|most| value <= *most).and_then(|most| {
+        let jackknife = jackknife::of(&sorted, &counts, &all, metric)?;
         let own_pairs = own_pairs(&counts, metric)?;
         let degrees = shared::degrees(&sorted, &counts, metric)?;
-        let people = left_out.len() as f64;
-        let odds = by_odds::Odds { alpha: value, own_pairs, degrees, variance: jackknife(&left_out), people };
-        Some(odds.interval())
+        let jackknife::Jackknife { people, per_question, variance } = jackknife;
+        Some(
+            by_odds::Odds { alpha: value, own_pairs, degrees, variance, people, per_question, most }
+                .interval(),
+        )
     });
     Some(Alpha { value, interval })
-}
-
-/// The jackknife's variance of an estimate, from those with each participant left out.
-fn jackknife(left_out: &[f64]) -> f64 {
-    let m = left_out.len() as f64;
-    let mean = left_out.iter().sum::<f64>() / m;
-    let squares: f64 = left_out.iter().map(|x| (x - mean) * (x - mean)).sum();
-    (m - 1.0) / m * squares
 }
 
 /// By how much the odds of alpha would rise if every answer were paired with itself as well, which never disagrees: 1 less the share of
