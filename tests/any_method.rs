@@ -2,15 +2,20 @@
 //! what is said where something is wrong with it.
 
 mod command;
+mod fixture;
+mod http;
+mod server;
 
 use command::Folder;
+use server::{Server, TOKEN, answer, begin};
 use std::collections::BTreeSet;
 use std::fs;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 const STUDY: &str = include_str!("any_method/study.toml");
-const METHODS: [&str; 5] = ["bi", "bi-relaxed", "fp", "cuberille", "artist"];
+const METHODS: [&str; 5] = ["bi", "bi-relaxed", "fp", "program", "artist"];
 const OBJECTS: [&str; 3] = ["fo", "te", "vo"];
 
 /// The study with all that it names, in a folder of its own.
@@ -75,6 +80,25 @@ impl Study {
         self.write("study.toml", text.replacen(from, to, 1));
     }
 
+    /// With VTK's Flying Edges for the program where Python has VTK. `METHODS_PYTHON` names that Python; where there is none, the example of
+    /// docs/programs.md stays, and that is said.
+    fn with_vtk() -> (Self, String) {
+        let (folder, python) = (Self::new(), std::env::var("METHODS_PYTHON").unwrap_or("python3".into()));
+        let import = Command::new(&python).args(["-c", "import numpy, vtkmodules.vtkFiltersCore"]).output();
+        if !import.is_ok_and(|output| output.status.success()) {
+            eprintln!(
+                "SKIPPED: VTK's program: {python} has no VTK; the example of docs/programs.md stands in for it"
+            );
+            return (folder, "python3 ./example.py".into());
+        }
+        for file in ["vtk_flying_edges.py", "vtk_image.py", "protocol.py"] {
+            fs::copy(root().join("scripts/methods").join(file), folder.path(file)).unwrap();
+        }
+        folder.edit("\"python3\", \"./example.py\"", &format!("{python:?}, \"./vtk_flying_edges.py\""));
+        folder.edit("memory_gib = 1.0", "memory_gib = 4.0");
+        (folder, format!("{python} ./vtk_flying_edges.py"))
+    }
+
     fn extract(&self, arguments: &[&str]) {
         self.succeed(&[&["extract"], arguments].concat());
     }
@@ -121,7 +145,7 @@ fn scan() -> Vec<u8> {
 
 #[test]
 fn any_method_on_any_object_from_file_to_report() {
-    let folder = Study::new();
+    let (folder, program) = Study::with_vtk();
     let faults = folder.run(&["design", "check", "study.toml"]);
     assert_eq!(faults.code, Some(0), "{}{}", faults.stdout, faults.stderr);
     folder.succeed(&["validate", "study.toml"]);
@@ -131,7 +155,9 @@ fn any_method_on_any_object_from_file_to_report() {
     assert_eq!(refused.code, Some(2), "{}", refused.stderr);
     assert!(
         refused.stderr.contains("--allow-programs")
-            && refused.stderr.contains("cuberille: python3 ./example.py")
+            && refused.stderr.contains(&format!("program: {program}")),
+        "{}",
+        refused.stderr
     );
     assert!(!folder.path("out").exists());
 
@@ -154,9 +180,9 @@ fn any_method_on_any_object_from_file_to_report() {
         let share = number("fp", "triangles") / number("bi", "triangles");
         assert!((share - 1.0).abs() <= 0.01, "{object}: {share}");
         // What a method has not is an empty cell, and what has no time has none.
-        assert_eq!(cell(&format!("{object}_cuberille"), "tetrahedra"), "");
+        assert_eq!(cell(&format!("{object}_program"), "tetrahedra"), "");
         assert_eq!(cell(&format!("{object}_artist"), "total_without_normals_s"), "");
-        assert!(number("cuberille", "total_without_normals_s") > 0.0);
+        assert!(number("program", "total_without_normals_s") > 0.0);
         // Relaxing moves vertices and leaves triangles.
         assert_eq!(number("bi", "triangles"), number("bi-relaxed", "triangles"));
     }
@@ -180,6 +206,46 @@ fn any_method_on_any_object_from_file_to_report() {
     assert_eq!(fs::read_dir(folder.path("out/bundle/stimuli")).unwrap().count() % 2, 0);
 
     answered(&folder);
+    served(&folder);
+}
+
+/// The same truth through the server: whoever sees relaxed vertices presses their side, on the form that they were dealt.
+fn served(folder: &Study) {
+    folder.succeed(&["design", "forms", "study.toml", "--out", "dealt"]);
+    let key = folder.table("dealt/key/forms.csv");
+    let column =
+        |name: &str| key[0].iter().position(|title| title == name).unwrap_or_else(|| panic!("{name}"));
+    let [form, role, stimulus, left, right] = ["form", "role", "stimulus", "left", "right"].map(column);
+    let mut command = folder.isostudy();
+    command.args(["serve", "study.toml", "--out", "out", "--answers", "kept", "--port", "0"]);
+    command.args(["--admin-token", TOKEN, "--with-faults"]);
+    let server = Server::of(command);
+    let mut pressed = 0;
+    for _ in 0..6 {
+        let session = begin(server.address);
+        let own = key.iter().filter(|row| row[form] == session["form"]["form"].to_string());
+        for (place, shown) in own.filter(|row| row[role] != "training").enumerate() {
+            assert_eq!(session["form"]["questions"][place], shown[stimulus]);
+            let choice = match [left, right].map(|side| shown[side].ends_with("_bi-relaxed")) {
+                [true, false] => "L",
+                [false, true] => "R",
+                _ => "NP",
+            };
+            pressed += u64::from(choice != "NP" && shown[role] == "comparison");
+            let sent = answer(&session, place, choice);
+            assert_eq!(http::post(server.address, "/api/answers", &sent).unwrap().0, 200);
+        }
+    }
+    drop(server);
+    assert!(pressed > 0);
+    folder.succeed(&["deidentify", "study.toml", "--answers", "kept", "--out", "shared"]);
+    folder.succeed(&["analyse", "study.toml", "--responses", "shared/answers.csv", "--out", "served"]);
+    let counts = folder.table("served/tables/preference_groups.csv");
+    let wins = counts[0].iter().position(|title| title == "wins").unwrap();
+    for row in &counts[1..] {
+        let expected = if row[1] == "bi-relaxed" { pressed } else { 0 };
+        assert_eq!(row[wins], expected.to_string(), "{row:?}");
+    }
 }
 
 /// Everybody likes relaxed vertices wherever they see them, and has no preference else. The tests are about methods.
@@ -341,18 +407,18 @@ fn a_program_that_fails_is_left_out_by_name() {
         let ran = folder.run(&["study", "study.toml", "--out", "out", "--allow-programs"]);
         assert_eq!(ran.code, Some(1), "{program}: {}", ran.stderr);
         assert!(
-            ran.stderr.contains("fo_cuberille failed") && ran.stderr.contains(told),
+            ran.stderr.contains("fo_program failed") && ran.stderr.contains(told),
             "{told}: {}",
             ran.stderr
         );
         assert!(
-            ran.stderr.contains("failed and left out: fo_cuberille, te_cuberille, vo_cuberille"),
+            ran.stderr.contains("failed and left out: fo_program, te_program, vo_program"),
             "{}",
             ran.stderr
         );
         let benchmark = folder.table("out/tables/benchmark.csv");
         let ids: BTreeSet<&str> = benchmark[1..].iter().map(|row| row[0].as_str()).collect();
-        assert!(ids.contains("fo_bi") && !ids.contains("fo_cuberille"), "{ids:?}");
+        assert!(ids.contains("fo_bi") && !ids.contains("fo_program"), "{ids:?}");
         assert!(folder.path("out/index.html").exists());
         let bundle = folder.run(&["bundle", "study.toml", "--out", "out", "--allow-programs"]);
         assert_eq!(bundle.code, Some(2), "{}", bundle.stderr);

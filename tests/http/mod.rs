@@ -1,5 +1,7 @@
 //! As much of an HTTP client as tests of our own server need: one request a connection.
 
+#![allow(dead_code, reason = "each test takes what it needs")]
+
 use std::io::{self, Read, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::time::Duration;

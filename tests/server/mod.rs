@@ -27,7 +27,12 @@ pub(crate) fn command(fixture: &Fixture, port: u16) -> Command {
 impl Server {
     /// Answers are kept in the fixture's folder `answers`.
     pub(crate) fn start(fixture: &Fixture, port: u16) -> Self {
-        let mut child = command(fixture, port).stderr(Stdio::piped()).spawn().unwrap();
+        Self::of(command(fixture, port))
+    }
+
+    /// As the command says.
+    pub(crate) fn of(mut command: Command) -> Self {
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
         let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
         let line = lines.find(|line| line.starts_with("questionnaire")).expect("it listens");
         let address = line.split("http://").nth(1).unwrap().trim_end_matches('/').parse().unwrap();
