@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use field::{Kept, ScalarField};
 
+use crate::cubes;
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::lattice::Lattice;
 use crate::placement;
@@ -104,7 +105,24 @@ impl Extractor {
         execution: &Execution,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
-        let result = self.try_extract_into(source, lattice, settings, execution, extraction);
+        let result = self.try_extract_into(source, lattice, settings, None, execution, extraction);
+        if result.is_err() {
+            extraction.clear();
+        }
+        result
+    }
+
+    /// The same by marching cubes, on the points of a simple cubic lattice.
+    pub(crate) fn extract_cubes_into(
+        &mut self,
+        source: Source,
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        rule: cubes::Rule,
+        execution: &Execution,
+        extraction: &mut Extraction,
+    ) -> Result<(), ExtractError> {
+        let result = self.try_extract_into(source, lattice, settings, Some(rule), execution, extraction);
         if result.is_err() {
             extraction.clear();
         }
@@ -116,6 +134,7 @@ impl Extractor {
         source: Source,
         lattice: &Lattice,
         settings: &ExtractSettings,
+        cubes: Option<cubes::Rule>,
         execution: &Execution,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
@@ -141,7 +160,9 @@ impl Extractor {
         let most_vertices = self.most_vertices.0;
         let request = Request { source, lattice, settings, execution, most_vertices, start };
         let trace = self.traced.then_some(&mut self.trace);
-        if lattice.arrangement().uniform().is_some() {
+        if let Some(rule) = cubes {
+            cubes::extract(&request, rule, self.progress.as_deref(), trace, extraction)
+        } else if lattice.arrangement().uniform().is_some() {
             self.sweeper.extract(&request, self.progress.as_deref(), trace, extraction)
         } else {
             split::extract(&request, trace, extraction)

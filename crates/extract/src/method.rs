@@ -1,8 +1,10 @@
 //! A method as plain data: everything that decides a mesh, but for the field, the grid and the isovalue.
 
+mod cubes;
 mod presets;
 mod tetrahedra;
 
+pub use cubes::Cubes;
 pub use presets::{Preset, presets};
 pub use tetrahedra::Tetrahedra;
 
@@ -42,6 +44,8 @@ use crate::source::Source;
 pub enum Method {
     /// Regularised marching tetrahedra.
     Tetrahedra(Tetrahedra),
+    /// Marching cubes.
+    Cubes(Cubes),
 }
 
 /// What a method promises of every mesh, whatever the field. A promise that is not made may still hold for a field.
@@ -145,6 +149,7 @@ impl Method {
     fn family(&self) -> &dyn Family {
         match self {
             Self::Tetrahedra(tetrahedra) => tetrahedra,
+            Self::Cubes(cubes) => cubes,
         }
     }
 }

@@ -6,10 +6,13 @@ use mesh::TriangleMesh;
 
 use super::chunk::Chunk;
 use crate::collapse::collapse_traced;
+use crate::cubes::Rule;
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::extractor::Extractor;
+use crate::grid::Grid;
 use crate::lattice::{CellBox, Lattice};
 use crate::memory::{collected, filled, push};
+use crate::method::Cubes;
 use crate::normals::vertex_normals;
 use crate::settings::{Clustering, Execution, ExtractSettings, Placement, Positions};
 use crate::source::Source;
@@ -48,6 +51,7 @@ const NOWHERE: u32 = u32::MAX;
 pub struct ChunkExtractor {
     lattice: Lattice,
     settings: ExtractSettings,
+    cubes: Option<Rule>,
     extractor: Extractor,
     extraction: Extraction,
     samples: Vec<f32>,
@@ -108,7 +112,18 @@ impl ChunkExtractor {
         let mut extractor = Extractor::new();
         extractor.traced = true;
         let (lattice, settings) = (lattice.clone(), *settings);
-        Ok(Self { lattice, settings, extractor, extraction: Extraction::default(), samples: Vec::new() })
+        let extraction = Extraction::default();
+        Ok(Self { lattice, settings, cubes: None, extractor, extraction, samples: Vec::new() })
+    }
+
+    /// The same for marching cubes, on the grid's own cubes.
+    ///
+    /// # Errors
+    /// As [`try_new`](Self::try_new); [`ChunkError::Extract`] also for a grid that is none for the method.
+    pub fn of_cubes(cubes: &Cubes, grid: &Grid, isovalue: f32) -> Result<Self, ChunkError> {
+        let lattice = grid.lattice(Cubes::ARRANGEMENT).map_err(ExtractError::from)?;
+        let extractor = Self::try_new(&lattice, &cubes.settings(isovalue))?;
+        Ok(Self { cubes: Some(cubes.rule()), ..extractor })
     }
 
     /// The lattice in boxes of so many cells a side, x fastest; the last ones on each axis may be smaller. With 0 there
@@ -183,7 +198,7 @@ impl ChunkExtractor {
     /// neighbours' too, their other vertices give it its normal, and those depend on samples one lattice edge away.
     /// Where cubes are cut each by itself the last step leads no farther.
     fn halo(&self) -> u32 {
-        if self.lattice.arrangement().uniform().is_some() { 2 } else { 1 }
+        if self.lattice.arrangement().uniform().is_some() && self.cubes.is_none() { 2 } else { 1 }
     }
 
     /// Extracts the lattice within a box, with its trace.
@@ -213,7 +228,13 @@ impl ChunkExtractor {
             }
         };
         let settings = ExtractSettings { clustering, ..self.settings };
-        self.extractor.extract_into(source, &lattice, &settings, execution, &mut self.extraction)?;
+        let extraction = &mut self.extraction;
+        match self.cubes {
+            None => self.extractor.extract_into(source, &lattice, &settings, execution, extraction)?,
+            Some(rule) => {
+                self.extractor.extract_cubes_into(source, &lattice, &settings, rule, execution, extraction)?
+            }
+        }
         Ok(())
     }
 

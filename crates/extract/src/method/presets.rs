@@ -3,7 +3,8 @@
 //! The first letter is the arrangement: body-centred, simple cubic, mirrored five tetrahedra, face-centred. The second is
 //! the clustering: unclustered, integrated, post-processed by an edge collapse, integrated and then collapsed.
 
-use super::{Method, Tetrahedra};
+use super::{Cubes, Method, Tetrahedra};
+use crate::cubes::{Diagonals, Faces};
 use crate::lattice::Arrangement::{self, BodyCentred, FaceCentred, FiveTetrahedra, SimpleCubic};
 use crate::settings::Clustering::{self, EdgeCollapse, Integrated, IntegratedCollapse, None};
 use crate::settings::{Placement, Positions, Topology};
@@ -12,6 +13,9 @@ const COSTEN: &str = "Costen 2026";
 const TREECE: &str = "Treece, Prager & Gee 1999; Costen 2026";
 const COLLAPSED: &str = "Costen 2026; Dey, Edelsbrunner, Guha & Nekhayev 1999";
 const OWN: &str = "not in the paper; see extract::Arrangement and extract::Clustering";
+const CUBES: &str = "Lorensen & Cline 1987, with faces that agree";
+const TRILINEAR: &str = "Chernyaev 1995, with every case decided by the interpolant's saddles";
+const EDGE_GROUPS: &str = "Lorensen & Cline 1987; Dietrich et al. 2008";
 const PLACED: &str = "Treece, Prager & Gee 1999; for the placement see extract::Placement";
 
 /// A method with a name.
@@ -34,7 +38,7 @@ pub fn presets() -> &'static [Preset] {
     &PRESETS
 }
 
-static PRESETS: [Preset; 22] = [
+static PRESETS: [Preset; 25] = [
     plain("bu", "body-centred, none", BodyCentred, None, COSTEN),
     plain("bi", "body-centred, integrated", BodyCentred, Integrated, TREECE),
     plain("bp", "body-centred, edge collapse", BodyCentred, EdgeCollapse, COLLAPSED),
@@ -51,6 +55,15 @@ static PRESETS: [Preset; 22] = [
     placed("bi-relaxed", "body-centred, integrated, relaxed", BodyCentred, Placement::Relaxed),
     placed("si-projected", "simple cubic, integrated, projected", SimpleCubic, Placement::Projected),
     placed("si-relaxed", "simple cubic, integrated, relaxed", SimpleCubic, Placement::Relaxed),
+    cubes("mc", "marching cubes", Faces::SeparateInside, Diagonals::Fan, CUBES),
+    cubes("mc33", "marching cubes, trilinear", Faces::Trilinear, Diagonals::Fan, TRILINEAR),
+    cubes(
+        "mc-edge-groups",
+        "marching cubes, edge groups",
+        Faces::SeparateInside,
+        Diagonals::EdgeGroups,
+        EDGE_GROUPS,
+    ),
     published("bu-published", "body-centred, none, as published", BodyCentred, None),
     published("bi-published", "body-centred, integrated, as published", BodyCentred, Integrated),
     published("bp-published", "body-centred, edge collapse, as published", BodyCentred, EdgeCollapse),
@@ -89,6 +102,18 @@ const fn placed(
 ) -> Preset {
     let method = Tetrahedra { placement, ..settings(arrangement, Integrated) };
     Preset { id, label, method: Method::Tetrahedra(method), source: PLACED }
+}
+
+const fn cubes(
+    id: &'static str,
+    label: &'static str,
+    faces: Faces,
+    diagonals: Diagonals,
+    source: &'static str,
+) -> Preset {
+    let placement = Placement::MeanOfCrossings;
+    let method = Cubes { faces, diagonals, placement, refine_crossings: false };
+    Preset { id, label, method: Method::Cubes(method), source }
 }
 
 /// The original's rules, and its sums as its benchmark makes them.

@@ -1,0 +1,81 @@
+//! Marching cubes: the extractor for cubes that are not cut any further.
+//!
+//! Like [`crate::sweep`] it streams: a few layers in memory, samples only where the field does not rule the surface out, slabs of
+//! cells on several threads. A vertex is a crossing, numbered by the lower end of its lattice edge, then by axis; after them come
+//! the few vertices in the cell whose lowest corner that point is. Triangles go cell by cell. Which triangles a cell has is a
+//! [`patches::Patch`], made by rule from [`cells`] at first use.
+
+mod cells_pass;
+mod exact;
+mod grid;
+mod patches;
+mod rows;
+mod rule;
+mod sampling;
+mod slab;
+mod tubes;
+mod tunnel;
+mod vertices;
+mod volume_cells;
+
+pub use rule::{Diagonals, Faces};
+pub use volume_cells::{VolumeCells, VolumeCellsError};
+
+use self::grid::Grid;
+use self::patches::Patches;
+use self::slab::{Job, Workspace, sweep};
+use self::vertices::Placer;
+use std::time::Instant;
+
+use crate::extraction::{ExtractError, Extraction};
+use crate::slabs::{Piece, assemble, on_slabs, threads_and_slabs};
+use crate::source::Request;
+use crate::sweep::Progress;
+use crate::trace::Trace;
+
+/// What decides the triangles of a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Rule {
+    pub(crate) faces: Faces,
+    pub(crate) diagonals: Diagonals,
+}
+
+/// The stages in order, timed and counted. The lattice is simple cubic: its points are the corners of the cubes.
+pub(crate) fn extract(
+    request: &Request,
+    rule: Rule,
+    progress: Option<&Progress>,
+    trace: Option<&mut Trace>,
+    extraction: &mut Extraction,
+) -> Result<(), ExtractError> {
+    let Request { source, lattice, settings, execution, most_vertices, start } = *request;
+    let (threads, slabs) = threads_and_slabs(execution, lattice.stored_grid()[2] as usize);
+    let out_of_memory = |_| ExtractError::OutOfMemory { bytes: lattice.sweep_bytes(threads as u64) };
+    let grid = &Grid::new(lattice).map_err(out_of_memory)?;
+    let workspaces: Result<Vec<Workspace>, _> = (0..threads).map(|_| Workspace::new(grid, source)).collect();
+    let mut workspaces = workspaces.map_err(out_of_memory)?;
+    let mut pieces: Vec<Piece> = (0..slabs).map(|_| Piece::default()).collect();
+    let patches = Patches::get(rule);
+    let allocation = start.elapsed();
+
+    let sweeping = Instant::now();
+    let placer = &Placer::new(lattice, settings, request.level());
+    let isovalue = settings.isovalue;
+    let job = Job { grid, source, isovalue, rule, patches, placer, most_vertices, traced: trace.is_some() };
+    let cells = lattice.cells()[2] as usize;
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let layer_done = || {
+        let done = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        if let Some(progress) = progress {
+            progress(done, cells);
+        }
+    };
+    on_slabs(cells, &mut workspaces, &mut pieces, |own, workspace, piece| {
+        sweep(&job, own, workspace, piece, &layer_done)
+    })?;
+    drop(workspaces);
+    let times = [allocation, sweeping.elapsed()];
+    assemble(request, &mut pieces, threads, times, trace, extraction)?;
+    extraction.counts.tetrahedra = None;
+    Ok(())
+}

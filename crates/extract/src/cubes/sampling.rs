@@ -1,0 +1,246 @@
+//! Sampling pass: the sides of a layer, then the samples that no side needed and cells do.
+
+use std::collections::TryReserveError;
+
+use super::grid::{Grid, SLOTS};
+use super::rows::{Rows, before, next};
+use crate::bits::{between, set_range};
+use crate::line::{All, Gaps, Line};
+use crate::memory::filled;
+use crate::source::Source;
+use crate::tiles::{Span, Tile, Tiles};
+use field::ScalarField;
+
+/// Where all points of a row are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum State {
+    #[default]
+    Outside,
+    Inside,
+    Mixed,
+}
+
+/// What is sampled, and where.
+#[derive(Clone, Copy)]
+pub(super) struct Sampling<'a> {
+    pub(super) grid: &'a Grid<'a>,
+    pub(super) source: Source<'a>,
+    pub(super) isovalue: f32,
+    /// Whether all corners of a crossed cell have samples, or the ends of crossed edges alone.
+    pub(super) all_corners: bool,
+}
+
+/// A few layers of samples and sides.
+pub(super) struct Samples {
+    /// Of a field that is called.
+    called: Option<Called>,
+    /// 1 inside.
+    pub(super) sides: Rows,
+    states: Vec<State>,
+}
+
+/// A ring of layers of samples, and a bit for each that was taken.
+struct Called {
+    values: Vec<f32>,
+    taken: Rows,
+    tiles: Tiles,
+    gaps: Gaps,
+    wanted: Vec<u64>,
+}
+
+/// Samples by place: given ones, or those in sight.
+#[derive(Clone, Copy)]
+pub(super) struct Values<'a> {
+    values: &'a [f32],
+    size: [usize; 3],
+    slots: usize,
+}
+
+impl Values<'_> {
+    #[inline]
+    pub(super) fn at(&self, [x, y, z]: [usize; 3]) -> f32 {
+        self.values[(z % self.slots * self.size[1] + y) * self.size[0] + x]
+    }
+
+    /// At the corners of a cell.
+    pub(super) fn corners(&self, [x, y, z]: [usize; 3]) -> [f32; 8] {
+        std::array::from_fn(|c| self.at([x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)]))
+    }
+}
+
+impl Samples {
+    pub(super) fn new(grid: &Grid, source: Source) -> Result<Self, TryReserveError> {
+        let called = match source {
+            Source::Field(_) => Some(Called::new(grid)?),
+            Source::Samples(_) => None,
+        };
+        let states = filled(grid.size[1] * SLOTS, State::Outside)?;
+        Ok(Self { called, sides: Rows::new(grid, SLOTS)?, states })
+    }
+
+    pub(super) fn values<'a>(&'a self, grid: &Grid, source: Source<'a>) -> Values<'a> {
+        let size = grid.size;
+        match (source, &self.called) {
+            (Source::Samples(values), _) => Values { values, size, slots: size[2] },
+            (Source::Field(_), Some(called)) => Values { values: &called.values, size, slots: SLOTS },
+            (Source::Field(_), None) => unreachable!("made for a field"),
+        }
+    }
+
+    /// Whether all points of some rows are on one side.
+    #[inline]
+    pub(super) fn is_uniform(&self, grid: &Grid, rows: &[[usize; 2]]) -> bool {
+        let state = |[y, z]: [usize; 2]| self.states[z % SLOTS * grid.size[1] + y];
+        let first = state(rows[0]);
+        first != State::Mixed && rows.iter().all(|&row| state(row) == first)
+    }
+
+    /// Finds the sides of a layer, with as few samples as may be.
+    pub(super) fn find_sides(&mut self, sampling: Sampling, layer: usize) {
+        let Sampling { grid, source, isovalue, .. } = sampling;
+        let [nx, ny, _] = grid.size;
+        if let (Source::Field(field), Some(called)) = (source, &mut self.called) {
+            called.tiles.turn_to(layer, grid, field, isovalue);
+        }
+        for row in 0..ny {
+            let sides = self.sides.row_mut(row, layer);
+            sides.fill(0);
+            let mut state = State::Mixed;
+            match (source, &mut self.called) {
+                (Source::Samples(values), _) => {
+                    let values = &values[(layer * ny + row) * nx..][..nx];
+                    for (word, values) in sides.iter_mut().zip(values.chunks(64)) {
+                        let bits = values.iter().enumerate();
+                        *word = bits.fold(0, |word, (i, &value)| word | u64::from(value > isovalue) << i);
+                    }
+                }
+                (Source::Field(field), Some(called)) => {
+                    called.taken.row_mut(row, layer).fill(0);
+                    match called.tiles.row(row).0 {
+                        [Span { tile: Tile::Outside, .. }] => state = State::Outside,
+                        [Span { tile: Tile::Inside, .. }] => {
+                            state = State::Inside;
+                            set_range(sides, 0, nx);
+                        }
+                        _ => called.sample(sampling, field, [row, layer], sides),
+                    }
+                }
+                (Source::Field(_), None) => unreachable!("made for a field"),
+            }
+            if state == State::Mixed {
+                state = state_of(sides, nx);
+            }
+            self.states[layer % SLOTS * ny + row] = state;
+        }
+    }
+
+    /// Takes the samples of a layer that cells need and sides did not. The sides of the layers next to it are known.
+    pub(super) fn fill(&mut self, sampling: Sampling, layer: usize) {
+        let Sampling { grid, source, all_corners, .. } = sampling;
+        let Source::Field(field) = source else { return };
+        let [nx, ny, nz] = grid.size;
+        for row in 0..ny {
+            let (rows, layers) =
+                (row.saturating_sub(1)..ny.min(row + 2), layer.saturating_sub(1)..nz.min(layer + 2));
+            let mut around: [[usize; 2]; 9] = [[row, layer]; 9];
+            let mut count = 1;
+            for [y, z] in layers.flat_map(|z| rows.clone().map(move |y| [y, z])) {
+                let is_self = [y, z] == [row, layer];
+                if !is_self && (all_corners || y == row || z == layer) {
+                    around[count] = [y, z];
+                    count += 1;
+                }
+            }
+            if self.is_uniform(grid, &around[..count]) {
+                continue;
+            }
+            let called = self.called.as_mut().expect("made for a field");
+            let lines = around.map(|[y, z]| self.sides.row(y, z));
+            for word in 0..grid.words {
+                let [mut any, mut all] = [lines[0][word]; 2];
+                for (i, line) in lines[..count].iter().enumerate() {
+                    (any, all) = (any | line[word], all & line[word]);
+                    if i == 0 || all_corners {
+                        let (next, before) = (next(line, word), before(line, word));
+                        any |= next & grid.with_next(word) | before;
+                        all &= (next | !grid.with_next(word)) & before;
+                    }
+                }
+                called.wanted[word] = any & !all & between(word, 0, nx);
+            }
+            called.fill(grid, field, [row, layer]);
+        }
+    }
+}
+
+impl Called {
+    fn new(grid: &Grid) -> Result<Self, TryReserveError> {
+        let [nx, ny, _] = grid.size;
+        let (mut tiles, mut gaps) = (Tiles::default(), Gaps::default());
+        tiles.fit(grid)?;
+        gaps.fit(nx)?;
+        let (values, taken) = (filled(nx * ny * SLOTS, 0.0)?, Rows::new(grid, SLOTS)?);
+        Ok(Self { values, taken, tiles, gaps, wanted: filled(grid.words, 0)? })
+    }
+
+    /// Finds the sides of a row that is not known to lie on one.
+    fn sample(
+        &mut self,
+        sampling: Sampling,
+        field: &dyn ScalarField,
+        [row, layer]: [usize; 2],
+        sides: &mut [u64],
+    ) {
+        let grid = sampling.grid;
+        let [nx, ny, _] = grid.size;
+        let (spans, known) = self.tiles.row(row);
+        let mut line = Line {
+            field,
+            isovalue: sampling.isovalue,
+            columns: All,
+            x: &grid.at[0],
+            y: grid.at[1][row],
+            z: grid.at[2][layer],
+            values: &mut self.values[(layer % SLOTS * ny + row) * nx..][..nx],
+            taken: self.taken.row_mut(row, layer),
+            sides,
+        };
+        let found = self.gaps.room();
+        line.sample(spans, known, crate::tiles::Points::side(grid), |line, first, end| {
+            let found = &mut found[..end - first];
+            line.field.sample_row(&line.x[first..end], line.y, line.z, found);
+            for (i, &value) in (first..end).zip(&*found) {
+                line.keep(i, value);
+            }
+        });
+    }
+
+    /// Takes the samples of a row that are wanted and not there yet.
+    fn fill(&mut self, grid: &Grid, field: &dyn ScalarField, [row, layer]: [usize; 2]) {
+        let [nx, ny, _] = grid.size;
+        let (y, z) = (grid.at[1][row], grid.at[2][layer]);
+        let values = &mut self.values[(layer % SLOTS * ny + row) * nx..][..nx];
+        self.gaps.clear();
+        for (word, (taken, &wanted)) in
+            self.taken.row_mut(row, layer).iter_mut().zip(&self.wanted).enumerate()
+        {
+            self.gaps.note(word, wanted, taken);
+        }
+        self.gaps.fill(field, &grid.at[0], y, z, values);
+    }
+}
+
+/// Where the points of a row of `nx` columns are.
+fn state_of(sides: &[u64], nx: usize) -> State {
+    let (mut any, mut all) = (0, !0);
+    for (word, &sides) in sides.iter().enumerate() {
+        let used = between(word, 0, nx);
+        any |= sides & used;
+        all &= sides | !used;
+    }
+    match (any, all) {
+        (0, _) => State::Outside,
+        (_, u64::MAX) => State::Inside,
+        _ => State::Mixed,
+    }
+}

@@ -1,0 +1,103 @@
+//! A slab of cells, streamed from the bottom up: sides; a layer behind, the samples that cells need; another behind, vertices; and
+//! another, triangles.
+
+use std::collections::TryReserveError;
+use std::ops::Range;
+use std::time::Instant;
+
+use super::Rule;
+use super::cells_pass::triangulate_layer;
+use super::grid::Grid;
+use super::patches::Patches;
+use super::sampling::{Samples, Sampling};
+use super::vertices::{Placer, Records, VertexPass, Vertices};
+use crate::ExtractError;
+use crate::slabs::Piece;
+use crate::source::Source;
+
+/// What all slabs of an extraction share.
+pub(super) struct Job<'a> {
+    pub(super) grid: &'a Grid<'a>,
+    pub(super) source: Source<'a>,
+    pub(super) isovalue: f32,
+    pub(super) rule: Rule,
+    pub(super) patches: &'a Patches,
+    pub(super) placer: &'a Placer<'a>,
+    pub(super) most_vertices: u32,
+    /// Whether vertices get keys and triangles the numbers of their cells.
+    pub(super) traced: bool,
+}
+
+/// Buffers of one thread, a few layers each.
+pub(super) struct Workspace {
+    samples: Samples,
+    records: Records,
+}
+
+impl Workspace {
+    pub(super) fn new(grid: &Grid, source: Source) -> Result<Self, TryReserveError> {
+        Ok(Self { samples: Samples::new(grid, source)?, records: Records::new(grid)? })
+    }
+}
+
+/// Extracts the layers `own` of cells: their triangles, and the vertices of their points but for those of the highest layer,
+/// which are the next slab's. Vertices are numbered from the slab's first on, so that the numbers of the whole surface are these
+/// plus a constant.
+pub(super) fn sweep(
+    job: &Job,
+    own: Range<usize>,
+    Workspace { samples, records }: &mut Workspace,
+    piece: &mut Piece,
+    layer_done: &(dyn Fn() + Sync),
+) -> Result<(), ExtractError> {
+    let Job { grid, source, isovalue, rule, patches, placer, .. } = *job;
+    let layers = grid.size[2];
+    let (lowest, highest) = (own.start, own.end);
+    // The highest layer's own edges lead one layer farther, and those of the samples there one more.
+    let numbered = lowest..layers.min(highest + 1);
+    let filled = lowest..layers.min(highest + 2);
+    let sided = lowest.saturating_sub(1)..layers.min(highest + 3);
+    let sampling = Sampling { grid, source, isovalue, all_corners: rule.faces.reads_all_corners() };
+    let mut vertices = Vertices { keys: job.traced.then(Vec::new), ..Vertices::default() };
+    piece.clear(job.traced);
+    let mut last = Instant::now();
+    let mut lap = || {
+        let now = Instant::now();
+        now - std::mem::replace(&mut last, now)
+    };
+    for step in sided.start..=highest + 2 {
+        if sided.contains(&step) {
+            samples.find_sides(sampling, step);
+        }
+        if let Some(layer) = step.checked_sub(1).filter(|layer| filled.contains(layer)) {
+            samples.fill(sampling, layer);
+        }
+        piece.times.sampling += lap();
+
+        let Some(layer) = step.checked_sub(2).filter(|layer| numbered.contains(layer)) else { continue };
+        let samples = &*samples;
+        let values = samples.values(grid, source);
+        let pass = VertexPass { grid, samples, values, isovalue, rule, patches, placer };
+        pass.layer(layer, layer < highest || layer + 1 == layers, records, &mut vertices)?;
+        if vertices.numbered > u64::from(job.most_vertices) {
+            return Err(ExtractError::TooManyVertices { limit: job.most_vertices });
+        }
+        piece.times.vertex += lap();
+
+        let Some(z) = layer.checked_sub(1).filter(|z| own.contains(z)) else { continue };
+        if z + 1 == own.end {
+            // Only the highest cells have vertices of the slab above.
+            piece.tail = piece.surface.triangles.len();
+        }
+        triangulate_layer(job, samples, values, records, z, &mut piece.surface)?;
+        piece.times.geometry += lap();
+        layer_done();
+    }
+    (piece.positions, piece.targets) = (vertices.positions, vertices.targets);
+    // As if seen from both ends.
+    piece.crossing_ends = 2 * vertices.crossings;
+    if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, vertices.keys) {
+        trace.keys = keys;
+    }
+    Ok(())
+}

@@ -1,0 +1,274 @@
+//! Vertex pass: a vertex on every crossing, and what is remembered of the points for the cells.
+
+use std::collections::TryReserveError;
+
+use glam::Vec3;
+
+use super::Rule;
+use super::grid::Grid;
+use super::patches::{Patch, Patches};
+use super::rows::next;
+use super::sampling::{Samples, Values};
+use crate::bits::between;
+use crate::lattice::Lattice;
+use crate::level::Level;
+use crate::memory::{filled, push};
+use crate::placement::crossing_ratio;
+use crate::settings::{ExtractSettings, Placement, Topology};
+use crate::spot::{Apart, Company, linear_ratio};
+use crate::trace::VertexKey;
+
+/// What is known of a point: its vertices are numbered from `first` on, those of its crossed edges by axis, then those in the cell
+/// that begins there.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Record {
+    first: u32,
+    /// Of the cell that begins here, where its corners are on both sides.
+    pub(super) patch: u16,
+    /// The axes along which an edge that begins here is crossed, one bit each.
+    crossed: u8,
+}
+
+impl Record {
+    /// The vertex of an edge that begins here.
+    #[inline]
+    pub(super) fn vertex(self, axis: u8) -> u32 {
+        self.first.wrapping_add(u32::from(RANK[usize::from(self.crossed & ((1 << axis) - 1))]))
+    }
+
+    /// A vertex in the cell that begins here.
+    #[inline]
+    pub(super) fn inner(self, vertex: u8) -> u32 {
+        let before = RANK[usize::from(self.crossed)] + vertex;
+        self.first.wrapping_add(u32::from(before))
+    }
+}
+
+/// Bits of a number below eight.
+static RANK: [u8; 8] = [0, 1, 1, 2, 1, 2, 2, 3];
+
+/// The records of the two layers of a cell, written and read only where there is something to know.
+pub(super) struct Records {
+    records: Vec<Record>,
+    size: [usize; 2],
+}
+
+impl Records {
+    pub(super) fn new(grid: &Grid) -> Result<Self, TryReserveError> {
+        let [nx, ny, _] = grid.size;
+        Ok(Self { records: filled(2 * nx * ny, Record::default())?, size: [nx, ny] })
+    }
+
+    /// Where the records of a row start.
+    #[inline]
+    pub(super) fn start(&self, row: usize, layer: usize) -> usize {
+        (layer % 2 * self.size[1] + row) * self.size[0]
+    }
+
+    #[inline]
+    pub(super) fn at(&self, place: usize) -> Record {
+        self.records[place]
+    }
+}
+
+/// What the pass reads.
+pub(super) struct VertexPass<'a> {
+    pub(super) grid: &'a Grid<'a>,
+    pub(super) samples: &'a Samples,
+    pub(super) values: Values<'a>,
+    pub(super) isovalue: f32,
+    pub(super) rule: Rule,
+    pub(super) patches: &'a Patches,
+    pub(super) placer: &'a Placer<'a>,
+}
+
+/// The vertices of a slab.
+#[derive(Debug, Default)]
+pub(super) struct Vertices {
+    /// How many were numbered, those beyond the slab's own layers too.
+    pub(super) numbered: u64,
+    pub(super) positions: Vec<Vec3>,
+    /// Where the settings want them, if elsewhere.
+    pub(super) targets: Vec<Vec3>,
+    /// Where they are asked for.
+    pub(super) keys: Option<Vec<VertexKey>>,
+    /// Crossed edges of the slab's own layers.
+    pub(super) crossings: u64,
+}
+
+impl VertexPass<'_> {
+    /// Visits a layer. Of a slab's own, vertices are placed; of others, numbered.
+    pub(super) fn layer(
+        &self,
+        layer: usize,
+        is_own: bool,
+        records: &mut Records,
+        vertices: &mut Vertices,
+    ) -> Result<(), TryReserveError> {
+        let grid = self.grid;
+        let [nx, ny, nz] = grid.size;
+        let above = layer + 1 < nz;
+        for row in 0..ny {
+            let beside = row + 1 < ny;
+            // The four rows of the cells that begin here; those beyond the lattice are this one.
+            let (y, z) = (row + usize::from(beside), layer + usize::from(above));
+            let rows = [[row, layer], [y, layer], [row, z], [y, z]];
+            if self.samples.is_uniform(grid, &rows) {
+                continue;
+            }
+            let lines = rows.map(|[y, z]| self.samples.sides.row(y, z));
+            let start = records.start(row, layer);
+            for word in 0..grid.words {
+                let here = lines.map(|line| line[word]);
+                let after = lines.map(|line| next(line, word));
+                let used = between(word, 0, nx);
+                let crossed = [
+                    (here[0] ^ after[0]) & grid.with_next(word),
+                    (here[0] ^ here[1]) & used,
+                    (here[0] ^ here[2]) & used,
+                ];
+                let any = here.iter().chain(&after).fold(0, |any, bits| any | bits);
+                let all = here.iter().chain(&after).fold(!0, |all, bits| all & bits);
+                let cells = if beside && above { any & !all & grid.with_next(word) } else { 0 };
+                let mut left = crossed[0] | crossed[1] | crossed[2] | cells;
+                while left != 0 {
+                    let bit = left.trailing_zeros();
+                    left &= left - 1;
+                    let place = [64 * word + bit as usize, row, layer];
+                    let of = |bits: u64| (bits >> bit & 1) as u8;
+                    let mut record = Record {
+                        first: vertices.numbered as u32,
+                        patch: 0,
+                        crossed: of(crossed[0]) | of(crossed[1]) << 1 | of(crossed[2]) << 2,
+                    };
+                    let mut inner = None;
+                    if of(cells) != 0 {
+                        let inside = (0..4)
+                            .fold(0, |set, i| set | of(here[i]) << (2 * i) | of(after[i]) << (2 * i + 1));
+                        let values = || self.values.corners(place);
+                        record.patch = self.patches.choose(self.rule.faces, inside, self.isovalue, values);
+                        let patch = self.patches.at(record.patch);
+                        inner = (!patch.inner.is_empty()).then_some(patch);
+                    }
+                    let crossings = record.crossed.count_ones();
+                    vertices.numbered += u64::from(crossings);
+                    vertices.numbered += inner.map_or(0, |patch| patch.inner.len() as u64);
+                    records.records[start + place[0]] = record;
+                    if is_own {
+                        vertices.crossings += u64::from(crossings);
+                        self.place(place, record.crossed, inner, vertices)?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Places the vertices of a point.
+    fn place(
+        &self,
+        place: [usize; 3],
+        crossed: u8,
+        inner: Option<&Patch>,
+        vertices: &mut Vertices,
+    ) -> Result<(), TryReserveError> {
+        let value = self.values.at(place);
+        for axis in (0..3).filter(|axis| crossed >> axis & 1 != 0) {
+            let mut there = place;
+            there[axis] += 1;
+            let values = [value, self.values.at(there)];
+            push(&mut vertices.positions, self.placer.position(self.grid, place, axis, values))?;
+            if let Some(target) = self.placer.target(self.grid, place, axis, values) {
+                push(&mut vertices.targets, target)?;
+            }
+            self.name(place, axis, vertices)?;
+        }
+        for (v, edges) in inner.iter().flat_map(|patch| patch.inner.iter().enumerate()) {
+            let mut sum = Vec3::ZERO;
+            let mut target = Vec3::ZERO;
+            for &edge in edges {
+                let (corner, axis) = self.patches.edge(edge);
+                let (from, axis) = (corner_of(place, corner), usize::from(axis));
+                let mut to = from;
+                to[axis] += 1;
+                let values = [self.values.at(from), self.values.at(to)];
+                let position = self.placer.position(self.grid, from, axis, values);
+                sum += position;
+                target += self.placer.target(self.grid, from, axis, values).unwrap_or(position);
+            }
+            let count = edges.len() as f32;
+            push(&mut vertices.positions, sum / count)?;
+            if self.placer.refines {
+                push(&mut vertices.targets, target / count)?;
+            }
+            self.name(place, 3 + v, vertices)?;
+        }
+        Ok(())
+    }
+
+    fn name(&self, place: [usize; 3], number: usize, vertices: &mut Vertices) -> Result<(), TryReserveError> {
+        if let Some(keys) = &mut vertices.keys {
+            push(keys, VertexKey::new(self.grid.lattice.point_number(place), number))?;
+        }
+        Ok(())
+    }
+}
+
+pub(super) fn corner_of([x, y, z]: [usize; 3], corner: u8) -> [usize; 3] {
+    let corner = usize::from(corner);
+    [x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)]
+}
+
+/// Where on its edge a crossing is.
+pub(super) struct Placer<'a> {
+    isovalue: f32,
+    /// How near to either end it may lie, as a share of the edge.
+    least: f32,
+    /// Whether the settings want vertices elsewhere, and to find roots with.
+    refines: bool,
+    level: Option<Level<'a>>,
+}
+
+impl<'a> Placer<'a> {
+    pub(super) fn new(lattice: &Lattice, settings: &ExtractSettings, level: Option<Level<'a>>) -> Self {
+        Self {
+            isovalue: settings.isovalue,
+            least: Apart::new(lattice, Topology::Guarded).ratio(Company::Singles, 0, 0.0),
+            // The weighted mean of one crossing is that crossing.
+            refines: settings.refine_crossings || settings.placement == Placement::CurvatureWeighted,
+            level: level.filter(|_| settings.refine_crossings),
+        }
+    }
+
+    /// The crossing by linear interpolation, on the edge that begins at a place. Of the edge alone, so that chunks, slabs and cells
+    /// agree.
+    #[inline]
+    pub(super) fn position(
+        &self,
+        grid: &Grid,
+        place: [usize; 3],
+        axis: usize,
+        [here, there]: [f32; 2],
+    ) -> Vec3 {
+        let mut position = grid.position(place);
+        let [from, to] = [0, 1].map(|step| grid.at[axis][place[axis] + step]);
+        let ratio = linear_ratio(self.isovalue - here, here, there).clamp(self.least, 1.0 - self.least);
+        position[axis] = (from + (to - from) * ratio).clamp(from, to);
+        position
+    }
+
+    /// Where the settings want it, if elsewhere.
+    fn target(&self, grid: &Grid, place: [usize; 3], axis: usize, [here, there]: [f32; 2]) -> Option<Vec3> {
+        if !self.refines {
+            return None;
+        }
+        let mut target = grid.position(place);
+        let [from, to] = [0, 1].map(|step| grid.at[axis][place[axis] + step]);
+        let mut edge = glam::DVec3::ZERO;
+        edge[axis] = f64::from(to) - f64::from(from);
+        let ends = [here - self.isovalue, there - self.isovalue];
+        let ratio = crossing_ratio(self.level, target, edge, ends);
+        target[axis] = ((f64::from(from) + edge[axis] * ratio) as f32).clamp(from, to);
+        Some(target)
+    }
+}

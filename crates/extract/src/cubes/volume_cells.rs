@@ -1,0 +1,100 @@
+//! A volume's own cells: the surface between its samples, in the space its steps are in.
+
+use glam::{DMat3, DVec3, Vec3};
+use mesh::Bounds;
+use thiserror::Error;
+
+use crate::ExtractError;
+use crate::extraction::Extraction;
+use crate::extractor::Extractor;
+use crate::grid::Grid;
+use crate::method::{Method, MethodError};
+use crate::normals::vertex_normals;
+use crate::settings::Execution;
+use crate::source::Source;
+
+/// Samples on a regular grid that may be turned, mirrored, sheared and unequal in its steps. Sample `(i, j, k)` lies at
+/// `origin + i * steps[0] + j * steps[1] + k * steps[2]`, the first axis fastest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VolumeCells<'a> {
+    /// Samples along each axis, two at least.
+    pub counts: [usize; 3],
+    /// All of them.
+    pub values: &'a [f32],
+    /// Where the first sample lies.
+    pub origin: [f64; 3],
+    /// From one sample to the next along each axis.
+    pub steps: [[f64; 3]; 3],
+}
+
+/// Why a volume has no mesh on its own cells.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum VolumeCellsError {
+    /// An axis with fewer than two samples.
+    #[error("{counts:?} samples along the axes; there must be two or more along each")]
+    Flat {
+        /// As given.
+        counts: [usize; 3],
+    },
+    /// The steps span no space, or are not finite.
+    #[error("the steps {steps:?} from sample to sample, from {origin:?}, span no space")]
+    Steps {
+        /// As given.
+        steps: [[f64; 3]; 3],
+        /// As given.
+        origin: [f64; 3],
+    },
+    /// A method whose sample points are not the corners of cubes.
+    #[error("a volume's own cells are for kind \"cubes\": other methods have sample points between")]
+    Method,
+    /// The extraction fails.
+    #[error(transparent)]
+    Extract(#[from] MethodError),
+}
+
+impl VolumeCells<'_> {
+    /// Extracts the surface where the samples have the isovalue, cell by cell of the volume, so that counts can be compared with other
+    /// programs'. The same volume with other steps has the same triangles, but for their orientation where they are mirrored:
+    /// triangles always face outward.
+    ///
+    /// Vertices are placed in steps of the grid, then taken to space in double precision.
+    ///
+    /// # Errors
+    /// [`VolumeCellsError`].
+    pub fn extract(
+        &self,
+        method: &Method,
+        extractor: &mut Extractor,
+        isovalue: f32,
+        execution: &Execution,
+    ) -> Result<Extraction, VolumeCellsError> {
+        let Self { counts, values, origin, steps } = *self;
+        if !matches!(method, Method::Cubes(_)) {
+            return Err(VolumeCellsError::Method);
+        }
+        if counts.iter().any(|&n| n < 2) {
+            return Err(VolumeCellsError::Flat { counts });
+        }
+        let (matrix, start) = (DMat3::from_cols_array_2d(&steps), DVec3::from_array(origin));
+        let lengths = matrix.x_axis.length() * matrix.y_axis.length() * matrix.z_axis.length();
+        let determinant = matrix.determinant();
+        if !(start.is_finite() && lengths.is_finite() && determinant.abs() > 1e-6 * lengths) {
+            return Err(VolumeCellsError::Steps { steps, origin });
+        }
+        let max = Vec3::from_array(counts.map(|n| (n - 1) as f32));
+        let grid = Grid { bounds: Bounds { min: Vec3::ZERO, max }, spacing: 1.0 };
+        let mut extraction =
+            method.extract(extractor, Source::Samples(values), &grid, isovalue, execution)?;
+        let mesh = &mut extraction.mesh;
+        for position in &mut mesh.positions {
+            *position = (start + matrix * position.as_dvec3()).as_vec3();
+        }
+        if determinant < 0.0 {
+            mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        }
+        let normals = vertex_normals(&mesh.positions, &mesh.triangles);
+        mesh.normals = normals.map_err(|_| MethodError::from(ExtractError::NoMemoryForMesh))?;
+        Ok(extraction)
+    }
+}
