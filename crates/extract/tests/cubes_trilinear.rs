@@ -1,9 +1,11 @@
 //! Marching cubes with trilinear faces and cells against the exact topology of the interpolant.
 
+use std::collections::BTreeMap;
+
 use extract::{Cubes, Diagonals, Execution, Extractor, Faces, Method, VolumeCells};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use trilinear::{Samples, Ties, cell_topology, verify};
+use trilinear::{CellTopology, Samples, Ties, cell_topology, verify};
 
 fn method(faces: Faces, diagonals: Diagonals) -> Method {
     Method::Cubes(Cubes { faces, diagonals, ..Cubes::default() })
@@ -72,44 +74,43 @@ fn other_rules_are_wrong_as_often_as_they_are_known_to_be() {
     assert!((0.02..0.06).contains(&decider), "{decider}");
 }
 
-/// Random cells of every kind there is, by signs and by the interpolant's loops and pieces, among them all of Chernyaev's cases.
+/// Random cells of each of the 22 patterns of signs up to symmetry, so of all of Chernyaev's cases and their subcases.
 fn cells_of_every_kind(of_each: usize, seed: u64) {
-    use std::collections::BTreeMap;
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let mut extractor = Extractor::new();
-    let mut kinds: BTreeMap<(u32, u32, u32), usize> = BTreeMap::new();
-    let mut drawn = 0;
-    // By signs: corners inside, crossed edges, ambiguous faces, and then what the interpolant does.
-    let mut cases: BTreeMap<(u32, u32, u32, u32, u32), usize> = BTreeMap::new();
-    let cube = cells::Cell::cube();
-    while drawn < 400 * of_each {
-        drawn += 1;
-        let values: [f32; 8] = std::array::from_fn(|_| random.random_range(-1.0..1.0));
-        let inside = (0..8).fold(0, |set, c| set | u32::from(values[c] > 0.0) << c);
-        let ambiguous = cube.ambiguous_faces(inside).count_ones();
-        if ambiguous == 0 && cube.loops(inside, 0).len() < 2 {
-            continue;
+    let mut kinds: BTreeMap<CellTopology, usize> = BTreeMap::new();
+    let corners: Vec<Vec<i32>> = cells::Cell::cube().corners().iter().map(|c| c.to_vec()).collect();
+    let group = cells::symmetries(&corners);
+    let image = |signs: u32, to: &[u8]| (0..8).fold(0, |set, c| set | (signs >> c & 1) << to[c]);
+    let is_first = |signs: &u32| group.iter().all(|symmetry| image(*signs, &symmetry.to) >= *signs);
+    let classes: Vec<u32> = (0..256).filter(is_first).collect();
+    assert_eq!(classes.len(), 22);
+    for signs in classes {
+        for n in 0..of_each {
+            let signs = image(signs, &group[n % 48].to);
+            // Half of them with corners of very different size, where tunnels are.
+            let power = [1, 3][n / 48 % 2];
+            let size = |random: &mut Pcg64Mcg| random.random_range(0.001..1.0f32).powi(power);
+            let values: [f32; 8] =
+                std::array::from_fn(
+                    |c| {
+                        if signs >> c & 1 != 0 { size(&mut random) } else { -size(&mut random) }
+                    },
+                );
+            *kinds.entry(cell_topology(values, 0.0, Ties::Outside)).or_insert(0) += 1;
+            assert!(is_right(&mut extractor, &Method::Cubes(TRILINEAR), [2; 3], &values, 0.0), "{values:?}");
         }
-        let found = cell_topology(values, 0.0, Ties::Outside);
-        let case =
-            (inside.count_ones(), cube.crossed(inside).count_ones(), ambiguous, found.loops, found.pieces);
-        let count = cases.entry(case).or_insert(0);
-        if *count >= of_each {
-            continue;
-        }
-        *count += 1;
-        *kinds.entry((found.loops, found.pieces, found.tunnels)).or_insert(0) += 1;
-        assert!(is_right(&mut extractor, &Method::Cubes(TRILINEAR), [2; 3], &values, 0.0), "{values:?}");
     }
     // Chernyaev's hardest: four loops apart, and three loops of which two are a tube.
-    for kind in [(1, 1, 0), (2, 1, 1), (2, 2, 0), (3, 3, 0), (3, 2, 1), (4, 4, 0)] {
-        assert!(kinds.get(&kind).is_some_and(|&n| n * 50 > of_each), "{kind:?}: {kinds:?}");
+    for (loops, pieces) in [(1, 1), (2, 1), (2, 2), (3, 3), (3, 2), (4, 4)] {
+        let kind = CellTopology { loops, pieces, tunnels: loops - pieces };
+        assert!(kinds.contains_key(&kind), "{kind:?}: {kinds:?}");
     }
 }
 
 #[test]
 fn cells_of_every_kind_are_right() {
-    cells_of_every_kind(300, 5);
+    cells_of_every_kind(1000, 5);
 }
 
 #[test]

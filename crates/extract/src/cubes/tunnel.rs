@@ -53,15 +53,40 @@ pub(super) fn joined_regions(
         return None;
     }
     let saddle = joining_saddle(&f, hyperdeterminant)?;
+    // Rounding may not take a point that is on the level, where outside regions meet, off it.
+    let largest = f.iter().fold(0.0, |largest: f64, v| largest.max(v.abs()));
+    let slack = if hyperdeterminant == Ordering::Equal { 1e-12 * largest } else { 0.0 };
+    let is_side = |p: [f64; 3]| {
+        let value = value_at(&f, p);
+        if saddle.inside { value > 0.0 } else { value <= slack }
+    };
     let mut found: Option<u8> = None;
-    for (number, square) in SQUARES.iter().enumerate() {
-        let Some(region) = region_before(&f, saddle, square, regions, is_joined(number)) else { continue };
-        match found {
-            Some(other) if other != region => return Some([other.min(region), other.max(region)]),
-            _ => found = Some(region),
+    for axis in 0..3 {
+        let ends = [0.0, 1.0].map(|end| {
+            let mut p = saddle.at;
+            p[axis] = end;
+            p
+        });
+        // Along the line the function is linear: with both ends on the side it is all there, even where the saddle is degenerate
+        // and its place is not known well.
+        if !ends.into_iter().all(is_side) {
+            continue;
+        }
+        for number in [2 * axis, 2 * axis + 1] {
+            let region = region_before(&f, saddle, &SQUARES[number], regions, is_joined(number));
+            let Some(region) = region else { continue };
+            match found {
+                Some(other) if other != region => return Some([other.min(region), other.max(region)]),
+                _ => found = Some(region),
+            }
         }
     }
     None
+}
+
+fn value_at(f: &[f64; 8], [x, y, z]: [f64; 3]) -> f64 {
+    let weight = |c: usize, axis: usize, p: f64| if c >> axis & 1 != 0 { p } else { 1.0 - p };
+    (0..8).map(|c| f[c] * weight(c, 0, x) * weight(c, 1, y) * weight(c, 2, z)).sum()
 }
 
 /// A critical point at which regions of one side meet.
