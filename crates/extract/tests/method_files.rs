@@ -1,6 +1,8 @@
 //! Methods as tables of a file: what is written is read back, and what is not known is refused by name.
 
-use extract::{Arrangement, Clustering, Method, Placement, Positions, Tetrahedra, Topology};
+use extract::{
+    Arrangement, Clustering, Cubes, Diagonals, Faces, Method, Placement, Positions, Tetrahedra, Topology,
+};
 use toml::Table;
 
 fn read(text: &str) -> Result<Method, String> {
@@ -105,6 +107,42 @@ fn what_is_not_known_is_refused_by_name() {
         (r#"kind = "tetrahedra""#, ["missing", "arrangement"]),
         (r#"kind = "octahedra", arrangement = "simple-cubic""#, ["octahedra", "tetrahedra"]),
         (r#"arrangement = "simple-cubic""#, ["missing", "kind"]),
+    ] {
+        let error = read(&format!("recipe = {{ {text} }}")).unwrap_err();
+        for name in names {
+            assert!(error.lines().last().is_some_and(|line| line.contains(name)), "{text}: {error}");
+        }
+    }
+}
+
+#[test]
+fn cubes_are_read_and_written() {
+    let all = [Faces::SeparateInside, Faces::JoinInside, Faces::Decider, Faces::Trilinear];
+    let words = ["separate-inside", "join-inside", "decider", "trilinear"];
+    for (faces, word) in all.into_iter().zip(words) {
+        for (diagonals, diagonal) in
+            [(Diagonals::Fan, "fan"), (Diagonals::EdgeGroups, "edge-groups"), (Diagonals::Quality, "quality")]
+        {
+            let wanted = Method::Cubes(Cubes {
+                faces,
+                diagonals,
+                placement: Placement::Projected,
+                refine_crossings: true,
+            });
+            let keys = format!(
+                r#"kind = "cubes", faces = "{word}", diagonals = "{diagonal}", placement = "projected", refine_crossings = true"#
+            );
+            assert_eq!(read(&format!("recipe = {{ {keys} }}")), Ok(wanted));
+            let text = toml::to_string(&wanted).unwrap();
+            assert_eq!(toml::from_str::<Method>(&text).unwrap(), wanted, "{text}");
+        }
+    }
+    assert_eq!(read(r#"recipe = { kind = "cubes" }"#), Ok(Method::Cubes(Cubes::default())));
+    for (text, names) in [
+        (r#"kind = "cubes", face = "decider""#, ["face", "faces"]),
+        (r#"kind = "cubes", faces = "asymptotic""#, ["asymptotic", "decider"]),
+        (r#"kind = "cubes", diagonals = "best""#, ["best", "quality"]),
+        (r#"kind = "cubes", arrangement = "simple-cubic""#, ["arrangement", "diagonals"]),
     ] {
         let error = read(&format!("recipe = {{ {text} }}")).unwrap_err();
         for name in names {
