@@ -178,7 +178,7 @@ fn it_is_the_obvious_one() {
 fn threads_and_sources_do_not_show() {
     let (asteroid, gyroid) = (Asteroid::default(), Gyroid { frequency: 14.0 });
     let bounds = Bounds { min: Vec3::splat(-1.0), max: Vec3::new(1.0, 0.93, 1.21) };
-    let box_grid = Grid { bounds, spacing: 0.031 };
+    let box_grid = Grid { bounds, spacing: 0.05 };
     let mut extractor = Extractor::new();
     for faces in FACES {
         for diagonals in DIAGONALS {
@@ -188,7 +188,7 @@ fn threads_and_sources_do_not_show() {
                     method.extract(extractor, field.into(), &box_grid, 0.0, &Execution { threads }).unwrap()
                 };
                 let one = run(&mut extractor, 1);
-                assert!(one.counts.triangles > 5000);
+                assert!(one.counts.triangles > 2000);
                 for threads in [2, 5] {
                     let other = run(&mut extractor, threads);
                     assert_eq!(other.counts, one.counts);
@@ -221,13 +221,13 @@ fn every_mesh_is_an_oriented_manifold_closed_off_the_box() {
         for is_closed in [false, true] {
             let volume = Volume::random(Arrangement::SimpleCubic, 6, family, seed);
             let volume = if is_closed { volume.closed() } else { volume };
-            let counts = [7; 3];
+            let lattice = Grid::from(&volume.lattice());
             for faces in FACES {
                 for diagonals in DIAGONALS {
                     let what = format!("{family:?} {seed} {is_closed} {faces:?} {diagonals:?}");
                     let method = cubes(faces, diagonals);
                     let source = Source::Field(&volume);
-                    let mesh = method.extract(&mut extractor, source, &grid(counts), 0.0, &ONE).unwrap().mesh;
+                    let mesh = method.extract(&mut extractor, source, &lattice, 0.0, &ONE).unwrap().mesh;
                     let components = survey(mesh.positions.len(), &mesh.triangles)
                         .unwrap_or_else(|fault| panic!("{what}: {fault}"));
                     let loops: u64 = components.iter().map(|component| component.1 as u64).sum();

@@ -110,9 +110,7 @@ mod tests {
     #[test]
     fn a_tie_is_apart_and_a_hair_is_not() {
         // 3 * 5 against 1 * 15, and the next number either way.
-        for (d, joined) in [(-15.0, false), (-15.0f32.next_down(), false), (-15.0f32.next_up(), true)] {
-            // Here next_up of -15 is nearer to zero.
-            let d: f32 = d;
+        for (d, joined) in [(-15.0, false), ((-15.0f32).next_down(), false), ((-15.0f32).next_up(), true)] {
             assert_eq!(is_joined([3.0, -1.0, 5.0, d], 0.0), joined, "{d}");
         }
         // The same far from zero, where a difference has more digits than f32.
