@@ -252,8 +252,13 @@ fn quoted(message: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_page_has_the_keys_and_names_of_tetrahedra() {
-    let section = section("methods.recipe", "tetrahedra");
+fn the_page_has_the_keys_and_names_of_extractors() {
+    has_the_keys_and_names_of("tetrahedra", Some(("arrangement", "body-centred")), 5);
+    has_the_keys_and_names_of("cubes", None, 3);
+}
+
+fn has_the_keys_and_names_of(kind: &str, needed: Option<(&str, &str)>, names: usize) {
+    let section = section("methods.recipe", kind);
     let read = |keys: Table| toml::Value::Table(keys).try_into::<Method>();
     let example: Table = section.examples[0].parse().unwrap();
     let recipe = example["recipe"].as_table().unwrap().clone();
@@ -266,15 +271,13 @@ fn the_page_has_the_keys_and_names_of_tetrahedra() {
     let known = quoted(&with("no_such_key", 1.into()).unwrap_err());
     assert_eq!(keys(&section), known.into_iter().collect());
     let named: Vec<&Row> = section.rows.iter().filter(|row| row.holds == "name").collect();
-    assert_eq!(named.len(), 5);
+    assert_eq!(named.len(), names);
     for row in named {
         assert_eq!(row.names(), quoted(&with(&row.key, "no-such-name".into()).unwrap_err()), "{}", row.key);
     }
     // What is left out is what the page says.
-    let mut least: Table = [("kind", "tetrahedra"), ("arrangement", "body-centred")]
-        .map(|(key, value)| (key.to_owned(), value.into()))
-        .into_iter()
-        .collect();
+    let least = [("kind", kind)].into_iter().chain(needed);
+    let mut least: Table = least.map(|(key, value)| (key.to_owned(), value.into())).collect();
     let left_out = read(least.clone()).unwrap();
     for row in section.rows.iter().filter(|row| !row.is_needed()) {
         least.insert(row.key.clone(), row.default.trim_matches('`').parse().unwrap());

@@ -7,8 +7,9 @@ use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const CRATES: [&str; 16] = [
+const CRATES: [&str; 17] = [
     "mesh",
+    "cells",
     "design",
     "responses",
     "field",

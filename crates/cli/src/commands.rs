@@ -18,6 +18,7 @@ pub(crate) mod serve;
 pub(crate) mod study;
 pub(crate) mod turntable;
 pub(crate) mod validate;
+pub(crate) mod verify;
 
 // What several of them share.
 mod checked_study;

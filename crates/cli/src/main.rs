@@ -83,6 +83,8 @@ enum Command {
     Inspect(commands::inspect::Arguments),
     /// Measure how far two surfaces are from each other: Hausdorff, mean and RMS, both ways
     Distance(commands::distance::Arguments),
+    /// Check whether a mesh, made by any program, has the topology of the volume it was made of
+    Verify(commands::verify::Arguments),
     /// Judge a questionnaire before anyone answers, and deal its forms
     #[command(subcommand)]
     Design(commands::design::Verb),
@@ -118,6 +120,7 @@ fn run(command: &Command) -> Result<Outcome> {
         Command::Validate(arguments) => commands::validate::run(arguments),
         Command::Inspect(arguments) => commands::inspect::run(arguments),
         Command::Distance(arguments) => commands::distance::run(arguments),
+        Command::Verify(arguments) => commands::verify::run(arguments),
         Command::Design(verb) => commands::design::run(verb),
     }
 }

@@ -1,6 +1,7 @@
 //! Digests of the sources that make each kind of result; see `build.rs`.
 
 const MESH: &str = env!("ISOSTUDY_SOURCES_MESH");
+const CELLS: &str = env!("ISOSTUDY_SOURCES_CELLS");
 const DESIGN: &str = env!("ISOSTUDY_SOURCES_DESIGN");
 const RESPONSES: &str = env!("ISOSTUDY_SOURCES_RESPONSES");
 const FIELD: &str = env!("ISOSTUDY_SOURCES_FIELD");
@@ -19,11 +20,11 @@ const PAGE: &str = env!("ISOSTUDY_SOURCES_PAGE");
 const CLI: &str = env!("ISOSTUDY_SOURCES_CLI");
 
 /// What makes meshes.
-pub(crate) const MESHES: &[&str] = &[MESH, FIELD, EXPRESSION, VOLUME, EXTRACT, PROGRAM, CLI];
+pub(crate) const MESHES: &[&str] = &[MESH, FIELD, EXPRESSION, VOLUME, CELLS, EXTRACT, PROGRAM, CLI];
 /// What makes pictures of meshes.
 pub(crate) const PICTURES: &[&str] = &[MESH, RASTER, CLI];
 /// What makes timings.
-pub(crate) const TIMINGS: &[&str] = &[MESH, FIELD, EXPRESSION, VOLUME, EXTRACT, PROGRAM, BENCH, CLI];
+pub(crate) const TIMINGS: &[&str] = &[MESH, FIELD, EXPRESSION, VOLUME, CELLS, EXTRACT, PROGRAM, BENCH, CLI];
 /// What makes tables, figures and the report.
 pub(crate) const TABLES: &[&str] = &[DESIGN, RESPONSES, STATISTICS, TABLE, TIMING, ANALYSIS, CLI, PAGE];
 /// What makes the key.

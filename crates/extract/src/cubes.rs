@@ -21,12 +21,13 @@ mod volume_cells;
 pub use rule::{Diagonals, Faces};
 pub use volume_cells::{VolumeCells, VolumeCellsError};
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
 use self::grid::Grid;
 use self::patches::Patches;
 use self::slab::{Job, Workspace, sweep};
 use self::vertices::Placer;
-use std::time::Instant;
-
 use crate::extraction::{ExtractError, Extraction};
 use crate::slabs::{Piece, assemble, on_slabs, threads_and_slabs};
 use crate::source::Request;
@@ -63,9 +64,9 @@ pub(crate) fn extract(
     let isovalue = settings.isovalue;
     let job = Job { grid, source, isovalue, rule, patches, placer, most_vertices, traced: trace.is_some() };
     let cells = lattice.cells()[2] as usize;
-    let done = std::sync::atomic::AtomicUsize::new(0);
+    let done = AtomicUsize::new(0);
     let layer_done = || {
-        let done = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
         if let Some(progress) = progress {
             progress(done, cells);
         }

@@ -19,7 +19,8 @@ use crate::source::Source;
 /// threads.
 ///
 /// With the feature `serde` it is read and written as a table that says its `kind`, with keys left out for defaults:
-/// `{ kind = "tetrahedra", arrangement = "body-centred", placement = "relaxed" }`. Unknown keys are refused.
+/// `{ kind = "tetrahedra", arrangement = "body-centred", placement = "relaxed" }`, `{ kind = "cubes", faces = "trilinear" }`.
+/// Unknown keys are refused.
 ///
 /// ```
 /// use extract::{Arrangement, Execution, Extractor, Grid, Method, Placement, Tetrahedra};

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use toml::de::ValueDeserializer;
 
 /// The kinds that go without one.
-const KINDS: &str = "tetrahedra";
+const KINDS: &str = "\"tetrahedra\", \"cubes\"";
 
 /// A method as reports name it.
 #[derive(Debug, Serialize)]
@@ -64,11 +64,11 @@ pub(super) fn recipe(text: &str) -> Result<Method, String> {
     };
     let kind = match table.get("kind") {
         Some(toml::Value::String(kind)) => kind.as_str(),
-        Some(other) => return Err(format!("kind = {other}: allowed: \"{KINDS}\"")),
-        None => return Err(format!("kind is missing; allowed: \"{KINDS}\"")),
+        Some(other) => return Err(format!("kind = {other}: allowed: {KINDS}")),
+        None => return Err(format!("kind is missing; allowed: {KINDS}")),
     };
     if let Some(of) = StudyKind::of(kind) {
-        return Err(format!("kind = \"{kind}\": {}; allowed here: \"{KINDS}\"", why_not(of)));
+        return Err(format!("kind = \"{kind}\": {}; allowed here: {KINDS}", why_not(of)));
     }
     // Errors in values do not say their key, for what has a kind is read twice.
     let known = Method::deserialize(value.clone()).map_err(|error| error.message().to_owned());
