@@ -308,7 +308,7 @@ fn a_sphere_is_a_sphere() {
                 assert_eq!(counts.tetrahedra, None);
                 let outward = |(p, n): (&Vec3, &Vec3)| p.normalize().dot(*n) > 0.95;
                 assert!(mesh.positions.iter().zip(&mesh.normals).all(outward));
-                errors.push(volume - f64::from(mesh.volume()));
+                errors.push(volume - mesh.volume());
             }
             // Inscribed, so too small, by a share that falls with the square of the spacing.
             assert!(errors.iter().all(|error| *error > 0.0), "{errors:?}");
@@ -420,7 +420,7 @@ fn a_volume_has_its_own_cells_whatever_its_steps() {
         let mesh = run(steps, [10.0, -3.0, 0.5]);
         assert_eq!(mesh.triangles.len(), plain.triangles.len());
         assert!(topology(&mesh).is_closed_manifold());
-        let ratio = f64::from(mesh.volume()) / f64::from(plain.volume());
+        let ratio = mesh.volume() / plain.volume();
         assert!((ratio - determinant).abs() < 1e-4, "{ratio}");
         for (a, b) in mesh.positions.iter().zip(&plain.positions) {
             let wanted: Vec<f64> = (0..3)

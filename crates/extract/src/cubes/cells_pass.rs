@@ -61,7 +61,7 @@ pub(super) fn triangulate_layer(
                     result.triangles.extend(best.iter().map(numbered));
                 }
                 if let Some(trace) = &mut result.trace {
-                    trace.close_cell(&grid.lattice, [x, y, z], result.triangles.len())?;
+                    trace.close_cell(grid.lattice, [x, y, z], result.triangles.len())?;
                 }
             }
         }
