@@ -58,4 +58,4 @@ mod verify;
 pub use cell::{CellTopology, cell_topology};
 pub use grid::{Component, Surface, topology};
 pub use samples::{Samples, SamplesError, Ties};
-pub use verify::{Fault, Finding, Verdict, verify};
+pub use verify::{Fault, Finding, Summary, Verdict, verify};
