@@ -72,7 +72,8 @@ pub(super) fn agreement(study: &Study, ballots: &[DeclaredBallot]) -> Table {
     }
     table.notes.push(
         "Alpha: Krippendorff's, each question counted in both orientations, so that sides do not matter; 1 is full agreement, 0 \
-         chance; from and to: interval at 95 % over participants, of all values that a test does not reject. Kendall's u: a tie is half \
+         chance; from and to: interval at 95 % over participants, of all values that a test does not reject. No interval of alpha below four \
+         questions, below 12 people per question, or if questions times one less alpha is below three: simulated coverage fails there. Kendall's u: a tie is half \
          an answer for each side; its test is without continuity correction. Triads: three items that one person compared \
          pairwise on one object; strict by chance: a quarter of those decided throughout, as answers by chance would have it. A weak cycle is two wins closed by a tie, \
          which need not be an error. Zeta: Kendall's, of whoever decided every pair of an object and group; 1 is no circle."
