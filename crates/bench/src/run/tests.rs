@@ -196,7 +196,7 @@ fn progress_counts_every_turn() {
 #[test]
 fn the_record_says_what_was_planned() {
     let run = mock_run();
-    assert_eq!((run.schema, run.study.as_str(), run.imported_from.as_ref()), (2, "mock", None));
+    assert_eq!((run.schema, run.study.as_str(), run.imported_from.as_ref()), (3, "mock", None));
     assert_eq!((run.warmup, run.iterations, run.aa_iterations), (2, 5, 2));
     assert_eq!((run.seed, run.threads), (2026, 16), "0 threads are the machine's");
     assert_eq!(run.machine, machine());
