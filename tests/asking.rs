@@ -240,7 +240,7 @@ fn a_bundle_tells_nothing_of_the_key() {
     fixture.succeed("bundle", &[]);
     let bundle = fixture.out().join("bundle");
     let made = files(&bundle);
-    assert_eq!(made.len(), 6 + 2 * 27 + 2, "{:?}", made.keys());
+    assert_eq!(made.len(), 9 + 2 * 27 + 2, "{:?}", made.keys());
     let key = std::fs::read_to_string(fixture.out().join("key/stimuli.csv")).unwrap();
     let shown: BTreeMap<&str, &str> =
         key.lines().filter_map(|line| line.strip_prefix("stimuli/pairs/")?.split_once(',')).collect();
@@ -362,12 +362,12 @@ fn a_video_has_twice_the_size_of_its_turntables_says_its_colours_and_is_the_same
 #[test]
 fn a_bundles_videos_tell_nothing_either() {
     let fixture = Fixture::balanced();
-    let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncksum > \"$last\"\n\
-        head -c $(($$ % 50)) /dev/zero >> \"$last\"\n";
+    let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\n[ \"$3\" = -encoders ] && echo libx264 && exit 0\n\
+        for last; do :; done\ncksum > \"$last\"\nhead -c $(($$ % 50)) /dev/zero >> \"$last\"\n";
     let path = fixture.with_ffmpeg(script);
-    let output = fixture.command("bundle").arg("--mp4").env("PATH", path).output().unwrap();
+    let output = fixture.command("bundle").arg("--mp4").env("PATH", &path).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let made = files(&fixture.out().join("stimuli/pairs"));
+    let made = files(&fixture.out().join("stimuli/web"));
     let own: BTreeMap<&String, &Vec<u8>> = made.iter().filter(|(name, _)| name.ends_with(".mp4")).collect();
     assert!(own.len() == 56 && own.values().map(|video| video.len()).collect::<BTreeSet<_>>().len() > 1);
     let folder = fixture.out().join("bundle/stimuli");
@@ -387,7 +387,10 @@ fn a_bundles_videos_tell_nothing_either() {
     let said = fixture.succeed("bundle", &[]).stderr;
     assert!(said.contains("56 videos are removed from the bundle"), "{said}");
     assert!(files(&folder).keys().all(|name| name.ends_with(".gif")));
+    assert!(files(&fixture.out().join("stimuli/web")).is_empty());
     // With another seed, names are those of other pairs: no video of before is left beside them.
+    let output = fixture.command("pairs").arg("--mp4").env("PATH", path).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(files(&fixture.out().join("stimuli/pairs")).keys().any(|name| name.ends_with(".mp4")));
     fixture.edit("seed = 2026", "seed = 2027");
     fixture.succeed("pairs", &[]);
@@ -435,4 +438,32 @@ fn blocks(gif: &[u8]) -> (Vec<String>, usize) {
             found.push(first);
         }
     }
+}
+
+/// Where pairs are too many bytes, each is made small enough, and said to be; without an ffmpeg too.
+#[test]
+fn a_bundle_for_the_web_keeps_to_what_a_participant_may_load() {
+    let fixture = Fixture::balanced();
+    fixture.edit("page_scale = 1", "page_scale = 1\nweb_mb = 1");
+    fixture.edit("width = 96", "width = 160");
+    fixture.edit("height = 96", "height = 160");
+    let output = fixture.command("bundle").env("PATH", fixture.folder()).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
+    let shown = 33;
+    let bundle = files(&fixture.out().join("bundle/stimuli"));
+    let own = files(&fixture.out().join("stimuli/pairs"));
+    let bytes = bundle.values().map(Vec::len).max().unwrap();
+    assert!(own.values().any(|pair| pair.len() * shown > 1_000_000), "as they are they would be too much");
+    assert!(bundle.len() == 56 && bytes * shown <= 1_000_000, "{bytes}");
+    assert!(bundle.values().all(|pair| pair.len() == bytes), "sizes tell nothing");
+    assert!(
+        said.contains("to stay within forms.web_mb = 1") && said.contains("an ffmpeg on the PATH"),
+        "{said}"
+    );
+    assert!(
+        said.contains(&format!("a participant loads {:.1} MB as gif", (bytes * shown) as f64 / 1e6)),
+        "{said}"
+    );
+    assert!(!said.contains("warning: more than 20 MB"), "{said}");
 }

@@ -48,9 +48,9 @@ function run(...words) {
 }
 
 /** A server, its answers in a folder of that name; on a free port if none is said. */
-async function serve(name, port = '0') {
+async function serve(name, port = '0', [study, made] = [config, out]) {
   const answers = path.join(folder, name);
-  const child = spawn(ISOSTUDY, ['serve', config, '--out', out, '--answers', answers, '--port', port, '--admin-token', TOKEN], { stdio: ['ignore', 'ignore', 'pipe'] });
+  const child = spawn(ISOSTUDY, ['serve', study, '--out', made, '--answers', answers, '--port', port, '--admin-token', TOKEN], { stdio: ['ignore', 'ignore', 'pipe'] });
   children.add(child);
   let said = '';
   const address = await new Promise((resolve, reject) => {
@@ -101,7 +101,7 @@ const begin = async (page) => {
   await page.getByRole('button', { name: 'Go on' }).click();
 };
 
-const shown = (page) => page.locator('.pair img').evaluate((image) => image.src.match(/([a-z]+)\.gif/)[1]);
+const shown = (page) => page.locator('.pair').getAttribute('data-code');
 const ready = (page) => page.locator('[data-choice="L"]:not([aria-disabled])').waitFor();
 
 /** Answers what is on the screen, and returns what it was. */
@@ -189,7 +189,7 @@ test('nobody can answer before one turn', async () => {
   await page.evaluate(() => { window.ISOSTUDY.loop_ms = 5000; });
   await page.getByLabel(/Your number/).fill('1');
   await begin(page);
-  await page.locator('.pair img').waitFor();
+  await page.locator('.pair img').first().waitFor();
   await page.keyboard.press('1');
   await page.locator('[data-choice="R"]').click({ force: true });
   assert.equal(await page.locator('#status').textContent(), 'Please watch one whole turn first.');
@@ -416,8 +416,11 @@ test('reduced motion stands still until it is played', async () => {
   await page.getByLabel(/Your number/).fill('1');
   await begin(page);
   await page.getByRole('button', { name: 'Play' }).waitFor();
+  // Said before anybody does something wrong.
+  await page.getByText('Your device asks for less motion. Press Play').waitFor();
   await page.waitForTimeout(700);
-  assert.equal(await page.locator('.pair img').isVisible(), false);
+  assert.equal(await page.locator('.pair img').first().isVisible(), false);
+  assert.equal(await page.locator('.pair canvas').first().isVisible(), true);
   await page.keyboard.press('1');
   await page.getByText('Please play one whole turn first.').waitFor();
   await page.getByRole('button', { name: 'Play' }).click();
@@ -470,8 +473,10 @@ test('pair and answers fit the window, and the arrow down answers only where the
     await ready(page);
     const box = await page.locator('.choices').boundingBox();
     assert.ok(box.y >= 0 && box.y + box.height <= height, `answers end at ${box.y + box.height} of ${width} x ${height}`);
-    const picture = await page.locator('.pair img').boundingBox();
-    assert.ok(picture.height >= 80 && picture.y + picture.height <= box.y, `${picture.height} px of picture at ${width} x ${height}`);
+    for (const half of await page.locator('.half').all()) {
+      const picture = await half.boundingBox();
+      assert.ok(picture.height >= 80 && picture.y + picture.height <= box.y, `${picture.height} px of picture at ${width} x ${height}`);
+    }
     if (process.env.PICTURES) await page.screenshot({ path: path.join(process.env.PICTURES, `fit-${width}x${height}.png`) });
     await answer(page, 'NP', { NP: 'ArrowDown' });
     await page.context().close();
@@ -508,4 +513,248 @@ test('three robots with known preferences, and the analysis finds them', async (
   const groups = rows(fs.readFileSync(path.join(result, 'tables/preference_groups.csv'), 'utf8'));
   const wins = Object.fromEntries(groups.map((line) => [line.configuration, [line.wins, line.answers]]));
   assert.deepEqual(wins, { bu: ['0', '6'], bi: ['6', '6'] });
+});
+
+const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 3, hasTouch: true, isMobile: true };
+
+/** Where both surfaces are. */
+async function surfaces(page) {
+  const boxes = [];
+  for (const half of await page.locator('.half').all()) boxes.push(await half.boundingBox());
+  return boxes;
+}
+
+test('on a phone the surfaces stand one over the other, as large as it allows, and a tap enlarges both', async () => {
+  const server = await serve('small');
+  const page = await open(server.address, PHONE);
+  assert.equal(await page.getByText(/the keys 1, 2 and 3/).count(), 0);
+  await page.getByRole('button', { name: 'I agree, begin' }).tap();
+  assert.equal(await page.getByText(/the keys 1, 2 and 3/).count(), 0);
+  await page.getByRole('button', { name: 'Go on' }).tap();
+  await ready(page);
+  const [top, bottom] = await surfaces(page);
+  assert.ok(top.x === bottom.x && bottom.y >= top.y + top.height, 'one over the other');
+  assert.ok(top.width >= 280 && top.width === bottom.width && top.height === bottom.height, `${top.width} px`);
+  const answers = await page.locator('.choices').boundingBox();
+  assert.ok(bottom.y + bottom.height <= answers.y && answers.y + answers.height <= 844);
+  assert.deepEqual(await page.locator('.choices button').allTextContents(), ['Top', 'No preference', 'Bottom']);
+  assert.deepEqual(await page.locator('.name').allTextContents(), ['Top', 'Bottom']);
+  await page.locator('.half').first().tap();
+  const large = await surfaces(page);
+  assert.ok(large.every((half) => half.width === 390), `${large[0].width} px`);
+  if (process.env.PICTURES) await page.screenshot({ path: path.join(process.env.PICTURES, 'phone-large.png') });
+  await page.getByRole('button', { name: 'Smaller' }).tap();
+  assert.deepEqual(await surfaces(page), [top, bottom]);
+  if (process.env.PICTURES) await page.screenshot({ path: path.join(process.env.PICTURES, 'phone.png') });
+  await page.locator('[data-choice="L"]').tap();
+  await page.getByRole('heading', { name: 'Question 1' }).waitFor();
+  assert.equal(await page.locator('#progress-text').textContent(), '1 of 6');
+  await ready(page);
+  const upper = await shown(page);
+  await page.locator('[data-choice="L"]').tap();
+  await page.getByRole('heading', { name: 'Question 2' }).waitFor();
+  // Turned, it lies side by side again.
+  await page.setViewportSize({ width: 844, height: 390 });
+  await ready(page);
+  const [left, right] = await surfaces(page);
+  assert.ok(left.y === right.y && right.x >= left.x + left.width - 1, 'side by side');
+  await page.locator('[data-choice="NP"]').tap();
+  await page.getByRole('heading', { name: 'Question 3' }).waitFor();
+  await page.waitForFunction(() => Object.values(localStorage).some((text) => JSON.parse(text).answers?.[1]?.saved));
+  const lines = rows(await server.export());
+  assert.deepEqual(asGiven(lines[0]), { code: upper, choice: 'L' }, 'the upper surface is the left half');
+  const screen = ({ viewport_width, viewport_height, pixel_ratio, layout, input, shown_as }) => [viewport_width, viewport_height, pixel_ratio, layout, input, shown_as];
+  assert.deepEqual(lines.map(screen), [['390', '844', '3', 'stacked', 'touch', 'gif'], ['844', '390', '3', 'beside', 'touch', 'gif']]);
+  assert.equal(lines[0].surface_px, String(top.width));
+  await server.stop();
+});
+
+test('both halves of an animation show one frame of it', async () => {
+  const server = await serve('together');
+  const page = await open(server.address, PHONE);
+  await begin(page);
+  // A control: both halves are the same all the time, if they are of one moment.
+  const key = new Map(rows(fs.readFileSync(path.join(out, 'key/stimuli.csv'), 'utf8')).map((line) => [path.basename(line.file, '.gif'), line]));
+  let seen = 0;
+  for (let i = 0; i <= MOST; i += 1) {
+    await ready(page);
+    const { left, right } = key.get(await shown(page));
+    for (let shot = 0; left === right && shot < 5; shot += 1) {
+      await page.evaluate(() => document.querySelectorAll('.name').forEach((name) => { name.style.display = 'none'; }));
+      const picture = await page.screenshot();
+      const [a, b] = (await surfaces(page)).map((box) => ({ ...box }));
+      const same = await page.evaluate(async ({ picture, a, b }) => {
+        const image = new Image();
+        image.src = `data:image/png;base64,${picture}`;
+        await image.decode();
+        const pixels = (box) => {
+          const canvas = new OffscreenCanvas(box.width * 3, box.height * 3).getContext('2d');
+          canvas.drawImage(image, -box.x * 3, -box.y * 3);
+          return canvas.getImageData(0, 0, box.width * 3, box.height * 3).data;
+        };
+        const [one, two] = [pixels(a), pixels(b)];
+        return one.reduce((sum, level, i) => sum + Math.abs(level - two[i]), 0) / one.length;
+      }, { picture: picture.toString('base64'), a, b });
+      assert.ok(same < 2, `${same} levels`);
+      seen += 1;
+    }
+    await answer(page, 'NP');
+  }
+  assert.ok(seen > 0);
+  await server.stop();
+});
+
+test('on a slow line the first pair comes during consent, the share is told, and no clock runs before it is seen', async () => {
+  // Large enough that it comes in several parts.
+  const large = path.join(folder, 'large.toml');
+  const text = fs.readFileSync(config, 'utf8').replace('width = 128', 'width = 320').replace('height = 128', 'height = 320').replace('frames = 4', 'frames = 16');
+  fs.writeFileSync(large, text.replace('duration_s = 0.4', 'duration_s = 1.6'));
+  const made = path.join(folder, 'large');
+  run('bundle', large, '--out', made);
+  const server = await serve('slow', '0', [large, made]);
+  const context = await browser.newContext();
+  const page = await context.newPage();
+  const line = await context.newCDPSession(page);
+  await line.send('Network.enable');
+  const stimuli = path.join(made, 'bundle/stimuli');
+  const bytes = fs.statSync(path.join(stimuli, fs.readdirSync(stimuli)[0])).size;
+  const asked = [];
+  page.on('request', (request) => { if (request.url().includes('/stimuli/')) asked.push(path.basename(request.url(), '.gif')); });
+  await page.goto(server.address);
+  await page.getByRole('button', { name: 'I agree, begin' }).waitFor();
+  const practice = await page.evaluate(() => window.ISOSTUDY.first[0]);
+  while (!asked.length) await page.waitForTimeout(20);
+  assert.deepEqual(asked, [practice], 'the practice pair, before anybody has agreed');
+  await begin(page);
+  await ready(page);
+  await page.waitForFunction(() => document.querySelectorAll('.half').length === 2);
+  while (asked.length < 3) await page.waitForTimeout(20);
+  const codes = await page.evaluate(() => JSON.parse(Object.values(localStorage)[0]).form.questions);
+  assert.deepEqual(asked, [practice, codes[0], codes[1]], 'and the next two while it is judged');
+  await answer(page, 'L');
+  await answer(page, 'L');
+  // From here on it is slow, and two questions ahead the pair is not there yet.
+  await line.send('Network.emulateNetworkConditions', { offline: false, latency: 20, downloadThroughput: bytes / 8, uploadThroughput: bytes });
+  await answer(page, 'L');
+  await answer(page, 'L');
+  await page.getByText(/^Loading, [1-9]\d* %$/).waitFor();
+  assert.equal(await page.locator('.half').count(), 0, 'nothing of it is seen');
+  const began = Date.now();
+  await page.keyboard.press('1');
+  assert.equal(await page.locator('#status').textContent(), 'Please wait until both surfaces are loaded.');
+  if (process.env.PICTURES) await page.screenshot({ path: path.join(process.env.PICTURES, 'loading.png') });
+  await page.locator('.half').first().waitFor({ timeout: 28000 });
+  const waited = Date.now() - began;
+  const at = Date.now();
+  await answer(page, 'R');
+  const looked = Date.now() - at;
+  await page.waitForFunction(() => JSON.parse(Object.values(localStorage)[0]).answers?.[3]?.saved);
+  const times = rows(await server.export()).map((line) => Number(line.rt_ms));
+  assert.ok(waited > 500 && times[3] <= looked + 250, `${times[3]} ms, looked for ${looked} after ${waited}`);
+  await server.stop();
+});
+
+test('a pair that cannot be loaded is tried again', async () => {
+  const server = await serve('broken');
+  const page = await open(server.address);
+  // During consent, during the instructions, and when it is needed.
+  let broken = 3;
+  await page.route('**/stimuli/*', (route) => {
+    broken -= 1;
+    return broken >= 0 ? route.fulfill({ status: 200, contentType: 'image/gif', body: 'GIF89a' }) : route.continue();
+  });
+  await page.reload();
+  await begin(page);
+  await page.getByText('could not be loaded').waitFor();
+  await answer(page, 'L');
+  await server.stop();
+});
+
+test('time out of sight and dropped frames are kept', async () => {
+  const server = await serve('hidden');
+  const page = await open(server.address);
+  await begin(page);
+  await answer(page, 'L');
+  await ready(page);
+  const away = (hidden) => page.evaluate((now) => {
+    Object.defineProperty(document, 'hidden', { configurable: true, get: () => now });
+    document.dispatchEvent(new Event('visibilitychange'));
+  }, hidden);
+  await away(true);
+  assert.equal(await page.getByRole('button', { name: 'Play' }).count(), 1, 'nothing turns unseen');
+  await page.waitForTimeout(600);
+  await away(false);
+  await page.getByRole('button', { name: 'Pause' }).waitFor();
+  await answer(page, 'R');
+  await ready(page);
+  // A frame lasts 100 ms here.
+  await page.evaluate(() => { const until = performance.now() + 1000; while (performance.now() < until); });
+  await page.waitForTimeout(100);
+  await answer(page, 'L');
+  await page.waitForFunction(() => JSON.parse(Object.values(localStorage)[0]).answers?.[1]?.saved);
+  const [first, second] = rows(await server.export());
+  assert.ok(Number(first.hidden_ms) >= 590 && Number(first.hidden_ms) < 3000 && Number(first.rt_ms) >= 1000, `${first.hidden_ms}`);
+  assert.ok(second.hidden_ms === '0' && Number(second.dropped) >= 8 && Number(second.dropped) < 40, `${second.dropped}`);
+  await server.stop();
+});
+
+test('a window that is too small asks for a larger one, and takes no answer', async () => {
+  const page = await open(pathToFileURL(path.join(out, 'bundle/index.html')).href, { viewport: { width: 320, height: 480 } });
+  await page.evaluate(() => { window.ISOSTUDY.min_surface_px = 200; });
+  await page.getByLabel(/Your number/).fill('1');
+  await begin(page);
+  await page.getByText(/This window is too small: each surface has to be 200 pixels wide/).waitFor();
+  await page.waitForTimeout(600);
+  await page.keyboard.press('1');
+  assert.match(await page.locator('h2').textContent(), /Practice 1/);
+  assert.equal(await page.locator('.half').first().isVisible(), false);
+  await page.setViewportSize({ width: 800, height: 700 });
+  await answer(page, 'L');
+});
+
+test('videos are shown where there are some, both halves from one', async (t) => {
+  if (spawnSync('ffmpeg', ['-version']).status !== 0) {
+    t.skip('NO FFMPEG');
+    return;
+  }
+  const made = path.join(folder, 'videos');
+  run('bundle', config, '--out', made, '--mp4');
+  const address = `${pathToFileURL(path.join(made, 'bundle/index.html')).href}?form=2`;
+  const server = await serve('moving', '0', [config, made]);
+  // A canvas with frames of a file may not be read, one with frames from a server may.
+  const watched = await open(server.address, { reducedMotion: 'reduce' });
+  await begin(watched);
+  await watched.getByRole('button', { name: 'Play' }).waitFor();
+  const frames = () => watched.evaluate(async () => {
+    const seen = new Set();
+    for (let i = 0; i < 30; i += 1) {
+      seen.add([...document.querySelectorAll('.half canvas')].map((half) => half.toDataURL()).join());
+      await new Promise((resolve) => { setTimeout(resolve, 30); });
+    }
+    return seen.size;
+  });
+  assert.equal(await frames(), 1, 'a still pair until it is played');
+  await watched.getByRole('button', { name: 'Play' }).click();
+  assert.ok(await frames() > 2, 'it turns');
+  await answer(watched, 'L');
+  await server.stop();
+  for (const options of [{}, PHONE]) {
+    const page = await open(address, options);
+    await begin(page);
+    const given = await all(page, 'mouse');
+    const answers = await page.evaluate(() => JSON.parse(Object.values(localStorage)[0]).answers);
+    assert.deepEqual(answers.map(({ stimulus, choice }) => ({ code: stimulus, choice })), given);
+    assert.ok(answers.every(({ screen }) => screen.shown_as === 'mp4'));
+    await page.context().close();
+  }
+  // One that the browser cannot play gives way to the animation.
+  const page = await open(address);
+  await page.evaluate(() => { window.ISOSTUDY.media[0].kind = 'mov'; });
+  await page.addInitScript(() => { Object.defineProperty(HTMLMediaElement.prototype, 'canPlayType', { value: () => '' }); });
+  await page.reload();
+  await begin(page);
+  await answer(page, 'L');
+  await answer(page, 'L');
+  const [first] = await page.evaluate(() => JSON.parse(Object.values(localStorage)[0]).answers);
+  assert.equal(first.screen.shown_as, 'gif');
 });

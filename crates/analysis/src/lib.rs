@@ -33,6 +33,7 @@ pub mod preference;
 mod published_ratio;
 mod recorded;
 pub mod report;
+mod screens;
 pub mod self_test;
 mod statement;
 mod tables;

@@ -14,6 +14,7 @@ mod names;
 mod prediction;
 mod preference;
 mod reliability;
+mod screens;
 mod sides;
 mod tipping;
 mod worths;
@@ -355,8 +356,10 @@ impl Builder {
         self.add_figures(&["respondents"]);
         self.add_tables(&["tests", "omnibus", "agreement", "answer_counts"]);
         let checks = checks::findings(evidence, |name| self.tables.iter().find(|table| table.name == name));
-        self.section("checks", "Checks of the answers", checks);
-        self.add_tables(&["audit", "screened", "respondents"]);
+        let of_screens = self.tables.iter().find(|table| table.name == "screens");
+        let of_screens = screens::findings(of_screens, evidence.rules().level);
+        self.section("checks", "Checks of the answers", [checks, of_screens].concat());
+        self.add_tables(&["audit", "screened", "screens", "respondents"]);
     }
 
     fn finish(mut self, title: String, lead: Vec<String>) -> Report {

@@ -15,6 +15,7 @@ mod prediction;
 pub(crate) mod preferences;
 pub(crate) mod scale;
 pub(crate) mod screened;
+pub(crate) mod screens;
 
 use crate::answered::Answered;
 use crate::ballots::ALL_METHODS;
@@ -73,7 +74,7 @@ fn statistics(inputs: &Inputs<'_>, answers: &Answered) -> Vec<Table> {
     tables.extend(models);
     tables.extend(scale::tables(&scale::scales(groups)));
     tables.push(agreement::agreement(study, declared));
-    tables.extend([respondents, screened, audited]);
+    tables.extend([respondents, screened, audited, screens::screens(&answers.responses)]);
     let prediction = Prediction::of(inputs, shown, declared);
     tables.extend(prediction.iter().flat_map(|found| prediction::all(study, found)));
     tables.retain(|table| !table.rows.is_empty());

@@ -9,8 +9,8 @@ use statistics::interval;
 use std::collections::{BTreeMap, BTreeSet};
 use table::{Cell, Table};
 
-/// Every table about answers that no study explains: `answer_counts`, `tests`, `worths`, `models`, `respondents`, `screened`
-/// and `audit`, as far as they have rows. `groups` are [`open_groups`] of the same answers; `shown_s` is how long what a
+/// Every table about answers that no study explains: `answer_counts`, `tests`, `worths`, `models`, `respondents`, `screened`,
+/// `audit` and `screens`, as far as they have rows. `groups` are [`open_groups`] of the same answers; `shown_s` is how long what a
 /// question shows lasts, in seconds.
 pub fn answer_tables(answers: &Responses, groups: &[BallotGroup], shown_s: Option<f64>) -> Vec<Table> {
     let mut tables = vec![counts(answers), tables::contrasts::pair_tests(groups)];
@@ -20,6 +20,7 @@ pub fn answer_tables(answers: &Responses, groups: &[BallotGroup], shown_s: Optio
     tables.push(tables::agreement::respondents(recorded.ballots(), &recorded.protocol(), 0));
     tables.push(tables::screened::screened_pair_tests(groups, &recorded));
     tables.push(tables::audit::audit_table(&audit::audit(&recorded.audited(groups))));
+    tables.push(tables::screens::screens(answers));
     tables.retain(|table| !table.rows.is_empty());
     tables
 }

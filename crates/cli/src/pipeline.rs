@@ -17,6 +17,7 @@ mod stimuli;
 mod sweep;
 mod tables;
 mod timings;
+mod web;
 mod worker;
 
 pub(crate) use bundle::forms_digest;
@@ -24,6 +25,7 @@ pub(crate) use meshes::Meshes;
 pub(crate) use stimuli::MadeWith;
 pub(crate) use tables::{write_answers_only, write_without_study};
 pub(crate) use timings::PlanLength;
+pub(crate) use web::Videos;
 pub(crate) use worker::{Invocation, measure};
 
 use crate::fields::Fields;
@@ -37,7 +39,7 @@ use std::collections::BTreeMap;
 use std::sync::{PoisonError, RwLock, RwLockReadGuard};
 
 /// Stages that only commands of their own make; a whole study leaves them in place.
-const ASKED_FOR: [&str; 4] = ["bench/", "bundle", "contact_sheet", "video/"];
+const ASKED_FOR: [&str; 5] = ["bench/", "bundle", "contact_sheet", "video/", "web"];
 
 /// One study being worked on.
 pub(crate) struct Pipeline<'a> {

@@ -230,3 +230,10 @@ fn whole<'de, D: serde::Deserializer<'de>, T: TryFrom<i64>>(deserializer: D) -> 
         serde::de::Error::custom(format!("{number} is not a whole number from 0 to 2^{} - 1", digits.min(63)))
     })
 }
+
+/// As [`whole`], of a key that may be left out.
+fn perhaps_whole<'de, D: serde::Deserializer<'de>, T: TryFrom<i64>>(
+    deserializer: D,
+) -> Result<Option<T>, D::Error> {
+    whole(deserializer).map(Some)
+}

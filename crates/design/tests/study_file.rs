@@ -342,6 +342,8 @@ fn full_study() -> StudyFile {
         forms: Some(FormsSection {
             prompt: text(),
             choices: [text(), text(), text()],
+            choices_stacked: Some([text(), text(), text()]),
+            min_surface_px: Some(16),
             participants: 1,
             sides: SideRule::Balanced,
             order: OrderRule::Shuffled,
@@ -353,6 +355,7 @@ fn full_study() -> StudyFile {
             consent: text(),
             instructions: text(),
             page_scale: 1,
+            web_mb: 41,
             completion: Some(text()),
         }),
         responses: Some(ResponsesSection {

@@ -6,6 +6,7 @@ use crate::error::{Fault, UnknownCell, shorten};
 use crate::mapping::{Mapping, Unknown};
 use crate::plan::Plan;
 use crate::report::{Kind, Report};
+use crate::screen::{Screen, ScreenId};
 use crate::value::{Answer, Participant, Question, StimulusId};
 use design::forms::Role;
 use std::collections::{BTreeMap, HashMap};
@@ -96,6 +97,7 @@ pub(crate) struct Collector<'a> {
     labels: Index,
     pub(crate) items: Index,
     stimuli: Index,
+    screens: Vec<Screen>,
     /// Code names that the study lacks, with the first place of each.
     unknown_stimuli: BTreeMap<StimulusId, Place>,
     sittings: Index,
@@ -135,6 +137,7 @@ impl<'a> Collector<'a> {
             labels: Index::default(),
             items,
             stimuli: Index::default(),
+            screens: Vec::new(),
             unknown_stimuli: BTreeMap::new(),
             sittings: Index::default(),
             sitting_of: Vec::new(),
@@ -310,6 +313,14 @@ impl<'a> Collector<'a> {
             self.unknown_stimuli.entry(id).or_insert(place);
         }
         Some(id)
+    }
+
+    /// The id of a screen.
+    pub(crate) fn screen(&mut self, screen: Screen) -> ScreenId {
+        if self.screens.last() != Some(&screen) {
+            self.screens.push(screen);
+        }
+        ScreenId::new(self.screens.len() as u32 - 1)
     }
 
     /// The sitting of the answer that comes next.

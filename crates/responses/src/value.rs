@@ -2,6 +2,7 @@
 
 use crate::choice::Choice;
 use crate::error::{number_of, shorten};
+use crate::screen::{Screen, ScreenId};
 use crate::sides::SidesSource;
 use design::forms::Role;
 use std::num::NonZeroU32;
@@ -34,6 +35,8 @@ pub struct Responses {
     pub sides: SidesSource,
     /// Code names of what was shown, where the file has a `stimulus` column; each once, in the file's order.
     pub stimuli: Vec<String>,
+    /// On what answers were given, where the file says it; neighbours on one screen share one.
+    pub screens: Vec<Screen>,
     /// Answers whose participant the file does not name. Each of them has a participant of its own.
     pub without_participant: u64,
     /// Answers whose code name the study does not have; `None` if it has all, if there is no study, or if it has none itself.
@@ -115,6 +118,8 @@ pub struct Answer {
     pub rt_ms: Option<f32>,
     /// What the file calls the pair that was shown, if it does: see [`Responses::stimulus`].
     pub stimulus: Option<StimulusId>,
+    /// On what it was given, if recorded: see [`Responses::screen`].
+    pub screen: Option<ScreenId>,
 }
 
 /// The number of a name in [`Responses::stimuli`].
@@ -139,7 +144,17 @@ impl StimulusId {
 impl Answer {
     /// An answer of which nothing else is known.
     pub const fn new(participant: u32, question: u32, [left, right]: [u32; 2], choice: Choice) -> Self {
-        Self { participant, question, left, right, choice, order: None, rt_ms: None, stimulus: None }
+        Self {
+            participant,
+            question,
+            left,
+            right,
+            choice,
+            order: None,
+            rt_ms: None,
+            stimulus: None,
+            screen: None,
+        }
     }
 
     /// The item that was chosen; `None` is no preference.
@@ -156,6 +171,11 @@ impl Responses {
     /// What the file calls the pair that an answer is about, if it has a `stimulus` column.
     pub fn stimulus(&self, answer: &Answer) -> Option<&str> {
         answer.stimulus.map(|id| self.stimuli[id.place()].as_str())
+    }
+
+    /// On what an answer was given, if the file says it.
+    pub fn screen(&self, answer: &Answer) -> Option<&Screen> {
+        answer.screen.map(|id| &self.screens[id.place()])
     }
 
     /// Whether the file names nobody, so that each answer counts as another person's. Nothing can be said then of answers that
@@ -202,7 +222,7 @@ mod tests {
     #[test]
     fn an_answer_is_small() {
         // Millions of them are kept.
-        assert_eq!(size_of::<Answer>(), 40);
+        assert_eq!(size_of::<Answer>(), 44);
         assert_eq!(StimulusId::new(7).place(), 7);
     }
 }

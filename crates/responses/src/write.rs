@@ -1,6 +1,7 @@
 //! Answers in the formats of other programs.
 
 use crate::choice::Choice;
+use crate::screen::SCREEN_COLUMNS;
 use crate::value::{Answer, Question, Responses};
 use design::forms::Role;
 use std::io::Write;
@@ -65,7 +66,7 @@ pub const LONG_WRITTEN: [&str; 12] = [
     "stimulus",
 ];
 
-/// The columns of [`LONG_WRITTEN`]: everything, with the sides as they were
+/// The columns of [`LONG_WRITTEN`], and those of [`SCREEN_COLUMNS`] where any answer says them: everything, with the sides as they were
 /// shown; controls and repeats are marked by their role. Cells that a spreadsheet would run as a formula are escaped; reading the
 /// file gives the same answers.
 ///
@@ -73,7 +74,9 @@ pub const LONG_WRITTEN: [&str; 12] = [
 /// If `out` cannot be written to.
 pub fn write_long(responses: &Responses, out: impl Write) -> Result<Written, WriteError> {
     let mut writer = csv::Writer::from_writer(out);
-    writer.write_record(LONG_WRITTEN)?;
+    let with_screens = !responses.screens.is_empty();
+    let others = if with_screens { &SCREEN_COLUMNS[..] } else { &[] };
+    writer.write_record(LONG_WRITTEN.iter().chain(others))?;
     let mut written = Written::default();
     for answer in &responses.answers {
         let participant = &responses.participants[answer.participant as usize];
@@ -95,7 +98,9 @@ pub fn write_long(responses: &Responses, out: impl Write) -> Result<Written, Wri
             role_name(question.role),
             responses.stimulus(answer).unwrap_or(""),
         ];
-        writer.write_record(texts.map(|text| escape(text).into_owned()))?;
+        let screen = responses.screen(answer).copied().unwrap_or_default().cells();
+        let screen = screen.iter().map(String::as_str).filter(|_| with_screens);
+        writer.write_record(texts.into_iter().chain(screen).map(|text| escape(text).into_owned()))?;
         written.rows += 1;
     }
     written.ties = count(responses, |_, answer| answer.choice == Choice::NoPreference);

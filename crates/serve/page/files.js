@@ -5,11 +5,12 @@
 window.isostudyFiles = (study, session) => {
   const { participant, started, finished } = session;
   const { form } = session.form;
-  const answers = session.answers.filter((answer) => answer.choice).map(({ order, stimulus, choice, rt_ms, answered }) => ({
-    participant, form, order, stimulus, choice, rt_ms, answered,
+  const SCREEN = ['viewport_width', 'viewport_height', 'pixel_ratio', 'surface_px', 'layout', 'input', 'dropped', 'hidden_ms', 'shown_as'];
+  const answers = session.answers.filter((answer) => answer.choice).map(({ order, stimulus, choice, rt_ms, answered, screen }) => ({
+    participant, form, order, stimulus, choice, rt_ms, answered, ...screen,
   }));
-  const names = ['participant', 'form', 'order', 'stimulus', 'choice', 'rt_ms', 'answered'];
-  const lines = [names, ...answers.map((row) => names.map((name) => row[name]))];
+  const names = ['participant', 'form', 'order', 'stimulus', 'choice', 'rt_ms', 'answered', ...SCREEN];
+  const lines = [names, ...answers.map((row) => names.map((name) => row[name] ?? ''))];
   const csv = `${lines.map((cells) => cells.join(',')).join('\r\n')}\r\n`;
   const json = JSON.stringify({ schema: 1, study: study.study, participant, form, started, finished, answers }, null, 1);
   const file = (kind, type, text) => ({ kind, type, text, name: `${study.study}-${participant}.${kind.toLowerCase()}` });

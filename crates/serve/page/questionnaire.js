@@ -12,12 +12,8 @@
   const given = (name) => address.get(name) ?? undefined;
   const WHO = study.server ? ['PROLIFIC_PID', 'STUDY_ID', 'SESSION_ID'] : ['form'];
   const KEY = `isostudy:${JSON.stringify([study.study, study.digest, ...WHO.map((name) => given(name) ?? null)])}`;
-  const CHOICES = ['L', 'NP', 'R'];
-  // The three keys of each answer: by number, and by the arrow that points to it.
-  const KEYS = [['1', 'ArrowLeft'], ['2', 'ArrowDown'], ['3', 'ArrowRight']];
-  // The server takes no longer time for an answer than a day.
-  const LONGEST_MS = 86400000;
-  const STILL = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
+  // Keys are explained to those who have them.
+  const TOUCH = window.matchMedia('(hover: none) and (pointer: coarse)').matches;
 
   const $ = (id) => document.getElementById(id);
   const say = (text) => { $('status').textContent = text; };
@@ -46,6 +42,9 @@
   }
 
   function heading(text) { return make('h2', { tabIndex: -1 }, text); }
+
+  const loading = window.isostudyLoading(study);
+  const trial = window.isostudyTrial({ study, loading, make, say, heading, show, touch: TOUCH });
 
   // ---- what survives a reload -------------------------------------------------------------------------------------
 
@@ -226,7 +225,8 @@
     place = null;
     $('progress-row').hidden = true;
     const begin = make('button', { type: 'button', className: 'main' }, 'I agree, begin');
-    const parts = [heading('Before you begin'), make('p', { className: 'text' }, study.consent)];
+    const parts = [heading('Before you begin'), make('p', { className: 'text' }, study.consent),
+      make('p', { className: 'text' }, 'With each answer is kept how it was shown: the size of this window, the pixels of the screen, mouse, touch or keys, pictures that were left out, and how long the page was out of sight. The name of your browser is not.')];
     if (study.server && WHO.some(given)) {
       parts.push(make('p', { className: 'text' }, 'The address of this page names you by an identifier of the panel that sent you. It is kept apart from your answers, to tell the panel that you took part.'));
     }
@@ -253,6 +253,8 @@
       }
     });
     show(...parts, make('div', { className: 'row' }, begin));
+    // What everybody is shown first, while this is read.
+    loading.ahead(null, study.first.slice(0, 1));
   }
 
   async function start(number) {
@@ -275,6 +277,9 @@
 
   // ---- the form ---------------------------------------------------------------------------------------------------
 
+  // Pairs that are fetched while one is judged.
+  const AHEAD = 2;
+
   function next() {
     const { form } = session;
     const all = form.training.length + form.questions.length;
@@ -283,21 +288,28 @@
     place = done();
     if (place === all) return end();
     $('progress-row').hidden = false;
-    $('progress').max = all;
-    $('progress').value = place;
-    $('progress-text').textContent = `${place + 1} of ${all}`;
-    if (place < form.training.length) {
-      trial(form.training[place], `Practice ${place + 1}: this answer does not count`, () => {
-        session.trained += 1;
-      });
-    } else {
-      const question = place - form.training.length;
-      const order = place + 1;
-      trial(form.questions[question], `Question ${question + 1}`, (choice, times) => {
-        session.answers.push({ order, stimulus: form.questions[question], choice, ...times });
-      });
-    }
-    preload(place + 1);
+    const codes = [...form.training, ...form.questions];
+    const practice = place < form.training.length;
+    const question = place - form.training.length;
+    // What does not count is not in the bar either.
+    $('progress').hidden = practice;
+    $('progress').max = form.questions.length;
+    $('progress').value = Math.max(question, 0);
+    $('progress-text').textContent = practice ? 'This answer does not count.' : `${question + 1} of ${form.questions.length}`;
+    const title = practice ? `Practice ${place + 1}` : `Question ${question + 1}`;
+    leave = trial(codes[place], title, codes.slice(place + 1, place + 1 + AHEAD), (choice, times, screen) => {
+      merge();
+      if (place !== done()) {
+        say('This question has been answered in another tab.');
+      } else {
+        say('');
+        if (practice) session.trained += 1;
+        else session.answers.push({ order: place + 1, stimulus: codes[place], choice, ...times, screen });
+        keep();
+      }
+      if (study.server) send();
+      next();
+    });
     return undefined;
   }
 
@@ -309,132 +321,11 @@
       keep();
       next();
     });
-    const keys = 'Answer with the buttons, the keys 1, 2 and 3, or the arrows left, down and right. You can answer as soon as you have seen one whole turn.';
-    show(heading('What to do'), make('p', { className: 'text' }, study.instructions), make('p', { className: 'text' }, keys),
+    const how = TOUCH ? 'Tap the surfaces to see them larger, and again to go back.' : 'Answer with the buttons, the keys 1, 2 and 3, or the arrows left, down and right. Click the surfaces to see them larger, and again to go back.';
+    show(heading('What to do'), make('p', { className: 'text' }, study.instructions), make('p', { className: 'text' }, `${how} You can answer as soon as you have seen one whole turn.`),
       make('div', { className: 'row' }, go));
-  }
-
-  const source = (code) => `stimuli/${encodeURIComponent(code)}.gif`;
-
-  function preload(coming) {
-    const codes = [...session.form.training, ...session.form.questions];
-    if (coming < codes.length) new Image().src = source(codes[coming]);
-  }
-
-  /** One pair. `answer` is called once, with the choice and its times in milliseconds since the pair was on the screen. */
-  function trial(code, title, answer) {
-    const image = make('img', { alt: 'Two surfaces side by side, turning in step.', draggable: false });
-    const still = make('canvas', { hidden: true, role: 'img', 'aria-label': 'Two surfaces side by side, stopped.' });
-    const pair = make('div', { className: study.page_scale > 1 ? 'pair enlarged' : 'pair' }, image, still);
-    const pause = make('button', { type: 'button' }, 'Pause');
-    const buttons = CHOICES.map((choice, i) => make('button', { type: 'button', 'aria-disabled': 'true', 'data-choice': choice, 'aria-keyshortcuts': KEYS[i].join(' ') },
-      study.choices[i], make('kbd', { 'aria-hidden': 'true' }, KEYS[i][0])));
-    const question = make('fieldset', {}, make('legend', {}, study.prompt), make('div', { className: 'choices' }, ...buttons));
-
-    // How long it has been seen moving; answers open at one whole turn.
-    let shown = null;
-    let moving = null;
-    let watched = 0;
-    let timer = 0;
-    let open = false;
-    let over = false;
-
-    function unlock() {
-      open = true;
-      buttons.forEach((button) => button.removeAttribute('aria-disabled'));
-      say('You can answer now.');
-    }
-
-    function play() {
-      if (moving !== null || shown === null) return;
-      still.hidden = true;
-      image.hidden = false;
-      moving = performance.now();
-      pause.textContent = 'Pause';
-      if (!open) timer = setTimeout(unlock, Math.max(0, study.loop_ms - watched));
-    }
-
-    function stop() {
-      if (moving === null) return;
-      watched += performance.now() - moving;
-      moving = null;
-      clearTimeout(timer);
-      image.hidden = true;
-      still.hidden = false;
-      pause.textContent = 'Play';
-    }
-
-    function choose(i) {
-      if (over) return;
-      if (!open) {
-        say(moving === null ? 'Please play one whole turn first.' : 'Please watch one whole turn first.');
-        return;
-      }
-      merge();
-      if (place !== done()) {
-        say('This question has been answered in another tab.');
-      } else {
-        say('');
-        const rt_ms = Math.min(Math.round(performance.now() - shown), LONGEST_MS);
-        answer(CHOICES[i], { rt_ms, answered: new Date().toISOString() });
-        keep();
-      }
-      if (study.server) send();
-      next();
-    }
-
-    /** Whether all of the answers is on the screen. */
-    function visible() {
-      const { top, bottom } = question.getBoundingClientRect();
-      return top >= 0 && bottom <= window.innerHeight + 1;
-    }
-
-    function key(event) {
-      if (event.altKey || event.ctrlKey || event.metaKey || event.repeat) return;
-      const i = KEYS.findIndex((keys) => keys.includes(event.key));
-      // Whoever still has to scroll to the answers does so by this key.
-      if (event.key === 'ArrowDown' && !visible()) return;
-      if (i >= 0) {
-        event.preventDefault();
-        choose(i);
-      }
-    }
-
-    // A tab in the background shows nothing.
-    function seen() {
-      if (document.hidden) stop(); else if (!STILL) play();
-    }
-
-    image.addEventListener('load', () => {
-      if (over) return;
-      const scale = study.page_scale;
-      still.width = image.naturalWidth;
-      still.height = image.naturalHeight;
-      image.style.width = still.style.width = `${image.naturalWidth * scale}px`;
-      still.getContext('2d').drawImage(image, 0, 0);
-      shown = performance.now();
-      image.hidden = true;
-      still.hidden = false;
-      pause.textContent = 'Play';
-      if (!STILL && !document.hidden) play();
-    });
-    image.addEventListener('error', () => {
-      say('The animation could not be loaded.');
-      setTimeout(() => { if (!over) image.src = `${source(code)}?again=${Date.now()}`; }, 3000);
-    });
-    pause.addEventListener('click', () => (moving === null ? play() : stop()));
-    buttons.forEach((button, i) => button.addEventListener('click', () => choose(i)));
-    document.addEventListener('keydown', key);
-    document.addEventListener('visibilitychange', seen);
-    show(make('div', { className: 'row top' }, heading(title), pause), pair, question);
-    document.body.className = 'asking';
-    leave = () => {
-      over = true;
-      clearTimeout(timer);
-      document.removeEventListener('keydown', key);
-      document.removeEventListener('visibilitychange', seen);
-    };
-    image.src = source(code);
+    const { training, questions } = session.form;
+    loading.ahead(null, [...training, ...questions].slice(0, 1));
   }
 
   // ---- end --------------------------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 use crate::export::Given;
 use crate::record::{Answer, Choice};
+use crate::screen;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -14,6 +15,47 @@ struct Row {
     stimulus: String,
     choice: Choice,
     rt_ms: u32,
+    // What downloads of earlier versions lack; texts, since in JSON they are numbers and in CSV they are not.
+    #[serde(default)]
+    viewport_width: Cell,
+    #[serde(default)]
+    viewport_height: Cell,
+    #[serde(default)]
+    pixel_ratio: Cell,
+    #[serde(default)]
+    surface_px: Cell,
+    #[serde(default)]
+    layout: Cell,
+    #[serde(default)]
+    input: Cell,
+    #[serde(default)]
+    dropped: Cell,
+    #[serde(default)]
+    hidden_ms: Cell,
+    #[serde(default)]
+    shown_as: Cell,
+}
+
+/// A cell of the CSV, or a value of the JSON.
+#[derive(Default, Deserialize)]
+#[serde(untagged)]
+enum Cell {
+    #[default]
+    Nothing,
+    Whole(u64),
+    Number(f64),
+    Text(String),
+}
+
+impl Cell {
+    fn text(&self) -> String {
+        match self {
+            Self::Nothing => String::new(),
+            Self::Whole(number) => number.to_string(),
+            Self::Number(number) => number.to_string(),
+            Self::Text(text) => text.clone(),
+        }
+    }
 }
 
 #[derive(Deserialize)]
@@ -34,6 +76,14 @@ pub enum DownloadError {
     /// Answers to something else.
     #[error("holds answers to study {0}")]
     OtherStudy(String),
+    /// Not what the page says of a screen.
+    #[error("the answer at place {order}: {why}")]
+    Screen {
+        /// Which answer.
+        order: u32,
+        /// What is wrong.
+        why: String,
+    },
 }
 
 /// The answers of one download, CSV or JSON by their first character.
@@ -52,12 +102,25 @@ pub fn read(text: &str, study: &str) -> Result<Vec<Given>, DownloadError> {
             .deserialize()
             .collect::<Result<_, _>>()?
     };
-    let given = |Row { participant, form, order, stimulus, choice, rt_ms }| Given {
-        participant,
-        form,
-        answer: Answer { order, stimulus, choice, rt_ms },
-    };
-    Ok(rows.into_iter().map(given).collect())
+    rows.into_iter().map(given).collect()
+}
+
+fn given(row: Row) -> Result<Given, DownloadError> {
+    let cells = [
+        row.viewport_width,
+        row.viewport_height,
+        row.pixel_ratio,
+        row.surface_px,
+        row.layout,
+        row.input,
+        row.dropped,
+        row.hidden_ms,
+        row.shown_as,
+    ];
+    let Row { participant, form, order, stimulus, choice, rt_ms, .. } = row;
+    let screen = screen::of_cells(&cells.each_ref().map(Cell::text))
+        .map_err(|why| DownloadError::Screen { order, why })?;
+    Ok(Given { participant, form, answer: Answer { order, stimulus, choice, rt_ms, screen } })
 }
 
 /// Two files that contradict each other: participant and place.
@@ -104,6 +167,25 @@ mod tests {
         let other = read(&CSV.replace("NP", "L"), "s").unwrap();
         assert_eq!(add(&mut all, other), Err(Contradiction { participant: "ab".into(), order: 2 }));
         assert_eq!(all.len(), 1);
+    }
+
+    #[test]
+    fn both_kinds_say_the_same_of_the_screen() {
+        let columns = crate::screen::COLUMNS.join(",");
+        let csv = format!(
+            "participant,form,order,stimulus,choice,rt_ms,answered,{columns}\r\n\
+             ab,2,2,tani,NP,812,z,390,844,2.625,266,stacked,touch,3,40,gif\r\nab,2,3,zeti,L,9,z,,,,,,,,,\r\n"
+        );
+        let json = r#"{"schema":1,"study":"s","participant":"ab","form":2,"started":"x","finished":"y","answers":[
+            {"participant":"ab","form":2,"order":2,"stimulus":"tani","choice":"NP","rt_ms":812,"answered":"z","viewport_width":390,
+             "viewport_height":844,"pixel_ratio":2.625,"surface_px":266,"layout":"stacked","input":"touch","dropped":3,
+             "hidden_ms":40,"shown_as":"gif"},
+            {"participant":"ab","form":2,"order":3,"stimulus":"zeti","choice":"L","rt_ms":9,"answered":"z"}]}"#;
+        let (csv, json) = (read(&csv, "s").unwrap(), read(json, "s").unwrap());
+        assert_eq!(csv, json);
+        let screen = csv[0].answer.screen.unwrap();
+        assert_eq!((screen.pixel_ratio, screen.dropped, screen.hidden_ms), (2.625, 3, 40));
+        assert_eq!(csv[1].answer.screen, None);
     }
 
     #[test]

@@ -1,12 +1,13 @@
 //! Answers joined with the key: the long format that `isostudy analyse` reads.
 
 use crate::record::Answer;
+use crate::screen;
 use design::forms::KeyEntry;
 use serde::Serialize;
 use std::collections::HashMap;
 
 /// An answer and whose it is.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Given {
     /// The participant's name in the answers: random, and never an identifier of a panel.
     pub participant: String,
@@ -31,6 +32,7 @@ pub struct Line<'a> {
     rt_ms: u32,
     role: &'a design::forms::Role,
     stimulus: &'a str,
+    screen: [String; 9],
 }
 
 /// An answer that the key does not fit.
@@ -76,6 +78,7 @@ pub fn lines<'a>(given: &'a [Given], key: &'a [KeyEntry]) -> Result<Vec<Line<'a>
                 rt_ms: answer.rt_ms,
                 role: &entry.role,
                 stimulus: &answer.stimulus,
+                screen: screen::cells(answer.screen.as_ref()),
             }),
         }
     };
@@ -100,7 +103,7 @@ pub fn csv<T: Serialize>(lines: &[T], header: &[&str]) -> String {
 }
 
 /// The columns of [`Line`].
-pub const HEADER: [&str; 12] = [
+pub const HEADER: [&str; 21] = [
     "participant",
     "form",
     "order",
@@ -113,6 +116,15 @@ pub const HEADER: [&str; 12] = [
     "rt_ms",
     "role",
     "stimulus",
+    "viewport_width",
+    "viewport_height",
+    "pixel_ratio",
+    "surface_px",
+    "layout",
+    "input",
+    "dropped",
+    "hidden_ms",
+    "shown_as",
 ];
 
 #[cfg(test)]

@@ -491,6 +491,14 @@ impl Journal {
         self.answers
             .prepare_cached("INSERT INTO answers VALUES (?1, ?2, ?3, ?4, ?5, ?6)")?
             .execute(values)?;
+        if let Some(screen) = &answer.screen {
+            let said = serde_json::to_string(screen).expect("numbers and words alone");
+            self.answers.prepare_cached("INSERT INTO screens VALUES (?1, ?2, ?3)")?.execute(params![
+                person.number,
+                answer.order,
+                said
+            ])?;
+        }
         let touch = "UPDATE participants SET last_ms = ?2 WHERE number = ?1";
         self.answers.prepare_cached(touch)?.execute(params![person.number, now_ms])?;
         person.choices.push(answer.choice);

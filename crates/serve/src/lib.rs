@@ -21,6 +21,7 @@ pub mod journal;
 mod log;
 pub mod page;
 pub mod record;
+pub mod screen;
 mod server;
 pub mod share;
 

@@ -1,5 +1,6 @@
 //! What participants send, and when it is refused.
 
+use crate::screen::Screen;
 use design::forms::FormEntry;
 use serde::{Deserialize, Serialize};
 
@@ -37,7 +38,7 @@ impl Choice {
 }
 
 /// One answer.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
     /// Place in the form, from 1, training included.
     pub order: u32,
@@ -47,6 +48,8 @@ pub struct Answer {
     pub choice: Choice,
     /// Milliseconds from the moment the pair was on the screen.
     pub rt_ms: u32,
+    /// On what it was given, where that was recorded.
+    pub screen: Option<Screen>,
 }
 
 /// Why something that was sent is refused; nothing has changed.

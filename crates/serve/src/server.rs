@@ -14,7 +14,7 @@ pub use limits::Limits;
 
 use crate::journal::{self, Handle, Held, Journal, JournalError, Loss};
 use crate::log;
-use crate::page::{self, forms_js};
+use crate::page::{self, Media, forms_js};
 use addresses::{Budgets, Peer};
 use axum::Router;
 use axum::body::{Body, Bytes};
@@ -43,6 +43,8 @@ pub struct Settings {
     pub digest: String,
     /// Folder of the stimuli.
     pub stimuli: PathBuf,
+    /// In what files they are.
+    pub media: Media,
     /// Folder of the answers.
     pub answers: PathBuf,
     /// Where to listen.
@@ -123,10 +125,15 @@ pub fn serve(settings: Settings, ready: impl FnOnce(SocketAddr, Held)) -> Result
         .cloned()
         .collect();
     for code in &stimuli {
-        let path = settings.stimuli.join(format!("{code}.gif"));
-        if !path.is_file() {
-            return Err(ServeError::Stimulus(path));
+        for (kind, ..) in &settings.media.kinds {
+            let path = settings.stimuli.join(format!("{code}.{}", kind.ending()));
+            if !path.is_file() {
+                return Err(ServeError::Stimulus(path));
+            }
         }
+    }
+    if settings.media.kinds.is_empty() {
+        return Err(ServeError::Stimulus(settings.stimuli));
     }
     let journal = Journal::open(&settings.answers, &settings.file, &settings.digest, settings.loss)?;
     let held = journal.held();
@@ -140,7 +147,7 @@ pub fn serve(settings: Settings, ready: impl FnOnce(SocketAddr, Held)) -> Result
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     let (handle, mut keeper) = journal::start(journal);
     let Settings { address, limits, .. } = settings;
-    let forms_js = Bytes::from(forms_js(&settings.file, &settings.digest, true));
+    let forms_js = Bytes::from(forms_js(&settings.file, &settings.digest, &settings.media, true));
     let most = limits.sessions_per_address;
     let sessions = (most > 0).then(|| Budgets::new(most, SESSIONS_BACK));
     let tries = Budgets::new(TRIES.0, TRIES.1);
@@ -188,7 +195,7 @@ fn site(shared: Arc<Shared>) -> Router {
         .layer(fixed("referrer-policy", "no-referrer"))
         .layer(fixed(
             "content-security-policy",
-            "default-src 'self'; img-src 'self' blob: data:; frame-ancestors 'none'; form-action 'none'; base-uri 'none'",
+            "default-src 'self'; img-src 'self' blob: data:; media-src 'self' blob:; frame-ancestors 'none'; form-action 'none'; base-uri 'none'",
         ))
         .with_state(shared)
 }

@@ -1,6 +1,8 @@
 //! Answers that can be given to others.
 
 use crate::export::Given;
+use crate::record::Answer;
+use crate::screen::Screen;
 use design::forms::FormFile;
 use std::collections::BTreeMap;
 
@@ -13,7 +15,9 @@ pub fn deidentified(given: &[Given]) -> Vec<Given> {
     let width = names.len().to_string().len();
     let renamed = |given: &Given| {
         let number = names[given.participant.as_str()];
-        Given { participant: format!("p{number:0width$}"), ..given.clone() }
+        let screen = given.answer.screen.map(Screen::rounded);
+        let answer = Answer { screen, ..given.answer.clone() };
+        Given { participant: format!("p{number:0width$}"), answer, ..*given }
     };
     let mut shared: Vec<Given> = given.iter().map(renamed).collect();
     shared.sort_by(|a, b| (&a.participant, a.answer.order).cmp(&(&b.participant, b.answer.order)));
@@ -46,7 +50,15 @@ pub fn codebook(file: &FormFile, (then, now): (&str, &str), participants: usize,
          | `choice` | answer to \"{prompt}\" | `L` {left}, `NP` {none}, `R` {right}, as shown |\n\
          | `rt_ms` | time from the pair on the screen to the answer | milliseconds; a turn takes {loop_ms} |\n\
          | `role` | why it was asked | `comparison`; `control`: the same on both sides; `repeat`: asked again, sides swapped |\n\
-         | `stimulus` | code name of the animation | |\n",
+         | `stimulus` | code name of the animation | |\n\
+         | `viewport_width`, `viewport_height` | the browser's window | CSS pixels, rounded down to whole 50 |\n\
+         | `pixel_ratio` | pixels of the screen for one CSS pixel | |\n\
+         | `surface_px` | largest width that each surface had | CSS pixels, rounded down to whole 50 |\n\
+         | `layout` | how the surfaces stood | `beside`; `stacked`: left over right |\n\
+         | `input` | what the answer was given with | `mouse`, `touch`, `pen`, `keyboard` |\n\
+         | `dropped` | frames that the browser did not show | from 0 |\n\
+         | `hidden_ms` | time for which the page was out of sight, within `rt_ms` | milliseconds |\n\
+         | `shown_as` | how the pair was stored | `gif`, `mp4`, `webm` |\n",
         answers = count(answers, "answer"),
         participants = count(participants, "participant"),
         title = escaped(&file.title),
@@ -75,14 +87,14 @@ fn escaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::{Answer, Choice};
+    use crate::record::Choice;
 
     #[test]
     fn neither_names_nor_order_tell_who_came_when() {
         let given = |participant: &str, order| Given {
             participant: participant.into(),
             form: 1,
-            answer: Answer { order, stimulus: "tani".into(), choice: Choice::L, rt_ms: 900 },
+            answer: Answer { order, stimulus: "tani".into(), choice: Choice::L, rt_ms: 900, screen: None },
         };
         let shared = deidentified(&[given("c0", 1), given("c0", 2), given("0a", 1), given("77", 1)]);
         let found: Vec<(&str, u32)> =
@@ -100,6 +112,8 @@ mod tests {
             title: "<script> & *stars*".into(),
             prompt: "Which\nof two?".into(),
             choices: texts.map(Into::into),
+            choices_stacked: None,
+            min_surface_px: None,
             consent: String::new(),
             instructions: String::new(),
             loop_ms: 100,

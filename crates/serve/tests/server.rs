@@ -12,6 +12,7 @@ use http::{get, post, raw};
 use rusqlite::Connection;
 use serde_json::{Value, json};
 use serve::journal::Loss;
+use serve::page::{Kind, Media};
 use serve::{Limits, Settings};
 use std::fs::{self, File};
 use std::io::{Read, Write};
@@ -50,6 +51,8 @@ fn settings(folder: &Path, loss: Loss) -> Settings {
             title: "Trial".into(),
             prompt: "Which?".into(),
             choices: ["Left".into(), "None".into(), "Right".into()],
+            choices_stacked: None,
+            min_surface_px: None,
             consent: "Yes".into(),
             instructions: "Look".into(),
             loop_ms: 100,
@@ -59,6 +62,7 @@ fn settings(folder: &Path, loss: Loss) -> Settings {
         key,
         digest: "d".into(),
         stimuli: folder.join("stimuli"),
+        media: Media { kinds: vec![(Kind::Gif, 1, 10)], surface: [8, 8] },
         answers: folder.join("answers"),
         address: SocketAddr::from(([127, 0, 0, 1], 0)),
         admin_token: TOKEN.into(),

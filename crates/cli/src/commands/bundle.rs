@@ -5,10 +5,13 @@ use super::faults::fit_to_show;
 use super::study_forms::{forms, no_forms};
 use super::study_run::{Run, with_pipeline};
 use crate::outcome::Outcome;
+use crate::pipeline::Videos;
 use crate::terminal::say;
 use crate::{input, video};
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use design::forms::FormFile;
+use serve::page::{Kind, Media};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -23,6 +26,9 @@ pub(crate) struct Arguments {
     with_faults: bool,
 }
 
+/// Megabytes above which a participant on a slow line is noticeably kept waiting.
+const MUCH_MB: f64 = 20.0;
+
 /// Makes the bundle.
 ///
 /// # Errors
@@ -31,26 +37,27 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if arguments.mp4 {
         video::check()?;
     }
-    let videos = if arguments.mp4 { Videos::Made } else { Videos::Removed };
-    let made = make(&arguments.run, videos, arguments.with_faults)?;
-    made.map_or(Ok(Outcome::CheckFailed), |out| {
-        say(&out.join("bundle").display().to_string()).map(|()| Outcome::Done)
+    let wanted = |_: &Path| Ok(if arguments.mp4 { Videos::Always } else { Videos::Needed });
+    let made = make(&arguments.run, wanted, arguments.with_faults)?;
+    made.map_or(Ok(Outcome::CheckFailed), |made| {
+        say(&made.out.join("bundle").display().to_string()).map(|()| Outcome::Done)
     })
 }
 
-/// What becomes of a bundle's videos.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Videos {
-    Made,
-    /// Those that show what the pairs do stay; others are removed.
-    UpToDate,
-    Removed,
+/// A bundle, and where the results are.
+pub(super) struct Made {
+    pub(super) out: PathBuf,
+    pub(super) media: Media,
 }
 
-/// Returns the folder of results; `None` where faults forbid a bundle.
-pub(super) fn make(run: &Run, videos: Videos, with_faults: bool) -> Result<Option<PathBuf>> {
+/// Makes the bundle, and says what a participant loads; `None` where faults forbid one. `wanted` is asked with the folder of results.
+pub(super) fn make(
+    run: &Run,
+    wanted: impl Fn(&Path) -> Result<Videos>,
+    with_faults: bool,
+) -> Result<Option<Made>> {
     let study = checked_study::load(&run.study)?;
-    forms(&study)?;
+    let (file, ..) = forms(&study)?;
     if !fit_to_show(&study, None, with_faults)? {
         return Ok(None);
     }
@@ -68,33 +75,44 @@ pub(super) fn make(run: &Run, videos: Videos, with_faults: bool) -> Result<Optio
         if !fit_to_show(&study, Some(out), with_faults)? {
             return Ok(());
         }
-        let before = mp4_files(out)?;
-        let shown = match videos {
-            Videos::Made => pipeline.videos(&pairs)?,
-            Videos::UpToDate => pipeline.finished_videos(&pairs)?,
-            Videos::Removed => {
-                pipeline.finished_videos(&pairs)?;
-                Vec::new()
-            }
-        };
-        // All or none: participants would see some pairs in another quality.
-        let shown = if before == 0 && videos == Videos::UpToDate || shown.len() < pairs.len() {
-            Vec::new()
-        } else {
-            shown
-        };
-        if shown.is_empty() && before > 0 {
-            let why = if videos == Videos::UpToDate { "they show other pairs" } else { "not asked for" };
-            tell!("{before} videos are removed from the bundle, {why}; `isostudy bundle --mp4` makes them");
+        let before = videos(out, Kind::Mp4)? + videos(out, Kind::WebM)?;
+        pipeline.finished_videos(&pairs)?;
+        let media = pipeline.bundle(&forms, &pairs, wanted(out)?)?;
+        if before > 0 && media.kinds.iter().all(|&(kind, ..)| kind == Kind::Gif) {
+            tell!("{before} videos are removed from the bundle; `isostudy bundle --mp4` makes them");
         }
-        pipeline.bundle(&forms, &pairs, &shown)?;
-        made = Some(out.to_owned());
+        tell_load(&media, &file);
+        made = Some(Made { out: out.to_owned(), media });
         Ok(())
     })?;
     Ok(made)
 }
 
-/// How many videos the bundle has.
-fn mp4_files(out: &Path) -> Result<usize> {
-    Ok(input::files_of(&out.join("bundle/stimuli"), "mp4")?.len())
+/// How many videos of a kind the bundle has.
+pub(super) fn videos(out: &Path, kind: Kind) -> Result<usize> {
+    Ok(input::files_of(&stimuli(out), kind.ending())?.len())
+}
+
+/// Where the bundle's pairs are.
+pub(super) fn stimuli(out: &Path) -> PathBuf {
+    out.join("bundle/stimuli")
+}
+
+/// Says what a participant loads, and warns where it is much.
+fn tell_load(media: &Media, file: &FormFile) {
+    let megabytes = |bytes: u64| bytes as f64 / 1e6;
+    let loaded = media.loaded(file);
+    let each: Vec<String> = loaded
+        .iter()
+        .map(|&(kind, bytes)| format!("{:.1} MB as {}", megabytes(bytes), kind.ending()))
+        .collect();
+    tell!("a participant loads {}", each.join(", or, where the browser does not play that, "));
+    let most = loaded.iter().map(|&(_, bytes)| megabytes(bytes)).fold(0.0, f64::max);
+    if most > MUCH_MB {
+        tell!(
+            "warning: more than {MUCH_MB} MB: on a line of 4 Mbit/s it takes {:.0} s in all, while pairs are judged; \
+             forms.web_mb is the most",
+            most * 8.0 / 4.0
+        );
+    }
 }

@@ -100,7 +100,7 @@ pub(super) fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Ve
 /// The faults of what participants get: text in the files, and sizes that differ.
 pub(super) fn bundle_faults(study: &Study, folder: &Path) -> Result<Vec<Fault>> {
     let mut faults = said_by_files(study, folder)?;
-    for ending in ["gif", "mp4"] {
+    for ending in ["gif", "mp4", "webm"] {
         let mut sizes = Vec::new();
         for file in input::files_of(folder, ending)? {
             sizes.push((std::fs::metadata(&file)?.len(), file));

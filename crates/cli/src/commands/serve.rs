@@ -1,17 +1,19 @@
 //! `isostudy serve`: the questionnaire on the web, for as long as it runs.
 
-use super::bundle::{self, Videos};
+use super::bundle::{self, Made, stimuli, videos};
 use super::checked_study;
 use super::given_answers::answers_folder;
 use super::study_forms::forms;
 use super::study_run::Run;
 use crate::outcome::Outcome;
+use crate::pipeline::Videos;
 use anyhow::{Result, bail};
 use clap::Args;
 use serve::journal::Loss;
+use serve::page::Kind;
 use serve::{Limits, Settings};
 use std::net::SocketAddr;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -50,7 +52,14 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let study = checked_study::load(&arguments.run.study)?;
     let (file, key, digest) = forms(&study)?;
-    let Some(out) = bundle::make(&arguments.run, Videos::UpToDate, arguments.with_faults)? else {
+    let wanted = |out: &Path| {
+        Ok(match () {
+            () if videos(out, Kind::Mp4)? > 0 => Videos::Kept(Kind::Mp4),
+            () if videos(out, Kind::WebM)? > 0 => Videos::Kept(Kind::WebM),
+            () => Videos::Needed,
+        })
+    };
+    let Some(Made { out, media }) = bundle::make(&arguments.run, wanted, arguments.with_faults)? else {
         return Ok(Outcome::CheckFailed);
     };
     let admin_token = match &arguments.admin_token {
@@ -60,7 +69,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     };
     let settings = Settings {
         completion: study.file.forms.as_ref().and_then(|forms| forms.completion.clone()),
-        stimuli: out.join("bundle/stimuli"),
+        media,
+        stimuli: stimuli(&out),
         answers: answers_folder(&study, arguments.answers.as_ref()),
         address: SocketAddr::new(arguments.address, arguments.port),
         admin_token: admin_token.clone(),

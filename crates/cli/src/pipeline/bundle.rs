@@ -1,9 +1,10 @@
 //! What participants get, and what the researcher keeps: the forms, the bundle, the keys, the contact sheet.
 
+use super::web::{Videos, Web};
 use super::{Meshes, Pipeline};
 use crate::picture;
 use crate::source_digests;
-use crate::store::{Inputs, Stamp, sha256};
+use crate::store::{FileStamp, Inputs, Stamp, sha256};
 use crate::terminal::progress::Step;
 use anyhow::Result;
 use design::ConfigurationId;
@@ -12,13 +13,14 @@ use design::record::Purpose;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use raster::tiny_skia::Pixmap;
+use serve::page::{Kind, Media};
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 
 const BUNDLE: &str = "bundle";
 
 /// So that the largest file, too, ends like the others.
-const LEAST_PADDING: usize = 64;
+pub(super) const LEAST_PADDING: usize = 64;
 
 /// Noise after the end of a GIF, where no reader looks, or in an MP4's free space: unlike zeros it neither shows nor can be compressed.
 fn pad(bytes: &mut Vec<u8>, size: usize, seed: u64, name: &str) {
@@ -57,44 +59,65 @@ impl Pipeline<'_> {
         Ok(Some(stamp))
     }
 
-    /// The folder for participants: the page, the forms and every pair, and nothing that tells what a pair shows. All animations are
-    /// made the same size, and all videos, since a smoother surface compresses better.
-    pub(crate) fn bundle(&self, forms: &Stamp, pairs: &[Stamp], videos: &[Stamp]) -> Result<Stamp> {
-        let shown = [pairs, videos].concat();
+    /// The folder for participants: the page, the forms and every pair, and nothing that tells what a pair shows. All files of a
+    /// kind are made the same size, since a smoother surface compresses better. Returns what a participant loads, too.
+    pub(crate) fn bundle(&self, forms: &Stamp, pairs: &[Stamp], videos: Videos) -> Result<Media> {
+        let text = std::fs::read(self.store.root().join(forms.file("forms.json")))?;
+        let file: FormFile = serde_json::from_slice(&text)?;
+        let Web { stamps: shown, kinds } = self.web(&file, pairs, videos)?;
+        let ends = |file: &&FileStamp, kind: Kind| file.path.ends_with(&format!(".{}", kind.ending()));
+        let size = |kind: Kind| {
+            let of_kind = shown.iter().flat_map(|stamp| &stamp.files).filter(|file| ends(file, kind));
+            of_kind.map(|file| file.bytes).max().unwrap_or(0) as usize + LEAST_PADDING
+        };
+        let turntable = &self.study.file.turntable;
+        let scale = self.study.file.stimuli.pair_scale;
+        let media = Media {
+            kinds: kinds.iter().map(|&(kind, frames)| (kind, size(kind) as u64, frames)).collect(),
+            surface: [turntable.width, turntable.height].map(|pixels| pixels * scale),
+        };
         let step = Step::begin("bundle", 1, shown.len());
         let seed = self.study.file.study.seed;
-        let mut inputs = Inputs::of_sources(source_digests::BUNDLES).value("seed", &seed).stamp(forms);
+        let mut inputs = Inputs::of_sources(source_digests::BUNDLES)
+            .value("seed", &seed)
+            .value("kinds", &kinds)
+            .stamp(forms);
         for stamp in &shown {
             inputs = inputs.stamp(stamp);
         }
         let stamp = self.stage(BUNDLE, inputs, |writer| {
             let root = self.store.root();
-            let mut files: Vec<_> = shown.iter().flat_map(|stamp| &stamp.files).collect();
-            // In the order of names, so that times of modification tell nothing either.
-            files.sort_by(|a, b| a.path.cmp(&b.path));
-            let size = |ending: &str| {
-                let of_kind = files.iter().filter(|file| file.path.ends_with(ending));
-                of_kind.map(|file| file.bytes).max().unwrap_or(0) as usize + LEAST_PADDING
-            };
-            let (gif, mp4) = (size(".gif"), size(".mp4"));
-            for file in files {
-                let mut bytes = std::fs::read(root.join(&file.path))?;
-                if file.path.ends_with(".mp4") {
-                    // A box that says it is free space: as long as what follows, its own eight bytes included.
-                    bytes.extend(u32::try_from(mp4 - bytes.len())?.to_be_bytes());
-                    bytes.extend(b"free");
-                    pad(&mut bytes, mp4, seed, &file.path);
-                } else {
-                    pad(&mut bytes, gif, seed, &file.path);
-                }
+            let mut files = Vec::new();
+            for file in shown.iter().flat_map(|stamp| &stamp.files) {
                 let name = file.path.rsplit('/').next().unwrap_or(&file.path);
+                let kind = kinds.iter().map(|&(kind, _)| kind).find(|&kind| ends(&file, kind));
+                files.extend(kind.map(|kind| (name, kind, file)));
+            }
+            // In the order of names, so that times of modification tell nothing either.
+            files.sort_by_key(|&(name, _, _)| name);
+            for (name, kind, file) in files {
+                let mut bytes = std::fs::read(root.join(&file.path))?;
+                let size = size(kind);
+                match kind {
+                    Kind::Mp4 => {
+                        // A box that says it is free space: as long as what follows, its own eight bytes included.
+                        bytes.extend(u32::try_from(size - bytes.len())?.to_be_bytes());
+                        bytes.extend(b"free");
+                    }
+                    Kind::WebM => {
+                        // An element that says it is void, with its length in eight bytes, the first of which says so.
+                        let length = (size - bytes.len() - 9) as u64;
+                        bytes.push(0xec);
+                        bytes.extend((length | 1 << 56).to_be_bytes());
+                    }
+                    Kind::Gif => {}
+                }
+                pad(&mut bytes, size, seed, &file.path);
                 writer.write(&format!("{BUNDLE}/stimuli/{name}"), &bytes)?;
                 step.tick(1);
             }
-            let text = std::fs::read(root.join(forms.file("forms.json")))?;
             writer.write(&format!("{BUNDLE}/forms.json"), &text)?;
-            let file: FormFile = serde_json::from_slice(&text)?;
-            let script = serve::page::forms_js(&file, &forms_digest(&file)?, false);
+            let script = serve::page::forms_js(&file, &forms_digest(&file)?, &media, false);
             writer.write(&format!("{BUNDLE}/forms.js"), script.as_bytes())?;
             for (name, _, content) in serve::page::FILES {
                 writer.write(&format!("{BUNDLE}/{name}"), content.as_bytes())?;
@@ -103,7 +126,7 @@ impl Pipeline<'_> {
         })?;
         step.count(stamp.redone);
         step.end();
-        Ok(stamp)
+        Ok(media)
     }
 
     /// Every pair with its code name and what it shows, on one page: for the researcher.

@@ -175,7 +175,7 @@ impl Pipeline<'_> {
         )
     }
 
-    fn read_animation(&self, stamp: &Stamp) -> Result<Animation> {
+    pub(super) fn read_animation(&self, stamp: &Stamp) -> Result<Animation> {
         let file = stamp.file(".gif");
         let bytes = std::fs::read(self.store.root().join(file))?;
         Animation::read_gif(bytes.as_slice()).with_context(|| file.to_owned())

@@ -1,6 +1,6 @@
 //! How the questions are put to people.
 
-use super::whole;
+use super::{perhaps_whole, whole};
 use crate::method::ConfigurationId;
 use serde::{Deserialize, Serialize};
 
@@ -44,6 +44,12 @@ pub struct FormsSection {
     pub prompt: String,
     /// The answers: left, no preference, right.
     pub choices: [String; 3],
+    /// The answers where one surface is over the other, on screens higher than wide: upper, no preference, lower.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub choices_stacked: Option<[String; 3]>,
+    /// Least width of each surface on the screen, in CSS pixels, at which it can be judged.
+    #[serde(default, deserialize_with = "perhaps_whole", skip_serializing_if = "Option::is_none")]
+    pub min_surface_px: Option<u32>,
     /// How many participants are planned.
     #[serde(deserialize_with = "whole")]
     pub participants: u32,
@@ -74,6 +80,9 @@ pub struct FormsSection {
     /// Whole-number enlargement of the pairs by the page, nearest neighbour.
     #[serde(default = "once", deserialize_with = "whole")]
     pub page_scale: u32,
+    /// Most megabytes that one participant loads; `isostudy bundle` makes the pairs small enough.
+    #[serde(default = "web_mb", deserialize_with = "whole", skip_serializing_if = "is_web_mb")]
+    pub web_mb: u32,
     /// A code or an `https://` address that participants get from the server when their last answer is saved.
     pub completion: Option<String>,
 }
@@ -91,6 +100,15 @@ fn instructions() -> String {
 
 fn once() -> u32 {
     1
+}
+
+/// A minute and a half on a line of 3.5 Mbit/s, which is spent while pairs are judged.
+fn web_mb() -> u32 {
+    40
+}
+
+fn is_web_mb(value: &u32) -> bool {
+    *value == web_mb()
 }
 
 /// A pair to learn with.

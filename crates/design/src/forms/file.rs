@@ -23,6 +23,12 @@ pub struct FormFile {
     pub prompt: String,
     /// The answers: left, no preference, right.
     pub choices: [String; 3],
+    /// The answers where one surface is over the other, unless they follow from `choices`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub choices_stacked: Option<[String; 3]>,
+    /// Least width of each surface on the screen, in CSS pixels, at which it can be judged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min_surface_px: Option<u32>,
     /// What participants agree to before they begin.
     pub consent: String,
     /// What they are told to do.
@@ -33,6 +39,19 @@ pub struct FormFile {
     pub page_scale: u32,
     /// One form a planned participant, in the order in which they are dealt.
     pub forms: Vec<FormEntry>,
+}
+
+impl FormFile {
+    /// The answers where one surface is over the other: `Left` and `Right` are `Top` and `Bottom` there, unless the study says
+    /// otherwise, and other words stay.
+    pub fn stacked_choices(&self) -> [String; 3] {
+        let turned = |text: &String| match text.as_str() {
+            "Left" => "Top".to_owned(),
+            "Right" => "Bottom".to_owned(),
+            _ => text.clone(),
+        };
+        self.choices_stacked.clone().unwrap_or_else(|| self.choices.each_ref().map(turned))
+    }
 }
 
 /// One participant's form.
@@ -87,6 +106,8 @@ impl Questionnaire<'_> {
             title: self.study.file.study.title.clone(),
             prompt: self.section.prompt.clone(),
             choices: self.section.choices.clone(),
+            choices_stacked: self.section.choices_stacked.clone(),
+            min_surface_px: self.section.min_surface_px,
             consent: self.section.consent.clone(),
             instructions: self.section.instructions.clone(),
             loop_ms: self.study.file.turntable.loop_ms(),

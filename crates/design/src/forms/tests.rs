@@ -31,6 +31,9 @@ fn balanced(participants: u32, controls: u32, repeats: u32, max_questions: u32) 
         consent: "Yes".into(),
         instructions: "Look".into(),
         page_scale: 1,
+        choices_stacked: None,
+        min_surface_px: None,
+        web_mb: 40,
         completion: None,
     }
 }

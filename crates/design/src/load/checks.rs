@@ -256,6 +256,16 @@ pub(super) fn check_forms(
         }
     }
     c.count("forms.page_scale", forms.page_scale, 1, 4)?;
+    c.count("forms.web_mb", forms.web_mb, 1, 100_000)?;
+    if let Some(least) = forms.min_surface_px {
+        c.count("forms.min_surface_px", least, 16, 4096)?;
+    }
+    if let Some(choices) = &forms.choices_stacked {
+        if let Some(i) = choices.iter().position(|choice| choice.trim().is_empty()) {
+            return c.refuse(format!("forms.choices_stacked[{i}]"), "\"\"", "must be a text");
+        }
+        c.distinct(|i| format!("forms.choices_stacked[{i}]"), choices)?;
+    }
     if let Some(completion) = &forms.completion {
         let code = completion.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '-');
         if completion.is_empty() || completion.len() > 500 || !(code || completion.starts_with("https://")) {

@@ -69,6 +69,7 @@ impl Collector<'_> {
             sides_recorded: sides != SidesSource::Unknown,
             sides,
             stimuli: self.stimuli.names,
+            screens: self.screens,
             without_participant,
             unknown_stimuli,
         })

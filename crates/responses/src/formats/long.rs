@@ -9,6 +9,7 @@ use crate::mapping::Mapping;
 use crate::name;
 use crate::plan::Plan;
 use crate::report::{Kind, Report};
+use crate::screen::{SCREEN_COLUMNS, Screen, ScreenId};
 use crate::sides::SidesSource;
 use crate::value::{Answer, Responses, StimulusId};
 use crate::words::{is_na, normalise};
@@ -149,10 +150,13 @@ impl Rows<'_> {
         let order = self.columns.order.and_then(|column| self.number(record, column));
         let rt_ms = self.columns.rt_ms.and_then(|column| self.time(record, column));
         let stimulus = self.stimulus(record)?;
+        // What several answers together were given on nobody knows.
+        let screen = if named.is_some() { self.screen(record) } else { None };
         let of = |participant: u32| Answer {
             order,
             rt_ms,
             stimulus,
+            screen,
             ..Answer::new(participant, question, [left, right], choice)
         };
         match named {
@@ -184,6 +188,23 @@ impl Rows<'_> {
         let unknown = self.plan.is_some_and(|plan| plan.has_codes() && plan.code(name).is_none());
         let place = Place { row: record.row, column };
         Ok(self.collector.stimulus(name, unknown.then_some(place)))
+    }
+
+    /// On what it was given; a cell that says nothing that can be is rejected and listed.
+    fn screen(&mut self, record: &Record<'_>) -> Option<ScreenId> {
+        let mut screen = Screen::default();
+        for (name, column) in self.columns.screen.into_iter().enumerate() {
+            let Some(column) = column else { continue };
+            let cell = self.text(record, column).to_owned();
+            if cell.is_empty() || is_na(&cell) {
+                continue;
+            }
+            if let Err(why) = screen.set(name, &cell) {
+                let action = format!("{why}: the answer has no {}", SCREEN_COLUMNS[name]);
+                self.collector.report.cell(Kind::Rejected, record.row, column, &cell, action);
+            }
+        }
+        (screen != Screen::default()).then(|| self.collector.screen(screen))
     }
 
     /// How many answers a row stands for.

@@ -32,6 +32,38 @@ fn the_long_format_comes_back_as_it_was() {
 }
 
 #[test]
+fn screens_come_back_and_what_is_none_is_listed() {
+    let header = "participant,question,left,right,choice,viewport_width,pixel_ratio,input,dropped,shown_as\n";
+    let text_of = format!(
+        "{header}p,q,a,b,left,390,2.625,touch,0,mp4\np,r,a,b,left,,,,,\np,s,a,b,left,wide,1,mouth,2,gif\n"
+    );
+    let path = std::path::Path::new("x.csv");
+    let read = |text: &str| responses::parse(text.as_bytes(), path, None, &Mapping::default()).unwrap();
+    let reading = read(&text_of);
+    let said: Vec<_> = reading
+        .responses
+        .answers
+        .iter()
+        .map(|answer| {
+            reading.responses.screen(answer).map(|s| (s.viewport_width, s.input, s.dropped, s.shown_as))
+        })
+        .collect();
+    let first = (Some(390.0), Some("touch"), Some(0.0), Some("mp4"));
+    assert_eq!(said, [Some(first), None, Some((None, None, Some(2.0), Some("gif")))]);
+    let rejected: Vec<(u64, &str)> =
+        reading.report.remarks.iter().map(|r| (r.row, r.action.as_str())).collect();
+    assert_eq!(rejected.len(), 2, "{rejected:?}");
+    assert!(
+        rejected.iter().all(|(row, _)| *row == 4) && rejected[1].1.contains("mouse, touch, pen, keyboard"),
+        "{rejected:?}"
+    );
+    let long = text(|out| {
+        responses::write_long(&reading.responses, out).unwrap();
+    });
+    assert_eq!(read(&long).responses, reading.responses);
+}
+
+#[test]
 fn formulas_are_escaped_in_every_format_and_read_back() {
     let text_of = "participant,question,left,right,choice\n\"=HYPERLINK(\"\"http://x\"\")\",+Q,@a,-b,left\n'=x,+Q,@a,-b,right\n";
     let path = std::path::Path::new("x.csv");

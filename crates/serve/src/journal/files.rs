@@ -23,7 +23,10 @@ const ANSWERS_SCHEMA: &str = "
     CREATE TABLE IF NOT EXISTS answers (
         participant INTEGER NOT NULL REFERENCES participants, place INTEGER NOT NULL, stimulus TEXT NOT NULL,
         choice TEXT NOT NULL, rt_ms INTEGER NOT NULL, received_ms INTEGER NOT NULL, PRIMARY KEY (participant, place))
-        WITHOUT ROWID;";
+        WITHOUT ROWID;
+    CREATE TABLE IF NOT EXISTS screens (
+        participant INTEGER NOT NULL REFERENCES participants, place INTEGER NOT NULL, screen TEXT NOT NULL,
+        PRIMARY KEY (participant, place)) WITHOUT ROWID;";
 
 const IDENTITIES_SCHEMA: &str = "
     CREATE TABLE IF NOT EXISTS identities (
@@ -120,10 +123,16 @@ pub(super) fn study(answers: &Connection) -> rusqlite::Result<Option<(String, St
 }
 
 pub(super) fn given(answers: &Connection) -> rusqlite::Result<Vec<Given>> {
-    let mut statement = answers.prepare(
-        "SELECT name, form, place, stimulus, choice, rt_ms FROM answers JOIN participants ON participant = number
-         ORDER BY participant, place",
-    )?;
+    // Folders of earlier versions have no screens, and what only reads them makes none.
+    let known = "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = 'screens'";
+    let screens = match answers.query_row(known, [], |row| row.get::<_, i64>(0))? {
+        0 => "NULL",
+        _ => "(SELECT screen FROM screens s WHERE s.participant = a.participant AND s.place = a.place)",
+    };
+    let mut statement = answers.prepare(&format!(
+        "SELECT name, form, place, stimulus, choice, rt_ms, {screens} FROM answers a JOIN participants ON participant = number
+         ORDER BY participant, place"
+    ))?;
     let mut rows = statement.query([])?;
     let mut given = Vec::new();
     while let Some(row) = rows.next()? {
@@ -131,10 +140,12 @@ pub(super) fn given(answers: &Connection) -> rusqlite::Result<Vec<Given>> {
         let Some(choice) = Choice::of_code(&choice) else { continue };
         let (order, stimulus, rt_ms) = (row.get(2)?, row.get(3)?, row.get(5)?);
         let form = row.get::<_, i64>(1)? as usize;
+        let screen: Option<String> = row.get(6)?;
+        let screen = screen.map(|text| serde_json::from_str(&text));
         given.push(Given {
             participant: row.get(0)?,
             form,
-            answer: Answer { order, stimulus, choice, rt_ms },
+            answer: Answer { order, stimulus, choice, rt_ms, screen: screen.and_then(Result::ok) },
         });
     }
     Ok(given)
@@ -151,7 +162,7 @@ pub(super) fn identities(connection: &Connection) -> rusqlite::Result<Vec<(Strin
 }
 
 /// What a folder holds.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Kept {
     /// Digest of the forms when the first answer came.
     pub digest: String,

@@ -13,6 +13,8 @@ fn file(forms: usize) -> FormFile {
         title: "Trial".into(),
         prompt: "Which?".into(),
         choices: ["Left".into(), "None".into(), "Right".into()],
+        choices_stacked: None,
+        min_surface_px: None,
         consent: "Yes".into(),
         instructions: "Look".into(),
         loop_ms: 100,
@@ -37,7 +39,7 @@ fn first_answer(journal: &mut Journal, dealt: &Dealt, now_ms: i64) {
 }
 
 fn answer(order: u32, stimulus: &str, choice: Choice) -> Answer {
-    Answer { order, stimulus: stimulus.into(), choice, rt_ms: 1200 }
+    Answer { order, stimulus: stimulus.into(), choice, rt_ms: 1200, screen: None }
 }
 
 #[test]
@@ -584,4 +586,38 @@ fn what_is_no_file_is_refused() {
     std::fs::write(&path, "").unwrap();
     let said = Journal::open(&path, &file(1), "d", Loss::Refuse).map(drop).unwrap_err().to_string();
     assert_eq!(said, format!("{}: not a folder", path.display()));
+}
+
+#[test]
+fn a_folder_from_before_screens_were_kept_is_read_and_written_to() {
+    use crate::screen::{Input, Layout, Screen, ShownAs};
+    let screen = Screen {
+        viewport_width: 390,
+        viewport_height: 844,
+        pixel_ratio: 2.625,
+        surface_px: 266,
+        layout: Layout::Stacked,
+        input: Input::Touch,
+        dropped: 2,
+        hidden_ms: 70,
+        shown_as: ShownAs::Gif,
+    };
+    let folder = tempdir().unwrap();
+    let mut journal = Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap();
+    let dealt = journal.begin(nobody(), 1).unwrap();
+    first_answer(&mut journal, &dealt, 2);
+    drop(journal);
+    let database = rusqlite::Connection::open(folder.path().join("answers.sqlite")).unwrap();
+    database.execute_batch("DROP TABLE screens").unwrap();
+    drop(database);
+
+    assert_eq!(kept(folder.path(), "trial").unwrap().given[0].answer.screen, None);
+    let mut journal = Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap();
+    let next = Answer { screen: Some(screen), ..answer(3, "b1", Choice::L) };
+    for _ in 0..2 {
+        assert_eq!(journal.answer(&dealt.token, &next, 3).unwrap(), Ok(()));
+    }
+    drop(journal);
+    let kept = kept(folder.path(), "trial").unwrap().given;
+    assert_eq!(kept.iter().map(|given| given.answer.screen).collect::<Vec<_>>(), [None, Some(screen)]);
 }

@@ -4,6 +4,7 @@ use super::Site;
 use super::addresses::Peer;
 use crate::journal::{Dealt, Unsaved};
 use crate::record::{Answer, Identifiers, Refusal};
+use crate::screen::Screen;
 use axum::extract::rejection::JsonRejection;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -109,6 +110,9 @@ pub(super) struct Answered {
     stimulus: String,
     choice: crate::record::Choice,
     rt_ms: u32,
+    /// Pages of an earlier version do not say it.
+    #[serde(default)]
+    screen: serde_json::Value,
 }
 
 #[derive(Serialize)]
@@ -118,8 +122,10 @@ pub(super) struct Saved {
 
 /// `POST /api/answers`: one answer, acknowledged when it is on disk.
 pub(super) async fn answer(site: Site, asked: Asked<Answered>) -> Result<Json<Saved>, Failure> {
-    let Json(Answered { token, order, stimulus, choice, rt_ms }) = asked?;
-    let answer = Answer { order, stimulus, choice, rt_ms };
+    let Json(Answered { token, order, stimulus, choice, rt_ms, screen }) = asked?;
+    // An answer is worth more than what it was given on: no browser's odd word loses one.
+    let screen = serde_json::from_value(screen).ok().filter(Screen::is_sound);
+    let answer = Answer { order, stimulus, choice, rt_ms, screen };
     site.journal.change(move |journal| journal.answer(&token, &answer, now_ms())).await??;
     Ok(Json(Saved { saved: true }))
 }

@@ -1,6 +1,7 @@
 //! Stimuli, which are all but a thousandth of what a server sends.
 
 use super::Site;
+use crate::page::Kind;
 use axum::body::{Body, Bytes, HttpBody};
 use axum::extract::Path as Matched;
 use axum::http::{HeaderValue, StatusCode, header};
@@ -28,10 +29,14 @@ pub(super) fn turns() -> Arc<Semaphore> {
 
 /// A stimulus by its code name: names are looked up, never joined to a path.
 pub(super) async fn stimulus(Matched(name): Matched<String>, site: Site) -> Response {
-    let Some(code) = name.strip_suffix(".gif").and_then(|code| site.stimuli.get(code)) else {
+    let known = |kind: Kind| {
+        let code = name.strip_suffix(kind.ending())?.strip_suffix('.')?;
+        Some((site.stimuli.get(code)?, kind))
+    };
+    let Some((code, kind)) = site.settings.media.kinds.iter().find_map(|&(kind, ..)| known(kind)) else {
         return StatusCode::NOT_FOUND.into_response();
     };
-    let path = site.settings.stimuli.join(format!("{code}.gif"));
+    let path = site.settings.stimuli.join(format!("{code}.{}", kind.ending()));
     match File::open(&path).await {
         Err(_) => StatusCode::NOT_FOUND.into_response(),
         Ok(file) => {
@@ -39,7 +44,7 @@ pub(super) async fn stimulus(Matched(name): Matched<String>, site: Site) -> Resp
             let turns = PollSemaphore::new(Arc::clone(&site.turns));
             let body = Body::new(Chunks { file, turns, turn: None, buffer: BytesMut::new() });
             let headers = [
-                (header::CONTENT_TYPE, HeaderValue::from_static("image/gif")),
+                (header::CONTENT_TYPE, HeaderValue::from_static(kind.mime())),
                 (header::CONTENT_LENGTH, HeaderValue::from(length)),
                 (header::CACHE_CONTROL, HeaderValue::from_static("private, max-age=86400")),
             ];

@@ -5,11 +5,12 @@ use crate::decode::records::is_blank;
 use crate::error::Fault;
 use crate::plan::Plan;
 use crate::report::{Kind, Report};
+use crate::screen::SCREEN_COLUMNS;
 use crate::sides::SidesSource;
 use crate::words::normalise;
 
 /// Columns that the long format may have; others are noted and not read.
-pub const LONG_COLUMNS: [&str; 13] = [
+pub const LONG_COLUMNS: [&str; 22] = [
     "participant",
     "question",
     "left",
@@ -23,6 +24,15 @@ pub const LONG_COLUMNS: [&str; 13] = [
     "role",
     "stimulus",
     "count",
+    "viewport_width",
+    "viewport_height",
+    "pixel_ratio",
+    "surface_px",
+    "layout",
+    "input",
+    "dropped",
+    "hidden_ms",
+    "shown_as",
 ];
 /// How many of them, from the first on, a file needs that has neither a study nor a `count`.
 pub const LONG_NEEDED: usize = 5;
@@ -52,6 +62,8 @@ pub(crate) struct Columns {
     pub(crate) count: Option<usize>,
     /// When somebody answered; it only tells repeats from split ties.
     pub(crate) sitting: Option<usize>,
+    /// On what it was given.
+    pub(crate) screen: [Option<usize>; SCREEN_COLUMNS.len()],
 }
 
 /// What differs between formats with one row an answer.
@@ -105,6 +117,7 @@ impl Columns {
             role,
             stimulus,
             count,
+            screen @ ..,
         ] = at;
         let needed = |column: Option<usize>, name: &str| match column {
             Some(column) => Ok(column),
@@ -137,6 +150,7 @@ impl Columns {
             stimulus,
             count,
             sitting: None,
+            screen,
         })
     }
 

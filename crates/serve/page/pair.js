@@ -1,0 +1,133 @@
+// A pair on the screen: both halves of one file, side by side or one over the other, as large as there is room.
+'use strict';
+
+/**
+ * Puts a pair into `box`. `file` is { kind, frames, address }; both halves come from one moving picture, so that they cannot drift
+ * apart: two windows on an animation (of one address, which browsers run on one clock), or two copies of each frame of a video.
+ *
+ * Resolves when its first frame can be seen. `changed` is called when it is laid out anew.
+ */
+window.isostudyPair = async (study, file, box, make, changed) => {
+  const FRAME_MS = study.loop_ms / file.frames;
+  const [WIDTH, HEIGHT] = study.surface.map((pixels) => pixels * study.page_scale);
+  // After so long a video whose bytes are all here is taken not to play.
+  const NO_FRAME_MS = 5000;
+  const NAMES = [study.choices_stacked[0], study.choices_stacked[2]];
+  const video = file.kind === 'gif' ? null : make('video', { muted: true, loop: true, playsInline: true, preload: 'auto', className: 'source', 'aria-hidden': 'true' });
+
+  const halves = ['Left', 'Right'].map((side, i) => {
+    const moving = video ? null : make('img', { alt: `${side} surface, turning.`, draggable: false, hidden: true });
+    const still = make('canvas', { role: 'img', 'aria-label': `${side} surface${video ? '' : ', stopped'}.` });
+    const name = make('span', { className: 'name', 'aria-hidden': 'true' }, NAMES[i]);
+    return { moving, still, element: make('div', { className: 'half' }, ...(moving ? [moving] : []), still, name) };
+  });
+
+  function loaded(element, event) {
+    return new Promise((resolve, reject) => {
+      element.addEventListener(event, resolve, { once: true });
+      element.addEventListener('error', () => reject(new Error('cannot be shown')), { once: true });
+      element.src = file.address;
+    });
+  }
+
+  /** Some browsers have no frame of a video before it was played. */
+  async function firstFrame() {
+    if (video.readyState >= 2) return;
+    const there = new Promise((resolve) => { video.addEventListener('loadeddata', resolve, { once: true }); });
+    const never = new Promise((_, reject) => { setTimeout(() => reject(new Error('no frame')), NO_FRAME_MS); });
+    setTimeout(() => { if (video.readyState < 2) video.play().then(() => video.pause(), () => {}); }, NO_FRAME_MS / 10);
+    await Promise.race([there, never]);
+  }
+
+  /** Copies what `source` shows now, a half each. */
+  function draw(source, width, height) {
+    halves.forEach(({ still }, i) => {
+      if (still.width !== width / 2 || still.height !== height) [still.width, still.height] = [width / 2, height];
+      still.getContext('2d').drawImage(source, (i * width) / 2, 0, width / 2, height, 0, 0, width / 2, height);
+    });
+  }
+
+  box.classList.toggle('enlarged', study.page_scale > 1);
+  box.replaceChildren(...halves.map((half) => half.element), ...(video ? [video] : []));
+  if (video) {
+    await loaded(video, 'loadedmetadata');
+    await firstFrame();
+    draw(video, video.videoWidth, video.videoHeight);
+  } else {
+    await Promise.all(halves.map((half) => loaded(half.moving, 'load')));
+    const { moving } = halves[0];
+    draw(moving, moving.naturalWidth, moving.naturalHeight);
+  }
+
+  let stacked = false;
+  let surface = 0;
+  let largest = 0;
+  let needed = 0;
+
+  /** Lays both halves out, whichever way makes them larger; no larger than they are made for unless the whole window is theirs. */
+  function layout() {
+    const whole = box.classList.contains('large');
+    box.style.maxHeight = '';
+    const [width, height] = [box.clientWidth, box.clientHeight];
+    const most = whole ? Infinity : 1;
+    const beside = Math.min(width / 2 / WIDTH, height / HEIGHT, most);
+    const over = Math.min(width / WIDTH, (height - 4) / 2 / HEIGHT, most);
+    stacked = over > beside;
+    const scale = Math.max(stacked ? over : beside, 0);
+    const [w, h] = [Math.floor(WIDTH * scale), Math.floor(HEIGHT * scale)];
+    for (const { element } of halves) [element.style.width, element.style.height] = [`${w}px`, `${h}px`];
+    box.classList.toggle('stacked', stacked);
+    needed = stacked ? 2 * h + 4 : h;
+    if (!whole) box.style.maxHeight = `${needed}px`;
+    if (surface !== w) changed(w);
+    surface = w;
+    largest = Math.max(largest, w);
+  }
+  // What is said below may need another line.
+  const squeezed = new ResizeObserver(() => { if (box.clientHeight < needed) layout(); });
+  squeezed.observe(box);
+  window.addEventListener('resize', layout);
+  layout();
+
+  // Frames that nobody can have seen: while moving, the browser drew nothing for more than the time of one.
+  let dropped = 0;
+  let drawn = null;
+  let running = false;
+  function tick(now) {
+    if (!running) return;
+    if (drawn !== null) dropped += Math.max(0, Math.floor((now - drawn) / FRAME_MS) - 1);
+    drawn = now;
+    if (video && video.readyState >= 2) draw(video, video.videoWidth, video.videoHeight);
+    requestAnimationFrame(tick);
+  }
+
+  return {
+    layout,
+    /** Lets it turn. Rejects where the browser does not let it. */
+    async play() {
+      if (video) await video.play();
+      running = true;
+      drawn = null;
+      for (const { moving, still } of halves) if (moving) [moving.hidden, still.hidden] = [false, true];
+      requestAnimationFrame(tick);
+    },
+    stop() {
+      running = false;
+      video?.pause();
+      for (const { moving, still } of halves) if (moving) [moving.hidden, still.hidden] = [true, false];
+    },
+    /** What is kept with an answer: how it was shown. */
+    shown: () => ({
+      surface_px: largest,
+      layout: stacked ? 'stacked' : 'beside',
+      dropped: Math.max(dropped, video?.getVideoPlaybackQuality?.().droppedVideoFrames ?? 0),
+      shown_as: file.kind,
+    }),
+    leave() {
+      running = false;
+      video?.pause();
+      squeezed.disconnect();
+      window.removeEventListener('resize', layout);
+    },
+  };
+};

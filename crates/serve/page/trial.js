@@ -1,0 +1,235 @@
+// One question: a pair, three answers, and when they can be given.
+'use strict';
+
+/** `page` has what the questionnaire shares: study, loading, make, say, heading, show and touch. */
+window.isostudyTrial = ({ study, loading, make, say, heading, show, touch }) => {
+  const CHOICES = ['L', 'NP', 'R'];
+  // The three keys of each answer: by number, and by the arrow that points to it.
+  const KEYS = [['1', 'ArrowLeft'], ['2', 'ArrowDown'], ['3', 'ArrowRight']];
+  // The server takes no longer time for an answer than a day.
+  const LONGEST_MS = 86400000;
+  const STILL = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
+  const AGAIN_MS = 3000;
+
+  // What last touched the page, for browsers whose clicks do not say it.
+  let pointer = 'mouse';
+  document.addEventListener('pointerdown', (event) => { pointer = event.pointerType || pointer; }, true);
+  const inputOf = (event) => {
+    const kind = event.detail === 0 ? 'keyboard' : event.pointerType || pointer;
+    return ['keyboard', 'touch', 'pen'].includes(kind) ? kind : 'mouse';
+  };
+
+  /**
+   * Shows one pair. `answer` is called with the choice, its time in milliseconds since the pair was seen, and the screen it was
+   * given on. `coming` are the pairs that follow. Returns what ends the question.
+   */
+  return (code, title, coming, answer) => {
+    const words = make('p', { className: 'wait' });
+    const pair = make('div', { className: 'pair', 'data-code': code }, words);
+    const pause = make('button', { type: 'button', className: 'soon' }, 'Play');
+    const larger = make('button', { type: 'button', className: 'soon', 'aria-pressed': 'false' }, 'Enlarge');
+    const smaller = make('button', { type: 'button', className: 'smaller' }, 'Smaller');
+    const buttons = CHOICES.map((choice, i) => make('button', { type: 'button', 'aria-disabled': 'true', 'data-choice': choice, 'aria-keyshortcuts': KEYS[i].join(' ') },
+      make('span'), ...(touch ? [] : [make('kbd', { 'aria-hidden': 'true' }, KEYS[i][0])])));
+    const question = make('fieldset', {}, make('legend', {}, study.prompt), make('div', { className: 'choices' }, ...buttons));
+
+    // What is on the screen, once all of it is there; since when it is seen; how long it has been seen moving.
+    let shown = null;
+    let seenAt = null;
+    let moving = null;
+    let watched = 0;
+    let hiddenAt = null;
+    let hidden = 0;
+    let timer = 0;
+    let open = false;
+    let over = false;
+    let small = false;
+    // Whether it turns as soon as it can be seen; who asked for less motion, or paused, plays it.
+    let wanted = !STILL;
+
+    /** Why there is no answer yet. */
+    function wait() {
+      if (shown === null) return 'Please wait until both surfaces are loaded.';
+      if (small) return 'Please enlarge this window, or turn the device.';
+      return moving === null ? 'Please play one whole turn first.' : 'Please watch one whole turn first.';
+    }
+
+    function unlock() {
+      open = true;
+      buttons.forEach((button) => button.removeAttribute('aria-disabled'));
+      say('You can answer now.');
+    }
+
+    async function play() {
+      wanted = true;
+      if (moving !== null || seenAt === null || small || document.hidden) return;
+      try {
+        await shown.play();
+      } catch {
+        // The browser asks for a touch first.
+        stop();
+        wanted = false;
+        return;
+      }
+      if (over || moving !== null) return;
+      if (document.hidden || small) {
+        stop();
+        return;
+      }
+      moving = performance.now();
+      pause.textContent = 'Pause';
+      if (!open) {
+        say('');
+        timer = setTimeout(unlock, Math.max(0, study.loop_ms - watched));
+      }
+    }
+
+    function stop() {
+      if (moving !== null) watched += performance.now() - moving;
+      moving = null;
+      clearTimeout(timer);
+      shown?.stop();
+      pause.textContent = 'Play';
+    }
+
+    /** The clock starts with the first frame that is on a screen. */
+    function see() {
+      const ready = () => !over && shown !== null && seenAt === null && !small && !document.hidden;
+      if (!ready()) return;
+      requestAnimationFrame(() => requestAnimationFrame(() => {
+        if (!ready()) return;
+        seenAt = performance.now();
+        if (wanted) play(); else say('Your device asks for less motion. Press Play, watch one whole turn, then answer.');
+      }));
+    }
+
+    /** Each surface is so many pixels wide now. */
+    function laidOut(width) {
+      const names = pair.classList.contains('stacked') ? study.choices_stacked : study.choices;
+      buttons.forEach((button, i) => { button.firstChild.textContent = names[i]; });
+      small = study.min_surface_px !== undefined && width < study.min_surface_px;
+      pair.classList.toggle('small', small);
+      if (small) {
+        if (moving !== null) stop();
+        words.textContent = `This window is too small: each surface has to be ${study.min_surface_px} pixels wide, and is ${width}. Please enlarge the window, turn the device, or use a larger screen.`;
+        pair.append(words);
+      } else {
+        words.remove();
+        if (seenAt === null) see(); else if (wanted) play();
+      }
+    }
+
+    function choose(i, input) {
+      if (over) return;
+      if (!open || small) {
+        say(wait());
+        return;
+      }
+      const now = performance.now();
+      const rt_ms = Math.min(Math.round(now - seenAt), LONGEST_MS);
+      const screen = {
+        viewport_width: window.innerWidth,
+        viewport_height: window.innerHeight,
+        pixel_ratio: Math.round(window.devicePixelRatio * 1000) / 1000,
+        input,
+        hidden_ms: Math.min(Math.round(hidden), LONGEST_MS),
+        ...shown.shown(),
+      };
+      answer(CHOICES[i], { rt_ms, answered: new Date().toISOString() }, screen);
+    }
+
+    function enlarge(large) {
+      if (shown === null || small || pair.classList.contains('large') === large) return;
+      pair.classList.toggle('large', large);
+      larger.setAttribute('aria-pressed', String(large));
+      shown.layout();
+      if (!large) larger.focus({ preventScroll: true });
+    }
+
+    /** Whether all of the answers is on the screen. */
+    function visible() {
+      const { top, bottom } = question.getBoundingClientRect();
+      return top >= 0 && bottom <= window.innerHeight + 1;
+    }
+
+    function key(event) {
+      if (event.altKey || event.ctrlKey || event.metaKey || event.repeat) return;
+      if (event.key === 'Escape') enlarge(false);
+      const i = KEYS.findIndex((keys) => keys.includes(event.key));
+      // Whoever still has to scroll to the answers does so by this key.
+      if (event.key === 'ArrowDown' && !visible()) return;
+      if (i >= 0) {
+        event.preventDefault();
+        choose(i, 'keyboard');
+      }
+    }
+
+    // A tab in the background shows nothing.
+    function turnedAway() {
+      if (document.hidden) {
+        if (seenAt !== null) hiddenAt = performance.now();
+        if (moving !== null) stop();
+        return;
+      }
+      if (hiddenAt !== null) hidden += performance.now() - hiddenAt;
+      hiddenAt = null;
+      if (seenAt === null) see(); else if (wanted) play();
+    }
+
+    async function load() {
+      let file = null;
+      try {
+        file = await loading.whole(code, (share) => {
+          if (!over && shown === null) words.textContent = share > 0 ? `Loading, ${Math.floor(100 * share)} %` : 'Loading';
+        });
+        if (over) return;
+        const made = await window.isostudyPair(study, file, pair, make, laidOut);
+        if (over) {
+          made.leave();
+          return;
+        }
+        shown = made;
+        pair.append(smaller);
+        pause.className = larger.className = '';
+        loading.ahead(code, coming);
+        see();
+      } catch {
+        if (over) return;
+        // The other kind at once; the same again after a while.
+        const other = file !== null && file.kind !== 'gif' && loading.without(file.kind);
+        if (!other) {
+          words.textContent = 'The pair could not be loaded. It is tried again.';
+          pair.replaceChildren(words);
+        }
+        setTimeout(() => { if (!over) load(); }, other ? 0 : AGAIN_MS);
+      }
+    }
+
+    pause.addEventListener('click', () => {
+      if (moving === null) {
+        play();
+      } else {
+        wanted = false;
+        stop();
+      }
+    });
+    larger.addEventListener('click', () => enlarge(true));
+    pair.addEventListener('click', () => enlarge(!pair.classList.contains('large')));
+    buttons.forEach((button, i) => {
+      button.firstChild.textContent = study.choices[i];
+      button.addEventListener('click', (event) => choose(i, inputOf(event)));
+    });
+    document.addEventListener('keydown', key);
+    document.addEventListener('visibilitychange', turnedAway);
+    show(make('div', { className: 'row top' }, heading(title), make('div', { className: 'tools' }, larger, pause)), pair, question);
+    document.body.className = 'asking';
+    load();
+    return () => {
+      over = true;
+      clearTimeout(timer);
+      shown?.leave();
+      document.removeEventListener('keydown', key);
+      document.removeEventListener('visibilitychange', turnedAway);
+    };
+  };
+};
