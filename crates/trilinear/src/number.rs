@@ -154,13 +154,11 @@ mod tests {
         for extra in [0.0, 1e-30] {
             let mut values = values;
             values[3] = extra;
-            let (ratio, whole): (f64, Vec<f64>) = match Differences::new(values, 0.25) {
-                Differences::Short(all) => (1.0, all.iter().map(|&v| v as f64).collect()),
-                Differences::Long(all) => {
-                    (1.0, all.iter().map(|v| v.to_string().parse::<f64>().unwrap()).collect())
-                }
+            let whole: Vec<f64> = match Differences::new(values, 0.25) {
+                Differences::Short(all) => all.iter().map(|&v| v as f64).collect(),
+                Differences::Long(all) => all.iter().map(|v| v.to_string().parse().unwrap()).collect(),
             };
-            let unit = (f64::from(values[0]) - 0.25) / whole[0] * ratio;
+            let unit = (f64::from(values[0]) - 0.25) / whole[0];
             for (value, whole) in values.iter().zip(whole) {
                 let wanted = f64::from(*value) - 0.25;
                 assert!((whole * unit - wanted).abs() <= 1e-12 * wanted.abs(), "{value}");
