@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// The version of the JSON.
 const SCHEMA: u32 = 1;
 /// Columns of an id and the space after it.
-const INDENT: usize = 14;
+const INDENT: usize = 16;
 
 /// What a method may promise: in JSON, in a list, as a sentence.
 struct Promise {
