@@ -31,7 +31,8 @@ bench-sweep: bunny ## time resolutions from 16 to 256 cells per axis on 1 and 2 
 figures: bunny ## draw tables, figures and index.html again from the results that are there
 	$(ISOSTUDY) report configs/paper.toml
 
-check: ## formatting, lints and licences
+check: ## formatting, lints, licences, and the English of README and docs
+	scripts/check-words.py
 	cargo fmt --all --check
 	cargo clippy --release --locked --workspace --all-targets -- -D warnings
 	@if command -v cargo-deny >/dev/null; then cargo deny --locked check bans licenses sources; else echo "cargo-deny is not installed: licences and bans not checked"; fi
