@@ -69,7 +69,7 @@ def plain(text):
 
 def sentences(text):
     """Sentences end at a full stop, question or exclamation mark before a space or the end."""
-    for sentence in re.split(r"(?<=[.?!])[\"')]?\s+(?=[\"'(A-Z0-9])", text):
+    for sentence in re.split(r"(?<=[.?!])[\"')]?\s+(?=[\"'(A-Z0-9]|isostudy )", text):
         # A citation is not a part of the sentence.
         yield re.sub(r"\s*\([^()]*\b(1[89]|20)\d\d\b[^()]*\)", "", sentence).strip()
 

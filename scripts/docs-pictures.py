@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""Draws docs/six-methods.png and docs/surfaces.png: tiles that isostudy rendered, one label each.
+
+Usage: scripts/docs-pictures.py [ISOSTUDY]     the command; `isostudy` if left out
+
+Run it in the project's folder after `make bunny` and `scripts/fetch-samples.sh`; it needs Pillow.
+"""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from PIL import Image, ImageDraw, ImageFont
+
+METHODS = [
+    ("bu", "no clustering"),
+    ("bi", "integrated clustering"),
+    ("bp", "edge collapse"),
+    ("su", "no clustering"),
+    ("si", "integrated clustering"),
+    ("sp", "edge collapse"),
+]
+LATTICES = {"b": "body-centred lattice", "s": "simple cubic lattice"}
+
+# What docs/surfaces.md lists under "Files that were tried".
+SURFACES = [
+    ("CT of a chest, bone", ["--volume", "ct_chest.nrrd", "--isovalue", "200.5"]),
+    ("MNI152 brain", ["--volume", "mni152_t1.toml", "--isovalue", "60.5"]),
+    ("robot's foot, 58 holes", ["--mesh", "robot_link0.stl", "--allow-open"]),
+    ("palm of a hand, 7 holes", ["--mesh", "hand_palm.stl", "--allow-open"]),
+]
+SAMPLES = Path("cache/samples")
+
+FONT = "assets/fonts/DejaVuSans.ttf"
+RENDERED = 1120  # pixels of the whole picture of an asteroid, of which a crop is shown
+CROP = (250, 290, 890, 810)  # left, upper, right, lower
+LABEL = 46
+GAP = 8
+
+
+def triangles(mesh):
+    with open(mesh, "rb") as file:
+        for line in file:
+            if line.startswith(b"element face"):
+                return f"{int(line.split()[2]):,} triangles"
+    raise SystemExit(f"{mesh}: no faces")
+
+
+def run(*words):
+    subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
+
+
+def six_methods(isostudy, folder):
+    """The asteroid at the spacing of the paper's animations by six methods, flat shading."""
+    only = [word for method, _ in METHODS for word in ("--only", f"as_{method}")]
+    run(isostudy, "extract", "configs/paper.toml", *only, "-o", folder)
+    for method, clustering in METHODS:
+        mesh = folder / "meshes" / "stimulus" / f"as_{method}.ply"
+        turn = folder / f"{method}.gif"
+        look = ["--look", "flat", "--frames", "1", "--size", str(RENDERED)]
+        run(isostudy, "turntable", mesh, "-o", turn, *look)
+        picture = Image.open(turn).convert("RGB").crop(CROP)
+        yield picture, f"{method}: {clustering}", f"{LATTICES[method[0]]}, {triangles(mesh)}"
+
+
+def surfaces(isostudy, folder):
+    """Other people's files, as docs/surfaces.md extracts them."""
+    for number, (label, (kind, name, *rest)) in enumerate(SURFACES):
+        mesh, picture = folder / f"{number}.ply", folder / f"{number}.png"
+        run(isostudy, "extract", kind, SAMPLES / name, *rest, "-o", mesh, "--picture", picture)
+        yield Image.open(picture).convert("RGB"), label, triangles(mesh)
+
+
+def montage(tiles, columns, size, picture):
+    tiles = list(tiles)
+    width, height = size[0] + GAP, size[1] + LABEL + GAP
+    rows = -(-len(tiles) // columns)
+    sheet = Image.new("RGB", (columns * width + GAP, rows * height + GAP), "white")
+    draw = ImageDraw.Draw(sheet)
+    large, small = ImageFont.truetype(FONT, 16), ImageFont.truetype(FONT, 13)
+    for place, (tile, label, rest) in enumerate(tiles):
+        x, y = GAP + place % columns * width, GAP + place // columns * height
+        sheet.paste(tile.resize(size, Image.Resampling.LANCZOS), (x, y))
+        draw.text((x + 2, y + size[1] + 3), label, "black", large)
+        draw.text((x + 2, y + size[1] + 24), rest, "#444444", small)
+    sheet = sheet.quantize(128, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    sheet.save(picture, optimize=True)
+    print(picture)
+
+
+def main():
+    isostudy = sys.argv[1] if len(sys.argv) > 1 else "isostudy"
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        montage(six_methods(isostudy, folder), 3, (320, 260), "docs/six-methods.png")
+        montage(surfaces(isostudy, folder), 4, (280, 280), "docs/surfaces.png")
+
+
+if __name__ == "__main__":
+    main()
