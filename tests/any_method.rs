@@ -192,6 +192,11 @@ fn any_method_on_any_object_from_file_to_report() {
     for page in ["tables/benchmark.md", "index.html"] {
         assert!(fs::read_to_string(folder.path("out").join(page)).unwrap().contains(why), "{page}");
     }
+    let manifest: serde_json::Value = serde_json::from_str(&folder.read("out/manifest.json")).unwrap();
+    let inputs: BTreeSet<&str> = manifest["inputs"].as_object().unwrap().keys().map(String::as_str).collect();
+    for file in ["scan.nrrd", "by-hand/fo.ply", "by-hand/te.obj", "by-hand/vo.ply"] {
+        assert!(inputs.contains(file), "{file} is not among {inputs:?}");
+    }
     assert_eq!(cell("fo_bi", "method"), "body-centred, integrated");
     assert_eq!(cell("fo_bi-relaxed", "placement"), "relaxed");
     assert_eq!(cell("fo_fp", "placement"), "");

@@ -1,6 +1,7 @@
 //! The manifest of a results folder: every file with its digest, and what made them.
 
 use crate::store::{Store, sha256, write_whole};
+use crate::{fields, recipe};
 use anyhow::Result;
 use design::Study;
 use design::machine::Machine;
@@ -19,6 +20,9 @@ struct Manifest<'a> {
     study_sha256: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     seed: Option<u64>,
+    /// Files that objects, programs and meshes of methods are read from, as the study writes them, with their SHA-256: of a volume that of
+    /// its samples, since a header may name another file.
+    inputs: &'a BTreeMap<String, String>,
     machine: Machine,
     files: BTreeMap<&'a str, ManifestFile<'a>>,
 }
@@ -34,16 +38,26 @@ pub(crate) struct Origin<'a> {
     pub(crate) name: &'a str,
     pub(crate) sha256: String,
     pub(crate) seed: Option<u64>,
+    /// See [`Manifest::inputs`].
+    pub(crate) inputs: BTreeMap<String, String>,
 }
 
 impl<'a> Origin<'a> {
     /// A study.
     ///
     /// # Errors
-    /// If its file cannot be read.
+    /// If a file cannot be read.
     pub(crate) fn of(study: &'a Study) -> Result<Self> {
         let section = &study.file.study;
-        Ok(Self { name: &section.id, sha256: sha256(&std::fs::read(&study.path)?), seed: Some(section.seed) })
+        let mut inputs = BTreeMap::new();
+        for object in 0..study.file.objects.len() {
+            inputs.extend(fields::files(study, object)?);
+        }
+        for method in &study.methods {
+            inputs.extend(recipe::files(study, method.id)?);
+        }
+        let sha256 = sha256(&std::fs::read(&study.path)?);
+        Ok(Self { name: &section.id, sha256, seed: Some(section.seed), inputs })
     }
 }
 
@@ -62,6 +76,7 @@ pub(crate) fn write(origin: &Origin<'_>, store: &Store) -> Result<()> {
         study: origin.name,
         study_sha256: origin.sha256.clone(),
         seed: origin.seed,
+        inputs: &origin.inputs,
         // How busy the machine is now says nothing about results made earlier.
         machine: bench::read_machine().lasting(),
         files: files.collect(),

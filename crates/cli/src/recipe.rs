@@ -7,7 +7,7 @@ use extract::{Method, Positions, Tetrahedra};
 use program::Program;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// The kinds of recipes that are the study's own, and never the extractor's: a game's library must not be able to start processes.
@@ -194,19 +194,30 @@ pub(crate) fn sums_positions(study: &Study) -> Result<bool> {
     Ok(false)
 }
 
-/// What a recipe depends on beside its keys: the content of programs and meshes that it names.
+/// What a recipe depends on beside its keys: the digests of [`files`].
 ///
 /// # Errors
 /// If one cannot be read.
 pub(crate) fn inputs(study: &Study, id: MethodId) -> Result<Vec<String>> {
+    Ok(files(study, id)?.into_iter().map(|(_, digest)| digest).collect())
+}
+
+/// The programs and meshes that a recipe names, from the study's folder where they lie in or beside it, with their SHA-256.
+///
+/// # Errors
+/// If one cannot be read.
+pub(crate) fn files(study: &Study, id: MethodId) -> Result<Vec<(String, String)>> {
     let files = match recipe(study, id, Purpose::Benchmark)? {
         Recipe::Extractor(_) => Vec::new(),
         Recipe::Program(program) => program.files().with_context(|| key(study, id))?,
         Recipe::Meshes(files) => files.into_values().collect(),
     };
+    let folder = study.path.parent().unwrap_or(Path::new(""));
+    let absolute = std::path::absolute(folder)?;
     let digest = |path: &PathBuf| {
         let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
-        Ok(crate::store::sha256(&bytes))
+        let short = path.strip_prefix(&absolute).or(path.strip_prefix(folder)).unwrap_or(path);
+        Ok((short.display().to_string(), crate::store::sha256(&bytes)))
     };
     files.iter().map(digest).collect()
 }

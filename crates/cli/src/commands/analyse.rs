@@ -98,7 +98,10 @@ fn analyse_without_study(arguments: &Arguments, path: &Path) -> Result<()> {
     let tables = pipeline::write_without_study(path, &section, &reading, &store)?;
     store.remove_retired()?;
     let digest = store::sha256(&input::bytes(path)?);
-    manifest::write(&manifest::Origin { name: &name, sha256: digest, seed: None }, &store)?;
+    manifest::write(
+        &manifest::Origin { name: &name, sha256: digest, seed: None, inputs: Default::default() },
+        &store,
+    )?;
     for table in tables.iter().filter(|table| ["tests", "worths"].contains(&table.name.as_str())) {
         say(&table.to_markdown())?;
     }
