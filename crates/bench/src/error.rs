@@ -3,7 +3,7 @@
 use crate::journal::JournalError;
 use crate::plan::Round;
 use design::ConfigurationId;
-use design::record::UnsoundSample;
+use design::record::InvalidSample;
 use std::error::Error;
 
 /// Why a benchmark stopped. Samples taken before are in the journal, if one was kept.
@@ -38,7 +38,7 @@ pub enum BenchError {
         /// Which configuration's.
         id: ConfigurationId,
         /// What is wrong with it.
-        reason: UnsoundSample,
+        reason: InvalidSample,
     },
     /// What was recorded before cannot be gone on from.
     #[error("the journal cannot be used")]
@@ -54,5 +54,5 @@ pub enum BenchError {
     Execution(Box<dyn Error + Send + Sync>),
     /// An executor returned times that no clock gives.
     #[error(transparent)]
-    Unsound(#[from] UnsoundSample),
+    Unsound(#[from] InvalidSample),
 }

@@ -1,7 +1,7 @@
 //! What a run has done so far, line by line, so that a killed run goes on in the middle of a round.
 
 use design::ConfigurationId;
-use design::record::{BenchSample, LoadWindow, PeakMemory, Resumption, UnsoundSample};
+use design::record::{BenchSample, InvalidSample, LoadWindow, PeakMemory, Resumption};
 use serde::{Deserialize, Serialize};
 
 /// One line of a journal: something that happened, written when it happened.
@@ -71,11 +71,11 @@ pub enum JournalError {
     },
     /// A sample that no clock can have given.
     #[error("a sample of {id}: {reason}")]
-    Unsound {
+    Invalid {
         /// Of which configuration.
         id: ConfigurationId,
         /// What is wrong with it.
-        reason: UnsoundSample,
+        reason: InvalidSample,
     },
     /// Its samples are not those that the plan begins with.
     #[error("its samples do not follow the plan")]

@@ -131,7 +131,7 @@ fn check(plan: &Plan, ids: &[ConfigurationId]) -> Result<(), BenchError> {
 /// Checks that what has been measured is what the plan begins with, and can have been measured.
 ///
 /// # Errors
-/// [`JournalError::OtherOrder`] or [`JournalError::Unsound`] if it is not.
+/// [`JournalError::OtherOrder`] or [`JournalError::Invalid`] if it is not.
 pub fn check_journal(plan: &Plan, ids: &[ConfigurationId], done: &[Entry]) -> Result<(), BenchError> {
     let sittings = plan.sittings();
     let planned = |aa: bool| {
@@ -161,7 +161,7 @@ pub fn check_journal(plan: &Plan, ids: &[ConfigurationId], done: &[Entry]) -> Re
             Entry::AaSample(sample) => (sample, plan.aa_iterations),
             _ => continue,
         };
-        let unsound = |reason| JournalError::Unsound { id: sample.id.clone(), reason };
+        let unsound = |reason| JournalError::Invalid { id: sample.id.clone(), reason };
         sample.check(rounds).map_err(unsound)?;
     }
     Ok(())

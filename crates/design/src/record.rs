@@ -4,9 +4,9 @@ use crate::machine::{CpuProfile, Machine, ProfileDifference};
 use crate::method::ConfigurationId;
 use serde::{Deserialize, Serialize};
 
-mod sound;
+mod validate;
 
-pub use sound::{UnsoundRun, UnsoundSample};
+pub use validate::{InvalidRun, InvalidSample};
 
 /// What a mesh was extracted for; each purpose has its own spacing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]

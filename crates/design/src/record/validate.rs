@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-9;
 /// Why a run cannot have been measured. Every variant names the place.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum UnsoundRun {
+pub enum InvalidRun {
     /// A sample that no clock can have given.
     #[error("{list}[{place}], {id}: {reason}")]
     Sample {
@@ -22,7 +22,7 @@ pub enum UnsoundRun {
         /// Of which configuration.
         id: ConfigurationId,
         /// What is wrong with it.
-        reason: UnsoundSample,
+        reason: InvalidSample,
     },
     /// Two samples of one round.
     #[error("{list}: {id} is there twice in round {round}")]
@@ -86,7 +86,7 @@ pub enum UnsoundRun {
 /// Why a sample cannot have been measured.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum UnsoundSample {
+pub enum InvalidSample {
     /// Not a duration.
     #[error("{what} = {seconds:?} s: must be finite and not negative")]
     NotADuration {
@@ -122,24 +122,24 @@ impl BenchRun {
     ///
     /// # Errors
     /// The first thing that cannot be.
-    pub fn check(&self) -> Result<(), UnsoundRun> {
+    pub fn check(&self) -> Result<(), InvalidRun> {
         let measured = if self.imported_from.is_some() { 1 } else { self.iterations };
         let of_samples = check_samples("samples", &self.samples, measured)?;
         let of_aa = check_samples("aa_samples", &self.aa_samples, self.aa_iterations)?;
         if self.aa_iterations > 0 {
             if let Some(id) = of_samples.symmetric_difference(&of_aa).next() {
-                return Err(UnsoundRun::OneList { id: (*id).clone() });
+                return Err(InvalidRun::OneList { id: (*id).clone() });
             }
             let measured: BTreeSet<u32> = self.samples.iter().map(|sample| sample.sitting).collect();
             let mut again = self.aa_samples.iter().map(|sample| sample.sitting);
             if let Some(sitting) = again.find(|sitting| measured.contains(sitting)) {
-                return Err(UnsoundRun::SharedSitting(sitting));
+                return Err(InvalidRun::SharedSitting(sitting));
             }
         }
         for (place, &LoadWindow { others, steal, .. }) in self.load.iter().enumerate() {
-            let sound = |share: f64| (0.0..=1.0).contains(&share);
-            if !(sound(others) && sound(steal) && others + steal <= 1.0 + ROUNDING) {
-                return Err(UnsoundRun::Load { place, others, steal });
+            let valid = |share: f64| (0.0..=1.0).contains(&share);
+            if !(valid(others) && valid(steal) && others + steal <= 1.0 + ROUNDING) {
+                return Err(InvalidRun::Load { place, others, steal });
             }
         }
         let mut seen = BTreeSet::new();
@@ -147,10 +147,10 @@ impl BenchRun {
             let (id, bytes) =
                 (memory.id.clone(), [memory.before_bytes, memory.peak_before_bytes, memory.peak_bytes]);
             if !seen.insert(&memory.id) {
-                return Err(UnsoundRun::MemoryTwice(id));
+                return Err(InvalidRun::MemoryTwice(id));
             }
             if !bytes.is_sorted() {
-                return Err(UnsoundRun::Memory { place, id, bytes });
+                return Err(InvalidRun::Memory { place, id, bytes });
             }
         }
         Ok(())
@@ -162,18 +162,18 @@ fn check_samples<'a>(
     list: &'static str,
     samples: &'a [BenchSample],
     rounds: u32,
-) -> Result<BTreeSet<&'a ConfigurationId>, UnsoundRun> {
+) -> Result<BTreeSet<&'a ConfigurationId>, InvalidRun> {
     let mut seen = BTreeMap::<&ConfigurationId, BTreeSet<u32>>::new();
     for (place, sample) in samples.iter().enumerate() {
         let (id, round) = (&sample.id, sample.iteration);
-        sample.check(rounds).map_err(|reason| UnsoundRun::Sample { list, place, id: id.clone(), reason })?;
+        sample.check(rounds).map_err(|reason| InvalidRun::Sample { list, place, id: id.clone(), reason })?;
         if !seen.entry(id).or_default().insert(round) {
-            return Err(UnsoundRun::Twice { list, id: id.clone(), round });
+            return Err(InvalidRun::Twice { list, id: id.clone(), round });
         }
     }
     let asked = rounds as usize;
     match seen.iter().find(|(_, of)| of.len() != asked) {
-        Some((id, of)) => Err(UnsoundRun::Rounds { list, id: (*id).clone(), found: of.len(), asked }),
+        Some((id, of)) => Err(InvalidRun::Rounds { list, id: (*id).clone(), found: of.len(), asked }),
         None => Ok(seen.into_keys().collect()),
     }
 }
@@ -183,22 +183,22 @@ impl BenchSample {
     ///
     /// # Errors
     /// The first thing that cannot be.
-    pub fn check(&self, rounds: u32) -> Result<(), UnsoundSample> {
+    pub fn check(&self, rounds: u32) -> Result<(), InvalidSample> {
         let stages = Stage::ALL.map(|stage| (stage.label(), stage.of(self)));
-        let sound = |seconds: f64| seconds.is_finite() && seconds >= 0.0;
-        if let Some((what, seconds)) = stages.into_iter().find(|(_, s)| !sound(*s)) {
-            return Err(UnsoundSample::NotADuration { what, seconds });
+        let valid = |seconds: f64| seconds.is_finite() && seconds >= 0.0;
+        if let Some((what, seconds)) = stages.into_iter().find(|(_, s)| !valid(*s)) {
+            return Err(InvalidSample::NotADuration { what, seconds });
         }
-        if let Some(seconds) = self.reference_s.filter(|seconds| !(sound(*seconds) && *seconds > 0.0)) {
-            return Err(UnsoundSample::Reference(seconds));
+        if let Some(seconds) = self.reference_s.filter(|seconds| !(valid(*seconds) && *seconds > 0.0)) {
+            return Err(InvalidSample::Reference(seconds));
         }
         let (total, sum) = (self.total_s, stages[..6].iter().map(|(_, seconds)| seconds).sum::<f64>());
         // A sum beyond every number is none.
         if !sum.is_finite() || (total - sum).abs() > ROUNDING * sum {
-            return Err(UnsoundSample::Sum { total, sum });
+            return Err(InvalidSample::Sum { total, sum });
         }
         if self.iteration >= rounds {
-            return Err(UnsoundSample::Round { iteration: self.iteration, rounds });
+            return Err(InvalidSample::Round { iteration: self.iteration, rounds });
         }
         Ok(())
     }
@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_as_measured_is_sound() {
+    fn a_run_as_measured_is_valid() {
         assert_eq!(run().check(), Ok(()));
         let mut rounded = run();
         rounded.samples[0].total_s *= 1.0 + 1e-12;
