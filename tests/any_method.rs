@@ -217,14 +217,14 @@ fn any_method_on_any_object_from_file_to_report() {
 
 /// The same truth through the server: whoever sees relaxed vertices presses their side, on the form that they were dealt.
 fn served(folder: &Study) {
-    folder.succeed(&["design", "forms", "study.toml", "--out", "dealt"]);
+    folder.succeed(&["design", "forms", "study.toml", "--out", "dealt", "--allow-programs"]);
     let key = folder.table("dealt/key/forms.csv");
     let column =
         |name: &str| key[0].iter().position(|title| title == name).unwrap_or_else(|| panic!("{name}"));
     let [form, role, stimulus, left, right] = ["form", "role", "stimulus", "left", "right"].map(column);
     let mut command = folder.isostudy();
     command.args(["serve", "study.toml", "--out", "out", "--answers", "kept", "--port", "0"]);
-    command.args(["--admin-token", TOKEN, "--with-faults"]);
+    command.args(["--admin-token", TOKEN, "--with-faults", "--allow-programs"]);
     let server = Server::of(command);
     let mut pressed = 0;
     for _ in 0..6 {

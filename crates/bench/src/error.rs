@@ -54,5 +54,5 @@ pub enum BenchError {
     Execution(Box<dyn Error + Send + Sync>),
     /// An executor returned times that no clock gives.
     #[error(transparent)]
-    Unsound(#[from] InvalidSample),
+    Invalid(#[from] InvalidSample),
 }

@@ -161,8 +161,8 @@ pub fn check_journal(plan: &Plan, ids: &[ConfigurationId], done: &[Entry]) -> Re
             Entry::AaSample(sample) => (sample, plan.aa_iterations),
             _ => continue,
         };
-        let unsound = |reason| JournalError::Invalid { id: sample.id.clone(), reason };
-        sample.check(rounds).map_err(unsound)?;
+        let invalid = |reason| JournalError::Invalid { id: sample.id.clone(), reason };
+        sample.check(rounds).map_err(invalid)?;
     }
     Ok(())
 }

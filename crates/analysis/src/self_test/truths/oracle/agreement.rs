@@ -96,49 +96,78 @@ fn sums(people: &[Vec<[u64; 3]>]) -> Vec<[u64; 3]> {
     sums
 }
 
-/// The ends of alpha's interval: the odds at which the test of them is a t quantile away.
+/// The ends of alpha's interval: the odds that a test of them rejects. None where few people answered, or few disagree.
 fn ends(people: &[Vec<[u64; 3]>], ordinal: bool) -> Option<[f64; 2]> {
     let all = sums(people);
     let value = alpha(&all, ordinal)?;
+    let total = |counts: &[u64; 3]| counts.iter().sum::<u64>();
+    let questions: Vec<usize> = (0..all.len()).filter(|&q| total(&all[q]) > 1).collect();
+    let n = questions.len() as f64;
+    let answered =
+        people.iter().map(|own| questions.iter().filter(|&&q| total(&own[q]) > 0).count()).sum::<usize>();
+    let per_question = answered as f64 / n;
+    if n < 4.0 || per_question < 12.0 || n * (1.0 - value) < 3.0 {
+        return None;
+    }
+    // What one answer less to a question does, on average over its answers.
+    let mean_effect = |q: usize| {
+        let of_answer = |i: usize| {
+            let mut rest = all.clone();
+            rest[q][i] -= 1;
+            Some(all[q][i] as f64 * (alpha(&rest, ordinal)? - value))
+        };
+        let sum = (0..3).filter(|&i| all[q][i] > 0).map(of_answer).sum::<Option<f64>>()?;
+        Some(sum / total(&all[q]).max(1) as f64)
+    };
+    let effects: Vec<f64> = (0..all.len()).map(mean_effect).collect::<Option<_>>()?;
     let without = |own: &Vec<[u64; 3]>| {
         let rest: Vec<[u64; 3]> =
             all.iter().zip(own).map(|(sum, own)| [0, 1, 2].map(|i| sum[i] - own[i])).collect();
-        alpha(&rest, ordinal)
+        let expected: f64 = own.iter().zip(&effects).map(|(own, effect)| total(own) as f64 * effect).sum();
+        Some(alpha(&rest, ordinal)? - expected)
     };
     let left_out: Vec<f64> = people.iter().map(without).collect::<Option<_>>()?;
     let m = left_out.len() as f64;
     let middle = left_out.iter().sum::<f64>() / m;
-    let of_alpha = (m - 1.0) / m * left_out.iter().map(|x| (x - middle).powi(2)).sum::<f64>();
-    // Who agrees on everything says nothing of how people differ.
-    if m < 4.0 || value == 1.0 {
-        return None;
-    }
+    let squares = left_out.iter().map(|x| (x - middle).powi(2)).sum::<f64>();
+    let of_alpha = squares * (1.0 - 1.0 / per_question);
     let (own, free) = (own_pairs(&all, ordinal), deviations(people, &all, ordinal));
-    let odds = value / (1.0 - value);
-    let beyond = |x: f64, quantiles: f64| {
+    let odds = |alpha: f64| alpha / (1.0 - alpha);
+    // The chance of an estimate below another if the odds are x.
+    let chance = |estimate: f64, x: f64| {
         let positive = x.max(0.0);
         let mean = positive + own;
-        let parts =
-            [2.0 * own * own / free, of_alpha / (1.0 - value).powi(4) * positive / (odds + own).max(1e-9)];
+        let parts = [
+            2.0 * own * own / free,
+            of_alpha / (1.0 - value).powi(4) * positive / (odds(value) + own).max(1e-9),
+        ];
         let variance = parts[0] + parts[1];
-        let degrees =
-            variance.powi(2) / (parts[0].powi(2) / ((m - 1.0) * free) + parts[1].powi(2) / (m - 1.0));
+        let degrees = variance.powi(2)
+            / (parts[0].powi(2) / ((m - 1.0) * free) + parts[1].powi(2) / (per_question - 1.0));
         let h = variance / mean.powi(2) / 9.0;
-        let z = (((odds + own - (x - positive)) / mean).cbrt() - (1.0 - h)) / h.sqrt();
-        z - quantiles * StudentsT::new(0.0, 1.0, degrees).expect("three degrees or more").inverse_cdf(0.975)
+        let z = (((odds(estimate) + own - (x - positive)) / mean).cbrt() - (1.0 - h)) / h.sqrt();
+        StudentsT::new(0.0, 1.0, degrees).expect("two degrees or more").cdf(z)
     };
-    let end = |quantiles: f64| {
-        let [mut low, mut high] = [-0.5, 1e9];
-        if beyond(low, quantiles) <= 0.0 {
-            return -1.0;
-        }
+    let halved = |mut not: f64, mut is: f64, rejected: &dyn Fn(f64) -> bool| {
         for _ in 0..120 {
-            let x = 0.5 * (low + high);
-            *(if beyond(x, quantiles) > 0.0 { &mut low } else { &mut high }) = x;
+            let x = 0.5 * (not + is);
+            *(if rejected(x) { &mut is } else { &mut not }) = x;
         }
-        low / (1.0 + low)
+        is / (1.0 + is)
     };
-    Some([end(1.0), end(-1.0)])
+    let low = match chance(value, -0.5) >= 0.975 {
+        true => halved(odds(value), -0.5, &|x| chance(value, x) >= 0.975),
+        false => -1.0,
+    };
+    // Only estimates that are printed are compared, and half of the chance that the lower end leaves is used.
+    let too_low = |x: f64| {
+        let printed = chance(1.0 - 3.0 / n, x);
+        chance(value, x) <= 0.0375 * printed - (printed - 0.975).max(0.0) / 2.0
+    };
+    let steps = (0..).map(|step| (odds(value) + 1.0) * 1.002_f64.powi(step) - 1.0);
+    let high = steps.take_while(|x| *x < 999.0).find(|x| too_low(*x));
+    let high = high.map_or(1.0, |x| halved((x + 1.0) / 1.002 - 1.0, x, &too_low));
+    Some([low, high])
 }
 
 /// How far two values are apart, up to a factor that all distances share.
