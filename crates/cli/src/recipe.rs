@@ -213,7 +213,7 @@ pub(crate) fn files(study: &Study, id: MethodId) -> Result<Vec<(String, String)>
         Recipe::Meshes(files) => files.into_values().collect(),
     };
     let folder = study.path.parent().unwrap_or(Path::new(""));
-    let absolute = std::path::absolute(folder)?;
+    let absolute = std::env::current_dir()?.join(folder);
     let digest = |path: &PathBuf| {
         let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
         let short = path.strip_prefix(&absolute).or(path.strip_prefix(folder)).unwrap_or(path);
