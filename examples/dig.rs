@@ -6,16 +6,16 @@
 use std::time::Instant;
 
 use extract::{
-    Arrangement, Chunk, ChunkExtractor, Clustering, Execution, ExtractSettings, Lattice, Source, extract,
-    weld_chunks,
+    Arrangement, BoxGrid, Chunk, ChunkExtractor, ChunkSettings, Clustering, Control, Execution, Method,
+    Source, Tetrahedra, extract, weld_chunks,
 };
-use field::{Asteroid, Kept, ScalarField};
+use field::{Asteroid, Kept, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
 
 /// A solid less the balls that were dug out of it.
 struct Dug<'a> {
-    solid: &'a dyn ScalarField,
+    solid: &'a dyn StudyField,
     holes: Vec<Ball>,
     /// No value is above this one.
     deepest: f32,
@@ -43,7 +43,7 @@ impl Ball {
 /// Values farther inside than this many spacings are cut off, so that an edit changes the field near by and nowhere else.
 const DEEPEST: f32 = 2.0;
 
-impl ScalarField for Dug<'_> {
+impl StudyField for Dug<'_> {
     fn sample(&self, p: Vec3) -> f32 {
         self.holes.iter().fold(self.solid.sample(p).min(self.deepest), |value, hole| value.min(hole.value(p)))
     }
@@ -98,21 +98,23 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Some(other) => return Err(format!("no arrangement {other}").into()),
     };
     let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
-    let lattice = Lattice::try_new(arrangement, bounds, 2.0 / cells as f32)?;
-    let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
-    let execution = Execution { threads: 1 };
+    let grid = BoxGrid { bounds, spacing: 2.0 / cells as f32 };
+    let lattice = grid.lattice(arrangement)?;
+    let tetrahedra = Tetrahedra { clustering, ..Tetrahedra::new(arrangement) };
+    let control = Control::default();
 
     let (asteroid, mut kept) = (Asteroid::default(), Kept::default());
     let solid = asteroid.prepared(&mut kept).unwrap_or(&asteroid);
     let mut field = Dug { solid, holes: Vec::new(), deepest: DEEPEST * lattice.spacing() };
-    let mut extractor = ChunkExtractor::try_new(&lattice, &settings)?;
+    let mut extractor =
+        ChunkExtractor::in_box(&grid, &Method::Tetrahedra(tetrahedra), &ChunkSettings::default())?;
     let boxes: Vec<_> = extractor.grid(chunk_cells).collect();
     let start = Instant::now();
     let mut chunks: Vec<Chunk> = Vec::new();
     for &cells in &boxes {
-        chunks.push(extractor.extract(Source::Field(&field), cells, &execution)?);
+        chunks.push(extractor.extract(Source::Study(&field), cells, &control)?);
     }
-    let with_surface = chunks.iter().filter(|chunk| !chunk.mesh.triangles.is_empty()).count();
+    let with_surface = chunks.iter().filter(|chunk| !chunk.triangles.is_empty()).count();
     println!(
         "{cells}^3 cells, {arrangement:?} {clustering:?}: {} chunks of {chunk_cells}^3 cells, {with_surface} with surface, in {:.0} ms",
         chunks.len(),
@@ -131,7 +133,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let near = |hole: &&Ball| chunk.is_touched_by(hole.reach(field.deepest));
             let holes = field.holes.iter().filter(near).copied().collect();
             let local = Dug { holes, ..field };
-            *chunk = extractor.extract(Source::Field(&local), chunk.cells, &execution)?;
+            let cells = chunk.cells;
+            extractor.extract_into(Source::Study(&local), cells, &control, chunk)?;
             of_chunk.push(start.elapsed().as_secs_f64() * 1e3);
             touched += 1;
         }
@@ -146,7 +149,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("chunks per edit: {:.1}", f64::from(touched) / f64::from(edits.max(1)));
 
     let start = Instant::now();
-    let whole = extract(&field, &lattice, &settings, &execution)?.mesh;
+    let whole = extract(&field, &lattice, &tetrahedra.settings(0.0), &Execution { threads: 1 })?.mesh;
     println!(
         "the whole anew: {:.0} ms, {} triangles",
         start.elapsed().as_secs_f64() * 1e3,
@@ -163,7 +166,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// A place on the solid's surface, by bisection in one of many directions (Fibonacci's spiral).
-fn on_surface(solid: &dyn ScalarField, edit: u32) -> Vec3 {
+fn on_surface(solid: &dyn StudyField, edit: u32) -> Vec3 {
     let z = 1.0 - 2.0 * ((edit as f32 + 0.5) * 0.618_034).fract();
     let (sin, cos) = (edit as f32 * 2.399_963).sin_cos();
     let direction = Vec3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt() + Vec3::Z * z;

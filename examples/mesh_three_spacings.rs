@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let lattice = Lattice::try_new(Arrangement::BodyCentred, tight.grown(2.0 * spacing), spacing)?;
         let settings = ExtractSettings::default();
         let surface =
-            extractor.extract(Source::Field(&field), &lattice, &settings, &Execution::default())?.mesh;
+            extractor.extract(Source::Study(&field), &lattice, &settings, &Execution::default())?.mesh;
 
         let path = format!("{stem}-{cells}.ply");
         mesh::write_ply(&surface, File::create(&path)?)?;

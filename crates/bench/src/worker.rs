@@ -5,8 +5,8 @@ use crate::load::resident_bytes;
 use crate::reference::Reference;
 use crate::run::{Measurement, PeakBytes};
 use crate::stages::StageSeconds;
-use extract::{Execution, Extraction, Extractor, Grid, Method, MethodError};
-use field::ScalarField;
+use extract::{BoxGrid, Execution, Extraction, Extractor, Method, MethodError};
+use field::StudyField;
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::io::{self, BufRead, Write};
@@ -15,11 +15,11 @@ use std::io::{self, BufRead, Write};
 #[derive(Clone, Copy)]
 pub struct Prepared<'a> {
     /// What is sampled.
-    pub field: &'a dyn ScalarField,
+    pub field: &'a dyn StudyField,
     /// What decides the mesh.
     pub method: Method,
     /// Where the field is sampled.
-    pub grid: Grid,
+    pub grid: BoxGrid,
     /// The value of the surface.
     pub isovalue: f32,
 }
@@ -195,7 +195,7 @@ mod tests {
 
     fn sphere(method: Tetrahedra) -> Prepared<'static> {
         let bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) };
-        let grid = Grid { bounds, spacing: 0.5 };
+        let grid = BoxGrid { bounds, spacing: 0.5 };
         Prepared { field: &Sphere { radius: 1.0 }, method: Method::Tetrahedra(method), grid, isovalue: 0.0 }
     }
 

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use extract::Execution;
-use field::ScalarField;
+use field::StudyField;
 use mesh::TriangleMesh;
 use raster::{Colouring, Values};
 
@@ -13,7 +13,7 @@ use raster::{Colouring, Values};
 /// If threads cannot be started.
 pub(crate) fn of(
     mesh: &TriangleMesh,
-    (field, isovalue, spacing): (&dyn ScalarField, f32, f32),
+    (field, isovalue, spacing): (&dyn StudyField, f32, f32),
     most: f32,
     threads: usize,
 ) -> Result<Colouring> {

@@ -7,7 +7,7 @@ use crate::store::sha256;
 use anyhow::{Context, Result, bail};
 use design::Study;
 use design::config::{FieldSection, MeshSourceSection, ObjectSection};
-use field::{Asteroid, MeshDistance, ScalarField, Sphere, Terrain, TerrainCharacter};
+use field::{Asteroid, MeshDistance, Sphere, StudyField, Terrain, TerrainCharacter};
 use glam::{DVec3, Vec3};
 use mesh::{Bounds, TriangleMesh};
 use serde::Deserialize;
@@ -17,7 +17,7 @@ use std::sync::OnceLock;
 /// An object's field.
 pub(crate) struct ObjectField {
     /// Inside is above [`isovalue`](Self::isovalue), whatever the study says.
-    pub(crate) field: Box<dyn ScalarField + Send>,
+    pub(crate) field: Box<dyn StudyField + Send>,
     pub(crate) isovalue: f32,
 }
 
@@ -69,7 +69,7 @@ pub(crate) fn bounds(object: &ObjectSection) -> Bounds {
 
 fn make(study: &Study, number: usize, object: &ObjectSection) -> Result<ObjectField> {
     let isovalue = object.isovalue as f32;
-    let as_it_is = |field: Box<dyn ScalarField + Send>| Ok(ObjectField { field, isovalue });
+    let as_it_is = |field: Box<dyn StudyField + Send>| Ok(ObjectField { field, isovalue });
     match &object.field {
         FieldSection::Sphere { radius } => as_it_is(Box::new(Sphere { radius: *radius as f32 })),
         FieldSection::Asteroid => as_it_is(Box::<Asteroid>::default()),

@@ -7,8 +7,8 @@ use anyhow::{Context, Result, bail};
 use design::config::{ObjectSection, SweepSection};
 use design::record::Purpose;
 use design::{Configuration, ConfigurationId, MethodId, Study};
-use extract::{Arrangement, Execution, Grid, Method};
-use field::ScalarField;
+use extract::{Arrangement, BoxGrid, Execution, Method};
+use field::StudyField;
 use serde::{Deserialize, Serialize};
 
 /// At which resolution, and for what.
@@ -49,11 +49,11 @@ pub(crate) struct Prepared<'a> {
     /// Which one.
     pub(crate) id: ConfigurationId,
     /// What is sampled; inside is above the isovalue.
-    pub(crate) field: &'a dyn ScalarField,
+    pub(crate) field: &'a dyn StudyField,
     /// The value of the surface.
     pub(crate) isovalue: f32,
     /// Where the field is sampled.
-    pub(crate) grid: Grid,
+    pub(crate) grid: BoxGrid,
     /// How the mesh comes to be.
     pub(crate) recipe: Recipe,
 }
@@ -125,8 +125,8 @@ impl Spacings {
 }
 
 /// An object's volume, filled with cubes.
-pub(crate) fn grid(object: &ObjectSection, spacing: f64) -> Grid {
-    Grid { bounds: fields::bounds(object), spacing: spacing as f32 }
+pub(crate) fn grid(object: &ObjectSection, spacing: f64) -> BoxGrid {
+    BoxGrid { bounds: fields::bounds(object), spacing: spacing as f32 }
 }
 
 /// Checks that every method goes with every grid of the study, and that what the extractor holds of it fits into memory.
@@ -190,7 +190,7 @@ pub(crate) fn check_sweep(study: &Study, section: &SweepSection, machine_bytes: 
 pub(crate) fn check_memory(
     study: &Study,
     method: &Method,
-    grid: &Grid,
+    grid: &BoxGrid,
     execution: &Execution,
     machine_bytes: Option<u64>,
 ) -> Result<()> {
@@ -209,7 +209,7 @@ pub(crate) fn check_memory(
 /// If it is, naming the limit.
 pub(crate) fn check_limit(
     method: &Method,
-    grid: &Grid,
+    grid: &BoxGrid,
     execution: &Execution,
     held: u64,
     limit: Limit,

@@ -5,8 +5,8 @@ use crate::mesh_file;
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use expression::{Expression, ExpressionError};
-use extract::Grid;
-use field::{Beyond, Holes, MeshDistance, MeshFieldError, Negated, ScalarField, VolumeField, Walled};
+use extract::BoxGrid;
+use field::{Beyond, Holes, MeshDistance, MeshFieldError, Negated, StudyField, VolumeField, Walled};
 use glam::Vec3;
 use mesh::{Bounds, repair};
 use serde::Serialize;
@@ -30,7 +30,7 @@ pub(crate) enum Inside {
 /// A field and where to look at it.
 pub(crate) struct Source {
     /// Inside is above [`isovalue`](Self::isovalue), whatever was asked for.
-    pub(crate) field: Box<dyn ScalarField + Send>,
+    pub(crate) field: Box<dyn StudyField + Send>,
     pub(crate) isovalue: f32,
     /// As asked for.
     pub(crate) inside: Inside,
@@ -82,13 +82,13 @@ impl Options {
     /// A source with the defaults that hold for all.
     fn source(
         &self,
-        field: Box<dyn ScalarField + Send>,
+        field: Box<dyn StudyField + Send>,
         inside: Inside,
         bounds: Bounds,
         name: &str,
     ) -> Source {
         let inside = self.inside.unwrap_or(inside);
-        let (field, isovalue): (Box<dyn ScalarField + Send>, f32) = match inside {
+        let (field, isovalue): (Box<dyn StudyField + Send>, f32) = match inside {
             Inside::Above => (field, self.isovalue),
             Inside::Below => (Box::new(Negated(field)), -self.isovalue),
         };
@@ -212,8 +212,8 @@ impl Source {
     }
 
     /// Where to look at it.
-    pub(crate) fn grid(&self) -> Grid {
-        Grid { bounds: self.bounds, spacing: self.spacing }
+    pub(crate) fn grid(&self) -> BoxGrid {
+        BoxGrid { bounds: self.bounds, spacing: self.spacing }
     }
 
     /// Box and spacing, for people.

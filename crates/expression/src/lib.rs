@@ -68,7 +68,7 @@ use std::str::FromStr;
 
 use fidget_core::Context;
 use fidget_core::var::Var;
-use field::{Fractal, ScalarField};
+use field::{Fractal, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
 
@@ -136,7 +136,7 @@ thread_local! {
     static WORKSPACE: RefCell<Workspace> = RefCell::default();
 }
 
-impl ScalarField for Expression {
+impl StudyField for Expression {
     fn sample(&self, p: Vec3) -> f32 {
         let mut value = [0.0];
         self.sample_row(&[p.x], p.y, p.z, &mut value);

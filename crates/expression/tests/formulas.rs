@@ -2,7 +2,7 @@
 
 use expression::{Expression, ExpressionError};
 use extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
-use field::{Negated, ScalarField};
+use field::{Negated, StudyField};
 use mesh::glam::Vec3;
 use mesh::{Bounds, TriangleMesh};
 use proptest::prelude::*;
@@ -221,7 +221,7 @@ struct Watched<'a> {
     samples: AtomicUsize,
 }
 
-impl ScalarField for Watched<'_> {
+impl StudyField for Watched<'_> {
     fn sample(&self, p: Vec3) -> f32 {
         self.samples.fetch_add(1, Ordering::Relaxed);
         self.field.sample(p)
@@ -232,7 +232,7 @@ impl ScalarField for Watched<'_> {
     }
 }
 
-fn mesh_of(field: &dyn ScalarField, threads: usize) -> TriangleMesh {
+fn mesh_of(field: &dyn StudyField, threads: usize) -> TriangleMesh {
     let bounds = Bounds { min: Vec3::splat(-1.2), max: Vec3::splat(1.2) };
     let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.02).unwrap();
     extract(field, &lattice, &ExtractSettings::default(), &Execution { threads }).unwrap().mesh

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use expression::{Expression, ExpressionError};
 use extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
-use field::{Fractal, NoiseShape, ScalarField, noise};
+use field::{Fractal, NoiseShape, StudyField, noise};
 use mesh::Bounds;
 use mesh::glam::{DVec3, Vec3};
 use proptest::prelude::*;
@@ -141,7 +141,7 @@ struct Watched<'a> {
     samples: AtomicUsize,
 }
 
-impl ScalarField for Watched<'_> {
+impl StudyField for Watched<'_> {
     fn sample(&self, p: Vec3) -> f32 {
         self.samples.fetch_add(1, Ordering::Relaxed);
         self.field.sample(p)

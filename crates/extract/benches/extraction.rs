@@ -17,7 +17,7 @@ use extract::{
     Arrangement, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, Placement, Source,
     StageTimes,
 };
-use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
+use field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
 
@@ -35,7 +35,7 @@ static BUNNY: LazyLock<Option<MeshDistance>> =
     LazyLock::new(|| bunny().map(|mesh| MeshDistance::try_new(&mesh).expect("the bunny is a solid")));
 
 /// `None` for a bunny that is not there.
-fn field(name: &str) -> Option<(Box<dyn ScalarField>, Bounds)> {
+fn field(name: &str) -> Option<(Box<dyn StudyField>, Bounds)> {
     let cube = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     Some(match name {
         "sphere" => (Box::new(Sphere { radius: 0.8 }), cube),
@@ -47,7 +47,7 @@ fn field(name: &str) -> Option<(Box<dyn ScalarField>, Bounds)> {
 }
 
 struct Subject {
-    field: Box<dyn ScalarField>,
+    field: Box<dyn StudyField>,
     lattice: Lattice,
     extractor: Extractor,
     extraction: Extraction,
@@ -62,7 +62,7 @@ impl Subject {
     }
 
     fn run(&mut self, samples: Option<&[f32]>, clustering: Clustering, threads: usize) {
-        let source = samples.map_or(Source::Field(&*self.field), Source::Samples);
+        let source = samples.map_or(Source::Study(&*self.field), Source::Samples);
         let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
         let execution = Execution { threads };
         self.extractor
@@ -103,7 +103,7 @@ fn placed<const N: u32>(bencher: Bencher, name: &str, placement: Placement, refi
     bencher.bench_local(|| {
         let Subject { field, lattice, extractor, extraction } = &mut subject;
         extractor
-            .extract_into(Source::Field(&**field), lattice, &settings, &Execution { threads: 1 }, extraction)
+            .extract_into(Source::Study(&**field), lattice, &settings, &Execution { threads: 1 }, extraction)
             .expect("the subjects can be extracted");
     });
 }

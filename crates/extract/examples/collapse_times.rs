@@ -3,7 +3,7 @@
 //! as the lattice).
 
 use extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, extract};
-use field::{Asteroid, Beyond, ScalarField, VolumeField};
+use field::{Asteroid, Beyond, StudyField, VolumeField};
 use glam::Vec3;
 use mesh::{Bounds, TriangleMesh};
 
@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (cells, threads): (u32, usize) = (cells.parse()?, threads.parse()?);
     let arrangement = Arrangement::ALL.into_iter().find(|a| a.to_string() == *arrangement);
     let arrangement = arrangement.ok_or("no such arrangement")?;
-    let field: Box<dyn ScalarField> = match field.as_str() {
+    let field: Box<dyn StudyField> = match field.as_str() {
         "volume" => Box::new(volume(cells)?),
         _ => Box::new(Asteroid::default()),
     };

@@ -3,8 +3,10 @@
 
 use std::time::Duration;
 
-use extract::{Arrangement, Cubes, Diagonals, Execution, Extractor, Faces, Grid, Method, Source, Tetrahedra};
-use field::{Gyroid, ScalarField};
+use extract::{
+    Arrangement, BoxGrid, Cubes, Diagonals, Execution, Extractor, Faces, Method, Source, Tetrahedra,
+};
+use field::{Gyroid, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
 
@@ -15,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let n = arguments.next().transpose()?.unwrap_or(192).max(2);
     let threads = arguments.next().transpose()?.unwrap_or(1);
     let side = (n - 1) as f32;
-    let grid = Grid { bounds: Bounds { min: Vec3::ZERO, max: Vec3::splat(side) }, spacing: 1.0 };
+    let grid = BoxGrid { bounds: Bounds { min: Vec3::ZERO, max: Vec3::splat(side) }, spacing: 1.0 };
     // Three periods along a side.
     let gyroid = Gyroid { frequency: 3.0 * std::f32::consts::TAU };
     let at = |i: usize| Vec3::from_array([i % n, i / n % n, i / n / n].map(|x| x as f32 / side));

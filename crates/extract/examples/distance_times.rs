@@ -2,7 +2,7 @@
 //! surface. Arguments: samples, repetitions.
 
 use extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
-use field::{Asteroid, ScalarField, Sphere};
+use field::{Asteroid, Sphere, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
 use mesh::metro::{Amount, Sampling, Surface};
@@ -13,7 +13,7 @@ fn main() {
     let samples: u64 = arguments.next().map_or(1_000_000, |a| a.parse().unwrap());
     let repetitions: usize = arguments.next().map_or(5, |a| a.parse().unwrap());
     let cube = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
-    let cases: [(&str, &dyn ScalarField); 2] =
+    let cases: [(&str, &dyn StudyField); 2] =
         [("sphere", &Sphere { radius: 0.8 }), ("asteroid", &Asteroid::default())];
     for (name, field) in cases {
         let [fine, coarse] = [256, 100].map(|cells: u32| {

@@ -6,14 +6,14 @@ mod bunny;
 
 use bunny::{BOX, bunny};
 use extract::{Arrangement, Execution, ExtractSettings, Extraction, Extractor, Lattice, Source};
-use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
+use field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-struct Counting<'a>(&'a dyn ScalarField, &'a AtomicUsize);
+struct Counting<'a>(&'a dyn StudyField, &'a AtomicUsize);
 
-impl ScalarField for Counting<'_> {
+impl StudyField for Counting<'_> {
     fn sample(&self, p: Vec3) -> f32 {
         self.1.fetch_add(1, Ordering::Relaxed);
         self.0.sample(p)
@@ -40,7 +40,7 @@ fn main() {
     let cube = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     let spacing = 2.0 / cells as f32;
     let bunny = bunny().map(|mesh| MeshDistance::try_new(&mesh).unwrap());
-    let mut cases: Vec<(&str, &dyn ScalarField, Bounds, f32)> = vec![
+    let mut cases: Vec<(&str, &dyn StudyField, Bounds, f32)> = vec![
         ("sphere 0.8", &Sphere { radius: 0.8 }, cube, spacing),
         (
             "asteroid",
@@ -76,7 +76,7 @@ fn main() {
             for _ in 0..repetitions {
                 let start = cpu_ms();
                 extractor
-                    .extract_into(Source::Field(field), &lattice, &settings, &execution, &mut extraction)
+                    .extract_into(Source::Study(field), &lattice, &settings, &execution, &mut extraction)
                     .unwrap();
                 let ms = cpu_ms() - start;
                 all.push(ms);
@@ -88,7 +88,7 @@ fn main() {
             let mut kept = field::Kept::default();
             let prepared = field.prepared(&mut kept);
             let counting = Counting(prepared.unwrap_or(field), &taken);
-            extractor.extract(Source::Field(&counting), &lattice, &settings, &execution).unwrap();
+            extractor.extract(Source::Study(&counting), &lattice, &settings, &execution).unwrap();
             all.sort_by(f64::total_cmp);
             let median = all[all.len() / 2];
             let (ms, times) = best.unwrap();

@@ -2,7 +2,7 @@
 //! Arguments: cells along an axis, threads, radius in a box from -1 to 1.
 
 use extract::{Arrangement, Execution, ExtractSettings, Extractor, Lattice, Source};
-use field::{ScalarField, Sphere};
+use field::{Sphere, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
 use std::io::IsTerminal;
@@ -11,7 +11,7 @@ use std::time::Instant;
 /// Every point is sampled: no bound is offered.
 struct Unbounded(Sphere);
 
-impl ScalarField for Unbounded {
+impl StudyField for Unbounded {
     fn sample(&self, p: Vec3) -> f32 {
         self.0.sample(p)
     }
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let start = Instant::now();
     let mut extractor = Extractor::new().with_progress(bar);
     let extraction = extractor.extract(
-        Source::Field(&field),
+        Source::Study(&field),
         &lattice,
         &ExtractSettings::default(),
         &Execution { threads },

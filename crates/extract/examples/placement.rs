@@ -8,10 +8,10 @@ mod bunny;
 
 use bunny::{BOX, bunny};
 use extract::{
-    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Extractor, Grid, Lattice, Placement,
+    Arrangement, BoxGrid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, Placement,
     Source, accuracy,
 };
-use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
+use field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
 use mesh::quality::quality;
@@ -24,7 +24,7 @@ fn main() {
     let cells: u32 = arguments.next().map_or(64, |a| a.parse().expect("a number of cells"));
     let wanted = arguments.next().unwrap_or_default();
     let cube = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
-    let mut fields: Vec<(&str, Box<dyn ScalarField>, Bounds)> = vec![
+    let mut fields: Vec<(&str, Box<dyn StudyField>, Bounds)> = vec![
         ("sphere", Box::new(Sphere { radius: 0.8 }), cube),
         ("asteroid", Box::new(Asteroid::default()), cube),
         ("gyroid", Box::new(Gyroid::default()), cube),
@@ -59,20 +59,20 @@ fn main() {
     }
 }
 
-fn row(id: &str, field: &dyn ScalarField, lattice: &Lattice, settings: &ExtractSettings) {
+fn row(id: &str, field: &dyn StudyField, lattice: &Lattice, settings: &ExtractSettings) {
     assert_eq!(settings.clustering, Clustering::Integrated);
     let (mut extractor, mut extraction) = (Extractor::new(), Extraction::default());
     let mut best = f64::INFINITY;
     for _ in 0..REPETITIONS {
         let start = cpu_ms();
         extractor
-            .extract_into(Source::Field(field), lattice, settings, &ONE, &mut extraction)
+            .extract_into(Source::Study(field), lattice, settings, &ONE, &mut extraction)
             .expect("the surfaces can be extracted");
         best = best.min(cpu_ms() - start);
     }
     let h = f64::from(lattice.spacing());
     let shape = quality(&extraction.mesh);
-    let found = accuracy(&extraction.mesh, field, 0.0, &Grid::from(lattice), &ONE).expect("one thread");
+    let found = accuracy(&extraction.mesh, field, 0.0, &BoxGrid::from(lattice), &ONE).expect("one thread");
     println!(
         "| {id} | {:?}{} | {:.4} | {:.1} | {:.5} | {:.3} | {:.2} | {:.2} | {:.1} |",
         settings.placement,

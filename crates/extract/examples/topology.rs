@@ -3,7 +3,7 @@
 //! `cargo run --release -p isostudy-extract --example topology`
 
 use extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, Topology, extract};
-use field::{Asteroid, ScalarField, Sphere};
+use field::{Asteroid, Sphere, StudyField};
 use glam::Vec3;
 use mesh::quality::{TriangleQuality, quality};
 use mesh::topology::topology;
@@ -13,7 +13,7 @@ fn main() {
     println!(
         "object    lattice  clustering          topology   V      T      mean q q<0.1 min q  inverted four-face chi   ms"
     );
-    let objects: [(&str, &dyn ScalarField); 2] =
+    let objects: [(&str, &dyn StudyField); 2] =
         [("sphere", &Sphere { radius: 1.0 }), ("asteroid", &Asteroid::default())];
     for (name, field) in objects {
         for arrangement in Arrangement::ALL {
@@ -36,7 +36,7 @@ fn main() {
 
 fn row(
     name: &str,
-    field: &dyn ScalarField,
+    field: &dyn StudyField,
     arrangement: Arrangement,
     clustering: Clustering,
     guard: Topology,
@@ -76,7 +76,7 @@ fn row(
 }
 
 /// Triangles that face along the field's gradient, to the inside.
-fn inverted(mesh: &TriangleMesh, field: &dyn ScalarField) -> usize {
+fn inverted(mesh: &TriangleMesh, field: &dyn StudyField) -> usize {
     (0..mesh.triangles.len())
         .filter(|&t| {
             let [a, b, c] = mesh.corners(t);

@@ -4,15 +4,14 @@ use glam::{DVec3, Vec3};
 use mesh::TriangleMesh;
 use mesh::distribution::{Bins, Distribution};
 use mesh::metro::{AreaSamples, Surface};
-use rayon::prelude::*;
 
+use crate::box_grid::BoxGrid;
 use crate::extraction::ExtractError;
-use crate::grid::Grid;
 use crate::isosurface::{Isosurface, REACH};
 use crate::level::Level;
-use crate::sampling::{SHARE, on_threads};
+use crate::sampling::{SHARE, mapped, on_threads};
 use crate::settings::Execution;
-use field::{Kept, ScalarField};
+use field::{Kept, StudyField};
 
 /// Points on a mesh, and on the isosurface.
 const POINTS: u64 = 8_192;
@@ -54,12 +53,12 @@ impl Accuracy {
 /// Distances are taken at 8,192 points that share the area evenly, as [`AreaSamples`] places them. The density is that
 /// number over the area.
 ///
-/// To the isosurface, the distance is exact where the field knows it ([`ScalarField::nearest_on_isosurface`]: a
+/// To the isosurface, the distance is exact where the field knows it ([`StudyField::nearest_on_isosurface`]: a
 /// sphere, a mesh). Otherwise it is that along the gradient at the point, to a root that is known to 1e-5 spacings. This
 /// is never less than the distance to the nearest point; for a field with parallel isosurfaces they are equal, otherwise
 /// they differ by the cube of the distance.
 ///
-/// From the isosurface, points are those of its triangles, if it has any ([`ScalarField::isosurface_triangles`]: a
+/// From the isosurface, points are those of its triangles, if it has any ([`StudyField::isosurface_triangles`]: a
 /// mesh). Otherwise it is extracted on a body-centred lattice with three quarters of the spacing, and the points of that
 /// mesh are moved to the isosurface; what is too small for both lattices is not seen. Points outside the box are left
 /// out. The distance is that to the nearest triangle of `mesh`.
@@ -75,9 +74,9 @@ impl Accuracy {
 /// If a triangle's index is out of range, or there are more normals than vertices.
 pub fn accuracy(
     mesh: &TriangleMesh,
-    field: &dyn ScalarField,
+    field: &dyn StudyField,
     isovalue: f32,
-    grid: &Grid,
+    grid: &BoxGrid,
     execution: &Execution,
 ) -> Result<Accuracy, ExtractError> {
     let spacing = grid.spacing;
@@ -100,11 +99,7 @@ pub fn accuracy(
             Some(surface.nearest(p, f64::INFINITY).distance)
         };
         let angle = |&v: &usize| normal_error_deg(&level, mesh.positions[v], mesh.normals[v]);
-        (
-            points.par_iter().map(distance).collect(),
-            beyond.par_iter().map(to_mesh).collect(),
-            vertices.par_iter().map(angle).collect(),
-        )
+        (mapped(&points, distance), mapped(&beyond, to_mesh), mapped(&vertices, angle))
     })?;
     let lost = |of: &[Option<f64>]| of.iter().filter(|value| value.is_none()).count() as u64;
     let (lost_points, lost_vertices) = (lost(&there), lost(&angles));

@@ -2,8 +2,17 @@
 
 mod chunk;
 mod extractor;
+mod layout;
+mod part;
+mod piece;
+mod settings;
+mod settled;
 mod weld;
+mod world;
 
-pub use chunk::Chunk;
+pub use chunk::{Chunk, TooManyVertices};
 pub use extractor::{ChunkError, ChunkExtractor};
-pub use weld::{WeldError, weld_chunks};
+pub use layout::SampleLayout;
+pub use settings::{ChunkSettings, Normals};
+pub use weld::{Mismatch, WeldError, weld_chunks};
+pub use world::World;

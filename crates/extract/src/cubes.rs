@@ -1,6 +1,6 @@
 //! Marching cubes: the extractor for cubes that are not cut any further.
 //!
-//! Like [`crate::sweep`] it streams: a few layers in memory, samples only where the field does not rule the surface out, slabs of
+//! Like [`crate::streaming`] it streams: a few layers in memory, samples only where the field does not rule the surface out, slabs of
 //! cells on several threads. A vertex is a crossing, numbered by the lower end of its lattice edge, then by axis; after them come
 //! the few vertices in the cell whose lowest corner that point is. Triangles go cell by cell. Which triangles a cell has is a
 //! [`patches::Patch`], made by rule from [`cells`] at first use.
@@ -22,16 +22,16 @@ pub use rule::{Diagonals, Faces};
 pub use volume_cells::{VolumeCells, VolumeCellsError};
 
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Instant;
 
 use self::grid::Grid;
 use self::patches::Patches;
-use self::slab::{Job, Workspace, sweep};
+use self::slab::{Job, Workspace, stream_slab};
 use self::vertices::Placer;
+use crate::clock::Moment;
 use crate::extraction::{ExtractError, Extraction};
 use crate::slabs::{Piece, assemble, on_slabs, threads_and_slabs};
 use crate::source::Request;
-use crate::sweep::Progress;
+use crate::streaming::Progress;
 use crate::trace::Trace;
 
 /// What decides the triangles of a cell.
@@ -49,9 +49,9 @@ pub(crate) fn extract(
     trace: Option<&mut Trace>,
     extraction: &mut Extraction,
 ) -> Result<(), ExtractError> {
-    let Request { source, lattice, settings, execution, most_vertices, start } = *request;
-    let (threads, slabs) = threads_and_slabs(execution, lattice.stored_grid()[2] as usize);
-    let out_of_memory = |_| ExtractError::OutOfMemory { bytes: lattice.sweep_bytes(threads as u64) };
+    let Request { source, lattice, settings, control, most_vertices, start } = *request;
+    let (threads, slabs) = threads_and_slabs(control.threads.count(), lattice.stored_grid()[2] as usize);
+    let out_of_memory = |_| ExtractError::OutOfMemory { bytes: lattice.streaming_bytes(threads as u64) };
     let grid = &Grid::new(lattice).map_err(out_of_memory)?;
     let workspaces: Result<Vec<Workspace>, _> = (0..threads).map(|_| Workspace::new(grid, source)).collect();
     let mut workspaces = workspaces.map_err(out_of_memory)?;
@@ -59,10 +59,9 @@ pub(crate) fn extract(
     let patches = Patches::get(rule);
     let allocation = start.elapsed();
 
-    let sweeping = Instant::now();
+    let streaming = Moment::now();
     let placer = &Placer::new(lattice, settings, request.level());
     let isovalue = settings.isovalue;
-    let job = Job { grid, source, isovalue, rule, patches, placer, most_vertices, traced: trace.is_some() };
     let cells = lattice.cells()[2] as usize;
     let done = AtomicUsize::new(0);
     let layer_done = || {
@@ -70,12 +69,18 @@ pub(crate) fn extract(
         if let Some(progress) = progress {
             progress(done, cells);
         }
+        if let Some(progress) = control.progress {
+            progress(done, cells);
+        }
     };
-    on_slabs(cells, &mut workspaces, &mut pieces, |own, workspace, piece| {
-        sweep(&job, own, workspace, piece, &layer_done)
+    let (traced, layer_done) = (trace.is_some(), &layer_done);
+    let job =
+        Job { grid, source, isovalue, rule, patches, placer, most_vertices, traced, control, layer_done };
+    on_slabs(cells, control.threads, &mut workspaces, &mut pieces, |own, workspace, piece| {
+        stream_slab(&job, own, workspace, piece)
     })?;
     drop(workspaces);
-    let times = [allocation, sweeping.elapsed()];
+    let times = [allocation, streaming.elapsed()];
     assemble(request, &mut pieces, threads, times, trace, extraction)?;
     extraction.counts.tetrahedra = None;
     Ok(())

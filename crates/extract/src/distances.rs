@@ -5,13 +5,13 @@ use mesh::TriangleMesh;
 use mesh::metro::{Foot, Metro, MetroError, Sampling, Surface};
 use thiserror::Error;
 
+use crate::box_grid::BoxGrid;
 use crate::extraction::ExtractError;
-use crate::grid::Grid;
 use crate::isosurface::Isosurface;
 use crate::level::Level;
 use crate::sampling::on_threads;
 use crate::settings::Execution;
-use field::{Kept, ScalarField};
+use field::{Kept, StudyField};
 
 /// Why a mesh and an isosurface cannot be measured against each other.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -40,9 +40,9 @@ pub enum DistanceError {
 /// [`DistanceError`].
 pub fn distances(
     mesh: &Surface,
-    field: &dyn ScalarField,
+    field: &dyn StudyField,
     isovalue: f32,
-    grid: &Grid,
+    grid: &BoxGrid,
     sampling: &Sampling,
     execution: &Execution,
 ) -> Result<Metro, DistanceError> {

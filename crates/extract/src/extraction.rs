@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use mesh::TriangleMesh;
 
-use crate::lattice::{Arrangement, Lattice};
+use crate::lattice::{Arrangement, CellBox, Lattice};
 use crate::settings::{Clustering, ExtractSettings, Placement, Positions};
 use crate::triangles::Triangulation;
 
@@ -138,6 +138,14 @@ pub enum ExtractError {
         /// [`Lattice::stored_samples`].
         wanted: u64,
     },
+    /// The samples of a box that is not the lattice.
+    #[error("samples of the cells {given:?} for a lattice of {wanted:?}")]
+    Window {
+        /// What was given.
+        given: CellBox,
+        /// All cells of the lattice.
+        wanted: CellBox,
+    },
     /// Integrated clustering where points differ in their lattice edges ([`Arrangement::supports`]).
     #[error(
         "{clustering} clustering does not go with {arrangement}: none and edge-collapse do, and all four go with body-centred \
@@ -168,6 +176,9 @@ pub enum ExtractError {
         /// What was asked for.
         refine_crossings: bool,
     },
+    /// [`Control::cancel`](crate::Control) was set. What extracts can be used again.
+    #[error("the extraction was cancelled")]
+    Cancelled,
     /// The sampling threads could not be started.
     #[error("cannot start {threads} sampling threads: {reason}")]
     Threads {

@@ -1,19 +1,19 @@
-//! The extractor: which of the three ways a surface is extracted in, and the buffers that stay.
+//! The extractor: which of the four ways a surface is extracted in, and the buffers that stay.
 
-use std::time::Instant;
+use field::{Kept, Plain, StudyField, Watched};
 
-use field::{Kept, ScalarField};
-
+use crate::by_cell::CellStreamer;
+use crate::clock::Moment;
+use crate::control::Control;
 use crate::cubes;
+use crate::dense;
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::lattice::Lattice;
 use crate::placement;
 use crate::settings::{Execution, ExtractSettings, Positions};
 use crate::slabs::threads_and_slabs;
-use crate::source::{Request, Source};
-use crate::split;
-use crate::stored;
-use crate::sweep::{Progress, Sweeper};
+use crate::source::{Request, Sampler, Source};
+use crate::streaming::{Progress, Streamer};
 use crate::trace::Trace;
 
 /// An extractor that keeps its buffers, for one surface after another.
@@ -25,7 +25,7 @@ use crate::trace::Trace;
 ///
 /// ```
 /// use extract::{Arrangement, Execution, ExtractSettings, Extraction, Extractor, Lattice};
-/// use field::{ScalarField, Sphere};
+/// use field::{StudyField, Sphere};
 /// # use glam::Vec3;
 /// # use mesh::Bounds;
 /// # let bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) };
@@ -33,7 +33,7 @@ use crate::trace::Trace;
 /// let mut extractor = Extractor::new();
 /// let mut extraction = Extraction::default();
 /// for radius in [0.8, 0.9, 1.0] {
-///     let sphere: &dyn ScalarField = &Sphere { radius };
+///     let sphere: &dyn StudyField = &Sphere { radius };
 ///     let (settings, execution) = (ExtractSettings::default(), Execution { threads: 1 });
 ///     extractor.extract_into(sphere.into(), &lattice, &settings, &execution, &mut extraction)?;
 ///     assert_eq!(extraction.counts.vertices * 2, extraction.counts.triangles + 4);
@@ -42,7 +42,8 @@ use crate::trace::Trace;
 /// ```
 #[derive(Default)]
 pub struct Extractor {
-    sweeper: Sweeper,
+    streamer: Streamer,
+    cell_streamer: CellStreamer,
     kept: Kept,
     progress: Option<Box<Progress>>,
     /// Where the last mesh came from, if `traced`.
@@ -79,33 +80,33 @@ impl Extractor {
     ///
     /// # Errors
     /// As [`extract_into`](Self::extract_into).
-    pub fn extract(
+    pub fn extract<'c>(
         &mut self,
         source: Source,
         lattice: &Lattice,
         settings: &ExtractSettings,
-        execution: &Execution,
+        control: impl Into<Control<'c>>,
     ) -> Result<Extraction, ExtractError> {
         let mut extraction = Extraction::default();
-        self.extract_into(source, lattice, settings, execution, &mut extraction)?;
+        self.extract_into(source, lattice, settings, control, &mut extraction)?;
         Ok(extraction)
     }
 
     /// Extracts a surface into `extraction`, whose vectors are used again. After an error it is empty.
     ///
     /// # Errors
-    /// As [`extract`](crate::extract); [`ExtractError::SampleCount`] when given samples are not as many as the
+    /// As [`extract`](crate::extract); [`ExtractError::Cancelled`]; [`ExtractError::SampleCount`] when given samples are not as many as the
     /// lattice has, [`ExtractError::SamplesAccumulated`] when they come with accumulated positions,
     /// [`ExtractError::PlacementNeedsField`] when they come with a placement that calls the field.
-    pub fn extract_into(
+    pub fn extract_into<'c>(
         &mut self,
         source: Source,
         lattice: &Lattice,
         settings: &ExtractSettings,
-        execution: &Execution,
+        control: impl Into<Control<'c>>,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
-        let result = self.try_extract_into(source, lattice, settings, None, execution, extraction);
+        let result = self.try_extract_into(source, lattice, settings, None, control.into(), extraction);
         if result.is_err() {
             extraction.clear();
         }
@@ -119,10 +120,10 @@ impl Extractor {
         lattice: &Lattice,
         settings: &ExtractSettings,
         rule: cubes::Rule,
-        execution: &Execution,
+        control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
-        let result = self.try_extract_into(source, lattice, settings, Some(rule), execution, extraction);
+        let result = self.try_extract_into(source, lattice, settings, Some(rule), control, extraction);
         if result.is_err() {
             extraction.clear();
         }
@@ -135,37 +136,84 @@ impl Extractor {
         lattice: &Lattice,
         settings: &ExtractSettings,
         cubes: Option<cubes::Rule>,
-        execution: &Execution,
+        control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
         check(settings, lattice.arrangement())?;
-        placement::check(settings, matches!(source, Source::Field(_)))?;
-        if let Source::Samples(samples) = source {
-            let (given, wanted) = (samples.len() as u64, lattice.stored_samples());
-            if given != wanted {
-                return Err(ExtractError::SampleCount { given, wanted });
+        let samples = match source {
+            Source::Field(field) => {
+                placement::check(settings, true)?;
+                // In debug builds somebody looks whether it keeps its promises.
+                return if cfg!(debug_assertions) {
+                    self.from_field(&Watched::new(field), lattice, settings, cubes, control, extraction)
+                } else {
+                    self.from_field(&Plain(field), lattice, settings, cubes, control, extraction)
+                };
             }
+            Source::Study(field) => {
+                placement::check(settings, true)?;
+                return self.from_field(field, lattice, settings, cubes, control, extraction);
+            }
+            Source::Samples(samples) => samples,
+            Source::Window { cells, samples } => {
+                let wanted = lattice.cell_box();
+                if cells != wanted {
+                    return Err(ExtractError::Window { given: cells, wanted });
+                }
+                samples
+            }
+        };
+        placement::check(settings, false)?;
+        let (given, wanted) = (samples.len() as u64, lattice.stored_samples());
+        if given != wanted {
+            return Err(ExtractError::SampleCount { given, wanted });
         }
         if settings.positions != Positions::Indexed {
-            let Source::Field(field) = source else { return Err(ExtractError::SamplesAccumulated) };
-            *extraction = stored::extract(field, lattice, settings, execution, self.most_vertices.0)?;
+            return Err(ExtractError::SamplesAccumulated);
+        }
+        let start = Moment::now();
+        self.stream((Sampler::Given(samples), start), lattice, settings, cubes, control, extraction)
+    }
+
+    fn from_field(
+        &mut self,
+        field: &dyn StudyField,
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        cubes: Option<cubes::Rule>,
+        control: Control,
+        extraction: &mut Extraction,
+    ) -> Result<(), ExtractError> {
+        if settings.positions != Positions::Indexed {
+            *extraction = dense::extract(field, lattice, settings, control, self.most_vertices.0)?;
             return Ok(());
         }
-        let start = Instant::now();
-        let prepared = match source {
-            Source::Field(field) => field.prepared(&mut self.kept),
-            Source::Samples(_) => None,
-        };
-        let source = prepared.map_or(source, Source::Field);
+        let start = Moment::now();
+        let mut kept = std::mem::take(&mut self.kept);
+        let source = Sampler::Field(field.prepared(&mut kept).unwrap_or(field));
+        let result = self.stream((source, start), lattice, settings, cubes, control, extraction);
+        self.kept = kept;
+        result
+    }
+
+    fn stream(
+        &mut self,
+        (source, start): (Sampler, Moment),
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        cubes: Option<cubes::Rule>,
+        control: Control,
+        extraction: &mut Extraction,
+    ) -> Result<(), ExtractError> {
         let most_vertices = self.most_vertices.0;
-        let request = Request { source, lattice, settings, execution, most_vertices, start };
+        let request = Request { source, lattice, settings, control, most_vertices, start };
         let trace = self.traced.then_some(&mut self.trace);
         if let Some(rule) = cubes {
             cubes::extract(&request, rule, self.progress.as_deref(), trace, extraction)
         } else if lattice.arrangement().uniform().is_some() {
-            self.sweeper.extract(&request, self.progress.as_deref(), trace, extraction)
+            self.streamer.extract(&request, self.progress.as_deref(), trace, extraction)
         } else {
-            split::extract(&request, trace, extraction)
+            self.cell_streamer.extract(&request, self.progress.as_deref(), trace, extraction)
         }
     }
 }
@@ -179,22 +227,27 @@ impl Extractor {
 /// [`ExtractError`] if the settings are not valid, memory or threads are not to be had, or there are too many
 /// vertices.
 pub fn extract(
-    field: &dyn ScalarField,
+    field: &dyn StudyField,
     lattice: &Lattice,
     settings: &ExtractSettings,
     execution: &Execution,
 ) -> Result<Extraction, ExtractError> {
-    Extractor::new().extract(Source::Field(field), lattice, settings, execution)
+    Extractor::new().extract(Source::Study(field), lattice, settings, execution)
 }
 
 impl Lattice {
     /// What [`extract`](crate::extract) holds of the lattice at a time with these settings:
-    /// [`memory_bytes`](Self::memory_bytes) or [`sweep_bytes`](Self::sweep_bytes). The mesh comes on top.
+    /// [`memory_bytes`](Self::memory_bytes) or [`streaming_bytes`](Self::streaming_bytes). The mesh comes on top.
     pub fn memory_bytes_for(&self, settings: &ExtractSettings, execution: &Execution) -> u64 {
+        self.memory_bytes_on(settings, Control::from(execution).threads.count())
+    }
+
+    /// The same on so many threads.
+    pub(crate) fn memory_bytes_on(&self, settings: &ExtractSettings, threads: usize) -> u64 {
         match settings.positions {
             Positions::Indexed => {
                 let layers = self.stored_grid()[2] as usize;
-                self.sweep_bytes(threads_and_slabs(execution, layers).0 as u64)
+                self.streaming_bytes(threads_and_slabs(threads, layers).0 as u64)
             }
             Positions::Accumulated { .. } => self.memory_bytes(),
         }

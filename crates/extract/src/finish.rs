@@ -1,19 +1,21 @@
 //! What is done to a mesh after its triangles are made: vertices are moved, edges collapsed.
 
 use std::collections::TryReserveError;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use glam::Vec3;
 use mesh::Bounds;
 
 use crate::ExtractError;
+use crate::clock::Moment;
 use crate::collapse::collapse;
+use crate::control::Threads;
 use crate::lattice::Lattice;
 use crate::level::Level;
 use crate::memory::copied;
 use crate::placement::{Moves, relaxed};
 use crate::sampling::for_each_on_threads;
-use crate::settings::{Execution, ExtractSettings, Placement};
+use crate::settings::{ExtractSettings, Placement};
 use crate::triangles::Triangulation;
 
 /// Newton's step is not followed farther than this, in spacings: it is meant for vertices next to the surface.
@@ -29,7 +31,7 @@ pub(crate) fn finish(
     level: Option<Level>,
     lattice: &Lattice,
     settings: &ExtractSettings,
-    execution: &Execution,
+    threads: Threads,
     targets: &[Vec3],
     positions: &mut Vec<Vec3>,
     surface: &mut Triangulation,
@@ -48,11 +50,8 @@ pub(crate) fn finish(
         moves = Moves::start(positions)?;
     }
     if let Some(level) = level {
-        let mut targets = match settings.placement {
-            Placement::Relaxed => relaxed(positions, &surface.triangles)?,
-            _ => copied(positions)?,
-        };
-        project(&level, &bounds, execution, positions, &mut targets)?;
+        let targets =
+            field_targets(&level, &bounds, settings.placement, threads, positions, &surface.triangles)?;
         moves.advance(positions, &targets, &surface.triangles, &bounds)?;
     }
     Ok(collapsing)
@@ -65,20 +64,37 @@ fn timed_collapse(
     positions: &mut Vec<Vec3>,
     surface: &mut Triangulation,
 ) -> Result<Option<Duration>, TryReserveError> {
-    let start = Instant::now();
+    let start = Moment::now();
     Ok(collapse(settings, spacing, positions, surface)?.then(|| start.elapsed()))
+}
+
+/// Where a placement that calls the field wants the vertices.
+pub(crate) fn field_targets(
+    level: &Level,
+    bounds: &Bounds,
+    placement: Placement,
+    threads: Threads,
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+) -> Result<Vec<Vec3>, ExtractError> {
+    let mut targets = match placement {
+        Placement::Relaxed => relaxed(positions, triangles)?,
+        _ => copied(positions)?,
+    };
+    project(level, bounds, threads, positions, &mut targets)?;
+    Ok(targets)
 }
 
 /// Takes each target to the isosurface; where there is no way, the vertex's position becomes the target.
 fn project(
     level: &Level,
     bounds: &Bounds,
-    execution: &Execution,
+    threads: Threads,
     positions: &[Vec3],
     targets: &mut [Vec3],
 ) -> Result<(), ExtractError> {
     let longest = LONGEST_STEP * level.spacing;
-    for_each_on_threads(execution, targets, |v, target| {
+    for_each_on_threads(threads, targets, |v, target| {
         let near = |p: &Vec3| p.distance(positions[v]) <= longest;
         let there = level.newton(*target, longest).map(|p| p.clamp(bounds.min, bounds.max)).filter(near);
         *target = there.unwrap_or(positions[v]);

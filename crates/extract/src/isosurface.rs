@@ -4,13 +4,13 @@ use glam::{DVec3, Vec3};
 use mesh::Bounds;
 use mesh::metro::Foot;
 
+use crate::box_grid::BoxGrid;
 use crate::extraction::ExtractError;
 use crate::extractor::extract;
-use crate::grid::Grid;
 use crate::lattice::Arrangement;
 use crate::level::Level;
 use crate::settings::{Clustering, Execution, ExtractSettings};
-use field::ScalarField;
+use field::StudyField;
 
 /// How far a surface is looked for, in spacings.
 pub(crate) const REACH: f32 = 3.0;
@@ -20,7 +20,7 @@ const FINER: f32 = 0.75;
 /// Where a field has an isovalue in the box of a lattice, as triangles that lie on it or close to it.
 pub(crate) struct Isosurface<'a> {
     /// The field as it is, which may know its isosurface.
-    field: &'a dyn ScalarField,
+    field: &'a dyn StudyField,
     /// The field as it is sampled.
     level: Level<'a>,
     bounds: Bounds,
@@ -32,9 +32,9 @@ impl<'a> Isosurface<'a> {
     /// The field's own triangles, or else those of an extraction on a body-centred lattice with three quarters of the
     /// spacing. `level` is the field's.
     pub(crate) fn new(
-        field: &'a dyn ScalarField,
+        field: &'a dyn StudyField,
         level: Level<'a>,
-        grid: &Grid,
+        grid: &BoxGrid,
         execution: &Execution,
     ) -> Result<Self, ExtractError> {
         let (bounds, isovalue) = (grid.bounds, level.isovalue);
@@ -42,7 +42,7 @@ impl<'a> Isosurface<'a> {
             return Ok(Self { field, level, bounds, triangles: triangles.to_vec(), is_exact: true });
         }
         // Where there are too many points for the finer lattice, that of the grid has to do.
-        let finer = Grid { bounds, spacing: FINER * grid.spacing }.lattice(Arrangement::BodyCentred);
+        let finer = BoxGrid { bounds, spacing: FINER * grid.spacing }.lattice(Arrangement::BodyCentred);
         let finer = finer.or_else(|_| grid.lattice(Arrangement::SimpleCubic))?;
         let clustering = Clustering::Integrated;
         let settings = ExtractSettings { isovalue, clustering, ..ExtractSettings::default() };
@@ -69,7 +69,7 @@ impl<'a> Isosurface<'a> {
 
 /// The nearest point of the isosurface of `field`, if it knows that, or where the gradient leads within [`REACH`].
 /// `level` is the field's.
-pub(crate) fn foot(field: &dyn ScalarField, level: &Level, p: DVec3) -> Option<Foot> {
+pub(crate) fn foot(field: &dyn StudyField, level: &Level, p: DVec3) -> Option<Foot> {
     field.nearest_on_isosurface(p, level.isovalue).or_else(|| {
         let foot = level.foot(p.as_vec3(), REACH * level.spacing)?;
         Some(Foot { position: foot.position.as_dvec3(), distance: foot.distance })

@@ -16,6 +16,7 @@ use std::fmt;
 use glam::Vec3;
 use mesh::Bounds;
 
+use crate::grid::Grid;
 use crate::settings::Clustering;
 
 /// How sample points fill space, and which tetrahedra they make.
@@ -107,9 +108,18 @@ pub struct Lattice {
     bounds: Bounds,
     spacing: f32,
     cells: [u32; 3],
-    /// Of a window, its first cell in the whole lattice, and that lattice's cells.
-    origin: [u32; 3],
-    whole: [u32; 3],
+    /// Of a window, its first cell in the whole lattice.
+    origin: [i32; 3],
+    whole: Whole,
+}
+
+/// What a window is a part of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Whole {
+    /// The cells of the box.
+    Box([u32; 3]),
+    /// There is no box: the bounds are those of `f32`.
+    Endless(Grid),
 }
 
 /// Why a lattice cannot be built.
@@ -161,7 +171,7 @@ pub enum LatticeError {
 }
 
 /// A number in few letters: `0.04`, `-2`, `1e-40`.
-fn short(value: f32) -> String {
+pub(crate) fn short(value: f32) -> String {
     let text = format!("{value:?}");
     text.strip_suffix(".0").map_or_else(|| text.clone(), str::to_owned)
 }
@@ -201,11 +211,8 @@ impl Lattice {
             }
             cells[i] = wanted as u32;
         }
-        let lattice = Self { arrangement, bounds, spacing, cells, origin: [0; 3], whole: cells };
-        let samples = lattice.stored_grid().iter().map(|&n| u128::from(n)).product();
-        if samples > u128::from(Self::MAX_SAMPLES) {
-            return Err(LatticeError::TooManySamples { samples, limit: Self::MAX_SAMPLES });
-        }
+        let lattice = Self { arrangement, bounds, spacing, cells, origin: [0; 3], whole: Whole::Box(cells) };
+        lattice.check_samples()?;
         Ok(lattice)
     }
 
@@ -229,77 +236,120 @@ impl Lattice {
         self.cells
     }
 
+    /// Some cells of a grid without an end.
+    ///
+    /// # Errors
+    /// [`LatticeError::TooManySamples`], and [`LatticeError::OutOfRange`] where points lie beyond `f32`.
+    pub(crate) fn endless(
+        arrangement: Arrangement,
+        grid: &Grid,
+        cells: CellBox,
+    ) -> Result<Self, LatticeError> {
+        let bounds = Bounds { min: Vec3::MIN, max: Vec3::MAX };
+        let spacing = grid.spacing() as f32;
+        let (origin, size) = (cells.start, cells.size());
+        let lattice =
+            Self { arrangement, bounds, spacing, cells: size, origin, whole: Whole::Endless(*grid) };
+        lattice.check_samples()?;
+        let Bounds { min, max } = lattice.sampled_bounds();
+        for (i, axis) in ['x', 'y', 'z'].into_iter().enumerate() {
+            if !(min[i].is_finite() && max[i].is_finite()) {
+                return Err(LatticeError::OutOfRange { axis, spacing });
+            }
+        }
+        Ok(lattice)
+    }
+
+    fn check_samples(&self) -> Result<(), LatticeError> {
+        let beyond = match self.arrangement {
+            Arrangement::BodyCentred => [(1, 2), (1, 2), (2, 3)],
+            Arrangement::SimpleCubic | Arrangement::FiveTetrahedra => [(1, 1); 3],
+            Arrangement::FaceCentred => [(2, 1); 3],
+        };
+        let points = [0, 1, 2].map(|axis| beyond[axis].0 * u128::from(self.cells[axis]) + beyond[axis].1);
+        let samples = points.iter().product();
+        if samples > u128::from(Self::MAX_SAMPLES) {
+            return Err(LatticeError::TooManySamples { samples, limit: Self::MAX_SAMPLES });
+        }
+        Ok(())
+    }
+
     /// The same lattice, of which only the cells of a box are there. Points are where they are in the whole, and
     /// vertices are clamped to the whole's box.
     pub(crate) fn window(&self, cells: CellBox) -> Self {
-        let size = [0, 1, 2].map(|axis| cells.end[axis] - cells.start[axis]);
-        Self { cells: size, origin: cells.start, ..self.clone() }
+        Self { cells: cells.size(), origin: cells.start, ..self.clone() }
     }
 
     /// The cells that are there, in the whole lattice.
     pub(crate) fn cell_box(&self) -> CellBox {
-        CellBox { start: self.origin, end: [0, 1, 2].map(|axis| self.origin[axis] + self.cells[axis]) }
+        let end = [0, 1, 2].map(|axis| self.origin[axis].wrapping_add_unsigned(self.cells[axis]));
+        CellBox { start: self.origin, end }
+    }
+
+    /// Whether there is no box.
+    pub(crate) fn is_endless(&self) -> bool {
+        matches!(self.whole, Whole::Endless(_))
     }
 
     /// Of a window, its first cell in the whole lattice.
-    pub(crate) fn origin(&self) -> [u32; 3] {
+    pub(crate) fn origin(&self) -> [i32; 3] {
         self.origin
     }
 
-    /// The number of a cell in the whole lattice, x fastest.
+    /// The number of a cell of this window, x fastest.
     pub(crate) fn cell_number(&self, [x, y, z]: [usize; 3]) -> u32 {
-        let [ox, oy, oz] = self.origin;
-        let [nx, ny, _] = self.whole;
-        ((z as u32 + oz) * ny + y as u32 + oy) * nx + x as u32 + ox
+        let [nx, ny, _] = self.cells;
+        (z as u32 * ny + y as u32) * nx + x as u32
     }
 
-    /// Where a stored point of this window is stored in the whole lattice.
-    pub(crate) fn point_number(&self, [x, y, z]: [usize; 3]) -> u32 {
-        let [nx, ny, _] = self.grid_of(self.whole);
-        let [ox, oy, oz] = self.first_stored();
-        ((z as u32 + oz) * ny + y as u32 + oy) * nx + x as u32 + ox
-    }
-
-    /// The cell with a number.
-    pub(crate) fn cell_of_number(&self, number: u32) -> [u32; 3] {
-        let [nx, ny, _] = self.whole;
-        [number % nx, number / nx % ny, number / nx / ny]
+    /// Where a stored point of this window is stored in the whole lattice, along each axis.
+    pub(crate) fn stored(&self, point: [usize; 3]) -> [i64; 3] {
+        let first = self.first_stored();
+        [0, 1, 2].map(|axis| first[axis] + point[axis] as i64)
     }
 
     /// The cell of the whole lattice that a stored point counts as its own: the one it is the centre, the lowest corner
     /// or a lower face's centre of, or the nearest.
-    pub(crate) fn cell_of_point(&self, number: u32) -> [u32; 3] {
-        let [nx, ny, _] = self.grid_of(self.whole);
-        let [x, y, z] = [number % nx, number / nx % ny, number / nx / ny];
-        let cell = match self.arrangement {
-            Arrangement::BodyCentred if z % 2 == 0 => {
-                [x.saturating_sub(1), y.saturating_sub(1), (z / 2).saturating_sub(1)]
-            }
-            Arrangement::BodyCentred => [x, y, z / 2],
-            Arrangement::SimpleCubic | Arrangement::FiveTetrahedra => [x, y, z],
-            Arrangement::FaceCentred => [x / 2, y / 2, z / 2],
-        };
-        [0, 1, 2].map(|axis| cell[axis].min(self.whole[axis] - 1))
+    pub(crate) fn cell_of_point(&self, stored: [i64; 3]) -> [i32; 3] {
+        let cell = cell_of_stored(self.arrangement, stored);
+        [0, 1, 2].map(|axis| match self.whole {
+            Whole::Box(cells) => cell[axis].clamp(0, i64::from(cells[axis]) - 1) as i32,
+            Whole::Endless(_) => cell[axis] as i32,
+        })
     }
 
     /// The box of all stored points.
     pub(crate) fn sampled_bounds(&self) -> Bounds {
-        let beyond = if self.arrangement == Arrangement::BodyCentred { 0.5 } else { 0.0 };
-        let at = |cell: [u32; 3], beyond: f32| {
-            let cell = Vec3::from_array(cell.map(|i| i as f32)) + Vec3::splat(beyond);
-            self.bounds.min + cell * self.spacing
-        };
+        let beyond = if self.arrangement == Arrangement::BodyCentred { 1 } else { 0 };
         let CellBox { start, end } = self.cell_box();
+        let at = |cell: [i32; 3], beyond: i64| {
+            Vec3::from_array([0, 1, 2].map(|axis| match self.whole {
+                Whole::Box(_) => {
+                    self.bounds.min[axis] + (cell[axis] as f32 + 0.5 * beyond as f32) * self.spacing
+                }
+                Whole::Endless(grid) => grid.coordinate(axis, 2 * i64::from(cell[axis]) + beyond) as f32,
+            }))
+        };
         Bounds { min: at(start, -beyond), max: at(end, beyond) }
     }
 
     /// The first stored point of this window along each axis of the whole lattice.
-    pub(crate) fn first_stored(&self) -> [u32; 3] {
-        let [x, y, z] = self.origin;
+    pub(crate) fn first_stored(&self) -> [i64; 3] {
+        let [x, y, z] = self.origin.map(i64::from);
         match self.arrangement {
             Arrangement::BodyCentred => [x, y, 2 * z],
             Arrangement::SimpleCubic | Arrangement::FiveTetrahedra => [x, y, z],
             Arrangement::FaceCentred => [2 * x, 2 * y, 2 * z],
         }
+    }
+}
+
+/// The cell that a stored point is the centre, the lowest corner or a lower face's centre of.
+pub(crate) fn cell_of_stored(arrangement: Arrangement, [x, y, z]: [i64; 3]) -> [i64; 3] {
+    match arrangement {
+        Arrangement::BodyCentred if z % 2 == 0 => [x - 1, y - 1, z.div_euclid(2) - 1],
+        Arrangement::BodyCentred => [x, y, z.div_euclid(2)],
+        Arrangement::SimpleCubic | Arrangement::FiveTetrahedra => [x, y, z],
+        Arrangement::FaceCentred => [x, y, z].map(|i| i.div_euclid(2)),
     }
 }

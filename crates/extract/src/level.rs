@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use crate::bracket::Bracket;
-use field::ScalarField;
+use field::StudyField;
 
 /// Half the width of a central difference, as a fraction of the spacing: wide against the rounding of a position,
 /// narrow against what a lattice of that spacing can show.
@@ -16,7 +16,7 @@ const MOST_STEPS: usize = 40;
 /// Where a field has an isovalue, as seen from a lattice with some spacing.
 #[derive(Clone, Copy)]
 pub(crate) struct Level<'a> {
-    pub(crate) field: &'a dyn ScalarField,
+    pub(crate) field: &'a dyn StudyField,
     pub(crate) isovalue: f32,
     pub(crate) spacing: f32,
 }
@@ -127,6 +127,14 @@ impl Level<'_> {
             (value - self.isovalue).abs() <= here.abs()
         };
         (near && nearer()).then_some(there)
+    }
+
+    /// The outward direction at `p`, as the field has it or else as samples nearby have it. `None` where there is none.
+    pub(crate) fn normal(&self, p: Vec3) -> Option<Vec3> {
+        match self.field.gradient(p) {
+            Some(gradient) => (-gradient).try_normalize(),
+            None => Some(self.outward(p)?.as_vec3()),
+        }
     }
 
     /// The outward direction at `p`: against the gradient, since inside is above. `None` where there is no gradient.

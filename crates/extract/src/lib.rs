@@ -1,6 +1,6 @@
 //! Isosurfaces from scalar fields by regularised marching tetrahedra and by marching cubes.
 //!
-//! A [`ScalarField`] is sampled on a [`Lattice`], in one of four [`Arrangement`]s. Lattice edges whose ends lie on
+//! A [`StudyField`] is sampled on a [`Lattice`], in one of four [`Arrangement`]s. Lattice edges whose ends lie on
 //! different sides of the isovalue cross the surface; crossings become vertices, merged or not
 //! ([`Clustering`]), and every tetrahedron that is crossed adds one or two triangles.
 //!
@@ -85,7 +85,7 @@
 //! # Three ways
 //!
 //! With [`Positions::Indexed`] the lattice is streamed: a few layers in memory, then the mesh; slabs of layers on
-//! several threads; samples taken only where the field does not rule the surface out ([`ScalarField::slope`]), or
+//! several threads; samples taken only where the field does not rule the surface out ([`StudyField::slope`]), or
 //! given ([`Source::Samples`]). An [`Extractor`] keeps its buffers from one volume to the next. With
 //! [`Positions::Accumulated`], for comparison with the published evaluation, all samples and edges are stored. The
 //! arrangements that are cut cube by cube are streamed by an extractor of their own.
@@ -119,7 +119,7 @@
 //! | a clustering that the arrangement does not have | [`ExtractError::ArrangementClustering`] |
 //! | accumulated positions on one that the original did not have | [`ExtractError::ArrangementAccumulated`] |
 //! | a chunk beyond the lattice, or without a cell | [`ChunkError::Cells`] |
-//! | chunks with a placement that moves vertices | [`ChunkError::Placement`] |
+//! | chunks with refined crossings, weights by curvature, or moves after edge collapse | [`ChunkError::Placement`] |
 //! | chunks of different fields, or one twice | [`WeldError::Mismatch`], [`WeldError::Overlap`] |
 //! | memory that is not there | [`ExtractError::OutOfMemory`], [`ExtractError::NoMemoryForMesh`] |
 //! | more than 2^32 - 1 vertices | [`ExtractError::TooManyVertices`] |
@@ -162,11 +162,16 @@ mod survey;
 
 mod accuracy;
 mod bits;
+mod box_grid;
 mod bracket;
+mod by_cell;
 mod chunks;
+mod clock;
 mod clusters;
 mod collapse;
+mod control;
 mod cubes;
+mod dense;
 mod distances;
 mod edges;
 mod extraction;
@@ -189,10 +194,8 @@ mod settings;
 mod sides;
 mod slabs;
 mod source;
-mod split;
 mod spot;
-mod stored;
-mod sweep;
+mod streaming;
 mod tetrahedra;
 mod tiles;
 mod trace;
@@ -201,13 +204,18 @@ mod triangles;
 mod vertices;
 
 pub use accuracy::{Accuracy, accuracy};
-pub use chunks::{Chunk, ChunkError, ChunkExtractor, WeldError, weld_chunks};
+pub use box_grid::BoxGrid;
+pub use chunks::{
+    Chunk, ChunkError, ChunkExtractor, ChunkSettings, Mismatch, Normals, SampleLayout, TooManyVertices,
+    WeldError, World, weld_chunks,
+};
+pub use control::{Control, Jobs, Threads};
 pub use cubes::{Diagonals, Faces, VolumeCells, VolumeCellsError};
 pub use distances::{DistanceError, distances};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, TetrahedraCounts};
 pub use extractor::{Extractor, extract};
-pub use field::ScalarField;
-pub use grid::Grid;
+pub use field::{Aabb, Bound, FieldFault, FromFn, ScalarField, StudyField, check_field, from_fn};
+pub use grid::{Grid, GridError};
 pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
 pub use method::{Cubes, Method, MethodError, Preset, Promises, Tetrahedra, presets};
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};

@@ -19,7 +19,7 @@ fn more_vertices_than_may_be_are_an_error() {
         let mut extractor = Extractor::new();
         let mut run = |most| {
             extractor.most_vertices = MostVertices(most);
-            extractor.extract(Source::Field(&sphere), &lattice, &settings, &Execution { threads })
+            extractor.extract(Source::Study(&sphere), &lattice, &settings, &Execution { threads })
         };
         let mesh = run(u32::MAX).unwrap().mesh;
         let all = mesh.positions.len() as u32;
@@ -44,7 +44,7 @@ fn more_stored_vertices_than_may_be_are_an_error() {
         let mut extractor = Extractor::new();
         let mut run = |most| {
             extractor.most_vertices = MostVertices(most);
-            extractor.extract(Source::Field(&sphere), &lattice, &settings, &Execution { threads: 1 })
+            extractor.extract(Source::Study(&sphere), &lattice, &settings, &Execution { threads: 1 })
         };
         let mesh = run(u32::MAX).unwrap().mesh;
         let all = mesh.positions.len() as u32;
@@ -61,7 +61,7 @@ fn after_an_error_nothing_is_left_of_the_surface_before() {
     let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.1).unwrap();
     let (sphere, settings) = (Sphere { radius: 0.8 }, ExtractSettings::default());
     let no_isovalue = ExtractSettings { isovalue: f32::NAN, ..settings };
-    let (field, samples) = (Source::Field(&sphere), Source::Samples(&[0.0]));
+    let (field, samples) = (Source::Study(&sphere), Source::Samples(&[0.0]));
     for threads in [1, 2] {
         let (mut extractor, mut extraction) = (Extractor::new(), Extraction::default());
         for (source, bad, most) in

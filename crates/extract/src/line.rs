@@ -2,7 +2,7 @@
 
 use std::collections::TryReserveError;
 
-use field::ScalarField;
+use field::StudyField;
 use glam::Vec3;
 
 use crate::bits::{set_near, set_range};
@@ -44,7 +44,7 @@ impl Columns for Every {
 
 /// A row of which some parts are known to be on one side.
 pub(crate) struct Line<'a, C> {
-    pub(crate) field: &'a dyn ScalarField,
+    pub(crate) field: &'a dyn StudyField,
     pub(crate) isovalue: f32,
     pub(crate) columns: C,
     /// Of all columns, as many as there are values.
@@ -193,7 +193,7 @@ impl Gaps {
     }
 
     /// Takes the samples of the points noted. `x` has all columns.
-    pub(crate) fn fill(&mut self, field: &dyn ScalarField, x: &[f32], y: f32, z: f32, values: &mut [f32]) {
+    pub(crate) fn fill(&mut self, field: &dyn StudyField, x: &[f32], y: f32, z: f32, values: &mut [f32]) {
         let count = self.columns.len();
         if count == 0 {
             return;

@@ -36,6 +36,17 @@ pub(crate) fn with_room<T>(len: usize) -> Result<Vec<T>, TryReserveError> {
     Ok(vector)
 }
 
+/// Makes a vector hold the items of an iterator that knows how many there are, in the room that it has if that is enough.
+pub(crate) fn refilled<T>(
+    vector: &mut Vec<T>,
+    items: impl ExactSizeIterator<Item = T>,
+) -> Result<(), TryReserveError> {
+    vector.clear();
+    vector.try_reserve_exact(items.len())?;
+    vector.extend(items);
+    Ok(())
+}
+
 /// Makes a vector `len` long. What it held stays if it is long enough; new room is asked for, not taken.
 pub(crate) fn refill<T: Copy>(vector: &mut Vec<T>, len: usize, value: T) -> Result<(), TryReserveError> {
     vector.try_reserve_exact(len.saturating_sub(vector.len()))?;

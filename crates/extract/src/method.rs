@@ -8,11 +8,12 @@ pub use cubes::Cubes;
 pub use presets::{Preset, presets};
 pub use tetrahedra::Tetrahedra;
 
+use crate::box_grid::BoxGrid;
+use crate::cubes::Rule;
 use crate::extraction::{ExtractError, Extraction};
 use crate::extractor::Extractor;
-use crate::grid::Grid;
-use crate::lattice::LatticeError;
-use crate::settings::Execution;
+use crate::lattice::{Arrangement, CellBox, LatticeError};
+use crate::settings::{Execution, ExtractSettings};
 use crate::source::Source;
 
 /// A way to make a mesh. The same method, field, grid and isovalue give the same mesh to the byte, on any number of
@@ -23,15 +24,15 @@ use crate::source::Source;
 /// Unknown keys are refused.
 ///
 /// ```
-/// use extract::{Arrangement, Execution, Extractor, Grid, Method, Placement, Tetrahedra};
-/// use field::{ScalarField, Sphere};
+/// use extract::{Arrangement, BoxGrid, Execution, Extractor, Method, Placement, Tetrahedra};
+/// use field::{StudyField, Sphere};
 /// # use glam::Vec3;
 /// # use mesh::Bounds;
 ///
 /// let relaxed = Tetrahedra { placement: Placement::Relaxed, ..Tetrahedra::new(Arrangement::BodyCentred) };
 /// let method = Method::Tetrahedra(relaxed);
-/// let grid = Grid { bounds: Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) }, spacing: 0.1 };
-/// let sphere: &dyn ScalarField = &Sphere { radius: 1.0 };
+/// let grid = BoxGrid { bounds: Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) }, spacing: 0.1 };
+/// let sphere: &dyn StudyField = &Sphere { radius: 1.0 };
 /// let (mut extractor, execution) = (Extractor::new(), Execution::default());
 /// let extraction = method.extract(&mut extractor, sphere.into(), &grid, 0.0, &execution)?;
 /// assert!(method.promises().manifold);
@@ -84,7 +85,7 @@ impl Method {
     ///
     /// # Errors
     /// [`MethodError`], which says what is allowed.
-    pub fn check(&self, grid: &Grid) -> Result<(), MethodError> {
+    pub fn check(&self, grid: &BoxGrid) -> Result<(), MethodError> {
         self.family().check(grid)
     }
 
@@ -92,7 +93,7 @@ impl Method {
     ///
     /// # Errors
     /// [`LatticeError`] if the grid is not one for this method.
-    pub fn cells(&self, grid: &Grid) -> Result<[u32; 3], LatticeError> {
+    pub fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError> {
         self.family().cells(grid)
     }
 
@@ -100,7 +101,7 @@ impl Method {
     ///
     /// # Errors
     /// [`LatticeError`] if the grid is not one for this method.
-    pub fn memory_bytes(&self, grid: &Grid, execution: &Execution) -> Result<u64, LatticeError> {
+    pub fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError> {
         self.family().memory_bytes(grid, execution)
     }
 
@@ -118,7 +119,7 @@ impl Method {
         &self,
         extractor: &mut Extractor,
         source: Source,
-        grid: &Grid,
+        grid: &BoxGrid,
         isovalue: f32,
         execution: &Execution,
         extraction: &mut Extraction,
@@ -138,7 +139,7 @@ impl Method {
         &self,
         extractor: &mut Extractor,
         source: Source,
-        grid: &Grid,
+        grid: &BoxGrid,
         isovalue: f32,
         execution: &Execution,
     ) -> Result<Extraction, MethodError> {
@@ -155,17 +156,58 @@ impl Method {
     }
 }
 
+/// What only the extractor of chunks asks.
+impl Method {
+    /// How many cells beyond a box's own samples can matter to its chunk; `None` where there is no such number, or there
+    /// are no chunks.
+    pub(crate) fn halo(&self) -> Option<u32> {
+        self.family().halo()
+    }
+
+    /// How a window is extracted, where the method is one that chunks are made by.
+    pub(crate) fn by_window(&self, isovalue: f32) -> Option<ByWindow> {
+        self.family().by_window(isovalue)
+    }
+
+    /// The cells whose samples can matter to the chunk of a box, in a grid without an end. `None` where that is not known
+    /// beforehand: with edge collapse it is the whole piece of surface.
+    pub fn window(&self, cells: CellBox) -> Option<CellBox> {
+        let everywhere = CellBox { start: [i32::MIN; 3], end: [i32::MAX; 3] };
+        Some(cells.grown(self.halo()?, &everywhere))
+    }
+}
+
+/// How the cells of a window are extracted.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ByWindow {
+    pub(crate) arrangement: Arrangement,
+    pub(crate) settings: ExtractSettings,
+    /// By cubes that are not cut any further, which then are the arrangement's.
+    pub(crate) cubes: Option<Rule>,
+    /// How many cells from the rim of a window on its mesh is that of the whole, before vertices are moved or edges
+    /// collapsed.
+    pub(crate) halo: u32,
+}
+
 /// What a family of methods implements; see the functions of [`Method`] with the same names.
 trait Family {
-    fn check(&self, grid: &Grid) -> Result<(), MethodError>;
-    fn cells(&self, grid: &Grid) -> Result<[u32; 3], LatticeError>;
-    fn memory_bytes(&self, grid: &Grid, execution: &Execution) -> Result<u64, LatticeError>;
+    fn check(&self, grid: &BoxGrid) -> Result<(), MethodError>;
+    fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError>;
+    fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError>;
     fn promises(&self) -> Promises;
+    /// As [`Method::halo`].
+    fn halo(&self) -> Option<u32> {
+        None
+    }
+    /// As [`Method::by_window`].
+    fn by_window(&self, _isovalue: f32) -> Option<ByWindow> {
+        None
+    }
     fn extract_into(
         &self,
         extractor: &mut Extractor,
         source: Source,
-        grid: &Grid,
+        grid: &BoxGrid,
         isovalue: f32,
         execution: &Execution,
         extraction: &mut Extraction,

@@ -9,7 +9,7 @@ mod moves;
 mod relaxation;
 
 pub(crate) use self::crossings::{CrossingPlacer, Surroundings, crossing_ratio};
-pub(crate) use self::moves::Moves;
+pub(crate) use self::moves::{MOST_PASSES, Moves, on_box};
 pub(crate) use self::relaxation::relaxed;
 use crate::ExtractError;
 use crate::settings::ExtractSettings;

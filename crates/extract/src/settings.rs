@@ -53,6 +53,24 @@ pub enum Clustering {
     IntegratedCollapse,
 }
 
+impl Clustering {
+    /// Whether edges are collapsed.
+    pub(crate) fn collapses(self) -> bool {
+        match self {
+            Self::None | Self::Integrated => false,
+            Self::EdgeCollapse | Self::IntegratedCollapse => true,
+        }
+    }
+
+    /// The same without collapsing edges.
+    pub(crate) fn before_collapse(self) -> Self {
+        match self {
+            Self::None | Self::EdgeCollapse => Self::None,
+            Self::Integrated | Self::IntegratedCollapse => Self::Integrated,
+        }
+    }
+}
+
 impl fmt::Display for Clustering {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

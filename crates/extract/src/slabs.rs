@@ -2,15 +2,16 @@
 
 use std::ops::Range;
 use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use glam::Vec3;
 use mesh::TriangleMesh;
 
+use crate::clock::Moment;
+use crate::control::Threads;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes};
 use crate::finish::finish;
-use crate::memory::refill;
-use crate::settings::Execution;
+use crate::memory::{refill, with_room};
 use crate::source::Request;
 use crate::trace::Trace;
 use crate::triangles::Triangulation;
@@ -67,11 +68,7 @@ impl Piece {
 }
 
 /// How many threads there is work for, and how many slabs they share.
-pub(crate) fn threads_and_slabs(execution: &Execution, layers: usize) -> (usize, usize) {
-    let threads = match execution.threads {
-        0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
-        threads => threads,
-    };
+pub(crate) fn threads_and_slabs(threads: usize, layers: usize) -> (usize, usize) {
     let most = (layers / LEAST_LAYERS).max(1);
     let slabs = if threads == 1 { 1 } else { threads.saturating_mul(SLABS_PER_THREAD).min(most) };
     (threads.min(slabs), slabs)
@@ -83,6 +80,7 @@ pub(crate) fn threads_and_slabs(execution: &Execution, layers: usize) -> (usize,
 /// [`ExtractError::Threads`], and the first error of `work`.
 pub(crate) fn on_slabs<W: Send>(
     layers: usize,
+    on: Threads,
     workspaces: &mut [W],
     pieces: &mut [Piece],
     work: impl Fn(Range<usize>, &mut W, &mut Piece) -> Result<(), ExtractError> + Sync,
@@ -92,7 +90,6 @@ pub(crate) fn on_slabs<W: Send>(
     if let ([workspace], [piece]) = (&mut *workspaces, &mut *pieces) {
         return work(slab(0), workspace, piece);
     }
-    let threads = workspaces.len();
     let queue = Mutex::new(pieces.iter_mut().enumerate());
     let work = |workspace: &mut W| -> Result<(), ExtractError> {
         loop {
@@ -101,24 +98,53 @@ pub(crate) fn on_slabs<W: Send>(
             work(slab(i), workspace, piece)?;
         }
     };
+    on_each(on, workspaces, |_, workspace| work(workspace))
+}
+
+/// Does `work` with each item, all at a time: on threads that are started for it, or as jobs.
+///
+/// # Errors
+/// [`ExtractError::Threads`], and the first error of `work`.
+pub(crate) fn on_each<T: Send>(
+    on: Threads,
+    items: &mut [T],
+    work: impl Fn(usize, &mut T) -> Result<(), ExtractError> + Sync,
+) -> Result<(), ExtractError> {
+    let threads = items.len();
+    if let Threads::Jobs(jobs) = on {
+        // Fewer jobs than items where somebody changes their number on the way: each does what is left.
+        let left = Mutex::new(items.iter_mut().enumerate());
+        let result = Mutex::new(Ok(()));
+        jobs.run(&|_| {
+            loop {
+                let next = left.lock().expect("no job panics with it").next();
+                let Some((i, item)) = next else { return };
+                if let Err(error) = work(i, item) {
+                    *result.lock().expect("no job panics with it") = Err(error);
+                }
+            }
+        });
+        return result.into_inner().expect("no job panics with it");
+    }
     std::thread::scope(|scope| {
-        let (own, others) = workspaces.split_first_mut().expect("there is a thread");
-        let handles = others
-            .iter_mut()
-            .map(|workspace| {
+        let mut items = items.iter_mut().enumerate();
+        let (own, item) = items.next().expect("there is a thread");
+        let work = &work;
+        let handles = items
+            .map(|(i, item)| {
                 std::thread::Builder::new()
-                    .spawn_scoped(scope, || work(workspace))
+                    .spawn_scoped(scope, move || work(i, item))
                     .map_err(|error| ExtractError::Threads { threads, reason: error.to_string() })
             })
             .collect::<Result<Vec<_>, _>>()?;
-        work(own)?;
+        work(own, item)?;
         handles
             .into_iter()
             .try_for_each(|handle| handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
     })
 }
 
-/// Makes the mesh of the whole out of its pieces, and finishes it as the settings say. `allocating` and `sweeping` are what
+/// Makes the mesh of the whole out of its pieces, and finishes it as the settings say. `allocating` and `streaming` are what
 /// came before.
 ///
 /// The buffers of the first piece become those of the mesh; its trace is exchanged for `trace`.
@@ -129,14 +155,14 @@ pub(crate) fn assemble(
     request: &Request,
     pieces: &mut [Piece],
     threads: usize,
-    [allocating, sweeping]: [Duration; 2],
+    [allocating, streaming]: [Duration; 2],
     trace: Option<&mut Trace>,
     extraction: &mut Extraction,
 ) -> Result<(), ExtractError> {
-    let mut times = shares(pieces, sweeping);
+    let mut times = shares(pieces, streaming);
     times.allocation = allocating;
 
-    let joining = Instant::now();
+    let joining = Moment::now();
     let seams = join(pieces, request.most_vertices)?;
     let crossing_ends: u64 = pieces.iter().map(|piece| piece.crossing_ends).sum();
     let first = pieces.first_mut().expect("there is a slab");
@@ -147,16 +173,16 @@ pub(crate) fn assemble(
     let mesh = &mut extraction.mesh;
     mesh.positions = std::mem::take(&mut first.positions);
     let targets = std::mem::take(&mut first.targets);
-    let Request { lattice, settings, execution, .. } = *request;
+    let Request { lattice, settings, control, .. } = *request;
     let collapsing =
-        finish(request.level(), lattice, settings, execution, &targets, &mut mesh.positions, surface)?;
+        finish(request.level(), lattice, settings, control.threads, &targets, &mut mesh.positions, surface)?;
     mesh.triangles = std::mem::take(&mut surface.triangles);
     times.clustering = collapsing.unwrap_or_default();
     times.geometry += joining.elapsed() - times.clustering;
 
-    let making_normals = Instant::now();
+    let making_normals = Moment::now();
     let seams = if collapsing.is_some() { None } else { Some(&*seams) };
-    make_normals(mesh, seams, threads)?;
+    make_normals(mesh, seams, control.threads, threads)?;
     times.normals = making_normals.elapsed();
 
     extraction.times = times;
@@ -230,7 +256,12 @@ fn join(pieces: &mut [Piece], most_vertices: u32) -> Result<Vec<Seam>, ExtractEr
 
 /// Area-weighted mean normals, as [`vertex_normals`](crate::normals::vertex_normals), to the bit: each vertex adds up
 /// its triangles in their order. With seams, each thread does the vertices of a run of slabs.
-fn make_normals(mesh: &mut TriangleMesh, seams: Option<&[Seam]>, threads: usize) -> Result<(), ExtractError> {
+fn make_normals(
+    mesh: &mut TriangleMesh,
+    seams: Option<&[Seam]>,
+    on: Threads,
+    threads: usize,
+) -> Result<(), ExtractError> {
     let TriangleMesh { positions, normals, triangles } = mesh;
     normals.clear();
     refill(normals, positions.len(), Vec3::ZERO).map_err(|_| ExtractError::NoMemoryForMesh)?;
@@ -239,26 +270,20 @@ fn make_normals(mesh: &mut TriangleMesh, seams: Option<&[Seam]>, threads: usize)
         crate::normals::accumulate(positions, triangles, normals);
         return Ok(());
     };
-    std::thread::scope(|scope| {
-        let mut rest: &mut [Vec3] = normals;
-        for thread in 0..threads {
-            let [first, end] = [thread, thread + 1].map(|t| t * seams.len() / threads);
-            let low = seams[first].vertices;
-            let high = seams.get(end).map_or(positions.len(), |seam| seam.vertices);
-            let from = if first == 0 { 0 } else { seams[first - 1].tail };
-            let to = seams.get(end).map_or(triangles.len(), |seam| seam.head);
-            let (mine, others) = rest.split_at_mut(high - low);
-            rest = others;
-            let (positions, triangles) = (&*positions, &triangles[from..to]);
-            let mut work = move || crate::normals::accumulate_some(positions, triangles, low as u32, mine);
-            if thread + 1 == threads {
-                work();
-            } else {
-                std::thread::Builder::new()
-                    .spawn_scoped(scope, work)
-                    .map_err(|error| ExtractError::Threads { threads, reason: error.to_string() })?;
-            }
-        }
+    let mut rest: &mut [Vec3] = normals;
+    let mut runs = with_room(threads).map_err(|_| ExtractError::NoMemoryForMesh)?;
+    for thread in 0..threads {
+        let [first, end] = [thread, thread + 1].map(|t| t * seams.len() / threads);
+        let low = seams[first].vertices;
+        let high = seams.get(end).map_or(positions.len(), |seam| seam.vertices);
+        let from = if first == 0 { 0 } else { seams[first - 1].tail };
+        let to = seams.get(end).map_or(triangles.len(), |seam| seam.head);
+        let (mine, others) = rest.split_at_mut(high - low);
+        rest = others;
+        runs.push((low, &triangles[from..to], mine));
+    }
+    on_each(on, &mut runs, |_, (low, triangles, mine)| {
+        crate::normals::accumulate_some(positions, triangles, *low as u32, mine);
         Ok(())
     })
 }

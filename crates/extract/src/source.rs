@@ -1,18 +1,20 @@
 //! Where samples come from: a field that is called, or an array that is there.
 
-use std::time::Instant;
+use field::{ScalarField, StudyField};
 
-use field::ScalarField;
-
-use crate::lattice::Lattice;
+use crate::clock::Moment;
+use crate::control::Control;
+use crate::lattice::{CellBox, Lattice};
 use crate::level::Level;
-use crate::settings::{Execution, ExtractSettings};
+use crate::settings::ExtractSettings;
 
 /// What to extract from.
 #[derive(Clone, Copy)]
 pub enum Source<'a> {
-    /// A field, called for each slice of the lattice when its turn comes.
+    /// A field in plain numbers, called where the surface may be.
     Field(&'a dyn ScalarField),
+    /// A field of a study, the same way.
+    Study(&'a dyn StudyField),
     /// All samples of the lattice in storage order, x fastest: [`Lattice::stored_samples`] of them.
     ///
     /// Body-centred lattices stack half-layers in z, centres first, each with `x + 2` points a row and `y + 2`
@@ -21,11 +23,32 @@ pub enum Source<'a> {
     /// the spacing puts them, centres half a cube beyond. Face-centred lattices are a grid of half cells, `2x + 1` points a row, of which the middles of cube edges are
     /// unused; the others a grid of corners.
     Samples(&'a [f32]),
+    /// The samples of a box of cells, in the order of [`SampleLayout`](crate::SampleLayout): for a
+    /// [`ChunkExtractor`](crate::ChunkExtractor), of a box that contains its
+    /// [`window`](crate::ChunkExtractor::window), and fastest of that box itself.
+    Window {
+        /// The box.
+        cells: CellBox,
+        /// As many as the layout says.
+        samples: &'a [f32],
+    },
+}
+
+impl<'a, F: ScalarField> From<&'a F> for Source<'a> {
+    fn from(field: &'a F) -> Self {
+        Self::Field(field)
+    }
 }
 
 impl<'a> From<&'a dyn ScalarField> for Source<'a> {
     fn from(field: &'a dyn ScalarField) -> Self {
         Self::Field(field)
+    }
+}
+
+impl<'a> From<&'a dyn StudyField> for Source<'a> {
+    fn from(field: &'a dyn StudyField) -> Self {
+        Self::Study(field)
     }
 }
 
@@ -35,26 +58,34 @@ impl<'a> From<&'a [f32]> for Source<'a> {
     }
 }
 
+/// The same to the extractors.
+#[derive(Clone, Copy)]
+pub(crate) enum Sampler<'a> {
+    Field(&'a dyn StudyField),
+    /// All samples of the lattice.
+    Given(&'a [f32]),
+}
+
 /// One extraction: valid settings, a field made ready or as many samples as the lattice has.
 #[derive(Clone, Copy)]
 pub(crate) struct Request<'a> {
-    pub(crate) source: Source<'a>,
+    pub(crate) source: Sampler<'a>,
     pub(crate) lattice: &'a Lattice,
     pub(crate) settings: &'a ExtractSettings,
-    pub(crate) execution: &'a Execution,
+    pub(crate) control: Control<'a>,
     pub(crate) most_vertices: u32,
     /// When it began.
-    pub(crate) start: Instant,
+    pub(crate) start: Moment,
 }
 
 impl<'a> Request<'a> {
     /// The isosurface, where there is a field to be called.
     pub(crate) fn level(&self) -> Option<Level<'a>> {
         match self.source {
-            Source::Field(field) => {
+            Sampler::Field(field) => {
                 Some(Level { field, isovalue: self.settings.isovalue, spacing: self.lattice.spacing() })
             }
-            Source::Samples(_) => None,
+            Sampler::Given(_) => None,
         }
     }
 }

@@ -2,6 +2,8 @@
 //!
 //! Both uniform extractors take these steps in this order, so that their meshes agree to the byte.
 
+use glam::Vec3;
+
 use crate::lattice::{DIRECTIONS, Lattice};
 use crate::settings::Topology;
 
@@ -46,20 +48,34 @@ impl Company {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Apart {
     least: f32,
+    /// Of a lattice without a box.
+    spacing: Option<f32>,
 }
 
 impl Apart {
     /// The published topology has no such rule.
     pub(crate) fn new(lattice: &Lattice, topology: Topology) -> Self {
-        let bounds = lattice.bounds();
-        let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
-        let least = match topology {
+        let spacing = lattice.spacing();
+        match topology {
+            Topology::Guarded if lattice.is_endless() => Self { least: MOST_SHARE, spacing: Some(spacing) },
             Topology::Guarded => {
-                (LEAST_STEPS * f32::EPSILON * (farthest / lattice.spacing())).min(MOST_SHARE)
+                let bounds = lattice.bounds();
+                let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
+                Self { least: share(farthest, spacing), spacing: None }
             }
-            Topology::Published => f32::NEG_INFINITY,
-        };
-        Self { least }
+            Topology::Published => Self { least: f32::NEG_INFINITY, spacing: None },
+        }
+    }
+
+    /// For a sample point: where there is no box with a farthest coordinate, it is the point's own that counts.
+    #[inline]
+    pub(crate) fn at(self, point: Vec3) -> Self {
+        match self.spacing {
+            Some(spacing) => {
+                Self { least: share(point.abs().max_element() + spacing, spacing), spacing: None }
+            }
+            None => self,
+        }
     }
 
     /// The share of the edge in `direction` at which a crossing lies that linear interpolation puts at `ratio`.
@@ -71,6 +87,10 @@ impl Apart {
             Company::Merged => ratio.max(self.least * SPREAD[direction % DIRECTIONS]),
         }
     }
+}
+
+fn share(farthest: f32, spacing: f32) -> f32 {
+    (LEAST_STEPS * f32::EPSILON * (farthest / spacing)).min(MOST_SHARE)
 }
 
 /// From 1 to 2, and generic: the parts of the golden ratio's multiples beyond whole numbers.

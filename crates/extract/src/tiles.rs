@@ -1,13 +1,13 @@
 //! Which samples are needed to tell sides: tiles of the lattice that lie on one side of the isovalue take none.
 //!
 //! A brick is a few layers, from side to side of the lattice; it is quartered down to tiles of two by two cells.
-//! The field says whether a part can be on both sides ([`ScalarField::range`]). In the tiles that are left, each
+//! The field says whether a part can be on both sides ([`StudyField::range`]). In the tiles that are left, each
 //! sample tells the side of the points around it as far as the field's slope there allows.
 
 use std::collections::TryReserveError;
 use std::ops::Range;
 
-use field::{SAFE, ScalarField};
+use field::{SAFE, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
 
@@ -116,7 +116,7 @@ impl Tiles {
         &mut self,
         layer: usize,
         points: &impl Points,
-        field: &dyn ScalarField,
+        field: &dyn StudyField,
         isovalue: f32,
     ) {
         let depth = points.depth();
@@ -148,7 +148,7 @@ impl Tiles {
 
 struct Search<'a, P> {
     points: &'a P,
-    field: &'a dyn ScalarField,
+    field: &'a dyn StudyField,
     isovalue: f32,
     /// The first and the last.
     layers: [usize; 2],

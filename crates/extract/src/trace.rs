@@ -2,32 +2,50 @@
 
 use std::collections::TryReserveError;
 
-use crate::lattice::Lattice;
+use crate::lattice::{Arrangement, Lattice, cell_of_stored};
 
-/// Which crossings of a lattice a vertex stands for: the number of the sample point that they are nearest to, and the
-/// first lattice edge at that point among them.
+/// Which crossings of a lattice a vertex stands for: the sample point that they are nearest to, and the first lattice edge
+/// at that point among them.
 ///
 /// Keys are those of the whole lattice, whatever box of it was extracted. Two vertices with one key are one vertex, with
 /// the same bits. Keys are in the order in which [`extract`](crate::extract) numbers vertices, unless edges are
 /// collapsed; the key of a vertex that others were collapsed into is its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct VertexKey(u64);
+pub struct VertexKey(u128);
 
 /// Bits for a direction: at most 32 of them.
 const DIRECTION_BITS: u32 = 5;
+/// Bits for a place among stored points along an axis: of half cells, with numbers of 32 bits and some to spare.
+const PLACE_BITS: u32 = 34;
+/// Added to places, so that none is negative.
+const BIAS: i64 = 1 << (PLACE_BITS - 1);
 
 impl VertexKey {
-    pub(crate) fn new(point: u32, direction: usize) -> Self {
-        Self(u64::from(point) << DIRECTION_BITS | direction as u64)
+    /// Of a stored point of the whole lattice.
+    pub(crate) fn new(arrangement: Arrangement, [x, y, z]: [i64; 3], direction: usize) -> Self {
+        let place = |key: u128, i: i64| key << PLACE_BITS | (i + BIAS) as u128;
+        let key = [z, y, x].into_iter().fold(arrangement as u128, place);
+        Self(key << DIRECTION_BITS | direction as u128)
     }
 
-    /// The number of the sample point in storage order (see [`Source::Samples`](crate::Source)).
-    pub fn point(self) -> u32 {
-        (self.0 >> DIRECTION_BITS) as u32
+    /// The stored point.
+    pub(crate) fn stored(self) -> [i64; 3] {
+        let place = |n: u32| {
+            let bits = self.0 >> (DIRECTION_BITS + n * PLACE_BITS);
+            (bits as i64 & ((1 << PLACE_BITS) - 1)) - BIAS
+        };
+        [place(0), place(1), place(2)]
+    }
+
+    /// The cell that the sample point counts as its own: the one it is the centre, the lowest corner or a lower face's
+    /// centre of. On the upper sides of a lattice's box that is one beyond it.
+    pub fn cell(self) -> [i32; 3] {
+        let arrangement = Arrangement::ALL[(self.0 >> (DIRECTION_BITS + 3 * PLACE_BITS)) as usize & 3];
+        cell_of_stored(arrangement, self.stored()).map(|i| i as i32)
     }
 
     /// The key as a number: for a hash table of one's own, or a file.
-    pub fn number(self) -> u64 {
+    pub fn number(self) -> u128 {
         self.0
     }
 }
@@ -36,7 +54,7 @@ impl VertexKey {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Trace {
     pub(crate) keys: Vec<VertexKey>,
-    /// Numbers of cells in the whole lattice.
+    /// Numbers of cells in the box that was extracted.
     pub(crate) cells: Vec<u32>,
 }
 
@@ -56,5 +74,32 @@ impl Trace {
     pub(crate) fn clear(&mut self) {
         self.keys.clear();
         self.cells.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_says_where_its_point_is() {
+        let ends = [i64::from(i32::MIN) * 2, -7, 0, 5, i64::from(i32::MAX) * 2 + 2];
+        for arrangement in Arrangement::ALL {
+            for (x, (y, z)) in ends.into_iter().zip(ends.into_iter().rev().zip(ends)) {
+                for direction in [0, 13, 25] {
+                    let key = VertexKey::new(arrangement, [x, y, z], direction);
+                    assert_eq!(key.stored(), [x, y, z], "{arrangement}");
+                }
+            }
+        }
+        let key = |place, direction| VertexKey::new(Arrangement::SimpleCubic, place, direction);
+        assert_eq!(key([-3, 4, -5], 3).cell(), [-3, 4, -5]);
+        assert!(key([9, 9, -1], 13) < key([-9, -9, 0], 0) && key([9, -1, 0], 13) < key([-9, 0, 0], 0));
+        assert!(key([-1, 0, 0], 13) < key([0, 0, 0], 0) && key([0, 0, 0], 0) < key([0, 0, 0], 1));
+        // The centre of a body-centred cell, and its lowest corner.
+        let centred = |place| VertexKey::new(Arrangement::BodyCentred, place, 0).cell();
+        assert_eq!(centred([0, 0, 0]), [-1; 3]);
+        assert_eq!(centred([0, 0, 1]), [0; 3]);
+        assert_eq!(centred([-3, -3, -7]), [-3, -3, -4]);
     }
 }

@@ -1,14 +1,13 @@
 //! How far each triangle of a mesh is from the isosurface.
 
-use field::{Kept, ScalarField};
+use field::{Kept, StudyField};
 use glam::DVec3;
 use mesh::TriangleMesh;
-use rayon::prelude::*;
 
 use crate::extraction::ExtractError;
 use crate::isosurface::foot;
 use crate::level::Level;
-use crate::sampling::{SHARE, on_threads};
+use crate::sampling::{SHARE, mapped, on_threads};
 use crate::settings::Execution;
 
 /// The distance from each triangle of `mesh` to the isosurface of `field`, in the unit of the coordinates, never
@@ -28,7 +27,7 @@ use crate::settings::Execution;
 /// If a triangle's index is out of range.
 pub fn triangle_distances(
     mesh: &TriangleMesh,
-    field: &dyn ScalarField,
+    field: &dyn StudyField,
     isovalue: f32,
     spacing: f32,
     execution: &Execution,
@@ -37,13 +36,13 @@ pub fn triangle_distances(
     let level = Level { field: field.prepared(&mut kept).unwrap_or(field), isovalue, spacing };
     let distance = |p: DVec3| foot(field, &level, p).map(|foot| foot.distance);
     on_threads(execution, (mesh.triangles.len() / SHARE).max(1), || {
-        let vertices: Vec<_> = mesh.positions.par_iter().map(|p| distance(p.as_dvec3())).collect();
+        let vertices: Vec<_> = mapped(&mesh.positions, |p| distance(p.as_dvec3()));
         let farthest = |corners: &[u32; 3]| {
             let [a, b, c] = corners.map(|v| mesh.positions[v as usize].as_dvec3());
             let inner = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5, (a + b + c) / 3.0];
             let at_corners = corners.iter().map(|&v| vertices[v as usize]);
             at_corners.chain(inner.map(distance)).try_fold(0.0, |most: f64, at| Some(most.max(at?)))
         };
-        mesh.triangles.par_iter().map(farthest).collect()
+        mapped(&mesh.triangles, farthest)
     })
 }

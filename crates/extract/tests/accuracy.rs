@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use extract::{
-    Accuracy, Arrangement, DistanceError, Execution, ExtractSettings, Grid, Lattice, accuracy, distances,
+    Accuracy, Arrangement, BoxGrid, DistanceError, Execution, ExtractSettings, Lattice, accuracy, distances,
     extract,
 };
-use field::{Asteroid, MeshDistance, ScalarField, Sphere};
+use field::{Asteroid, MeshDistance, Sphere, StudyField};
 use glam::{Vec3, vec3};
 use mesh::metro::{Amount, MetroError, Sampling, Surface, metro};
 use mesh::{Bounds, MeshError, TriangleMesh};
@@ -19,7 +19,7 @@ struct HalfSpace {
     steepness: f32,
 }
 
-impl ScalarField for HalfSpace {
+impl StudyField for HalfSpace {
     fn sample(&self, p: Vec3) -> f32 {
         -self.steepness * self.normal.dot(p)
     }
@@ -73,10 +73,10 @@ fn sphere_mesh(times: u32) -> TriangleMesh {
 }
 
 /// In the box from -1 to 1.
-fn measure(mesh: &TriangleMesh, field: &dyn ScalarField, isovalue: f32, spacing: f32) -> Accuracy {
+fn measure(mesh: &TriangleMesh, field: &dyn StudyField, isovalue: f32, spacing: f32) -> Accuracy {
     let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     let lattice = Lattice::try_new(Arrangement::SimpleCubic, bounds, spacing).unwrap();
-    accuracy(mesh, field, isovalue, &Grid::from(&lattice), &THREADS).unwrap()
+    accuracy(mesh, field, isovalue, &BoxGrid::from(&lattice), &THREADS).unwrap()
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn a_shifted_sphere_is_off_by_the_mean_cosine() {
 fn distance_fields_and_noise_lose_no_point() {
     let cube = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     let solid = MeshDistance::try_new(&sphere_mesh(3)).unwrap();
-    let fields: [(&dyn ScalarField, f64); 2] = [(&solid, 0.03), (&Asteroid::default(), 0.1)];
+    let fields: [(&dyn StudyField, f64); 2] = [(&solid, 0.03), (&Asteroid::default(), 0.1)];
     for (field, within) in fields {
         for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
             let lattice = Lattice::try_new(arrangement, cube, 0.1).unwrap();
@@ -155,7 +155,7 @@ fn distance_fields_and_noise_lose_no_point() {
             assert!(found.distance.mean < within * 0.1, "{}", found.distance.mean);
             assert_eq!(
                 found,
-                accuracy(&mesh, field, 0.0, &Grid::from(&lattice), &Execution { threads: 1 }).unwrap()
+                accuracy(&mesh, field, 0.0, &BoxGrid::from(&lattice), &Execution { threads: 1 }).unwrap()
             );
         }
     }
@@ -177,7 +177,7 @@ fn the_way_back_is_that_from_the_isosurface() {
     let above: Vec<[u32; 3]> = whole.triangles.iter().filter(is_above).copied().collect();
     let half = whole.transformed(|p| vec3(p.x, p.y, p.z.max(0.0)).normalize_or(Vec3::X) * 0.8);
     let half = TriangleMesh { triangles: above, ..half };
-    for field in [&Sphere { radius: 0.8 } as &dyn ScalarField, &Ball { radius: 0.8 }] {
+    for field in [&Sphere { radius: 0.8 } as &dyn StudyField, &Ball { radius: 0.8 }] {
         let found = measure(&half, field, 0.0, 0.05);
         assert!(found.distance.max < 3e-4, "{}", found.distance.max);
         assert!((found.distance_to_mesh.max - 0.8 * 2f64.sqrt()).abs() < 0.03);
@@ -201,7 +201,7 @@ struct Ball {
     radius: f32,
 }
 
-impl ScalarField for Ball {
+impl StudyField for Ball {
     fn sample(&self, p: Vec3) -> f32 {
         self.radius - p.length()
     }
@@ -214,8 +214,8 @@ fn a_field_that_knows_its_surface_gives_what_a_search_gives_and_more() {
             .unwrap();
     let (known, searched) = (Sphere { radius: 0.8 }, Ball { radius: 0.8 });
     let mesh = extract(&known, &lattice, &ExtractSettings::default(), &THREADS).unwrap().mesh;
-    let [a, b] = [&known as &dyn ScalarField, &searched]
-        .map(|f| accuracy(&mesh, f, 0.0, &Grid::from(&lattice), &THREADS).unwrap());
+    let [a, b] = [&known as &dyn StudyField, &searched]
+        .map(|f| accuracy(&mesh, f, 0.0, &BoxGrid::from(&lattice), &THREADS).unwrap());
     for (a, b) in [
         (a.distance.mean, b.distance.mean),
         (a.distance.max, b.distance.max),
@@ -240,7 +240,7 @@ fn a_mesh_as_field_is_measured_both_ways_as_two_meshes_are() {
         Lattice::try_new(Arrangement::BodyCentred, Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE }, 0.1)
             .unwrap();
     let mesh = extract(&field, &lattice, &ExtractSettings::default(), &THREADS).unwrap().mesh;
-    let found = accuracy(&mesh, &field, 0.0, &Grid::from(&lattice), &THREADS).unwrap();
+    let found = accuracy(&mesh, &field, 0.0, &BoxGrid::from(&lattice), &THREADS).unwrap();
     let sampling = Sampling { amount: Amount::Samples(200_000), seed: 5 };
     let want = metro(&mesh, &source, &sampling).unwrap();
     for (found, want) in [(found.distance, want.forward), (found.distance_to_mesh, want.backward)] {
@@ -264,9 +264,10 @@ fn distances_name_the_places() {
     let lattice = Lattice::try_new(Arrangement::SimpleCubic, bounds, 0.05).unwrap();
     let sampling = Sampling { amount: Amount::Samples(20_000), seed: 3 };
     let surface = Surface::try_new(&cut).unwrap();
-    for field in [&Sphere { radius: 0.8 } as &dyn ScalarField, &Ball { radius: 0.8 }] {
+    for field in [&Sphere { radius: 0.8 } as &dyn StudyField, &Ball { radius: 0.8 }] {
         let run = |threads| {
-            distances(&surface, field, 0.0, &Grid::from(&lattice), &sampling, &Execution { threads }).unwrap()
+            distances(&surface, field, 0.0, &BoxGrid::from(&lattice), &sampling, &Execution { threads })
+                .unwrap()
         };
         let found = run(1);
         assert!(found.forward.max < 3e-4 && found.forward.lost_samples == 0);
@@ -281,7 +282,7 @@ fn distances_name_the_places() {
         assert_eq!(run(2), found);
     }
     let nothing =
-        distances(&surface, &Sphere { radius: 0.8 }, 0.9, &Grid::from(&lattice), &sampling, &THREADS);
+        distances(&surface, &Sphere { radius: 0.8 }, 0.9, &BoxGrid::from(&lattice), &sampling, &THREADS);
     assert_eq!(nothing, Err(DistanceError::Isosurface(MetroError::Mesh(MeshError::Empty))));
 }
 
@@ -293,7 +294,7 @@ fn what_cannot_be_measured_is_counted() {
     assert_eq!((found.distance.count, found.lost_points), (0, 8_192), "beyond three spacings");
     assert_eq!((found.normal_error_deg.count, found.lost_vertices), (0, 4));
     struct Nowhere;
-    impl ScalarField for Nowhere {
+    impl StudyField for Nowhere {
         fn sample(&self, _: Vec3) -> f32 {
             f32::NAN
         }

@@ -7,10 +7,10 @@ mod survey;
 use std::f64::consts::PI;
 
 use extract::{
-    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Grid, Lattice,
-    Placement, Positions, Source, Topology, accuracy, extract,
+    Arrangement, BoxGrid, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor,
+    Lattice, Placement, Positions, Source, Topology, accuracy, extract,
 };
-use field::{Asteroid, Gyroid, ScalarField, Sphere};
+use field::{Asteroid, Gyroid, Sphere, StudyField};
 use fields::{FAMILIES, Family, Volume};
 use glam::Vec3;
 use mesh::Bounds;
@@ -26,7 +26,7 @@ fn settings(clustering: Clustering) -> ExtractSettings {
     ExtractSettings { clustering, ..ExtractSettings::default() }
 }
 
-fn run(field: &dyn ScalarField, lattice: &Lattice, clustering: Clustering) -> Extraction {
+fn run(field: &dyn StudyField, lattice: &Lattice, clustering: Clustering) -> Extraction {
     extract(field, lattice, &settings(clustering), &ONE).unwrap()
 }
 
@@ -68,7 +68,7 @@ fn any_samples_give_a_manifold_and_the_collapse_keeps_it() {
 /// A ring round the z axis.
 struct Torus;
 
-impl ScalarField for Torus {
+impl StudyField for Torus {
     fn sample(&self, p: Vec3) -> f32 {
         0.22 - Vec3::new(p.truncate().length() - 0.6, p.z, 0.0).length()
     }
@@ -79,7 +79,7 @@ fn genus_is_that_of_the_surface() {
     for arrangement in Arrangement::ALL {
         for spacing in [0.09, 0.041] {
             let lattice = Lattice::try_new(arrangement, CUBE, spacing).unwrap();
-            let fields: [(&dyn ScalarField, i64); 3] =
+            let fields: [(&dyn StudyField, i64); 3] =
                 [(&Sphere { radius: 0.8 }, 2), (&Torus, 0), (&Asteroid::default(), 2)];
             for (field, characteristic) in fields {
                 let report = topology(&run(field, &lattice, Clustering::None).mesh);
@@ -117,7 +117,7 @@ fn area_and_volume_converge_at_second_order() {
         let lattice = Lattice::try_new(arrangement, CUBE, 0.05).unwrap();
         let sphere = Sphere { radius: radius as f32 };
         let mesh = run(&sphere, &lattice, Clustering::None).mesh;
-        let distance = accuracy(&mesh, &sphere, 0.0, &Grid::from(&lattice), &ONE).unwrap().distance;
+        let distance = accuracy(&mesh, &sphere, 0.0, &BoxGrid::from(&lattice), &ONE).unwrap().distance;
         assert!(distance.max < 2.0 * 0.05f64.powi(2) / (4.0 * radius), "{arrangement:?} {distance:?}");
     }
 }
@@ -183,7 +183,7 @@ fn vertices_stand_on_the_surface_where_the_field_is_called() {
 #[test]
 fn ties_follow_the_topology() {
     struct Levels;
-    impl ScalarField for Levels {
+    impl StudyField for Levels {
         fn sample(&self, p: Vec3) -> f32 {
             if p.x < 0.3 { 1.0 } else { -1.0 }
         }
@@ -211,7 +211,7 @@ fn buffers_samples_and_threads_do_not_show() {
                 let execution = Execution { threads };
                 let settings = settings(Clustering::None);
                 let again =
-                    extractor.extract(Source::Field(&volume), &lattice, &settings, &execution).unwrap();
+                    extractor.extract(Source::Study(&volume), &lattice, &settings, &execution).unwrap();
                 assert_eq!((again.mesh, again.counts), (expected.mesh.clone(), expected.counts));
             }
             assert_eq!(expected.counts.samples, lattice.needed_samples());

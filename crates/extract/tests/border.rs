@@ -3,10 +3,10 @@
 use std::sync::Mutex;
 
 use extract::{
-    Arrangement, ChunkExtractor, Clustering, Execution, ExtractSettings, Lattice, Topology, extract,
-    weld_chunks,
+    Arrangement, BoxGrid, ChunkExtractor, ChunkSettings, Clustering, Execution, ExtractSettings, Lattice,
+    Method, Tetrahedra, Topology, extract, weld_chunks,
 };
-use field::{Gyroid, ScalarField};
+use field::{Gyroid, StudyField};
 use glam::Vec3;
 use mesh::topology::topology;
 use mesh::{Bounds, TriangleMesh};
@@ -17,19 +17,19 @@ const ONE: Execution = Execution { threads: 1 };
 /// Solid below a height.
 struct Terrain<F>(F);
 
-impl<F: Fn(f32, f32) -> f32 + Sync> ScalarField for Terrain<F> {
+impl<F: Fn(f32, f32) -> f32 + Sync> StudyField for Terrain<F> {
     fn sample(&self, p: Vec3) -> f32 {
         (self.0)(p.x, p.y) - p.z
     }
 }
 
-fn mesh_of(field: &dyn ScalarField, lattice: &Lattice, clustering: Clustering) -> TriangleMesh {
+fn mesh_of(field: &dyn StudyField, lattice: &Lattice, clustering: Clustering) -> TriangleMesh {
     let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
     extract(field, lattice, &settings, &ONE).unwrap().mesh
 }
 
 /// One sheet with one rim; and unless edges are collapsed towards the rim no part of it lies flat in a face of the box.
-fn check(field: &dyn ScalarField, lattice: &Lattice, what: &str) {
+fn check(field: &dyn StudyField, lattice: &Lattice, what: &str) {
     let arrangement = lattice.arrangement();
     for clustering in [Clustering::None, Clustering::Integrated, Clustering::EdgeCollapse] {
         if !arrangement.supports(clustering) {
@@ -86,7 +86,7 @@ fn a_gyroid_has_as_many_parts_on_every_lattice() {
 /// Writes down where it is called.
 struct Recorder(Mutex<Vec<Vec3>>);
 
-impl ScalarField for Recorder {
+impl StudyField for Recorder {
     fn sample(&self, p: Vec3) -> f32 {
         self.0.lock().unwrap().push(p);
         p.x.sin()
@@ -138,12 +138,17 @@ proptest! {
         let bounds = Bounds { min, max: min + Vec3::new(size[0], size[1], 1.2) };
         let lattice = Lattice::try_new(Arrangement::ALL[arrangement], bounds, spacing).unwrap();
         check(&field, &lattice, "hills");
-        let settings = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
-        let mut extractor = ChunkExtractor::try_new(&lattice, &settings).unwrap();
+        let method = Tetrahedra { clustering: Clustering::None, ..Tetrahedra::new(lattice.arrangement()) };
+        let mut extractor = ChunkExtractor::in_box(
+            &BoxGrid::from(&lattice),
+            &Method::Tetrahedra(method),
+            &ChunkSettings::default(),
+        )
+        .unwrap();
         let boxes: Vec<_> = extractor.grid(5).collect();
-        let source: &dyn ScalarField = &field;
+        let source: &dyn StudyField = &field;
         let chunks: Vec<_> =
-            boxes.into_iter().map(|cells| extractor.extract(source.into(), cells, &ONE).unwrap()).collect();
+            boxes.into_iter().map(|cells| extractor.extract(source, cells, &ONE).unwrap()).collect();
         prop_assert!(weld_chunks(&chunks).unwrap() == mesh_of(&field, &lattice, Clustering::None));
     }
 }

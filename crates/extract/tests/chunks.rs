@@ -6,10 +6,11 @@ mod fields;
 use std::sync::Mutex;
 
 use extract::{
-    Arrangement, CellBox, Chunk, ChunkError, ChunkExtractor, Clustering, Execution, ExtractError,
-    ExtractSettings, Lattice, Placement, Positions, Source, Topology, WeldError, extract, weld_chunks,
+    Aabb, Arrangement, BoxGrid, CellBox, Chunk, ChunkError, ChunkExtractor, ChunkSettings, Clustering,
+    Execution, ExtractError, ExtractSettings, Lattice, Method, Placement, Positions, Source, Tetrahedra,
+    Topology, WeldError, extract, weld_chunks,
 };
-use field::{Asteroid, ScalarField, Sphere};
+use field::{Asteroid, Sphere, StudyField};
 use fields::{FAMILIES, Family, Numbers, Volume};
 use glam::Vec3;
 use mesh::{Bounds, TriangleMesh};
@@ -30,6 +31,16 @@ fn all_settings(arrangement: Arrangement) -> impl Iterator<Item = ExtractSetting
             })
         },
     )
+}
+
+fn try_chunks_of(lattice: &Lattice, settings: &ExtractSettings) -> Result<ChunkExtractor, ChunkError> {
+    let method = Method::Tetrahedra(Tetrahedra::with(lattice.arrangement(), settings));
+    let settings = ChunkSettings::default().with_isovalue(settings.isovalue);
+    ChunkExtractor::in_box(&BoxGrid::from(lattice), &method, &settings)
+}
+
+fn chunks_of(lattice: &Lattice, settings: &ExtractSettings) -> ChunkExtractor {
+    try_chunks_of(lattice, settings).unwrap()
 }
 
 /// Bits, so that no two numbers that compare equal pass for one.
@@ -53,7 +64,7 @@ fn random_boxes(all: CellBox, pieces: usize, numbers: &mut Numbers) -> Vec<CellB
             continue;
         }
         let (mut low, mut high) = (whole, whole);
-        let place = whole.start[axis] + 1 + numbers.below(u64::from(size) - 1) as u32;
+        let place = whole.start[axis] + 1 + numbers.below(size as u64 - 1) as i32;
         (low.end[axis], high.start[axis]) = (place, place);
         boxes.extend([low, high]);
     }
@@ -61,21 +72,21 @@ fn random_boxes(all: CellBox, pieces: usize, numbers: &mut Numbers) -> Vec<CellB
 }
 
 fn chunks(source: Source, lattice: &Lattice, settings: &ExtractSettings, boxes: &[CellBox]) -> Vec<Chunk> {
-    let mut extractor = ChunkExtractor::try_new(lattice, settings).unwrap();
+    let mut extractor = chunks_of(lattice, settings);
     boxes.iter().map(|&cells| extractor.extract(source, cells, &ONE).unwrap()).collect()
 }
 
 fn check(
-    field: &dyn ScalarField,
+    field: &dyn StudyField,
     lattice: &Lattice,
     settings: &ExtractSettings,
     boxes: &[CellBox],
     what: &str,
 ) {
     let whole = extract(field, lattice, settings, &ONE).unwrap().mesh;
-    let parts = chunks(Source::Field(field), lattice, settings, boxes);
+    let parts = chunks(Source::Study(field), lattice, settings, boxes);
     for part in &parts {
-        let mesh = &part.mesh;
+        let mesh = &part.mesh();
         assert_eq!((mesh.normals.len(), part.keys.len()), (mesh.positions.len(), mesh.positions.len()));
         assert_eq!(part.triangle_cells.len(), mesh.triangles.len());
         assert!(part.triangle_cells.is_sorted(), "{what}");
@@ -90,7 +101,7 @@ fn is_local(settings: &ExtractSettings) -> bool {
 }
 
 fn whole_box(lattice: &Lattice) -> CellBox {
-    CellBox { start: [0; 3], end: lattice.cells() }
+    CellBox { start: [0; 3], end: lattice.cells().map(|n| n as i32) }
 }
 
 #[test]
@@ -129,8 +140,7 @@ fn smooth_surfaces_weld_cell_by_cell_and_chunk_by_chunk() {
     for arrangement in Arrangement::ALL {
         let lattice = Lattice::try_new(arrangement, bounds, 0.11).unwrap();
         for settings in all_settings(arrangement) {
-            let grid =
-                |size| ChunkExtractor::try_new(&lattice, &settings).unwrap().grid(size).collect::<Vec<_>>();
+            let grid = |size| chunks_of(&lattice, &settings).grid(size).collect::<Vec<_>>();
             check(&Asteroid::default(), &lattice, &settings, &grid(11), "asteroid");
             if is_local(&settings) {
                 check(&Sphere { radius: 1.0 }, &lattice, &settings, &grid(5), "sphere");
@@ -154,16 +164,16 @@ fn samples_threads_and_order_do_not_show() {
         };
         let settings =
             all_settings(arrangement).next().map(|s| ExtractSettings { isovalue: 0.01, ..s }).unwrap();
-        let mut extractor = ChunkExtractor::try_new(&lattice, &settings).unwrap();
+        let mut extractor = chunks_of(&lattice, &settings);
         let boxes: Vec<CellBox> = extractor.grid(5).collect();
-        let called = chunks(Source::Field(&volume), &lattice, &settings, &boxes);
+        let called = chunks(Source::Study(&volume), &lattice, &settings, &boxes);
         let given = chunks(Source::Samples(&samples), &lattice, &settings, &boxes);
         assert!(called == given, "{arrangement:?}: called or given");
         let threads: Vec<Chunk> = boxes
             .iter()
             .rev()
             .map(|&cells| {
-                extractor.extract(Source::Field(&volume), cells, &Execution { threads: 3 }).unwrap()
+                extractor.extract(Source::Study(&volume), cells, &Execution { threads: 3 }).unwrap()
             })
             .collect();
         assert!(threads.iter().rev().eq(&called), "{arrangement:?}: threads");
@@ -171,9 +181,9 @@ fn samples_threads_and_order_do_not_show() {
         // Nothing beyond the box that a chunk names is looked at.
         for &cells in &boxes {
             sampled.lock().unwrap().clear();
-            let chunk = extractor.extract(Source::Field(&recorder), cells, &ONE).unwrap();
+            let chunk = extractor.extract(Source::Study(&recorder), cells, &ONE).unwrap();
             for &p in sampled.lock().unwrap().iter() {
-                assert!(chunk.is_touched_by(Bounds { min: p, max: p }), "{arrangement:?}: {p}");
+                assert!(chunk.is_touched_by(Aabb::from(Bounds { min: p, max: p })), "{arrangement:?}: {p}");
             }
         }
     }
@@ -185,7 +195,7 @@ struct Recorder<'a> {
     places: &'a Mutex<Vec<Vec3>>,
 }
 
-impl ScalarField for Recorder<'_> {
+impl StudyField for Recorder<'_> {
     fn sample(&self, p: Vec3) -> f32 {
         self.places.lock().unwrap().push(p);
         self.volume.sample(p)
@@ -217,7 +227,7 @@ fn body_centred_samples(volume: &Volume) -> Vec<f32> {
 /// A ball with bites taken out of it.
 struct Bitten(Vec<(Vec3, f32)>);
 
-impl ScalarField for Bitten {
+impl StudyField for Bitten {
     fn sample(&self, p: Vec3) -> f32 {
         self.0
             .iter()
@@ -231,10 +241,10 @@ fn only_chunks_that_an_edit_touches_change() {
     for arrangement in Arrangement::ALL {
         let lattice = Lattice::try_new(arrangement, bounds, 0.1).unwrap();
         for settings in all_settings(arrangement) {
-            let mut extractor = ChunkExtractor::try_new(&lattice, &settings).unwrap();
+            let mut extractor = chunks_of(&lattice, &settings);
             let boxes: Vec<CellBox> = extractor.grid(if is_local(&settings) { 5 } else { 10 }).collect();
             let mut field = Bitten(Vec::new());
-            let mut parts = chunks(Source::Field(&field), &lattice, &settings, &boxes);
+            let mut parts = chunks(Source::Study(&field), &lattice, &settings, &boxes);
             for (place, radius) in [(Vec3::new(0.85, 0.1, 0.0), 0.15), (Vec3::new(-0.3, 0.3, 0.8), 0.2)] {
                 field.0.push((place, radius));
                 // The value changes only where the bite is deeper than the rest.
@@ -242,7 +252,7 @@ fn only_chunks_that_an_edit_touches_change() {
                 let changed = Bounds { min: place - reach, max: place + reach };
                 let mut touched = 0;
                 for part in parts.iter_mut().filter(|part| part.is_touched_by(changed)) {
-                    *part = extractor.extract(Source::Field(&field), part.cells, &ONE).unwrap();
+                    *part = extractor.extract(Source::Study(&field), part.cells, &ONE).unwrap();
                     touched += 1;
                 }
                 assert!(
@@ -262,13 +272,13 @@ fn chunks_that_do_not_belong_together_are_refused() {
     let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.1).unwrap();
     let settings = ExtractSettings::default();
-    let mut extractor = ChunkExtractor::try_new(&lattice, &settings).unwrap();
+    let mut extractor = chunks_of(&lattice, &settings);
     let boxes: Vec<CellBox> = extractor.grid(10).collect();
     let [small, large] = [Sphere { radius: 0.8 }, Sphere { radius: 0.81 }];
-    let mut parts = chunks(Source::Field(&small), &lattice, &settings, &boxes);
+    let mut parts = chunks(Source::Study(&small), &lattice, &settings, &boxes);
     let old = parts[0].clone();
-    parts[0] = extractor.extract(Source::Field(&large), boxes[0], &ONE).unwrap();
-    assert!(matches!(weld_chunks(&parts), Err(WeldError::Mismatch { .. })));
+    parts[0] = extractor.extract(Source::Study(&large), boxes[0], &ONE).unwrap();
+    assert!(matches!(weld_chunks(&parts), Err(WeldError::Mismatch(_))));
     parts[0] = old.clone();
     parts.push(old);
     assert!(matches!(weld_chunks(&parts), Err(WeldError::Overlap { .. })));
@@ -281,12 +291,15 @@ fn what_cannot_be_cut_into_chunks_is_an_error() {
     let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.5).unwrap();
     let settings = ExtractSettings::default();
     let refused = |settings: ExtractSettings, lattice: &Lattice| {
-        ChunkExtractor::try_new(lattice, &settings).err().expect("refused")
+        try_chunks_of(lattice, &settings).err().expect("refused")
     };
     let positions = Positions::Accumulated { chunks: 1 };
     assert_eq!(refused(ExtractSettings { positions, ..settings }, &lattice), ChunkError::Accumulated);
-    let placement = Placement::Relaxed;
+    let placement = Placement::CurvatureWeighted;
     let error = refused(ExtractSettings { placement, ..settings }, &lattice);
+    assert_eq!(error, ChunkError::Placement { placement, refine_crossings: false });
+    let (placement, clustering) = (Placement::Relaxed, Clustering::EdgeCollapse);
+    let error = refused(ExtractSettings { placement, clustering, ..settings }, &lattice);
     assert_eq!(error, ChunkError::Placement { placement, refine_crossings: false });
     let five = Lattice::try_new(Arrangement::FiveTetrahedra, bounds, 0.5).unwrap();
     let error = ExtractError::ArrangementClustering {
@@ -295,12 +308,12 @@ fn what_cannot_be_cut_into_chunks_is_an_error() {
     };
     assert_eq!(refused(settings, &five), ChunkError::Extract(error));
 
-    let mut extractor = ChunkExtractor::try_new(&lattice, &settings).unwrap();
+    let mut extractor = chunks_of(&lattice, &settings);
     let sphere = Sphere { radius: 0.8 };
     for (start, end) in [([0; 3], [5, 4, 4]), ([2; 3], [2, 3, 3]), ([3; 3], [1, 4, 4])] {
         let given = CellBox { start, end };
-        let error = extractor.extract(Source::Field(&sphere), given, &ONE).unwrap_err();
-        assert_eq!(error, ChunkError::Cells { given, lattice: [4; 3] });
+        let error = extractor.extract(Source::Study(&sphere), given, &ONE).unwrap_err();
+        assert_eq!(error, ChunkError::Cells { given, whole: whole_box(&lattice) });
     }
     let samples = [0.0; 7];
     let cells = CellBox { start: [0; 3], end: [2; 3] };
@@ -314,7 +327,7 @@ fn what_cannot_be_cut_into_chunks_is_an_error() {
 /// Balls far from each other.
 struct Balls;
 
-impl ScalarField for Balls {
+impl StudyField for Balls {
     fn sample(&self, p: Vec3) -> f32 {
         0.1 - (p - (p * 2.0).round() * 0.5).length()
     }
@@ -327,16 +340,16 @@ fn collapses_look_as_far_as_a_piece_of_surface_goes() {
     for arrangement in Arrangement::ALL {
         let lattice = Lattice::try_new(arrangement, bounds, 0.04).unwrap();
         for settings in all_settings(arrangement).filter(|settings| !is_local(settings)) {
-            let mut extractor = ChunkExtractor::try_new(&lattice, &settings).unwrap();
+            let mut extractor = chunks_of(&lattice, &settings);
             let boxes: Vec<CellBox> = extractor.grid(25).collect();
             check(&Asteroid::default(), &lattice, &settings, &boxes, "one piece");
             let corner = CellBox { start: [6; 3], end: [14; 3] };
-            let mut window = |field: &dyn ScalarField, cells: CellBox| {
-                extractor.extract(Source::Field(field), cells, &ONE).unwrap().window
+            let mut window = |field: &dyn StudyField, cells: CellBox| {
+                extractor.extract(Source::Study(field), cells, &ONE).unwrap().window
             };
             let seen = window(&Asteroid::default(), boxes[0]);
             for p in extract(&Asteroid::default(), &lattice, &settings, &ONE).unwrap().mesh.positions {
-                let cell = ((p - bounds.min) / lattice.spacing()).to_array().map(|c| c as u32);
+                let cell = ((p - bounds.min) / lattice.spacing()).to_array().map(|c| c as i32);
                 assert!(seen.contains(cell), "{arrangement:?}: {cell:?} is not in {seen:?}");
             }
             assert_ne!(window(&Balls, corner), whole_box(&lattice), "{arrangement:?}");

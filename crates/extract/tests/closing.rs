@@ -2,7 +2,7 @@
 //! of any box.
 
 use extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, extract};
-use field::{Asteroid, Beyond, Negated, ScalarField, Sphere, VolumeField, Walled};
+use field::{Asteroid, Beyond, Negated, Sphere, StudyField, VolumeField, Walled};
 use glam::{DMat3, DVec3, Vec3};
 use mesh::quality::quality;
 use mesh::topology::{first_boundary_edge, topology};
@@ -11,18 +11,13 @@ use proptest::prelude::*;
 
 const CLUSTERINGS: [Clustering; 3] = [Clustering::None, Clustering::Integrated, Clustering::EdgeCollapse];
 
-fn mesh_of(
-    field: &dyn ScalarField,
-    lattice: &Lattice,
-    clustering: Clustering,
-    isovalue: f32,
-) -> TriangleMesh {
+fn mesh_of(field: &dyn StudyField, lattice: &Lattice, clustering: Clustering, isovalue: f32) -> TriangleMesh {
     let settings = ExtractSettings { clustering, isovalue, ..ExtractSettings::default() };
     extract(field, lattice, &settings, &Execution { threads: 1 }).unwrap().mesh
 }
 
 /// Closed, and sound otherwise, on every arrangement.
-fn check(field: &dyn ScalarField, bounds: Bounds, spacing: f32, isovalue: f32, what: &str) -> f64 {
+fn check(field: &dyn StudyField, bounds: Bounds, spacing: f32, isovalue: f32, what: &str) -> f64 {
     let mut volumes = Vec::new();
     for arrangement in Arrangement::ALL {
         let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
@@ -155,9 +150,9 @@ fn a_diagonal_grid_is_closed_at_every_spacing() {
 }
 
 /// A field of which nothing is known but its values.
-struct Plain<'a>(&'a dyn ScalarField);
+struct Plain<'a>(&'a dyn StudyField);
 
-impl ScalarField for Plain<'_> {
+impl StudyField for Plain<'_> {
     fn sample(&self, p: Vec3) -> f32 {
         self.0.sample(p)
     }
@@ -169,7 +164,7 @@ fn what_is_known_of_a_walled_field_changes_nothing() {
     let values = (0..1000).map(|i| ((i * i) % 17) as f32).collect();
     let volume =
         VolumeField::try_new([10; 3], values, [-0.9; 3], straight(0.2, 0.2, 0.3), Beyond::Continued).unwrap();
-    let fields: [(&dyn ScalarField, f32); 3] = [
+    let fields: [(&dyn StudyField, f32); 3] = [
         (&Walled::new(Sphere { radius: 1.0 }, bounds, 0.0), 0.0),
         (&Walled::new(Asteroid::default(), bounds, 0.05), 0.05),
         (&Walled::new(volume.closing_at(8.0), bounds, 8.0), 8.0),
@@ -178,9 +173,8 @@ fn what_is_known_of_a_walled_field_changes_nothing() {
         for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
             for spacing in [0.05, 0.0431] {
                 let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
-                let [known, plain] = [field, &Plain(field)].map(|field: &dyn ScalarField| {
-                    mesh_of(field, &lattice, Clustering::Integrated, isovalue)
-                });
+                let [known, plain] = [field, &Plain(field)]
+                    .map(|field: &dyn StudyField| mesh_of(field, &lattice, Clustering::Integrated, isovalue));
                 assert!(known == plain && topology(&known).is_closed_manifold(), "{arrangement} {spacing}");
             }
         }

@@ -7,10 +7,10 @@ use std::collections::HashMap;
 
 use cells::{Cell, Triangulator};
 use extract::{
-    Arrangement, ChunkExtractor, Cubes, Diagonals, Execution, Extraction, Extractor, Faces, Grid, Method,
-    Placement, Source, VolumeCells, VolumeCellsError, presets, weld_chunks,
+    Arrangement, BoxGrid, ChunkExtractor, ChunkSettings, Cubes, Diagonals, Execution, Extraction, Extractor,
+    Faces, Grid, Method, Placement, Source, VolumeCells, VolumeCellsError, from_fn, presets, weld_chunks,
 };
-use field::{Asteroid, Gyroid, ScalarField, Sphere};
+use field::{Asteroid, Gyroid, Sphere, StudyField};
 use fields::{FAMILIES, Numbers, Volume};
 use glam::Vec3;
 use mesh::topology::topology;
@@ -26,15 +26,15 @@ fn cubes(faces: Faces, diagonals: Diagonals) -> Method {
 }
 
 /// All samples of a field at whole coordinates, x fastest.
-fn samples(field: &dyn ScalarField, counts: [usize; 3]) -> Vec<f32> {
+fn samples(field: &dyn StudyField, counts: [usize; 3]) -> Vec<f32> {
     let [nx, ny, nz] = counts;
     let places = (0..nx * ny * nz).map(|i| [i % nx, i / nx % ny, i / nx / ny]);
     places.map(|place| field.sample(Vec3::from_array(place.map(|x| x as f32)))).collect()
 }
 
-fn grid(counts: [usize; 3]) -> Grid {
+fn grid(counts: [usize; 3]) -> BoxGrid {
     let max = Vec3::from_array(counts.map(|n| (n - 1) as f32));
-    Grid { bounds: Bounds { min: Vec3::ZERO, max }, spacing: 1.0 }
+    BoxGrid { bounds: Bounds { min: Vec3::ZERO, max }, spacing: 1.0 }
 }
 
 /// Marching cubes as one would write it first: all samples at hand, every vertex in a map, cell by cell.
@@ -121,7 +121,7 @@ struct Noise {
     levels: u32,
 }
 
-impl ScalarField for Noise {
+impl StudyField for Noise {
     fn sample(&self, p: Vec3) -> f32 {
         let mut mixed =
             p.to_array().map(|x| x as i32 as u32).iter().fold(self.seed ^ 0x9e37_79b9, |h, &b| {
@@ -154,8 +154,8 @@ fn it_is_the_obvious_one() {
                 for (source, threads) in [
                     (Source::Samples(&values), 1),
                     (Source::Samples(&values), 3),
-                    (Source::Field(&field), 1),
-                    (Source::Field(&field), 2),
+                    (Source::Study(&field), 1),
+                    (Source::Study(&field), 2),
                 ] {
                     let execution = Execution { threads };
                     let found =
@@ -178,12 +178,12 @@ fn it_is_the_obvious_one() {
 fn threads_and_sources_do_not_show() {
     let (asteroid, gyroid) = (Asteroid::default(), Gyroid { frequency: 14.0 });
     let bounds = Bounds { min: Vec3::splat(-1.0), max: Vec3::new(1.0, 0.93, 1.21) };
-    let box_grid = Grid { bounds, spacing: 0.05 };
+    let box_grid = BoxGrid { bounds, spacing: 0.05 };
     let mut extractor = Extractor::new();
     for faces in FACES {
         for diagonals in DIAGONALS {
             let method = cubes(faces, diagonals);
-            for field in [&asteroid as &dyn ScalarField, &gyroid, &Plain(&asteroid)] {
+            for field in [&asteroid as &dyn StudyField, &gyroid, &Plain(&asteroid)] {
                 let run = |extractor: &mut Extractor, threads| {
                     method.extract(extractor, field.into(), &box_grid, 0.0, &Execution { threads }).unwrap()
                 };
@@ -196,7 +196,7 @@ fn threads_and_sources_do_not_show() {
                 }
             }
             // A field that says nothing of itself is sampled everywhere.
-            let run = |field: &dyn ScalarField| {
+            let run = |field: &dyn StudyField| {
                 method.extract(&mut Extractor::new(), field.into(), &box_grid, 0.0, &ONE).unwrap().mesh
             };
             assert!(bits(&run(&asteroid)) == bits(&run(&Plain(&asteroid))));
@@ -205,9 +205,9 @@ fn threads_and_sources_do_not_show() {
 }
 
 /// A field without bounds.
-struct Plain<'a>(&'a dyn ScalarField);
+struct Plain<'a>(&'a dyn StudyField);
 
-impl ScalarField for Plain<'_> {
+impl StudyField for Plain<'_> {
     fn sample(&self, p: Vec3) -> f32 {
         self.0.sample(p)
     }
@@ -221,12 +221,12 @@ fn every_mesh_is_an_oriented_manifold_closed_off_the_box() {
         for is_closed in [false, true] {
             let volume = Volume::random(Arrangement::SimpleCubic, 6, family, seed);
             let volume = if is_closed { volume.closed() } else { volume };
-            let lattice = Grid::from(&volume.lattice());
+            let lattice = BoxGrid::from(&volume.lattice());
             for faces in FACES {
                 for diagonals in DIAGONALS {
                     let what = format!("{family:?} {seed} {is_closed} {faces:?} {diagonals:?}");
                     let method = cubes(faces, diagonals);
-                    let source = Source::Field(&volume);
+                    let source = Source::Study(&volume);
                     let mesh = method.extract(&mut extractor, source, &lattice, 0.0, &ONE).unwrap().mesh;
                     let components = survey(mesh.positions.len(), &mesh.triangles)
                         .unwrap_or_else(|fault| panic!("{what}: {fault}"));
@@ -256,21 +256,19 @@ fn chunks_weld_to_the_whole() {
     let mut numbers = Numbers::new(5);
     let volumes = FAMILIES.map(|family| Volume::random(Arrangement::SimpleCubic, 9, family, 1));
     let asteroid = Asteroid::default();
-    let round = Grid { bounds: Bounds { min: Vec3::splat(-1.0), max: Vec3::splat(1.07) }, spacing: 0.1 };
-    let fields = volumes.iter().map(|volume| (volume as &dyn ScalarField, grid([10; 3])));
-    let fields: Vec<_> = fields.chain([(&asteroid as &dyn ScalarField, round)]).collect();
+    let round = BoxGrid { bounds: Bounds { min: Vec3::splat(-1.0), max: Vec3::splat(1.07) }, spacing: 0.1 };
+    let fields = volumes.iter().map(|volume| (volume as &dyn StudyField, grid([10; 3])));
+    let fields: Vec<_> = fields.chain([(&asteroid as &dyn StudyField, round)]).collect();
     for (field, grid) in fields {
         for faces in FACES {
             let diagonals = DIAGONALS[numbers.below(3) as usize];
-            let method = Cubes { faces, diagonals, ..Cubes::default() };
-            let whole = Method::Cubes(method).extract(&mut Extractor::new(), field.into(), &grid, 0.0, &ONE);
-            let mut extractor = ChunkExtractor::of_cubes(&method, &grid, 0.0).unwrap();
+            let method = cubes(faces, diagonals);
+            let whole = method.extract(&mut Extractor::new(), field.into(), &grid, 0.0, &ONE);
+            let mut extractor = ChunkExtractor::in_box(&grid, &method, &ChunkSettings::default()).unwrap();
             for size in [1 + numbers.below(4) as u32, 7] {
                 let boxes: Vec<_> = extractor.grid(size).collect();
-                let mut parts: Vec<_> = boxes
-                    .into_iter()
-                    .map(|cells| extractor.extract(field.into(), cells, &ONE).unwrap())
-                    .collect();
+                let mut parts: Vec<_> =
+                    boxes.into_iter().map(|cells| extractor.extract(field, cells, &ONE).unwrap()).collect();
                 parts.reverse();
                 for part in &parts {
                     assert!(part.keys.is_sorted() && part.triangle_cells.is_sorted());
@@ -285,11 +283,88 @@ fn chunks_weld_to_the_whole() {
     }
 }
 
+/// Every family of samples, so that many moves are refused.
+#[test]
+fn moved_vertices_weld_to_the_whole() {
+    for (family, faces) in FAMILIES.into_iter().zip(FACES.into_iter().cycle()) {
+        let volume = Volume::random(Arrangement::SimpleCubic, 9, family, 3);
+        let grid = BoxGrid::from(&volume.lattice());
+        for placement in [Placement::Projected, Placement::Relaxed] {
+            let method = Method::Cubes(Cubes { faces, placement, ..Cubes::default() });
+            assert!(method.promises().chunks);
+            let source = Source::Study(&volume);
+            let whole = method.extract(&mut Extractor::new(), source, &grid, 0.0, &ONE).unwrap().mesh;
+            let mut extractor = ChunkExtractor::in_box(&grid, &method, &ChunkSettings::default()).unwrap();
+            let boxes: Vec<_> = extractor.grid(5).collect();
+            let parts: Vec<_> =
+                boxes.into_iter().map(|cells| extractor.extract(source, cells, &ONE).unwrap()).collect();
+            assert!(
+                bits(&weld_chunks(&parts).unwrap()) == bits(&whole),
+                "{family:?} {faces:?} {placement:?}"
+            );
+        }
+    }
+}
+
+/// In grids without an end, also far away, what is welded of small chunks is what is welded of large ones, and closed.
+#[test]
+fn chunks_of_any_size_weld_to_the_same_mesh() {
+    for (origin, spacing) in [([0.0; 3], 0.3), ([-7.3, 1e3, -41.7], 0.3), ([16e3, -1e4, 3.1], 1.0 / 3.0)] {
+        let grid = Grid::try_new(origin, spacing).unwrap();
+        let centre = Vec3::from_array(origin.map(|x| x as f32)) + Vec3::new(0.1, -0.2, 0.1);
+        let ball = from_fn(move |p: [f32; 3]| {
+            let from = Vec3::from(p) - centre;
+            2.6 - from.length() + 0.4 * (5.0 * from.x).sin() * (4.0 * from.y).cos() * (6.0 * from.z).sin()
+        });
+        for (faces, diagonals) in FACES.into_iter().zip(DIAGONALS.into_iter().cycle()) {
+            let method = cubes(faces, diagonals);
+            let mut extractor = ChunkExtractor::try_new(&grid, &method, &ChunkSettings::default()).unwrap();
+            let mut welded = |size: u32, reach: i32| {
+                let ids = (0..(2 * reach).pow(3)).map(|i| {
+                    let n = 2 * reach;
+                    [i % n - reach, i / n % n - reach, i / n / n - reach]
+                });
+                let chunks: Vec<_> =
+                    ids.map(|id| extractor.extract(&ball, grid.chunk(id, size), &ONE).unwrap()).collect();
+                weld_chunks(&chunks).unwrap()
+            };
+            let (large, small) = (welded(16, 1), welded(4, 4));
+            assert!(large.triangles.len() > 1000);
+            assert!(bits(&large) == bits(&small), "{faces:?} {diagonals:?} {origin:?}");
+            let pieces = survey(large.positions.len(), &large.triangles).unwrap();
+            assert!(pieces.iter().all(|piece| piece.1 == 0), "{faces:?}: it is open");
+        }
+    }
+}
+
+/// Samples of the window, or of more than that, in place of the field.
+#[test]
+fn a_window_of_samples_gives_the_chunk_of_the_field() {
+    let grid = Grid::try_new([0.5, -3.0, 12.0], 0.25).unwrap();
+    let wave = from_fn(|[x, y, z]: [f32; 3]| (3.0 * x).sin() + (2.0 * y).cos() - (z - 12.0).sin());
+    for faces in FACES {
+        let method = cubes(faces, Diagonals::Fan);
+        let mut extractor = ChunkExtractor::try_new(&grid, &method, &ChunkSettings::default()).unwrap();
+        let cells = grid.chunk([-1, 0, 2], 8);
+        let of_field = extractor.extract(&wave, cells, &ONE).unwrap();
+        assert!(of_field.triangles.len() > 50);
+        let window = extractor.window(cells).unwrap().unwrap();
+        let [start, end] = [window.start.map(|i| i - 1), window.end.map(|i| i + 3)];
+        for given in [window, extract::CellBox { start, end }] {
+            let mut samples = Vec::new();
+            extractor.layout(given).unwrap().fill(&wave, &mut samples);
+            let of_samples =
+                extractor.extract(Source::Window { cells: given, samples: &samples }, cells, &ONE).unwrap();
+            assert_eq!(of_samples, of_field, "{faces:?}");
+        }
+    }
+}
+
 #[test]
 fn a_sphere_is_a_sphere() {
-    let sphere: &dyn ScalarField = &Sphere { radius: 1.0 };
+    let sphere: &dyn StudyField = &Sphere { radius: 1.0 };
     let round =
-        |spacing| Grid { bounds: Bounds { min: Vec3::splat(-1.13), max: Vec3::splat(1.13) }, spacing };
+        |spacing| BoxGrid { bounds: Bounds { min: Vec3::splat(-1.13), max: Vec3::splat(1.13) }, spacing };
     let volume = 4.0 / 3.0 * std::f64::consts::PI;
     for faces in FACES {
         for diagonals in DIAGONALS {
@@ -320,9 +395,9 @@ fn a_sphere_is_a_sphere() {
 /// Placements move vertices nearer to the surface and change no triangle.
 #[test]
 fn placements_change_positions_only() {
-    let sphere: &dyn ScalarField = &Sphere { radius: 1.0 };
+    let sphere: &dyn StudyField = &Sphere { radius: 1.0 };
     let bounds = Bounds { min: Vec3::splat(-1.13), max: Vec3::splat(1.13) };
-    let grid = Grid { bounds, spacing: 0.2 };
+    let grid = BoxGrid { bounds, spacing: 0.2 };
     let run = |placement, refine_crossings, threads| {
         let method = Cubes { placement, refine_crossings, faces: Faces::Trilinear, ..Cubes::default() };
         Method::Cubes(method)
@@ -359,8 +434,8 @@ fn diagonals_make_better_triangles() {
     let mut means = Vec::new();
     for diagonals in DIAGONALS {
         let method = cubes(Faces::SeparateInside, diagonals);
-        let grid = Grid { bounds, spacing: 0.04 };
-        let source = Source::Field(&asteroid);
+        let grid = BoxGrid { bounds, spacing: 0.04 };
+        let source = Source::Study(&asteroid);
         let mesh = method.extract(&mut Extractor::new(), source, &grid, 0.0, &ONE).unwrap().mesh;
         let corners = |t: usize| mesh.corners(t).map(|p| p.to_array().map(f64::from));
         let sum: f64 = (0..mesh.triangles.len()).map(|t| cells::radius_ratio(corners(t))).sum();
@@ -374,14 +449,14 @@ fn diagonals_make_better_triangles() {
 #[test]
 fn samples_on_the_level_make_no_empty_triangles() {
     struct Steps;
-    impl ScalarField for Steps {
+    impl StudyField for Steps {
         fn sample(&self, p: Vec3) -> f32 {
             (p.x + p.y + p.z).floor() - 7.0
         }
     }
     for faces in FACES {
         let mesh = cubes(faces, Diagonals::Fan)
-            .extract(&mut Extractor::new(), Source::Field(&Steps), &grid([7; 3]), 0.0, &ONE)
+            .extract(&mut Extractor::new(), Source::Study(&Steps), &grid([7; 3]), 0.0, &ONE)
             .unwrap()
             .mesh;
         assert!(mesh.positions.len() > 50);

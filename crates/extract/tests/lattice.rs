@@ -4,7 +4,7 @@ use extract::{
     Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Lattice, LatticeError, Positions,
     extract,
 };
-use field::{ScalarField, Sphere};
+use field::{Sphere, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
 
@@ -113,13 +113,13 @@ fn memory_is_that_of_the_extractor_the_settings_choose() {
     let accumulated = ExtractSettings { positions: Positions::Accumulated { chunks: 8 }, ..indexed };
     let on = |threads| Execution { threads };
     assert_eq!(lattice.memory_bytes_for(&accumulated, &on(1)), lattice.memory_bytes());
-    assert_eq!(lattice.memory_bytes_for(&indexed, &on(1)), lattice.sweep_bytes(1));
-    assert_eq!(lattice.memory_bytes_for(&indexed, &on(4)), lattice.sweep_bytes(4));
+    assert_eq!(lattice.memory_bytes_for(&indexed, &on(1)), lattice.streaming_bytes(1));
+    assert_eq!(lattice.memory_bytes_for(&indexed, &on(4)), lattice.streaming_bytes(4));
     // No more threads than there is work for.
     let most = lattice.memory_bytes_for(&indexed, &on(usize::MAX));
     assert!(most < lattice.memory_bytes() / 4, "{most}");
     let small = body_centred(UNIT, 0.5).unwrap();
-    assert_eq!(small.memory_bytes_for(&indexed, &on(64)), small.sweep_bytes(1));
+    assert_eq!(small.memory_bytes_for(&indexed, &on(64)), small.streaming_bytes(1));
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn settings_are_checked() {
 /// A field of one repeated odd value, and a ball where it is not.
 struct Odd(f32);
 
-impl ScalarField for Odd {
+impl StudyField for Odd {
     fn sample(&self, p: Vec3) -> f32 {
         if p.x > 0.3 { self.0 } else { 0.8 - p.length() }
     }
@@ -201,7 +201,7 @@ fn one_cell_is_a_lattice() {
         let lattice = Lattice::try_new(arrangement, bounds, 2.0).unwrap();
         let corner_ball = |p: Vec3| 1.0 - p.distance(Vec3::ONE);
         struct Of<F>(F);
-        impl<F: Fn(Vec3) -> f32 + Sync> ScalarField for Of<F> {
+        impl<F: Fn(Vec3) -> f32 + Sync> StudyField for Of<F> {
             fn sample(&self, p: Vec3) -> f32 {
                 (self.0)(p)
             }

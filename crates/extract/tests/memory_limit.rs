@@ -5,7 +5,7 @@ use extract::{
     Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extractor, Lattice, Placement,
     Positions, Source, Topology,
 };
-use field::{Gyroid, ScalarField, Sphere};
+use field::{Gyroid, Sphere, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
 use std::alloc::System;
@@ -41,7 +41,7 @@ fn limits() {
 fn lattices_cut_by_cubes_take_what_they_say() {
     let settings = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
     let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
-    let sphere: &dyn ScalarField = &Sphere { radius: 0.8 };
+    let sphere: &dyn StudyField = &Sphere { radius: 0.8 };
     for arrangement in [Arrangement::FiveTetrahedra, Arrangement::FaceCentred] {
         let fine = Lattice::try_new(arrangement, bounds, 1.0 / 128.0).unwrap();
         for threads in [1, 2] {
@@ -67,7 +67,7 @@ fn lattices_cut_by_cubes_take_what_they_say() {
 fn wherever_memory_runs_out_there_is_an_error() {
     const AMOUNTS: usize = 40;
     const TABLES: usize = MB / 8;
-    let field: &dyn ScalarField = &Gyroid::default();
+    let field: &dyn StudyField = &Gyroid::default();
     let lattice = lattice(0.1);
     let one = Execution { threads: 1 };
     let usual = ExtractSettings::default();
@@ -108,7 +108,7 @@ fn wherever_memory_runs_out_there_is_an_error() {
 fn a_long_row_takes_what_crosses() {
     let cells = 1 << 20;
     let bounds = Bounds { min: Vec3::ZERO, max: Vec3::new(cells as f32, 1.0, 1.0) };
-    let step: &dyn ScalarField = &Step(77.3);
+    let step: &dyn StudyField = &Step(77.3);
     for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
         let lattice = Lattice::try_new(arrangement, bounds, 1.0).unwrap();
         let (settings, execution) = (ExtractSettings::default(), Execution { threads: 1 });
@@ -122,7 +122,7 @@ fn a_long_row_takes_what_crosses() {
 /// Inside below a place on the x axis.
 struct Step(f32);
 
-impl ScalarField for Step {
+impl StudyField for Step {
     fn sample(&self, p: Vec3) -> f32 {
         self.0 - p.x
     }
@@ -131,8 +131,8 @@ impl ScalarField for Step {
 fn memory_running_out_is_an_error() {
     let settings = ExtractSettings::default();
     let accumulated = ExtractSettings { positions: Positions::Accumulated { chunks: 16 }, ..settings };
-    let sphere: &dyn ScalarField = &Sphere { radius: 0.8 };
-    let wild: &dyn ScalarField = &Gyroid { frequency: 40.0 };
+    let sphere: &dyn StudyField = &Sphere { radius: 0.8 };
+    let wild: &dyn StudyField = &Gyroid { frequency: 40.0 };
     for threads in [1, 2] {
         let execution = Execution { threads };
         let mut extractor = Extractor::new();
@@ -149,12 +149,12 @@ fn memory_running_out_is_an_error() {
 
         let lattice_of_many = lattice(0.02);
         let room = lattice_of_many.memory_bytes_for(&settings, &execution) as usize + 2 * MB;
-        let mut run = || extractor.extract(Source::Field(wild), &lattice_of_many, &settings, &execution);
+        let mut run = || extractor.extract(Source::Study(wild), &lattice_of_many, &settings, &execution);
         let whole = run().unwrap();
         assert!(whole.counts.vertex_bytes + whole.counts.index_bytes > 10 * MB as u64);
         let mut fresh = Extractor::new();
         let result =
-            within(room, || fresh.extract(Source::Field(wild), &lattice_of_many, &settings, &execution));
+            within(room, || fresh.extract(Source::Study(wild), &lattice_of_many, &settings, &execution));
         assert_eq!(result.unwrap_err(), ExtractError::NoMemoryForMesh);
         let again = fresh.extract(sphere.into(), &lattice(0.1), &settings, &execution).unwrap();
         assert_eq!(again.mesh, small.mesh);

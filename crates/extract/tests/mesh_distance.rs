@@ -7,7 +7,7 @@ use std::thread;
 
 use bunny::{BOX, bunny};
 use extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, Positions, Topology, extract};
-use field::{MeshDistance, MeshFieldError, ScalarField};
+use field::{MeshDistance, MeshFieldError, StudyField};
 use glam::{DVec3, Vec3};
 use mesh::topology::topology;
 use mesh::{MeshError, TriangleMesh, repair};

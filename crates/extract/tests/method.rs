@@ -4,18 +4,18 @@ mod fields;
 mod survey;
 
 use extract::{
-    Arrangement, ChunkExtractor, Clustering, Cubes, Execution, ExtractError, ExtractSettings, Extraction,
-    Extractor, Grid, Lattice, LatticeError, Method, MethodError, Placement, Positions, Source, Tetrahedra,
-    Topology, extract, presets, weld_chunks,
+    Arrangement, BoxGrid, ChunkExtractor, ChunkSettings, Clustering, Cubes, Execution, ExtractError,
+    ExtractSettings, Extraction, Extractor, Lattice, LatticeError, Method, MethodError, Placement, Positions,
+    Source, Tetrahedra, Topology, extract, presets, weld_chunks,
 };
-use field::{ScalarField, Sphere};
+use field::{Sphere, StudyField};
 use fields::{FAMILIES, Volume};
 use glam::Vec3;
 use mesh::{Bounds, TriangleMesh};
 use survey::survey;
 
 const BOX: Bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::new(1.1, 1.2, 1.3) };
-const GRID: Grid = Grid { bounds: BOX, spacing: 0.23 };
+const GRID: BoxGrid = BoxGrid { bounds: BOX, spacing: 0.23 };
 const ONE: Execution = Execution { threads: 1 };
 
 /// Every combination of settings, of those that exist and of those that do not.
@@ -80,7 +80,7 @@ fn a_method_is_the_function_with_its_settings_or_refuses_as_it_does() {
             refine_crossings: tetrahedra.refine_crossings,
         };
         let lattice = Lattice::try_new(tetrahedra.arrangement, BOX, GRID.spacing).unwrap();
-        let source = Source::Field(&sphere);
+        let source = Source::Study(&sphere);
         let result = method.extract_into(&mut extractor, source, &GRID, 0.05, &ONE, &mut extraction);
         match extract(&sphere, &lattice, &settings, &ONE) {
             Ok(expected) => {
@@ -109,7 +109,7 @@ fn a_method_is_the_function_with_its_settings_or_refuses_as_it_does() {
 
 #[test]
 fn an_error_says_what_is_allowed_and_leaves_nothing() {
-    let sphere: &dyn ScalarField = &Sphere { radius: 1.0 };
+    let sphere: &dyn StudyField = &Sphere { radius: 1.0 };
     let of = |arrangement| Method::Tetrahedra(Tetrahedra::new(arrangement));
     let error = of(Arrangement::FaceCentred).check(&GRID).unwrap_err();
     assert!(matches!(error, MethodError::Extract(ExtractError::ArrangementClustering { .. })));
@@ -118,7 +118,7 @@ fn an_error_says_what_is_allowed_and_leaves_nothing() {
 
     let (mut extractor, method) = (Extractor::new(), of(Arrangement::BodyCentred));
     let mut extraction = method.extract(&mut extractor, sphere.into(), &GRID, 0.0, &ONE).unwrap();
-    let flat = Grid { spacing: -1.0, ..GRID };
+    let flat = BoxGrid { spacing: -1.0, ..GRID };
     let error = MethodError::Grid(LatticeError::Spacing { value: -1.0 });
     assert_eq!(method.check(&flat), Err(error.clone()));
     let result = method.extract_into(&mut extractor, sphere.into(), &flat, 0.0, &ONE, &mut extraction);
@@ -145,7 +145,7 @@ fn presets_keep_the_promise_of_a_manifold_whatever_the_samples() {
                 let what = format!("{} {family:?} {seed} closed {is_closed}", preset.id);
                 let volume = Volume::random(arrangement, 4, family, seed);
                 let volume = if is_closed { volume.closed() } else { volume };
-                let (source, grid) = (Source::Field(&volume), Grid::from(&volume.lattice()));
+                let (source, grid) = (Source::Study(&volume), BoxGrid::from(&volume.lattice()));
                 let mesh = preset.method.extract(&mut extractor, source, &grid, 0.0, &ONE).unwrap().mesh;
                 let components = survey(mesh.positions.len(), &mesh.triangles)
                     .unwrap_or_else(|fault| panic!("{what}: {fault}"));
@@ -165,40 +165,35 @@ fn presets_keep_their_other_promises() {
         let (promises, id) = (preset.method.promises(), preset.id);
         preset.method.check(&GRID).unwrap();
         let mesh =
-            preset.method.extract(&mut extractor, (&sphere as &dyn ScalarField).into(), &GRID, 0.0, &ONE);
+            preset.method.extract(&mut extractor, (&sphere as &dyn StudyField).into(), &GRID, 0.0, &ONE);
         let mesh = mesh.unwrap().mesh;
         let placed = |placement| match preset.method {
             Method::Tetrahedra(tetrahedra) => Method::Tetrahedra(Tetrahedra { placement, ..tetrahedra }),
             Method::Cubes(cubes) => Method::Cubes(Cubes { placement, ..cubes }),
             _ => panic!("a new family"),
         };
-        let (lattice, chunks) = match preset.method {
-            Method::Tetrahedra(tetrahedra) => {
-                let lattice = GRID.lattice(tetrahedra.arrangement).unwrap();
-                let chunks = ChunkExtractor::try_new(&lattice, &tetrahedra.settings(0.0));
-                (lattice, chunks)
-            }
-            Method::Cubes(cubes) => {
-                let lattice = GRID.lattice(Arrangement::SimpleCubic).unwrap();
-                (lattice, ChunkExtractor::of_cubes(&cubes, &GRID, 0.0))
-            }
+        let arrangement = match preset.method {
+            Method::Tetrahedra(Tetrahedra { arrangement, .. }) => arrangement,
+            Method::Cubes(_) => Arrangement::SimpleCubic,
             _ => panic!("a new family"),
         };
+        let lattice = GRID.lattice(arrangement).unwrap();
 
         if promises.same_triangles_for_all_placements {
             for placement in [Placement::MeanOfCrossings, Placement::CurvatureWeighted, Placement::Relaxed] {
                 let other = placed(placement)
-                    .extract(&mut extractor, Source::Field(&sphere), &GRID, 0.0, &ONE)
+                    .extract(&mut extractor, Source::Study(&sphere), &GRID, 0.0, &ONE)
                     .unwrap();
                 assert_eq!(other.mesh.triangles, mesh.triangles, "{id} {placement:?}");
             }
         }
+        let chunks = ChunkExtractor::in_box(&GRID, &preset.method, &ChunkSettings::default());
         assert_eq!(chunks.is_ok(), promises.chunks, "{id}");
         if let Ok(mut chunks) = chunks {
             let boxes: Vec<_> = chunks.grid(4).collect();
             let parts: Vec<_> = boxes
                 .into_iter()
-                .map(|cells| chunks.extract(Source::Field(&sphere), cells, &ONE).unwrap())
+                .map(|cells| chunks.extract(Source::Study(&sphere), cells, &ONE).unwrap())
                 .collect();
             assert!(parts.len() > 8, "{id}");
             assert_same(&weld_chunks(&parts).unwrap(), &mesh, id);

@@ -4,7 +4,7 @@ use extract::{
     Arrangement, Clustering, Execution, ExtractSettings, Extraction, Lattice, Placement, Positions, Topology,
     extract,
 };
-use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
+use field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 use glam::Vec3;
 use mesh::topology::topology;
 use mesh::{Bounds, TriangleMesh};
@@ -21,14 +21,14 @@ const UNCLUSTERED: ExtractSettings = ExtractSettings {
     positions: Positions::Indexed,
 };
 
-fn surface(field: &dyn ScalarField, lattice: &Lattice, isovalue: f32) -> Extraction {
+fn surface(field: &dyn StudyField, lattice: &Lattice, isovalue: f32) -> Extraction {
     let settings = ExtractSettings { isovalue, ..ExtractSettings::default() };
     extract(field, lattice, &settings, &Execution { threads: 1 }).unwrap()
 }
 
 struct With<F>(F);
 
-impl<F: Fn(Vec3) -> f32 + Sync> ScalarField for With<F> {
+impl<F: Fn(Vec3) -> f32 + Sync> StudyField for With<F> {
     fn sample(&self, p: Vec3) -> f32 {
         (self.0)(p)
     }
@@ -36,7 +36,7 @@ impl<F: Fn(Vec3) -> f32 + Sync> ScalarField for With<F> {
 
 #[test]
 fn an_isovalue_that_no_sample_passes_gives_an_empty_mesh() {
-    let fields: [&dyn ScalarField; 3] = [&Sphere::default(), &Asteroid::default(), &Gyroid::default()];
+    let fields: [&dyn StudyField; 3] = [&Sphere::default(), &Asteroid::default(), &Gyroid::default()];
     for arrangement in BOTH {
         let lattice = Lattice::try_new(arrangement, CUBE, 0.25).unwrap();
         for field in fields {
@@ -133,7 +133,7 @@ fn bounds_hold_where_positions_are_coarse() {
     #[derive(Clone, Copy)]
     struct Far(bool);
     const MIDDLE: Vec3 = Vec3::new(1e5, -1e5, 2e5);
-    impl ScalarField for Far {
+    impl StudyField for Far {
         fn sample(&self, p: Vec3) -> f32 {
             0.8 - (p - MIDDLE).length()
         }
@@ -153,9 +153,9 @@ fn bounds_hold_where_positions_are_coarse() {
 }
 
 /// A field without its bounds.
-struct Plain<'a>(&'a dyn ScalarField);
+struct Plain<'a>(&'a dyn StudyField);
 
-impl ScalarField for Plain<'_> {
+impl StudyField for Plain<'_> {
     fn sample(&self, p: Vec3) -> f32 {
         self.0.sample(p)
     }
@@ -179,7 +179,7 @@ fn bounds_hold_where_values_are_coarse() {
         let lumpy = Asteroid { radius, amplitude: 0.1 * radius, ..Asteroid::default() };
         for arrangement in BOTH {
             let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
-            for field in [&Sphere { radius } as &dyn ScalarField, &lumpy] {
+            for field in [&Sphere { radius } as &dyn StudyField, &lumpy] {
                 let (with, without) = (surface(field, &lattice, 0.0), surface(&Plain(field), &lattice, 0.0));
                 assert!(
                     with.mesh == without.mesh && with.counts == without.counts,

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use bunny::bunny;
 use extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
-use field::{Holes, MeshDistance, MeshFieldError, ScalarField};
+use field::{Holes, MeshDistance, MeshFieldError, StudyField};
 use glam::{DVec3, Vec3};
 use mesh::topology::topology;
 use mesh::{Bounds, MeshError, TriangleMesh, repair};

@@ -3,10 +3,10 @@
 mod fields;
 
 use extract::{
-    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extractor, Grid, Lattice, Placement,
-    Source, Topology, accuracy, extract,
+    Arrangement, BoxGrid, Clustering, Execution, ExtractError, ExtractSettings, Extractor, Lattice,
+    Placement, Source, Topology, accuracy, extract,
 };
-use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
+use field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 use fields::{FAMILIES, Volume};
 use glam::Vec3;
 use mesh::quality::quality;
@@ -31,7 +31,7 @@ fn others(base: ExtractSettings) -> impl Iterator<Item = ExtractSettings> {
 }
 
 /// What all placements promise beside the published one. Returns how many vertices were moved.
-fn check(field: &dyn ScalarField, lattice: &Lattice, base: ExtractSettings) -> usize {
+fn check(field: &dyn StudyField, lattice: &Lattice, base: ExtractSettings) -> usize {
     let published = extract(field, lattice, &base, &ONE).unwrap().mesh;
     let Bounds { min, max } = lattice.bounds();
     let normal = |mesh: &TriangleMesh, t: usize| {
@@ -65,7 +65,7 @@ fn no_triangle_of_a_smooth_surface_changes_or_turns_over() {
         &ONE,
     );
     let solid = MeshDistance::try_new(&ball.unwrap().mesh).unwrap();
-    let fields: [(&dyn ScalarField, f32); 5] = [
+    let fields: [(&dyn StudyField, f32); 5] = [
         (&Sphere { radius: 0.8 }, 0.1),
         (&Asteroid::default(), 0.1),
         (&Gyroid::default(), 0.1),
@@ -129,7 +129,7 @@ fn projected_vertices_lie_on_the_surface_and_relaxed_ones_make_better_triangles(
     };
     for (arrangement, published_quality) in [(BOTH[0], 0.92), (BOTH[1], 0.845)] {
         let of = |mesh: &TriangleMesh| {
-            let found = accuracy(mesh, &sphere, 0.0, &Grid::from(&lattice(arrangement)), &ONE).unwrap();
+            let found = accuracy(mesh, &sphere, 0.0, &BoxGrid::from(&lattice(arrangement)), &ONE).unwrap();
             (quality(mesh).radius_ratio.mean, found.distance.mean, found.normal_error_deg.mean)
         };
         let off =
@@ -150,7 +150,7 @@ fn projected_vertices_lie_on_the_surface_and_relaxed_ones_make_better_triangles(
 fn refined_crossings_lie_on_the_surface_and_on_their_edges() {
     // The fourth power makes the interpolation poor.
     struct Steep;
-    impl ScalarField for Steep {
+    impl StudyField for Steep {
         fn sample(&self, p: Vec3) -> f32 {
             0.4 - p.length_squared() * p.length_squared()
         }
@@ -180,7 +180,7 @@ fn refined_crossings_lie_on_the_surface_and_on_their_edges() {
 fn curvature_draws_vertices_to_creases() {
     /// A cube turned away from the axes.
     struct Block;
-    impl ScalarField for Block {
+    impl StudyField for Block {
         fn sample(&self, p: Vec3) -> f32 {
             let turned = glam::Quat::from_euler(glam::EulerRot::XYZ, 0.5, 0.7, 0.3) * p;
             0.6 - turned.abs().max_element()
@@ -191,7 +191,7 @@ fn curvature_draws_vertices_to_creases() {
         let distances = [Placement::MeanOfCrossings, Placement::CurvatureWeighted].map(|placement| {
             let settings = ExtractSettings { placement, ..ExtractSettings::default() };
             let mesh = extract(&Block, &lattice, &settings, &ONE).unwrap().mesh;
-            accuracy(&mesh, &Block, 0.0, &Grid::from(&lattice), &ONE).unwrap().distance.mean
+            accuracy(&mesh, &Block, 0.0, &BoxGrid::from(&lattice), &ONE).unwrap().distance.mean
         });
         assert!(distances[1] < 0.9 * distances[0], "{distances:?}");
     }

@@ -8,7 +8,7 @@ use extract::{
     Arrangement, Clustering, Counts, Execution, ExtractSettings, Extraction, Lattice, Positions, Topology,
     extract,
 };
-use field::{Asteroid, ScalarField, Sphere};
+use field::{Asteroid, Sphere, StudyField};
 use glam::Vec3;
 use mesh::{Bounds, TriangleMesh};
 
@@ -54,7 +54,7 @@ fn lattice_of(row: &Row) -> Lattice {
 }
 
 fn extract_row(row: &Row) -> Extraction {
-    let field: &dyn ScalarField = match &row.text("id")[..2] {
+    let field: &dyn StudyField = match &row.text("id")[..2] {
         "ss" => &Sphere { radius: 1.0 },
         "as" => &Asteroid::default(),
         other => panic!("{other}"),

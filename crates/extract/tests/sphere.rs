@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use extract::{
     Arrangement, Clustering, Execution, ExtractSettings, Extraction, Lattice, Positions, Topology, extract,
 };
-use field::{ScalarField, Sphere};
+use field::{Sphere, StudyField};
 use glam::Vec3;
 use mesh::{Bounds, TriangleMesh};
 use topology::{assert_closed_manifold, directed_sides};
@@ -16,7 +16,7 @@ use topology::{assert_closed_manifold, directed_sides};
 const ARRANGEMENTS: [Arrangement; 2] = [Arrangement::BodyCentred, Arrangement::SimpleCubic];
 
 fn run(
-    field: &dyn ScalarField,
+    field: &dyn StudyField,
     arrangement: Arrangement,
     spacing: f32,
     settings: ExtractSettings,

@@ -1,9 +1,11 @@
 //! An extractor that has seen a volume of a size allocates nothing for the next one, whatever the field or the samples.
 
 use extract::{
-    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, Source, Topology,
+    Aabb, Arrangement, Bound, Chunk, ChunkExtractor, ChunkSettings, Clustering, Control, Execution,
+    ExtractSettings, Extraction, Extractor, Grid, Lattice, Method, Normals, ScalarField, Source, Tetrahedra,
+    Topology,
 };
-use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
+use field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
@@ -22,6 +24,7 @@ fn allocations() {
     given_samples_allocate_nothing_either();
     an_extractor_holds_what_the_lattice_says();
     a_lattice_cut_by_cubes_takes_what_it_says();
+    a_moving_window_allocates_nothing_from_the_second_chunk_on();
 }
 
 fn cube() -> Bounds {
@@ -31,7 +34,7 @@ fn cube() -> Bounds {
 fn the_second_volume_of_a_size_allocates_nothing() {
     let coarse = Lattice::try_new(Arrangement::BodyCentred, cube(), 0.2).unwrap();
     let solid = extract::extract(&Sphere::default(), &coarse, &ExtractSettings::default(), &ONE).unwrap();
-    let fields: [(&str, &dyn ScalarField); 4] = [
+    let fields: [(&str, &dyn StudyField); 4] = [
         ("sphere", &Sphere { radius: 0.9 }),
         ("asteroid", &Asteroid::default()),
         // About three points a period: the guard has to look closely.
@@ -44,9 +47,9 @@ fn the_second_volume_of_a_size_allocates_nothing() {
             for topology in [Topology::Guarded, Topology::Published] {
                 let settings = ExtractSettings { clustering, topology, ..ExtractSettings::default() };
                 let (mut extractor, mut extraction) = (Extractor::new(), Extraction::default());
-                let mut run = |field: &dyn ScalarField| {
+                let mut run = |field: &dyn StudyField| {
                     extractor
-                        .extract_into(Source::Field(field), &lattice, &settings, &ONE, &mut extraction)
+                        .extract_into(Source::Study(field), &lattice, &settings, &ONE, &mut extraction)
                         .unwrap();
                     assert!(extraction.counts.triangles > 1000);
                 };
@@ -106,14 +109,14 @@ fn an_extractor_holds_what_the_lattice_says() {
         let lattice = Lattice::try_new(arrangement, cube(), 0.01).unwrap();
         let mut extractor = Extractor::new();
         let mut run = || {
-            let nothing: &dyn ScalarField = &Sphere { radius: -1.0 };
+            let nothing: &dyn StudyField = &Sphere { radius: -1.0 };
             extractor.extract(nothing.into(), &lattice, &ExtractSettings::default(), &ONE).unwrap();
         };
         let region = Region::new(ALLOCATOR);
         run();
         let change = region.change();
         let held = (change.bytes_allocated - change.bytes_deallocated) as f64;
-        let told = lattice.sweep_bytes(1) as f64;
+        let told = lattice.streaming_bytes(1) as f64;
         assert!(held > 0.98 * told && held < 1.1 * told, "{arrangement:?}: {held} bytes, {told} told");
     }
 }
@@ -123,10 +126,73 @@ fn a_lattice_cut_by_cubes_takes_what_it_says() {
     for arrangement in [Arrangement::FiveTetrahedra, Arrangement::FaceCentred] {
         let lattice = Lattice::try_new(arrangement, cube(), 0.01).unwrap();
         let settings = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
-        let nothing: &dyn ScalarField = &Sphere { radius: -1.0 };
+        let nothing: &dyn StudyField = &Sphere { radius: -1.0 };
         let region = Region::new(ALLOCATOR);
         extract::extract(nothing, &lattice, &settings, &ONE).unwrap();
-        let (taken, told) = (region.change().bytes_allocated as f64, lattice.sweep_bytes(1) as f64);
+        let (taken, told) = (region.change().bytes_allocated as f64, lattice.streaming_bytes(1) as f64);
         assert!(taken > 0.98 * told && taken < 1.1 * told, "{arrangement:?}: {taken} bytes, {told} told");
+    }
+}
+
+/// Hills that are the same in all chunks of 16 cells: so is the surface, and no chunk is larger than the first.
+struct Hills {
+    slope: Option<f32>,
+}
+
+impl ScalarField for Hills {
+    fn sample(&self, [x, y, z]: [f32; 3]) -> f32 {
+        let wave = |c: f32| (c.rem_euclid(16.0) * std::f32::consts::TAU / 16.0).sin();
+        4.0 * wave(x) * wave(y) + 8.3 - z
+    }
+
+    fn bound(&self, _: Aabb) -> Bound {
+        self.slope.map_or(Bound::UNKNOWN, Bound::slope)
+    }
+}
+
+fn a_moving_window_allocates_nothing_from_the_second_chunk_on() {
+    let grid = Grid::try_new([0.0; 3], 1.0).unwrap();
+    for arrangement in Arrangement::ALL {
+        let clustering = if arrangement.supports(Clustering::Integrated) {
+            Clustering::Integrated
+        } else {
+            Clustering::None
+        };
+        let method = Method::Tetrahedra(Tetrahedra { clustering, ..Tetrahedra::new(arrangement) });
+        for (slope, normals) in
+            [(None, Normals::Triangles), (Some(3.0), Normals::None), (Some(3.0), Normals::Field)]
+        {
+            let hills = Hills { slope };
+            let settings = ChunkSettings::default().with_normals(normals);
+            let mut extractor = ChunkExtractor::try_new(&grid, &method, &settings).unwrap();
+            let mut chunk = Chunk::default();
+            let mut samples = Vec::new();
+            let mut seen = |id: [i32; 3], given: bool| {
+                let cells = grid.chunk(id, 16);
+                let window = extractor.window(cells).unwrap().unwrap();
+                if given {
+                    extractor.layout(window).unwrap().fill(&hills, &mut samples);
+                }
+                let source = if given {
+                    Source::Window { cells: window, samples: &samples }
+                } else {
+                    Source::from(&hills)
+                };
+                let region = Region::new(ALLOCATOR);
+                extractor.extract_into(source, cells, &Control::default(), &mut chunk).unwrap();
+                let change = region.change();
+                assert!(chunk.triangles.len() > 400);
+                (change.allocations, change.reallocations, change.deallocations)
+            };
+            for given in [false, true] {
+                if given && normals == Normals::Field {
+                    continue;
+                }
+                seen([0; 3], given);
+                for id in [[1, 0, 0], [0, 1, 0], [-1, -7, 0], [1000, 20, 0], [0; 3]] {
+                    assert_eq!(seen(id, given), (0, 0, 0), "{arrangement} {normals:?} given {given} {id:?}");
+                }
+            }
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Surfaces of terrains: closed, sound, of the topology that their name says, and the same with fewer samples.
 
 use extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, extract};
-use field::{ScalarField, Terrain, TerrainCharacter, TerrainSettings};
+use field::{StudyField, Terrain, TerrainCharacter, TerrainSettings};
 use glam::Vec3;
 use mesh::topology::topology;
 use mesh::{Bounds, TriangleMesh};
@@ -17,7 +17,7 @@ fn of(character: TerrainCharacter, seed: u32) -> Terrain {
     terrain(character.settings(seed))
 }
 
-fn mesh_of(field: &dyn ScalarField, bounds: Bounds, arrangement: Arrangement, cells: u32) -> TriangleMesh {
+fn mesh_of(field: &dyn StudyField, bounds: Bounds, arrangement: Arrangement, cells: u32) -> TriangleMesh {
     let lattice = Lattice::try_new(arrangement, bounds, bounds.spacing_of_cells(cells)).unwrap();
     let clustering =
         if arrangement.supports(Clustering::Integrated) { Clustering::Integrated } else { Clustering::None };
@@ -93,7 +93,7 @@ struct Watched<'a> {
     samples: AtomicUsize,
 }
 
-impl ScalarField for Watched<'_> {
+impl StudyField for Watched<'_> {
     fn sample(&self, p: Vec3) -> f32 {
         self.samples.fetch_add(1, Ordering::Relaxed);
         self.field.sample(p)

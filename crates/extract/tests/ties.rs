@@ -4,7 +4,7 @@
 mod fields;
 
 use extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, Topology, extract};
-use field::{Beyond, ScalarField, VolumeField};
+use field::{Beyond, StudyField, VolumeField};
 use fields::{FAMILIES, Family, Numbers, Volume};
 use glam::Vec3;
 use mesh::quality::quality;
@@ -15,18 +15,13 @@ use proptest::prelude::*;
 const CLUSTERINGS: [Clustering; 4] =
     [Clustering::None, Clustering::Integrated, Clustering::EdgeCollapse, Clustering::IntegratedCollapse];
 
-fn mesh_of(
-    field: &dyn ScalarField,
-    lattice: &Lattice,
-    clustering: Clustering,
-    isovalue: f32,
-) -> TriangleMesh {
+fn mesh_of(field: &dyn StudyField, lattice: &Lattice, clustering: Clustering, isovalue: f32) -> TriangleMesh {
     let settings = ExtractSettings { clustering, isovalue, ..ExtractSettings::default() };
     extract(field, lattice, &settings, &Execution { threads: 1 }).unwrap().mesh
 }
 
 /// Every one of the clusterings that the arrangement has.
-fn check(field: &dyn ScalarField, lattice: &Lattice, clusterings: &[Clustering], isovalue: f32, what: &str) {
+fn check(field: &dyn StudyField, lattice: &Lattice, clusterings: &[Clustering], isovalue: f32, what: &str) {
     let arrangement = lattice.arrangement();
     for &clustering in clusterings.iter().filter(|&&clustering| arrangement.supports(clustering)) {
         let mesh = mesh_of(field, lattice, clustering, isovalue);
@@ -96,7 +91,7 @@ fn the_published_topology_keeps_its_rule() {
 /// A height above a level, both exact in `f32`.
 struct Above(f32);
 
-impl ScalarField for Above {
+impl StudyField for Above {
     fn sample(&self, p: Vec3) -> f32 {
         self.0 - p.z
     }
@@ -126,7 +121,7 @@ fn a_plane_through_samples_stays_where_it_is() {
 #[test]
 fn planes_through_samples_turn_no_triangle_over() {
     struct Plane(Vec3);
-    impl ScalarField for Plane {
+    impl StudyField for Plane {
         fn sample(&self, p: Vec3) -> f32 {
             -self.0.dot(p)
         }

@@ -1,7 +1,7 @@
 //! Distances of triangles to the isosurface.
 
 use extract::{Execution, ExtractSettings, Lattice, extract, triangle_distances};
-use field::{ScalarField, Sphere};
+use field::{Sphere, StudyField};
 use glam::Vec3;
 use mesh::{Bounds, TriangleMesh};
 
@@ -11,7 +11,7 @@ const SPACING: f32 = 0.1;
 /// A sphere that does not know where its surface is.
 struct Searched(Sphere);
 
-impl ScalarField for Searched {
+impl StudyField for Searched {
     fn sample(&self, p: Vec3) -> f32 {
         self.0.sample(p)
     }
@@ -34,7 +34,7 @@ fn farthest([a, b, c]: [Vec3; 3]) -> f64 {
 fn they_are_the_farthest_of_seven_points() {
     let mesh = ball();
     let sphere = Sphere { radius: 1.0 };
-    for field in [&sphere as &dyn ScalarField, &Searched(sphere)] {
+    for field in [&sphere as &dyn StudyField, &Searched(sphere)] {
         let found = triangle_distances(&mesh, field, 0.0, SPACING, &ONE).unwrap();
         assert_eq!(found.len(), mesh.triangles.len());
         for (t, found) in found.iter().enumerate() {

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
-use field::{Beyond, Negated, ScalarField, VolumeField, VolumeFieldError};
+use field::{Beyond, Negated, StudyField, VolumeField, VolumeFieldError};
 use glam::{DMat3, DVec3, Vec3};
 use mesh::topology::topology;
 use mesh::{Bounds, TriangleMesh};
@@ -40,7 +40,7 @@ fn middle(field: &VolumeField) -> Vec3 {
     (min + max) * 0.5
 }
 
-fn mesh_of(field: &dyn ScalarField, bounds: Bounds, spacing: f32, isovalue: f32) -> TriangleMesh {
+fn mesh_of(field: &dyn StudyField, bounds: Bounds, spacing: f32, isovalue: f32) -> TriangleMesh {
     let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, spacing).unwrap();
     let settings = ExtractSettings { isovalue, ..ExtractSettings::default() };
     extract(field, &lattice, &settings, &Execution::default()).unwrap().mesh
@@ -140,7 +140,7 @@ struct Watched<'a> {
     samples: AtomicUsize,
 }
 
-impl ScalarField for Watched<'_> {
+impl StudyField for Watched<'_> {
     fn sample(&self, p: Vec3) -> f32 {
         self.samples.fetch_add(1, Ordering::Relaxed);
         self.field.sample(p)

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::asteroid_table::AsteroidTable;
 use super::sine::sin;
-use super::{Kept, ScalarField};
+use super::{Kept, StudyField};
 
 /// A lumpy ball: `f(p) = radius - |p/k| + amplitude * fbm(frequency * ((p/|p|)/k))`, `/k` by component.
 ///
@@ -47,7 +47,7 @@ impl Default for Asteroid {
     }
 }
 
-impl ScalarField for Asteroid {
+impl StudyField for Asteroid {
     fn sample(&self, p: Vec3) -> f32 {
         let distance = p.length();
         if distance == 0.0 {
@@ -58,7 +58,7 @@ impl ScalarField for Asteroid {
     }
 
     /// With the hashes in tables, and bounds.
-    fn prepared<'a>(&self, kept: &'a mut Kept) -> Option<&'a dyn ScalarField> {
+    fn prepared<'a>(&self, kept: &'a mut Kept) -> Option<&'a dyn StudyField> {
         let table =
             kept.get_or_make(|table: &AsteroidTable| table.is_of(self), || AsteroidTable::new(self))?;
         Some(table)

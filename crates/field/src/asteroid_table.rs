@@ -4,7 +4,7 @@ use glam::{Vec3, Vec3A, Vec4};
 use mesh::Bounds;
 
 use super::asteroid::{Asteroid, blend, hash};
-use super::{SAFE, ScalarField, has_sound_lengths};
+use super::{SAFE, StudyField, has_sound_lengths};
 
 /// The most whole-number points of all octaves together: 8 MiB of hashes and slopes.
 const MOST_POINTS: usize = 1 << 20;
@@ -166,7 +166,7 @@ fn directions(bounds: Bounds) -> Option<(Vec3A, Vec3A)> {
     Some(((direction - spread).into(), (direction + spread).into()))
 }
 
-impl ScalarField for AsteroidTable {
+impl StudyField for AsteroidTable {
     #[inline]
     fn sample(&self, p: Vec3) -> f32 {
         let asteroid = &self.asteroid;

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use mesh::Bounds;
 
-use super::ScalarField;
+use super::StudyField;
 
 /// Schoen's gyroid in the usual trigonometric form: `sin x cos y + sin y cos z + sin z cos x`, all coordinates times
 /// `frequency`. Two labyrinths of equal size; one of them is inside.
@@ -20,7 +20,7 @@ impl Default for Gyroid {
     }
 }
 
-impl ScalarField for Gyroid {
+impl StudyField for Gyroid {
     fn sample(&self, p: Vec3) -> f32 {
         let mut value = [0.0];
         self.sample_row(&[p.x], p.y, p.z, &mut value);

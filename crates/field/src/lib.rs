@@ -1,7 +1,8 @@
 //! Scalar fields: what is sampled.
 //!
-//! A [`ScalarField`] is a real function of space, and says what it knows of itself: how fast it changes, what values a
-//! box can have, where its isosurface is. Solids are above the isovalue.
+//! A [`ScalarField`] is a real function of space in plain numbers, and says what values a box can have: what a game
+//! implements. A [`StudyField`] says more of itself: where its isosurface is, and how many samples at once are made
+//! cheaper. Solids are above the isovalue.
 //!
 //! | field | value |
 //! |---|---|
@@ -13,25 +14,39 @@
 //!
 //! No field uses the platform's mathematics: values are the same on every machine.
 
+mod aabb;
+#[cfg(feature = "shapes")]
 mod asteroid;
+#[cfg(feature = "shapes")]
 mod asteroid_table;
+mod check;
 mod fractal;
+#[cfg(feature = "shapes")]
 mod gyroid;
+#[cfg(feature = "shapes")]
 mod mesh_distance;
 mod negated;
 mod noise;
+mod scalar_field;
+#[cfg(feature = "shapes")]
 mod sine;
 mod sphere;
 mod terrain;
 mod volume;
 mod walled;
 
+pub use aabb::Aabb;
+#[cfg(feature = "shapes")]
 pub use asteroid::Asteroid;
+pub use check::{FieldFault, Watched, check_field};
 pub use fractal::{Fractal, MOST_OCTAVES, NoiseShape};
+#[cfg(feature = "shapes")]
 pub use gyroid::Gyroid;
+#[cfg(feature = "shapes")]
 pub use mesh_distance::{Holes, InwardPart, MeshDistance, MeshFieldError};
 pub use negated::Negated;
 pub use noise::{NOISE_CURVATURE, NOISE_SLOPE, noise, noise_and_gradient, noise_range};
+pub use scalar_field::{Bound, FromFn, Plain, ScalarField, from_fn};
 pub use sphere::Sphere;
 pub use terrain::{Terrain, TerrainCharacter, TerrainError, TerrainSettings};
 pub use volume::{Beyond, VolumeField, VolumeFieldError};
@@ -43,11 +58,12 @@ use glam::{DVec3, Vec3};
 use mesh::Bounds;
 use mesh::metro::Foot;
 
-/// A real function of space. A point is inside the solid where the value is above the isovalue.
+/// A real function of space, with all that a study measures by. A point is inside the solid where the value is above the
+/// isovalue. A game is served better by a [`ScalarField`].
 ///
 /// A field must give the same value for the same point every time; then the mesh is the same every time.
 /// `NaN` is allowed and counts as outside.
-pub trait ScalarField: Sync {
+pub trait StudyField: Sync {
     /// The value at `p`.
     fn sample(&self, p: Vec3) -> f32;
 
@@ -91,12 +107,12 @@ pub trait ScalarField: Sync {
     /// then `NaN` if it takes a value to tell. By default what [`slope`](Self::slope) says; override it where more is
     /// known.
     fn range(&self, bounds: Bounds, value: f32) -> Option<(f32, f32)> {
-        let slope = self.slope(bounds)?;
-        let centre = (bounds.min + bounds.max) * 0.5;
-        let size = centre.abs().max_element() + bounds.size().max_element();
-        let radius = bounds.size().length() * 0.5 * SAFE + size * (SAFE - 1.0);
-        let change = slope * radius + value.abs() * (SAFE - 1.0);
-        Some((value - change, value + change))
+        Some(scalar_field::range_by_slope(self.slope(bounds)?, bounds, value))
+    }
+
+    /// How the value changes along x, y and z, where the field knows it.
+    fn gradient(&self, _p: Vec3) -> Option<Vec3> {
+        None
     }
 
     /// The nearest point to `p` of the isosurface, where the field knows it to the rounding of its coordinates. `None`
@@ -113,12 +129,12 @@ pub trait ScalarField: Sync {
 
     /// The same field, value by value to the bit, made ready for very many samples, where that is worth while. What it
     /// takes lies in `kept`, which may hold what another field, or this one before, left there.
-    fn prepared<'a>(&self, _kept: &'a mut Kept) -> Option<&'a dyn ScalarField> {
+    fn prepared<'a>(&self, _kept: &'a mut Kept) -> Option<&'a dyn StudyField> {
         None
     }
 }
 
-impl<F: ScalarField + ?Sized> ScalarField for Box<F>
+impl<F: StudyField + ?Sized> StudyField for Box<F>
 where
     Box<F>: Sync,
 {
@@ -154,7 +170,7 @@ where
         (**self).isosurface_triangles(isovalue)
     }
 
-    fn prepared<'a>(&self, kept: &'a mut Kept) -> Option<&'a dyn ScalarField> {
+    fn prepared<'a>(&self, kept: &'a mut Kept) -> Option<&'a dyn StudyField> {
         (**self).prepared(kept)
     }
 }

@@ -16,7 +16,7 @@ pub use self::parts::InwardPart;
 use self::caps::Caps;
 use self::parts::Enclosed;
 use self::winding::WindingColumns;
-use super::{SAFE, ScalarField};
+use super::{SAFE, StudyField};
 
 /// Why a mesh has no inside to measure from.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -247,7 +247,7 @@ impl MeshDistance {
     }
 }
 
-impl ScalarField for MeshDistance {
+impl StudyField for MeshDistance {
     /// `NaN`, which counts as outside, where `p` is beyond the limit for coordinates or no point at all.
     fn sample(&self, p: Vec3) -> f32 {
         if !is_sound(p) {

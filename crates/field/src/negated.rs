@@ -4,14 +4,14 @@ use glam::{DVec3, Vec3};
 use mesh::Bounds;
 use mesh::metro::Foot;
 
-use super::ScalarField;
+use super::StudyField;
 
 /// Minus a field. With the isovalue negated as well, inside is where the field is *below* its isovalue, as with a
 /// signed distance that is negative inside. A value equal to the isovalue stays outside, and so does `NaN`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Negated<F>(pub F);
 
-impl<F: ScalarField> ScalarField for Negated<F> {
+impl<F: StudyField> StudyField for Negated<F> {
     fn sample(&self, p: Vec3) -> f32 {
         -self.0.sample(p)
     }

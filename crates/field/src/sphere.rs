@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use mesh::Bounds;
 use mesh::metro::Foot;
 
-use super::{ScalarField, has_sound_lengths};
+use super::{StudyField, has_sound_lengths};
 
 /// A ball round the origin: `f(p) = radius - |p|`, the exact signed distance, positive inside.
 ///
@@ -23,7 +23,7 @@ impl Default for Sphere {
     }
 }
 
-impl ScalarField for Sphere {
+impl StudyField for Sphere {
     fn sample(&self, p: Vec3) -> f32 {
         self.radius - p.length()
     }

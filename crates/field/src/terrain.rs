@@ -6,7 +6,7 @@ mod settings;
 use glam::{DVec3, Vec3};
 use mesh::Bounds;
 
-use crate::ScalarField;
+use crate::StudyField;
 use crate::fractal::{Fractal, NoiseShape};
 use relief::Relief;
 pub use settings::{TerrainCharacter, TerrainError, TerrainSettings};
@@ -40,7 +40,7 @@ const HOLLOW: f64 = 10.5;
 /// # Guaranteed
 /// - Values are computed in `f64` with sums, products, quotients and comparisons in a fixed order, and rounded once: the same
 ///   on every machine. (The threshold `t` takes a square root, which IEEE 754 rounds correctly.)
-/// - [`range`](ScalarField::range) and [`slope`](ScalarField::slope) follow from the bounds of [`noise`](crate::noise()).
+/// - [`range`](StudyField::range) and [`slope`](StudyField::slope) follow from the bounds of [`noise`](crate::noise()).
 /// - Closed, and extracted in its own bounds with guarded topology, the mesh has no boundary.
 /// - Without overhangs and caves, no vertical line meets the ground twice.
 ///
@@ -220,7 +220,7 @@ impl Terrain {
     }
 }
 
-impl ScalarField for Terrain {
+impl StudyField for Terrain {
     fn sample(&self, p: Vec3) -> f32 {
         let value = self.value(self.place(p));
         // The least of a number and none is the number.

@@ -9,7 +9,7 @@ use mesh::Bounds;
 use thiserror::Error;
 
 use self::ranges::Ranges;
-use super::{SAFE, ScalarField};
+use super::{SAFE, StudyField};
 
 /// What a volume's value is beyond its outermost samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -268,7 +268,7 @@ impl VolumeField {
     }
 }
 
-impl ScalarField for VolumeField {
+impl StudyField for VolumeField {
     fn sample(&self, p: Vec3) -> f32 {
         let value = self.value(p, Self::interpolated);
         if value.is_finite() { value } else { self.value_with_care(p) }

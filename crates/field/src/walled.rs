@@ -3,7 +3,7 @@
 use glam::Vec3;
 use mesh::Bounds;
 
-use super::ScalarField;
+use super::StudyField;
 
 /// A field whose solid is cut off by a box: on its walls and beyond them no value is above the isovalue.
 ///
@@ -18,7 +18,7 @@ pub struct Walled<F> {
     isovalue: f32,
 }
 
-impl<F: ScalarField> Walled<F> {
+impl<F: StudyField> Walled<F> {
     /// `field` with the walls of `bounds`, for surfaces at `isovalue`.
     pub fn new(field: F, bounds: Bounds, isovalue: f32) -> Self {
         Self { field, bounds, isovalue }
@@ -44,7 +44,7 @@ impl<F: ScalarField> Walled<F> {
     }
 }
 
-impl<F: ScalarField> ScalarField for Walled<F> {
+impl<F: StudyField> StudyField for Walled<F> {
     fn sample(&self, p: Vec3) -> f32 {
         self.walled(p, self.field.sample(p))
     }

@@ -1,6 +1,6 @@
 //! What terrains promise: bounds that hold, and the character that their name says.
 
-use field::{ScalarField, Terrain, TerrainCharacter, TerrainError, TerrainSettings};
+use field::{StudyField, Terrain, TerrainCharacter, TerrainError, TerrainSettings};
 use glam::Vec3;
 use mesh::Bounds;
 use proptest::prelude::*;

@@ -31,8 +31,8 @@
 //!
 //! - Every distance is one to the nearest triangle, in double precision (see [`NearestTriangles::nearest`] for what
 //!   decides which that is); inside and outside do not matter, nor does topology.
-//! - The same surfaces, amount and seed give the same bytes on any number of threads. Work runs on the rayon pool that
-//!   the call is made in.
+//! - The same surfaces, amount and seed give the same bytes on any number of threads. With the feature `rayon`, work runs on
+//!   the pool that the call is made in.
 //! - `max` is a distance that occurs: the one-sided Hausdorff distance is not less.
 //!
 //! # Not guaranteed
@@ -53,6 +53,7 @@ mod samples;
 use std::ops::Range;
 
 use glam::{DVec3, Vec3};
+#[cfg(feature = "rayon")]
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -366,9 +367,10 @@ impl Sums {
 
 /// The sums of all shares, added up in their order.
 fn in_shares(count: u64, sums: impl Fn(Range<u64>) -> Sums + Sync) -> Sums {
-    let shares: Vec<Sums> = (0..count.div_ceil(SHARE))
-        .into_par_iter()
-        .map(|share| sums(share * SHARE..((share + 1) * SHARE).min(count)))
-        .collect();
+    let shares = 0..count.div_ceil(SHARE);
+    #[cfg(feature = "rayon")]
+    let shares = shares.into_par_iter();
+    let shares: Vec<Sums> =
+        shares.map(|share| sums(share * SHARE..((share + 1) * SHARE).min(count))).collect();
     shares.into_iter().fold(Sums::default(), Sums::and)
 }

@@ -8,8 +8,8 @@ use crate::terminal::{say, significant};
 use crate::{input, mesh_file, prepare};
 use anyhow::{Context, Result};
 use clap::{ArgGroup, Args};
-use extract::{Arrangement, Execution, Grid, Method, Tetrahedra};
-use field::ScalarField;
+use extract::{Arrangement, BoxGrid, Execution, Method, Tetrahedra};
+use field::StudyField;
 use mesh::metro::{Amount, Deviation, Metro, Sampling, Surface};
 use serde::Serialize;
 use std::fmt::Write;
@@ -116,7 +116,7 @@ fn to_object(arguments: &Arguments, a: &Surface, id: &str, sampling: &Sampling) 
 /// Against the isosurface of a formula, a volume or a mesh's distance, in its box.
 fn to_source(arguments: &Arguments, a: &Surface, sampling: &Sampling) -> Result<(String, Metro)> {
     let source = arguments.source.read()?.context("something to compare with is needed")?;
-    let field: (&dyn ScalarField, u64) = (&*source.field, source.held);
+    let field: (&dyn StudyField, u64) = (&*source.field, source.held);
     let metro = to_isosurface(arguments, a, field, source.isovalue, &source.grid(), sampling)
         .with_context(|| format!("{} and {}", arguments.a.display(), source.name))?;
     Ok((source.name, metro))
@@ -126,9 +126,9 @@ fn to_source(arguments: &Arguments, a: &Surface, sampling: &Sampling) -> Result<
 fn to_isosurface(
     arguments: &Arguments,
     a: &Surface,
-    (field, held): (&dyn ScalarField, u64),
+    (field, held): (&dyn StudyField, u64),
     isovalue: f32,
-    grid: &Grid,
+    grid: &BoxGrid,
     sampling: &Sampling,
 ) -> Result<Metro> {
     let execution = Execution { threads: arguments.threads as usize };

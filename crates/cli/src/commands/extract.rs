@@ -14,7 +14,7 @@ use crate::{input, mesh_file, prepare};
 use anyhow::{Context, Result, bail};
 use clap::{ArgGroup, Args};
 use extract::{Arrangement, Clustering, Execution, Extractor, Method, Tetrahedra};
-use field::ScalarField;
+use field::StudyField;
 use mesh::TriangleMesh;
 use quality_report::QualityReport;
 use raster::{Camera, Look, Shading, Viewport};
@@ -128,7 +128,7 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     let execution = Execution { threads: arguments.threads as usize };
     prepare::check_limit(&method, &grid, &execution, source.held, arguments.source.limit())
         .with_context(|| source.place())?;
-    let field: &dyn ScalarField = &*source.field;
+    let field: &dyn StudyField = &*source.field;
     let extraction =
         method.extract(&mut Extractor::new(), field.into(), &grid, source.isovalue, &execution)?;
     if extraction.mesh.triangles.is_empty() {

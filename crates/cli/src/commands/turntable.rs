@@ -13,7 +13,7 @@ use crate::{error_colours, input, mesh_file};
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use design::config::{LightFollows, Look, StimulusLook};
-use field::ScalarField;
+use field::StudyField;
 use mesh::TriangleMesh;
 use mesh::normals::area_weighted_normals;
 use raster::{Colouring, Shading, Turntable};
@@ -248,13 +248,13 @@ fn error_colouring(arguments: &Arguments, mesh: &TriangleMesh) -> Result<Colouri
         let spacing = arguments.source.spacing.unwrap_or(object.stimulus_spacing as f32);
         let fields = Fields::new(&study);
         let made = fields.get(index)?;
-        let field: &dyn ScalarField = &*made.field;
+        let field: &dyn StudyField = &*made.field;
         return error_colours::of(mesh, (field, made.isovalue, spacing), most, threads);
     }
     let source = arguments.source.read()?;
     let source = source.context(
         "--colour error: an isosurface is needed to be far from: --object, --field, --volume or --mesh",
     )?;
-    let field: &dyn ScalarField = &*source.field;
+    let field: &dyn StudyField = &*source.field;
     error_colours::of(mesh, (field, source.isovalue, source.spacing), most, threads)
 }

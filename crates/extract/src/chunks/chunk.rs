@@ -1,39 +1,190 @@
 //! What is extracted of a box of cells.
 
-use mesh::{Bounds, TriangleMesh};
+use field::Aabb;
+use glam::Vec3;
+use mesh::TriangleMesh;
 
+use super::world::World;
+use crate::grid::Grid;
 use crate::lattice::CellBox;
+use crate::method::Method;
 use crate::trace::VertexKey;
 
 /// The surface in a box of cells of a larger lattice: a [`ChunkExtractor`](crate::ChunkExtractor) makes it.
 ///
 /// A triangle belongs to the cell whose tetrahedron it lies in, and a cell to one chunk. A vertex on the seam is in all
 /// chunks that have a triangle at it, everywhere with the same key, position and normal, to the bit.
+///
+/// The numbers are plain: `bytemuck::cast_slice` makes bytes for a GPU of [`positions`](Self::positions),
+/// [`normals`](Self::normals) and [`triangles`](Self::triangles), and vectors of any library are made from arrays.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chunk {
     /// The cells whose triangles these are.
     pub cells: CellBox,
-    /// The triangles, in the order of the whole mesh, and their vertices. Normals are those of the whole mesh.
-    pub mesh: TriangleMesh,
+    /// Where the vertices are, in the field's coordinates.
+    pub positions: Vec<[f32; 3]>,
+    /// Outward, of unit length: those of the whole mesh. As many as positions, or none
+    /// ([`Normals::None`](crate::Normals)).
+    pub normals: Vec<[f32; 3]>,
+    /// Numbers of vertices, counter-clockwise seen from outside, in the order of the whole mesh.
+    pub triangles: Vec<[u32; 3]>,
     /// The key of each vertex. Ascending, unless edges were collapsed: then vertices are numbered by first use.
     pub keys: Vec<VertexKey>,
-    /// The cell of each triangle by its number in the whole lattice, x fastest. Ascending.
+    /// The cell of each triangle by its number in `cells`, x fastest. Ascending. See [`cell_of`](Self::cell_of).
     pub triangle_cells: Vec<u32>,
     /// The cells whose samples were looked at.
     pub window: CellBox,
     /// The box of those samples.
-    pub(super) sampled: Bounds,
+    pub(super) sampled: Aabb,
+    /// The box of the vertices.
+    pub(super) bounds: Option<Aabb>,
+    pub(super) world: Option<World>,
     /// Whether vertices of the whole are numbered by first use, not by key.
     pub(super) numbered_by_use: bool,
 }
 
+impl Default for Chunk {
+    /// Of no world: room for chunks to come.
+    fn default() -> Self {
+        Self {
+            cells: CellBox::default(),
+            positions: Vec::new(),
+            normals: Vec::new(),
+            triangles: Vec::new(),
+            keys: Vec::new(),
+            triangle_cells: Vec::new(),
+            window: CellBox::default(),
+            sampled: Aabb { min: [f32::NEG_INFINITY; 3], max: [f32::INFINITY; 3] },
+            bounds: None,
+            world: None,
+            numbered_by_use: false,
+        }
+    }
+}
+
+/// More vertices than 16 bits can name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("{vertices} vertices are more than 16-bit indices can name, which is {}", 1 << 16)]
+pub struct TooManyVertices {
+    /// How many there are.
+    pub vertices: usize,
+}
+
 impl Chunk {
+    /// Makes room for so many vertices, and for the triangles that as many have: twice as many. For chunks whose room is
+    /// made before the first one is extracted.
+    pub fn reserve(&mut self, vertices: usize) {
+        self.positions.reserve(vertices);
+        self.normals.reserve(vertices);
+        self.keys.reserve(vertices);
+        self.triangles.reserve(2 * vertices);
+        self.triangle_cells.reserve(2 * vertices);
+    }
+
     /// Whether the chunk can be another one when the field has changed in this box, and nowhere else. If not, it is the
-    /// same to the bit: nothing in the box was looked at.
+    /// same to the bit: nothing in the box was looked at. [`Grid::touched`] names all such chunks.
     ///
-    /// A bound that is not a number is a change everywhere.
-    pub fn is_touched_by(&self, changed: Bounds) -> bool {
-        let apart = changed.min.cmpgt(self.sampled.max) | changed.max.cmplt(self.sampled.min);
-        !apart.any()
+    /// The box is that of all points whose *value* changes. To dig a ball out of a distance with `min(solid, ball)`
+    /// changes values everywhere outside of the ball that are greater than the distance to it: cut the field off a few
+    /// cells inside the solid, as `examples/dig.rs` does.
+    ///
+    /// A bound that is not a number is a change everywhere. A chunk that was never extracted is touched by everything.
+    pub fn is_touched_by(&self, changed: impl Into<Aabb>) -> bool {
+        self.sampled.meets(&changed.into())
+    }
+
+    /// What it is a chunk of; `None` if it was never extracted.
+    pub fn world(&self) -> Option<&World> {
+        self.world.as_ref()
+    }
+
+    /// Whether it is a chunk of this grid, by this method.
+    pub fn is_of(&self, grid: &Grid, method: &Method) -> bool {
+        self.world.is_some_and(|world| world.grid() == Some(grid) && world.method() == method)
+    }
+
+    /// The lowest corner of its cells.
+    pub fn origin(&self) -> [f64; 3] {
+        self.world.map_or([0.0; 3], |world| world.position(self.cells.start))
+    }
+
+    /// The least box round the vertices, for culling; `None` without any.
+    pub fn bounds(&self) -> Option<Aabb> {
+        self.bounds
+    }
+
+    /// The cell of a triangle, in the whole lattice.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    pub fn cell_of(&self, triangle: usize) -> [i32; 3] {
+        self.cells.cell(self.triangle_cells[triangle])
+    }
+
+    /// Positions less the [`origin`](Self::origin), for a renderer whose origin moves with the player. They are as fine as
+    /// `f32` is at the vertex's own place: at 160,000 units that is 0.016.
+    pub fn relative_positions(&self, relative: &mut Vec<[f32; 3]>) {
+        let origin = self.origin();
+        relative.clear();
+        relative.extend(
+            self.positions.iter().map(|p| [0, 1, 2].map(|axis| (f64::from(p[axis]) - origin[axis]) as f32)),
+        );
+    }
+
+    /// Vertex numbers in 16 bits, three a triangle. A chunk of 32³ cells has some thousand vertices.
+    ///
+    /// # Errors
+    /// [`TooManyVertices`]; then there are none.
+    pub fn indices_u16(&self, indices: &mut Vec<u16>) -> Result<(), TooManyVertices> {
+        indices.clear();
+        if self.positions.len() > 1 << 16 {
+            return Err(TooManyVertices { vertices: self.positions.len() });
+        }
+        indices.extend(self.triangles.iter().flatten().map(|&v| v as u16));
+        Ok(())
+    }
+
+    /// The triangles as a mesh, with vertices of `glam`: a copy.
+    pub fn mesh(&self) -> TriangleMesh {
+        let points = |of: &[[f32; 3]]| of.iter().copied().map(Vec3::from).collect();
+        TriangleMesh {
+            positions: points(&self.positions),
+            normals: points(&self.normals),
+            triangles: self.triangles.clone(),
+        }
+    }
+
+    /// Begins another chunk, in the room that there is.
+    pub(super) fn start(&mut self, world: &World, cells: CellBox, window: CellBox, sampled: Aabb) {
+        self.clear();
+        (self.cells, self.window, self.sampled) = (cells, window, sampled);
+        self.world = Some(*world);
+    }
+
+    /// Empty and of no world; its vectors keep their room.
+    pub(super) fn clear(&mut self) {
+        let Self { positions, normals, triangles, keys, triangle_cells, .. } = self;
+        positions.clear();
+        normals.clear();
+        triangles.clear();
+        keys.clear();
+        triangle_cells.clear();
+        *self = Self {
+            positions: std::mem::take(positions),
+            normals: std::mem::take(normals),
+            triangles: std::mem::take(triangles),
+            keys: std::mem::take(keys),
+            triangle_cells: std::mem::take(triangle_cells),
+            ..Self::default()
+        };
+    }
+
+    /// Finds the box of the vertices.
+    pub(super) fn close(&mut self) {
+        self.bounds = self.positions.iter().fold(None, |bounds: Option<Aabb>, &p| {
+            let Aabb { min, max } = bounds.unwrap_or(Aabb { min: p, max: p });
+            let axes = [0, 1, 2];
+            Some(Aabb { min: axes.map(|i| min[i].min(p[i])), max: axes.map(|i| max[i].max(p[i])) })
+        });
     }
 }

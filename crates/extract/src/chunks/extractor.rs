@@ -1,83 +1,147 @@
 //! Extraction of one chunk after the other.
 
 use std::collections::TryReserveError;
+use std::fmt;
 
-use mesh::TriangleMesh;
+use field::{Aabb, Plain, StudyField, Watched};
+use glam::Vec3;
 
 use super::chunk::Chunk;
-use crate::collapse::collapse_traced;
-use crate::cubes::Rule;
+use super::layout::SampleLayout;
+use super::part::cut_out;
+use super::piece::collapsed;
+use super::settings::{ChunkSettings, Normals};
+use super::settled::Settled;
+use super::world::{Place, World};
+use crate::box_grid::BoxGrid;
+use crate::control::Control;
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::extractor::Extractor;
+use crate::finish::field_targets;
 use crate::grid::Grid;
-use crate::lattice::{CellBox, Lattice};
-use crate::memory::{collected, filled, push};
-use crate::method::Cubes;
-use crate::normals::vertex_normals;
-use crate::settings::{Clustering, Execution, ExtractSettings, Placement, Positions};
+use crate::lattice::{Border, CellBox, Lattice, LatticeError};
+use crate::level::Level;
+use crate::memory::refill;
+use crate::method::{ByWindow, Method};
+use crate::normals::accumulate;
+use crate::settings::{ExtractSettings, Placement, Positions};
 use crate::source::Source;
 
 /// Of what decides about a surface component, this much is tried at first beyond the chunk.
 const FIRST_MARGIN: u32 = 8;
-const NOWHERE: u32 = u32::MAX;
+/// Cells at either end of `i32` that no chunk of a grid without an end has, so that there is room for windows.
+const MARGIN: i32 = 1 << 10;
+/// A vertex that is moved is followed so many cells from the chunk, where its neighbours decide whether it may be.
+const MOST_EXTRA: u32 = 64;
 
-/// Extracts boxes of cells of a lattice, such that neighbours fit and all of them [weld](crate::weld_chunks) to the mesh
-/// that [`extract`](crate::extract) makes of the whole, byte for byte. Its buffers are used again.
+/// Extracts boxes of cells of a grid, such that neighbours fit to the bit, and all of a box [weld](crate::weld_chunks) to
+/// the mesh that [`extract`](crate::extract) makes of the whole, byte for byte.
 ///
-/// To decide as the whole would, more is sampled than the chunk's own cells ([`Chunk::window`]): without edge collapse
-/// two cells on every side, or one where cubes are cut each by itself ([`Arrangement`](crate::Arrangement)). Edges
-/// collapse in an order that runs through a whole connected piece of surface, and an early collapse can decide a late
-/// one anywhere on it: with edge collapse the window therefore grows until it holds every piece of surface that enters
-/// the chunk, if need be to the whole lattice. For terrain that is edited all the time take
-/// [`Clustering::Integrated`], which regularises triangles without looking farther than a neighbour.
+/// To decide as the whole would, more is sampled than the chunk's own cells ([`window`](Self::window)): two cells on every
+/// side, or one where cubes are cut each by itself ([`Arrangement`](crate::Arrangement)) or not at all
+/// ([`Cubes`](crate::Cubes)); one more with [`Placement::Projected`],
+/// two with [`Placement::Relaxed`]. Edges collapse in an order that runs through a whole connected piece of surface, and
+/// an early collapse can decide a late one anywhere on it: with edge collapse the window therefore grows until it holds
+/// every piece of surface that enters the chunk, if need be to the whole box, and there must be one. For terrain that
+/// is edited all the time take [`Clustering::Integrated`](crate::Clustering), which regularises triangles without
+/// looking farther than a neighbour.
+///
+/// Its buffers are used again, wherever the next chunk is: from the second one of a size on,
+/// [`extract_into`](Self::extract_into) allocates nothing on the calling thread alone, as long as the surface does not outgrow
+/// those before it, vertices stay at the mean of their crossings and no edge is collapsed. Marching cubes take new buffers for
+/// each chunk.
 ///
 /// ```
-/// use extract::{Arrangement, ChunkExtractor, Execution, ExtractSettings, Lattice, extract, weld_chunks};
-/// use field::{ScalarField, Sphere};
+/// use extract::{Arrangement, Chunk, ChunkExtractor, ChunkSettings, Control, Grid, Method, Tetrahedra, from_fn};
+///
+/// let grid = Grid::try_new([0.0; 3], 0.1)?;
+/// let method = Method::Tetrahedra(Tetrahedra::new(Arrangement::BodyCentred));
+/// let mut extractor = ChunkExtractor::try_new(&grid, &method, &ChunkSettings::default())?;
+/// let ball = from_fn(|[x, y, z]| 1.0 - (x * x + y * y + z * z).sqrt());
+/// let mut chunk = Chunk::default();
+/// extractor.extract_into(&ball, grid.chunk([-1, 0, 0], 16), &Control::default(), &mut chunk)?;
+/// assert!(chunk.triangles.len() > 500 && chunk.positions.iter().all(|p| p[0] < 0.1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// A box in chunks is the whole:
+///
+/// ```
+/// use extract::{Arrangement, BoxGrid, ChunkExtractor, ChunkSettings, Control, Method, Tetrahedra, weld_chunks};
+/// use extract::{Execution, ExtractSettings, extract};
+/// use field::{Sphere, StudyField};
 /// # use glam::Vec3;
 /// # use mesh::Bounds;
 /// # let bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) };
-/// let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.05)?;
-/// let (settings, execution) = (ExtractSettings::default(), Execution::default());
-/// let sphere: &dyn ScalarField = &Sphere { radius: 1.0 };
-/// let mut extractor = ChunkExtractor::try_new(&lattice, &settings)?;
+/// let grid = BoxGrid { bounds, spacing: 0.05 };
+/// let method = Method::Tetrahedra(Tetrahedra::new(Arrangement::BodyCentred));
+/// let sphere: &dyn StudyField = &Sphere { radius: 1.0 };
+/// let mut extractor = ChunkExtractor::in_box(&grid, &method, &ChunkSettings::default())?;
 /// let mut chunks = Vec::new();
 /// for cells in extractor.grid(16) {
-///     chunks.push(extractor.extract(sphere.into(), cells, &execution)?);
+///     chunks.push(extractor.extract(sphere, cells, &Control::default())?);
 /// }
-/// assert_eq!(weld_chunks(&chunks)?, extract(sphere, &lattice, &settings, &execution)?.mesh);
+/// let lattice = grid.lattice(Arrangement::BodyCentred)?;
+/// let whole = extract(sphere, &lattice, &ExtractSettings::default(), &Execution::default())?;
+/// assert_eq!(weld_chunks(&chunks)?, whole.mesh);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct ChunkExtractor {
-    lattice: Lattice,
-    settings: ExtractSettings,
-    cubes: Option<Rule>,
+    world: World,
+    how: ByWindow,
+    /// Of a box, its lattice.
+    whole: Option<Lattice>,
+    /// `None` with edge collapse.
+    halo: Option<u32>,
     extractor: Extractor,
     extraction: Extraction,
     samples: Vec<f32>,
+    numbers: Vec<u32>,
+    settled: Settled,
 }
 
 /// Why a chunk cannot be extracted.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ChunkError {
-    /// The settings or the samples are not valid, or there is no memory.
+    /// The settings or the samples are not valid, there is no memory, or somebody cancelled it.
     #[error(transparent)]
     Extract(#[from] ExtractError),
-    /// A box without a cell, or with cells that the lattice does not have.
-    #[error("cells {:?} to {:?} are not a box of cells of a lattice of {lattice:?}", given.start, given.end)]
+    /// A box without a cell, or with cells that there are not.
+    #[error("cells {:?} to {:?} are not a box of the cells {:?} to {:?}", given.start, given.end, whole.start, whole.end)]
     Cells {
         /// What was given.
         given: CellBox,
-        /// [`Lattice::cells`].
-        lattice: [u32; 3],
+        /// All cells.
+        whole: CellBox,
     },
+    /// The samples of a box that does not contain the window.
+    #[error("samples of the cells {:?} to {:?}, where those of {:?} to {:?} are looked at", given.start, given.end, wanted.start, wanted.end)]
+    Window {
+        /// What was given.
+        given: CellBox,
+        /// What is looked at.
+        wanted: CellBox,
+    },
+    /// [`Source::Samples`], all of them, of a grid without an end.
+    #[error("a grid without an end has no last sample: give a Source::Window")]
+    EndlessSamples,
+    /// Edge collapse in a grid without an end: a piece of surface may have none either.
+    #[error("edge collapse needs a box")]
+    EndlessCollapse,
+    /// [`Normals::Field`] of samples.
+    #[error("samples have no gradient between them: Normals::Field needs a field")]
+    NormalsNeedField,
+    /// A method without chunks.
+    #[error("this method makes no chunks")]
+    Method,
     /// [`Positions::Accumulated`]: a position depends on all before it.
     #[error("chunks need indexed positions")]
     Accumulated,
-    /// Vertices that are moved elsewhere: whether one may move depends on its neighbours, whose moves depend on theirs.
+    /// Vertices where chunks have none: refined crossings, weights by curvature, or moves after edges were collapsed.
     #[error(
-        "chunks have vertices at the mean of interpolated crossings, not {placement:?}{}",
+        "chunks have vertices at the mean of interpolated crossings, projected or relaxed, without edge collapse; not \
+         {placement:?}{}",
         if *refine_crossings { " with refined crossings" } else { "" }
     )]
     Placement {
@@ -86,6 +150,9 @@ pub enum ChunkError {
         /// What was given.
         refine_crossings: bool,
     },
+    /// Whether a vertex may move depends on others more than 64 cells away.
+    #[error("whether vertices may move depends on others more than {MOST_EXTRA} cells away")]
+    Unsettled,
 }
 
 impl From<TryReserveError> for ChunkError {
@@ -94,94 +161,327 @@ impl From<TryReserveError> for ChunkError {
     }
 }
 
+impl From<LatticeError> for ChunkError {
+    fn from(error: LatticeError) -> Self {
+        Self::Extract(error.into())
+    }
+}
+
+impl fmt::Debug for ChunkExtractor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ChunkExtractor").field("world", &self.world).finish_non_exhaustive()
+    }
+}
+
 impl ChunkExtractor {
-    /// An extractor for chunks of `lattice`, without buffers yet.
+    /// An extractor for chunks of a grid without an end, without buffers yet.
     ///
     /// # Errors
-    /// [`ChunkError::Accumulated`], [`ChunkError::Placement`], and [`ChunkError::Extract`] where no mesh could be made
-    /// of the whole either.
-    pub fn try_new(lattice: &Lattice, settings: &ExtractSettings) -> Result<Self, ChunkError> {
-        check(settings, lattice.arrangement())?;
+    /// [`ChunkError::Method`], [`ChunkError::Accumulated`], [`ChunkError::Placement`], [`ChunkError::EndlessCollapse`], and
+    /// [`ChunkError::Extract`] where the method's settings do not go together or the isovalue is not finite.
+    pub fn try_new(grid: &Grid, method: &Method, settings: &ChunkSettings) -> Result<Self, ChunkError> {
+        let extractor = Self::new(Place::Endless(*grid), method, settings)?;
+        if extractor.halo.is_none() {
+            return Err(ChunkError::EndlessCollapse);
+        }
+        Ok(extractor)
+    }
+
+    /// The same for a box of cells, which ends where the box does.
+    ///
+    /// # Errors
+    /// The same, but for [`ChunkError::EndlessCollapse`]; [`ChunkError::Extract`] if the box is no grid for the method, too.
+    pub fn in_box(grid: &BoxGrid, method: &Method, settings: &ChunkSettings) -> Result<Self, ChunkError> {
+        Self::new(Place::Box(*grid), method, settings)
+    }
+
+    fn new(place: Place, method: &Method, settings: &ChunkSettings) -> Result<Self, ChunkError> {
+        let how = method.by_window(settings.isovalue).ok_or(ChunkError::Method)?;
+        let world = World { place, method: *method, settings: *settings };
+        let ByWindow { arrangement, settings, .. } = how;
+        check(&settings, arrangement)?;
         if settings.positions != Positions::Indexed {
             return Err(ChunkError::Accumulated);
         }
-        if settings.placement != Placement::MeanOfCrossings || settings.refine_crossings {
-            let (placement, refine_crossings) = (settings.placement, settings.refine_crossings);
+        let (placement, refine_crossings) = (settings.placement, settings.refine_crossings);
+        let moves_here = match placement {
+            Placement::MeanOfCrossings => true,
+            Placement::Projected | Placement::Relaxed => !settings.clustering.collapses(),
+            Placement::CurvatureWeighted => false,
+        };
+        if !moves_here || refine_crossings {
             return Err(ChunkError::Placement { placement, refine_crossings });
         }
+        let whole = match place {
+            Place::Endless(_) => None,
+            Place::Box(grid) => Some(grid.lattice(arrangement)?),
+        };
         let mut extractor = Extractor::new();
         extractor.traced = true;
-        let (lattice, settings) = (lattice.clone(), *settings);
-        let extraction = Extraction::default();
-        Ok(Self { lattice, settings, cubes: None, extractor, extraction, samples: Vec::new() })
+        Ok(Self {
+            world,
+            how,
+            whole,
+            halo: method.halo(),
+            extractor,
+            extraction: Extraction::default(),
+            samples: Vec::new(),
+            numbers: Vec::new(),
+            settled: Settled::default(),
+        })
     }
 
-    /// The same for marching cubes, on the grid's own cubes.
+    /// Makes room for windows with so many vertices and twice as many triangles, so that not even a surface larger than all
+    /// before allocates. A window is larger than its chunk: 36³ cells for 32³, body-centred.
     ///
     /// # Errors
-    /// As [`try_new`](Self::try_new); [`ChunkError::Extract`] also for a grid that is none for the method.
-    pub fn of_cubes(cubes: &Cubes, grid: &Grid, isovalue: f32) -> Result<Self, ChunkError> {
-        let lattice = grid.lattice(Cubes::ARRANGEMENT).map_err(ExtractError::from)?;
-        let extractor = Self::try_new(&lattice, &cubes.settings(isovalue))?;
-        Ok(Self { cubes: Some(cubes.rule()), ..extractor })
+    /// [`ChunkError::Extract`] if there is no memory.
+    pub fn reserve(&mut self, vertices: usize) -> Result<(), ChunkError> {
+        let (mesh, trace) = (&mut self.extraction.mesh, &mut self.extractor.trace);
+        mesh.positions.try_reserve(vertices)?;
+        mesh.normals.try_reserve(vertices)?;
+        mesh.triangles.try_reserve(2 * vertices)?;
+        trace.keys.try_reserve(vertices)?;
+        trace.cells.try_reserve(2 * vertices)?;
+        self.numbers.try_reserve(vertices)?;
+        Ok(())
     }
 
-    /// The lattice in boxes of so many cells a side, x fastest; the last ones on each axis may be smaller. With 0 there
-    /// are none.
+    /// What its chunks are chunks of.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The box in boxes of so many cells a side, x fastest; the last ones on each axis may be smaller. With 0 there are none,
+    /// and none of a grid without an end.
     pub fn grid(&self, cells: u32) -> impl Iterator<Item = CellBox> + use<> {
-        let all = self.lattice.cells();
+        let all = self.whole.as_ref().map_or([0; 3], Lattice::cells);
         let [nx, ny, nz] = all.map(|n| n.checked_div(cells).map_or(0, |_| n.div_ceil(cells)));
         let boxes = (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
         boxes.map(move |place| {
             let start = place.map(|i| i * cells);
-            CellBox { start, end: [0, 1, 2].map(|axis| start[axis].saturating_add(cells).min(all[axis])) }
+            let end = [0, 1, 2].map(|axis| start[axis].saturating_add(cells).min(all[axis]));
+            CellBox { start: start.map(|i| i as i32), end: end.map(|i| i as i32) }
         })
     }
 
-    /// Extracts the surface in a box of cells. `source` is that of the whole lattice: a field, or all its samples.
-    ///
-    /// The chunk depends on the source, the lattice, the settings and the box, never on `execution`. With chunks in
-    /// several threads, each with an extractor of its own, one thread each is best.
+    /// The cells whose samples the chunk of a box depends on. `None` with edge collapse, where the surface decides.
     ///
     /// # Errors
-    /// [`ChunkError::Cells`]; [`ChunkError::Extract`] for what [`extract`](crate::extract) refuses.
-    pub fn extract(
+    /// [`ChunkError::Cells`].
+    pub fn window(&self, cells: CellBox) -> Result<Option<CellBox>, ChunkError> {
+        let whole = self.check(cells)?;
+        Ok(self.halo.map(|halo| cells.grown(halo, &whole)))
+    }
+
+    /// Where the samples of a box of cells are in a [`Source::Window`].
+    ///
+    /// # Errors
+    /// [`ChunkError::Cells`]; [`ChunkError::Extract`] for more samples than there may be.
+    pub fn layout(&self, cells: CellBox) -> Result<SampleLayout, ChunkError> {
+        self.check(cells)?;
+        Ok(SampleLayout::new(self.lattice(cells)?, Border::of(&self.how.settings)))
+    }
+
+    /// Extracts the surface in a box of cells, as [`extract_into`](Self::extract_into).
+    ///
+    /// # Errors
+    /// The same.
+    pub fn extract<'s, 'c>(
         &mut self,
-        source: Source,
+        source: impl Into<Source<'s>>,
         cells: CellBox,
-        execution: &Execution,
+        control: impl Into<Control<'c>>,
     ) -> Result<Chunk, ChunkError> {
-        let whole = self.lattice.cell_box();
-        if cells.is_empty() || (0..3).any(|axis| cells.end[axis] > whole.end[axis]) {
-            return Err(ChunkError::Cells { given: cells, lattice: self.lattice.cells() });
-        }
-        let unmerged = match self.settings.clustering {
-            Clustering::None | Clustering::Integrated => {
-                let window = cells.grown(self.halo(), &whole);
-                if self.is_on_one_side(source, window) {
-                    return Ok(self.empty(cells, window));
+        let mut chunk = Chunk::default();
+        self.extract_into(source, cells, control, &mut chunk)?;
+        Ok(chunk)
+    }
+
+    /// Extracts the surface in a box of cells into `chunk`, whose vectors are used again. After an error it is empty and of no
+    /// world; the extractor is as good as before.
+    ///
+    /// The chunk depends on the source, the grid, the method, the settings and the box, never on `control`. With chunks in
+    /// several threads, each with an extractor of its own, the calling thread alone is best, which is the default.
+    ///
+    /// # Errors
+    /// [`ChunkError::Cells`], [`ChunkError::Window`], [`ChunkError::EndlessSamples`], [`ChunkError::NormalsNeedField`],
+    /// [`ChunkError::Unsettled`]; [`ChunkError::Extract`] for what [`extract`](crate::extract) refuses.
+    pub fn extract_into<'s, 'c>(
+        &mut self,
+        source: impl Into<Source<'s>>,
+        cells: CellBox,
+        control: impl Into<Control<'c>>,
+        chunk: &mut Chunk,
+    ) -> Result<(), ChunkError> {
+        let control = control.into();
+        let result = match source.into() {
+            // In debug builds somebody looks whether it keeps its promises.
+            Source::Field(field) if cfg!(debug_assertions) => {
+                self.from_field(&Watched::new(field), cells, control, chunk)
+            }
+            Source::Field(field) => self.from_field(&Plain(field), cells, control, chunk),
+            Source::Study(field) => self.from_field(field, cells, control, chunk),
+            Source::Samples(samples) => match &self.whole {
+                Some(whole) => {
+                    let whole = whole.cell_box();
+                    self.from_samples((whole, samples), cells, control, chunk)
                 }
-                self.extract_window(source, window, self.settings.clustering, execution)?;
-                return Ok(self.part(cells, window)?);
+                None => Err(ChunkError::EndlessSamples),
+            },
+            Source::Window { cells: given, samples } => {
+                self.from_samples((given, samples), cells, control, chunk)
             }
-            Clustering::EdgeCollapse => Clustering::None,
-            Clustering::IntegratedCollapse => Clustering::Integrated,
         };
-        let mut margin = self.halo() + FIRST_MARGIN;
-        loop {
-            let window = cells.grown(margin, &whole);
-            self.extract_window(source, window, unmerged, execution)?;
-            if let Some(chunk) = self.collapsed_part(cells, window)? {
-                return Ok(chunk);
+        if result.is_err() {
+            chunk.clear();
+        }
+        result
+    }
+
+    fn from_samples(
+        &mut self,
+        (given, samples): (CellBox, &[f32]),
+        cells: CellBox,
+        control: Control,
+        chunk: &mut Chunk,
+    ) -> Result<(), ChunkError> {
+        crate::placement::check(&self.how.settings, false)?;
+        if self.world.settings.normals == Normals::Field {
+            return Err(ChunkError::NormalsNeedField);
+        }
+        self.check(given)?;
+        let lattice = self.lattice(given)?;
+        let (found, wanted) = (samples.len() as u64, lattice.stored_samples());
+        if found != wanted {
+            return Err(ExtractError::SampleCount { given: found, wanted }.into());
+        }
+        self.by_windows(Given::Samples(&lattice, samples), cells, control, chunk)
+    }
+
+    fn from_field(
+        &mut self,
+        field: &dyn StudyField,
+        cells: CellBox,
+        control: Control,
+        chunk: &mut Chunk,
+    ) -> Result<(), ChunkError> {
+        self.by_windows(Given::Field(field), cells, control, chunk)?;
+        if self.world.settings.normals == Normals::Field {
+            let (isovalue, spacing) = (self.how.settings.isovalue, self.spacing());
+            let level = Level { field, isovalue, spacing };
+            for (p, normal) in chunk.positions.iter().zip(&mut chunk.normals) {
+                if let Some(outward) = level.normal(Vec3::from(*p)) {
+                    *normal = outward.to_array();
+                }
             }
-            margin = margin.saturating_mul(2);
+        }
+        Ok(())
+    }
+
+    /// Finds the window that decides, and cuts the chunk out of its surface.
+    fn by_windows(
+        &mut self,
+        given: Given,
+        cells: CellBox,
+        control: Control,
+        chunk: &mut Chunk,
+    ) -> Result<(), ChunkError> {
+        let whole = self.check(cells)?;
+        let (placement, normals) = (self.how.settings.placement, self.world.settings.normals);
+        let Some(halo) = self.halo else {
+            let halo = self.how.halo;
+            let mut margin = halo + FIRST_MARGIN;
+            loop {
+                let window = cells.grown(margin, &whole);
+                let lattice = self.extract_window(given, window, control)?;
+                self.start(chunk, cells, &lattice);
+                chunk.numbered_by_use = true;
+                let (mesh, trace) = (&self.extraction.mesh, &self.extractor.trace);
+                let as_in_whole = window.shrunk(halo, &whole);
+                if collapsed(
+                    mesh,
+                    trace,
+                    &lattice,
+                    as_in_whole,
+                    (self.how.settings.topology, normals),
+                    chunk,
+                )? {
+                    chunk.close();
+                    return Ok(());
+                }
+                margin = margin.saturating_mul(2);
+            }
+        };
+        let mut extra = 0;
+        loop {
+            let window = cells.grown(halo + extra, &whole);
+            let is_settled = if let Given::Field(field) = given
+                && self.is_on_one_side(field, &self.lattice(window)?)
+            {
+                let lattice = self.lattice(window)?;
+                self.start(chunk, cells, &lattice);
+                chunk.close();
+                return Ok(());
+            } else {
+                let lattice = self.extract_window(given, window, control)?;
+                let is_settled = match given {
+                    Given::Field(field) if placement.calls_the_field() => {
+                        self.move_vertices(field, cells, &lattice, &whole, control)?
+                    }
+                    _ => true,
+                };
+                self.start(chunk, cells, &lattice);
+                is_settled.then_some(lattice)
+            };
+            if let Some(lattice) = is_settled {
+                let (mesh, trace) = (&self.extraction.mesh, &self.extractor.trace);
+                cut_out(mesh, trace, &lattice, &mut self.numbers, normals, chunk)?;
+                chunk.close();
+                return Ok(());
+            }
+            extra = (2 * extra).max(4);
+            if extra > MOST_EXTRA {
+                return Err(ChunkError::Unsettled);
+            }
         }
     }
 
-    /// Whether the field says that no surface is in a window. What the sweep would find out, without its preparations.
-    fn is_on_one_side(&self, source: Source, window: CellBox) -> bool {
-        let Source::Field(field) = source else { return false };
-        let bounds = self.lattice.window(window).sampled_bounds();
+    /// All cells that there are.
+    fn check(&self, cells: CellBox) -> Result<CellBox, ChunkError> {
+        let whole = match &self.whole {
+            Some(whole) => whole.cell_box(),
+            None => CellBox { start: [i32::MIN + MARGIN; 3], end: [i32::MAX - MARGIN; 3] },
+        };
+        if cells.is_empty() || !whole.contains_box(&cells) {
+            return Err(ChunkError::Cells { given: cells, whole });
+        }
+        Ok(if self.whole.is_some() { whole } else { CellBox { start: [i32::MIN; 3], end: [i32::MAX; 3] } })
+    }
+
+    /// The cells of a box as a lattice.
+    fn lattice(&self, cells: CellBox) -> Result<Lattice, ChunkError> {
+        match (&self.whole, &self.world.place) {
+            (Some(whole), _) => Ok(whole.window(cells)),
+            (None, Place::Endless(grid)) => Ok(Lattice::endless(self.how.arrangement, grid, cells)?),
+            (None, Place::Box(grid)) => Ok(grid.lattice(self.how.arrangement)?.window(cells)),
+        }
+    }
+
+    fn spacing(&self) -> f32 {
+        match &self.world.place {
+            Place::Endless(grid) => grid.spacing() as f32,
+            Place::Box(grid) => grid.spacing,
+        }
+    }
+
+    fn start(&self, chunk: &mut Chunk, cells: CellBox, window: &Lattice) {
+        chunk.start(&self.world, cells, window.cell_box(), Aabb::from(window.sampled_bounds()));
+    }
+
+    /// Whether the field says that no surface is in a window. What streaming would find out, without its preparations.
+    fn is_on_one_side(&self, field: &dyn StudyField, window: &Lattice) -> bool {
+        let bounds = window.sampled_bounds();
         // Some fields can tell without a value.
         let range = field.range(bounds, f32::NAN).and_then(|(low, high)| {
             let needs_value = low.is_nan() || high.is_nan();
@@ -191,183 +491,91 @@ impl ChunkExtractor {
                 Some((low, high))
             }
         });
-        range.is_some_and(|(low, high)| low > self.settings.isovalue || high <= self.settings.isovalue)
+        range
+            .is_some_and(|(low, high)| low > self.how.settings.isovalue || high <= self.how.settings.isovalue)
     }
 
-    /// How many cells beyond a triangle's own its vertices and their normals depend on: a vertex of a cell is one of its
-    /// neighbours' too, their other vertices give it its normal, and those depend on samples one lattice edge away.
-    /// Where cubes are cut each by itself the last step leads no farther.
-    fn halo(&self) -> u32 {
-        if self.lattice.arrangement().uniform().is_some() && self.cubes.is_none() { 2 } else { 1 }
-    }
-
-    /// Extracts the lattice within a box, with its trace.
+    /// Extracts the lattice within a box, with its trace, before vertices are moved or edges collapsed.
     fn extract_window(
         &mut self,
-        source: Source,
+        given: Given,
         window: CellBox,
-        clustering: Clustering,
-        execution: &Execution,
-    ) -> Result<(), ChunkError> {
-        let lattice = self.lattice.window(window);
-        let source = match source {
-            Source::Field(_) => source,
-            Source::Samples(all) => {
-                let (given, wanted) = (all.len() as u64, self.lattice.stored_samples());
-                if given != wanted {
-                    return Err(ExtractError::SampleCount { given, wanted }.into());
+        control: Control,
+    ) -> Result<Lattice, ChunkError> {
+        let lattice = self.lattice(window)?;
+        let source = match given {
+            Given::Field(field) => Source::Study(field),
+            Given::Samples(from, samples) if from.cell_box() == window => Source::Samples(samples),
+            Given::Samples(from, samples) => {
+                if !from.cell_box().contains_box(&window) {
+                    return Err(ChunkError::Window { given: from.cell_box(), wanted: window });
                 }
-                let [nx, ny, nz] = lattice.stored_grid().map(|n| n as usize);
+                let size = lattice.stored_grid().map(|n| n as usize);
+                let [stride, rows, _] = from.stored_grid().map(|n| n as usize);
+                let (first, all) = (lattice.first_stored(), from.first_stored());
+                let [x, y, z] = [0, 1, 2].map(|axis| (first[axis] - all[axis]) as usize);
                 self.samples.clear();
-                self.samples.try_reserve(nx * ny * nz)?;
-                for (z, y) in (0..nz).flat_map(|z| (0..ny).map(move |y| (z, y))) {
-                    let first = lattice.point_number([0, y, z]) as usize;
-                    self.samples.extend_from_slice(&all[first..first + nx]);
+                self.samples.try_reserve(size.iter().product())?;
+                for (k, j) in (0..size[2]).flat_map(|k| (0..size[1]).map(move |j| (k, j))) {
+                    let start = ((z + k) * rows + y + j) * stride + x;
+                    self.samples.extend_from_slice(&samples[start..start + size[0]]);
                 }
                 Source::Samples(&self.samples)
             }
         };
-        let settings = ExtractSettings { clustering, ..self.settings };
-        let extraction = &mut self.extraction;
-        match self.cubes {
-            None => self.extractor.extract_into(source, &lattice, &settings, execution, extraction)?,
-            Some(rule) => {
-                self.extractor.extract_cubes_into(source, &lattice, &settings, rule, execution, extraction)?
-            }
-        }
-        Ok(())
-    }
-
-    /// The chunk's triangles of the window, with the vertices that they use and those of the chunk's own points.
-    fn part(&self, cells: CellBox, window: CellBox) -> Result<Chunk, TryReserveError> {
-        let (mesh, trace) = (&self.extraction.mesh, &self.extractor.trace);
-        let own = |&t: &usize| cells.contains(self.lattice.cell_of_number(trace.cells[t]));
-        let mut numbers = collected(trace.keys.iter().map(|key| {
-            let own = cells.contains(self.lattice.cell_of_point(key.point()));
-            if own { 0 } else { NOWHERE }
-        }))?;
-        let mut chunk = self.empty(cells, window);
-        for t in (0..mesh.triangles.len()).filter(own) {
-            push(&mut chunk.mesh.triangles, mesh.triangles[t])?;
-            push(&mut chunk.triangle_cells, trace.cells[t])?;
-            mesh.triangles[t].iter().for_each(|&v| numbers[v as usize] = 0);
-        }
-        for (v, number) in numbers.iter_mut().enumerate().filter(|(_, number)| **number != NOWHERE) {
-            *number = chunk.keys.len() as u32;
-            push(&mut chunk.keys, trace.keys[v])?;
-            push(&mut chunk.mesh.positions, mesh.positions[v])?;
-            push(&mut chunk.mesh.normals, mesh.normals[v])?;
-        }
-        chunk.mesh.triangles.iter_mut().flatten().for_each(|v| *v = numbers[*v as usize]);
-        Ok(chunk)
-    }
-
-    /// The same after collapsing edges. `None` if a piece of surface in the chunk leaves the part of the window that is
-    /// as in the whole: what happens to it beyond may matter.
-    ///
-    /// A piece, connected through shared vertices, that lies in that part is a piece of the whole mesh, with the same
-    /// vertices and triangles in the same order. Collapses look at nothing but the piece they are in, and go in an order
-    /// that other pieces interleave with and do not change: by vertex numbers as published; guarded, each taken from the
-    /// queue is the shortest of its own piece, and a further pass over a piece in which nothing collapsed finds nothing
-    /// again.
-    fn collapsed_part(&self, cells: CellBox, window: CellBox) -> Result<Option<Chunk>, TryReserveError> {
-        let (mesh, trace) = (&self.extraction.mesh, &self.extractor.trace);
-        let as_in_whole = window.shrunk(self.halo(), &self.lattice.cell_box());
-        let mut pieces = Pieces::of(mesh)?;
-        // What is known of each piece, at its root.
-        let mut enters = filled(mesh.positions.len(), false)?;
-        let mut leaves = filled(mesh.positions.len(), false)?;
-        for (triangle, &cell) in mesh.triangles.iter().zip(&trace.cells) {
-            let (cell, root) = (self.lattice.cell_of_number(cell), pieces.root(triangle[0]));
-            enters[root] |= cells.contains(cell);
-            leaves[root] |= !as_in_whole.contains(cell);
-        }
-        if enters.iter().zip(&leaves).any(|(enters, leaves)| *enters && *leaves) {
-            return Ok(None);
-        }
-
-        // Those pieces as a mesh of their own.
-        let mut numbers = filled(mesh.positions.len(), NOWHERE)?;
-        let (mut positions, mut keys) = (Vec::new(), Vec::new());
-        for v in 0..mesh.positions.len() {
-            if enters[pieces.root(v as u32)] {
-                numbers[v] = positions.len() as u32;
-                push(&mut positions, mesh.positions[v])?;
-                push(&mut keys, trace.keys[v])?;
-            }
-        }
-        let (mut triangles, mut triangle_cells) = (Vec::new(), Vec::new());
-        for (triangle, &cell) in mesh.triangles.iter().zip(&trace.cells) {
-            if enters[pieces.root(triangle[0])] {
-                push(&mut triangles, triangle.map(|v| numbers[v as usize]))?;
-                push(&mut triangle_cells, cell)?;
-            }
-        }
-        let after = collapse_traced(self.settings.topology, self.lattice.spacing(), positions, &triangles)?;
-        let normals = vertex_normals(&after.positions, &after.triangles)?;
-
-        let mut chunk = self.empty(cells, window);
-        let mut numbers = filled(after.positions.len(), NOWHERE)?;
-        for (triangle, &before) in after.triangles.iter().zip(&after.triangles_before) {
-            let cell = triangle_cells[before as usize];
-            if !cells.contains(self.lattice.cell_of_number(cell)) {
-                continue;
-            }
-            for &v in triangle {
-                let v = v as usize;
-                if numbers[v] == NOWHERE {
-                    numbers[v] = chunk.keys.len() as u32;
-                    push(&mut chunk.keys, keys[after.vertices_before[v] as usize])?;
-                    push(&mut chunk.mesh.positions, after.positions[v])?;
-                    push(&mut chunk.mesh.normals, normals[v])?;
-                }
-            }
-            push(&mut chunk.mesh.triangles, triangle.map(|v| numbers[v as usize]))?;
-            push(&mut chunk.triangle_cells, cell)?;
-        }
-        Ok(Some(chunk))
-    }
-
-    fn empty(&self, cells: CellBox, window: CellBox) -> Chunk {
-        let numbered_by_use = match self.settings.clustering {
-            Clustering::None | Clustering::Integrated => false,
-            Clustering::EdgeCollapse | Clustering::IntegratedCollapse => true,
+        let settings = ExtractSettings {
+            clustering: self.how.settings.clustering.before_collapse(),
+            placement: Placement::MeanOfCrossings,
+            ..self.how.settings
         };
-        Chunk {
-            cells,
-            mesh: TriangleMesh::default(),
-            keys: Vec::new(),
-            triangle_cells: Vec::new(),
-            window,
-            sampled: self.lattice.window(window).sampled_bounds(),
-            numbered_by_use,
-        }
-    }
-}
-
-/// The vertices of each connected piece of a mesh.
-struct Pieces {
-    towards_root: Vec<u32>,
-}
-
-impl Pieces {
-    fn of(mesh: &TriangleMesh) -> Result<Self, TryReserveError> {
-        let mut pieces = Self { towards_root: collected(0..mesh.positions.len() as u32)? };
-        for &[a, b, c] in &mesh.triangles {
-            for other in [b, c] {
-                let (one, other) = (pieces.root(a), pieces.root(other));
-                pieces.towards_root[one.max(other)] = one.min(other) as u32;
+        let extraction = &mut self.extraction;
+        match self.how.cubes {
+            None => self.extractor.extract_into(source, &lattice, &settings, control, extraction)?,
+            Some(rule) => {
+                self.extractor.extract_cubes_into(source, &lattice, &settings, rule, control, extraction)?
             }
         }
-        Ok(pieces)
+        Ok(lattice)
     }
 
-    fn root(&mut self, vertex: u32) -> usize {
-        let mut v = vertex as usize;
-        while self.towards_root[v] as usize != v {
-            self.towards_root[v] = self.towards_root[self.towards_root[v] as usize];
-            v = self.towards_root[v] as usize;
-        }
-        v
+    /// Moves the vertices of a window to where the placement wants them. `false` if it is not large enough to know for all
+    /// that the chunk depends on.
+    fn move_vertices(
+        &mut self,
+        field: &dyn StudyField,
+        cells: CellBox,
+        window: &Lattice,
+        whole: &CellBox,
+        control: Control,
+    ) -> Result<bool, ChunkError> {
+        let mesh = &mut self.extraction.mesh;
+        let (placement, isovalue) = (self.how.settings.placement, self.how.settings.isovalue);
+        let level = Level { field, isovalue, spacing: window.spacing() };
+        let (positions, triangles) = (&mut mesh.positions, &mesh.triangles);
+        let targets =
+            field_targets(&level, &window.bounds(), placement, control.threads, positions, triangles)?;
+        // A target among its neighbours needs them all.
+        let ring = self.halo.map_or(0, |halo| halo - 1);
+        let known = window.cell_box().shrunk(ring, whole);
+        // The normals of the chunk's vertices look at their neighbours.
+        let wanted = cells.grown(1, whole);
+        let is_settled = self.settled.advance(
+            (positions, triangles, &self.extractor.trace),
+            &targets,
+            window,
+            [known, wanted],
+        )?;
+        mesh.normals.clear();
+        refill(&mut mesh.normals, mesh.positions.len(), Vec3::ZERO)?;
+        accumulate(&mesh.positions, &mesh.triangles, &mut mesh.normals);
+        Ok(is_settled)
     }
+}
+
+/// What is given, as windows are cut from it.
+#[derive(Clone, Copy)]
+enum Given<'a> {
+    Field(&'a dyn StudyField),
+    /// Of a box, all samples.
+    Samples(&'a Lattice, &'a [f32]),
 }

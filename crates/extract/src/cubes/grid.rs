@@ -6,7 +6,7 @@ use glam::Vec3;
 use mesh::Bounds;
 
 use crate::bits::between;
-use crate::lattice::Lattice;
+use crate::lattice::{Border, Lattice};
 use crate::memory::collected;
 use crate::tiles::Points;
 
@@ -31,7 +31,8 @@ impl<'a> Grid<'a> {
         let size = lattice.stored_grid().map(|n| n as usize);
         let first = lattice.origin();
         let axis = |axis: usize| {
-            let at = |i: usize| lattice.coordinate_on_box(axis, 2 * (i64::from(first[axis]) + i as i64));
+            let at =
+                |i: usize| lattice.coordinate(axis, 2 * (i64::from(first[axis]) + i as i64), Border::OnBox);
             collected((0..size[axis]).map(at))
         };
         Ok(Self { lattice, size, words: size[0].div_ceil(64), at: [axis(0)?, axis(1)?, axis(2)?] })

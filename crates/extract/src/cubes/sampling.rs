@@ -7,9 +7,9 @@ use super::rows::{Rows, before, next};
 use crate::bits::{between, set_range};
 use crate::line::{All, Gaps, Line};
 use crate::memory::filled;
-use crate::source::Source;
+use crate::source::Sampler;
 use crate::tiles::{Span, Tile, Tiles};
-use field::ScalarField;
+use field::StudyField;
 
 /// Where all points of a row are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -24,7 +24,7 @@ pub(super) enum State {
 #[derive(Clone, Copy)]
 pub(super) struct Sampling<'a> {
     pub(super) grid: &'a Grid<'a>,
-    pub(super) source: Source<'a>,
+    pub(super) source: Sampler<'a>,
     pub(super) isovalue: f32,
     /// Whether all corners of a crossed cell have samples, or the ends of crossed edges alone.
     pub(super) all_corners: bool,
@@ -69,21 +69,21 @@ impl Values<'_> {
 }
 
 impl Samples {
-    pub(super) fn new(grid: &Grid, source: Source) -> Result<Self, TryReserveError> {
+    pub(super) fn new(grid: &Grid, source: Sampler) -> Result<Self, TryReserveError> {
         let called = match source {
-            Source::Field(_) => Some(Called::new(grid)?),
-            Source::Samples(_) => None,
+            Sampler::Field(_) => Some(Called::new(grid)?),
+            Sampler::Given(_) => None,
         };
         let states = filled(grid.size[1] * SLOTS, State::Outside)?;
         Ok(Self { called, sides: Rows::new(grid, SLOTS)?, states })
     }
 
-    pub(super) fn values<'a>(&'a self, grid: &Grid, source: Source<'a>) -> Values<'a> {
+    pub(super) fn values<'a>(&'a self, grid: &Grid, source: Sampler<'a>) -> Values<'a> {
         let size = grid.size;
         match (source, &self.called) {
-            (Source::Samples(values), _) => Values { values, size, slots: size[2] },
-            (Source::Field(_), Some(called)) => Values { values: &called.values, size, slots: SLOTS },
-            (Source::Field(_), None) => unreachable!("made for a field"),
+            (Sampler::Given(values), _) => Values { values, size, slots: size[2] },
+            (Sampler::Field(_), Some(called)) => Values { values: &called.values, size, slots: SLOTS },
+            (Sampler::Field(_), None) => unreachable!("made for a field"),
         }
     }
 
@@ -99,7 +99,7 @@ impl Samples {
     pub(super) fn find_sides(&mut self, sampling: Sampling, layer: usize) {
         let Sampling { grid, source, isovalue, .. } = sampling;
         let [nx, ny, _] = grid.size;
-        if let (Source::Field(field), Some(called)) = (source, &mut self.called) {
+        if let (Sampler::Field(field), Some(called)) = (source, &mut self.called) {
             called.tiles.turn_to(layer, grid, field, isovalue);
         }
         for row in 0..ny {
@@ -107,14 +107,14 @@ impl Samples {
             sides.fill(0);
             let mut state = State::Mixed;
             match (source, &mut self.called) {
-                (Source::Samples(values), _) => {
+                (Sampler::Given(values), _) => {
                     let values = &values[(layer * ny + row) * nx..][..nx];
                     for (word, values) in sides.iter_mut().zip(values.chunks(64)) {
                         let bits = values.iter().enumerate();
                         *word = bits.fold(0, |word, (i, &value)| word | u64::from(value > isovalue) << i);
                     }
                 }
-                (Source::Field(field), Some(called)) => {
+                (Sampler::Field(field), Some(called)) => {
                     called.taken.row_mut(row, layer).fill(0);
                     match called.tiles.row(row).0 {
                         [Span { tile: Tile::Outside, .. }] => state = State::Outside,
@@ -125,7 +125,7 @@ impl Samples {
                         _ => called.sample(sampling, field, [row, layer], sides),
                     }
                 }
-                (Source::Field(_), None) => unreachable!("made for a field"),
+                (Sampler::Field(_), None) => unreachable!("made for a field"),
             }
             if state == State::Mixed {
                 state = state_of(sides, nx);
@@ -137,7 +137,7 @@ impl Samples {
     /// Takes the samples of a layer that cells need and sides did not. The sides of the layers next to it are known.
     pub(super) fn fill(&mut self, sampling: Sampling, layer: usize) {
         let Sampling { grid, source, all_corners, .. } = sampling;
-        let Source::Field(field) = source else { return };
+        let Sampler::Field(field) = source else { return };
         let [nx, ny, nz] = grid.size;
         for row in 0..ny {
             let (rows, layers) =
@@ -187,7 +187,7 @@ impl Called {
     fn sample(
         &mut self,
         sampling: Sampling,
-        field: &dyn ScalarField,
+        field: &dyn StudyField,
         [row, layer]: [usize; 2],
         sides: &mut [u64],
     ) {
@@ -216,7 +216,7 @@ impl Called {
     }
 
     /// Takes the samples of a row that are wanted and not there yet.
-    fn fill(&mut self, grid: &Grid, field: &dyn ScalarField, [row, layer]: [usize; 2]) {
+    fn fill(&mut self, grid: &Grid, field: &dyn StudyField, [row, layer]: [usize; 2]) {
         let [nx, ny, _] = grid.size;
         let (y, z) = (grid.at[1][row], grid.at[2][layer]);
         let values = &mut self.values[(layer % SLOTS * ny + row) * nx..][..nx];

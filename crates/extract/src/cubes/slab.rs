@@ -3,7 +3,6 @@
 
 use std::collections::TryReserveError;
 use std::ops::Range;
-use std::time::Instant;
 
 use super::Rule;
 use super::cells_pass::triangulate_layer;
@@ -12,13 +11,15 @@ use super::patches::Patches;
 use super::sampling::{Samples, Sampling};
 use super::vertices::{Placer, Records, VertexPass, Vertices};
 use crate::ExtractError;
+use crate::clock::Moment;
+use crate::control::Control;
 use crate::slabs::Piece;
-use crate::source::Source;
+use crate::source::Sampler;
 
 /// What all slabs of an extraction share.
 pub(super) struct Job<'a> {
     pub(super) grid: &'a Grid<'a>,
-    pub(super) source: Source<'a>,
+    pub(super) source: Sampler<'a>,
     pub(super) isovalue: f32,
     pub(super) rule: Rule,
     pub(super) patches: &'a Patches,
@@ -26,6 +27,9 @@ pub(super) struct Job<'a> {
     pub(super) most_vertices: u32,
     /// Whether vertices get keys and triangles the numbers of their cells.
     pub(super) traced: bool,
+    pub(super) control: Control<'a>,
+    /// Called when a layer of cells is done.
+    pub(super) layer_done: &'a (dyn Fn() + Sync),
 }
 
 /// Buffers of one thread, a few layers each.
@@ -35,7 +39,7 @@ pub(super) struct Workspace {
 }
 
 impl Workspace {
-    pub(super) fn new(grid: &Grid, source: Source) -> Result<Self, TryReserveError> {
+    pub(super) fn new(grid: &Grid, source: Sampler) -> Result<Self, TryReserveError> {
         Ok(Self { samples: Samples::new(grid, source)?, records: Records::new(grid)? })
     }
 }
@@ -43,12 +47,11 @@ impl Workspace {
 /// Extracts the layers `own` of cells: their triangles, and the vertices of their points but for those of the highest layer,
 /// which are the next slab's. Vertices are numbered from the slab's first on, so that the numbers of the whole surface are these
 /// plus a constant.
-pub(super) fn sweep(
+pub(super) fn stream_slab(
     job: &Job,
     own: Range<usize>,
     Workspace { samples, records }: &mut Workspace,
     piece: &mut Piece,
-    layer_done: &(dyn Fn() + Sync),
 ) -> Result<(), ExtractError> {
     let Job { grid, source, isovalue, rule, patches, placer, .. } = *job;
     let layers = grid.size[2];
@@ -60,13 +63,14 @@ pub(super) fn sweep(
     let sampling = Sampling { grid, source, isovalue, all_corners: rule.faces.reads_all_corners() };
     let mut vertices = Vertices { keys: job.traced.then(Vec::new), ..Vertices::default() };
     piece.clear(job.traced);
-    let mut last = Instant::now();
+    let mut last = Moment::now();
     let mut lap = || {
-        let now = Instant::now();
+        let now = Moment::now();
         now - std::mem::replace(&mut last, now)
     };
     for step in sided.start..=highest + 2 {
         if sided.contains(&step) {
+            job.control.check()?;
             samples.find_sides(sampling, step);
         }
         if let Some(layer) = step.checked_sub(1).filter(|layer| filled.contains(layer)) {
@@ -91,7 +95,7 @@ pub(super) fn sweep(
         }
         triangulate_layer(job, samples, values, records, z, &mut piece.surface)?;
         piece.times.geometry += lap();
-        layer_done();
+        (job.layer_done)();
     }
     (piece.positions, piece.targets) = (vertices.positions, vertices.targets);
     // As if seen from both ends.

@@ -208,7 +208,8 @@ impl VertexPass<'_> {
 
     fn name(&self, place: [usize; 3], number: usize, vertices: &mut Vertices) -> Result<(), TryReserveError> {
         if let Some(keys) = &mut vertices.keys {
-            push(keys, VertexKey::new(self.grid.lattice.point_number(place), number))?;
+            let lattice = self.grid.lattice;
+            push(keys, VertexKey::new(lattice.arrangement(), lattice.stored(place), number))?;
         }
         Ok(())
     }
@@ -222,8 +223,8 @@ pub(super) fn corner_of([x, y, z]: [usize; 3], corner: u8) -> [usize; 3] {
 /// Where on its edge a crossing is.
 pub(super) struct Placer<'a> {
     isovalue: f32,
-    /// How near to either end it may lie, as a share of the edge.
-    least: f32,
+    /// How near to either end it may lie.
+    apart: Apart,
     /// Whether the settings want vertices elsewhere, and to find roots with.
     refines: bool,
     level: Option<Level<'a>>,
@@ -233,7 +234,7 @@ impl<'a> Placer<'a> {
     pub(super) fn new(lattice: &Lattice, settings: &ExtractSettings, level: Option<Level<'a>>) -> Self {
         Self {
             isovalue: settings.isovalue,
-            least: Apart::new(lattice, Topology::Guarded).ratio(Company::Singles, 0, 0.0),
+            apart: Apart::new(lattice, Topology::Guarded),
             // The weighted mean of one crossing is that crossing.
             refines: settings.refine_crossings || settings.placement == Placement::CurvatureWeighted,
             level: level.filter(|_| settings.refine_crossings),
@@ -252,7 +253,8 @@ impl<'a> Placer<'a> {
     ) -> Vec3 {
         let mut position = grid.position(place);
         let [from, to] = [0, 1].map(|step| grid.at[axis][place[axis] + step]);
-        let ratio = linear_ratio(self.isovalue - here, here, there).clamp(self.least, 1.0 - self.least);
+        let least = self.apart.at(position).ratio(Company::Singles, 0, 0.0);
+        let ratio = linear_ratio(self.isovalue - here, here, there).clamp(least, 1.0 - least);
         position[axis] = (from + (to - from) * ratio).clamp(from, to);
         position
     }

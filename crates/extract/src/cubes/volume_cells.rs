@@ -5,9 +5,9 @@ use mesh::Bounds;
 use thiserror::Error;
 
 use crate::ExtractError;
+use crate::box_grid::BoxGrid;
 use crate::extraction::Extraction;
 use crate::extractor::Extractor;
-use crate::grid::Grid;
 use crate::method::{Method, MethodError};
 use crate::normals::vertex_normals;
 use crate::settings::Execution;
@@ -83,7 +83,7 @@ impl VolumeCells<'_> {
             return Err(VolumeCellsError::Steps { steps, origin });
         }
         let max = Vec3::from_array(counts.map(|n| (n - 1) as f32));
-        let grid = Grid { bounds: Bounds { min: Vec3::ZERO, max }, spacing: 1.0 };
+        let grid = BoxGrid { bounds: Bounds { min: Vec3::ZERO, max }, spacing: 1.0 };
         let mut extraction =
             method.extract(extractor, Source::Samples(values), &grid, isovalue, execution)?;
         let mesh = &mut extraction.mesh;

@@ -10,13 +10,13 @@ use crate::clusters::Clusters;
 use crate::edges::EdgeTable;
 use crate::fields::{FAMILIES, Family, Volume, image};
 use crate::lattice::{Border, Coordinates, DIRECTIONS, Layout, members};
-use crate::settings::{Clustering, Execution, ExtractSettings, Positions, Topology};
+use crate::settings::{Clustering, ExtractSettings, Positions, Topology};
 use crate::sides::Sides;
 use crate::survey::survey;
 use crate::triangles::triangulate;
 use crate::vertices::VertexStage;
 use crate::{Arrangement, Lattice, sampling};
-use field::{Asteroid, ScalarField};
+use field::{Asteroid, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
 
@@ -51,7 +51,7 @@ fn stages(volume: &Volume, clustering: Clustering) -> ((EdgeTable, std::ops::Ran
 }
 
 fn stages_of(
-    field: &dyn ScalarField,
+    field: &dyn StudyField,
     lattice: &Lattice,
     clustering: Clustering,
 ) -> ((EdgeTable, std::ops::Range<usize>), Vec<[u32; 3]>) {
@@ -59,7 +59,7 @@ fn stages_of(
     let layout = Layout::new(lattice);
     let mut samples = vec![0.0; layout.len()];
     let coordinates = Coordinates::sampled(lattice, &layout, Positions::Indexed, Border::OnBox).unwrap();
-    sampling::sample(field, &layout, &coordinates, &Execution { threads: 1 }, &mut samples).unwrap();
+    sampling::sample(field, &layout, &coordinates, Default::default(), &mut samples).unwrap();
     let (mut sides, mut edges) = (Sides::new(&layout), EdgeTable::new(layout.len()));
     VertexStage::new(lattice, &samples, &settings, None, &mut sides, &mut edges)
         .run(&layout, u32::MAX)

@@ -4,8 +4,8 @@ use std::collections::TryReserveError;
 
 use glam::Vec3;
 
-use super::{DIRECTIONS, DirectionSet, Lattice, Layout, Offset, PointKind, members};
-use crate::memory::{collected, with_room};
+use super::{DIRECTIONS, DirectionSet, Lattice, Layout, Offset, PointKind, Whole, members};
+use crate::memory::{collected, refilled, with_room};
 use crate::settings::{ExtractSettings, Positions, Topology};
 
 /// A last cube that the box cuts off is at least this share of the spacing thick; the one before it gives way.
@@ -31,7 +31,7 @@ impl Border {
 }
 
 /// Coordinates of every sample point. An axis does not depend on the others but for the kind of the layer.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Coordinates {
     /// Along a row, by kind of point.
     x: [Vec<f32>; 2],
@@ -131,31 +131,39 @@ impl Coordinates {
     }
 
     /// `min + n * spacing`, `n` whole for corners and half for centres: one rounding of the product, one of the sum,
-    /// and nothing carried along. With a border on the box, none beyond it ([`Lattice::coordinate_on_box`]).
+    /// and nothing carried along. With a border on the box, none beyond it ([`Lattice::coordinate`]).
     fn indexed(lattice: &Lattice, layout: &Layout, border: Border) -> Result<Self, TryReserveError> {
-        let coordinates = Self::per_axis(lattice, layout, |axis, kind, i| {
-            let i = axis.origin + i;
+        let mut coordinates = Self::default();
+        coordinates.refit(lattice, layout, border)?;
+        Ok(coordinates)
+    }
+
+    /// Makes them those of another lattice, by the same rule. What is large enough stays.
+    pub(crate) fn refit(
+        &mut self,
+        lattice: &Lattice,
+        layout: &Layout,
+        border: Border,
+    ) -> Result<(), TryReserveError> {
+        self.fill(lattice, layout, |axis, kind, i| {
+            let i = axis.origin + i as i64;
             let halves = match kind {
-                PointKind::Centre => 2 * i as i64 - 1,
-                PointKind::Corner => 2 * i as i64,
+                PointKind::Centre => 2 * i - 1,
+                PointKind::Corner => 2 * i,
             };
-            match border {
-                Border::BeyondBox => axis.min + (halves as f32 * 0.5) * axis.spacing,
-                Border::OnBox => lattice.coordinate_on_box(axis.number, halves),
-            }
+            lattice.coordinate(axis.number, halves, border)
         })?;
-        let regular = match border {
-            Border::BeyondBox => ALL_REGULAR,
-            Border::OnBox => axes(lattice, layout).map(|axis| {
-                let (first, end) = lattice.regular_points(axis.number);
-                let place = |i: usize| i.saturating_sub(axis.origin);
-                match axis.number {
-                    2 => [place(first), place(end)].map(|i| i * axis.layers_a_cell),
-                    _ => [place(first), place(end)],
-                }
-            }),
-        };
-        Ok(Self { regular, ..coordinates })
+        self.regular = axes(lattice, layout).map(|axis| {
+            let Some((first, end)) = lattice.regular_points(axis.number, border) else {
+                return [0, usize::MAX];
+            };
+            let place = |i: i64| i.saturating_sub(axis.origin).max(0) as usize;
+            match axis.number {
+                2 => [place(first), place(end)].map(|i| i * axis.layers_a_cell),
+                _ => [place(first), place(end)],
+            }
+        });
+        Ok(())
     }
 
     /// Running addition along each axis; z starts anew in every chunk of layers, one a sampling thread of the
@@ -195,12 +203,24 @@ impl Coordinates {
         layout: &Layout,
         at: impl Fn(Axis, PointKind, usize) -> f32,
     ) -> Result<Self, TryReserveError> {
+        let mut coordinates = Self::default();
+        coordinates.fill(lattice, layout, at)?;
+        Ok(Self { regular: ALL_REGULAR, ..coordinates })
+    }
+
+    fn fill(
+        &mut self,
+        lattice: &Lattice,
+        layout: &Layout,
+        at: impl Fn(Axis, PointKind, usize) -> f32,
+    ) -> Result<(), TryReserveError> {
         let [x, y, z] = axes(lattice, layout);
         let [nx, ny, nz] = layout.grid();
-        let line = |axis: Axis, n: usize| both_kinds(|kind| collected((0..n).map(|i| at(axis, kind, i))));
-        let layer = |i: usize| at(z, layout.kind(i), i / z.layers_a_cell);
-        let (x, y, z) = (line(x, nx)?, line(y, ny)?, collected((0..nz).map(layer))?);
-        Ok(Self { x, y, z, regular: ALL_REGULAR })
+        for kind in [PointKind::Centre, PointKind::Corner] {
+            refilled(&mut self.x[kind as usize], (0..nx).map(|i| at(x, kind, i)))?;
+            refilled(&mut self.y[kind as usize], (0..ny).map(|i| at(y, kind, i)))?;
+        }
+        refilled(&mut self.z, (0..nz).map(|i| at(z, layout.kind(i), i / z.layers_a_cell)))
     }
 }
 
@@ -208,12 +228,23 @@ impl Coordinates {
 const ALL_REGULAR: [[usize; 2]; 3] = [[0, usize::MAX]; 3];
 
 impl Lattice {
+    /// Of the point so many half cells along an axis of the whole lattice.
+    pub(crate) fn coordinate(&self, axis: usize, halves: i64, border: Border) -> f32 {
+        match (self.whole, border) {
+            (Whole::Endless(grid), _) => grid.coordinate(axis, halves) as f32,
+            (Whole::Box(_), Border::BeyondBox) => {
+                self.bounds.min[axis] + (halves as f32 * 0.5) * self.spacing
+            }
+            (Whole::Box(cells), Border::OnBox) => self.coordinate_on_box(axis, cells[axis], halves),
+        }
+    }
+
     /// Of the point so many half cells along an axis of the whole lattice: `min + halves / 2 * spacing`, and nothing
     /// outside of the box. Outermost points lie on it; where the spacing does not divide the box, the last cube is
     /// thinner.
-    pub(crate) fn coordinate_on_box(&self, axis: usize, halves: i64) -> f32 {
+    fn coordinate_on_box(&self, axis: usize, cells: u32, halves: i64) -> f32 {
         let (min, max, spacing) = (self.bounds.min[axis], self.bounds.max[axis], self.spacing);
-        let cells = i64::from(self.whole[axis]);
+        let cells = i64::from(cells);
         let even = |halves: i64| min + (halves as f32 * 0.5) * spacing;
         let corner = |i: i64| match cells - i {
             _ if i <= 0 => min,
@@ -235,9 +266,12 @@ impl Lattice {
     }
 
     /// Corners, or centres, of the whole lattice along an axis whose neighbours are where the spacing says: from the first
-    /// up to, without, the end.
-    pub(crate) fn regular_points(&self, axis: usize) -> (usize, usize) {
-        (2, (self.whole[axis] as usize).saturating_sub(2))
+    /// up to, without, the end. `None` where that holds for all.
+    pub(crate) fn regular_points(&self, axis: usize, border: Border) -> Option<(i64, i64)> {
+        match (self.whole, border) {
+            (Whole::Endless(_), _) | (_, Border::BeyondBox) => None,
+            (Whole::Box(cells), Border::OnBox) => Some((2, (i64::from(cells[axis]) - 2).max(0))),
+        }
     }
 }
 
@@ -254,7 +288,7 @@ struct Axis {
     min: f32,
     spacing: f32,
     /// The first cell of a window; positions by addition have none.
-    origin: usize,
+    origin: i64,
     /// Of layer 0, were this axis z.
     first_layer: f32,
     layer_step: f32,
@@ -275,7 +309,7 @@ fn axes(lattice: &Lattice, layout: &Layout) -> [Axis; 3] {
     let half_layers = layout.kind(0) == PointKind::Centre;
     let min = lattice.bounds().min.to_array();
     [0, 1, 2].map(|number| {
-        let (min, origin) = (min[number], lattice.origin()[number] as usize);
+        let (min, origin) = (min[number], i64::from(lattice.origin()[number]));
         if half_layers {
             let half = spacing / 2.0;
             Axis { number, min, spacing, origin, first_layer: min - half, layer_step: half, layers_a_cell: 2 }

@@ -86,7 +86,7 @@ impl Lattice {
     }
 
     /// What [`extract`](crate::extract) allocates with accumulated positions before it knows the surface: samples, edge
-    /// records and scratch. With indexed positions it is [`sweep_bytes`](Self::sweep_bytes), far less;
+    /// records and scratch. With indexed positions it is [`streaming_bytes`](Self::streaming_bytes), far less;
     /// [`memory_bytes_for`](Self::memory_bytes_for) chooses. The mesh comes on top.
     ///
     /// Arrangements whose points differ in their edges have no accumulated positions; of them this is what storing would
@@ -103,7 +103,7 @@ impl Lattice {
     /// What streaming extraction (indexed positions) of a field holds of the lattice at a time on `threads` threads: a
     /// few layers of samples, sign bits and point records each, and what is known of tiles of two by two columns; and
     /// the coordinates along each axis, once. The mesh comes on top.
-    pub fn sweep_bytes(&self, threads: u64) -> u64 {
+    pub fn streaming_bytes(&self, threads: u64) -> u64 {
         let [x, y, z] = self.stored_grid().map(u64::from);
         if self.arrangement.uniform().is_none() {
             return self.split_bytes(threads);

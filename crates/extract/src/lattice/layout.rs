@@ -169,11 +169,11 @@ fn has_edge(arrangement: Uniform, kind: PointKind, place: [Place; 3], offset: Of
             leaves <= usize::from(diagonal)
         }
         (Uniform::BodyCentred, PointKind::Centre) => {
-            let outside: Vec<usize> = (0..3).filter(|&axis| place[axis] != Place::Inner).collect();
-            match outside[..] {
-                [] => true,
+            let mut outside = (0..3).filter(|&axis| place[axis] != Place::Inner);
+            match (outside.next(), outside.next()) {
+                (None, _) => true,
                 // From outside the box, edges lead into it only.
-                [axis] => offset[axis] != 0 && !outward(axis),
+                (Some(axis), None) => offset[axis] != 0 && !outward(axis),
                 _ => false,
             }
         }

@@ -1,10 +1,10 @@
 //! Marching cubes as a method.
 
-use super::{Family, MethodError, Promises};
+use super::{ByWindow, Family, MethodError, Promises};
+use crate::box_grid::BoxGrid;
 use crate::cubes::{Diagonals, Faces, Rule};
 use crate::extraction::{Extraction, check};
 use crate::extractor::Extractor;
-use crate::grid::Grid;
 use crate::lattice::{Arrangement, LatticeError};
 use crate::settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 use crate::source::Source;
@@ -29,13 +29,15 @@ pub struct Cubes {
 
 impl Cubes {
     /// The lattice has the corners of the cubes; nothing is merged.
-    pub(crate) const ARRANGEMENT: Arrangement = Arrangement::SimpleCubic;
+    const ARRANGEMENT: Arrangement = Arrangement::SimpleCubic;
 
-    pub(crate) fn rule(&self) -> Rule {
+    const UNMOVED_HALO: u32 = 1;
+
+    fn rule(&self) -> Rule {
         Rule { faces: self.faces, diagonals: self.diagonals }
     }
 
-    pub(crate) fn settings(&self, isovalue: f32) -> ExtractSettings {
+    fn settings(&self, isovalue: f32) -> ExtractSettings {
         ExtractSettings {
             isovalue,
             clustering: Clustering::None,
@@ -48,36 +50,55 @@ impl Cubes {
 }
 
 impl Family for Cubes {
-    fn check(&self, grid: &Grid) -> Result<(), MethodError> {
+    fn check(&self, grid: &BoxGrid) -> Result<(), MethodError> {
         check(&self.settings(0.0), Self::ARRANGEMENT)?;
         grid.lattice(Self::ARRANGEMENT)?;
         Ok(())
     }
 
-    fn cells(&self, grid: &Grid) -> Result<[u32; 3], LatticeError> {
+    fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError> {
         Ok(grid.lattice(Self::ARRANGEMENT)?.cells())
     }
 
-    fn memory_bytes(&self, grid: &Grid, execution: &Execution) -> Result<u64, LatticeError> {
+    fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError> {
         Ok(grid.lattice(Self::ARRANGEMENT)?.memory_bytes_for(&self.settings(0.0), execution))
     }
 
     fn promises(&self) -> Promises {
-        let moves = self.placement != Placement::MeanOfCrossings || self.refine_crossings;
         Promises {
             manifold: true,
             closed_off_the_box: true,
             same_triangles_for_all_placements: true,
-            chunks: !moves,
+            chunks: self.halo().is_some() && !self.refine_crossings,
             samples_suffice: !self.refine_crossings && !self.placement.calls_the_field(),
         }
+    }
+
+    /// A vertex of a cell is one of its neighbours' too, and their other vertices give it its normal; no vertex depends on
+    /// samples beyond its own cells. One that is moved looks at its triangles, and one that is relaxed at its neighbours first.
+    fn halo(&self) -> Option<u32> {
+        match self.placement {
+            Placement::MeanOfCrossings => Some(Self::UNMOVED_HALO),
+            Placement::Projected => Some(Self::UNMOVED_HALO + 1),
+            Placement::Relaxed => Some(Self::UNMOVED_HALO + 2),
+            Placement::CurvatureWeighted => None,
+        }
+    }
+
+    fn by_window(&self, isovalue: f32) -> Option<ByWindow> {
+        Some(ByWindow {
+            arrangement: Self::ARRANGEMENT,
+            settings: self.settings(isovalue),
+            cubes: Some(self.rule()),
+            halo: Self::UNMOVED_HALO,
+        })
     }
 
     fn extract_into(
         &self,
         extractor: &mut Extractor,
         source: Source,
-        grid: &Grid,
+        grid: &BoxGrid,
         isovalue: f32,
         execution: &Execution,
         extraction: &mut Extraction,
@@ -86,6 +107,13 @@ impl Family for Cubes {
         // Before the lattice, as in `check`.
         check(&settings, Self::ARRANGEMENT)?;
         let lattice = grid.lattice(Self::ARRANGEMENT)?;
-        Ok(extractor.extract_cubes_into(source, &lattice, &settings, self.rule(), execution, extraction)?)
+        Ok(extractor.extract_cubes_into(
+            source,
+            &lattice,
+            &settings,
+            self.rule(),
+            execution.into(),
+            extraction,
+        )?)
     }
 }

@@ -1,9 +1,9 @@
 //! Marching tetrahedra as a method.
 
-use super::{Family, MethodError, Promises};
+use super::{ByWindow, Family, MethodError, Promises};
+use crate::box_grid::BoxGrid;
 use crate::extraction::{Extraction, check};
 use crate::extractor::Extractor;
-use crate::grid::Grid;
 use crate::lattice::{Arrangement, LatticeError};
 use crate::settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 use crate::source::Source;
@@ -49,20 +49,25 @@ impl Tetrahedra {
         let Self { arrangement: _, clustering, topology, positions, placement, refine_crossings } = *self;
         ExtractSettings { isovalue, clustering, topology, positions, placement, refine_crossings }
     }
+
+    /// Where vertices stay at the mean of their crossings.
+    fn unmoved_halo(&self) -> u32 {
+        if self.arrangement.uniform().is_some() { 2 } else { 1 }
+    }
 }
 
 impl Family for Tetrahedra {
-    fn check(&self, grid: &Grid) -> Result<(), MethodError> {
+    fn check(&self, grid: &BoxGrid) -> Result<(), MethodError> {
         check(&self.settings(0.0), self.arrangement)?;
         grid.lattice(self.arrangement)?;
         Ok(())
     }
 
-    fn cells(&self, grid: &Grid) -> Result<[u32; 3], LatticeError> {
+    fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError> {
         Ok(grid.lattice(self.arrangement)?.cells())
     }
 
-    fn memory_bytes(&self, grid: &Grid, execution: &Execution) -> Result<u64, LatticeError> {
+    fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError> {
         Ok(grid.lattice(self.arrangement)?.memory_bytes_for(&self.settings(0.0), execution))
     }
 
@@ -71,26 +76,48 @@ impl Family for Tetrahedra {
             Topology::Guarded => true,
             Topology::Published => false,
         };
-        let collapses = match self.clustering {
-            Clustering::None | Clustering::Integrated => false,
-            Clustering::EdgeCollapse | Clustering::IntegratedCollapse => true,
-        };
+        let collapses = self.clustering.collapses();
         let indexed = self.positions == Positions::Indexed;
-        let moves = self.placement != Placement::MeanOfCrossings || self.refine_crossings;
+        let moved_in_chunks = match self.placement {
+            Placement::MeanOfCrossings => true,
+            Placement::Projected | Placement::Relaxed => !collapses,
+            Placement::CurvatureWeighted => false,
+        };
         Promises {
             manifold: guarded,
             closed_off_the_box: guarded,
             same_triangles_for_all_placements: !collapses,
-            chunks: indexed && !moves,
+            chunks: indexed && !self.refine_crossings && moved_in_chunks,
             samples_suffice: indexed && !self.refine_crossings && !self.placement.calls_the_field(),
         }
+    }
+
+    /// A vertex of a cell is one of its neighbours' too, their other vertices give it its normal, and those depend on
+    /// samples one lattice edge away. Where cubes are cut each by itself the last step leads no farther. A vertex that is
+    /// moved looks at its triangles, and one that is relaxed at its neighbours first.
+    fn halo(&self) -> Option<u32> {
+        if self.clustering.collapses() || self.positions != Positions::Indexed {
+            return None;
+        }
+        let moves = match self.placement {
+            Placement::MeanOfCrossings => 0,
+            Placement::Projected => 1,
+            Placement::Relaxed => 2,
+            Placement::CurvatureWeighted => return None,
+        };
+        Some(moves + self.unmoved_halo())
+    }
+
+    fn by_window(&self, isovalue: f32) -> Option<ByWindow> {
+        let (settings, halo) = (self.settings(isovalue), self.unmoved_halo());
+        Some(ByWindow { arrangement: self.arrangement, settings, cubes: None, halo })
     }
 
     fn extract_into(
         &self,
         extractor: &mut Extractor,
         source: Source,
-        grid: &Grid,
+        grid: &BoxGrid,
         isovalue: f32,
         execution: &Execution,
         extraction: &mut Extraction,

@@ -10,7 +10,7 @@ use crate::memory::copied;
 /// The least that may be left of a triangle's area, seen along its normal before any move.
 const LEAST_AREA: f64 = 0.1;
 /// Refusals spread to neighbours, pass by pass; three passes have been enough for noise, too. Beyond this many, all stay.
-const MOST_PASSES: usize = 64;
+pub(crate) const MOST_PASSES: usize = 64;
 
 /// The moves of a mesh's vertices. Triangles stay the same throughout.
 pub(crate) struct Moves {
@@ -41,18 +41,16 @@ impl Moves {
         let stays = &mut self.stays;
         stays.clear();
         stays.try_reserve_exact(positions.len())?;
-        let on_box = |p: &Vec3| (p.cmpeq(bounds.min) | p.cmpeq(bounds.max)).any();
-        stays.extend(positions.iter().zip(targets).map(|(p, target)| on_box(p) || !target.is_finite()));
+        stays.extend(
+            positions.iter().zip(targets).map(|(p, target)| on_box(p, bounds) || !target.is_finite()),
+        );
         for pass in 0.. {
             let mut refused = false;
             for triangle in triangles {
                 let corners = triangle.map(|v| v as usize);
-                if corners.iter().all(|&v| stays[v]) {
-                    continue;
-                }
-                let before = doubled_area(corners.map(|v| self.reference[v]));
-                let after = doubled_area(corners.map(|v| if stays[v] { positions[v] } else { targets[v] }));
-                if before == DVec3::ZERO || after.dot(before) < LEAST_AREA * before.length_squared() {
+                let reference = corners.map(|v| self.reference[v]);
+                let [at, to] = [corners.map(|v| positions[v]), corners.map(|v| targets[v])];
+                if Self::is_refused(reference, at, to, corners.map(|v| stays[v])) {
                     corners.iter().for_each(|&v| stays[v] = true);
                     refused = true;
                 }
@@ -71,6 +69,22 @@ impl Moves {
         }
         Ok(())
     }
+
+    /// Whether a triangle that was at `reference` may not have the corners `at` that stay and the corners `to` that go.
+    #[inline]
+    pub(crate) fn is_refused(reference: [Vec3; 3], at: [Vec3; 3], to: [Vec3; 3], stays: [bool; 3]) -> bool {
+        if stays == [true; 3] {
+            return false;
+        }
+        let before = doubled_area(reference);
+        let after = doubled_area([0, 1, 2].map(|k| if stays[k] { at[k] } else { to[k] }));
+        before == DVec3::ZERO || after.dot(before) < LEAST_AREA * before.length_squared()
+    }
+}
+
+/// Whether a point lies on a side of a box.
+pub(crate) fn on_box(p: &Vec3, bounds: &Bounds) -> bool {
+    (p.cmpeq(bounds.min) | p.cmpeq(bounds.max)).any()
 }
 
 fn doubled_area([a, b, c]: [Vec3; 3]) -> DVec3 {

@@ -3,7 +3,7 @@
 use std::f32::consts::TAU;
 
 use extract::{Arrangement, Lattice};
-use field::ScalarField;
+use field::StudyField;
 use glam::Vec3;
 use mesh::Bounds;
 
@@ -275,7 +275,7 @@ impl Volume {
     }
 }
 
-impl ScalarField for Volume {
+impl StudyField for Volume {
     fn sample(&self, p: Vec3) -> f32 {
         let mut place = (p * 2.0).to_array().map(|c| c as i32);
         // A centre that lies on the box instead of half a cell beyond it.

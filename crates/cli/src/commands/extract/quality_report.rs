@@ -6,7 +6,7 @@ use crate::source::{Inside, Source};
 use crate::terminal::{counted, significant};
 use anyhow::Result;
 use design::record::{Accuracy, Counts, Distribution, Quality, Topology};
-use extract::{Arrangement, Clustering, Extraction, Grid, Method};
+use extract::{Arrangement, BoxGrid, Clustering, Extraction, Method};
 use serde::Serialize;
 
 /// The version of the JSON.
@@ -45,7 +45,7 @@ impl QualityReport {
     pub(super) fn new(
         method: Method,
         source: &Source,
-        (grid, cells): (&Grid, [u32; 3]),
+        (grid, cells): (&BoxGrid, [u32; 3]),
         extraction: &Extraction,
         accuracy: &extract::Accuracy,
     ) -> Self {

@@ -57,7 +57,7 @@ pub(super) fn triangulate_layer(
                 }
                 result.cells_visited += 1;
                 let x = column / steps;
-                for tetrahedron in &grid.tetrahedra[(x + y + z) % 2] {
+                for tetrahedron in grid.tetrahedra([x, y, z]) {
                     result.tetrahedra_evaluated += 1;
                     let case = (0..4)
                         .fold(0, |case, i| case | ((inside >> tetrahedron.corners[i] & 1) as usize) << i);
@@ -73,7 +73,7 @@ pub(super) fn triangulate_layer(
                 }
                 let triangles = result.triangles.len();
                 if let Some(trace) = &mut result.trace {
-                    trace.close_cell(grid.lattice, [x, y, z], triangles)?;
+                    trace.close_cell(&grid.lattice, [x, y, z], triangles)?;
                 }
             }
         }

@@ -7,7 +7,7 @@ use mesh::Bounds;
 
 use super::cut::{Cut, CutEdge, Directions, Step};
 use crate::lattice::{Border, Lattice};
-use crate::memory::collected;
+use crate::memory::refilled;
 use crate::tiles::Points;
 
 /// The points of a word in even and in odd columns.
@@ -21,10 +21,11 @@ pub(super) const LINES: usize = 13;
 pub(super) const CORNERS: usize = 15;
 
 /// The lattice as the passes see it.
-pub(super) struct Grid<'a> {
-    pub(super) lattice: &'a Lattice,
+#[derive(Debug)]
+pub(super) struct Grid {
+    pub(super) lattice: Lattice,
     border: Border,
-    pub(super) cut: Cut,
+    pub(super) cut: &'static Cut,
     /// Points a row, rows a layer, layers, as stored.
     pub(super) size: [usize; 3],
     /// Words of bits a row.
@@ -37,8 +38,10 @@ pub(super) struct Grid<'a> {
     /// Rows and layers from a point to its neighbours, and by direction which of them it is.
     pub(super) lines: Vec<[isize; 2]>,
     pub(super) line: [usize; DIRECTIONS],
-    /// By parity of the cell, in the window.
-    pub(super) tetrahedra: [Vec<Tetrahedron>; 2],
+    /// Of the window's first cell.
+    parity: usize,
+    /// By parity of the cell.
+    tetrahedra: [Vec<Tetrahedron>; 2],
     /// The columns in which cells start, as the bits of a word.
     pub(super) lowest_corners: u64,
 }
@@ -67,7 +70,7 @@ pub(super) struct Tetrahedron {
 }
 
 /// Where stored points are, along each axis.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Coordinates {
     pub(super) x: Vec<f32>,
     pub(super) y: Vec<f32>,
@@ -75,23 +78,23 @@ pub(super) struct Coordinates {
 }
 
 impl Coordinates {
-    /// `min + n * spacing`, `n` whole or half: one rounding of the product and one of the sum. With a border on the box,
-    /// none beyond it.
+    #[cfg(test)]
     pub(super) fn new(lattice: &Lattice, cut: &Cut, border: Border) -> Result<Self, TryReserveError> {
-        let (min, first) = (lattice.bounds().min.to_array(), lattice.first_stored());
-        let grid = lattice.stored_grid();
-        let axis = |axis: usize| {
-            let step = 1.0 / cut.steps_a_cell as f32;
-            let at = move |i: u32| match border {
-                Border::BeyondBox => min[axis] + ((first[axis] + i) as f32 * step) * lattice.spacing(),
-                Border::OnBox => {
-                    let halves = i64::from(first[axis] + i) * 2 / cut.steps_a_cell as i64;
-                    lattice.coordinate_on_box(axis, halves)
-                }
-            };
-            collected((0..grid[axis] as usize).map(move |i| at(i as u32)))
-        };
-        Ok(Self { x: axis(0)?, y: axis(1)?, z: axis(2)? })
+        let mut coordinates = Self::default();
+        coordinates.refit(lattice, cut, border)?;
+        Ok(coordinates)
+    }
+
+    /// Makes them those of a lattice, where [`Lattice::coordinate`] puts them. What is large enough stays.
+    fn refit(&mut self, lattice: &Lattice, cut: &Cut, border: Border) -> Result<(), TryReserveError> {
+        let (first, grid) = (lattice.first_stored(), lattice.stored_grid());
+        let axes = [&mut self.x, &mut self.y, &mut self.z];
+        for (axis, places) in axes.into_iter().enumerate() {
+            let halves = |i: usize| (first[axis] + i as i64) * 2 / cut.steps_a_cell as i64;
+            let at = |i: usize| lattice.coordinate(axis, halves(i), border);
+            refilled(places, (0..grid[axis] as usize).map(at))?;
+        }
+        Ok(())
     }
 
     pub(super) fn at(&self, [x, y, z]: [usize; 3]) -> Vec3 {
@@ -99,11 +102,9 @@ impl Coordinates {
     }
 }
 
-impl<'a> Grid<'a> {
-    pub(super) fn new(lattice: &'a Lattice, border: Border) -> Result<Self, TryReserveError> {
-        let cut = Cut::of(lattice.arrangement());
-        let size = lattice.stored_grid().map(|n| n as usize);
-        let coordinates = Coordinates::new(lattice, &cut, border)?;
+impl Grid {
+    pub(super) fn new(lattice: &Lattice, border: Border) -> Result<Self, TryReserveError> {
+        let cut = Cut::get(lattice.arrangement());
         let (mut lines, mut line) = (vec![[0, 0]], [0; DIRECTIONS]);
         for (direction, &[_, rows, layers]) in cut.steps.iter().enumerate() {
             let away = [rows, layers].map(isize::from);
@@ -113,14 +114,8 @@ impl<'a> Grid<'a> {
             }
         }
         assert!(lines.len() <= LINES && cut.corners.len() <= CORNERS, "tables are large enough");
-        let first = lattice.first_stored().map(|i| i as usize);
-        let kinds = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[y, z]| RowKind::new(&cut, first, [y, z], &line));
-        let steps = cut.steps_a_cell;
-        let odd = if steps == 1 { Vec::new() } else { every_second(&coordinates.x, 1)? };
-        let even = if steps == 1 { Vec::new() } else { every_second(&coordinates.x, 0)? };
-        let parity = lattice.origin().iter().sum::<u32>() as usize;
-        let tetrahedra = [0, 1].map(|cell| {
-            let of_cell = &cut.tetrahedra[(parity + cell) % 2];
+        let tetrahedra = [0, 1].map(|parity| {
+            let of_cell = &cut.tetrahedra[parity];
             let number = |corner: Step| {
                 cut.corners.iter().position(|&c| c == corner).expect("a point of the cube") as u8
             };
@@ -135,30 +130,55 @@ impl<'a> Grid<'a> {
             };
             of_cell.iter().map(tetrahedron).collect()
         });
-        Ok(Self {
-            lattice,
+        let first = lattice.first_stored();
+        let kinds = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[y, z]| RowKind::new(cut, first, [y, z], &line));
+        let mut grid = Self {
+            lattice: lattice.clone(),
             border,
-            size,
-            words: size[0].div_ceil(64),
-            coordinates,
-            columns: [even, odd],
+            size: [0; 3],
+            words: 0,
+            coordinates: Coordinates::default(),
+            columns: [Vec::new(), Vec::new()],
             kinds,
             lines,
             line,
+            parity: 0,
             tetrahedra,
-            lowest_corners: if steps == 1 { !0 } else { EVEN },
+            lowest_corners: if cut.steps_a_cell == 1 { !0 } else { EVEN },
             cut,
-        })
+        };
+        grid.refit(lattice, border)?;
+        Ok(grid)
+    }
+
+    /// Makes it that of another lattice of the same arrangement. What is large enough stays.
+    pub(super) fn refit(&mut self, lattice: &Lattice, border: Border) -> Result<(), TryReserveError> {
+        (self.lattice, self.border) = (lattice.clone(), border);
+        self.size = lattice.stored_grid().map(|n| n as usize);
+        self.words = self.size[0].div_ceil(64);
+        self.coordinates.refit(lattice, self.cut, border)?;
+        if self.cut.steps_a_cell > 1 {
+            for (first, columns) in self.columns.iter_mut().enumerate() {
+                columns.clear();
+                columns.try_reserve_exact(self.size[0])?;
+                columns.extend(self.coordinates.x[first..].iter().step_by(2));
+            }
+        }
+        let first = lattice.first_stored();
+        self.kinds =
+            [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[y, z]| RowKind::new(self.cut, first, [y, z], &self.line));
+        self.parity = lattice.origin().into_iter().map(i64::from).sum::<i64>().rem_euclid(2) as usize;
+        Ok(())
+    }
+
+    /// The tetrahedra of a cell of the window.
+    pub(super) fn tetrahedra(&self, cell: [usize; 3]) -> &[Tetrahedron] {
+        &self.tetrahedra[(self.parity + cell.iter().sum::<usize>()) % 2]
     }
 
     /// From a point to its neighbour: as far as the spacing says, `regular`, or less where the border cuts cells off.
     pub(super) fn way(&self, place: [usize; 3], direction: usize, regular: Vec3) -> Vec3 {
-        let first = self.lattice.first_stored().map(|i| i as usize);
-        let is_regular = self.border == Border::BeyondBox
-            || (0..3).all(|axis| {
-                let (low, end) = self.lattice.regular_points(axis);
-                (low..end).contains(&((place[axis] + first[axis]) / self.cut.steps_a_cell))
-            });
+        let is_regular = is_regular(&self.lattice, self.cut, self.border, place);
         if is_regular {
             return regular;
         }
@@ -193,7 +213,7 @@ impl<'a> Grid<'a> {
 /// Columns, rows and layers of a tile for each of a cell.
 const TILE: usize = 2;
 
-impl Points for Grid<'_> {
+impl Points for Grid {
     fn size(&self) -> [usize; 3] {
         self.size
     }
@@ -216,13 +236,19 @@ impl Points for Grid<'_> {
     }
 }
 
-fn every_second(values: &[f32], first: usize) -> Result<Vec<f32>, TryReserveError> {
-    collected(values[first..].iter().copied().step_by(2))
+/// Whether all lattice edges of a stored point are as long as the spacing says.
+pub(super) fn is_regular(lattice: &Lattice, cut: &Cut, border: Border, place: [usize; 3]) -> bool {
+    let stored = lattice.stored(place);
+    (0..3).all(|axis| match lattice.regular_points(axis, border) {
+        Some((low, end)) => (low..end).contains(&(stored[axis] / cut.steps_a_cell as i64)),
+        None => true,
+    })
 }
 
 impl RowKind {
-    fn new(cut: &Cut, first: [usize; 3], [y, z]: [usize; 2], line: &[usize; DIRECTIONS]) -> Self {
-        let edges_of = [0, 1].map(|x| cut.edges_of[cut.class([x + first[0], y + first[1], z + first[2]])]);
+    fn new(cut: &Cut, first: [i64; 3], [y, z]: [i64; 2], line: &[usize; DIRECTIONS]) -> Self {
+        let edges_of =
+            [0, 1].map(|x: i64| cut.edges_of[cut.class([x + first[0], y + first[1], z + first[2]])]);
         let columns_of = |has: &dyn Fn(Directions) -> bool| {
             (if has(edges_of[0]) { EVEN } else { 0 }) | (if has(edges_of[1]) { ODD } else { 0 })
         };

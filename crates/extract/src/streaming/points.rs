@@ -240,8 +240,11 @@ impl<R: ClusterRule> PointPass<'_, R> {
         placed: &mut Placed,
     ) {
         if let Some(keys) = &mut placed.keys {
-            let number = self.grid.lattice.point_number([point.column, point.row, layer]);
-            keys.extend(clusters.iter().map(|set| VertexKey::new(number, set.trailing_zeros() as usize)));
+            let lattice = &self.grid.lattice;
+            let (arrangement, stored) =
+                (lattice.arrangement(), lattice.stored([point.column, point.row, layer]));
+            let key = |set: &DirectionSet| VertexKey::new(arrangement, stored, set.trailing_zeros() as usize);
+            keys.extend(clusters.iter().map(key));
         }
         let Some(placer) = self.placer else { return };
         let values = self.samples.values;
@@ -272,8 +275,9 @@ impl<R: ClusterRule> PointPass<'_, R> {
         there: &[f32; 16],
     ) -> Vec3 {
         let (grid, position) = (self.grid, Vec3A::from(point.position));
+        let apart = self.apart.at(point.position);
         let ratio = |direction: usize| {
-            self.apart.ratio(company, direction, linear_ratio(difference, value, there[direction]))
+            apart.ratio(company, direction, linear_ratio(difference, value, there[direction]))
         };
         if !point.regular {
             return self.place_at_border(point, layer, cluster, ratio);

@@ -1,11 +1,13 @@
-//! The stored extractor: the original's way, with all samples and edge records of the lattice in memory.
+//! The dense extractor: the original's way, with all samples and edge records of the lattice in memory.
 //!
 //! It serves accumulated positions, and is what the streaming one is compared with.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use mesh::TriangleMesh;
 
+use crate::clock::Moment;
+use crate::control::Control;
 use crate::edges::EdgeTable;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
 use crate::finish::finish;
@@ -14,18 +16,18 @@ use crate::level::Level;
 use crate::normals::vertex_normals;
 use crate::placement::CrossingPlacer;
 use crate::sampling::sample;
-use crate::settings::{Execution, ExtractSettings};
+use crate::settings::ExtractSettings;
 use crate::sides::Sides;
 use crate::triangles::triangulate;
 use crate::vertices::VertexStage;
-use field::{Kept, ScalarField};
+use field::{Kept, StudyField};
 
 /// The stages in order, timed and counted. At most `most_vertices` may come of it.
 pub(crate) fn extract(
-    field: &dyn ScalarField,
+    field: &dyn StudyField,
     lattice: &Lattice,
     settings: &ExtractSettings,
-    execution: &Execution,
+    control: Control,
     most_vertices: u32,
 ) -> Result<Extraction, ExtractError> {
     check(settings, lattice.arrangement())?;
@@ -41,7 +43,7 @@ pub(crate) fn extract(
     let mut kept = Kept::default();
     let field = field.prepared(&mut kept).unwrap_or(field);
     let coordinates = Coordinates::sampled(lattice, &layout, settings.positions, Border::of(settings))?;
-    sample(field, &layout, &coordinates, execution, &mut samples)?;
+    sample(field, &layout, &coordinates, control, &mut samples)?;
     let sampling = clock.lap();
 
     let level = Level { field, isovalue: settings.isovalue, spacing: lattice.spacing() };
@@ -52,7 +54,7 @@ pub(crate) fn extract(
 
     let mut surface = triangulate(lattice, &layout, &sides, &edges)?;
     let collapsing =
-        finish(Some(level), lattice, settings, execution, &targets, &mut positions, &mut surface)?;
+        finish(Some(level), lattice, settings, control.threads, &targets, &mut positions, &mut surface)?;
     let clustering = collapsing.unwrap_or_default();
     let geometry = clock.lap() - clustering;
 
@@ -75,16 +77,16 @@ fn reserve(lattice: &Lattice) -> Result<(), ExtractError> {
 
 /// Laps without a gap.
 struct Clock {
-    last: Instant,
+    last: Moment,
 }
 
 impl Clock {
     fn start() -> Self {
-        Self { last: Instant::now() }
+        Self { last: Moment::now() }
     }
 
     fn lap(&mut self) -> Duration {
-        let now = Instant::now();
+        let now = Moment::now();
         now - std::mem::replace(&mut self.last, now)
     }
 }

@@ -3,45 +3,52 @@
 
 use std::collections::TryReserveError;
 use std::ops::Range;
-use std::time::Instant;
 
 use super::cells::triangulate_layer;
 use super::grid::Grid;
 use super::points::{Placer, PointPass, Records, Vertices};
 use super::sampling::{Samples, Sampling};
 use crate::ExtractError;
+use crate::clock::Moment;
+use crate::control::Control;
 use crate::slabs::Piece;
-use crate::source::Source;
+use crate::source::Sampler;
 use crate::vertices::Ties;
 
 /// What all slabs of an extraction share.
 pub(super) struct Job<'a> {
-    pub(super) grid: &'a Grid<'a>,
-    pub(super) source: Source<'a>,
+    pub(super) grid: &'a Grid,
+    pub(super) source: Sampler<'a>,
     pub(super) isovalue: f32,
     pub(super) ties: Ties,
     pub(super) placer: &'a Placer<'a>,
     pub(super) most_vertices: u32,
     /// Whether vertices get keys and triangles the numbers of their cells.
     pub(super) traced: bool,
+    pub(super) control: Control<'a>,
+    /// Called when a layer of cells is done.
+    pub(super) progress: &'a (dyn Fn() + Sync),
 }
 
 /// Buffers of one thread, a few layers each.
+#[derive(Debug, Default)]
 pub(super) struct Workspace {
     samples: Samples,
     records: Records,
 }
 
 impl Workspace {
-    pub(super) fn new(grid: &Grid, source: Source) -> Result<Self, TryReserveError> {
-        Ok(Self { samples: Samples::new(grid, source)?, records: Records::new(grid)? })
+    /// Makes room; keeps what is large enough.
+    pub(super) fn fit(&mut self, grid: &Grid, source: Sampler) -> Result<(), TryReserveError> {
+        self.samples.fit(grid, source)?;
+        self.records.fit(grid)
     }
 }
 
 /// Extracts the layers `own` of cells: their triangles, and the vertices of their points but for those of the highest
 /// layer, which are the next slab's. Vertices are numbered from the slab's first on, so that the numbers of the whole
 /// surface are these plus a constant.
-pub(super) fn sweep(
+pub(super) fn stream_slab(
     job: &Job,
     own: Range<usize>,
     Workspace { samples, records }: &mut Workspace,
@@ -53,15 +60,21 @@ pub(super) fn sweep(
     let around = |n: usize| lowest.saturating_sub(n)..layers.min(highest + n + 1);
     let (placed, sampled, sided) = (around(0), around(reach), around(2 * reach));
     let sampling = Sampling { grid, source, isovalue };
-    let mut vertices = Vertices { keys: job.traced.then(Vec::new), ..Vertices::default() };
-    piece.surface.trace = job.traced.then(Default::default);
-    let mut last = Instant::now();
+    piece.clear(job.traced);
+    let mut vertices = Vertices {
+        positions: std::mem::take(&mut piece.positions),
+        targets: std::mem::take(&mut piece.targets),
+        keys: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys)),
+        ..Vertices::default()
+    };
+    let mut last = Moment::now();
     let mut lap = || {
-        let now = Instant::now();
+        let now = Moment::now();
         now - std::mem::replace(&mut last, now)
     };
     for step in sided.start..=highest + 2 * reach {
         if sided.contains(&step) {
+            job.control.check()?;
             samples.find_sides(sampling, step);
         }
         if let Some(layer) = step.checked_sub(reach).filter(|layer| sampled.contains(layer)) {
@@ -90,6 +103,7 @@ pub(super) fn sweep(
             piece.tail = piece.surface.triangles.len();
         }
         triangulate_layer(grid, sides, active, records, cells, &mut piece.surface)?;
+        (job.progress)();
         piece.times.geometry += lap();
     }
     (piece.positions, piece.targets) = (vertices.positions, vertices.targets);

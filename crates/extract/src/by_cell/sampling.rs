@@ -1,7 +1,7 @@
 //! Sampling pass: the sides of a layer, then which of its points have a crossing, and the samples there that no side
 //! needed.
 //!
-//! A field is called where its bounds leave the side of a point open ([`ScalarField::range`], [`ScalarField::slope`]),
+//! A field is called where its bounds leave the side of a point open ([`StudyField::range`], [`StudyField::slope`]),
 //! and at points with a crossing. All other points have no sample.
 
 use std::collections::TryReserveError;
@@ -10,10 +10,10 @@ use super::grid::{Grid, LINES};
 use super::rows::{BitRows, shifted};
 use crate::bits::{between, set_range};
 use crate::line::{Columns, Every, Gaps, Line};
-use crate::memory::filled;
-use crate::source::Source;
+use crate::memory::refill;
+use crate::source::Sampler;
 use crate::tiles::{Points, Span, Tile, Tiles};
-use field::ScalarField;
+use field::StudyField;
 
 /// Where all points of a row are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -25,6 +25,7 @@ enum State {
 }
 
 /// A few layers of samples and sides.
+#[derive(Debug, Default)]
 pub(super) struct Samples {
     /// Of a field that is called.
     called: Option<Called>,
@@ -37,6 +38,7 @@ pub(super) struct Samples {
 }
 
 /// A ring of layers of samples, and a bit for each that was taken.
+#[derive(Debug, Default)]
 struct Called {
     values: Vec<f32>,
     taken: BitRows,
@@ -47,8 +49,8 @@ struct Called {
 /// What is sampled, and where.
 #[derive(Clone, Copy)]
 pub(super) struct Sampling<'a> {
-    pub(super) grid: &'a Grid<'a>,
-    pub(super) source: Source<'a>,
+    pub(super) grid: &'a Grid,
+    pub(super) source: Sampler<'a>,
     pub(super) isovalue: f32,
 }
 
@@ -68,23 +70,23 @@ impl Values<'_> {
 }
 
 impl Samples {
-    pub(super) fn new(grid: &Grid, source: Source) -> Result<Self, TryReserveError> {
-        let slots = grid.slots();
-        let called = match source {
-            Source::Field(_) => Some(Called::new(grid, slots)?),
-            Source::Samples(_) => None,
-        };
-        let sides = BitRows::new(grid, slots)?;
-        let states = filled(grid.size[1] * slots, State::Outside)?;
-        Ok(Self { called, sides, states, active: BitRows::new(grid, slots)?, slots })
+    /// Makes room; keeps what is large enough.
+    pub(super) fn fit(&mut self, grid: &Grid, source: Sampler) -> Result<(), TryReserveError> {
+        self.slots = grid.slots();
+        if matches!(source, Sampler::Field(_)) {
+            self.called.get_or_insert_default().fit(grid, self.slots)?;
+        }
+        self.sides.fit(grid, self.slots)?;
+        self.active.fit(grid, self.slots)?;
+        refill(&mut self.states, grid.size[1] * self.slots, State::Outside)
     }
 
-    pub(super) fn values<'a>(&'a self, grid: &Grid, source: Source<'a>) -> Values<'a> {
+    pub(super) fn values<'a>(&'a self, grid: &Grid, source: Sampler<'a>) -> Values<'a> {
         let size = grid.size;
         match (source, &self.called) {
-            (Source::Samples(values), _) => Values { values, size, slots: size[2] },
-            (Source::Field(_), Some(called)) => Values { values: &called.values, size, slots: self.slots },
-            (Source::Field(_), None) => unreachable!("made for a field"),
+            (Sampler::Given(values), _) => Values { values, size, slots: size[2] },
+            (Sampler::Field(_), Some(called)) => Values { values: &called.values, size, slots: self.slots },
+            (Sampler::Field(_), None) => unreachable!("made for a field"),
         }
     }
 
@@ -92,7 +94,7 @@ impl Samples {
     pub(super) fn find_sides(&mut self, sampling: Sampling, layer: usize) {
         let Sampling { grid, source, isovalue } = sampling;
         let [nx, ny, _] = grid.size;
-        if let (Source::Field(field), Some(called)) = (source, &mut self.called) {
+        if let (Sampler::Field(field), Some(called)) = (source, &mut self.called) {
             called.tiles.turn_to(layer, grid, field, isovalue);
         }
         for row in 0..ny {
@@ -100,14 +102,14 @@ impl Samples {
             sides.fill(0);
             let mut state = State::Mixed;
             match (source, &mut self.called) {
-                (Source::Samples(values), _) => {
+                (Sampler::Given(values), _) => {
                     let values = &values[(layer * ny + row) * nx..][..nx];
                     for (word, values) in sides.iter_mut().zip(values.chunks(64)) {
                         let bits = values.iter().enumerate();
                         *word = bits.fold(0, |word, (i, &value)| word | u64::from(value > isovalue) << i);
                     }
                 }
-                (Source::Field(field), Some(called)) => {
+                (Sampler::Field(field), Some(called)) => {
                     called.taken.row_mut(row, layer).fill(0);
                     let (spans, _) = called.tiles.row(row);
                     match spans {
@@ -119,7 +121,7 @@ impl Samples {
                         _ => called.sample(sampling, field, [row, layer], sides, self.slots),
                     }
                 }
-                (Source::Field(_), None) => unreachable!("made for a field"),
+                (Sampler::Field(_), None) => unreachable!("made for a field"),
             }
             if state == State::Mixed {
                 state = state_of(sides, grid.kind(row, layer).used, nx);
@@ -148,7 +150,7 @@ impl Samples {
                 continue;
             }
             mark_crossings(grid, [row, layer], sides.row(row, layer), &lines, active);
-            if let (Source::Field(field), Some(called)) = (source, &mut self.called) {
+            if let (Sampler::Field(field), Some(called)) = (source, &mut self.called) {
                 called.fill(grid, field, [row, layer], active, self.slots);
             }
         }
@@ -178,20 +180,19 @@ fn mark_crossings(
 }
 
 impl Called {
-    fn new(grid: &Grid, slots: usize) -> Result<Self, TryReserveError> {
+    fn fit(&mut self, grid: &Grid, slots: usize) -> Result<(), TryReserveError> {
         let [nx, ny, _] = grid.size;
-        let (mut tiles, mut gaps) = (Tiles::default(), Gaps::default());
-        tiles.fit(grid)?;
-        gaps.fit(nx)?;
-        let (values, taken) = (filled(nx * ny * slots, 0.0)?, BitRows::new(grid, slots)?);
-        Ok(Self { values, taken, tiles, gaps })
+        self.tiles.fit(grid)?;
+        self.gaps.fit(nx)?;
+        self.taken.fit(grid, slots)?;
+        refill(&mut self.values, nx * ny * slots, 0.0)
     }
 
     /// Finds the sides of a row that is not known to lie on one.
     fn sample(
         &mut self,
         sampling: Sampling,
-        field: &dyn ScalarField,
+        field: &dyn StudyField,
         [row, layer]: [usize; 2],
         sides: &mut [u64],
         slots: usize,
@@ -221,7 +222,7 @@ impl Called {
     fn fill(
         &mut self,
         grid: &Grid,
-        field: &dyn ScalarField,
+        field: &dyn StudyField,
         [row, layer]: [usize; 2],
         active: &[u64],
         slots: usize,

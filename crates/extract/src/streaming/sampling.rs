@@ -15,12 +15,12 @@ use crate::bits::set_range;
 use crate::line::{All, Gaps, Line};
 use crate::memory::refill;
 use crate::tiles::{Points, Span, Tile, Tiles};
-use field::ScalarField;
+use field::StudyField;
 
 /// What is called, and where.
 #[derive(Clone, Copy)]
 pub(super) struct FieldPass<'a> {
-    pub(super) field: &'a dyn ScalarField,
+    pub(super) field: &'a dyn StudyField,
     pub(super) grid: &'a Grid,
     pub(super) isovalue: f32,
     /// Whether samples are wanted at points without a crossing as well: then all are taken.

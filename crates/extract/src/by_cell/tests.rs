@@ -3,35 +3,35 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Instant;
 
 use glam::Vec3;
 use mesh::Bounds;
 
 use super::cut::{Cut, Step, turn};
 use super::grid::Coordinates;
-use super::stored;
+use super::{CellStreamer, dense};
+use crate::clock::Moment;
 use crate::fields::{FAMILIES, Family, Numbers, Volume};
 use crate::lattice::Border;
-use crate::source::Request;
+use crate::source::{Request, Sampler};
 use crate::spot::tests::normal_lies_between;
 use crate::trace::Trace;
 use crate::{
     Arrangement, CellBox, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Lattice,
-    Placement, Source, Topology,
+    Placement, Topology,
 };
-use field::{Asteroid, Beyond, Gyroid, MeshDistance, ScalarField, Sphere, VolumeField};
+use field::{Asteroid, Beyond, Gyroid, MeshDistance, Sphere, StudyField, VolumeField};
 
 const BOTH: [Arrangement; 2] = [Arrangement::FiveTetrahedra, Arrangement::FaceCentred];
 
 fn request<'a>(
-    source: Source<'a>,
+    source: Sampler<'a>,
     lattice: &'a Lattice,
     settings: &'a ExtractSettings,
     execution: &'a Execution,
     most_vertices: u32,
 ) -> Request<'a> {
-    Request { source, lattice, settings, execution, most_vertices, start: Instant::now() }
+    Request { source, lattice, settings, control: execution.into(), most_vertices, start: Moment::now() }
 }
 
 fn tetrahedra_at(cut: &Cut, cell: [i8; 3]) -> impl Iterator<Item = [Step; 4]> + '_ {
@@ -155,9 +155,9 @@ fn all_settings(isovalue: f32) -> impl Iterator<Item = ExtractSettings> {
     })
 }
 
-/// All ways of the streaming extractor against the stored one.
+/// All ways of the streaming extractor against the dense one.
 fn check(
-    field: &dyn ScalarField,
+    field: &dyn StudyField,
     lattice: &Lattice,
     all: impl Iterator<Item = ExtractSettings>,
     what: &dyn std::fmt::Debug,
@@ -165,16 +165,22 @@ fn check(
     let cut = Cut::of(lattice.arrangement());
     for settings in all {
         let coordinates = Coordinates::new(lattice, &cut, Border::of(&settings)).unwrap();
-        let samples = stored::samples(field, &coordinates);
-        let (expected, trace) = stored::extract(field, lattice, &settings);
+        let samples = dense::samples(field, &coordinates);
+        let (expected, trace) = dense::extract(field, lattice, &settings);
         let calls = settings.refine_crossings || settings.placement.calls_the_field();
-        let given = (!calls).then_some(Source::Samples(&samples));
-        for source in [Some(Source::Field(field)), given].into_iter().flatten() {
+        let given = (!calls).then_some(Sampler::Given(&samples));
+        for source in [Some(Sampler::Field(field)), given].into_iter().flatten() {
             for threads in [1, 3] {
                 let (mut found, mut found_trace) = (Extraction::default(), Trace::default());
                 let execution = Execution { threads };
                 let kept = Some(&mut found_trace);
-                super::extract(&request(source, lattice, &settings, &execution, u32::MAX), kept, &mut found)
+                CellStreamer::default()
+                    .extract(
+                        &request(source, lattice, &settings, &execution, u32::MAX),
+                        None,
+                        kept,
+                        &mut found,
+                    )
                     .unwrap();
                 let what = format!("{what:?} {:?} {settings:?} {threads} threads", lattice.arrangement());
                 assert_eq!(found.counts, expected.counts, "{what}");
@@ -208,8 +214,8 @@ fn any_samples_give_the_stored_mesh() {
             check(&volume, &volume.lattice(), all_settings(isovalue), &(family, seed));
             let mut numbers = Numbers::new(seed);
             for _ in 0..3 {
-                let start: [u32; 3] = std::array::from_fn(|_| numbers.below(6) as u32);
-                let end = start.map(|start| start + 1 + numbers.below(u64::from(6 - start)) as u32);
+                let start: [i32; 3] = std::array::from_fn(|_| numbers.below(6) as i32);
+                let end = start.map(|start| start + 1 + numbers.below((6 - start) as u64) as i32);
                 let window = volume.lattice().window(CellBox { start, end });
                 check(&volume, &window, all_settings(isovalue), &(family, seed, start, end));
             }
@@ -251,7 +257,7 @@ fn long_lattices_give_the_stored_mesh() {
 /// A field that begins again after some way along each axis.
 struct Repeated(Volume, f32);
 
-impl ScalarField for Repeated {
+impl StudyField for Repeated {
     fn sample(&self, p: Vec3) -> f32 {
         self.0.sample(p - (p / self.1).floor() * self.1)
     }
@@ -273,7 +279,7 @@ fn fields_with_bounds_give_the_stored_mesh() {
     let step = 2.0 / 22.0;
     let steps = [[step, 0.0, 0.0], [0.0, 0.8 * step, 0.1], [0.0, 0.0, step]];
     let volume = VolumeField::try_new([23; 3], samples(23), [-1.0; 3], steps, Beyond::Falling).unwrap();
-    let fields: [(&dyn ScalarField, f32); 8] = [
+    let fields: [(&dyn StudyField, f32); 8] = [
         (&Sphere { radius: 1.0 }, 0.0),
         (&Sphere { radius: 0.8 }, 0.1),
         (&Asteroid::default(), 0.0),
@@ -293,7 +299,7 @@ fn fields_with_bounds_give_the_stored_mesh() {
                 };
                 let lattice = Lattice::try_new(arrangement, bounds, spacing).unwrap();
                 check(field, &lattice, all(), &(i, spacing));
-                let [x, y, z] = lattice.cells();
+                let [x, y, z] = lattice.cells().map(|n| n as i32);
                 let cells = CellBox { start: [3, 0, 5], end: [x, y - 2, z - 1] };
                 check(field, &lattice.window(cells), all(), &(i, spacing, cells));
             }
@@ -323,7 +329,7 @@ fn every_placement_is_that_of_the_stored_mesh() {
 #[test]
 fn odd_fields_have_the_stored_mesh() {
     struct Constant(f32);
-    impl ScalarField for Constant {
+    impl StudyField for Constant {
         fn sample(&self, _: Vec3) -> f32 {
             self.0
         }
@@ -345,7 +351,7 @@ fn odd_fields_have_the_stored_mesh() {
 /// Counts samples.
 struct Counting<F>(F, AtomicUsize);
 
-impl<F: ScalarField> ScalarField for Counting<F> {
+impl<F: StudyField> StudyField for Counting<F> {
     fn sample(&self, p: Vec3) -> f32 {
         self.1.fetch_add(1, Ordering::Relaxed);
         self.0.sample(p)
@@ -380,8 +386,13 @@ fn more_vertices_than_may_be_are_an_error() {
         for threads in [1, 2] {
             let run = |most| {
                 let (mut found, execution) = (Extraction::default(), Execution { threads });
-                let source = Source::Field(&Sphere { radius: 0.8 });
-                super::extract(&request(source, &lattice, &settings, &execution, most), None, &mut found)?;
+                let source = Sampler::Field(&Sphere { radius: 0.8 });
+                CellStreamer::default().extract(
+                    &request(source, &lattice, &settings, &execution, most),
+                    None,
+                    None,
+                    &mut found,
+                )?;
                 Ok(found.mesh.positions.len() as u32)
             };
             let all = run(u32::MAX).unwrap();

@@ -10,7 +10,7 @@ use super::rows::{BitRows, is_set};
 use super::sampling::Values;
 use crate::lattice::Lattice;
 use crate::level::Level;
-use crate::memory::{filled, push};
+use crate::memory::{push, refill};
 use crate::placement::crossing_ratio;
 use crate::settings::{ExtractSettings, Placement};
 use crate::spot::{Apart, Company, linear_ratio};
@@ -33,11 +33,12 @@ impl Record {
 }
 
 /// A ring of layers of records, one for each point with a crossing.
+#[derive(Debug, Default)]
 pub(super) struct Records {
     layers: Vec<Layer>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Layer {
     records: Vec<Record>,
     /// By word of points, how many records come before its own.
@@ -45,13 +46,10 @@ struct Layer {
 }
 
 impl Records {
-    /// For the layers of a cell.
-    pub(super) fn new(grid: &Grid) -> Result<Self, TryReserveError> {
-        let layer = || -> Result<Layer, TryReserveError> {
-            let starts = filled(grid.words * grid.size[1], 0)?;
-            Ok(Layer { records: Vec::new(), starts })
-        };
-        Ok(Self { layers: (0..=grid.reach()).map(|_| layer()).collect::<Result<_, _>>()? })
+    /// Makes room for the layers of a cell; keeps what is large enough.
+    pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), TryReserveError> {
+        self.layers.resize_with(grid.reach() + 1, Layer::default);
+        self.layers.iter_mut().try_for_each(|layer| refill(&mut layer.starts, grid.words * grid.size[1], 0))
     }
 
     fn layer(&self, layer: usize) -> &Layer {
@@ -94,7 +92,7 @@ impl RecordRow<'_> {
 
 /// What the pass reads.
 pub(super) struct PointPass<'a> {
-    pub(super) grid: &'a Grid<'a>,
+    pub(super) grid: &'a Grid,
     pub(super) values: Values<'a>,
     pub(super) sides: &'a BitRows,
     pub(super) active: &'a BitRows,
@@ -197,7 +195,8 @@ impl PointPass<'_> {
             let way = grid.way(place, direction, self.placer.edges[direction]);
             self.placer.place(grid.coordinates.at(place), (direction, way), [value, neighbour], vertices)?;
             if let Some(keys) = &mut vertices.keys {
-                push(keys, VertexKey::new(grid.lattice.point_number(place), direction))?;
+                let (arrangement, stored) = (grid.lattice.arrangement(), grid.lattice.stored(place));
+                push(keys, VertexKey::new(arrangement, stored, direction))?;
             }
         }
         Ok(record)
@@ -209,7 +208,7 @@ pub(super) struct Placer<'a> {
     lattice: &'a Lattice,
     isovalue: f32,
     apart: Apart,
-    pub(super) edges: Vec<Vec3>,
+    pub(super) edges: [Vec3; Directions::BITS as usize],
     /// Whether the settings want vertices elsewhere, and to find roots with.
     refines: bool,
     level: Option<Level<'a>>,
@@ -223,12 +222,15 @@ impl<'a> Placer<'a> {
         level: Option<Level<'a>>,
     ) -> Self {
         let step = lattice.spacing() / cut.steps_a_cell as f32;
-        let edges = cut.steps.iter().map(|step| Vec3::from_array(step.map(f32::from)));
+        let mut edges = [Vec3::ZERO; Directions::BITS as usize];
+        for (edge, to) in edges.iter_mut().zip(&cut.steps) {
+            *edge = Vec3::from_array(to.map(f32::from)) * step;
+        }
         Self {
             lattice,
             isovalue: settings.isovalue,
             apart: Apart::new(lattice, settings.topology),
-            edges: edges.map(|edge| edge * step).collect(),
+            edges,
             // The weighted mean of one crossing is that crossing.
             refines: settings.refine_crossings || settings.placement == Placement::CurvatureWeighted,
             level: level.filter(|_| settings.refine_crossings),
@@ -245,7 +247,11 @@ impl<'a> Placer<'a> {
         let bounds = self.lattice.bounds();
         let isovalue = self.isovalue;
         // Of the edge alone: a chunk need not know whether the point has other vertices.
-        let ratio = self.apart.ratio(Company::Singles, direction, linear_ratio(isovalue - here, here, there));
+        let ratio = self.apart.at(from).ratio(
+            Company::Singles,
+            direction,
+            linear_ratio(isovalue - here, here, there),
+        );
         let position = (way * ratio + from).min(bounds.max).max(bounds.min);
         vertices.positions.try_reserve(1)?;
         vertices.positions.push(position);

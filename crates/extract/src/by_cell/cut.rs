@@ -1,5 +1,7 @@
 //! How a cube is cut, and the lattice edges that come of it.
 
+use std::sync::OnceLock;
+
 use crate::lattice::Arrangement;
 use crate::tetrahedra::EDGES;
 
@@ -45,8 +47,16 @@ pub(super) struct CutEdge {
 }
 
 impl Cut {
+    /// The cut of an arrangement.
+    ///
     /// # Panics
     /// If the arrangement is uniform: its tetrahedra stand round edges and not in cubes.
+    pub(super) fn get(arrangement: Arrangement) -> &'static Self {
+        static CUTS: [OnceLock<Cut>; 2] = [const { OnceLock::new() }; 2];
+        CUTS[usize::from(arrangement == Arrangement::FaceCentred)].get_or_init(|| Self::of(arrangement))
+    }
+
+    /// The same, made anew.
     pub(super) fn of(arrangement: Arrangement) -> Self {
         match arrangement {
             Arrangement::FiveTetrahedra => Self::new(1, [0, 1].map(five)),
@@ -83,9 +93,9 @@ impl Cut {
             for t in 0..cut.tetrahedra[parity].len() {
                 let tetrahedron = &cut.tetrahedra[parity][t];
                 let edges = tetrahedron.edges;
-                let classes = tetrahedron
-                    .corners
-                    .map(|corner| cut.class([0, 1, 2].map(|axis| lowest[axis] + corner[axis] as usize)));
+                let classes = tetrahedron.corners.map(|corner| {
+                    cut.class([0, 1, 2].map(|axis| (lowest[axis] + corner[axis] as usize) as i64))
+                });
                 for edge in edges {
                     cut.edges_of[classes[usize::from(edge.from)]] |= 1 << edge.direction;
                     cut.edges_of[classes[usize::from(edge.to)]] |= 1 << edge.back;
@@ -124,10 +134,11 @@ impl Cut {
 
     /// Points of one class have the same lattice edges, unless the lattice ends there. From its place in the whole
     /// lattice: with one step a cube the parity of all indices together, with two that of each.
-    pub(super) fn class(&self, [x, y, z]: [usize; 3]) -> usize {
+    pub(super) fn class(&self, [x, y, z]: [i64; 3]) -> usize {
+        let odd = |i: i64| i.rem_euclid(2) as usize;
         match self.steps_a_cell {
-            1 => (x + y + z) % 2,
-            _ => x % 2 + 2 * (y % 2) + 4 * (z % 2),
+            1 => odd(x + y + z),
+            _ => odd(x) + 2 * odd(y) + 4 * odd(z),
         }
     }
 }

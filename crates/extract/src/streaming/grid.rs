@@ -1,4 +1,4 @@
-//! What a sweep needs to know about its lattice, worked out once.
+//! What streaming needs to know about its lattice, worked out once.
 
 use std::collections::TryReserveError;
 
@@ -62,7 +62,6 @@ impl Grid {
     pub(super) fn new(lattice: &Lattice, border: Border) -> Result<Self, TryReserveError> {
         let layout = Layout::new(lattice);
         let directions = lattice.arrangement().directions();
-        let half = lattice.spacing() / 2.0;
         let neighbourhood = |kind| Neighbourhood::new(&layout, kind, directions);
         let (reach, base_offset) = match lattice.arrangement().expect_uniform() {
             Uniform::BodyCentred => (2, 1),
@@ -74,9 +73,7 @@ impl Grid {
             size: layout.grid(),
             words: layout.grid()[0].div_ceil(64),
             reach,
-            edges: std::array::from_fn(|d| {
-                Vec3A::from_array(directions.offsets[d % DIRECTIONS].map(f32::from)) * half
-            }),
+            edges: edges(lattice),
             low: lattice.bounds().min.into(),
             high: lattice.bounds().max.into(),
             neighbourhoods: [PointKind::Centre, PointKind::Corner].map(neighbourhood),
@@ -87,6 +84,18 @@ impl Grid {
             lattice: lattice.clone(),
             border,
         })
+    }
+
+    /// Makes it that of another lattice of the same arrangement. What is large enough stays.
+    pub(super) fn refit(&mut self, lattice: &Lattice, border: Border) -> Result<(), TryReserveError> {
+        self.layout = Layout::new(lattice);
+        self.coordinates.refit(lattice, &self.layout, border)?;
+        self.size = self.layout.grid();
+        self.words = self.size[0].div_ceil(64);
+        self.edges = edges(lattice);
+        (self.low, self.high) = (lattice.bounds().min.into(), lattice.bounds().max.into());
+        (self.lattice, self.border) = (lattice.clone(), border);
+        Ok(())
     }
 
     /// Slots that a ring of layers needs for a point and all its neighbours.
@@ -183,6 +192,11 @@ impl Points for Grid {
         });
         Bounds { min, max }
     }
+}
+
+fn edges(lattice: &Lattice) -> [Vec3A; 16] {
+    let (half, offsets) = (lattice.spacing() / 2.0, &lattice.arrangement().directions().offsets);
+    std::array::from_fn(|d| Vec3A::from_array(offsets[d % DIRECTIONS].map(f32::from)) * half)
 }
 
 impl Neighbourhood {

@@ -3,7 +3,7 @@
 use std::collections::TryReserveError;
 
 use super::grid::Grid;
-use crate::memory::filled;
+use crate::memory::refill;
 
 /// A ring of layers. Each row has a word of zeros at either end, so that a shift by a few points needs no special case.
 #[derive(Debug, Default)]
@@ -15,9 +15,11 @@ pub(super) struct BitRows {
 }
 
 impl BitRows {
-    pub(super) fn new(grid: &Grid, slots: usize) -> Result<Self, TryReserveError> {
-        let (stride, rows) = (grid.words + 2, grid.size[1]);
-        Ok(Self { words: filled(stride * rows * slots, 0)?, stride, rows, slots })
+    /// All zero, in the room that there is if that is enough.
+    pub(super) fn fit(&mut self, grid: &Grid, slots: usize) -> Result<(), TryReserveError> {
+        (self.stride, self.rows, self.slots) = (grid.words + 2, grid.size[1], slots);
+        self.words.clear();
+        refill(&mut self.words, self.stride * self.rows * slots, 0)
     }
 
     fn start(&self, row: usize, layer: usize) -> usize {

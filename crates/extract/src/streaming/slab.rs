@@ -2,7 +2,6 @@
 //! as many layers behind the one before as a lattice edge can reach.
 
 use std::ops::Range;
-use std::time::Instant;
 
 use super::faces::{FaceTables, triangulate_layer};
 use super::grid::Grid;
@@ -12,9 +11,11 @@ use super::rule::ClusterRule;
 use super::sampling::{FieldPass, FieldSamples, signs_of};
 use super::signs::Signs;
 use crate::ExtractError;
+use crate::clock::Moment;
+use crate::control::Control;
 use crate::placement::CrossingPlacer;
 use crate::slabs::Piece;
-use crate::source::Source;
+use crate::source::Sampler;
 use crate::spot::Apart;
 
 /// What all slabs of an extraction share.
@@ -22,13 +23,14 @@ pub(super) struct Job<'a, R> {
     pub(super) grid: &'a Grid,
     pub(super) tables: &'a FaceTables,
     pub(super) rule: &'a R,
-    pub(super) source: Source<'a>,
+    pub(super) source: Sampler<'a>,
     pub(super) isovalue: f32,
     pub(super) apart: Apart,
     pub(super) most_vertices: u32,
     pub(super) placer: Option<&'a CrossingPlacer<'a>>,
     /// Whether vertices get keys and triangles the numbers of their cells.
     pub(super) traced: bool,
+    pub(super) control: Control<'a>,
     /// Called with the number of layers sampled since the last call.
     pub(super) progress: &'a (dyn Fn(usize) + Sync),
 }
@@ -46,10 +48,10 @@ impl Workspace {
     pub(super) fn fit(
         &mut self,
         grid: &Grid,
-        source: Source,
+        source: Sampler,
     ) -> Result<(), std::collections::TryReserveError> {
         let slots = grid.slots() + lead(grid, source);
-        if matches!(source, Source::Field(_)) {
+        if matches!(source, Sampler::Field(_)) {
             self.samples.fit(grid, slots)?;
         }
         self.signs.fit(grid, slots)?;
@@ -59,15 +61,15 @@ impl Workspace {
 
 /// How many layers signs are ahead of the samples at crossings. A crossing is known when the signs of all neighbours
 /// are; given samples are there before that.
-fn lead(grid: &Grid, source: Source) -> usize {
+fn lead(grid: &Grid, source: Sampler) -> usize {
     match source {
-        Source::Field(_) => grid.reach,
-        Source::Samples(_) => 0,
+        Sampler::Field(_) => grid.reach,
+        Sampler::Given(_) => 0,
     }
 }
 
 /// Extracts the layers `own`, vertices and triangles.
-pub(super) fn sweep<R: ClusterRule>(
+pub(super) fn stream_slab<R: ClusterRule>(
     job: &Job<R>,
     own: Range<usize>,
     workspace: &mut Workspace,
@@ -84,17 +86,22 @@ pub(super) fn sweep<R: ClusterRule>(
     let field_pass = |field| FieldPass { field, grid, isovalue, everywhere };
 
     piece.clear(job.traced);
-    let mut placed = Placed { keys: job.traced.then(Vec::new), ..Placed::default() };
-    let mut last = Instant::now();
+    let mut placed = Placed {
+        targets: std::mem::take(&mut piece.targets),
+        keys: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys)),
+        ..Placed::default()
+    };
+    let mut last = Moment::now();
     let mut lap = || {
-        let now = Instant::now();
+        let now = Moment::now();
         now - std::mem::replace(&mut last, now)
     };
     for step in signed.start..own.end + 2 * reach + lead {
         if signed.contains(&step) {
+            job.control.check()?;
             match job.source {
-                Source::Samples(values) => signs_of(grid, values, isovalue, step, &mut workspace.signs),
-                Source::Field(field) => {
+                Sampler::Given(values) => signs_of(grid, values, isovalue, step, &mut workspace.signs),
+                Sampler::Field(field) => {
                     workspace.samples.find_signs(field_pass(field), step, &mut workspace.signs);
                 }
             }
@@ -103,7 +110,7 @@ pub(super) fn sweep<R: ClusterRule>(
             }
         }
         let Some(step) = step.checked_sub(lead) else { continue };
-        if let Source::Field(field) = job.source
+        if let Sampler::Field(field) = job.source
             && sampled.contains(&step)
         {
             workspace.samples.fill(field_pass(field), step, &workspace.signs);
@@ -112,8 +119,8 @@ pub(super) fn sweep<R: ClusterRule>(
 
         if let Some(layer) = step.checked_sub(reach).filter(|layer| recorded.contains(layer)) {
             let samples = match job.source {
-                Source::Samples(values) => Samples { values, slots: layers },
-                Source::Field(_) => workspace.samples.samples(),
+                Sampler::Given(values) => Samples { values, slots: layers },
+                Sampler::Field(_) => workspace.samples.samples(),
             };
             let (signs, placer) = (&workspace.signs, job.placer);
             let has_more = placer.is_some() || job.traced;

@@ -1,4 +1,4 @@
-//! The streaming extractor against the stored one: the same mesh to the byte, and the same counts.
+//! The streaming extractor against the dense one: the same mesh to the byte, and the same counts.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -10,9 +10,9 @@ use crate::bunny::{BOX, bunny};
 use crate::lattice::{Border, Coordinates, Layout};
 use crate::{
     Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Lattice,
-    Placement, Positions, Source, Topology, stored,
+    Placement, Positions, Source, Topology, dense,
 };
-use field::{Asteroid, Gyroid, MeshDistance, ScalarField, Sphere};
+use field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 
 /// Noise by position. Values are multiples of `1 / levels`; of `odd` points in 64, some are not numbers, some infinite.
 #[derive(Debug, Clone, Copy)]
@@ -24,7 +24,7 @@ struct Noise {
     grain: f32,
 }
 
-impl ScalarField for Noise {
+impl StudyField for Noise {
     fn sample(&self, p: Vec3) -> f32 {
         let bits = (p / self.grain).floor().to_array().map(|v| v as i32 as u32);
         let mut mixed = bits.iter().fold(self.seed ^ 0x9e37_79b9, |h, &b| {
@@ -54,20 +54,20 @@ fn assert_same(left: &Extraction, right: &Extraction) {
     assert!(bits(&left.mesh.normals) == bits(&right.mesh.normals), "normals differ");
 }
 
-/// All ways of the streaming extractor against the stored one.
-fn check(field: &dyn ScalarField, lattice: &Lattice, isovalue: f32) {
+/// All ways of the streaming extractor against the dense one.
+fn check(field: &dyn StudyField, lattice: &Lattice, isovalue: f32) {
     check_with(field, lattice, all_settings(isovalue));
 }
 
-fn check_with(field: &dyn ScalarField, lattice: &Lattice, all: impl Iterator<Item = ExtractSettings>) {
+fn check_with(field: &dyn StudyField, lattice: &Lattice, all: impl Iterator<Item = ExtractSettings>) {
     let mut extractor = Extractor::new();
     for settings in all {
         let samples = all_samples(field, lattice, &settings);
         let one = Execution { threads: 1 };
-        let expected = stored::extract(field, lattice, &settings, &one, u32::MAX).unwrap();
+        let expected = dense::extract(field, lattice, &settings, (&one).into(), u32::MAX).unwrap();
         for threads in [1, 3] {
             let execution = Execution { threads };
-            let called = extractor.extract(Source::Field(field), lattice, &settings, &execution).unwrap();
+            let called = extractor.extract(Source::Study(field), lattice, &settings, &execution).unwrap();
             assert_same(&called, &expected);
             let given = extractor.extract(Source::Samples(&samples), lattice, &settings, &execution).unwrap();
             assert_same(&given, &expected);
@@ -100,12 +100,12 @@ fn placed_settings() -> impl Iterator<Item = ExtractSettings> {
     })
 }
 
-/// What the stored extractor has in memory.
-fn all_samples(field: &dyn ScalarField, lattice: &Lattice, settings: &ExtractSettings) -> Vec<f32> {
+/// What the dense extractor has in memory.
+fn all_samples(field: &dyn StudyField, lattice: &Lattice, settings: &ExtractSettings) -> Vec<f32> {
     let (layout, border) = (Layout::new(lattice), Border::of(settings));
     let coordinates = Coordinates::sampled(lattice, &layout, Positions::Indexed, border).unwrap();
     let mut samples = vec![0.0; layout.len()];
-    crate::sampling::sample(field, &layout, &coordinates, &Execution { threads: 1 }, &mut samples).unwrap();
+    crate::sampling::sample(field, &layout, &coordinates, Default::default(), &mut samples).unwrap();
     samples
 }
 
@@ -154,7 +154,7 @@ proptest! {
 #[test]
 fn every_placement_is_that_of_the_stored_mesh() {
     let noise = Noise { seed: 7, levels: 10_000_000, odd: 4, grain: 1.7 };
-    let fields: [(&dyn ScalarField, f32); 3] =
+    let fields: [(&dyn StudyField, f32); 3] =
         [(&Asteroid::default(), 0.09), (&Gyroid::default(), 0.11), (&noise, 1.0)];
     for arrangement in BOTH {
         for (field, spacing) in fields {
@@ -162,9 +162,9 @@ fn every_placement_is_that_of_the_stored_mesh() {
             let lattice = Lattice::try_new(arrangement, Bounds { min: -max, max }, spacing).unwrap();
             for settings in placed_settings() {
                 let expected =
-                    stored::extract(field, &lattice, &settings, &Execution { threads: 1 }, u32::MAX).unwrap();
+                    dense::extract(field, &lattice, &settings, Default::default(), u32::MAX).unwrap();
                 for threads in [1, 3] {
-                    let source = Source::Field(field);
+                    let source = Source::Study(field);
                     let found = Extractor::new().extract(source, &lattice, &settings, &Execution { threads });
                     assert_same(&found.unwrap(), &expected);
                 }
@@ -177,7 +177,7 @@ fn every_placement_is_that_of_the_stored_mesh() {
 fn one_cell_of_every_pattern() {
     /// Inside where the bit of the cell's corner is set; a centre is the middle of its corners.
     struct Corners(u32);
-    impl ScalarField for Corners {
+    impl StudyField for Corners {
         fn sample(&self, p: Vec3) -> f32 {
             let value = |i: u32| if self.0 >> i & 1 != 0 { 1.0 } else { -0.7 };
             let near = |v: f32| v.clamp(0.0, 1.0);
@@ -200,7 +200,7 @@ fn one_cell_of_every_pattern() {
 fn smooth_fields_give_the_stored_mesh() {
     let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     let rough = Asteroid { amplitude: 0.6, gain: 0.5, ..Asteroid::default() };
-    let fields: [(&dyn ScalarField, f32); 6] = [
+    let fields: [(&dyn StudyField, f32); 6] = [
         (&Sphere { radius: 1.0 }, 0.0),
         (&Sphere { radius: 0.8 }, 0.1),
         (&Asteroid::default(), 0.0),
@@ -231,7 +231,7 @@ fn the_distance_to_a_mesh_gives_the_stored_mesh() {
     let rough = Asteroid { amplitude: 0.3, gain: 0.5, ..Asteroid::default() };
     let settings = ExtractSettings::default();
     let solid = Extractor::new()
-        .extract(Source::Field(&rough), &coarse, &settings, &Execution { threads: 1 })
+        .extract(Source::Study(&rough), &coarse, &settings, &Execution { threads: 1 })
         .unwrap();
     let field = MeshDistance::try_new(&solid.mesh).unwrap();
     for arrangement in BOTH {
@@ -249,15 +249,15 @@ fn the_bunny_gives_the_stored_mesh() {
     let field = MeshDistance::try_new(&bunny).unwrap();
     let lattice = Lattice::try_new(Arrangement::BodyCentred, BOX, 0.02).unwrap();
     let (settings, execution) = (ExtractSettings::default(), Execution { threads: 1 });
-    let expected = stored::extract(&field, &lattice, &settings, &execution, u32::MAX).unwrap();
-    let streamed = Extractor::new().extract(Source::Field(&field), &lattice, &settings, &execution).unwrap();
+    let expected = dense::extract(&field, &lattice, &settings, (&execution).into(), u32::MAX).unwrap();
+    let streamed = Extractor::new().extract(Source::Study(&field), &lattice, &settings, &execution).unwrap();
     assert_same(&streamed, &expected);
 }
 
 /// Counts samples.
 struct Counting<F>(F, AtomicUsize);
 
-impl<F: ScalarField> ScalarField for Counting<F> {
+impl<F: StudyField> StudyField for Counting<F> {
     fn sample(&self, p: Vec3) -> f32 {
         self.1.fetch_add(1, Ordering::Relaxed);
         self.0.sample(p)
@@ -275,7 +275,7 @@ fn far_from_the_surface_nothing_is_sampled() {
         let lattice = Lattice::try_new(arrangement, bounds, 2.0 / 128.0).unwrap();
         let field = Counting(Sphere { radius: 0.8 }, AtomicUsize::new(0));
         let execution = Execution { threads: 1 };
-        let source = Source::Field(&field);
+        let source = Source::Study(&field);
         Extractor::new().extract(source, &lattice, &ExtractSettings::default(), &execution).unwrap();
         let taken = field.1.load(Ordering::Relaxed) as f64 / lattice.stored_samples() as f64;
         assert!(taken < 0.12, "{arrangement:?}: {taken} of all points");
@@ -296,7 +296,7 @@ fn given_samples_must_be_as_many_as_the_lattice_has() {
 #[test]
 fn odd_fields_have_a_mesh_and_odd_isovalues_an_error() {
     struct Constant(f32);
-    impl ScalarField for Constant {
+    impl StudyField for Constant {
         fn sample(&self, _: Vec3) -> f32 {
             self.0
         }
@@ -311,7 +311,7 @@ fn odd_fields_have_a_mesh_and_odd_isovalues_an_error() {
         for isovalue in [f32::NAN, f32::INFINITY] {
             let settings = ExtractSettings { isovalue, ..ExtractSettings::default() };
             let result = Extractor::new().extract(
-                Source::Field(&Constant(0.0)),
+                Source::Study(&Constant(0.0)),
                 &lattice,
                 &settings,
                 &Execution::default(),
@@ -327,7 +327,7 @@ fn progress_ends_with_all_layers() {
     let seen = Arc::new(Mutex::new(Vec::new()));
     let log = Arc::clone(&seen);
     let lattice = lattice(Arrangement::BodyCentred, [4, 4, 40]);
-    let field: &dyn ScalarField = &Sphere { radius: 3.0 };
+    let field: &dyn StudyField = &Sphere { radius: 3.0 };
     let mut extractor =
         Extractor::new().with_progress(move |done, all| log.lock().unwrap().push((done, all)));
     extractor

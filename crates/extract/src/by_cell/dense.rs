@@ -3,23 +3,24 @@
 use mesh::TriangleMesh;
 
 use super::cut::{Cut, Step};
-use super::grid::Coordinates;
+use super::grid::{Coordinates, is_regular};
 use super::points::{Placer, Record, Vertices};
+use crate::control::Threads;
 use crate::extraction::{Counts, Extraction};
 use crate::finish::finish;
 use crate::lattice::{Border, Lattice};
 use crate::level::Level;
 use crate::normals::vertex_normals;
-use crate::settings::{Execution, ExtractSettings};
+use crate::settings::ExtractSettings;
 use crate::tetrahedra::{CASES, Case};
 use crate::trace::{Trace, VertexKey};
 use crate::triangles::Triangulation;
 use crate::vertices::Ties;
-use field::ScalarField;
+use field::StudyField;
 
 /// What [`super::extract`] gives, and the trace.
 pub(super) fn extract(
-    field: &dyn ScalarField,
+    field: &dyn StudyField,
     lattice: &Lattice,
     settings: &ExtractSettings,
 ) -> (Extraction, Trace) {
@@ -34,8 +35,7 @@ pub(super) fn extract(
     let mut trace = Trace { keys: vertices.keys.take().unwrap(), ..Trace::default() };
     let mut surface = triangulate(&points, &mut trace);
     let Vertices { mut positions, targets, .. } = vertices;
-    let execution = Execution { threads: 1 };
-    finish(Some(level), lattice, settings, &execution, &targets, &mut positions, &mut surface).unwrap();
+    finish(Some(level), lattice, settings, Threads::Here, &targets, &mut positions, &mut surface).unwrap();
     let normals = vertex_normals(&positions, &surface.triangles).unwrap();
     let mesh = TriangleMesh { positions, normals, triangles: std::mem::take(&mut surface.triangles) };
     let counts = Counts::of(lattice, &mesh, &surface, vertices.crossing_ends / 2);
@@ -43,7 +43,7 @@ pub(super) fn extract(
 }
 
 /// As [`crate::Source::Samples`] has them.
-pub(super) fn samples(field: &dyn ScalarField, Coordinates { x, y, z }: &Coordinates) -> Vec<f32> {
+pub(super) fn samples(field: &dyn StudyField, Coordinates { x, y, z }: &Coordinates) -> Vec<f32> {
     let mut samples = vec![0.0; x.len() * y.len() * z.len()];
     for (i, row) in samples.chunks_exact_mut(x.len()).enumerate() {
         field.sample_row(x, y[i % y.len()], z[i / y.len()], row);
@@ -82,12 +82,12 @@ impl Points<'_> {
         let mut vertices = Vertices { keys: Some(Vec::new()), ..Vertices::default() };
         let placer = Placer::new(self.lattice, self.cut, settings, Some(level));
         let ties = Ties::of(settings.topology);
-        let first = self.lattice.first_stored().map(|i| i as usize);
+        let border = Border::of(settings);
         let [nx, ny, nz] = self.grid;
         for place in (0..nx * ny * nz).map(|i| [i % nx, i / nx % ny, i / nx / ny]) {
             let point = self.index(place);
             let here = settings.isovalue - samples[point];
-            let edges = self.cut.edges_of[self.cut.class([0, 1, 2].map(|axis| place[axis] + first[axis]))];
+            let edges = self.cut.edges_of[self.cut.class(self.lattice.stored(place))];
             let mut record = Record { first: vertices.positions.len() as u32, near: 0 };
             for (direction, &step) in self.cut.steps.iter().enumerate().filter(|(d, _)| edges >> d & 1 != 0) {
                 let neighbour = self.neighbour(place, step);
@@ -98,16 +98,13 @@ impl Points<'_> {
                     record.near |= 1 << direction;
                     let values = [samples[point], samples[neighbour]];
                     let from = coordinates.at(place);
-                    let is_regular = Border::of(settings) == Border::BeyondBox
-                        || (0..3).all(|axis| {
-                            let (low, end) = self.lattice.regular_points(axis);
-                            (low..end).contains(&((place[axis] + first[axis]) / self.cut.steps_a_cell))
-                        });
+                    let is_regular = is_regular(self.lattice, self.cut, border, place);
                     let there =
                         [0, 1, 2].map(|axis| place[axis].wrapping_add_signed(isize::from(step[axis])));
                     let way = if is_regular { placer.edges[direction] } else { coordinates.at(there) - from };
                     placer.place(from, (direction, way), values, &mut vertices).unwrap();
-                    let key = VertexKey::new(self.lattice.point_number(place), direction);
+                    let key =
+                        VertexKey::new(self.lattice.arrangement(), self.lattice.stored(place), direction);
                     vertices.keys.as_mut().unwrap().push(key);
                 }
             }
@@ -122,7 +119,7 @@ fn triangulate(points: &Points, trace: &mut Trace) -> Triangulation {
     let mut result = Triangulation::default();
     let Points { cut, lattice, .. } = points;
     let [nx, ny, nz] = lattice.cells().map(|n| n as usize);
-    let origin = lattice.origin().iter().sum::<u32>() as usize;
+    let origin = lattice.origin().iter().sum::<i32>() as usize;
     for [x, y, z] in (0..nx * ny * nz).map(|i| [i % nx, i / nx % ny, i / nx / ny]) {
         let at = |corner: Step| {
             points.index([0, 1, 2].map(|axis| [x, y, z][axis] * cut.steps_a_cell + corner[axis] as usize))

@@ -2,12 +2,12 @@
 //! Arguments: cells along an axis, repetitions, part of a case's name.
 
 use extract::{Arrangement, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, Source};
-use field::{Asteroid, ScalarField, Sphere};
+use field::{Asteroid, Sphere, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
 
 /// The field at all points of the lattice, in storage order.
-fn samples(field: &dyn ScalarField, lattice: &Lattice) -> Vec<f32> {
+fn samples(field: &dyn StudyField, lattice: &Lattice) -> Vec<f32> {
     let [x, y, z] = lattice.cells().map(|n| n as usize);
     let (min, h) = (lattice.bounds().min, lattice.spacing());
     let body = lattice.arrangement() == Arrangement::BodyCentred;
@@ -39,7 +39,7 @@ fn main() {
     let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
         let lattice = Lattice::try_new(arrangement, bounds, 2.0 / cells as f32).unwrap();
-        let fields: [(&str, &dyn ScalarField); 2] =
+        let fields: [(&str, &dyn StudyField); 2] =
             [("sphere 0.8", &Sphere { radius: 0.8 }), ("asteroid", &Asteroid::default())];
         for (name, field) in fields {
             let mut values = None;

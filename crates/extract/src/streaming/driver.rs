@@ -2,12 +2,12 @@
 
 use std::collections::TryReserveError;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Instant;
 
 use super::faces::FaceTables;
 use super::grid::Grid;
 use super::rule::{ClusterRule, Guarded, Published, Unclustered};
-use super::slab::{Job, Workspace, sweep};
+use super::slab::{Job, Workspace, stream_slab};
+use crate::clock::Moment;
 use crate::extraction::{ExtractError, Extraction};
 use crate::lattice::{Border, Lattice};
 use crate::placement::CrossingPlacer;
@@ -22,7 +22,7 @@ pub(crate) type Progress = dyn Fn(usize, usize) + Send + Sync;
 
 /// A streaming extractor's plan and buffers.
 #[derive(Default)]
-pub(crate) struct Sweeper {
+pub(crate) struct Streamer {
     plan: Option<Plan>,
     workspaces: Vec<Workspace>,
     pieces: Vec<Piece>,
@@ -39,8 +39,9 @@ impl Plan {
     fn new(lattice: &Lattice, border: Border, before: Option<Self>) -> Result<Self, TryReserveError> {
         match before {
             Some(plan) if plan.grid.lattice == *lattice && plan.grid.border == border => Ok(plan),
-            Some(plan) if plan.grid.lattice.arrangement() == lattice.arrangement() => {
-                Ok(Self { grid: Grid::new(lattice, border)?, tables: plan.tables })
+            Some(mut plan) if plan.grid.lattice.arrangement() == lattice.arrangement() => {
+                plan.grid.refit(lattice, border)?;
+                Ok(plan)
             }
             _ => {
                 let grid = Grid::new(lattice, border)?;
@@ -51,7 +52,7 @@ impl Plan {
     }
 }
 
-impl Sweeper {
+impl Streamer {
     /// The stages in order, timed and counted. The trace, if there is one, is that before edges are collapsed.
     pub(crate) fn extract(
         &mut self,
@@ -60,16 +61,16 @@ impl Sweeper {
         trace: Option<&mut Trace>,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
-        let Request { lattice, settings, execution, .. } = *request;
+        let Request { lattice, settings, control, .. } = *request;
         let plan = Plan::new(lattice, Border::of(settings), self.plan.take()).map_err(|_| {
-            ExtractError::OutOfMemory { bytes: lattice.memory_bytes_for(settings, execution) }
+            ExtractError::OutOfMemory { bytes: lattice.memory_bytes_on(settings, control.threads.count()) }
         })?;
         let arrangement = lattice.arrangement();
         let merges = match settings.clustering {
             Clustering::None | Clustering::EdgeCollapse => false,
             Clustering::Integrated | Clustering::IntegratedCollapse => true,
         };
-        let mut run = Run { plan: &plan, request, progress, trace, sweeper: self };
+        let mut run = Run { plan: &plan, request, progress, trace, streamer: self };
         let result = match (merges, settings.topology) {
             (false, Topology::Guarded) => run.by(&Unclustered::<false>, extraction),
             (false, Topology::Published) => run.by(&Unclustered::<true>, extraction),
@@ -87,17 +88,17 @@ struct Run<'a> {
     request: &'a Request<'a>,
     progress: Option<&'a Progress>,
     trace: Option<&'a mut Trace>,
-    sweeper: &'a mut Sweeper,
+    streamer: &'a mut Streamer,
 }
 
 impl Run<'_> {
     fn by<R: ClusterRule>(&mut self, rule: &R, extraction: &mut Extraction) -> Result<(), ExtractError> {
-        let Request { source, settings, execution, most_vertices, start, .. } = *self.request;
-        let Sweeper { workspaces, pieces, .. } = &mut *self.sweeper;
+        let Request { source, settings, control, most_vertices, start, .. } = *self.request;
+        let Streamer { workspaces, pieces, .. } = &mut *self.streamer;
         let grid = &self.plan.grid;
         let layers = grid.size[2];
-        let (threads, slabs) = threads_and_slabs(execution, layers);
-        let bytes = grid.lattice.sweep_bytes(threads as u64);
+        let (threads, slabs) = threads_and_slabs(control.threads.count(), layers);
+        let bytes = grid.lattice.streaming_bytes(threads as u64);
         workspaces.resize_with(threads, Workspace::default);
         pieces.resize_with(slabs, Piece::default);
         for workspace in &mut *workspaces {
@@ -106,13 +107,18 @@ impl Run<'_> {
         // The first piece is written where the whole mesh will be.
         pieces[0].positions = std::mem::take(&mut extraction.mesh.positions);
         pieces[0].surface.triangles = std::mem::take(&mut extraction.mesh.triangles);
+        pieces[0].surface.trace = self.trace.as_deref_mut().map(std::mem::take);
         let allocation = start.elapsed();
 
-        let sweeping = Instant::now();
+        let streaming = Moment::now();
         let done = AtomicUsize::new(0);
         let progress = |more: usize| {
+            let done = done.fetch_add(more, Ordering::Relaxed) + more;
             if let Some(progress) = self.progress {
-                progress(done.fetch_add(more, Ordering::Relaxed) + more, layers);
+                progress(done, layers);
+            }
+            if let Some(progress) = control.progress {
+                progress(done, layers);
             }
         };
         let placer = CrossingPlacer::new(&grid.lattice, settings, self.request.level());
@@ -126,10 +132,13 @@ impl Run<'_> {
             most_vertices,
             placer: placer.as_ref(),
             traced: self.trace.is_some(),
+            control,
             progress: &progress,
         };
-        on_slabs(layers, workspaces, pieces, |own, workspace, piece| sweep(&job, own, workspace, piece))?;
-        let times = [allocation, sweeping.elapsed()];
+        on_slabs(layers, control.threads, workspaces, pieces, |own, workspace, piece| {
+            stream_slab(&job, own, workspace, piece)
+        })?;
+        let times = [allocation, streaming.elapsed()];
         assemble(self.request, pieces, threads, times, self.trace.as_deref_mut(), extraction)
     }
 }

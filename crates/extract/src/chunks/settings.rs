@@ -1,0 +1,38 @@
+//! What changes a chunk beside the method.
+
+/// Settings of chunks. Those that weld have the same.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct ChunkSettings {
+    /// Points with a value above this are inside; 0 if nothing else is said.
+    pub isovalue: f32,
+    /// Where normals come from.
+    pub normals: Normals,
+}
+
+impl ChunkSettings {
+    /// The same with an isovalue.
+    pub fn with_isovalue(self, isovalue: f32) -> Self {
+        Self { isovalue, ..self }
+    }
+
+    /// The same with other normals.
+    pub fn with_normals(self, normals: Normals) -> Self {
+        Self { normals, ..self }
+    }
+}
+
+/// Where the normals of vertices come from. All of them point outward, and are the same in all chunks that have the vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
+pub enum Normals {
+    /// The area-weighted mean over the triangles of the whole mesh round the vertex.
+    #[default]
+    Triangles,
+    /// Against the field's gradient at the vertex: smoother, and dearer by a call of
+    /// [`ScalarField::gradient`](crate::ScalarField::gradient) a vertex, or of seven samples where there is none. Where there
+    /// is no direction, that of the triangles. Needs a field.
+    Field,
+    /// There are none: [`Chunk::normals`](crate::Chunk) is empty.
+    None,
+}
