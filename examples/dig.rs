@@ -112,7 +112,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let start = Instant::now();
     let mut chunks: Vec<Chunk> = Vec::new();
     for &cells in &boxes {
-        chunks.push(extractor.extract(Source::Study(&field), cells, &control)?);
+        chunks.push(extractor.extract(Source::Study(&field), cells, control)?);
     }
     let with_surface = chunks.iter().filter(|chunk| !chunk.triangles.is_empty()).count();
     println!(
@@ -134,7 +134,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let holes = field.holes.iter().filter(near).copied().collect();
             let local = Dug { holes, ..field };
             let cells = chunk.cells;
-            extractor.extract_into(Source::Study(&local), cells, &control, chunk)?;
+            extractor.extract_into(Source::Study(&local), cells, control, chunk)?;
             of_chunk.push(start.elapsed().as_secs_f64() * 1e3);
             touched += 1;
         }

@@ -100,7 +100,7 @@ fn work(shared: &Shared, grid: &Grid, method: &Method) {
         let holes = shared.holes.lock().expect("no thread panics");
         ground.holes.extend(holes.iter().filter(|hole| hole.reach().meets(&seen)));
         drop(holes);
-        let made = extractor.extract_into(&ground, cells, &Control::default(), &mut job.chunk);
+        let made = extractor.extract_into(&ground, cells, Control::default(), &mut job.chunk);
         made.expect("a chunk of this world");
         job.time = start.elapsed();
         shared.done.lock().expect("no thread panics").push(job);

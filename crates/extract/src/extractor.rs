@@ -145,14 +145,14 @@ impl Extractor {
                 placement::check(settings, true)?;
                 // In debug builds somebody looks whether it keeps its promises.
                 return if cfg!(debug_assertions) {
-                    self.from_field(&Watched::new(field), lattice, settings, cubes, control, extraction)
+                    self.of_field(&Watched::new(field), lattice, settings, cubes, control, extraction)
                 } else {
-                    self.from_field(&Plain(field), lattice, settings, cubes, control, extraction)
+                    self.of_field(&Plain(field), lattice, settings, cubes, control, extraction)
                 };
             }
             Source::Study(field) => {
                 placement::check(settings, true)?;
-                return self.from_field(field, lattice, settings, cubes, control, extraction);
+                return self.of_field(field, lattice, settings, cubes, control, extraction);
             }
             Source::Samples(samples) => samples,
             Source::Window { cells, samples } => {
@@ -175,7 +175,7 @@ impl Extractor {
         self.stream((Sampler::Given(samples), start), lattice, settings, cubes, control, extraction)
     }
 
-    fn from_field(
+    fn of_field(
         &mut self,
         field: &dyn StudyField,
         lattice: &Lattice,

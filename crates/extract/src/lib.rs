@@ -42,8 +42,11 @@
 //!   then y, then z), triangles in that of their cells. Leaving samples out changes nothing, as long as a field keeps
 //!   what it promises.
 //! - Any boxes of cells that fill the lattice, extracted one by one, [weld](weld_chunks) to the mesh of the whole, to the byte
-//!   ([`ChunkExtractor`]), on every arrangement and with every clustering and topology.
-//! - No input panics; what cannot be done is an error.
+//!   ([`ChunkExtractor`]), on every arrangement and with every clustering and topology, projected and relaxed too; unless
+//!   vertices keep each other from moving over 64 passes, which no samples did yet. A [`Grid`] without an end has the same
+//!   chunks wherever one begins.
+//! - A field that panics, or a [`Control::cancel`], leaves an extractor as good as new.
+//! - No input panics; what cannot be done is an error. In debug builds a [`ScalarField`] that breaks a promise does.
 //!
 //! # Not guaranteed
 //!
@@ -68,7 +71,7 @@
 //! | meshes, one after the other | an [`Extractor`], which keeps its buffers |
 //! | the samples' own topology | [`Cubes`] with [`Faces::Trilinear`], preset `mc33` |
 //! | counts to compare with other programs | [`VolumeCells`], preset `mc` |
-//! | terrain that is edited | a [`ChunkExtractor`], and [`Chunk::is_touched_by`]; `examples/dig.rs` digs into an asteroid |
+//! | terrain, for a game | a [`Grid`], a [`ChunkExtractor`] and [`Grid::touched`]: see [`engine`]; `examples/endless.rs` walks through one |
 //! | regular triangles | [`Arrangement::BodyCentred`], [`Clustering::Integrated`], [`Placement::Relaxed`] |
 //! | few samples | [`Arrangement::SimpleCubic`], [`Clustering::Integrated`] |
 //! | published numbers | [`Topology::Published`], [`Positions::Accumulated`] |
@@ -79,8 +82,8 @@
 //! A cell belongs to one [`Chunk`], and with it the triangles in its tetrahedra. Every vertex has a [`VertexKey`], the
 //! same in all chunks that have it, so that seams weld without comparing coordinates; its position and its normal are
 //! those of the whole, so that a seam does not show even where chunks are drawn side by side. A chunk looks at samples up
-//! to two cells beyond its own; what they decide is all that can change its triangles, and `is_touched_by` says of an edit
-//! whether it reaches them. With edge collapse the way is farther: see [`ChunkExtractor`].
+//! to two cells beyond its own, or four where vertices are moved; what they decide is all that can change its triangles, and
+//! [`Chunk::is_touched_by`] says of an edit whether it reaches them. With edge collapse the way is farther: see [`ChunkExtractor`].
 //!
 //! # Three ways
 //!
@@ -116,6 +119,7 @@
 //! | spacing beyond the box | one cell; as published it reaches past the box |
 //! | box empty, inverted, infinite, `NaN` | [`LatticeError::Bounds`] |
 //! | samples of another number than the lattice has | [`ExtractError::SampleCount`] |
+//! | chunks of two grids, methods or isovalues, welded | [`WeldError::Worlds`] |
 //! | a clustering that the arrangement does not have | [`ExtractError::ArrangementClustering`] |
 //! | accumulated positions on one that the original did not have | [`ExtractError::ArrangementAccumulated`] |
 //! | a chunk beyond the lattice, or without a cell | [`ChunkError::Cells`] |
@@ -159,6 +163,10 @@ mod fields;
 #[cfg(test)]
 #[path = "../tests/survey/mod.rs"]
 mod survey;
+
+/// The extractor in a game: from a field to terrain that is dug, and what each call costs.
+#[doc = include_str!("../../../docs/engine.md")]
+pub mod engine {}
 
 mod accuracy;
 mod bits;

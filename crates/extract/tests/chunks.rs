@@ -291,7 +291,7 @@ fn what_cannot_be_cut_into_chunks_is_an_error() {
     let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.5).unwrap();
     let settings = ExtractSettings::default();
     let refused = |settings: ExtractSettings, lattice: &Lattice| {
-        try_chunks_of(lattice, &settings).err().expect("refused")
+        try_chunks_of(lattice, &settings).expect_err("refused")
     };
     let positions = Positions::Accumulated { chunks: 1 };
     assert_eq!(refused(ExtractSettings { positions, ..settings }, &lattice), ChunkError::Accumulated);

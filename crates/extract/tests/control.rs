@@ -48,16 +48,16 @@ fn a_chunk_that_is_cancelled_is_an_error_and_the_extractor_as_good_as_new() {
     });
     let control = Control::default().with_cancel(&cancel);
     let mut chunk = Chunk::default();
-    let error = extractor.extract_into(&impatient, cells, &control, &mut chunk).unwrap_err();
+    let error = extractor.extract_into(&impatient, cells, control, &mut chunk).unwrap_err();
     assert_eq!(error, ChunkError::Extract(ExtractError::Cancelled));
     assert_eq!(chunk, Chunk::default());
     let until_then = calls.load(Ordering::Relaxed);
     assert!(until_then < 20_000, "{until_then} samples: it went on");
     // Before it begins, too.
-    assert!(extractor.extract(&from_fn(ball), cells, &control).is_err());
+    assert!(extractor.extract(&from_fn(ball), cells, control).is_err());
     cancel.store(false, Ordering::Relaxed);
-    let again = extractor.extract(&from_fn(ball), cells, &control).unwrap();
-    assert_eq!(again, chunks().0.extract(&from_fn(ball), cells, &Control::default()).unwrap());
+    let again = extractor.extract(&from_fn(ball), cells, control).unwrap();
+    assert_eq!(again, chunks().0.extract(&from_fn(ball), cells, Control::default()).unwrap());
 }
 
 /// A whole mesh, every way of extraction, on threads that are started and without.
@@ -83,13 +83,13 @@ fn a_whole_mesh_that_is_cancelled_is_an_error() {
             let control = Control::default().with_threads(threads).with_cancel(&cancel);
             let mut extractor = Extractor::new();
             let source = Source::from(&impatient);
-            let error = extractor.extract(source, &lattice, &settings, &control).unwrap_err();
+            let error = extractor.extract(source, &lattice, &settings, control).unwrap_err();
             assert_eq!(error, ExtractError::Cancelled, "{arrangement} {threads:?}");
             cancel.store(false, Ordering::Relaxed);
             calls.store(10_000, Ordering::Relaxed);
-            let mesh = extractor.extract(source, &lattice, &settings, &control).unwrap().mesh;
+            let mesh = extractor.extract(source, &lattice, &settings, control).unwrap().mesh;
             let fresh =
-                Extractor::new().extract(source, &lattice, &settings, &Control::default()).unwrap().mesh;
+                Extractor::new().extract(source, &lattice, &settings, Control::default()).unwrap().mesh;
             assert_eq!(mesh, fresh, "{arrangement} {threads:?}");
         }
     }
@@ -107,7 +107,7 @@ fn a_chunk_stays_on_the_thread_that_asks_for_it() {
         ball(p)
     });
     let (mut extractor, cells) = chunks();
-    extractor.extract(&watching, cells, &Control::default()).unwrap();
+    extractor.extract(&watching, cells, Control::default()).unwrap();
     let here = std::thread::current().id();
     let seen = seen.into_inner().unwrap();
     assert!(seen.len() > 1000 && seen.iter().all(|&id| id == here));
@@ -137,14 +137,14 @@ fn threads_of_others_make_the_same_mesh() {
         let Method::Tetrahedra(tetrahedra) = method(arrangement) else { panic!("a new family") };
         let settings = tetrahedra.settings(0.0);
         let ball = from_fn(ball);
-        let mesh = |control: &Control| {
+        let mesh = |control: Control| {
             Extractor::new().extract((&ball).into(), &lattice, &settings, control).unwrap().mesh
         };
         let jobs = Two(AtomicUsize::new(0));
-        let here = mesh(&Control::default());
-        assert_eq!(mesh(&Control::default().with_threads(Threads::Jobs(&jobs))), here, "{arrangement}");
+        let here = mesh(Control::default());
+        assert_eq!(mesh(Control::default().with_threads(Threads::Jobs(&jobs))), here, "{arrangement}");
         assert!(jobs.0.load(Ordering::Relaxed) >= 2, "{arrangement}: for the mesh and for its normals");
-        assert_eq!(mesh(&Control::default().with_threads(scoped(3))), here, "{arrangement}");
+        assert_eq!(mesh(Control::default().with_threads(scoped(3))), here, "{arrangement}");
     }
 }
 
@@ -157,7 +157,7 @@ fn progress_ends_with_all_layers() {
         let lattice = BOX.lattice(arrangement).unwrap();
         let control = Control::default().with_progress(&progress);
         let ball = from_fn(ball);
-        Extractor::new().extract((&ball).into(), &lattice, &tetrahedra.settings(0.0), &control).unwrap();
+        Extractor::new().extract((&ball).into(), &lattice, &tetrahedra.settings(0.0), control).unwrap();
         let told = told.into_inner().unwrap();
         let all = told[0].1;
         assert!(all > 50 && told.iter().map(|t| t.0).eq(1..=all), "{arrangement}");
@@ -172,10 +172,10 @@ fn a_field_that_panics_leaves_the_extractor_as_good_as_new() {
         assert!(calls.fetch_add(1, Ordering::Relaxed) < 3000, "out of patience");
         ball(p)
     });
-    let failed = catch_unwind(AssertUnwindSafe(|| extractor.extract(&fragile, cells, &Control::default())));
+    let failed = catch_unwind(AssertUnwindSafe(|| extractor.extract(&fragile, cells, Control::default())));
     assert!(failed.is_err());
-    let again = extractor.extract(&from_fn(ball), cells, &Control::default()).unwrap();
-    assert_eq!(again, chunks().0.extract(&from_fn(ball), cells, &Control::default()).unwrap());
+    let again = extractor.extract(&from_fn(ball), cells, Control::default()).unwrap();
+    assert_eq!(again, chunks().0.extract(&from_fn(ball), cells, Control::default()).unwrap());
 }
 
 /// A ball that knows its gradient.
@@ -199,7 +199,7 @@ fn normals_come_from_where_the_settings_say() {
         let settings = ChunkSettings::default().with_normals(normals);
         let mut extractor =
             ChunkExtractor::try_new(&grid, &method(Arrangement::SimpleCubic), &settings).unwrap();
-        let chunk = extractor.extract(source, cells, &Control::default()).unwrap();
+        let chunk = extractor.extract(source, cells, Control::default()).unwrap();
         assert_eq!(chunk.normals.len(), if normals == Normals::None { 0 } else { chunk.positions.len() });
         let off = |(p, n): (&[f32; 3], &[f32; 3])| Vec3::from(*n).distance(Vec3::from(*p).normalize());
         chunk.positions.iter().zip(&chunk.normals).map(off).fold(0.0, f32::max)
@@ -216,7 +216,7 @@ fn normals_come_from_where_the_settings_say() {
     let window = extractor.window(cells).unwrap().unwrap();
     let samples = vec![0.0; extractor.layout(window).unwrap().len()];
     let error =
-        extractor.extract(Source::Window { cells: window, samples: &samples }, cells, &Control::default());
+        extractor.extract(Source::Window { cells: window, samples: &samples }, cells, Control::default());
     assert_eq!(error.unwrap_err(), ChunkError::NormalsNeedField);
 }
 
@@ -235,7 +235,7 @@ fn what_a_game_keeps_can_go_to_another_thread() {
     let study: &dyn StudyField = &Sphere { radius: 1.0 };
     let (mut extractor, cells) = chunks();
     let mut triangles =
-        |source: Source| extractor.extract(source, cells, &Control::default()).unwrap().triangles;
+        |source: Source| extractor.extract(source, cells, Control::default()).unwrap().triangles;
     let expected = triangles(Source::from(&Knowing));
     assert_eq!(triangles(Source::from(&shared)), expected);
     assert_eq!(triangles(Source::from(&boxed)), expected);

@@ -179,7 +179,7 @@ fn a_moving_window_allocates_nothing_from_the_second_chunk_on() {
                     Source::from(&hills)
                 };
                 let region = Region::new(ALLOCATOR);
-                extractor.extract_into(source, cells, &Control::default(), &mut chunk).unwrap();
+                extractor.extract_into(source, cells, Control::default(), &mut chunk).unwrap();
                 let change = region.change();
                 assert!(chunk.triangles.len() > 400);
                 (change.allocations, change.reallocations, change.deallocations)

@@ -58,8 +58,8 @@ fn a_grid_without_an_end_has_the_chunks_of_a_box() {
             for start in [[40, 60, 50], [70, 30, 64]] {
                 let cells = CellBox { start, end: start.map(|i| i + 9) };
                 let [one, other] = [
-                    of_box.extract(&field, cells, &Control::default()).unwrap(),
-                    of_grid.extract(&field, cells, &Control::default()).unwrap(),
+                    of_box.extract(&field, cells, Control::default()).unwrap(),
+                    of_grid.extract(&field, cells, Control::default()).unwrap(),
                 ];
                 assert!(one.triangles.len() > 100);
                 // How far vertices of one sample keep from each other goes by the farthest coordinate of a box, and by the
@@ -91,9 +91,7 @@ fn chunks_of_any_size_weld_to_the_same_mesh() {
                 let mut extractor = extractor(&grid, &method);
                 let mut welded = |size: u32, reach: i32| {
                     let chunks: Vec<Chunk> = ids(-reach, reach)
-                        .map(|id| {
-                            extractor.extract(&ball, grid.chunk(id, size), &Control::default()).unwrap()
-                        })
+                        .map(|id| extractor.extract(&ball, grid.chunk(id, size), Control::default()).unwrap())
                         .collect();
                     weld_chunks(&chunks).unwrap()
                 };
@@ -131,7 +129,7 @@ fn moved_vertices_weld_to_the_whole_whatever_the_samples() {
                 let boxes: Vec<CellBox> = chunks.grid(5).collect();
                 let parts: Vec<Chunk> = boxes
                     .into_iter()
-                    .map(|cells| chunks.extract(source, cells, &Control::default()).unwrap())
+                    .map(|cells| chunks.extract(source, cells, Control::default()).unwrap())
                     .collect();
                 assert_eq!(
                     bits(&weld_chunks(&parts).unwrap()),
@@ -152,7 +150,7 @@ fn a_window_of_samples_gives_the_chunk_of_the_field() {
         let method = method(arrangement, Placement::MeanOfCrossings);
         let mut extractor = extractor(&grid, &method);
         let cells = CellBox { start: [-5, -3, 2], end: [3, 6, 9] };
-        let called = extractor.extract(&field, cells, &Control::default()).unwrap();
+        let called = extractor.extract(&field, cells, Control::default()).unwrap();
         assert!(called.triangles.len() > 100);
         let window = extractor.window(cells).unwrap().unwrap();
         assert_eq!(Some(window), method.window(cells));
@@ -167,7 +165,7 @@ fn a_window_of_samples_gives_the_chunk_of_the_field() {
             layout.fill(&field, &mut samples);
             assert_eq!(samples.len(), layout.len());
             let source = Source::Window { cells: given, samples: &samples };
-            let chunk = extractor.extract(source, cells, &Control::default()).unwrap();
+            let chunk = extractor.extract(source, cells, Control::default()).unwrap();
             assert_eq!(chunk, called, "{arrangement}");
             // Each sample is the field's at its place, and found there.
             for (i, &sample) in samples.iter().enumerate() {
@@ -183,7 +181,7 @@ fn a_window_of_samples_gives_the_chunk_of_the_field() {
         let given = CellBox { end: window.end.map(|i| i - 1), ..window };
         let samples = vec![0.0; extractor.layout(given).unwrap().len()];
         let refused = |source: Source, extractor: &mut ChunkExtractor| {
-            extractor.extract(source, cells, &Control::default()).unwrap_err()
+            extractor.extract(source, cells, Control::default()).unwrap_err()
         };
         let error = refused(Source::Window { cells: given, samples: &samples }, &mut extractor);
         assert_eq!(error, ChunkError::Window { given, wanted: window });
@@ -198,7 +196,7 @@ fn a_window_of_samples_gives_the_chunk_of_the_field() {
 fn chunk_at(grid: &Grid, start: i32, field: &dyn StudyField) -> Chunk {
     let cells = CellBox { start: [start, 0, 0], end: [start + 8, 8, 8] };
     extractor(grid, &method(Arrangement::BodyCentred, Placement::MeanOfCrossings))
-        .extract(field, cells, &Control::default())
+        .extract(field, cells, Control::default())
         .unwrap()
 }
 
@@ -223,13 +221,13 @@ fn chunks_of_two_worlds_do_not_weld() {
     }
     let method = method(Arrangement::SimpleCubic, Placement::MeanOfCrossings);
     let cells = CellBox { start: [8, 0, 0], end: [16, 8, 8] };
-    let cubic = extractor(&here, &method).extract(&ball, cells, &Control::default()).unwrap();
+    let cubic = extractor(&here, &method).extract(&ball, cells, Control::default()).unwrap();
     assert!(matches!(weld_chunks([&chunk, &cubic]), Err(WeldError::Worlds { .. })));
     assert!(cubic.is_of(&here, &method) && !chunk.is_of(&here, &method));
     let settings = ChunkSettings::default().with_isovalue(0.5);
     let method = *chunk.world().unwrap().method();
     let mut extractor = ChunkExtractor::try_new(&here, &method, &settings).unwrap();
-    let raised = extractor.extract(&ball, cells, &Control::default()).unwrap();
+    let raised = extractor.extract(&ball, cells, Control::default()).unwrap();
     assert!(matches!(weld_chunks([&chunk, &raised]), Err(WeldError::Worlds { .. })));
     // One that was never extracted is of none.
     assert_eq!(weld_chunks([&chunk, &Chunk::default()]).unwrap().triangles, chunk.triangles);
@@ -271,7 +269,7 @@ fn touched_chunks_are_those_that_look_there() {
         let method = method(arrangement, Placement::MeanOfCrossings);
         let mut extractor = extractor(&grid, &method);
         let chunks: Vec<([i32; 3], Chunk)> = ids(-3, 4)
-            .map(|id| (id, extractor.extract(&plane, grid.chunk(id, 5), &Control::default()).unwrap()))
+            .map(|id| (id, extractor.extract(&plane, grid.chunk(id, 5), Control::default()).unwrap()))
             .collect();
         for (centre, radius) in
             [([0.7, -3.0, 11.0], 0.0), ([1.1, -2.4, 11.9], 0.2), ([2.2, -4.4, 10.0], 0.751)]
@@ -292,7 +290,7 @@ fn a_chunk_knows_its_place() {
     let ball = from_fn(|p: [f32; 3]| 3.0 - Vec3::from(p).distance(Vec3::new(-104.0, 2.0, 2.0)));
     let method = method(Arrangement::BodyCentred, Placement::MeanOfCrossings);
     let cells = CellBox { start: [-20, -4, -4], end: [4, 12, 12] };
-    let chunk = extractor(&grid, &method).extract(&ball, cells, &Control::default()).unwrap();
+    let chunk = extractor(&grid, &method).extract(&ball, cells, Control::default()).unwrap();
     assert_eq!(chunk.origin(), [-110.0, -2.0, -2.0]);
     let bounds = chunk.bounds().unwrap();
     for axis in 0..3 {
@@ -315,14 +313,14 @@ fn a_chunk_knows_its_place() {
         assert!(chunk.cells.contains(cell));
         let low = grid.position(cell);
         for &v in triangle {
-            for axis in 0..3 {
-                let along = f64::from(chunk.positions[v as usize][axis]) - low[axis];
+            for (p, low) in chunk.positions[v as usize].iter().zip(low) {
+                let along = f64::from(*p) - low;
                 assert!((-0.5..=1.0).contains(&along), "{along}");
             }
         }
     }
     assert!(chunk.keys.iter().all(|key| chunk.window.contains(key.cell())));
-    let empty = extractor(&grid, &method).extract(&from_fn(|_| -1.0), cells, &Control::default()).unwrap();
+    let empty = extractor(&grid, &method).extract(&from_fn(|_| -1.0), cells, Control::default()).unwrap();
     assert_eq!((empty.bounds(), empty.origin()), (None, chunk.origin()));
 }
 
@@ -346,7 +344,7 @@ fn what_has_no_place_is_refused() {
     let mut extractor = extractor(&grid, &method);
     let ball = from_fn(|_| 1.0);
     let mut refused = |start: [i32; 3], end: [i32; 3]| {
-        extractor.extract(&ball, CellBox { start, end }, &Control::default()).unwrap_err()
+        extractor.extract(&ball, CellBox { start, end }, Control::default()).unwrap_err()
     };
     for (start, end) in
         [([0; 3], [0, 1, 1]), ([i32::MIN; 3], [0; 3]), ([i32::MAX - 2; 3], [i32::MAX; 3]), ([5; 3], [-5; 3])]
@@ -360,7 +358,7 @@ fn what_has_no_place_is_refused() {
     );
     let huge = Grid::try_new([3e38; 3], 1e37).unwrap();
     let mut extractor = ChunkExtractor::try_new(&huge, &method, &ChunkSettings::default()).unwrap();
-    let error = extractor.extract(&ball, huge.chunk([0; 3], 8), &Control::default()).unwrap_err();
+    let error = extractor.extract(&ball, huge.chunk([0; 3], 8), Control::default()).unwrap_err();
     assert!(
         matches!(error, ChunkError::Extract(ExtractError::Grid(LatticeError::OutOfRange { .. }))),
         "{error}"
@@ -382,8 +380,8 @@ fn chunks_far_away_are_those_at_home() {
         let mut extractor = extractor(&home, &method(arrangement, Placement::MeanOfCrossings));
         let cells = CellBox { start: [-6; 3], end: [6; 3] };
         let there = CellBox { start: [0, 1, 2].map(|i| far[i] - 6), end: [0, 1, 2].map(|i| far[i] + 6) };
-        let one = extractor.extract(&near, cells, &Control::default()).unwrap();
-        let other = extractor.extract(&away, there, &Control::default()).unwrap();
+        let one = extractor.extract(&near, cells, Control::default()).unwrap();
+        let other = extractor.extract(&away, there, Control::default()).unwrap();
         assert!(one.triangles.len() > 200);
         assert_eq!(
             (&one.triangles, &one.triangle_cells),

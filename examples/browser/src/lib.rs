@@ -64,7 +64,7 @@ impl World {
         let missing = self.chunks.iter().filter(|(_, is_made)| !**is_made).map(|(id, _)| *id);
         let Some(id) = missing.min_by_key(far) else { return false };
         let cells = self.grid.chunk(id, CHUNK);
-        if self.extractor.extract_into(&self.ground, cells, &Control::default(), &mut self.chunk).is_err() {
+        if self.extractor.extract_into(&self.ground, cells, Control::default(), &mut self.chunk).is_err() {
             return false;
         }
         self.id = id;

@@ -8,7 +8,7 @@ use extract::{
     Tetrahedra,
 };
 use glam::Vec3;
-use wgpu_types::{BufferAddress, BufferUsages, IndexFormat, VertexAttribute, VertexFormat, VertexStepMode};
+use wgpu_types::{BufferUsages, IndexFormat, VertexAttribute, VertexFormat, VertexStepMode};
 
 /// A ball, in `glam` 0.30: the extractor has another one inside, and nobody notices.
 struct Ball {
@@ -90,7 +90,7 @@ fn ball_in_chunks(scratch: &mut Scratch, mut each: impl FnMut(&Chunk, &[Upload; 
     let mut chunk = Chunk::default();
     for id in (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(|n| n - 1)) {
         extractor
-            .extract_into(&ball, grid.chunk(id, 32), &Control::default(), &mut chunk)
+            .extract_into(&ball, grid.chunk(id, 32), Control::default(), &mut chunk)
             .expect("a chunk of the grid");
         let (vertices, indices, format) = scratch.fill(&chunk);
         each(&chunk, &vertices, &indices, format);
@@ -101,14 +101,16 @@ fn main() {
     ball_in_chunks(&mut Scratch::default(), |chunk, vertices, indices, format| {
         let stride = |attribute: &VertexAttribute| attribute.format.size();
         println!(
-            "chunk at {:?}: {} vertices, strides {:?} {:?}, {} bytes; {} triangles, {format:?}, {} bytes; box {:?}",
+            "chunk at {:?}: {} vertices, strides {:?} {:?}, {} bytes as {:?}; {} triangles, {format:?}, {} bytes as {:?}; box {:?}",
             chunk.origin(),
             chunk.positions.len(),
             ATTRIBUTES.each_ref().map(stride),
             VertexStepMode::Vertex,
             vertices.iter().map(|upload| upload.bytes.len()).sum::<usize>(),
+            vertices[0].usage,
             chunk.triangles.len(),
             indices.bytes.len(),
+            indices.usage,
             chunk.bounds()
         );
     });
@@ -117,6 +119,7 @@ fn main() {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use wgpu_types::BufferAddress;
 
     /// The buffers read back as a shader would, against the ball itself.
     #[test]

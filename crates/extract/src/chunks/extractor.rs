@@ -59,7 +59,7 @@ const MOST_EXTRA: u32 = 64;
 /// let mut extractor = ChunkExtractor::try_new(&grid, &method, &ChunkSettings::default())?;
 /// let ball = from_fn(|[x, y, z]| 1.0 - (x * x + y * y + z * z).sqrt());
 /// let mut chunk = Chunk::default();
-/// extractor.extract_into(&ball, grid.chunk([-1, 0, 0], 16), &Control::default(), &mut chunk)?;
+/// extractor.extract_into(&ball, grid.chunk([-1, 0, 0], 16), Control::default(), &mut chunk)?;
 /// assert!(chunk.triangles.len() > 500 && chunk.positions.iter().all(|p| p[0] < 0.1));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -79,7 +79,7 @@ const MOST_EXTRA: u32 = 64;
 /// let mut extractor = ChunkExtractor::in_box(&grid, &method, &ChunkSettings::default())?;
 /// let mut chunks = Vec::new();
 /// for cells in extractor.grid(16) {
-///     chunks.push(extractor.extract(sphere, cells, &Control::default())?);
+///     chunks.push(extractor.extract(sphere, cells, Control::default())?);
 /// }
 /// let lattice = grid.lattice(Arrangement::BodyCentred)?;
 /// let whole = extract(sphere, &lattice, &ExtractSettings::default(), &Execution::default())?;
@@ -318,19 +318,19 @@ impl ChunkExtractor {
         let result = match source.into() {
             // In debug builds somebody looks whether it keeps its promises.
             Source::Field(field) if cfg!(debug_assertions) => {
-                self.from_field(&Watched::new(field), cells, control, chunk)
+                self.of_field(&Watched::new(field), cells, control, chunk)
             }
-            Source::Field(field) => self.from_field(&Plain(field), cells, control, chunk),
-            Source::Study(field) => self.from_field(field, cells, control, chunk),
+            Source::Field(field) => self.of_field(&Plain(field), cells, control, chunk),
+            Source::Study(field) => self.of_field(field, cells, control, chunk),
             Source::Samples(samples) => match &self.whole {
                 Some(whole) => {
                     let whole = whole.cell_box();
-                    self.from_samples((whole, samples), cells, control, chunk)
+                    self.of_samples((whole, samples), cells, control, chunk)
                 }
                 None => Err(ChunkError::EndlessSamples),
             },
             Source::Window { cells: given, samples } => {
-                self.from_samples((given, samples), cells, control, chunk)
+                self.of_samples((given, samples), cells, control, chunk)
             }
         };
         if result.is_err() {
@@ -339,7 +339,7 @@ impl ChunkExtractor {
         result
     }
 
-    fn from_samples(
+    fn of_samples(
         &mut self,
         (given, samples): (CellBox, &[f32]),
         cells: CellBox,
@@ -359,7 +359,7 @@ impl ChunkExtractor {
         self.by_windows(Given::Samples(&lattice, samples), cells, control, chunk)
     }
 
-    fn from_field(
+    fn of_field(
         &mut self,
         field: &dyn StudyField,
         cells: CellBox,

@@ -35,7 +35,7 @@ fn volume(arrangement: Arrangement, clustering: Clustering) -> Result<f64, Box<d
     let mut extractor = ChunkExtractor::in_box(&grid, &method, &ChunkSettings::default())?;
     let mut chunks = Vec::new();
     for cells in extractor.grid(16) {
-        chunks.push(extractor.extract(&Sphere { radius: 1.0 }, cells, &Control::default())?);
+        chunks.push(extractor.extract(&Sphere { radius: 1.0 }, cells, Control::default())?);
     }
     Ok(weld_chunks(&chunks)?.volume())
 }
