@@ -8,8 +8,8 @@ use std::thread::ThreadId;
 
 use extract::{
     Arrangement, BoxGrid, CellBox, Chunk, ChunkError, ChunkExtractor, ChunkSettings, Clustering, Control,
-    ExtractError, ExtractSettings, Extractor, Grid, Jobs, Method, Normals, Positions, Source, Tetrahedra,
-    Threads, from_fn,
+    Cubes, ExtractError, ExtractSettings, Extractor, Grid, Jobs, Method, Normals, Positions, Source,
+    Tetrahedra, Threads, from_fn,
 };
 use field::{Sphere, StudyField};
 use glam::Vec3;
@@ -29,15 +29,25 @@ fn method(arrangement: Arrangement) -> Method {
 }
 
 fn chunks() -> (ChunkExtractor, CellBox) {
+    chunks_by(&method(Arrangement::BodyCentred))
+}
+
+fn chunks_by(method: &Method) -> (ChunkExtractor, CellBox) {
     let grid = Grid::try_new([0.0; 3], 0.05).unwrap();
-    let extractor =
-        ChunkExtractor::try_new(&grid, &method(Arrangement::BodyCentred), &ChunkSettings::default());
+    let extractor = ChunkExtractor::try_new(&grid, method, &ChunkSettings::default());
     (extractor.unwrap(), CellBox { start: [0; 3], end: [30; 3] })
 }
 
 #[test]
 fn a_chunk_that_is_cancelled_is_an_error_and_the_extractor_as_good_as_new() {
-    let (mut extractor, cells) = chunks();
+    let tetrahedra = Arrangement::ALL.map(method);
+    for method in tetrahedra.iter().chain([&Method::Cubes(Cubes::default())]) {
+        cancel_and_go_on(method);
+    }
+}
+
+fn cancel_and_go_on(method: &Method) {
+    let (mut extractor, cells) = chunks_by(method);
     let cancel = AtomicBool::new(false);
     let calls = AtomicUsize::new(0);
     let impatient = from_fn(|p| {
@@ -57,7 +67,7 @@ fn a_chunk_that_is_cancelled_is_an_error_and_the_extractor_as_good_as_new() {
     assert!(extractor.extract(&from_fn(ball), cells, control).is_err());
     cancel.store(false, Ordering::Relaxed);
     let again = extractor.extract(&from_fn(ball), cells, control).unwrap();
-    assert_eq!(again, chunks().0.extract(&from_fn(ball), cells, Control::default()).unwrap());
+    assert_eq!(again, chunks_by(method).0.extract(&from_fn(ball), cells, Control::default()).unwrap());
 }
 
 /// A whole mesh, every way of extraction, on threads that are started and without.
