@@ -229,7 +229,8 @@ fn served(folder: &Study) {
     let mut pressed = 0;
     for _ in 0..6 {
         let session = begin(server.address);
-        let own = key.iter().filter(|row| row[form] == session["form"]["form"].to_string());
+        let dealt = session["form"]["form"].to_string();
+        let own = key.iter().filter(|row| row[form] == dealt);
         for (place, shown) in own.filter(|row| row[role] != "training").enumerate() {
             assert_eq!(session["form"]["questions"][place], shown[stimulus]);
             let choice = match [left, right].map(|side| shown[side].ends_with("_bi-relaxed")) {

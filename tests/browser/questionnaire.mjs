@@ -633,8 +633,10 @@ test('on a slow line the first pair comes during consent, the share is told, and
   assert.deepEqual(asked, [practice, codes[0], codes[1]], 'and the next two while it is judged');
   await answer(page, 'L');
   await answer(page, 'L');
-  // From here on it is slow, and three questions ahead the pair is not there yet.
-  await line.send('Network.emulateNetworkConditions', { offline: false, latency: 20, downloadThroughput: bytes / 8, uploadThroughput: bytes });
+  // From here on a pair takes two minutes, and three questions ahead it is not there yet, however slow this machine is.
+  await page.waitForTimeout(2000);
+  const throughput = (perSecond) => line.send('Network.emulateNetworkConditions', { offline: false, latency: 20, downloadThroughput: perSecond, uploadThroughput: bytes });
+  await throughput(bytes / 120);
   await answer(page, 'L');
   await answer(page, 'L');
   await answer(page, 'L');
@@ -644,7 +646,9 @@ test('on a slow line the first pair comes during consent, the share is told, and
   await page.keyboard.press('1');
   assert.equal(await page.locator('#status').textContent(), 'Please wait until both surfaces are loaded.');
   if (process.env.PICTURES) await page.screenshot({ path: path.join(process.env.PICTURES, 'loading.png') });
-  await page.locator('.half').first().waitFor({ timeout: 28000 });
+  await page.waitForTimeout(600);
+  await throughput(100 * bytes);
+  await page.locator('.half').first().waitFor();
   const waited = Date.now() - began;
   const at = Date.now();
   await answer(page, 'R');

@@ -94,7 +94,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
 
 fn text(report: &Report) -> String {
     let Verdict { found, expected, tunnel_cells, findings, .. } = report.verdict;
-    let rows: [(&str, fn(&Summary) -> i64); 4] = [
+    type Row = (&'static str, fn(&Summary) -> i64);
+    let rows: [Row; 4] = [
         ("components", |summary| summary.components as i64),
         ("Euler characteristic", |summary| summary.euler_characteristic),
         ("boundary loops", |summary| summary.boundary_loops as i64),

@@ -58,6 +58,9 @@ struct Chosen {
     quality: Option<u32>,
 }
 
+/// A file's name and its bytes.
+type File = (String, Vec<u8>);
+
 /// The files for the web.
 pub(crate) struct Web {
     /// Where they are.
@@ -149,7 +152,7 @@ impl Pipeline<'_> {
         room: u64,
         step: &Step,
         make: impl Fn(&Animation, &W) -> Result<Option<Vec<u8>>> + Sync,
-    ) -> Result<(W, Vec<(String, Vec<u8>)>)> {
+    ) -> Result<(W, Vec<File>)> {
         let largest = order.first().context("no pairs")?;
         let first = self.read_animation(largest)?;
         let small = |bytes: &[u8]| bytes.len() as u64 <= room;
@@ -165,7 +168,7 @@ impl Pipeline<'_> {
                 step.tick(1);
                 Ok((name.to_owned(), made))
             };
-            let files: Vec<(String, Vec<u8>)> = order.par_iter().map(one).collect::<Result<_>>()?;
+            let files: Vec<File> = order.par_iter().map(one).collect::<Result<_>>()?;
             if files.iter().all(|(_, bytes)| small(bytes)) {
                 return Ok((way.clone(), files));
             }
