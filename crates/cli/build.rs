@@ -33,7 +33,8 @@ const PAGES: &str = "pipeline/pages";
 const ASIDE: [&str; 4] = ["main", "commands", "outcome", "terminal"];
 
 fn main() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let root = Path::new(&std::env::var("CARGO_MANIFEST_DIR").expect("cargo says where the package is"))
+        .join("../..");
     let shared = [root.join("Cargo.lock"), root.join("assets")];
     for name in CRATES {
         let folder = root.join("crates").join(name);

@@ -29,7 +29,6 @@ mod source;
 mod source_digests;
 mod store;
 mod video;
-mod web_video;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};

@@ -1,17 +1,19 @@
-//! Pairs as H.264 video, by an `ffmpeg` that the user has.
+//! Pairs as videos, by an `ffmpeg` that the user has: as the paper's are, and for the web, no larger than the pairs.
 
 use anyhow::{Context, Result, bail};
 use raster::Animation;
+use serve::page::Kind;
 use std::io::{ErrorKind, Write};
 use std::process::{Command, Stdio};
 
-/// The paper's pairs: constant rate factor 12. Colours are converted as the tags say, which players would guess otherwise.
-/// Nothing is written of time, tool or name. One thread a video: the encoder's choices, and so the bytes, depend on how many it has.
+/// Constant rate factors for the web, best first. At the first nothing is to be seen; at the last facets begin to blur.
+pub(crate) const QUALITIES: [u32; 7] = [16, 18, 20, 22, 24, 27, 30];
+/// The constant rate factor of the paper's pairs.
+const AS_PUBLISHED: &str = "12";
+
+/// What every video has: colours converted as the tags say, which players would guess otherwise; nothing of time, tool or name.
+/// One thread a video: the encoder's choices, and so the bytes, depend on how many it has.
 const ARGUMENTS: &[&str] = &[
-    "-c:v",
-    "libx264",
-    "-crf",
-    "12",
     "-threads",
     "1",
     "-pix_fmt",
@@ -30,8 +32,6 @@ const ARGUMENTS: &[&str] = &[
     "+bitexact",
     "-flags:v",
     "+bitexact",
-    "-movflags",
-    "+faststart",
 ];
 
 /// Whether there is an `ffmpeg`, before any work is done.
@@ -50,24 +50,67 @@ pub(crate) fn check() -> Result<()> {
     }
 }
 
+/// The kind that the `ffmpeg` on the PATH can make: H.264, which every browser plays, else VP9; `None` without one.
+pub(crate) fn kind() -> Option<Kind> {
+    let asked =
+        Command::new("ffmpeg").args(["-v", "error", "-encoders"]).stderr(Stdio::null()).output().ok()?;
+    let known = String::from_utf8_lossy(&asked.stdout).into_owned();
+    let has = |name: &str| known.split_whitespace().any(|word| word == name);
+    match () {
+        () if !asked.status.success() => None,
+        () if has("libx264") => Some(Kind::Mp4),
+        () if has("libvpx-vp9") => Some(Kind::WebM),
+        () => None,
+    }
+}
+
 /// One turn of a pair that was enlarged `scale` times, as MP4 of twice the size of its turntables, as the paper's are; of the
 /// pair's own where that is larger already and even, as the format wants it.
 ///
 /// # Errors
 /// If ffmpeg fails, with what it said.
 pub(crate) fn mp4(animation: &Animation, scale: u32) -> Result<Vec<u8>> {
+    let enlarged = if scale > 1 && is_even(animation) { 1 } else { 2 };
+    video(animation, Kind::Mp4, AS_PUBLISHED, &scaled(enlarged, "neighbor"))
+}
+
+/// One turn of a pair as video of its own size; of twice that where a side is odd, which the format does not hold. Colours are as exact as 8
+/// bits hold.
+///
+/// # Errors
+/// If ffmpeg fails, with what it said.
+///
+/// # Panics
+/// If `kind` is none of video.
+pub(crate) fn for_web(animation: &Animation, kind: Kind, quality: u32) -> Result<Vec<u8>> {
+    let enlarged = if is_even(animation) { 1 } else { 2 };
+    let filter = scaled(enlarged, "neighbor+accurate_rnd+full_chroma_int");
+    video(animation, kind, &quality.to_string(), &filter)
+}
+
+fn is_even(animation: &Animation) -> bool {
+    animation.width.is_multiple_of(2) && animation.height.is_multiple_of(2)
+}
+
+fn scaled(times: u32, flags: &str) -> String {
+    format!("scale=iw*{times}:ih*{times}:flags={flags}:out_color_matrix=bt709:out_range=tv")
+}
+
+fn video(animation: &Animation, kind: Kind, quality: &str, filter: &str) -> Result<Vec<u8>> {
     let folder = tempfile::tempdir()?;
-    // A file and not a pipe: the index of an MP4 is written when all else is known.
-    let path = folder.path().join("pair.mp4");
+    // A file and not a pipe: the index is written when all else is known.
+    let path = folder.path().join(format!("pair.{}", kind.ending()));
     let size = format!("{}x{}", animation.width, animation.height);
-    let even = animation.width.is_multiple_of(2) && animation.height.is_multiple_of(2);
-    let enlarged = if scale > 1 && even { 1 } else { 2 };
-    let filter =
-        format!("scale=iw*{enlarged}:ih*{enlarged}:flags=neighbor:out_color_matrix=bt709:out_range=tv");
     let rate = format!("100/{}", animation.delay_cs);
+    let codec: &[&str] = match kind {
+        Kind::Mp4 => &["-c:v", "libx264", "-crf", quality, "-movflags", "+faststart"],
+        Kind::WebM => &["-c:v", "libvpx-vp9", "-b:v", "0", "-crf", quality, "-cpu-used", "3", "-row-mt", "0"],
+        Kind::Gif => panic!("an animation is no video"),
+    };
     let mut ffmpeg = Command::new("ffmpeg")
         .args(["-v", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", &size, "-r", &rate, "-i", "-"])
-        .args(["-vf", &filter])
+        .args(["-vf", filter])
+        .args(codec)
         .args(ARGUMENTS)
         .arg(&path)
         .stdin(Stdio::piped())
@@ -76,9 +119,9 @@ pub(crate) fn mp4(animation: &Animation, scale: u32) -> Result<Vec<u8>> {
         .spawn()
         .context("ffmpeg cannot be started")?;
     let mut stdin = ffmpeg.stdin.take().expect("piped");
+    let colours = animation.palette.colours();
     let mut sent = Ok(());
     for frame in &animation.frames {
-        let colours = animation.palette.colours();
         let pixels: Vec<u8> = frame.iter().flat_map(|&index| colours[usize::from(index)]).collect();
         sent = sent.and_then(|()| stdin.write_all(&pixels));
     }

@@ -57,7 +57,7 @@ fn none_of_3000_random_grids_is_wrong() {
 }
 
 #[test]
-#[ignore = "takes a minute"]
+#[ignore = "a minute: run by make test-long"]
 fn none_of_100000_random_grids_is_wrong() {
     assert_eq!(wrong_of(100_000, 2, &Method::Cubes(TRILINEAR)), 0);
 }
@@ -114,7 +114,7 @@ fn cells_of_every_kind_are_right() {
 }
 
 #[test]
-#[ignore = "takes a minute"]
+#[ignore = "a minute: run by make test-long"]
 fn ten_thousand_cells_of_every_kind_are_right() {
     cells_of_every_kind(10_000, 6);
 }

@@ -5,7 +5,7 @@ use super::Pipeline;
 use super::bundle::LEAST_PADDING;
 use crate::store::{Inputs, Stamp};
 use crate::terminal::progress::Step;
-use crate::{source_digests, web_video};
+use crate::{source_digests, video};
 use anyhow::{Context, Result, bail};
 use design::forms::FormFile;
 use raster::{Animation, Reduction};
@@ -87,7 +87,7 @@ impl Pipeline<'_> {
             self.store.retire_untouched(|stage| stage != "web")?;
             return Ok(Web { stamps: pairs.to_vec(), kinds: vec![(Kind::Gif, frames)] });
         }
-        let kind = if let Videos::Kept(kind) = videos { Some(kind) } else { web_video::kind() };
+        let kind = if let Videos::Kept(kind) = videos { Some(kind) } else { video::kind() };
         let inputs = || {
             let inputs =
                 Inputs::of_sources(source_digests::PICTURES).value("room", &room).value("kind", &kind);
@@ -116,10 +116,10 @@ impl Pipeline<'_> {
                 None => None,
                 Some(kind) => {
                     let encode = |animation: &Animation, quality: &u32| {
-                        web_video::encoded(animation, kind, *quality).map(Some)
+                        video::for_web(animation, kind, *quality).map(Some)
                     };
                     let (quality, files) =
-                        self.smallest_loss(&order, &web_video::QUALITIES, room, &step, encode)?;
+                        self.smallest_loss(&order, &video::QUALITIES, room, &step, encode)?;
                     for (code, bytes) in files {
                         writer.write(&format!("{FOLDER}/{code}.{}", kind.ending()), &bytes)?;
                     }

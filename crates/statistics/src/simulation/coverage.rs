@@ -50,7 +50,7 @@ struct Counts {
 }
 
 #[test]
-#[ignore = "minutes of simulation: prints a table"]
+#[ignore = "minutes: run by make test-long; prints a table"]
 fn coverage_of_differences_and_alpha() {
     let plan = Plan::round_robin(6, 3);
     println!(
