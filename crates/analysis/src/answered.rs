@@ -89,7 +89,7 @@ fn excluded(study: &Study, answers: &Responses) -> BTreeSet<usize> {
             Flag::Controls => Exclusion::Controls,
             Flag::Repeats => Exclusion::Repeats,
             Flag::Time => Exclusion::Time,
-            Flag::Odd => Exclusion::Odd,
+            Flag::Outlying => Exclusion::Outlying,
         })
     };
     let screened = screening_with(recorded.ballots(), &protocol);

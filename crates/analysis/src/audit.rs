@@ -32,7 +32,7 @@ pub enum Probe {
     /// Is one side chosen whatever it shows?
     Side,
     /// Does somebody answer against the others?
-    OddRespondent,
+    OutlyingRespondent,
     /// Did somebody's answers get in twice?
     CopiedRows,
     /// Were a stimulus's sides mixed up in the key?
@@ -47,7 +47,7 @@ impl Probe {
     /// Every probe.
     pub const ALL: [Self; 6] = [
         Self::Side,
-        Self::OddRespondent,
+        Self::OutlyingRespondent,
         Self::CopiedRows,
         Self::SwappedKey,
         Self::ObjectInteraction,
@@ -58,7 +58,7 @@ impl Probe {
     pub fn code(self) -> &'static str {
         match self {
             Self::Side => "side",
-            Self::OddRespondent => "odd-respondent",
+            Self::OutlyingRespondent => "outlying-respondent",
             Self::CopiedRows => "copied-rows",
             Self::SwappedKey => "swapped-key",
             Self::ObjectInteraction => "object-interaction",
@@ -70,7 +70,7 @@ impl Probe {
     pub fn label(self) -> &'static str {
         match self {
             Self::Side => "side",
-            Self::OddRespondent => "outlying respondent",
+            Self::OutlyingRespondent => "outlying respondent",
             Self::CopiedRows => "copied rows",
             Self::SwappedKey => "wrong key",
             Self::ObjectInteraction => "object interaction",
@@ -82,7 +82,7 @@ impl Probe {
     pub fn question(self) -> &'static str {
         match self {
             Self::Side => "Is a side chosen whatever it shows?",
-            Self::OddRespondent => "Does anybody answer against the others?",
+            Self::OutlyingRespondent => "Does anybody answer against the others?",
             Self::CopiedRows => "Are anybody's answers in twice?",
             Self::SwappedKey => "Were the sides of a stimulus mixed up in the key?",
             Self::ObjectInteraction => "Do preferences depend on the object?",
@@ -160,7 +160,7 @@ pub fn audit(audited: &Audited<'_>) -> Vec<Report> {
     let (swapped, suspects) = swapped::probe(audited, labels, &stimuli);
     vec![
         side::probe(audited, &stimuli, &suspects),
-        odd_respondent(audited.ballots),
+        outlying_respondent(audited.ballots),
         copies::probe(audited.ballots, audited.circumstances),
         swapped,
         interaction::probe(audited, &suspects),
@@ -190,29 +190,30 @@ fn list(names: &[String]) -> String {
 }
 
 /// See [`outlying_respondents`].
-fn odd_respondent(ballots: &[ShownBallot]) -> Report {
+fn outlying_respondent(ballots: &[ShownBallot]) -> Report {
     let agreeing: Vec<_> = screening(ballots).iter().map(Screening::with_majority).collect();
     let judged = outlying_respondents(&agreeing);
     let Some(least) = judged.first() else {
         let reason = "fewer than five people decided ten questions on which the others have a majority";
-        return Report::not_answerable(Probe::OddRespondent, reason);
+        return Report::not_answerable(Probe::OutlyingRespondent, reason);
     };
-    let name = |odd: &statistics::Outlying| {
+    let name = |outlying: &statistics::Outlying| {
         format!(
             "respondent {} agrees with the others' majority on {:.0} %",
-            odd.participant + 1,
-            100.0 * odd.agreement
+            outlying.participant + 1,
+            100.0 * outlying.agreement
         )
     };
-    let odd: Vec<_> = judged.iter().filter(|odd| odd.p < ALARM).collect();
-    let others: Vec<f64> = judged.iter().filter(|odd| odd.p >= ALARM).map(|odd| odd.agreement).collect();
+    let outlying: Vec<_> = judged.iter().filter(|outlying| outlying.p < ALARM).collect();
+    let others: Vec<f64> =
+        judged.iter().filter(|outlying| outlying.p >= ALARM).map(|outlying| outlying.agreement).collect();
     let (low, high) = others.iter().fold((1.0_f64, 0.0_f64), |(low, high), &a| (low.min(a), high.max(a)));
     let range = format!("everybody else on {:.0} to {:.0} %", 100.0 * low, 100.0 * high);
-    let evidence = match odd.is_empty() {
+    let evidence = match outlying.is_empty() {
         true => format!("agreement with the others' majority is {:.0} to {:.0} %", 100.0 * low, 100.0 * high),
-        false => format!("{}; {range}", list(&odd.into_iter().map(name).collect::<Vec<_>>())),
+        false => format!("{}; {range}", list(&outlying.into_iter().map(name).collect::<Vec<_>>())),
     };
-    Report::tested(Probe::OddRespondent, least.p, evidence)
+    Report::tested(Probe::OutlyingRespondent, least.p, evidence)
 }
 
 /// See [`separation`].

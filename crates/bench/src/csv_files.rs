@@ -7,7 +7,7 @@ use serde::Serialize;
 /// The columns of a sample.
 const SAMPLE: [&str; 12] = [
     "id",
-    "sitting",
+    "invocation",
     "iteration",
     "place",
     "allocation_s",
@@ -56,7 +56,7 @@ mod tests {
     fn samples_read_back_unchanged() {
         let run = mock_run();
         let text = samples_csv(&run.samples);
-        let header = "id,sitting,iteration,place,allocation_s,sampling_s,vertex_s,geometry_s,clustering_s,normals_s,\
+        let header = "id,invocation,iteration,place,allocation_s,sampling_s,vertex_s,geometry_s,clustering_s,normals_s,\
                       total_s,reference_s";
         assert_eq!(text.lines().next(), Some(header));
         let samples: Vec<BenchSample> =

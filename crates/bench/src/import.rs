@@ -59,7 +59,7 @@ fn sample(row: &BenchmarkRow, place: u32) -> BenchSample {
     let stages = [row.allocation_s, row.sampling_s, row.vertex_s, row.geometry_s, row.normals_s];
     BenchSample {
         id: row.id.clone(),
-        sitting: 0,
+        invocation: 0,
         iteration: 0,
         place,
         allocation_s: row.allocation_s,

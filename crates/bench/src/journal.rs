@@ -94,7 +94,7 @@ mod tests {
         entries.extend(run.samples.into_iter().map(Entry::Sample));
         entries.extend(run.aa_samples.into_iter().map(Entry::AaSample));
         entries.extend(run.memory.into_iter().map(Entry::Memory));
-        entries.push(Entry::Resumed(Resumption { sitting: 1, iteration: 2, place: 3 }));
+        entries.push(Entry::Resumed(Resumption { invocation: 1, iteration: 2, place: 3 }));
         entries
     }
 

@@ -1,7 +1,7 @@
 //! Times configurations, interleaved, and keeps every sample with the machine it was measured on.
 //!
 //! ```text
-//! Plan ── sittings, turns ──> run ── Executor ──> Measurement ──> BenchRun ──┬── serde ──────── run.json
+//! Plan ── invocations, turns ──> run ── Executor ──> Measurement ──> BenchRun ──┬── serde ──────── run.json
 //!                              │        └ ProcessExecutor ── serve            ├── samples_csv ── every sample
 //!                              └── Entry ──> journal ──> run                  └── machine_csv ── machine against target
 //! read_machine, CpuProfile ──> compare_profile            published means ── import ──> BenchRun
@@ -9,8 +9,8 @@
 //!
 //! A *round* times every configuration once, in an order of its own drawn from the plan's seed, so that a slow
 //! minute of the machine falls on all configurations alike and no configuration always follows the same other. A
-//! *sitting* is a process and the rounds measured in it. The *A/A block* is rounds of the same plan measured again in
-//! sittings of their own: how far it lies from the rest is how far two runs of one build may lie apart. What follows from
+//! *invocation* is a process and the rounds measured in it. The *A/A block* is rounds of the same plan measured again in
+//! invocations of their own: how far it lies from the rest is how far two runs of one build may lie apart. What follows from
 //! the samples is worked out in `analysis`.
 //!
 //! # Guaranteed
@@ -54,7 +54,7 @@ pub use journal::{Entry, JournalError, read_journal};
 pub use load::{CpuTimes, LEAST_TICKS, Shares};
 pub use machine::{FEATURES, read_machine};
 pub use pin::pin;
-pub use plan::{Plan, Round, Sitting, Turn, order};
+pub use plan::{Invocation, Plan, Round, Turn, order};
 pub use process::ProcessExecutor;
 pub use profile::{MEMORY_ALLOWANCE, ProfileRow, compare_profile, differences};
 pub use reference::Reference;

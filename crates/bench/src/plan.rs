@@ -14,8 +14,8 @@ use std::ops::{Range, RangeInclusive};
 const BLOCKS: RangeInclusive<u32> = 3..=8;
 /// Rounds that a block has at least where that leaves blocks enough.
 const ROUNDS_OF_BLOCK: u32 = 10;
-/// Sittings of the A/A block, after a third and after two thirds of the measured blocks.
-const AA_SITTINGS: u32 = 2;
+/// Invocations of the A/A block, after a third and after two thirds of the measured blocks.
+const AA_INVOCATIONS: u32 = 2;
 /// Rounds of the A/A block take their orders from here on, so that none is that of a measured round.
 const AA_ORDERS: u32 = 1 << 31;
 
@@ -26,7 +26,7 @@ pub struct Plan {
     pub study: String,
     /// What the configurations ask of the extractor.
     pub workloads: Vec<Workload>,
-    /// Rounds run and thrown away at the start of every sitting.
+    /// Rounds run and thrown away at the start of every invocation.
     pub warmup: u32,
     /// Rounds measured; at least 1.
     pub iterations: u32,
@@ -47,22 +47,22 @@ pub struct Plan {
 /// Rounds measured in one process, after warm-up.
 ///
 /// What a process is given by chance (where its memory lies, say) stays with it and shifts its times; only another
-/// process shows by how much. So the A/A block has sittings of its own, and where there is one, the measured rounds are
-/// cut into three to eight sittings round it: it then sees the beginning, the middle and the end of the run.
+/// process shows by how much. So the A/A block has invocations of its own, and where there is one, the measured rounds are
+/// cut into three to eight invocations round it: it then sees the beginning, the middle and the end of the run.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Sitting {
+pub struct Invocation {
     /// Counted from 0.
     pub number: u32,
     /// Whether it belongs to the A/A block.
     pub aa: bool,
-    /// Its rounds, counted over all sittings of its kind.
+    /// Its rounds, counted over all invocations of its kind.
     pub rounds: Range<u32>,
 }
 
 /// A round: every configuration once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Round {
-    /// Run and not kept; counted from 0 in every sitting.
+    /// Run and not kept; counted from 0 in every invocation.
     WarmUp(u32),
     /// Run and kept; counted from 0, as in [`BenchSample`](design::record::BenchSample).
     Measured(u32),
@@ -92,44 +92,44 @@ pub struct Turn {
 }
 
 impl Plan {
-    /// The sittings in order. Nothing but the plan decides them, so a run that was broken off can be told what is left.
-    pub fn sittings(&self) -> Vec<Sitting> {
+    /// The invocations in order. Nothing but the plan decides them, so a run that was broken off can be told what is left.
+    pub fn invocations(&self) -> Vec<Invocation> {
         let blocks = match self.aa_iterations {
             0 => 1,
             _ => {
                 (self.iterations / ROUNDS_OF_BLOCK).clamp(*BLOCKS.start(), *BLOCKS.end()).min(self.iterations)
             }
         };
-        let again = self.aa_iterations.min(AA_SITTINGS);
+        let again = self.aa_iterations.min(AA_INVOCATIONS);
         let cut = |rounds: u32, parts: u32, part: u32| {
             let at = |part: u32| (u64::from(rounds) * u64::from(part) / u64::from(parts)) as u32;
             at(part)..at(part + 1)
         };
-        let mut sittings = Vec::new();
+        let mut invocations = Vec::new();
         for part in 0..blocks {
-            sittings.push((false, cut(self.iterations, blocks, part)));
+            invocations.push((false, cut(self.iterations, blocks, part)));
             let follows = |again_part: &u32| (blocks * (again_part + 1)).div_ceil(again + 1) == part + 1;
             let following = (0..again).filter(follows);
-            sittings.extend(following.map(|part| (true, cut(self.aa_iterations, again, part))));
+            invocations.extend(following.map(|part| (true, cut(self.aa_iterations, again, part))));
         }
-        let number = |(number, (aa, rounds))| Sitting { number, aa, rounds };
-        (0..).zip(sittings).map(number).collect()
+        let number = |(number, (aa, rounds))| Invocation { number, aa, rounds };
+        (0..).zip(invocations).map(number).collect()
     }
 
-    /// What a sitting executes for `count` configurations before it measures.
-    pub fn warm_up(&self, sitting: &Sitting, count: usize) -> Vec<Turn> {
+    /// What a invocation executes for `count` configurations before it measures.
+    pub fn warm_up(&self, invocation: &Invocation, count: usize) -> Vec<Turn> {
         // From the far end: no order is repeated by a measured round, and none is taken from it.
-        let stream = |number| u32::MAX - (sitting.number * self.warmup + number);
+        let stream = |number| u32::MAX - (invocation.number * self.warmup + number);
         (0..self.warmup).flat_map(|number| self.round(Round::WarmUp(number), stream(number), count)).collect()
     }
 
-    /// What a sitting measures, in order, for `count` configurations.
-    pub fn turns(&self, sitting: &Sitting, count: usize) -> Vec<Turn> {
-        let round = |number| match sitting.aa {
+    /// What a invocation measures, in order, for `count` configurations.
+    pub fn turns(&self, invocation: &Invocation, count: usize) -> Vec<Turn> {
+        let round = |number| match invocation.aa {
             false => self.round(Round::Measured(number), number, count),
             true => self.round(Round::Again(number), AA_ORDERS + number, count),
         };
-        sitting.rounds.clone().flat_map(round).collect()
+        invocation.rounds.clone().flat_map(round).collect()
     }
 
     fn round(&self, round: Round, stream: u32, count: usize) -> Vec<Turn> {
@@ -196,23 +196,23 @@ mod tests {
     }
 
     #[test]
-    fn sittings_surround_the_second_measurement() {
-        let sittings = |iterations, aa| {
-            let of = |s: Sitting| (s.number, s.aa, s.rounds);
-            plan(1, iterations, aa).sittings().into_iter().map(of).collect::<Vec<_>>()
+    fn invocations_surround_the_second_measurement() {
+        let invocations = |iterations, aa| {
+            let of = |s: Invocation| (s.number, s.aa, s.rounds);
+            plan(1, iterations, aa).invocations().into_iter().map(of).collect::<Vec<_>>()
         };
         let (m, a) = (false, true);
         let want = [
             [(0, m, 0..12), (1, m, 12..25), (2, m, 25..37), (3, a, 0..4), (4, m, 37..50)],
             [(5, m, 50..62), (6, m, 62..75), (7, a, 4..8), (8, m, 75..87), (9, m, 87..100)],
         ];
-        assert_eq!(sittings(100, 8), want.concat());
+        assert_eq!(invocations(100, 8), want.concat());
         let want = [(0, m, 0..10), (1, a, 0..1), (2, m, 10..20), (3, a, 1..2), (4, m, 20..30)];
-        assert_eq!(sittings(30, 2), want);
-        assert_eq!(sittings(10, 0), [(0, m, 0..10)], "nothing to surround: one process");
-        assert_eq!(sittings(1, 1), [(0, m, 0..1), (1, a, 0..1)]);
-        assert_eq!(sittings(1, 5), [(0, m, 0..1), (1, a, 0..2), (2, a, 2..5)]);
-        assert_eq!(sittings(2, 2), [(0, m, 0..1), (1, a, 0..1), (2, m, 1..2), (3, a, 1..2)]);
+        assert_eq!(invocations(30, 2), want);
+        assert_eq!(invocations(10, 0), [(0, m, 0..10)], "nothing to surround: one process");
+        assert_eq!(invocations(1, 1), [(0, m, 0..1), (1, a, 0..1)]);
+        assert_eq!(invocations(1, 5), [(0, m, 0..1), (1, a, 0..2), (2, a, 2..5)]);
+        assert_eq!(invocations(2, 2), [(0, m, 0..1), (1, a, 0..1), (2, m, 1..2), (3, a, 1..2)]);
     }
 
     #[test]
@@ -220,8 +220,8 @@ mod tests {
         let plan = plan(2, 7, 3);
         let mut orders = HashSet::new();
         let mut rounds = 0;
-        for sitting in plan.sittings() {
-            let turns = [plan.warm_up(&sitting, 18), plan.turns(&sitting, 18)].concat();
+        for invocation in plan.invocations() {
+            let turns = [plan.warm_up(&invocation, 18), plan.turns(&invocation, 18)].concat();
             for round in turns.chunks(18) {
                 assert!(round.iter().all(|turn| turn.round == round[0].round));
                 assert_eq!(
@@ -238,8 +238,8 @@ mod tests {
     #[test]
     fn warm_up_and_second_measurement_do_not_shift_the_order() {
         let measured = |plan: &Plan| -> Vec<usize> {
-            let sittings = plan.sittings().into_iter().filter(|sitting| !sitting.aa);
-            sittings.flat_map(|sitting| plan.turns(&sitting, 18)).map(|turn| turn.subject).collect()
+            let invocations = plan.invocations().into_iter().filter(|invocation| !invocation.aa);
+            invocations.flat_map(|invocation| plan.turns(&invocation, 18)).map(|turn| turn.subject).collect()
         };
         assert_eq!(measured(&plan(0, 7, 0)), measured(&plan(3, 7, 5)));
     }

@@ -12,7 +12,7 @@ use std::time::Duration;
 /// Long enough for a share of the CPU time to be taken, short enough not to be noticed.
 const IDLE: Duration = Duration::from_millis(500);
 
-/// Starts a process for every sitting and every measurement of memory, and asks it. The process ends when it is no longer
+/// Starts a process for every invocation and every measurement of memory, and asks it. The process ends when it is no longer
 /// asked, also if this one is killed.
 pub struct ProcessExecutor<'a> {
     /// The command that ends up in [`serve`](crate::serve).
@@ -38,9 +38,9 @@ impl Executor for ProcessExecutor<'_> {
     }
 
     /// # Panics
-    /// If no sitting has begun.
+    /// If no invocation has begun.
     fn execute(&mut self, subject: usize) -> Result<Measurement, BenchError> {
-        self.worker.as_mut().expect("a sitting has begun").ask(Request::Time(subject))?.measurement()
+        self.worker.as_mut().expect("a invocation has begun").ask(Request::Time(subject))?.measurement()
     }
 
     fn peak_memory(&mut self, subject: usize) -> Result<Option<PeakBytes>, BenchError> {

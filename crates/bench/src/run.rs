@@ -1,9 +1,9 @@
-//! The run itself: sitting by sitting, turn by turn, every sample kept.
+//! The run itself: invocation by invocation, turn by turn, every sample kept.
 
 use crate::error::BenchError;
 use crate::journal::{Entry, JournalError};
 use crate::load::{CpuTimes, LEAST_TICKS};
-use crate::plan::{Plan, Round, Sitting, Turn};
+use crate::plan::{Invocation, Plan, Round, Turn};
 use crate::profile::differences;
 use crate::stages::StageSeconds;
 use design::ConfigurationId;
@@ -15,7 +15,7 @@ use std::io;
 /// Carries out one configuration and says how long its stages took. The only part of a run that takes time, so a
 /// test can stand in for it.
 pub trait Executor {
-    /// Begins a sitting: what is executed from now on must not profit or suffer from what was before. Returns the CPUs
+    /// Begins a invocation: what is executed from now on must not profit or suffer from what was before. Returns the CPUs
     /// that it is pinned to, if it is.
     ///
     /// # Errors
@@ -67,8 +67,8 @@ pub struct PeakBytes {
 /// order measured.
 ///
 /// `executor` is called with indices into `ids`, in the order of [`Plan::warm_up`] and [`Plan::turns`] of each of
-/// [`Plan::sittings`]. `record` is given every entry as soon as it is there, between executions, never during one.
-/// `done` are the entries of a run that was broken off: what they hold is not executed again, and a sitting that was
+/// [`Plan::invocations`]. `record` is given every entry as soon as it is there, between executions, never during one.
+/// `done` are the entries of a run that was broken off: what they hold is not executed again, and a invocation that was
 /// broken off begins anew with its warm-up. `on_turn` is told after each execution how many are done and to be done,
 /// those in `done` included. `machine` is recorded as given, and so are the ways in which it differs from the plan's
 /// target. 0 threads in the plan are recorded as the machine's.
@@ -86,9 +86,9 @@ pub fn run(
     on_turn: &mut dyn FnMut(u64, u64),
 ) -> Result<BenchRun, BenchError> {
     check(plan, ids)?;
-    let sittings = plan.sittings();
+    let invocations = plan.invocations();
     let turns: usize =
-        sittings.iter().map(|s| plan.warm_up(s, ids.len()).len() + plan.turns(s, ids.len()).len()).sum();
+        invocations.iter().map(|s| plan.warm_up(s, ids.len()).len() + plan.turns(s, ids.len()).len()).sum();
     let memory = if plan.memory { ids.len() } else { 0 };
     let mut running = Running {
         plan,
@@ -106,8 +106,8 @@ pub fn run(
     if fresh {
         running.watch_idle()?;
     }
-    for sitting in &sittings {
-        running.sit(sitting)?;
+    for invocation in &invocations {
+        running.sit(invocation)?;
     }
     running.measure_memory()?;
     Ok(running.run)
@@ -133,17 +133,18 @@ fn check(plan: &Plan, ids: &[ConfigurationId]) -> Result<(), BenchError> {
 /// # Errors
 /// [`JournalError::OtherOrder`] or [`JournalError::Invalid`] if it is not.
 pub fn check_journal(plan: &Plan, ids: &[ConfigurationId], done: &[Entry]) -> Result<(), BenchError> {
-    let sittings = plan.sittings();
+    let invocations = plan.invocations();
     let planned = |aa: bool| {
-        let sittings = sittings.iter().filter(move |sitting| sitting.aa == aa);
-        sittings
-            .flat_map(|sitting| plan.turns(sitting, ids.len()).into_iter().map(|turn| (sitting.number, turn)))
+        let invocations = invocations.iter().filter(move |invocation| invocation.aa == aa);
+        invocations.flat_map(|invocation| {
+            plan.turns(invocation, ids.len()).into_iter().map(|turn| (invocation.number, turn))
+        })
     };
     let (mut measured, mut again, mut memory) = (planned(false), planned(true), ids.iter());
     let is = |next: Option<(u32, Turn)>, sample: &BenchSample| {
-        next.is_some_and(|(sitting, turn)| {
-            let planned = (sitting, number(turn.round), turn.place, &ids[turn.subject]);
-            planned == (sample.sitting, sample.iteration, sample.place, &sample.id)
+        next.is_some_and(|(invocation, turn)| {
+            let planned = (invocation, number(turn.round), turn.place, &ids[turn.subject]);
+            planned == (sample.invocation, sample.iteration, sample.place, &sample.id)
         })
     };
     let follows = done.iter().all(|entry| match entry {
@@ -224,7 +225,7 @@ impl Running<'_> {
         (self.on_turn)(self.turns_done, self.total);
     }
 
-    /// Before the first sitting: what others do while this program does nothing.
+    /// Before the first invocation: what others do while this program does nothing.
     fn watch_idle(&mut self) -> Result<(), BenchError> {
         let before = self.executor.cpu_times();
         self.executor.wait();
@@ -234,22 +235,23 @@ impl Running<'_> {
     fn note_load(
         &mut self,
         before: Option<CpuTimes>,
-        sitting: Option<u32>,
+        invocation: Option<u32>,
         rounds: Option<(u32, u32)>,
     ) -> Result<(), BenchError> {
         let shares =
             before.zip(self.executor.cpu_times()).and_then(|(before, after)| after.shares_since(&before));
         let Some(shares) = shares else { return Ok(()) };
         let load_average = self.executor.load_average();
-        let window = LoadWindow { sitting, rounds, others: shares.others, steal: shares.steal, load_average };
+        let window =
+            LoadWindow { invocation, rounds, others: shares.others, steal: shares.steal, load_average };
         self.note(Entry::Load(window))
     }
 
-    fn sit(&mut self, sitting: &Sitting) -> Result<(), BenchError> {
-        let turns = self.plan.turns(sitting, self.ids.len());
-        let warm_up = self.plan.warm_up(sitting, self.ids.len());
-        let samples = if sitting.aa { &self.run.aa_samples } else { &self.run.samples };
-        let done = samples.iter().filter(|sample| sample.sitting == sitting.number).count();
+    fn sit(&mut self, invocation: &Invocation) -> Result<(), BenchError> {
+        let turns = self.plan.turns(invocation, self.ids.len());
+        let warm_up = self.plan.warm_up(invocation, self.ids.len());
+        let samples = if invocation.aa { &self.run.aa_samples } else { &self.run.samples };
+        let done = samples.iter().filter(|sample| sample.invocation == invocation.number).count();
         if done == turns.len() {
             self.tick((warm_up.len() + done) as u64);
             return Ok(());
@@ -257,7 +259,7 @@ impl Running<'_> {
         if done > 0 {
             let Turn { round, place, .. } = turns[done];
             self.note(Entry::Resumed(Resumption {
-                sitting: sitting.number,
+                invocation: invocation.number,
                 iteration: number(round),
                 place,
             }))?;
@@ -271,12 +273,12 @@ impl Running<'_> {
         let mut window = Window { began: self.executor.cpu_times(), first: None };
         for (place, turn) in turns.iter().enumerate().skip(done) {
             let measurement = self.execute(turn)?;
-            let sample = self.sample(sitting, turn, &measurement);
-            self.note(if sitting.aa { Entry::AaSample(sample) } else { Entry::Sample(sample) })?;
+            let sample = self.sample(invocation, turn, &measurement);
+            self.note(if invocation.aa { Entry::AaSample(sample) } else { Entry::Sample(sample) })?;
             self.tick(1);
             let last = place + 1 == turns.len();
             if last || turns[place + 1].round != turn.round {
-                self.close(sitting, &mut window, number(turn.round), last)?;
+                self.close(invocation, &mut window, number(turn.round), last)?;
             }
         }
         Ok(())
@@ -285,7 +287,7 @@ impl Running<'_> {
     /// At the end of a round: ends the window if it is long enough to take shares of.
     fn close(
         &mut self,
-        sitting: &Sitting,
+        invocation: &Invocation,
         window: &mut Window,
         round: u32,
         last: bool,
@@ -294,7 +296,7 @@ impl Running<'_> {
         let now = self.executor.cpu_times();
         let ticks = window.began.zip(now).map_or(0, |(began, now)| now.ticks_since(&began));
         if last || ticks >= LEAST_TICKS {
-            self.note_load(window.began, Some(sitting.number), Some((first, round)))?;
+            self.note_load(window.began, Some(invocation.number), Some((first, round)))?;
             *window = Window { began: now, first: None };
         }
         Ok(())
@@ -314,8 +316,8 @@ impl Running<'_> {
         })
     }
 
-    fn sample(&self, sitting: &Sitting, turn: &Turn, measurement: &Measurement) -> BenchSample {
-        let at = [sitting.number, number(turn.round), turn.place];
+    fn sample(&self, invocation: &Invocation, turn: &Turn, measurement: &Measurement) -> BenchSample {
+        let at = [invocation.number, number(turn.round), turn.place];
         measurement.stages.sample(self.ids[turn.subject].clone(), at, measurement.reference_s)
     }
 
@@ -341,7 +343,7 @@ impl Running<'_> {
     }
 }
 
-/// Rounds of a sitting over which the machine is watched.
+/// Rounds of a invocation over which the machine is watched.
 struct Window {
     began: Option<CpuTimes>,
     first: Option<u32>,

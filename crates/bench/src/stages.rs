@@ -31,18 +31,18 @@ impl From<&StageTimes> for StageSeconds {
 }
 
 impl StageSeconds {
-    /// These times as a sample of a run: which sitting, which round, which place in it, and the reference work's time.
+    /// These times as a sample of a run: which invocation, which round, which place in it, and the reference work's time.
     pub fn sample(
         self,
         id: ConfigurationId,
-        [sitting, iteration, place]: [u32; 3],
+        [invocation, iteration, place]: [u32; 3],
         reference_s: Option<f64>,
     ) -> BenchSample {
         let total_s = self.total();
         let Self { allocation_s, sampling_s, vertex_s, geometry_s, clustering_s, normals_s } = self;
         BenchSample {
             id,
-            sitting,
+            invocation,
             iteration,
             place,
             allocation_s,

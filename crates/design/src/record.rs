@@ -235,11 +235,11 @@ pub struct BenchRun {
     pub workloads: Vec<Workload>,
     /// Where the numbers are from if they were not measured here: each sample is then a mean that somebody published.
     pub imported_from: Option<String>,
-    /// Rounds run and thrown away at the start of every sitting.
+    /// Rounds run and thrown away at the start of every invocation.
     pub warmup: u32,
     /// Rounds measured.
     pub iterations: u32,
-    /// Rounds measured once more, in sittings of their own between the others: the A/A block.
+    /// Rounds measured once more, in invocations of their own between the others: the A/A block.
     pub aa_iterations: u32,
     /// Seed of the order within each round.
     pub seed: u64,
@@ -276,8 +276,9 @@ impl BenchRun {
 pub struct BenchSample {
     /// What was extracted.
     pub id: ConfigurationId,
-    /// The process it was measured in: sittings are counted from 0 over measured rounds and A/A block alike.
-    pub sitting: u32,
+    /// The process it was measured in: invocations are counted from 0 over measured rounds and A/A block alike.
+    #[serde(alias = "sitting")]
+    pub invocation: u32,
     /// Round, from 0; of the A/A block counted on its own.
     pub iteration: u32,
     /// Place within the round, from 0.
@@ -300,12 +301,13 @@ pub struct BenchSample {
     pub reference_s: Option<f64>,
 }
 
-/// What others had of the machine during some rounds of a sitting, or before the run.
+/// What others had of the machine during some rounds of a invocation, or before the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LoadWindow {
-    /// Which sitting; `None` before the first.
-    pub sitting: Option<u32>,
-    /// First and last round of the window, as in [`BenchSample::iteration`]; `None` before the first sitting.
+    /// Which invocation; `None` before the first.
+    #[serde(alias = "sitting")]
+    pub invocation: Option<u32>,
+    /// First and last round of the window, as in [`BenchSample::iteration`]; `None` before the first invocation.
     pub rounds: Option<(u32, u32)>,
     /// Share of the CPU time that other processes had, 0 to 1, of the CPUs that the run may use.
     pub others: f64,
@@ -331,8 +333,9 @@ pub struct PeakMemory {
 /// Where a run was taken up again, in a new process and after warm-up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Resumption {
-    /// The sitting that was broken off.
-    pub sitting: u32,
+    /// The invocation that was broken off.
+    #[serde(alias = "sitting")]
+    pub invocation: u32,
     /// The first round with something left to measure.
     pub iteration: u32,
     /// The first place in it that was left.

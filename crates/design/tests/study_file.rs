@@ -388,7 +388,7 @@ fn full_study() -> StudyFile {
             margin: 0.2,
             families: FamilyRule::One,
             primary: vec![text()],
-            exclude: vec![Exclusion::Odd],
+            exclude: vec![Exclusion::Outlying],
         },
         published: Some(PublishedSection {
             source: text(),

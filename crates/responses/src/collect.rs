@@ -100,9 +100,9 @@ pub(crate) struct Collector<'a> {
     screens: Vec<Screen>,
     /// Code names that the study lacks, with the first place of each.
     unknown_stimuli: BTreeMap<StimulusId, Place>,
-    sittings: Index,
-    /// The sitting of each answer, where a won and a lost row are a tie.
-    sitting_of: Vec<u32>,
+    sessions: Index,
+    /// The session of each answer, where a won and a lost row are a tie.
+    session_of: Vec<u32>,
     answers: Vec<Answer>,
     /// The row of each answer; no file that is read has as many rows as there are numbers.
     rows: Vec<u32>,
@@ -139,8 +139,8 @@ impl<'a> Collector<'a> {
             stimuli: Index::default(),
             screens: Vec::new(),
             unknown_stimuli: BTreeMap::new(),
-            sittings: Index::default(),
-            sitting_of: Vec::new(),
+            sessions: Index::default(),
+            session_of: Vec::new(),
             answers: Vec::new(),
             rows: Vec::new(),
             missing: None,
@@ -323,9 +323,9 @@ impl<'a> Collector<'a> {
         ScreenId::new(self.screens.len() as u32 - 1)
     }
 
-    /// The sitting of the answer that comes next.
-    pub(crate) fn sitting(&mut self, name: &str) {
-        self.sitting_of.push(self.sittings.number(name));
+    /// The session of the answer that comes next.
+    pub(crate) fn session(&mut self, name: &str) {
+        self.session_of.push(self.sessions.number(name));
     }
 
     pub(crate) fn answer(&mut self, answer: Answer, row: u64) {

@@ -15,6 +15,7 @@
 //! - What one client costs is bounded, in memory, in connections and in sessions; nobody who has begun is forgotten for others.
 //! - No address, agent or other trace of a participant is kept but the identifiers of a panel, which are in a file of their own.
 
+pub mod deidentify;
 pub mod download;
 pub mod export;
 pub mod journal;
@@ -23,7 +24,6 @@ pub mod page;
 pub mod record;
 pub mod screen;
 mod server;
-pub mod share;
 
 pub use journal::random_hex;
 pub use server::{Limits, NoPublicUrl, PublicUrl, ServeError, Settings, serve};

@@ -37,7 +37,7 @@ pub struct Outlying {
 /// standard deviation of the others', as t on m - 2 degrees of freedom (an externally studentised residual; Cook and
 /// Weisberg 1982, section 2.2). Empty for fewer than five people.
 ///
-/// Nobody who agrees with the majority on half of the answers or more is odd, however alike the others are.
+/// Nobody who agrees with the majority on half of the answers or more is outlying, however alike the others are.
 pub fn outlying_respondents(screened: &[WithMajority]) -> Vec<Outlying> {
     let judged: Vec<&WithMajority> = screened.iter().filter(|s| s.comparable >= FEWEST_ANSWERS).collect();
     if judged.len() < FEWEST_PEOPLE {
@@ -72,11 +72,11 @@ mod tests {
     #[test]
     fn the_papers_respondent_sixteen() {
         let study = golden::study();
-        let odd = outlying_respondents(
+        let outlying = outlying_respondents(
             &screening(&golden::ballots(&study)).iter().map(Screening::with_majority).collect::<Vec<_>>(),
         );
-        assert_eq!((odd.len(), odd[0].participant), (18, 15));
-        assert!(odd[0].p < 0.01 && odd[1].p == 1.0, "{odd:?}");
+        assert_eq!((outlying.len(), outlying[0].participant), (18, 15));
+        assert!(outlying[0].p < 0.01 && outlying[1].p == 1.0, "{outlying:?}");
     }
 
     #[test]
@@ -85,10 +85,10 @@ mod tests {
         // 5 * 5 * t.cdf((x - o.mean()) / (o.std(ddof=1) * sqrt(5 / 4)), 3).
         let seen = |(participant, agreeing)| WithMajority { participant, agreeing, comparable: 20 };
         let all: Vec<WithMajority> = [18, 15, 17, 16, 4].into_iter().enumerate().map(seen).collect();
-        let odd = outlying_respondents(&all);
-        assert_eq!((odd[0].participant, odd[0].agreement), (4, 0.2));
-        assert!((odd[0].p - 0.040_487_963_456_805_2).abs() < 1e-12, "{odd:?}");
-        assert!(odd[1..].iter().all(|o| o.p == 1.0));
+        let outlying = outlying_respondents(&all);
+        assert_eq!((outlying[0].participant, outlying[0].agreement), (4, 0.2));
+        assert!((outlying[0].p - 0.040_487_963_456_805_2).abs() < 1e-12, "{outlying:?}");
+        assert!(outlying[1..].iter().all(|o| o.p == 1.0));
         assert!(outlying_respondents(&all[..4]).is_empty());
     }
 }

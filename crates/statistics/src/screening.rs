@@ -60,7 +60,7 @@ pub struct Screening {
     /// Sum of these times in milliseconds.
     pub time_ms: f64,
     /// One-sided p of agreeing so much less than the others, see [`outlying_respondents`]; `None` if not judged.
-    pub odd_p: Option<f64>,
+    pub outlying_p: Option<f64>,
 }
 
 /// A rule that a participant broke. The rules are declared here, for every study alike, and only the last looks at what was
@@ -76,12 +76,12 @@ pub enum Flag {
     /// All timed answers together took less than what they were shown lasts.
     Time,
     /// Agrees with the others' majority on less than half, and so much less than the others that it is not chance at 1 %.
-    Odd,
+    Outlying,
 }
 
 impl Flag {
     /// Every rule.
-    pub const ALL: [Self; 5] = [Self::OneSided, Self::Controls, Self::Repeats, Self::Time, Self::Odd];
+    pub const ALL: [Self; 5] = [Self::OneSided, Self::Controls, Self::Repeats, Self::Time, Self::Outlying];
 
     /// The name in files.
     pub fn code(self) -> &'static str {
@@ -90,7 +90,7 @@ impl Flag {
             Self::Controls => "controls",
             Self::Repeats => "repeats",
             Self::Time => "time",
-            Self::Odd => "odd",
+            Self::Outlying => "outlying",
         }
     }
 }
@@ -148,7 +148,7 @@ impl Screening {
                 let least = protocol.shown_ms.map(|each| each * self.timed as f64);
                 self.timed > 0 && least.is_some_and(|least| self.time_ms < least)
             }
-            Flag::Odd => self.odd_p.is_some_and(|p| p < 0.01),
+            Flag::Outlying => self.outlying_p.is_some_and(|p| p < 0.01),
         };
         Flag::ALL.into_iter().filter(breaks).collect()
     }
@@ -213,9 +213,10 @@ pub fn screening_with(ballots: &[ShownBallot], protocol: &Protocol<'_>) -> Vec<S
     };
     let same = |a: &usize, b: &usize| ballots[*a].participant() == ballots[*b].participant();
     let mut screened: Vec<Screening> = places.chunk_by(same).map(of_participant).collect();
-    for odd in outlying_respondents(&screened.iter().map(Screening::with_majority).collect::<Vec<_>>()) {
-        let place = screened.binary_search_by_key(&odd.participant, |s| s.participant).expect("one of them");
-        screened[place].odd_p = Some(odd.p);
+    for outlying in outlying_respondents(&screened.iter().map(Screening::with_majority).collect::<Vec<_>>()) {
+        let place =
+            screened.binary_search_by_key(&outlying.participant, |s| s.participant).expect("one of them");
+        screened[place].outlying_p = Some(outlying.p);
     }
     screened
 }

@@ -52,7 +52,7 @@ pub struct Row {
     pub floor: Option<f64>,
     /// The smallest ratio above 1 that would have been told, with an interval as wide as this one; `None` without floor or
     /// interval.
-    pub tellable: Option<f64>,
+    pub smallest_detectable: Option<f64>,
     /// What can be said of B.
     pub judgement: Judgement,
 }
@@ -121,8 +121,8 @@ impl Comparison {
     }
 
     /// The smallest and the largest of what would have been told of a stage, as ratios above 1; `None` if nothing would.
-    pub fn tellable(&self, stage: Stage) -> Option<(f64, f64)> {
-        let mut ratios = self.of_stage(stage).filter_map(|row| row.tellable);
+    pub fn smallest_detectable(&self, stage: Stage) -> Option<(f64, f64)> {
+        let mut ratios = self.of_stage(stage).filter_map(|row| row.smallest_detectable);
         let first = ratios.next()?;
         Some(ratios.fold((first, first), |(low, high), ratio| (low.min(ratio), high.max(ratio))))
     }
@@ -177,8 +177,18 @@ fn row(
     };
     let ratio = (a_s > 0.0 && b_s > 0.0).then(|| b_s / a_s);
     let floor = noise.ok().map(f64::exp);
-    let tellable = || Some(floor? * ratio? / interval?.low).filter(|ratio| ratio.is_finite());
-    Row { id: id.clone(), stage, a_s, b_s, ratio, interval, floor, tellable: tellable(), judgement }
+    let smallest_detectable = || Some(floor? * ratio? / interval?.low).filter(|ratio| ratio.is_finite());
+    Row {
+        id: id.clone(),
+        stage,
+        a_s,
+        b_s,
+        ratio,
+        interval,
+        floor,
+        smallest_detectable: smallest_detectable(),
+        judgement,
+    }
 }
 
 #[cfg(test)]
@@ -206,10 +216,10 @@ mod tests {
         assert!((interval.high - 7.143_868_897_104).abs() < 1e-11, "{interval:?}");
         assert_eq!(quiet.judgement.verdict, Verdict::Slower);
         // With 10 % of noise, what would have been told: 1.1 times as far as the interval reaches below.
-        let tellable = of(Ok(1.1_f64.ln())).tellable.unwrap();
-        assert!((tellable - 1.865_583_534_997).abs() < 1e-11, "{tellable}");
+        let smallest_detectable = of(Ok(1.1_f64.ln())).smallest_detectable.unwrap();
+        assert!((smallest_detectable - 1.865_583_534_997).abs() < 1e-11, "{smallest_detectable}");
         let unknown = of(Err("nobody knows"));
-        assert_eq!((unknown.floor, unknown.tellable), (None, None));
+        assert_eq!((unknown.floor, unknown.smallest_detectable), (None, None));
         assert_eq!(unknown.judgement, Judgement::cannot_say("nobody knows"));
     }
 }

@@ -46,7 +46,7 @@ pub(crate) fn bench_of(study: &Study, rounds: u32) -> BenchRun {
                     .map(|t| t * unrest);
             samples.push(BenchSample {
                 id: row.id.clone(),
-                sitting: 0,
+                invocation: 0,
                 iteration,
                 place: place as u32,
                 allocation_s: a,

@@ -86,12 +86,12 @@ fn floors(run: &BenchRun, stage: Stage) -> BTreeMap<ConfigurationId, f64> {
         // A stage that takes no time at all is the same in all.
         if time > 0.0 {
             let processes = configurations.entry(&sample.id).or_default();
-            processes.entry(sample.sitting).or_default().push(time.ln() - speeds[&sample.sitting]);
+            processes.entry(sample.invocation).or_default().push(time.ln() - speeds[&sample.invocation]);
         }
     }
     let medians: Vec<Vec<ProcessMedian>> = configurations.values().map(process_medians).collect();
     let pooled = variance_between(&medians);
-    let measured: BTreeSet<u32> = run.samples.iter().map(|sample| sample.sitting).collect();
+    let measured: BTreeSet<u32> = run.samples.iter().map(|sample| sample.invocation).collect();
     let chance = MISSES / 2.0 / medians.len().max(1) as f64;
     let floor = |own: &Vec<ProcessMedian>| {
         let degrees = (own.len() - 1) as f64;
@@ -113,10 +113,10 @@ fn all_samples(run: &BenchRun) -> impl Iterator<Item = &BenchSample> {
 fn speeds(run: &BenchRun) -> BTreeMap<u32, f64> {
     let mut times = BTreeMap::<u32, Vec<f64>>::new();
     for sample in all_samples(run) {
-        times.entry(sample.sitting).or_default().extend(sample.reference_s.filter(|time| *time > 0.0));
+        times.entry(sample.invocation).or_default().extend(sample.reference_s.filter(|time| *time > 0.0));
     }
     let speed = |times: Vec<f64>| if times.is_empty() { 0.0 } else { middle(&times).ln() };
-    times.into_iter().map(|(sitting, times)| (sitting, speed(times))).collect()
+    times.into_iter().map(|(invocation, times)| (invocation, speed(times))).collect()
 }
 
 /// How much a sample differs from the median of its process is a matter of the configuration, and taken from all processes.

@@ -10,7 +10,7 @@ pub const BUSY: f64 = 0.05;
 pub(super) fn busy_share(load: &[LoadWindow]) -> f64 {
     let mut shares: Vec<f64> = load
         .iter()
-        .filter(|window| window.sitting.is_some())
+        .filter(|window| window.invocation.is_some())
         .map(|window| window.others + window.steal)
         .collect();
     shares.sort_unstable_by(f64::total_cmp);
@@ -26,7 +26,7 @@ pub fn warnings(run: &BenchRun) -> Vec<String> {
         return warnings;
     }
     let (during, before): (Vec<&LoadWindow>, Vec<&LoadWindow>) =
-        run.load.iter().partition(|window| window.sitting.is_some());
+        run.load.iter().partition(|window| window.invocation.is_some());
     if run.load.is_empty() {
         warnings.push(
             "This system does not tell what others do: nobody knows whether the machine was quiet.".into(),
@@ -64,7 +64,7 @@ pub fn warnings(run: &BenchRun) -> Vec<String> {
     for resumption in &run.resumed {
         warnings.push(format!(
             "The run was broken off and taken up again in round {}, place {}, of process {}, after warm-up.",
-            resumption.iteration, resumption.place, resumption.sitting
+            resumption.iteration, resumption.place, resumption.invocation
         ));
     }
     warnings
@@ -75,8 +75,8 @@ mod tests {
     use super::*;
     use crate::fixture;
 
-    fn window(sitting: Option<u32>, others: f64, steal: f64) -> LoadWindow {
-        LoadWindow { sitting, rounds: sitting.map(|s| (s, s)), others, steal, load_average: None }
+    fn window(invocation: Option<u32>, others: f64, steal: f64) -> LoadWindow {
+        LoadWindow { invocation, rounds: invocation.map(|s| (s, s)), others, steal, load_average: None }
     }
 
     #[test]
@@ -94,7 +94,7 @@ mod tests {
     fn a_busy_machine_is_told_of_in_plain_words() {
         let mut run = fixture::bench(&fixture::study());
         run.load = vec![window(None, 0.5, 0.0)];
-        run.load.extend((0..4).map(|sitting| window(Some(sitting), 0.1 * f64::from(sitting), 0.0)));
+        run.load.extend((0..4).map(|invocation| window(Some(invocation), 0.1 * f64::from(invocation), 0.0)));
         run.load.push(window(Some(4), 0.0, 0.07));
         let text = warnings(&run).join("\n");
         assert!(

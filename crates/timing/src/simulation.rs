@@ -57,19 +57,20 @@ impl Source {
     }
 }
 
-/// A run of the paper's plan: eight sittings of 12 or 13 rounds, and two of 4 that are the A/A block.
+/// A run of the paper's plan: eight invocations of 12 or 13 rounds, and two of 4 that are the A/A block.
 fn run(template: &BenchRun, ids: &[ConfigurationId], noise: Noise, factor: f64, seed: u64) -> BenchRun {
     let mut source = Source { stream: Pcg64::seed_from_u64(seed) };
     let mut run = BenchRun { iterations: ROUNDS, aa_iterations: AGAIN, samples: vec![], ..template.clone() };
     let measured = [0..12, 12..25, 25..37, 37..50, 50..62, 62..75, 75..87, 87..100];
-    let mut sittings: Vec<(bool, Range<u32>)> = measured.into_iter().map(|rounds| (false, rounds)).collect();
-    sittings.insert(3, (true, 0..4));
-    sittings.insert(7, (true, 4..8));
+    let mut invocations: Vec<(bool, Range<u32>)> =
+        measured.into_iter().map(|rounds| (false, rounds)).collect();
+    invocations.insert(3, (true, 0..4));
+    invocations.insert(7, (true, 4..8));
     let speed = noise.machine * source.normal();
     let phase = source.uniform();
     let all = f64::from(ROUNDS + AGAIN);
     let mut round_of_run = 0.0;
-    for ((aa, rounds), sitting) in sittings.into_iter().zip(0..) {
+    for ((aa, rounds), invocation) in invocations.into_iter().zip(0..) {
         let deviation = |place| if place < noise.restless.0 { noise.restless.1 } else { noise.process };
         let process: Vec<f64> = (0..ids.len()).map(|place| deviation(place) * source.normal()).collect();
         for iteration in rounds {
@@ -83,12 +84,12 @@ fn run(template: &BenchRun, ids: &[ConfigurationId], noise: Noise, factor: f64, 
                     log += (1.0 + 2.0 * source.uniform()).ln();
                 }
                 let reference_s = 0.001 * (now + 0.01 * source.normal()).exp();
-                let sample = sample(id, sitting, iteration, place as u32, log.exp(), reference_s);
+                let sample = sample(id, invocation, iteration, place as u32, log.exp(), reference_s);
                 if aa { run.aa_samples.push(sample) } else { run.samples.push(sample) }
             }
             let (others, rounds) = (noise.others, Some((iteration, iteration)));
             run.load.push(LoadWindow {
-                sitting: Some(sitting),
+                invocation: Some(invocation),
                 rounds,
                 others,
                 steal: 0.0,
@@ -102,7 +103,7 @@ fn run(template: &BenchRun, ids: &[ConfigurationId], noise: Noise, factor: f64, 
 /// A sample of which only the total is known.
 pub(super) fn sample(
     id: &ConfigurationId,
-    sitting: u32,
+    invocation: u32,
     iteration: u32,
     place: u32,
     total_s: f64,
@@ -110,7 +111,7 @@ pub(super) fn sample(
 ) -> BenchSample {
     BenchSample {
         id: id.clone(),
-        sitting,
+        invocation,
         iteration,
         place,
         allocation_s: 0.0,

@@ -132,7 +132,8 @@ pub fn sweep(study: &str, levels: &[SweepLevel], meshes: &[SweepMesh]) -> Sweep 
     let points: Vec<Point> = levels.iter().flat_map(|level| points_of(level, meshes)).collect();
     let growth = growth(&points);
     let budgets = budgets::budgets(&points);
-    let windows = levels.iter().flat_map(|level| &level.run.load).filter(|window| window.sitting.is_some());
+    let windows =
+        levels.iter().flat_map(|level| &level.run.load).filter(|window| window.invocation.is_some());
     let others = windows.map(|window| window.others + window.steal).reduce(f64::max);
     let (study, speed_ups) = (study.into(), speed_ups(levels));
     Sweep { schema: SWEEP_SCHEMA, study, others, points, growth, speed_ups, budgets }

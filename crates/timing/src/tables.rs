@@ -208,7 +208,7 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
     totals.notes.push(
         "Ratios of medians, or of means where no more was published; intervals hold for all configurations together at 95 %, \
          and there is none where the rounds are too few for that. A verdict needs an interval beyond the noise (A/A block, \
-         load of others, reference work) and the same direction in each third of the runs. \"Told from\": the smallest slowdown \
+         load of others, reference work) and the same direction in each third of the runs. \"Smallest detectable\": the smallest slowdown \
          that would have got one; what is smaller cannot be seen in these runs."
             .into(),
     );
@@ -270,7 +270,7 @@ fn columns(before: &[(&'static str, &'static str)]) -> Vec<(&'static str, &'stat
         ("low", "from"),
         ("high", "to"),
         ("floor", "Noise up to"),
-        ("tellable", "Told from"),
+        ("smallest_detectable", "Smallest detectable"),
         ("verdict", "B is"),
         ("reason", "Why not more"),
     ];
@@ -287,7 +287,7 @@ fn cells(row: &Row, with_stage: bool, across: &str) -> Vec<Cell> {
         end(|i| i.low),
         end(|i| i.high),
         Cell::number(row.floor, 3),
-        Cell::number(row.tellable, 3),
+        Cell::number(row.smallest_detectable, 3),
         Cell::text(format!("{}{}", row.judgement.verdict.label(), across.to_lowercase())),
         Cell::text(row.judgement.reason),
     ];

@@ -27,7 +27,7 @@ fn the_papers_answers() {
         "{side:?}"
     );
     assert_eq!(found(Probe::SwappedKey).finding, Finding::NotAnswerable);
-    let odd = found(Probe::OddRespondent);
+    let odd = found(Probe::OutlyingRespondent);
     assert_eq!(odd.finding, Finding::Found);
     // Counted apart from this program.
     assert_eq!(
@@ -51,7 +51,9 @@ fn planted_defects_are_found_with_their_place() {
         report.evidence
     };
     assert!(evidence(Defect::None { preferences: false, side: 8 }, Probe::Side).contains("to the left"));
-    assert!(evidence(Defect::OddRespondent, Probe::OddRespondent).starts_with("respondent 8 agrees"));
+    assert!(
+        evidence(Defect::OutlyingRespondent, Probe::OutlyingRespondent).starts_with("respondent 8 agrees")
+    );
     assert!(evidence(Defect::CopiedRows, Probe::CopiedRows).starts_with("respondents 5, 17 gave the same"));
     assert!(evidence(Defect::TurnedAnswers, Probe::SwappedKey).contains("Q2/Q2-r: mean"));
     let times = evidence(Defect::CopiedTimes, Probe::CopiedRows);

@@ -168,7 +168,7 @@ fn what_a_method_does_not_have_is_missing() {
 fn the_second_block_comes_last_and_is_named() {
     let study = fixture::study();
     let mut run = fixture::bench(&study);
-    let again = BenchSample { sitting: 4, reference_s: Some(0.25), ..run.samples[3].clone() };
+    let again = BenchSample { invocation: 4, reference_s: Some(0.25), ..run.samples[3].clone() };
     run.aa_samples.push(again.clone());
     let long = super::times::times(&run);
     assert_eq!(long.height(), run.samples.len() + 1);

@@ -12,7 +12,7 @@ pub(crate) fn times(run: &BenchRun) -> LongFrame {
     rows.text("object", |(_, sample)| Some(sample.id.object.clone()));
     rows.text("method", |(_, sample)| Some(sample.id.method.to_string()));
     rows.text("block", |(block, _)| Some((*block).into()));
-    rows.count("sitting", |(_, sample)| Some(sample.sitting.into()));
+    rows.count("invocation", |(_, sample)| Some(sample.invocation.into()));
     rows.count("iteration", |(_, sample)| Some(sample.iteration.into()));
     rows.count("place", |(_, sample)| Some(sample.place.into()));
     STAGES.iter().for_each(|(name, of)| rows.number(name, |(_, sample)| Some(of(sample))));

@@ -58,7 +58,7 @@ fn screened(evidence: &Evidence<'_>, respondents: &Table) -> Finding {
         0 => absent.push("one-sidedness"),
         n => judged.push(of("one-sidedness", n)),
     }
-    match seen.iter().filter(|of| of.odd_p.is_some()).count() {
+    match seen.iter().filter(|of| of.outlying_p.is_some()).count() {
         0 => absent.push("agreement"),
         n => judged.push(of("agreement", n)),
     }
@@ -95,7 +95,7 @@ fn broken_by(flag: Flag) -> &'static str {
         Flag::Controls => "deciding between equals",
         Flag::Repeats => "choosing otherwise when asked again",
         Flag::Time => "answering faster than anybody can look",
-        Flag::Odd => "answering against the others",
+        Flag::Outlying => "answering against the others",
     }
 }
 

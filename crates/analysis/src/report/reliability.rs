@@ -1,4 +1,4 @@
-//! How much the answers can bear: agreement, consistency, odd respondents, single questions.
+//! How much the answers can bear: agreement, consistency, outlying respondents, single questions.
 
 use super::{Block, Evidence, names};
 use crate::hypotheses::Hypothesis;
@@ -21,7 +21,7 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
     let mut found = vec![unanimity(evidence)];
     found.extend(consistency(evidence));
     found.extend(one_by_one(evidence));
-    found.extend(odd_ones(evidence));
+    found.extend(outlying(evidence));
     found.extend(single_questions(evidence));
     found.into_iter().map(Block::Finding).collect()
 }
@@ -163,14 +163,14 @@ fn one_by_one(evidence: &Evidence<'_>) -> Option<Finding> {
 }
 
 /// Who answers against the others, and what the results are without them.
-fn odd_ones(evidence: &Evidence<'_>) -> Vec<Finding> {
+fn outlying(evidence: &Evidence<'_>) -> Vec<Finding> {
     let screened = screening(evidence.shown);
     let judged: Vec<(&Screening, f64)> = screened
         .iter()
         .filter(|s| s.comparable >= COMPARABLE)
         .filter_map(|s| s.agreement().map(|share| (s, share)))
         .collect();
-    let (odd, others): (Vec<_>, Vec<_>) = judged.iter().copied().partition(|(_, share)| *share < 0.5);
+    let (outlying, others): (Vec<_>, Vec<_>) = judged.iter().copied().partition(|(_, share)| *share < 0.5);
     let range = |of: &[(&Screening, f64)]| {
         let shares = of.iter().map(|(_, share)| *share);
         let (low, high) = (shares.clone().fold(1.0, f64::min), shares.fold(0.0, f64::max));
@@ -179,7 +179,7 @@ fn odd_ones(evidence: &Evidence<'_>) -> Vec<Finding> {
     if judged.is_empty() {
         return Vec::new();
     }
-    if odd.is_empty() {
+    if outlying.is_empty() {
         let text = format!(
             "Nobody stands out: every participant's decided answers side with the majority of the others' in {} of the \
              questions that have one.",
@@ -188,11 +188,11 @@ fn odd_ones(evidence: &Evidence<'_>) -> Vec<Finding> {
         return vec![Finding::new(Standing::Noted, text)];
     }
     // Where most are, the majorities are by an answer or two, and tell nobody apart.
-    if 2 * odd.len() > judged.len() {
+    if 2 * outlying.len() > judged.len() {
         let text = format!(
             "Agreement tells nobody apart: {} of {} side with the majority of the others less often than against it, so majorities \
              are thin.",
-            odd.len(),
+            outlying.len(),
             counted(judged.len(), "participant")
         );
         return vec![Finding::new(Standing::Noted, text)];
@@ -200,12 +200,12 @@ fn odd_ones(evidence: &Evidence<'_>) -> Vec<Finding> {
     let one = |(s, share): &(&Screening, f64)| {
         format!("{} ({} of {}, {})", s.participant + 1, s.agreeing, s.comparable, percent(*share))
     };
-    let mut names: Vec<String> = odd.iter().take(NAMED).map(one).collect();
-    if odd.len() > NAMED {
-        names.push(format!("{} more", odd.len() - NAMED));
+    let mut names: Vec<String> = outlying.iter().take(NAMED).map(one).collect();
+    if outlying.len() > NAMED {
+        names.push(format!("{} more", outlying.len() - NAMED));
     }
-    let who = if odd.len() == 1 { "Participant" } else { "Participants" };
-    let verb = if odd.len() == 1 { "answers" } else { "answer" };
+    let who = if outlying.len() == 1 { "Participant" } else { "Participants" };
+    let verb = if outlying.len() == 1 { "answers" } else { "answer" };
     let rest = match others.is_empty() {
         true => String::new(),
         false => format!("; everybody else sides with it in {}", range(&others)),
@@ -216,7 +216,7 @@ fn odd_ones(evidence: &Evidence<'_>) -> Vec<Finding> {
         list(&names)
     );
     let mut found = vec![Finding::new(Standing::Noted, text)];
-    found.push(without(evidence, &odd.iter().map(|(s, _)| s.participant).collect::<Vec<_>>()));
+    found.push(without(evidence, &outlying.iter().map(|(s, _)| s.participant).collect::<Vec<_>>()));
     found
 }
 

@@ -444,7 +444,7 @@ fn a_side_was_found() -> Table {
 #[test]
 fn who_is_left_out_is_left_out_everywhere() {
     let mut study = fixture::study();
-    study.file.analysis.exclude = vec![design::config::Exclusion::Odd];
+    study.file.analysis.exclude = vec![design::config::Exclusion::Outlying];
     let answered = Answered::of(&study, fixture::answers(&study)).unwrap();
     let inputs = Inputs { study: &study, meshes: &[], bench: None, answers: Some(&answered) };
     let (tables, figures) = (crate::tables(&inputs), crate::figures(&inputs).unwrap());

@@ -33,7 +33,7 @@ pub enum Defect {
         side: u8,
     },
     /// Respondent 8 prefers everything the other way round.
-    OddRespondent,
+    OutlyingRespondent,
     /// Respondent 17's row is respondent 5's; neither orders nor times are recorded.
     CopiedRows,
     /// Respondent 17's orders and times are respondent 5's; the answers are not.
@@ -67,7 +67,7 @@ impl Defect {
         Self::None { preferences: true, side: 15 },
         Self::None { preferences: false, side: 25 },
         Self::None { preferences: true, side: 25 },
-        Self::OddRespondent,
+        Self::OutlyingRespondent,
         Self::CopiedRows,
         Self::CopiedTimes,
         Self::CodeName,
@@ -85,7 +85,7 @@ impl Defect {
         match self {
             Self::None { side: 0, .. } | Self::PressingLeft | Self::PressingLeftAlike => None,
             Self::None { .. } => Some(Probe::Side),
-            Self::OddRespondent => Some(Probe::OddRespondent),
+            Self::OutlyingRespondent => Some(Probe::OutlyingRespondent),
             Self::CopiedRows | Self::CopiedTimes => Some(Probe::CopiedRows),
             Self::CodeName | Self::OneFile | Self::BothFiles | Self::TurnedAnswers => Some(Probe::SwappedKey),
             Self::ObjectInteraction => Some(Probe::ObjectInteraction),
@@ -103,7 +103,7 @@ impl Defect {
                 let of = if preferences { "preferences and left side" } else { "left side" };
                 format!("{of}, {by:.1} logits")
             }
-            Self::OddRespondent => "one outlying respondent".into(),
+            Self::OutlyingRespondent => "one outlying respondent".into(),
             Self::CopiedRows => "copied row".into(),
             Self::CopiedTimes => "copied times".into(),
             Self::CodeName => "wrong key: one file, code names recorded".into(),
@@ -121,15 +121,17 @@ impl Defect {
     /// of their own are a side, and outlying.
     pub(super) fn may_be_seen_by(self, probe: Probe) -> bool {
         matches!(self, Self::PressingLeft | Self::PressingLeftAlike)
-            && matches!(probe, Probe::Side | Probe::OddRespondent)
+            && matches!(probe, Probe::Side | Probe::OutlyingRespondent)
     }
 
     /// Whether so many answers are enough to find it, dealt like this.
     pub fn is_told_by(self, design: Design) -> bool {
         match design {
             Design::Latin | Design::Shuffled => true,
-            Design::Blocks => !matches!(self, Self::OddRespondent | Self::CopiedRows | Self::TurnedAnswers),
-            Design::FourMethods => !matches!(self, Self::OddRespondent | Self::CopiedRows),
+            Design::Blocks => {
+                !matches!(self, Self::OutlyingRespondent | Self::CopiedRows | Self::TurnedAnswers)
+            }
+            Design::FourMethods => !matches!(self, Self::OutlyingRespondent | Self::CopiedRows),
             Design::TwoMethods => !matches!(self, Self::None { side: 8, .. }),
         }
     }
@@ -228,7 +230,7 @@ impl Worths {
             }
         };
         let everybodys: Vec<f64> = study.configurations.iter().map(worth).collect();
-        let turned = if defect == Defect::OddRespondent { -1.0 } else { 1.0 };
+        let turned = if defect == Defect::OutlyingRespondent { -1.0 } else { 1.0 };
         Self { of_the_eighth: everybodys.iter().map(|worth| turned * worth).collect(), everybodys }
     }
 }

@@ -34,7 +34,7 @@ fn what_cannot_be_told_is_said() {
         one.never_answerable(probe)
     };
     let sound = Defect::None { preferences: true, side: 0 };
-    assert!(cannot(Probe::OddRespondent, sound, Design::TwoMethods));
+    assert!(cannot(Probe::OutlyingRespondent, sound, Design::TwoMethods));
     assert!(cannot(Probe::CopiedRows, Defect::CopiedRows, Design::TwoMethods));
     assert!(!cannot(Probe::CopiedRows, sound, Design::TwoMethods));
     assert!(!cannot(Probe::SwappedKey, sound, Design::TwoMethods));
@@ -50,7 +50,7 @@ fn the_same_on_any_number_of_threads() {
     let one = run(1);
     assert_eq!(one, run(3));
     assert_eq!(one.0.lines().count(), Design::ALL.len() * Defect::ALL.len());
-    let header = "design,defect,side,odd_respondent,copied_rows,swapped_key,object_interaction,separation,studies,passed";
+    let header = "design,defect,side,outlying_respondent,copied_rows,swapped_key,object_interaction,separation,studies,passed";
     assert!(one.0.starts_with(header));
 }
 
@@ -81,10 +81,12 @@ fn a_rate_out_of_its_limits_fails() {
         studies,
     };
     let few = hits([88, 6, 7, 0, 0, 0], 100);
-    assert!(!few.sound(Probe::Side) && few.sound(Probe::OddRespondent) && !few.sound(Probe::CopiedRows));
+    assert!(!few.sound(Probe::Side) && few.sound(Probe::OutlyingRespondent) && !few.sound(Probe::CopiedRows));
     assert!(hits([89, 0, 0, 0, 0, 0], 100).sound(Probe::Side));
     let many = hits([9499, 200, 201, 0, 0, 0], 10_000);
-    assert!(!many.sound(Probe::Side) && many.sound(Probe::OddRespondent) && !many.sound(Probe::CopiedRows));
+    assert!(
+        !many.sound(Probe::Side) && many.sound(Probe::OutlyingRespondent) && !many.sound(Probe::CopiedRows)
+    );
     let mut coverage = with_hits(t, 100);
     coverage.studies = 100;
     assert_eq!(coverage.limits().map(|(_, high)| high), Some(1.0));

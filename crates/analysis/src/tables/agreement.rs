@@ -120,7 +120,7 @@ pub(crate) fn respondents(ballots: &[ShownBallot], protocol: &Protocol<'_>, excl
             ("comparable", "Comparable"),
             ("agreeing", "Agreeing"),
             ("agreement", "Agreement"),
-            ("odd_p", "p of odd"),
+            ("outlying_p", "p of outlying"),
             ("controls", "Controls"),
             ("controls_decided", "decided"),
             ("repeats", "Repeats"),
@@ -144,7 +144,7 @@ pub(crate) fn respondents(ballots: &[ShownBallot], protocol: &Protocol<'_>, excl
             Cell::count(seen.comparable),
             Cell::count(seen.agreeing),
             Cell::number(seen.agreement(), 3),
-            Cell::p(seen.odd_p, 4),
+            Cell::p(seen.outlying_p, 4),
             Cell::count(seen.controls),
             Cell::count(seen.controls_decided),
             Cell::count(seen.repeats),
@@ -171,7 +171,7 @@ pub(crate) fn respondents(ballots: &[ShownBallot], protocol: &Protocol<'_>, excl
         "Controls and repeats are counted here, and nowhere else. Agreement: share of the decided answers that side with the majority of the others' decided answers, where they have \
          one. Longest run: of one side. Repeats: the same pair again, both times decided. Rules, fixed in the program: \
          one-sided (ten decided answers or more, all on one side), controls (two or more decided, and more than half), \
-         repeats (two or more for the other item, and more than half), time (all timed answers together took less than what they show lasts{}), odd (agrees on \
+         repeats (two or more for the other item, and more than half), time (all timed answers together took less than what they show lasts{}), outlying (agrees on \
          less than half, and so much less than the others that p, with Bonferroni's correction and an allowance of 5, is \
          below 0.01). Only the last has seen what was preferred: a reason to look, not to exclude.",
         protocol.shown_ms.map_or(", which nobody has said: shown_s".into(), |ms| format!(", {} s each", ms / 1000.0))

@@ -170,13 +170,13 @@ mod tests {
         let recorded = Recorded::of_study(&study, &answered.responses, ballots);
         let table = of_study(&study, &answered, &recorded);
         assert_eq!(table.rows.len(), 4 + 9 + 3 + 9 + 6 + 3 + 9);
-        let of = |column| cell(&table, &["odd", "B-S", "all"], column).shown();
+        let of = |column| cell(&table, &["outlying", "B-S", "all"], column).shown();
         assert_eq!(
             (of("left_out"), of("respondents"), of("mean")),
             ("1".into(), "16".into(), "0.173".into())
         );
         // p without 16 is one end of the leave-one-out range or inside it: docs/statistics.md, 0.0063 to 0.0188.
-        let Cell::P(p, _) = cell(&table, &["odd", "B-S", "all"], "p_without") else { panic!("no p") };
+        let Cell::P(p, _) = cell(&table, &["outlying", "B-S", "all"], "p_without") else { panic!("no p") };
         assert!((0.0062..0.0189).contains(&p), "{p}");
         let kept: Vec<DeclaredBallot> =
             answered.declared.iter().filter(|b| b.participant() != 15).copied().collect();

@@ -9,7 +9,7 @@ use std::error::Error;
 #[derive(Default)]
 pub(crate) struct Mock {
     pub(crate) calls: Vec<usize>,
-    pub(crate) sittings: Vec<usize>,
+    pub(crate) invocations: Vec<usize>,
     fail_at_call: Option<usize>,
     nan_at_call: Option<usize>,
     others: u64,
@@ -20,12 +20,12 @@ pub(crate) struct Mock {
 
 impl Executor for Mock {
     fn sit_down(&mut self) -> Result<Option<Vec<u32>>, BenchError> {
-        self.sittings.push(self.calls.len());
+        self.invocations.push(self.calls.len());
         Ok(Some(vec![0, 2]))
     }
 
     fn execute(&mut self, subject: usize) -> Result<Measurement, BenchError> {
-        assert!(!self.sittings.is_empty(), "executed before the first sitting");
+        assert!(!self.invocations.is_empty(), "executed before the first invocation");
         let call = self.calls.len();
         self.calls.push(subject);
         if self.fail_at_call == Some(call) {
@@ -82,7 +82,7 @@ pub(crate) fn machine() -> Machine {
     }
 }
 
-/// Sittings of 2, 1, 1, 1 and 2 rounds, the second and fourth of the A/A block.
+/// Invocations of 2, 1, 1, 1 and 2 rounds, the second and fourth of the A/A block.
 pub(crate) fn plan() -> Plan {
     Plan {
         study: "mock".into(),
@@ -127,17 +127,17 @@ fn resumed(done: Vec<Entry>, mock: &mut Mock) -> Result<BenchRun, BenchError> {
 }
 
 #[test]
-fn every_sitting_is_a_fresh_one_and_warms_up() {
+fn every_invocation_is_a_fresh_one_and_warms_up() {
     let mut mock = Mock::default();
     let run = run_with(&plan(), &mut mock).unwrap();
     // Each of the five has two rounds of warm-up, of four configurations, before its own.
-    assert_eq!(mock.sittings, [0, 4 * 3, 4 * 6, 4 * 10, 4 * 13]);
+    assert_eq!(mock.invocations, [0, 4 * 3, 4 * 6, 4 * 10, 4 * 13]);
     assert_eq!(mock.calls.len(), 4 * (5 * 2 + 5 + 2));
     assert_eq!((run.samples.len(), run.aa_samples.len()), (5 * 4, 2 * 4));
     // The mock's normals count calls: the first sample kept is the ninth call.
     assert_eq!(run.samples[0].normals_s, 1e-7 * 8.0);
-    let sittings: Vec<u32> = run.samples.iter().map(|sample| sample.sitting).collect();
-    assert_eq!(sittings, [[0; 4], [2; 4], [2; 4], [4; 4], [4; 4]].concat());
+    let invocations: Vec<u32> = run.samples.iter().map(|sample| sample.invocation).collect();
+    assert_eq!(invocations, [[0; 4], [2; 4], [2; 4], [4; 4], [4; 4]].concat());
     assert_eq!(run.pinned, Some(vec![0, 2]));
 }
 
@@ -211,8 +211,8 @@ fn others_are_watched_before_and_during() {
     // Before: 100 ticks, of them 90 idle. Then every round: 120 ticks, of them 80 ours and 24 somebody else's.
     let shares: Vec<f64> = run.load.iter().map(|window| window.others).collect();
     assert_eq!(shares, [[0.1].as_slice(), &[0.2; 7]].concat());
-    let windows: Vec<_> = run.load.iter().map(|window| (window.sitting, window.rounds)).collect();
-    let at = |sitting, round| (Some(sitting), Some((round, round)));
+    let windows: Vec<_> = run.load.iter().map(|window| (window.invocation, window.rounds)).collect();
+    let at = |invocation, round| (Some(invocation), Some((round, round)));
     let want = [(None, None), at(0, 0), at(1, 0), at(2, 1), at(2, 2), at(3, 1), at(4, 3), at(4, 4)];
     assert_eq!(windows, want);
     assert!(run.load.iter().all(|window| window.load_average == Some(1.5) && window.steal == 0.0));
@@ -220,7 +220,7 @@ fn others_are_watched_before_and_during() {
 
 #[test]
 fn short_rounds_share_a_window() {
-    // One configuration: 30 ticks a round, and 100 are needed; a sitting of 9 rounds has windows of 4, 4 and 1.
+    // One configuration: 30 ticks a round, and 100 are needed; a invocation of 9 rounds has windows of 4, 4 and 1.
     let plan = Plan { iterations: 9, aa_iterations: 0, ..plan() };
     let run =
         run(&plan, &ids()[..1], &mut Mock::default(), machine(), vec![], &mut |_| Ok(()), &mut |_, _| ());
@@ -249,7 +249,7 @@ fn a_run_broken_off_anywhere_is_completed() {
     let whole = mock_run();
     let keys = |run: &BenchRun| -> Vec<(u32, u32, u32, ConfigurationId)> {
         let all = run.samples.iter().chain(&run.aa_samples);
-        all.map(|s| (s.sitting, s.iteration, s.place, s.id.clone())).collect()
+        all.map(|s| (s.invocation, s.iteration, s.place, s.id.clone())).collect()
     };
     for calls in 0..68 {
         let done = broken_off(calls);
@@ -267,20 +267,20 @@ fn a_run_broken_off_anywhere_is_completed() {
                 _ => {}
             }
         }
-        let warm_ups = mock.sittings.len() * 8;
+        let warm_ups = mock.invocations.len() * 8;
         assert_eq!(mock.calls.len(), warm_ups + 28 - samples_before, "broken off at call {calls}");
     }
 }
 
 #[test]
 fn a_run_goes_on_in_the_middle_of_a_round_and_says_so() {
-    // The third sitting has rounds 1 and 2; its calls begin at 24, eight of them warm-up. Call 38 is place 2 of round 2.
+    // The third invocation has rounds 1 and 2; its calls begin at 24, eight of them warm-up. Call 38 is place 2 of round 2.
     let mut mock = Mock::default();
     let run = resumed(broken_off(38), &mut mock).unwrap();
-    assert_eq!(run.resumed, [Resumption { sitting: 2, iteration: 2, place: 2 }]);
-    // It warms up, measures the two that are left, and goes to the next sitting.
-    assert_eq!(mock.sittings, [0, 8 + 2, 10 + 12]);
-    // Broken off between sittings, nothing is in the middle.
+    assert_eq!(run.resumed, [Resumption { invocation: 2, iteration: 2, place: 2 }]);
+    // It warms up, measures the two that are left, and goes to the next invocation.
+    assert_eq!(mock.invocations, [0, 8 + 2, 10 + 12]);
+    // Broken off between invocations, nothing is in the middle.
     let run = resumed(broken_off(24), &mut Mock::default()).unwrap();
     assert_eq!(run.resumed, []);
 }
@@ -326,8 +326,8 @@ fn error_of(plan: &Plan, ids: &[ConfigurationId], mut mock: Mock) -> (BenchError
 fn a_failure_names_the_configuration_and_ends_the_run() {
     let failing = |call| Mock { fail_at_call: Some(call), ..Default::default() };
     let (error, calls) = error_of(&plan(), &ids(), failing(9));
-    let sitting = &plan().sittings()[0];
-    let turn = plan().turns(sitting, 4)[1];
+    let invocation = &plan().invocations()[0];
+    let turn = plan().turns(invocation, 4)[1];
     assert_eq!(calls, 10);
     assert_eq!(error.to_string(), format!("{} failed in iteration 0", ids()[turn.subject]));
     assert_eq!(error.source().unwrap().to_string(), "the mock was told to fail");

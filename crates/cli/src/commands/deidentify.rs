@@ -7,7 +7,7 @@ use crate::terminal::say;
 use crate::{input, store};
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use serve::{journal, share};
+use serve::{deidentify, journal};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -37,9 +37,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if stored.digest != digest {
         tell!("the study file was changed since the first answer; the codebook says what it says now");
     }
-    let given = share::deidentified(&stored.given);
+    let given = deidentify::deidentified(&stored.given);
     std::fs::create_dir_all(&arguments.out).with_context(|| arguments.out.display().to_string())?;
-    let codebook = share::codebook(&file, (&stored.digest, &digest), participants(&given), given.len());
+    let codebook = deidentify::codebook(&file, (&stored.digest, &digest), participants(&given), given.len());
     for (name, text) in [("answers.csv", csv(&given, &key)?), ("codebook.md", codebook)] {
         let path = arguments.out.join(name);
         store::write_whole(&path, text.as_bytes())?;

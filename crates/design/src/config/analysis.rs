@@ -28,7 +28,7 @@ pub enum Exclusion {
     /// Answered before everything could have been seen.
     Time,
     /// Preferred what the others did not.
-    Odd,
+    Outlying,
 }
 
 impl Exclusion {
@@ -39,7 +39,7 @@ impl Exclusion {
             Self::Controls => "controls",
             Self::Repeats => "repeats",
             Self::Time => "time",
-            Self::Odd => "odd",
+            Self::Outlying => "outlying",
         }
     }
 }

@@ -53,8 +53,8 @@ pub enum InvalidRun {
         id: ConfigurationId,
     },
     /// A process that measured for both lists.
-    #[error("sitting {0} has both samples and aa_samples: the A/A block has processes of its own")]
-    SharedSitting(u32),
+    #[error("invocation {0} has both samples and aa_samples: the A/A block has processes of its own")]
+    SharedInvocation(u32),
     /// A share of the CPU time that is none.
     #[error("load[{place}]: others = {others}, steal = {steal}: must be from 0 to 1, together too")]
     Load {
@@ -130,10 +130,10 @@ impl BenchRun {
             if let Some(id) = of_samples.symmetric_difference(&of_aa).next() {
                 return Err(InvalidRun::OneList { id: (*id).clone() });
             }
-            let measured: BTreeSet<u32> = self.samples.iter().map(|sample| sample.sitting).collect();
-            let mut again = self.aa_samples.iter().map(|sample| sample.sitting);
-            if let Some(sitting) = again.find(|sitting| measured.contains(sitting)) {
-                return Err(InvalidRun::SharedSitting(sitting));
+            let measured: BTreeSet<u32> = self.samples.iter().map(|sample| sample.invocation).collect();
+            let mut again = self.aa_samples.iter().map(|sample| sample.invocation);
+            if let Some(invocation) = again.find(|invocation| measured.contains(invocation)) {
+                return Err(InvalidRun::SharedInvocation(invocation));
             }
         }
         for (place, &LoadWindow { others, steal, .. }) in self.load.iter().enumerate() {
@@ -213,7 +213,7 @@ mod tests {
     fn sample(id: &str, iteration: u32) -> BenchSample {
         BenchSample {
             id: id.parse().unwrap(),
-            sitting: 0,
+            invocation: 0,
             iteration,
             place: 0,
             allocation_s: 0.001,
@@ -232,7 +232,7 @@ mod tests {
         let memory =
             PeakMemory { id: "ss_bi".parse().unwrap(), before_bytes: 2, peak_before_bytes: 3, peak_bytes: 4 };
         let window =
-            LoadWindow { sitting: None, rounds: None, others: 0.25, steal: 0.75, load_average: None };
+            LoadWindow { invocation: None, rounds: None, others: 0.25, steal: 0.75, load_average: None };
         let target: CpuProfile = toml::from_str("name = \"any\"\nmodel = \"\"").unwrap();
         BenchRun {
             schema: BenchRun::SCHEMA,
@@ -249,7 +249,7 @@ mod tests {
             machine: Machine::default(),
             differences: Vec::new(),
             samples: rounds(3).collect(),
-            aa_samples: rounds(2).map(|sample| BenchSample { sitting: 1, ..sample }).collect(),
+            aa_samples: rounds(2).map(|sample| BenchSample { invocation: 1, ..sample }).collect(),
             load: vec![window],
             memory: vec![memory],
             resumed: Vec::new(),
@@ -313,8 +313,11 @@ mod tests {
         assert_eq!(text, "aa_samples: ss_bi has 1 of 2 rounds");
         let text = after(|run| run.aa_samples.clear());
         assert_eq!(text, "ss_bi is in one of samples and aa_samples only");
-        let text = after(|run| run.aa_samples[1].sitting = 0);
-        assert_eq!(text, "sitting 0 has both samples and aa_samples: the A/A block has processes of its own");
+        let text = after(|run| run.aa_samples[1].invocation = 0);
+        assert_eq!(
+            text,
+            "invocation 0 has both samples and aa_samples: the A/A block has processes of its own"
+        );
     }
 
     #[test]

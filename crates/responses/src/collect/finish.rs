@@ -88,15 +88,15 @@ impl Collector<'_> {
         self.items.names = order.iter().map(|&item| names[item as usize].clone()).collect();
     }
 
-    /// Makes one answer without preference of a won and a lost row of one sitting, as formats without ties have it.
+    /// Makes one answer without preference of a won and a lost row of one session, as formats without ties have it.
     /// This comes before `duplicates`, which would make each tie a win of whatever is in its first or last row.
     fn join_split_ties(&mut self) {
-        if self.sitting_of.is_empty() {
+        if self.session_of.is_empty() {
             return;
         }
         let key = |i: u32| {
             let Answer { participant, question, left, .. } = self.answers[i as usize];
-            (participant, question, left, self.sitting_of[i as usize])
+            (participant, question, left, self.session_of[i as usize])
         };
         let mut sorted: Vec<u32> = (0..self.answers.len() as u32).collect();
         sorted.sort_by_key(|&i| key(i));

@@ -162,8 +162,8 @@ impl Rows<'_> {
         match named {
             Some(participant) => {
                 if self.rule.split_ties {
-                    let sitting = self.columns.sitting.map_or("", |column| self.text(record, column));
-                    self.collector.sitting(sitting);
+                    let session = self.columns.session.map_or("", |column| self.text(record, column));
+                    self.collector.session(session);
                 }
                 self.collector.answer(of(participant), row);
             }

@@ -71,7 +71,7 @@ pub(crate) fn read(
         choice: needed(SELECTED.into_iter().find_map(find), "is_A_selected")?,
         object: find("scene"),
         form,
-        sitting: find("session"),
+        session: find("session"),
         ..Columns::default()
     };
     let mut own = mapping.clone();

@@ -306,7 +306,7 @@ fn split_ties_come_back_as_one_answer_each() {
 }
 
 #[test]
-fn only_a_won_and_a_lost_row_of_one_sitting_are_a_tie() {
+fn only_a_won_and_a_lost_row_of_one_session_are_a_tie() {
     let of = |rows: &[&str]| {
         let header = "observer,session,scene,condition_A,condition_B,is_A_selected";
         let text = format!("{header}\n{}\n", rows.join("\n"));

@@ -104,8 +104,8 @@ fn rules_by_hand() {
     assert_eq!(of([20, 0, 1], 4, 2).flags(&Protocol::default()), []);
     assert_eq!(of([20, 0, 1], 3, 2).flags(&Protocol::default()), [Flag::Repeats]);
     assert_eq!(of([20, 0, 1], 1, 1).flags(&Protocol::default()), []);
-    let odd = Screening { odd_p: Some(0.009), ..Screening::default() };
-    assert_eq!(odd.flags(&Protocol::default()), [Flag::Odd]);
+    let odd = Screening { outlying_p: Some(0.009), ..Screening::default() };
+    assert_eq!(odd.flags(&Protocol::default()), [Flag::Outlying]);
 }
 
 #[test]

@@ -73,7 +73,7 @@ fn times_are_not_judged_across_machines() {
     assert!(alone[8].starts_with(want), "{alone:?}");
     // The same rounds in another process: as little noise as rounds let one see.
     let again = everything.bench.samples.iter().cloned();
-    everything.bench.aa_samples = again.map(|sample| BenchSample { sitting: 1, ..sample }).collect();
+    everything.bench.aa_samples = again.map(|sample| BenchSample { invocation: 1, ..sample }).collect();
     let want = "opposite direction (95 % interval over rounds 94.85 to 98.36 %, noise up to 0.00 points); measured on";
     assert!(row(&everything)[8].starts_with(want), "{:?}", row(&everything));
     // Processes that differ by a factor of four: no direction is left.
@@ -94,7 +94,7 @@ fn noise_has_no_direction() {
     let reason = |everything: &Everything| rows(everything)["geometry_integrated"][8].clone();
     // Changes of -6 and 5 % in turn: the second of nine is -6, the eighth 5.
     let again = everything.bench.samples.iter().cloned();
-    everything.bench.aa_samples = again.map(|sample| BenchSample { sitting: 1, ..sample }).collect();
+    everything.bench.aa_samples = again.map(|sample| BenchSample { invocation: 1, ..sample }).collect();
     let want = "no change measurable here (95 % interval over rounds -6.00 to 5.00 %, noise up to 0.00 points); measured on";
     assert!(reason(&everything).starts_with(want), "{}", reason(&everything));
     // A round that lacks a case is no mean over the same cases.

@@ -29,7 +29,7 @@ pub(super) enum Want {
     Near(f64),
     /// A p, which may be rounded up to the second.
     Between(Range),
-    /// These rules of screening, and perhaps `odd`, which is not judged here.
+    /// These rules of screening, and perhaps `outlying`, which is not judged here.
     Flags(String),
     /// Nothing.
     Empty,
@@ -61,7 +61,7 @@ impl Want {
             Self::Any => true,
             Self::Empty => cell.is_empty(),
             Self::Is(text) => cell == text,
-            Self::Flags(text) => cell == text || cell == format!("{text} odd").trim_start(),
+            Self::Flags(text) => cell == text || cell == format!("{text} outlying").trim_start(),
             Self::Near(want) => number().is_some_and(|got| (got - want).abs() <= 1e-9 * want.abs().max(1.0)),
             Self::Between(range) => number().is_some_and(|got| range.holds(got)),
         }

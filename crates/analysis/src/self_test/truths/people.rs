@@ -27,7 +27,7 @@ pub(super) enum Truth {
     /// Every third person says the opposite when asked again.
     Inconsistent,
     /// One person has the opposite ranking.
-    OneOdd,
+    OneOutlying,
     /// As with worths, and a third of the answers is not given.
     ThirdMissing,
     /// As with worths, and people stop early, each at another place.
@@ -49,7 +49,7 @@ impl Truth {
         Self::TiesOnly,
         Self::Careless,
         Self::Inconsistent,
-        Self::OneOdd,
+        Self::OneOutlying,
         Self::ThirdMissing,
         Self::Unequal,
         Self::OnePerson,
@@ -67,7 +67,7 @@ impl Truth {
             Self::TiesOnly => "ties only",
             Self::Careless => "careless on controls",
             Self::Inconsistent => "inconsistent on repeats",
-            Self::OneOdd => "one odd",
+            Self::OneOutlying => "one outlying",
             Self::ThirdMissing => "a third missing",
             Self::Unequal => "unequal numbers",
             Self::OnePerson => "one person",
@@ -179,7 +179,7 @@ impl Person {
         let reversed = match self.truth {
             Truth::ButForOneObject => entry.object == "aa",
             Truth::Inconsistent => every_third && entry.role == Role::Repeat,
-            Truth::OneOdd => self.number == 4,
+            Truth::OneOutlying => self.number == 4,
             _ => false,
         };
         match self.truth {
@@ -187,7 +187,7 @@ impl Person {
                 self.by_worth(left, right)
             }
             // One answer in ten is anything, so that agreeing is no certainty.
-            Truth::OneOdd if self.random.random_bool(0.1) => self.at_random(),
+            Truth::OneOutlying if self.random.random_bool(0.1) => self.at_random(),
             _ if !reversed => better,
             _ if better == Pressed::Left => Pressed::Right,
             _ => Pressed::Left,

@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
     b: PathBuf,
     /// A slower configuration is a regression beyond this share of its time in A ...
     ///
-    /// What is within the noise is never told, however small the share: the column "Told from" says how large that is.
+    /// What is within the noise is never told, however small the share: the column "Smallest detectable" says how large that is.
     #[arg(long, default_value_t = 0.05, value_name = "SHARE", value_parser = not_negative)]
     relative: f64,
     /// ... and beyond this many seconds
@@ -109,7 +109,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             tell!("{}: slower on {slower} of {}", stage.label(), counted(of as u64, "configuration"));
         }
     }
-    if let Some((least, most)) = comparison.tellable(Stage::Total) {
+    if let Some((least, most)) = comparison.smallest_detectable(Stage::Total) {
         let percent = |ratio: f64| format!("{:.0}", 100.0 * (ratio - 1.0));
         tell!(
             "totals that grew by less than {} to {} %, by configuration, are not told from noise here",

@@ -29,7 +29,7 @@ fn every_key_is_read() {
     let section = with(
         "[analysis]\ndeclared = 2026-11-21\nfirst_answer = \"2026-12-01\"\nanswers_known = false\nlevel = 0.01\nmargin = 0.3\n\
          families = \"one\"\nprimary = [\"U-I\", \"U-I sphere\"]\n\
-         exclude = [\"one-sided\", \"controls\", \"repeats\", \"time\", \"odd\"]",
+         exclude = [\"one-sided\", \"controls\", \"repeats\", \"time\", \"outlying\"]",
     );
     let expected = AnalysisSection {
         declared: Some(day("2026-11-21")),
@@ -44,7 +44,7 @@ fn every_key_is_read() {
             Exclusion::Controls,
             Exclusion::Repeats,
             Exclusion::Time,
-            Exclusion::Odd,
+            Exclusion::Outlying,
         ],
     };
     assert_eq!(section.unwrap(), expected);
@@ -75,7 +75,10 @@ fn what_cannot_be_meant_is_refused() {
             "primary = [\"B-S\", \"U-I\", \"B-S\"]",
             "analysis.primary[2] = B-S: already used by analysis.primary[0]",
         ),
-        ("exclude = [\"odd\", \"odd\"]", "analysis.exclude[1] = odd: already used by analysis.exclude[0]"),
+        (
+            "exclude = [\"outlying\", \"outlying\"]",
+            "analysis.exclude[1] = outlying: already used by analysis.exclude[0]",
+        ),
         ("answers_known = true", "analysis.answers_known = true: needs analysis.declared"),
         (
             "declared = 2026-01-01\nfirst_answer = 2026-01-02\nanswers_known = true",

@@ -61,7 +61,7 @@ pub(crate) struct Columns {
     /// How many people gave this answer.
     pub(crate) count: Option<usize>,
     /// When somebody answered; it only tells repeats from split ties.
-    pub(crate) sitting: Option<usize>,
+    pub(crate) session: Option<usize>,
     /// On what it was given.
     pub(crate) screen: [Option<usize>; SCREEN_COLUMNS.len()],
 }
@@ -149,7 +149,7 @@ impl Columns {
             role,
             stimulus,
             count,
-            sitting: None,
+            session: None,
             screen,
         })
     }
