@@ -87,7 +87,7 @@ fn controls_repeats_and_times_are_screened_and_change_nothing_else() {
     fixture.succeed("analyse", &["--responses", path.to_str().unwrap()]);
     assert_eq!(["preference_groups", "answer_counts", "tests", "worths"].map(table), before);
 
-    let want = [("3", "controls"), ("5", "repeats"), ("7", "time"), ("16", "odd")];
+    let want = [("3", "controls"), ("5", "repeats"), ("7", "time"), ("16", "outlying")];
     assert_eq!(rules_broken(fixture.out()), want.map(|(who, rule)| (who.to_owned(), rule.to_owned())));
     let column = |name| cells(fixture.out(), "respondents", name);
     assert!(
@@ -95,7 +95,7 @@ fn controls_repeats_and_times_are_screened_and_change_nothing_else() {
     );
     let rules: std::collections::BTreeSet<String> =
         cells(fixture.out(), "screened", "rule").into_iter().map(|(rule, _)| rule).collect();
-    assert_eq!(rules.into_iter().collect::<Vec<_>>(), ["any", "controls", "odd", "repeats", "time"]);
+    assert_eq!(rules.into_iter().collect::<Vec<_>>(), ["any", "controls", "outlying", "repeats", "time"]);
     let report = std::fs::read_to_string(fixture.out().join("report.md")).unwrap();
     for said in [
         "4 of 18 participants broke a rule of screening (1 by deciding between equals, 1 by choosing \

@@ -217,7 +217,7 @@ fn any_method_on_any_object_from_file_to_report() {
 
 /// The same truth through the server: whoever sees relaxed vertices presses their side, on the form that they were dealt.
 fn served(folder: &Study) {
-    folder.succeed(&["design", "forms", "study.toml", "--out", "dealt", "--allow-programs"]);
+    folder.succeed(&["design", "forms", "study.toml", "--out", "dealt"]);
     let key = folder.table("dealt/key/forms.csv");
     let column =
         |name: &str| key[0].iter().position(|title| title == name).unwrap_or_else(|| panic!("{name}"));
@@ -430,4 +430,45 @@ fn a_program_that_fails_is_left_out_by_name() {
         let bundle = folder.run(&["bundle", "study.toml", "--out", "out", "--allow-programs"]);
         assert_eq!(bundle.code, Some(2), "{}", bundle.stderr);
     }
+}
+
+/// A program that crashes in the middle of the benchmark loses its own times and nobody else's; and one is inspected and swept like an
+/// extractor of ours.
+#[test]
+fn a_program_that_fails_while_it_is_timed_is_left_out_of_the_times() {
+    let folder = Study::new();
+    let example = fs::read_to_string(folder.path("example.py")).unwrap();
+    let from = "    request = json.loads(line)\n";
+    assert!(example.contains(from));
+    // A process of the meshes is asked once; one of the benchmark more often.
+    let crash = format!("{from}    if request[\"id\"] == 2 and request[\"size\"][2] < 13: sys.exit(3)\n");
+    folder.write("example.py", example.replacen(from, &crash, 1));
+    let line = ["study", "study.toml", "--out", "out", "--allow-programs"];
+    for time in 0..2 {
+        let ran = folder.run(&line);
+        assert_eq!(ran.code, Some(1), "{}", ran.stderr);
+        assert!(ran.stderr.contains("failed and left out: fo_program, te_program"), "{time}: {}", ran.stderr);
+        assert!(ran.stderr.contains("ended with code 3"), "{time}: {}", ran.stderr);
+        let samples = folder.table("out/bench/short/samples.csv");
+        let times = |id: &str| samples.iter().filter(|row| row[0] == id).count();
+        assert_eq!((times("fo_bi"), times("vo_program"), times("fo_program")), (2, 2, 0), "{samples:?}");
+    }
+    assert!(folder.path("out/meshes/stimulus/fo_program.ply").exists());
+
+    let inspect = ["inspect", "vo_program", "--study", "study.toml", "--iterations", "2", "--json"];
+    let refused = folder.run(&inspect);
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.stderr.contains("--allow-programs runs it"), "{}", refused.stderr);
+    let panel: serde_json::Value =
+        serde_json::from_str(&folder.succeed(&[&inspect[..], &["--allow-programs"]].concat()).stdout)
+            .unwrap();
+    let record: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.path("out/meshes/benchmark/vo_program.json")).unwrap())
+            .unwrap();
+    assert_eq!(panel["mesh"]["counts"], record["counts"]);
+    assert_eq!(panel["iterations"], 2);
+    assert!(panel["times"][6]["median"].as_f64().unwrap() > 0.0);
+    // A mesh that was made by hand is measured, and has no time.
+    let artist = folder.succeed(&["inspect", "vo_artist", "--study", "study.toml"]).stdout;
+    assert!(artist.contains("timing: none, the mesh was read from a file"), "{artist}");
 }

@@ -36,7 +36,7 @@ fn kill_at(fixture: &Fixture, lines: usize) -> Vec<Value> {
 #[test]
 fn a_killed_benchmark_goes_on_in_the_middle_of_a_round() {
     let fixture = Fixture::new();
-    // The first line, the machine at rest, and the first sitting: one round of 18, so that 10 samples are not all.
+    // The first line, the machine at rest, and the first invocation: one round of 18, so that 10 samples are not all.
     let journal = kill_at(&fixture, 2 + 10);
     let again = fixture.succeed("bench", &[]);
     assert!(again.stderr.contains("an unfinished run is gone on with"), "{}", again.stderr);
@@ -50,7 +50,7 @@ fn a_killed_benchmark_goes_on_in_the_middle_of_a_round() {
     }
     let resumed = run["resumed"].as_array().unwrap();
     assert_eq!(resumed.len(), 1);
-    assert_eq!((&resumed[0]["sitting"], &resumed[0]["iteration"]), (&0.into(), &0.into()));
+    assert_eq!((&resumed[0]["invocation"], &resumed[0]["iteration"]), (&0.into(), &0.into()));
     assert!(resumed[0]["place"].as_u64().unwrap() >= 10);
     assert!(again.stderr.contains("was broken off and taken up again"), "{}", again.stderr);
     let finished = fixture.succeed("bench", &[]);
@@ -200,7 +200,7 @@ fn comparisons_end_as_scripts_expect() {
     assert_eq!(pair.compare(&["--absolute", "0.01"]).code, Some(0), "slower, but by too little");
     let (csv, latex) = (pair.compare(&["--format", "csv"]), pair.compare(&["--format", "latex"]));
     assert!(
-        csv.stdout.starts_with("id,a_ms,b_ms,ratio,low,high,floor,tellable,verdict,reason\n"),
+        csv.stdout.starts_with("id,a_ms,b_ms,ratio,low,high,floor,smallest_detectable,verdict,reason\n"),
         "{}",
         csv.stdout
     );

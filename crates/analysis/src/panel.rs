@@ -160,6 +160,9 @@ impl Panel {
     }
 
     fn timing(&self, text: &mut Lines) {
+        if self.times.is_empty() {
+            return text.heading("timing: none, the mesh was read from a file");
+        }
         let (times, threads) =
             (counted(self.iterations, "extraction"), counted(self.threads as usize, "sampling thread"));
         let model = self.machine.model.as_deref().unwrap_or("an unnamed CPU");

@@ -29,6 +29,14 @@ pub enum BenchError {
         /// Why.
         source: Box<BenchError>,
     },
+    /// Nothing is left to measure; the source says how the last one failed.
+    #[error("every configuration failed, {id} last")]
+    AllFailed {
+        /// Which configuration was the last.
+        id: ConfigurationId,
+        /// Why.
+        source: Box<BenchError>,
+    },
     /// A published table is empty.
     #[error("the table has no rows")]
     NoRows,

@@ -52,6 +52,7 @@ pub fn import(
         load: Vec::new(),
         memory: Vec::new(),
         resumed: Vec::new(),
+        failed: Vec::new(),
     })
 }
 

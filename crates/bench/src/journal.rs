@@ -1,7 +1,7 @@
 //! What a run has done so far, line by line, so that a killed run goes on in the middle of a round.
 
 use design::ConfigurationId;
-use design::record::{BenchSample, InvalidSample, LoadWindow, PeakMemory, Resumption};
+use design::record::{BenchSample, Failure, InvalidSample, LoadWindow, PeakMemory, Resumption};
 use serde::{Deserialize, Serialize};
 
 /// One line of a journal: something that happened, written when it happened.
@@ -23,6 +23,8 @@ pub enum Entry {
     Memory(PeakMemory),
     /// The run was taken up again.
     Resumed(Resumption),
+    /// A configuration failed; from here on it is left out.
+    Failed(Failure),
 }
 
 impl Entry {
@@ -95,6 +97,7 @@ mod tests {
         entries.extend(run.aa_samples.into_iter().map(Entry::AaSample));
         entries.extend(run.memory.into_iter().map(Entry::Memory));
         entries.push(Entry::Resumed(Resumption { invocation: 1, iteration: 2, place: 3 }));
+        entries.push(Entry::Failed(Failure { id: "ss_bu".parse().unwrap(), reason: "no answer".into() }));
         entries
     }
 

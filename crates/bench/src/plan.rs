@@ -116,14 +116,14 @@ impl Plan {
         (0..).zip(invocations).map(number).collect()
     }
 
-    /// What a invocation executes for `count` configurations before it measures.
+    /// What an invocation executes for `count` configurations before it measures.
     pub fn warm_up(&self, invocation: &Invocation, count: usize) -> Vec<Turn> {
         // From the far end: no order is repeated by a measured round, and none is taken from it.
         let stream = |number| u32::MAX - (invocation.number * self.warmup + number);
         (0..self.warmup).flat_map(|number| self.round(Round::WarmUp(number), stream(number), count)).collect()
     }
 
-    /// What a invocation measures, in order, for `count` configurations.
+    /// What an invocation measures, in order, for `count` configurations.
     pub fn turns(&self, invocation: &Invocation, count: usize) -> Vec<Turn> {
         let round = |number| match invocation.aa {
             false => self.round(Round::Measured(number), number, count),

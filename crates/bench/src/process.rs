@@ -17,19 +17,28 @@ const IDLE: Duration = Duration::from_millis(500);
 pub struct ProcessExecutor<'a> {
     /// The command that ends up in [`serve`](crate::serve).
     command: &'a dyn Fn() -> Command,
+    /// Whether a configuration may fail without ending the run.
+    may_fail: &'a dyn Fn(usize) -> bool,
     worker: Option<Worker>,
     pinned: Option<Vec<u32>>,
 }
 
 impl<'a> ProcessExecutor<'a> {
-    /// An executor that asks what this command starts.
+    /// An executor that asks what this command starts. Any failure ends its run.
     pub fn new(command: &'a dyn Fn() -> Command) -> Self {
-        Self { command, worker: None, pinned: None }
+        Self { command, may_fail: &|_| false, worker: None, pinned: None }
+    }
+
+    /// The same, but configurations of which `may_fail` says so, by index, are left out once the measuring process answers that
+    /// they cannot be made. If that process itself ends, so does the run.
+    #[must_use]
+    pub fn leaving_out(self, may_fail: &'a dyn Fn(usize) -> bool) -> Self {
+        Self { may_fail, ..self }
     }
 }
 
 impl Executor for ProcessExecutor<'_> {
-    fn sit_down(&mut self) -> Result<Option<Vec<u32>>, BenchError> {
+    fn begin(&mut self) -> Result<Option<Vec<u32>>, BenchError> {
         self.worker = None;
         let (worker, pinned) = Worker::start((self.command)())?;
         self.worker = Some(worker);
@@ -40,13 +49,20 @@ impl Executor for ProcessExecutor<'_> {
     /// # Panics
     /// If no invocation has begun.
     fn execute(&mut self, subject: usize) -> Result<Measurement, BenchError> {
-        self.worker.as_mut().expect("a invocation has begun").ask(Request::Time(subject))?.measurement()
+        self.worker.as_mut().expect("an invocation has begun").ask(Request::Time(subject))?.measurement()
     }
 
     fn peak_memory(&mut self, subject: usize) -> Result<Option<PeakBytes>, BenchError> {
         self.worker = None;
         let (mut worker, _) = Worker::start((self.command)())?;
         worker.ask(Request::Memory(subject))?.memory()
+    }
+
+    fn leave_out(&mut self, subject: usize, error: BenchError) -> Result<String, BenchError> {
+        match error {
+            BenchError::Execution(reason) if (self.may_fail)(subject) => Ok(reason.to_string()),
+            other => Err(other),
+        }
     }
 
     /// This process counts as ours as well as the one that measures.
@@ -124,7 +140,7 @@ mod tests {
     #[test]
     fn a_process_that_cannot_be_asked_is_an_error() {
         let missing = || Command::new("/nowhere/isostudy");
-        let error = ProcessExecutor::new(&missing).sit_down().unwrap_err();
+        let error = ProcessExecutor::new(&missing).begin().unwrap_err();
         assert!(error.to_string().starts_with("the measuring process: cannot be started: "), "{error}");
     }
 
@@ -139,17 +155,17 @@ mod tests {
             }
         };
         let silent = shell("exit 3");
-        let error = ProcessExecutor::new(&silent).sit_down().unwrap_err().to_string();
+        let error = ProcessExecutor::new(&silent).begin().unwrap_err().to_string();
         assert!(error.contains("ended before it answered") && error.contains('3'), "{error}");
         let babbling = shell("echo hello");
-        assert!(matches!(ProcessExecutor::new(&babbling).sit_down(), Err(BenchError::Process(_))));
+        assert!(matches!(ProcessExecutor::new(&babbling).begin(), Err(BenchError::Process(_))));
         let dying = shell("echo '{\"ready\":[1]}'; read line");
         let mut executor = ProcessExecutor::new(&dying);
-        assert_eq!(executor.sit_down().unwrap(), Some(vec![1]));
+        assert_eq!(executor.begin().unwrap(), Some(vec![1]));
         assert!(executor.execute(0).unwrap_err().to_string().contains("ended before it answered"));
         let answering = shell("echo '{\"ready\":null}'; read line; echo '{\"failed\":\"no\"}'");
         let mut executor = ProcessExecutor::new(&answering);
-        executor.sit_down().unwrap();
+        executor.begin().unwrap();
         assert_eq!(executor.execute(0).unwrap_err().to_string(), "no");
     }
 }

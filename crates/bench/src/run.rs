@@ -8,19 +8,19 @@ use crate::profile::differences;
 use crate::stages::StageSeconds;
 use design::ConfigurationId;
 use design::machine::Machine;
-use design::record::{BenchRun, BenchSample, LoadWindow, PeakMemory, Resumption};
+use design::record::{BenchRun, BenchSample, Failure, LoadWindow, PeakMemory, Resumption};
 use std::collections::HashSet;
 use std::io;
 
 /// Carries out one configuration and says how long its stages took. The only part of a run that takes time, so a
 /// test can stand in for it.
 pub trait Executor {
-    /// Begins a invocation: what is executed from now on must not profit or suffer from what was before. Returns the CPUs
+    /// Begins an invocation: what is executed from now on must not profit or suffer from what was before. Returns the CPUs
     /// that it is pinned to, if it is.
     ///
     /// # Errors
     /// Whatever stopped it.
-    fn sit_down(&mut self) -> Result<Option<Vec<u32>>, BenchError>;
+    fn begin(&mut self) -> Result<Option<Vec<u32>>, BenchError>;
 
     /// Executes the configuration with this index.
     ///
@@ -34,6 +34,15 @@ pub trait Executor {
     /// # Errors
     /// Whatever stopped it.
     fn peak_memory(&mut self, subject: usize) -> Result<Option<PeakBytes>, BenchError>;
+
+    /// Why the configuration with this index may be left out, if it may be after such an error: the others go on without it.
+    ///
+    /// # Errors
+    /// The error given, if the run must end. So it is unless an executor says otherwise.
+    fn leave_out(&mut self, subject: usize, error: BenchError) -> Result<String, BenchError> {
+        let _ = subject;
+        Err(error)
+    }
 
     /// What the CPUs spent their time on until now; `None` where that is not told.
     fn cpu_times(&mut self) -> Option<CpuTimes>;
@@ -68,14 +77,15 @@ pub struct PeakBytes {
 ///
 /// `executor` is called with indices into `ids`, in the order of [`Plan::warm_up`] and [`Plan::turns`] of each of
 /// [`Plan::invocations`]. `record` is given every entry as soon as it is there, between executions, never during one.
-/// `done` are the entries of a run that was broken off: what they hold is not executed again, and a invocation that was
+/// `done` are the entries of a run that was broken off: what they hold is not executed again, and an invocation that was
 /// broken off begins anew with its warm-up. `on_turn` is told after each execution how many are done and to be done,
 /// those in `done` included. `machine` is recorded as given, and so are the ways in which it differs from the plan's
 /// target. 0 threads in the plan are recorded as the machine's.
 ///
 /// # Errors
 /// [`BenchError`] if there is nothing to run, an id is there twice, `done` does not follow the plan, an entry cannot be
-/// recorded or a configuration fails; the run ends there.
+/// recorded or a configuration fails that the executor does not [leave out](Executor::leave_out), or all have failed; the
+/// run ends there.
 pub fn run(
     plan: &Plan,
     ids: &[ConfigurationId],
@@ -96,6 +106,7 @@ pub fn run(
         executor,
         record,
         run: empty(plan, machine),
+        failed: vec![false; ids.len()],
         turns_done: 0,
         on_turn,
         total: (turns + memory) as u64,
@@ -107,10 +118,10 @@ pub fn run(
         running.watch_idle()?;
     }
     for invocation in &invocations {
-        running.sit(invocation)?;
+        running.invoke(invocation)?;
     }
     running.measure_memory()?;
-    Ok(running.run)
+    Ok(running.finished())
 }
 
 /// Rounds per kind and configurations, before anything is measured.
@@ -141,18 +152,24 @@ pub fn check_journal(plan: &Plan, ids: &[ConfigurationId], done: &[Entry]) -> Re
         })
     };
     let (mut measured, mut again, mut memory) = (planned(false), planned(true), ids.iter());
+    let mut failed: HashSet<&ConfigurationId> = HashSet::new();
     let is = |next: Option<(u32, Turn)>, sample: &BenchSample| {
         next.is_some_and(|(invocation, turn)| {
             let planned = (invocation, number(turn.round), turn.place, &ids[turn.subject]);
             planned == (sample.invocation, sample.iteration, sample.place, &sample.id)
         })
     };
-    let follows = done.iter().all(|entry| match entry {
-        Entry::Sample(sample) => is(measured.next(), sample),
-        Entry::AaSample(sample) => is(again.next(), sample),
-        Entry::Memory(peak) => memory.next() == Some(&peak.id),
-        Entry::Begun { .. } | Entry::Load(_) | Entry::Resumed(_) => true,
-    });
+    let mut follows = true;
+    for entry in done {
+        let goes_on = |(_, turn): &(u32, Turn)| !failed.contains(&ids[turn.subject]);
+        follows &= match entry {
+            Entry::Sample(sample) => is(measured.find(goes_on), sample),
+            Entry::AaSample(sample) => is(again.find(goes_on), sample),
+            Entry::Memory(peak) => memory.find(|id| !failed.contains(id)) == Some(&peak.id),
+            Entry::Failed(failure) => ids.contains(&failure.id) && failed.insert(&failure.id),
+            Entry::Begun { .. } | Entry::Load(_) | Entry::Resumed(_) => true,
+        };
+    }
     if !follows {
         return Err(JournalError::OtherOrder.into());
     }
@@ -188,6 +205,7 @@ fn empty(plan: &Plan, machine: Machine) -> BenchRun {
         load: Vec::new(),
         memory: Vec::new(),
         resumed: Vec::new(),
+        failed: Vec::new(),
     }
 }
 
@@ -197,6 +215,8 @@ struct Running<'a> {
     executor: &'a mut dyn Executor,
     record: &'a mut dyn FnMut(&Entry) -> io::Result<()>,
     run: BenchRun,
+    /// Which configurations are left out, by index.
+    failed: Vec<bool>,
     on_turn: &'a mut dyn FnMut(u64, u64),
     turns_done: u64,
     total: u64,
@@ -211,6 +231,12 @@ impl Running<'_> {
             Entry::Load(window) => self.run.load.push(window),
             Entry::Memory(memory) => self.run.memory.push(memory),
             Entry::Resumed(resumption) => self.run.resumed.push(resumption),
+            Entry::Failed(failure) => {
+                if let Some(subject) = self.ids.iter().position(|id| *id == failure.id) {
+                    self.failed[subject] = true;
+                }
+                self.run.failed.push(failure);
+            }
         }
     }
 
@@ -247,24 +273,29 @@ impl Running<'_> {
         self.note(Entry::Load(window))
     }
 
-    fn sit(&mut self, invocation: &Invocation) -> Result<(), BenchError> {
+    fn invoke(&mut self, invocation: &Invocation) -> Result<(), BenchError> {
         let turns = self.plan.turns(invocation, self.ids.len());
         let warm_up = self.plan.warm_up(invocation, self.ids.len());
         let samples = if invocation.aa { &self.run.aa_samples } else { &self.run.samples };
-        let done = samples.iter().filter(|sample| sample.invocation == invocation.number).count();
-        if done == turns.len() {
-            self.tick((warm_up.len() + done) as u64);
+        let last = samples.iter().rfind(|sample| sample.invocation == invocation.number);
+        // Samples follow the turns: what comes before the last one is measured, or failed.
+        let after = |sample: &BenchSample| {
+            let is = |turn: &Turn| (number(turn.round), turn.place) == (sample.iteration, sample.place);
+            turns.iter().position(is).map_or(0, |place| place + 1)
+        };
+        let done = last.map_or(0, after);
+        let Some(next) = turns[done..].iter().find(|turn| !self.failed[turn.subject]) else {
+            self.tick((warm_up.len() + turns.len()) as u64);
             return Ok(());
-        }
+        };
         if done > 0 {
-            let Turn { round, place, .. } = turns[done];
             self.note(Entry::Resumed(Resumption {
                 invocation: invocation.number,
-                iteration: number(round),
-                place,
+                iteration: number(next.round),
+                place: next.place,
             }))?;
         }
-        self.run.pinned = self.executor.sit_down()?;
+        self.run.pinned = self.executor.begin()?;
         for turn in &warm_up {
             self.execute(turn)?;
             self.tick(1);
@@ -272,9 +303,10 @@ impl Running<'_> {
         self.tick(done as u64);
         let mut window = Window { began: self.executor.cpu_times(), first: None };
         for (place, turn) in turns.iter().enumerate().skip(done) {
-            let measurement = self.execute(turn)?;
-            let sample = self.sample(invocation, turn, &measurement);
-            self.note(if invocation.aa { Entry::AaSample(sample) } else { Entry::Sample(sample) })?;
+            if let Some(measurement) = self.execute(turn)? {
+                let sample = self.sample(invocation, turn, &measurement);
+                self.note(if invocation.aa { Entry::AaSample(sample) } else { Entry::Sample(sample) })?;
+            }
             self.tick(1);
             let last = place + 1 == turns.len();
             if last || turns[place + 1].round != turn.round {
@@ -302,18 +334,40 @@ impl Running<'_> {
         Ok(())
     }
 
-    fn execute(&mut self, turn: &Turn) -> Result<Measurement, BenchError> {
-        let id = &self.ids[turn.subject];
+    /// One extraction; `None` if the configuration is left out, from now on or before.
+    fn execute(&mut self, turn: &Turn) -> Result<Option<Measurement>, BenchError> {
+        if self.failed[turn.subject] {
+            return Ok(None);
+        }
+        let ids = self.ids;
+        let id = &ids[turn.subject];
         // A NaN would become `null` in the record and spoil every mean: better to stop where it came from.
-        let sound = |measurement: Measurement| {
+        let valid = |measurement: Measurement| {
             measurement.stages.sample(id.clone(), [0; 3], measurement.reference_s).check(1)?;
             Ok(measurement)
         };
-        self.executor.execute(turn.subject).and_then(sound).map_err(|error| BenchError::Configuration {
-            id: id.clone(),
-            round: turn.round,
-            source: Box::new(error),
-        })
+        match self.executor.execute(turn.subject).and_then(valid) {
+            Ok(measurement) => Ok(Some(measurement)),
+            Err(error) => {
+                let round = turn.round;
+                let failed =
+                    |source| BenchError::Configuration { id: id.clone(), round, source: Box::new(source) };
+                let reason = self.executor.leave_out(turn.subject, error).map_err(failed)?;
+                self.leave_out(turn.subject, reason)?;
+                Ok(None)
+            }
+        }
+    }
+
+    /// Goes on without a configuration.
+    fn leave_out(&mut self, subject: usize, reason: String) -> Result<(), BenchError> {
+        let id = self.ids[subject].clone();
+        self.note(Entry::Failed(Failure { id: id.clone(), reason: reason.clone() }))?;
+        if self.failed.iter().all(|failed| *failed) {
+            let source = Box::new(BenchError::Execution(reason.into()));
+            return Err(BenchError::AllFailed { id, source });
+        }
+        Ok(())
     }
 
     fn sample(&self, invocation: &Invocation, turn: &Turn, measurement: &Measurement) -> BenchSample {
@@ -325,25 +379,48 @@ impl Running<'_> {
         if !self.plan.memory {
             return Ok(());
         }
-        let done = self.run.memory.len();
+        let ids = self.ids;
+        let last = self.run.memory.last().and_then(|last| ids.iter().position(|id| *id == last.id));
+        let done = last.map_or(0, |place| place + 1);
         self.tick(done as u64);
-        for (subject, id) in self.ids.iter().enumerate().skip(done) {
-            // Told for none or for all: a system does not change its mind.
-            let Some(bytes) = self.executor.peak_memory(subject)? else { break };
-            let PeakBytes { before_bytes, peak_before_bytes, peak_bytes } = bytes;
-            self.note(Entry::Memory(PeakMemory {
-                id: id.clone(),
-                before_bytes,
-                peak_before_bytes,
-                peak_bytes,
-            }))?;
+        for (subject, id) in ids.iter().enumerate().skip(done) {
+            if !self.failed[subject] {
+                match self.executor.peak_memory(subject) {
+                    // Told for none or for all: a system does not change its mind.
+                    Ok(None) => break,
+                    Ok(Some(PeakBytes { before_bytes, peak_before_bytes, peak_bytes })) => {
+                        let id = id.clone();
+                        self.note(Entry::Memory(PeakMemory {
+                            id,
+                            before_bytes,
+                            peak_before_bytes,
+                            peak_bytes,
+                        }))?;
+                    }
+                    Err(error) => {
+                        let reason = self.executor.leave_out(subject, error)?;
+                        self.leave_out(subject, reason)?;
+                    }
+                }
+            }
             self.tick(1);
         }
         Ok(())
     }
+
+    /// The run, without anything of configurations that failed: part of the rounds would be compared with all of others'.
+    fn finished(self) -> BenchRun {
+        let mut run = self.run;
+        let failed: Vec<ConfigurationId> = run.failed.iter().map(|failure| failure.id.clone()).collect();
+        run.workloads.retain(|workload| !failed.contains(&workload.id));
+        run.samples.retain(|sample| !failed.contains(&sample.id));
+        run.aa_samples.retain(|sample| !failed.contains(&sample.id));
+        run.memory.retain(|peak| !failed.contains(&peak.id));
+        run
+    }
 }
 
-/// Rounds of a invocation over which the machine is watched.
+/// Rounds of an invocation over which the machine is watched.
 struct Window {
     began: Option<CpuTimes>,
     first: Option<u32>,

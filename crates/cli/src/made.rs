@@ -9,6 +9,7 @@ use extract::{Execution, Extractor};
 use glam::Vec3;
 use mesh::TriangleMesh;
 use program::{Program, ProgramError, Request, Samples, Worker};
+use rayon::prelude::*;
 use std::path::Path;
 
 /// A mesh, and what was counted on the way.
@@ -23,7 +24,23 @@ impl Prepared<'_> {
     /// # Errors
     /// If there is no surface; what an extractor refuses; [`ProgramError`] of a program, which names it; if a file is no mesh.
     pub(crate) fn make(&self, extractor: &mut Extractor, execution: &Execution) -> Result<Made> {
-        let made = match &self.recipe {
+        let made = self.make_any(extractor, execution)?;
+        if made.mesh.triangles.is_empty() {
+            let why = match made.counts.crossings {
+                Some(0) => "every sample lies on one side",
+                _ => "no triangle is left",
+            };
+            bail!("no surface with spacing {:?}: {why}", self.grid.spacing);
+        }
+        Ok(made)
+    }
+
+    /// The mesh, which may have no triangles if it is an extractor's or a file's.
+    ///
+    /// # Errors
+    /// As [`make`](Self::make), but for that.
+    pub(crate) fn make_any(&self, extractor: &mut Extractor, execution: &Execution) -> Result<Made> {
+        Ok(match &self.recipe {
             Recipe::Extractor(_) => {
                 let extraction =
                     self.extractor().context("an extractor")?.extract_with(extractor, execution)?;
@@ -35,15 +52,7 @@ impl Prepared<'_> {
                 let mesh = with_normals(mesh_file::read(path)?);
                 Made { counts: records::counts_of_mesh(&mesh, None), mesh }
             }
-        };
-        if made.mesh.triangles.is_empty() {
-            let why = match made.counts.crossings {
-                Some(0) => "every sample lies on one side",
-                _ => "no triangle is left",
-            };
-            bail!("no surface with spacing {:?}: {why}", self.grid.spacing);
-        }
-        Ok(made)
+        })
     }
 
     fn by_program(&self, program: &Program) -> Result<Made> {
@@ -82,10 +91,10 @@ impl Prepared<'_> {
         let place = |start: f32, i: usize| start + i as f32 * spacing;
         let x: Vec<f32> = (0..along_x).map(|i| place(min.x, i)).collect();
         let mut samples = vec![0.0; along_x * along_y * along_z];
-        for (row, values) in samples.chunks_exact_mut(along_x).enumerate() {
+        samples.par_chunks_exact_mut(along_x).enumerate().for_each(|(row, values)| {
             let (y, z) = (place(min.y, row % along_y), place(min.z, row / along_y));
             self.field.sample_row(&x, y, z, values);
-        }
+        });
         samples
     }
 }

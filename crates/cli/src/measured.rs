@@ -5,7 +5,9 @@ use crate::recipe::Recipe;
 use bench::{Measured, PeakBytes, StageSeconds};
 use program::{Answer, Program, Samples, Worker, write_samples};
 use std::collections::HashMap;
+use std::hint::black_box;
 use std::path::PathBuf;
+use std::time::Instant;
 
 /// Makes a configuration ready, by number.
 type Prepare<'a> = dyn FnMut(usize) -> Result<Prepared<'a>, String> + 'a;
@@ -58,10 +60,11 @@ impl Measured for Clock<'_> {
         let prepared = (self.prepare)(number)?;
         match &prepared.recipe {
             Recipe::Program(program) => {
+                let sampling_s = sampling(&prepared, threads)?;
                 let answer = self.ask(number, &prepared, program)?;
                 // A program says how long it took, not what each stage did: it is all in one.
                 let geometry_s = answer.extraction_s.unwrap_or(answer.wall.as_secs_f64());
-                Ok(StageSeconds { geometry_s, ..StageSeconds::default() })
+                Ok(StageSeconds { sampling_s, geometry_s, ..StageSeconds::default() })
             }
             _ => extractor(&prepared)?.time(threads),
         }
@@ -84,6 +87,18 @@ impl Measured for Clock<'_> {
             _ => extractor(&prepared)?.memory(threads),
         }
     }
+}
+
+/// Seconds to compute all the samples that a program is given, so that its total, too, is from field to mesh.
+fn sampling(prepared: &Prepared<'_>, threads: u32) -> Result<f64, String> {
+    let text = |error: &dyn std::fmt::Display| format!("{}: {error:#}", prepared.id);
+    let cells = prepared.cells().map_err(|error| text(&error))?;
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build();
+    threads.map_err(|error| text(&error))?.install(|| {
+        let began = Instant::now();
+        black_box(prepared.samples(cells));
+        Ok(began.elapsed().as_secs_f64())
+    })
 }
 
 fn extractor<'a>(prepared: &Prepared<'a>) -> Result<bench::Prepared<'a>, String> {

@@ -117,10 +117,14 @@ impl<'a> Pipeline<'a> {
         if made::program_error(&error).is_none() {
             return Err(error);
         }
-        let why = format!("{error:#}");
+        self.leave_out(id, format!("{error:#}"));
+        Ok(())
+    }
+
+    /// Goes on without a configuration.
+    fn leave_out(&self, id: &ConfigurationId, why: String) {
         tell!("{id} failed and is left out: {why}");
         self.failed.write().unwrap_or_else(PoisonError::into_inner).insert(id.clone(), why);
-        Ok(())
     }
 
     /// The configurations that failed, in order.

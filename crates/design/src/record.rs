@@ -263,6 +263,9 @@ pub struct BenchRun {
     pub memory: Vec<PeakMemory>,
     /// Where the run was broken off and taken up again.
     pub resumed: Vec<Resumption>,
+    /// Configurations that were left out because they could not be made every time; the lists above have nothing of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub failed: Vec<Failure>,
 }
 
 impl BenchRun {
@@ -301,7 +304,7 @@ pub struct BenchSample {
     pub reference_s: Option<f64>,
 }
 
-/// What others had of the machine during some rounds of a invocation, or before the run.
+/// What others had of the machine during some rounds of an invocation, or before the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LoadWindow {
     /// Which invocation; `None` before the first.
@@ -328,6 +331,15 @@ pub struct PeakMemory {
     pub peak_before_bytes: u64,
     /// The most that was resident at any time. No more than `peak_before_bytes` says that extraction needed no more.
     pub peak_bytes: u64,
+}
+
+/// A configuration that a run left out.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Failure {
+    /// Which one.
+    pub id: ConfigurationId,
+    /// What its program, or the check of its mesh, said.
+    pub reason: String,
 }
 
 /// Where a run was taken up again, in a new process and after warm-up.

@@ -92,6 +92,7 @@ pub(crate) fn bench_of(study: &Study, rounds: u32) -> BenchRun {
         load: Vec::new(),
         memory: Vec::new(),
         resumed: Vec::new(),
+        failed: Vec::new(),
     }
 }
 

@@ -12,6 +12,8 @@ pub(crate) struct Mock {
     pub(crate) invocations: Vec<usize>,
     fail_at_call: Option<usize>,
     nan_at_call: Option<usize>,
+    /// Whether the run goes on without what failed.
+    leaves_out: bool,
     others: u64,
     waited: u64,
     memory_asked: Vec<usize>,
@@ -19,7 +21,7 @@ pub(crate) struct Mock {
 }
 
 impl Executor for Mock {
-    fn sit_down(&mut self) -> Result<Option<Vec<u32>>, BenchError> {
+    fn begin(&mut self) -> Result<Option<Vec<u32>>, BenchError> {
         self.invocations.push(self.calls.len());
         Ok(Some(vec![0, 2]))
     }
@@ -41,6 +43,10 @@ impl Executor for Mock {
             normals_s,
         };
         Ok(Measurement { stages, reference_s: Some(0.001) })
+    }
+
+    fn leave_out(&mut self, _: usize, error: BenchError) -> Result<String, BenchError> {
+        if self.leaves_out { Ok(error.to_string()) } else { Err(error) }
     }
 
     fn peak_memory(&mut self, subject: usize) -> Result<Option<PeakBytes>, BenchError> {
@@ -220,7 +226,7 @@ fn others_are_watched_before_and_during() {
 
 #[test]
 fn short_rounds_share_a_window() {
-    // One configuration: 30 ticks a round, and 100 are needed; a invocation of 9 rounds has windows of 4, 4 and 1.
+    // One configuration: 30 ticks a round, and 100 are needed; an invocation of 9 rounds has windows of 4, 4 and 1.
     let plan = Plan { iterations: 9, aa_iterations: 0, ..plan() };
     let run =
         run(&plan, &ids()[..1], &mut Mock::default(), machine(), vec![], &mut |_| Ok(()), &mut |_, _| ());
@@ -283,6 +289,50 @@ fn a_run_goes_on_in_the_middle_of_a_round_and_says_so() {
     // Broken off between invocations, nothing is in the middle.
     let run = resumed(broken_off(24), &mut Mock::default()).unwrap();
     assert_eq!(run.resumed, []);
+}
+
+/// Wherever a configuration fails, every other has all of its samples, in the plan's order, and nothing of the failed one is kept;
+/// a run that goes on from the journal has the same.
+#[test]
+fn a_configuration_that_may_fail_is_left_out_wherever_it_fails() {
+    type Key = (u32, u32, u32, ConfigurationId);
+    let key = |s: &BenchSample| -> Key { (s.invocation, s.iteration, s.place, s.id.clone()) };
+    let keys = |run: &BenchRun| -> Vec<Key> { run.samples.iter().chain(&run.aa_samples).map(key).collect() };
+    let whole = keys(&mock_run());
+    for call in 0..68 {
+        let mut entries = Vec::new();
+        let mut record = |entry: &Entry| {
+            entries.push(entry.clone());
+            Ok(())
+        };
+        let mut mock = Mock { fail_at_call: Some(call), leaves_out: true, ..Default::default() };
+        let found = run(&plan(), &ids(), &mut mock, machine(), vec![], &mut record, &mut |_, _| ()).unwrap();
+        let failed = &ids()[mock.calls[call]];
+        let want = [Failure { id: failed.clone(), reason: "the mock was told to fail".into() }];
+        assert_eq!(found.failed, want, "at call {call}");
+        let others: Vec<Key> = whole.iter().filter(|(.., id)| id != failed).cloned().collect();
+        assert_eq!(keys(&found), others, "at call {call}");
+        assert!(found.memory.iter().all(|peak| peak.id != *failed) && found.memory.len() == 3);
+        assert!(!mock.calls[call + 1..].contains(&mock.calls[call]), "asked again after call {call}");
+        // Broken off after any entry, it is completed without asking the failed one again once that is written.
+        for kept in (0..entries.len()).step_by(5) {
+            let done = entries[..kept].to_vec();
+            let known = done.iter().any(|entry| matches!(entry, Entry::Failed(_)));
+            let mut rest = Mock { leaves_out: true, ..Default::default() };
+            let again = resumed(done, &mut rest).unwrap();
+            assert_eq!(keys(&again), if known { others.clone() } else { whole.clone() });
+            assert!(!known || !rest.calls.contains(&mock.calls[call]));
+        }
+    }
+}
+
+#[test]
+fn nothing_left_to_measure_ends_the_run() {
+    let one = &ids()[..1];
+    let mut mock = Mock { fail_at_call: Some(3), leaves_out: true, ..Default::default() };
+    let error = run(&plan(), one, &mut mock, machine(), vec![], &mut |_| Ok(()), &mut |_, _| ()).unwrap_err();
+    assert_eq!(error.to_string(), "every configuration failed, ss_bu last");
+    assert_eq!(error.source().unwrap().to_string(), "the mock was told to fail");
 }
 
 #[test]

@@ -1,18 +1,21 @@
 //! `isostudy inspect`: one configuration at one resolution, extracted, measured, timed, printed.
 
 use crate::fields::Fields;
+use crate::made::Made;
+use crate::measured::Clock;
 use crate::outcome::Outcome;
-use crate::prepare::{self, Spacings, Wanted, prepare};
-use crate::records::{self, mesh_record};
+use crate::prepare::{self, Prepared, Spacings, Wanted, prepare};
+use crate::recipe::{self, Recipe};
+use crate::records::mesh_record;
 use crate::terminal::say;
 use crate::{input, machine};
 use analysis::Panel;
-use anyhow::{Context, Result, bail};
-use bench::{Prepared, StageSeconds};
+use anyhow::{Context, Result, anyhow, bail};
+use bench::Measured;
 use clap::Args;
 use design::ConfigurationId;
-use design::record::Purpose;
-use extract::Execution;
+use design::record::{BenchSample, Purpose};
+use extract::{Execution, Extractor};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -31,6 +34,9 @@ pub(crate) struct Arguments {
     /// Threads in the sampling stage; 0 takes every core
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..=1024))]
     threads: u32,
+    /// Run the configuration's program, if one makes it; it may do whatever you may do
+    #[arg(long)]
+    allow_programs: bool,
     /// Print JSON instead
     #[arg(long)]
     json: bool,
@@ -55,30 +61,26 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let spacing = wanted.spacing(object);
     let fields = Fields::new(&study);
     let prepared = prepare(&study, &fields, &Spacings::default(), configuration, wanted)?;
-    let Some(prepared) = prepared.extractor() else {
-        bail!("{id}: is made by a program or is a file; what is timed here are extractors of ours");
-    };
-    let execution = Execution { threads: arguments.threads as usize };
-    let machine = machine::read();
-    prepare::check_memory(&study, &prepared.method, &prepared.grid, &execution, machine.memory_bytes)
-        .with_context(|| format!("{id} with spacing {spacing}"))?;
-    let extraction = prepared.extract(&execution)?;
-    if extraction.mesh.triangles.is_empty() {
+    if let Recipe::Program(_) = &prepared.recipe
+        && !arguments.allow_programs
+    {
+        let all = recipe::commands(&study)?.join("\n  ");
         bail!(
-            "{id}: no surface at isovalue {} with spacing {spacing}: every sample lies on one side",
-            object.isovalue
+            "{id} is made by a program, which may do whatever you may do; --allow-programs runs it. This study has\n  {all}"
         );
     }
-    let Prepared { field, grid, isovalue, method } = &prepared;
-    let accuracy = extract::accuracy(&extraction.mesh, *field, *isovalue, grid, &execution)?;
-    let (cells, counts) = (method.cells(grid)?, records::counts(&extraction.counts));
-    let record = mesh_record(&id, Purpose::Benchmark, spacing, cells, counts, &extraction.mesh, &accuracy);
-    // The extraction above was the warm-up.
-    let mut samples = Vec::new();
-    for iteration in 0..arguments.iterations {
-        let times = prepared.extract(&execution)?.times;
-        samples.push(StageSeconds::from(&times).sample(id.clone(), [0, iteration, 0], None));
+    let execution = Execution { threads: arguments.threads as usize };
+    let machine = machine::read();
+    if let Recipe::Extractor(method) = &prepared.recipe {
+        prepare::check_memory(&study, method, &prepared.grid, &execution, machine.memory_bytes)
+            .with_context(|| format!("{id} with spacing {spacing}"))?;
     }
+    let Made { mesh, counts } =
+        prepared.make(&mut Extractor::new(), &execution).with_context(|| id.to_string())?;
+    let Prepared { field, grid, isovalue, .. } = &prepared;
+    let accuracy = extract::accuracy(&mesh, *field, *isovalue, grid, &execution)?;
+    let record = mesh_record(&id, Purpose::Benchmark, spacing, prepared.cells()?, counts, &mesh, &accuracy);
+    let samples = times(&prepared, arguments)?;
     let threads = match arguments.threads {
         0 => std::thread::available_parallelism().map_or(1, |n| n.get() as u32),
         threads => threads,
@@ -86,4 +88,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let panel = Panel::new(&study, configuration, machine, record, &samples, threads);
     say(&if arguments.json { serde_json::to_string_pretty(&panel)? } else { panel.to_text() })?;
     Ok(Outcome::Done)
+}
+
+/// The times of all extractions but the first, which is warm-up; none of a mesh that is read from a file.
+fn times(prepared: &Prepared<'_>, arguments: &Arguments) -> Result<Vec<BenchSample>> {
+    if let Recipe::Meshes(_) = &prepared.recipe {
+        return Ok(Vec::new());
+    }
+    let mut clock = Clock::new(|_| Ok(prepared.clone()));
+    let mut samples = Vec::new();
+    for iteration in 0..=arguments.iterations {
+        let stages = clock.time(0, arguments.threads).map_err(|why| anyhow!(why))?;
+        samples.push(stages.sample(prepared.id.clone(), [0, iteration, 0], None));
+    }
+    samples.remove(0);
+    Ok(samples)
 }

@@ -58,6 +58,17 @@ pub(super) fn with_page(
     Ok(if as_published { outcome } else { Outcome::CheckFailed })
 }
 
+/// Work on a study that runs none of its programs.
+///
+/// # Errors
+/// As [`with_pipeline`], but for programs.
+pub(super) fn without_programs(
+    run: &Run,
+    work: impl FnOnce(&mut Pipeline<'_>, &Path) -> Result<()>,
+) -> Result<Outcome> {
+    on(run, &checked_study::load(&run.study)?, work)
+}
+
 /// Work on a study's results. A configuration whose program failed fails the check, after all else was done.
 ///
 /// # Errors
@@ -75,13 +86,21 @@ pub(super) fn with_pipeline(
             commands.join("\n  ")
         );
     }
+    on(run, &study, work)
+}
+
+fn on(
+    run: &Run,
+    study: &Study,
+    work: impl FnOnce(&mut Pipeline<'_>, &Path) -> Result<()>,
+) -> Result<Outcome> {
     let threads = run.threads as usize;
     if threads > 0 {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     }
-    let out = run.out.clone().unwrap_or_else(|| default_folder(&study));
+    let out = run.out.clone().unwrap_or_else(|| default_folder(study));
     let store = Store::open(&out, run.force)?;
-    let mut pipeline = Pipeline::new(&study, store, threads);
+    let mut pipeline = Pipeline::new(study, store, threads);
     work(&mut pipeline, &out)?;
     pipeline.finish()?;
     let failed: Vec<String> = pipeline.failed().iter().map(ToString::to_string).collect();

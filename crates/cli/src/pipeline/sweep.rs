@@ -3,6 +3,7 @@
 use super::Pipeline;
 use super::formats::{write_figure, write_table};
 use super::worker::{Job, swept};
+use crate::made::Made;
 use crate::prepare::{self, Wanted};
 use crate::store::{Inputs, Stamp, remove_if_there};
 use crate::terminal::progress::Step;
@@ -13,7 +14,7 @@ use design::Configuration;
 use design::config::SweepSection;
 use design::machine::Machine;
 use design::record::{Purpose, SweepMesh};
-use extract::Execution;
+use extract::{Execution, Extractor};
 use timing::sweep::SweepLevel;
 
 impl Pipeline<'_> {
@@ -30,11 +31,19 @@ impl Pipeline<'_> {
         for &cells in &section.cells {
             let stamp = self.sweep_meshes(section, cells)?;
             let bytes = std::fs::read(self.store.root().join(stamp.file(".json")))?;
-            meshes.extend(serde_json::from_slice::<Vec<SweepMesh>>(&bytes)?);
+            let made: Vec<SweepMesh> = serde_json::from_slice(&bytes)?;
+            for configuration in self.swept(section)? {
+                if !made.iter().any(|mesh| mesh.id == configuration.id) {
+                    self.leave_out(&configuration.id, format!("sweep: no mesh at {cells} cells per axis"));
+                }
+            }
+            meshes.extend(made);
             stamps.push(stamp);
             for &threads in &section.threads {
                 let stamp = self.sweep_level(section, cells, threads, &machine)?;
-                levels.push(SweepLevel { cells, threads, run: self.bench_run(&stamp)? });
+                let run = self.bench_run(&stamp)?;
+                self.leave_out_failed(&run);
+                levels.push(SweepLevel { cells, threads, run });
                 stamps.push(stamp);
             }
         }
@@ -65,7 +74,7 @@ impl Pipeline<'_> {
         threads: u32,
         machine: &Machine,
     ) -> Result<Stamp> {
-        let configurations = swept(self.study, section);
+        let configurations = self.swept(section)?;
         let inputs = || -> Result<Inputs> {
             let inputs = Inputs::of_sources(source_digests::TIMINGS).value("machine", &machine.lasting());
             Ok(self
@@ -93,7 +102,7 @@ impl Pipeline<'_> {
         let benchmark = &self.study.file.benchmark;
         Ok(Plan {
             study: self.study.file.study.id.clone(),
-            workloads: self.workloads(&swept(self.study, section), Some(cells))?,
+            workloads: self.workloads(&self.swept(section)?, Some(cells))?,
             warmup: benchmark.warmup,
             iterations: section.iterations,
             aa_iterations: 0,
@@ -107,35 +116,45 @@ impl Pipeline<'_> {
 
     /// What is asked of the extractor at a resolution.
     fn sweep_inputs(&self, inputs: Inputs, section: &SweepSection, cells: u32) -> Result<Inputs> {
-        Ok(inputs.value("workloads", &self.workloads(&swept(self.study, section), Some(cells))?))
+        Ok(inputs.value("workloads", &self.workloads(&self.swept(section)?, Some(cells))?))
     }
 
     /// What is extracted at a resolution, untimed.
     fn sweep_meshes(&self, section: &SweepSection, cells: u32) -> Result<Stamp> {
         let inputs = self.sweep_inputs(Inputs::of_sources(source_digests::MESHES), section, cells)?;
-        let configurations = swept(self.study, section);
+        let configurations = self.swept(section)?;
         self.stage(&format!("bench/sweep/{cells:04}-meshes"), inputs, |writer| {
-            let meshes: Result<Vec<SweepMesh>> =
-                configurations.iter().map(|configuration| self.sweep_mesh(configuration, cells)).collect();
-            writer.write_json(&format!("bench/sweep/{cells:04}-meshes.json"), &meshes?)
+            let mut meshes: Vec<SweepMesh> = Vec::new();
+            for configuration in &configurations {
+                match self.sweep_mesh(configuration, cells) {
+                    Ok(mesh) => meshes.push(mesh),
+                    Err(error) => self.fail(&configuration.id, error)?,
+                }
+            }
+            writer.write_json(&format!("bench/sweep/{cells:04}-meshes.json"), &meshes)
         })
+    }
+
+    /// The configurations of the sweep that have not failed.
+    fn swept(&self, section: &SweepSection) -> Result<Vec<&Configuration>> {
+        let mut swept = swept(self.study, section)?;
+        swept.retain(|configuration| !self.has_failed(&configuration.id));
+        Ok(swept)
     }
 
     fn sweep_mesh(&self, configuration: &Configuration, cells: u32) -> Result<SweepMesh> {
         let wanted = Wanted::Cells(cells, Purpose::Indexed);
         let prepared = self.prepare(configuration, wanted)?;
-        let extraction = prepared
-            .extractor()
-            .context("a sweep is of extractors of ours")?
-            .extract(&Execution { threads: self.threads })
+        let Made { mesh, counts } = prepared
+            .make_any(&mut Extractor::new(), &Execution { threads: self.threads })
             .with_context(|| format!("{} at {cells} cells per axis", configuration.id))?;
-        let quality = mesh::quality::quality(&extraction.mesh);
+        let quality = mesh::quality::quality(&mesh);
         Ok(SweepMesh {
             id: configuration.id.clone(),
             cells,
-            needed_samples: extraction.counts.samples,
-            vertices: extraction.counts.vertices,
-            triangles: extraction.counts.triangles,
+            needed_samples: counts.samples.unwrap_or_default(),
+            vertices: counts.vertices,
+            triangles: counts.triangles,
             radius_ratio_mean: quality.radius_ratio.mean,
             edge_ratio_mean: quality.edge_ratio.mean,
             published_aspect_ratio_mean: quality.published_aspect_ratio.mean,

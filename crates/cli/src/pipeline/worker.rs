@@ -110,9 +110,17 @@ impl Pipeline<'_> {
         };
         let worker = || invocation.command(&program);
         let mut record = |entry: &Entry| file.write_all(entry.line().as_bytes());
-        let mut executor = ProcessExecutor::new(&worker);
+        let may_fail = |number: usize| is_program(self.study, job.configurations[number]);
+        let mut executor = ProcessExecutor::new(&worker).leaving_out(&may_fail);
         let on_turn = &mut |done, all| step.set(done, all);
         Ok(bench::run(plan, &job.ids(), &mut executor, machine, done, &mut record, on_turn)?)
+    }
+
+    /// Goes on without what a run left out.
+    pub(super) fn leave_out_failed(&self, run: &BenchRun) {
+        for failure in run.failed.iter().filter(|failure| !self.has_failed(&failure.id)) {
+            self.leave_out(&failure.id, format!("timings: {}", failure.reason));
+        }
     }
 
     /// What a killed run of the same plan, machine and code left behind.
@@ -151,10 +159,17 @@ pub(super) fn timed(study: &Study) -> Result<Vec<&Configuration>> {
     Ok(timed)
 }
 
-/// The configurations that a study's sweep is about.
-pub(super) fn swept<'s>(study: &'s Study, section: &SweepSection) -> Vec<&'s Configuration> {
-    let swept = |c: &&Configuration| section.objects.contains(&c.id.object);
-    study.configurations.iter().filter(swept).collect()
+/// Whether somebody else's program makes it. That may crash at any time, and is no reason to lose what the others did.
+fn is_program(study: &Study, configuration: &Configuration) -> bool {
+    let recipe = recipe(study, configuration.id.method, Purpose::Benchmark);
+    matches!(recipe, Ok(Recipe::Program(_)))
+}
+
+/// The configurations that a study's sweep is about: those of its objects that have a time at any resolution.
+pub(super) fn swept<'s>(study: &'s Study, section: &SweepSection) -> Result<Vec<&'s Configuration>> {
+    let mut swept = timed(study)?;
+    swept.retain(|configuration| section.objects.contains(&configuration.id.object));
+    Ok(swept)
 }
 
 /// The measuring process: answers requests on standard input until there are no more.
@@ -173,14 +188,11 @@ pub(crate) fn measure(invocation: &Invocation) -> Result<()> {
         (Some(_), None) => bail!("{}: there is no [benchmark.sweep]", study.path.display()),
         (None, _) => None,
     };
-    let configurations: Vec<&Configuration> = match sweep {
-        Some((_, section)) => swept(&study, section),
-        None => {
-            let mut timed = timed(&study)?;
-            timed.retain(|configuration| !invocation.without.contains(&configuration.id.to_string()));
-            timed
-        }
+    let mut configurations = match sweep {
+        Some((_, section)) => swept(&study, section)?,
+        None => timed(&study)?,
     };
+    configurations.retain(|configuration| !invocation.without.contains(&configuration.id.to_string()));
     let spacings: Spacings = match &invocation.spacings {
         Some(path) => {
             serde_json::from_slice(&input::bytes(path)?).with_context(|| path.display().to_string())?

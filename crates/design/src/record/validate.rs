@@ -253,6 +253,7 @@ mod tests {
             load: vec![window],
             memory: vec![memory],
             resumed: Vec::new(),
+            failed: Vec::new(),
         }
     }
 
