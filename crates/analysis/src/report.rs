@@ -248,7 +248,8 @@ fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
         counted(answers, "answer"),
         counted(questions, "question"),
     )];
-    let asked = if evidence.study.is_some() { evidence.asked } else { people * questions };
+    // Without a study nobody knows what was asked for.
+    let asked = if evidence.study.is_some() { evidence.asked } else { answers };
     let missing = asked.saturating_sub(answers);
     if missing > 0 {
         lead[0].push_str(&format!(

@@ -19,6 +19,13 @@ pub(crate) fn of_study(study: &Study) -> Result<Option<Reading>> {
     if !mapping.pairs.is_empty() {
         bail!("the mapping has `pairs`; the questions are the comparisons of {}", study.path.display());
     }
+    if section.reference.is_some() {
+        bail!(
+            "{}: responses.reference is of answers without a study alone; with one, a group's first method in the \
+             study's order has the log worth 0",
+            study.path.display()
+        );
+    }
     input::regular(path)?;
     Ok(Some(responses::read(path, Some(&Plan::of_study(study)), &mapping)?))
 }

@@ -72,7 +72,7 @@ fn make(study: &Study, number: usize, object: &ObjectSection) -> Result<ObjectFi
     let as_it_is = |field: Box<dyn StudyField + Send>| Ok(ObjectField { field, isovalue });
     match &object.field {
         FieldSection::Sphere { radius } => as_it_is(Box::new(Sphere { radius: *radius as f32 })),
-        FieldSection::Asteroid => as_it_is(Box::<Asteroid>::default()),
+        FieldSection::Asteroid {} => as_it_is(Box::<Asteroid>::default()),
         FieldSection::Mesh { allow_open: true, .. } => {
             let (source, path) = present_source(study, number, object)?;
             if source != MeshSourceSection::plain(&source.file) {
@@ -233,11 +233,11 @@ pub(crate) fn files(study: &Study, number: usize) -> Result<Vec<(String, String)
         FieldSection::Volume { file, .. } => {
             let path = study.resolve(file);
             let volume = limit(study).read(&path).with_context(|| format!("objects[{number}].field.file"))?;
-            // The samples, not the file: a header may name another file that holds them.
+            // The samples as well: a header may name another file that holds them.
             let mut bytes =
                 format!("{:?} {:?} {:?}", volume.counts, volume.origin, volume.steps).into_bytes();
             bytes.extend(volume.values.iter().flat_map(|value| value.to_le_bytes()));
-            Ok(vec![(file.clone(), sha256(&bytes))])
+            Ok(vec![named(file, &path)?, (format!("samples of {file}"), sha256(&bytes))])
         }
         _ => Ok(Vec::new()),
     }
@@ -262,7 +262,7 @@ pub(crate) fn check(study: &Study) -> Result<()> {
     for (number, object) in study.file.objects.iter().enumerate() {
         let place = || format!("{}: objects[{number}].field", study.path.display());
         match &object.field {
-            FieldSection::Sphere { .. } | FieldSection::Asteroid => {}
+            FieldSection::Asteroid {} => {}
             FieldSection::Mesh { .. } => {
                 let (source, path) = present_source(study, number, object)?;
                 read_checked(&source, &path).with_context(|| format!("{}: {}", place(), path.display()))?;
@@ -272,18 +272,25 @@ pub(crate) fn check(study: &Study) -> Result<()> {
                 if !path.is_file() {
                     bail!("{}.file names {}: no such file", place(), path.display());
                 }
+                check_sides(study, number, object)?;
             }
-            FieldSection::Formula { .. } | FieldSection::Terrain(_) => {
-                let made = make(study, number, object).with_context(place)?;
-                if !has_both_sides(&made, object) {
-                    bail!(
-                        "{}: has every value on one side of isovalue = {:?} between min and max: there is no surface",
-                        place(),
-                        object.isovalue
-                    );
-                }
+            FieldSection::Sphere { .. } | FieldSection::Formula { .. } | FieldSection::Terrain(_) => {
+                check_sides(study, number, object)?;
             }
         }
+    }
+    Ok(())
+}
+
+fn check_sides(study: &Study, number: usize, object: &ObjectSection) -> Result<()> {
+    let place = || format!("{}: objects[{number}].field", study.path.display());
+    let made = make(study, number, object).with_context(place)?;
+    if !has_both_sides(&made, object) {
+        bail!(
+            "{}: has every value on one side of isovalue = {:?} between min and max: there is no surface",
+            place(),
+            object.isovalue
+        );
     }
     Ok(())
 }

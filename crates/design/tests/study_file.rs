@@ -412,7 +412,7 @@ fn fields() -> [FieldSection; 6] {
     };
     let fields = [
         FieldSection::Sphere { radius: 1.0 },
-        FieldSection::Asteroid,
+        FieldSection::Asteroid {},
         FieldSection::Mesh { file: Some(text()), sources: vec![source], allow_open: true },
         FieldSection::Formula { text: text(), inside, close: true },
         FieldSection::Volume { file: text(), inside, close: true },
@@ -421,7 +421,7 @@ fn fields() -> [FieldSection; 6] {
     for field in &fields {
         // A kind that is added here belongs above as well.
         match field {
-            FieldSection::Sphere { .. } | FieldSection::Asteroid | FieldSection::Mesh { .. } => {}
+            FieldSection::Sphere { .. } | FieldSection::Asteroid {} | FieldSection::Mesh { .. } => {}
             FieldSection::Formula { .. } | FieldSection::Volume { .. } | FieldSection::Terrain(_) => {}
         }
     }

@@ -66,8 +66,8 @@ pub const LONG_WRITTEN: [&str; 12] = [
     "stimulus",
 ];
 
-/// The columns of [`LONG_WRITTEN`], and those of [`SCREEN_COLUMNS`] where any answer says them: everything, with the sides as they were
-/// shown; controls and repeats are marked by their role. Cells that a spreadsheet would run as a formula are escaped; reading the
+/// The columns of [`LONG_WRITTEN`], `sides_unknown` where sides were not recorded, and those of [`SCREEN_COLUMNS`] where any answer says
+/// them: everything, with the sides as they were shown; controls and repeats are marked by their role. Cells that a spreadsheet would run as a formula are escaped; reading the
 /// file gives the same answers.
 ///
 /// # Errors
@@ -76,7 +76,9 @@ pub fn write_long(responses: &Responses, out: impl Write) -> Result<Written, Wri
     let mut writer = csv::Writer::from_writer(out);
     let with_screens = !responses.screens.is_empty();
     let others = if with_screens { &SCREEN_COLUMNS[..] } else { &[] };
-    writer.write_record(LONG_WRITTEN.iter().chain(others))?;
+    // Left and right are then the order of two names, and whoever reads the file must know that.
+    let unknown = (!responses.sides_recorded).then_some("sides_unknown");
+    writer.write_record(LONG_WRITTEN.iter().chain(unknown.as_slice()).chain(others))?;
     let mut written = Written::default();
     for answer in &responses.answers {
         let participant = &responses.participants[answer.participant as usize];
@@ -100,7 +102,8 @@ pub fn write_long(responses: &Responses, out: impl Write) -> Result<Written, Wri
         ];
         let screen = responses.screen(answer).copied().unwrap_or_default().cells();
         let screen = screen.iter().map(String::as_str).filter(|_| with_screens);
-        writer.write_record(texts.into_iter().chain(screen).map(|text| escape(text).into_owned()))?;
+        let texts = texts.into_iter().chain(unknown.map(|_| "yes")).chain(screen);
+        writer.write_record(texts.map(|text| escape(text).into_owned()))?;
         written.rows += 1;
     }
     written.ties = count(responses, |_, answer| answer.choice == Choice::NoPreference);

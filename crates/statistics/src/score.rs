@@ -32,6 +32,9 @@ pub struct ScoreTest {
     pub mean: f64,
     /// Interval for it over participants: [`of_mean_score`].
     pub interval: Option<Interval>,
+    /// Of a difference, how far its parts are about different strata, 0 to 1, where people answered both parts in none that is common:
+    /// half the sum of what the strata's shares of the answers differ by. What differs may then be strata.
+    pub apart: f64,
 }
 
 /// The place of whoever has no score.
@@ -96,7 +99,8 @@ impl ScoreTest {
             }
             strata[stratum][usize::from(second)].add(sign);
         }
-        Self::of_scores(people.iter().map(|strata| difference(strata)), None, 2.0)
+        let apart = apart(&people);
+        Self { apart, ..Self::of_scores(people.iter().map(|strata| difference(strata)), None, 2.0) }
     }
 
     /// Scores by participant, as numerator and denominator.
@@ -120,7 +124,7 @@ impl ScoreTest {
         let places = scores.iter().map(|score| score.map_or(NO_SCORE, |score| place[&score])).collect();
         let units = Units::of(&groups);
         let sign_flip = sign_flip_within(&units.counts(&groups), units.slack);
-        let test = Self { counts, groups, places, sign_flip, reach, mean: 0.0, interval: None };
+        let test = Self { counts, groups, places, sign_flip, reach, mean: 0.0, interval: None, apart: 0.0 };
         let scores = test.scores();
         // Rounding must not make a preference of none.
         let none = test.sign_flip.net == 0 && units.slack == 0;
@@ -264,6 +268,24 @@ fn difference(strata: &[[Part; 2]]) -> Option<(i64, i64)> {
     });
     let [a, b] = total;
     (a.answers > 0 && b.answers > 0).then(|| of(total))
+}
+
+/// How far the parts of differences without a common stratum are about different strata, as [`ScoreTest::apart`].
+fn apart(people: &[Vec<[Part; 2]>]) -> f64 {
+    let mut answers: Vec<[i64; 2]> = Vec::new();
+    for strata in people {
+        let [a, b] = [0, 1].map(|part| strata.iter().any(|parts| parts[part].answers > 0));
+        let is_common = |[a, b]: &[Part; 2]| a.answers > 0 && b.answers > 0;
+        if !(a && b) || strata.iter().any(is_common) {
+            continue;
+        }
+        answers.resize(answers.len().max(strata.len()), [0; 2]);
+        for (sum, parts) in answers.iter_mut().zip(strata) {
+            (0..2).for_each(|part| sum[part] += parts[part].answers);
+        }
+    }
+    let [a, b] = [0, 1].map(|part| answers.iter().map(|of| of[part]).sum::<i64>().max(1) as f64);
+    0.5 * answers.iter().map(|of| (of[0] as f64 / a - of[1] as f64 / b).abs()).sum::<f64>()
 }
 
 /// In lowest terms.

@@ -88,5 +88,8 @@ fn pull(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSet<usize>) ->
         true => 1.0,
         false => 2.0 * StudentsT::new(0.0, 1.0, m - 2.0).expect("m - 2 > 0").sf(t),
     };
+    // People who do not differ tell no spread, and t is beyond all bounds: no p is below that of the exact sign-flip test of so many
+    // who all lean one way.
+    let p = p.max(2.0_f64.powi(1 - m as i32));
     Some((middles.len(), mean, p))
 }

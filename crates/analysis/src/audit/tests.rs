@@ -296,6 +296,36 @@ fn a_side_is_seen_in_controls_alone() {
     assert!(reports.iter().filter(|r| r.probe != Probe::Side).all(|r| r.finding == Finding::NotAnswerable));
 }
 
+/// Four people who all press left on a pair in both orders: an exact test of four cannot be below 1/8, and of twelve not below 2^-11.
+#[test]
+fn people_who_do_not_differ_show_no_more_than_their_number() {
+    let p = |people: usize| {
+        let sides = |person: usize, question: usize| {
+            if (person + question).is_multiple_of(2) { [0, 1] } else { [1, 0] }
+        };
+        let shown = |person| {
+            move |question| ShownBallot::new(person, question, sides(person, question), Outcome::Left)
+        };
+        let ballots: Vec<ShownBallot> = (0..people).flat_map(|person| (0..2).map(shown(person))).collect();
+        let names = ["Q1".to_owned(), "Q2".to_owned()];
+        let objects = ["sphere".to_owned(), "bunny".to_owned()];
+        let audited = Audited {
+            ballots: &ballots,
+            groups: &[],
+            scenes: &[0, 1],
+            questions: &names,
+            objects: &objects,
+            sides_recorded: true,
+            circumstances: &[],
+            dealt: None,
+        };
+        report(&audit(&audited), Probe::Side).clone()
+    };
+    assert_eq!(p(4).p, Some(0.125));
+    assert_ne!(p(4).finding, Finding::Found);
+    assert_eq!((p(12).finding, p(12).p), (Finding::Found, Some(2.0_f64.powi(-11))));
+}
+
 #[test]
 fn nothing_was_answered() {
     let audited = Audited {

@@ -18,7 +18,7 @@ pub(super) fn table(inputs: &Inputs<'_>) -> Option<Table> {
         "discard_fraction",
         "discard_fraction_as_published",
     ];
-    let is_asteroid = |o: usize| matches!(inputs.study.file.objects[o].field, FieldSection::Asteroid);
+    let is_asteroid = |o: usize| matches!(inputs.study.file.objects[o].field, FieldSection::Asteroid {});
     let whole = whole(inputs, is_asteroid)?;
     let mut table = whole.block("Benchmark of the asteroid", COLUMNS);
     table.name = "asteroid".into();

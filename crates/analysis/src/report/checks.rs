@@ -54,7 +54,10 @@ fn screened(evidence: &Evidence<'_>, respondents: &Table) -> Finding {
         n if n == seen.len() => rule.to_owned(),
         n => format!("{rule} of {}", counted(n, "participant")),
     };
-    match seen.iter().filter(|of| of.tells_sides() && of.answers[0] + of.answers[2] >= 10).count() {
+    // The rule sees repeats and controls as well, and so may judge people whom comparisons alone do not.
+    let one_sided = flags.iter().filter(|flags| flags.split(' ').any(|code| code == Flag::OneSided.code()));
+    let by_comparisons = seen.iter().filter(|of| of.tells_sides() && of.answers[0] + of.answers[2] >= 10);
+    match by_comparisons.count().max(one_sided.count()) {
         0 => absent.push("one-sidedness"),
         n => judged.push(of("one-sidedness", n)),
     }
@@ -68,9 +71,15 @@ fn screened(evidence: &Evidence<'_>, respondents: &Table) -> Finding {
             n => judged.push(counted(n as usize, noun)),
         }
     }
+    // Who answered controls alone is no participant of any other section.
+    let others = match people.saturating_sub(seen.len()) {
+        0 => String::new(),
+        1 => ", 1 of whom compared nothing,".into(),
+        n => format!(", {n} of whom compared nothing,"),
+    };
     let who = match broken {
-        0 => format!("None of {} broke", counted(people, "participant")),
-        _ => format!("{broken} of {} broke", counted(people, "participant")),
+        0 => format!("None of {}{others} broke", counted(people, "participant")),
+        _ => format!("{broken} of {}{others} broke", counted(people, "participant")),
     };
     let which = if rules.is_empty() { String::new() } else { format!(" ({})", list(&rules)) };
     let mut text = format!(

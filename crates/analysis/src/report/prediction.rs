@@ -178,7 +178,7 @@ fn limits(study: &Study, prediction: &Prediction) -> Finding {
         .collect();
     let text = format!(
         "{} of {} from {} are no large sample: only {} of their differences do not follow from the others, and {}. The intervals are about other people before these pairs, not about other meshes. The better value stood \
-         on the right in {}, so a leaning to one side would look like a metric.",
+         on the right in {}, so a leaning to one side would {}look like a metric.",
         capital(&counted(prediction.pairs, "pair")),
         counted(prediction.meshes, "mesh").replace("meshs", "meshes"),
         counted(prediction.objects, "object"),
@@ -187,7 +187,8 @@ fn limits(study: &Study, prediction: &Prediction) -> Finding {
             true => "each person saw only a part of them",
             false => "every person saw the same ones",
         },
-        list(&sides)
+        list(&sides),
+        if prediction.metrics.iter().all(|of| 2 * of.better_right == of.showings) { "not " } else { "" }
     );
     Finding::new(Standing::NotAnswerable, text)
 }

@@ -326,6 +326,9 @@ fn dependences(evidence: &Evidence<'_>) -> Vec<Block> {
     blocks
 }
 
+/// Parts of a difference that are farther apart than this are about different things, see [`ScoreTest::apart`].
+const OTHER_OBJECTS: f64 = 0.1;
+
 /// A difference that holds, with the two preferences that differ. `None` if one of them was not tested.
 fn dependence(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> Option<Finding> {
     let ([first, second], [(here, own), (there, rest)]) = parts(evidence, hypothesis)?;
@@ -341,14 +344,21 @@ fn dependence(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> Option<Findin
         Conclusion::DiffersWithinMargin => " It is smaller than the margin.",
         _ => "",
     };
+    let (standing, holds) = match hypothesis.test.apart > OTHER_OBJECTS {
+        true => (
+            Standing::NotAnswerable,
+            "The two parts were asked about different objects, of most people or all, so that objects may make the difference",
+        ),
+        false => (Standing::Holds, "The difference holds"),
+    };
     let text = format!(
-        "How much {first} is preferred to {second} differs. {}. {}. The difference holds: {}.{within}{}",
+        "How much {first} is preferred to {second} differs. {}. {}. {holds}: {}.{within}{}",
         part(&here, own),
         part(&there, rest),
         tested(hypothesis),
         over_all(hypothesis)
     );
-    Some(Finding::new(Standing::Holds, text))
+    Some(Finding::new(standing, text))
 }
 
 /// What two preferences are called, and where each of them is, with its test.

@@ -29,7 +29,10 @@ pub(super) fn sentence(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> Stri
     if participants.kinds() > MOST_PATTERNS {
         return String::new();
     }
-    let Some(Tipping { left, right }) = tipping(&participants, 0, 1) else { return String::new() };
+    let Some(Tipping { left, right }) = tipping(&participants, 0, 1) else {
+        return " How large a liking for a side would undo it cannot be said: no answer went the other way."
+            .into();
+    };
     match (left, right) {
         (Tip::At(at), _) => undone("left", at),
         (_, Tip::At(at)) => undone("right", at),

@@ -45,7 +45,8 @@ fn one_scale(of: &GroupScale<'_>, scale: &Scale, level: f64) -> Vec<Finding> {
         }
         Ok(test) => {
             let text = format!(
-                "That the {} of group {name} are not all liked alike is not shown: F = {} on {} and {} degrees of freedom, {}.",
+                "One test of all {} of group {name} does not show that they are not all liked alike: F = {} on {} and {} degrees of \
+                 freedom, {}.",
                 counted(of.group.items.len(), "item"),
                 number(test.f, 2),
                 test.degrees[0],
@@ -117,7 +118,7 @@ fn one_scale(of: &GroupScale<'_>, scale: &Scale, level: f64) -> Vec<Finding> {
         }
     };
     let text = format!(
-        "On one scale of group {name}, {told} of {} hold after Holm's correction.{next}",
+        "On one scale of group {name}, {told} of {} hold after Holm's correction over the pairs of this group.{next}",
         counted(scale.differences.len(), "difference")
     );
     found.push(Finding::new(Standing::Noted, text));

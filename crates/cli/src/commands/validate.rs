@@ -3,7 +3,7 @@
 use super::checked_study;
 use crate::outcome::Outcome;
 use crate::recipe::{self, Recipe};
-use crate::terminal::say;
+use crate::terminal::{counted, say};
 use crate::{answer_files, prepare};
 use anyhow::Result;
 use clap::Args;
@@ -43,6 +43,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         Some(reading) => format!("{} respondents", reading.responses.participants.len()),
     };
     let (questions, groups) = (study.comparisons.len(), study.groups.len());
-    say(&format!("{}: valid; {questions} questions in {groups} groups, {respondents}", path.display()))?;
+    say(&format!(
+        "{}: valid; {} in {}, {respondents}",
+        path.display(),
+        counted(questions as u64, "question"),
+        counted(groups as u64, "group")
+    ))?;
     Ok(Outcome::Done)
 }

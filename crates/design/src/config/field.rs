@@ -12,7 +12,7 @@ pub enum FieldSection {
         radius: f64,
     },
     /// The paper's fractal-noise asteroid; it has no parameters.
-    Asteroid,
+    Asteroid {},
     /// Signed distance to a closed triangle mesh, positive inside: the file, or the first of the sources that is there.
     Mesh {
         /// One file, as it stands. OBJ, PLY or STL.

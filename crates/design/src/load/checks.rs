@@ -154,7 +154,7 @@ pub(super) fn check_objects(c: &Checker<'_>, objects: &[ObjectSection]) -> Resul
 fn check_field(c: &Checker<'_>, key: &str, field: &FieldSection) -> Result<(), ConfigError> {
     match field {
         FieldSection::Sphere { radius } => c.length(&format!("{key}.radius"), *radius, 1e6),
-        FieldSection::Asteroid => Ok(()),
+        FieldSection::Asteroid {} => Ok(()),
         FieldSection::Mesh { file, sources, .. } => {
             for (i, source) in sources.iter().enumerate() {
                 let key = |name: &str| format!("{key}.sources[{i}].{name}");

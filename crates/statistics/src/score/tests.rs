@@ -145,3 +145,24 @@ fn a_hundred_thousand_people_with_rows_of_any_length() {
     let normal = 2.0 * Normal::standard().cdf(-z);
     assert!((test.sign_flip.p() / normal - 1.0).abs() < 5e-3, "{} {normal}", test.sign_flip.p());
 }
+
+/// People who answered the parts on objects of their own: if everybody did so the same way, objects may be what differs; if the halves
+/// change places, they are not.
+#[test]
+fn parts_about_different_strata_are_apart() {
+    let of = |answers: &[(usize, usize, bool)]| {
+        ScoreTest::of_difference(
+            answers.iter().map(|&(person, stratum, second)| (person, stratum, second, 1)),
+        )
+    };
+    let same_way = [(0, 0, false), (0, 1, true), (1, 0, false), (1, 1, true)];
+    assert_eq!(of(&same_way).apart, 1.0);
+    let turned = [(0, 0, false), (0, 1, true), (1, 1, false), (1, 0, true)];
+    assert_eq!(of(&turned).apart, 0.0);
+    // Two people one way and one the other: 2/3 and 1/3 against 1/3 and 2/3.
+    let both = [same_way.as_slice(), &[(2, 1, false), (2, 0, true)]].concat();
+    assert!((of(&both).apart - 1.0 / 3.0).abs() < 1e-12);
+    // Who answered both parts on one object is compared there.
+    let matched = [(0, 0, false), (0, 0, true), (0, 1, true), (1, 3, false)];
+    assert_eq!(of(&matched).apart, 0.0);
+}

@@ -49,7 +49,9 @@ type Timed = (u32, u32);
 /// to once.
 pub(super) fn look(rows: &Rows) -> Option<Seen> {
     let timed: Vec<Vec<Timed>> = rows.people.iter().map(|of| times(rows, of)).collect();
-    let people = timed.iter().filter(|times| times.len() >= FEWEST_TIMES).count();
+    // A time that is given again and again, as for what was never measured, tells no row from another.
+    let different = |times: &&Vec<Timed>| times.iter().map(|(_, time)| time).collect::<BTreeSet<_>>().len();
+    let people = timed.iter().filter(|times| different(times) >= FEWEST_TIMES).count();
     if people < 2 {
         return None;
     }

@@ -302,7 +302,7 @@ pub(crate) fn cause(field: &FieldSection) -> Option<Cause> {
             let reason = "another bunny mesh";
             Some(Cause { tolerance: OTHER_MESH, beyond: true, short: reason, long: reason })
         }
-        FieldSection::Asteroid => Some(Cause {
+        FieldSection::Asteroid {} => Some(Cause {
             tolerance: OTHER_SINE,
             beyond: false,
             short: "another mathematics library",

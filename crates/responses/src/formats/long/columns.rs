@@ -10,7 +10,7 @@ use crate::sides::SidesSource;
 use crate::words::normalise;
 
 /// Columns that the long format may have; others are noted and not read.
-pub const LONG_COLUMNS: [&str; 22] = [
+pub const LONG_COLUMNS: [&str; 23] = [
     "participant",
     "question",
     "left",
@@ -24,6 +24,7 @@ pub const LONG_COLUMNS: [&str; 22] = [
     "role",
     "stimulus",
     "count",
+    "sides_unknown",
     "viewport_width",
     "viewport_height",
     "pixel_ratio",
@@ -60,6 +61,8 @@ pub(crate) struct Columns {
     pub(crate) stimulus: Option<usize>,
     /// How many people gave this answer.
     pub(crate) count: Option<usize>,
+    /// Says that left and right are the order of two names, and no sides: it is there if they are not known.
+    pub(crate) sides_unknown: Option<usize>,
     /// When somebody answered; it only tells repeats from split ties.
     pub(crate) session: Option<usize>,
     /// On what it was given.
@@ -117,6 +120,7 @@ impl Columns {
             role,
             stimulus,
             count,
+            sides_unknown,
             screen @ ..,
         ] = at;
         let needed = |column: Option<usize>, name: &str| match column {
@@ -149,6 +153,7 @@ impl Columns {
             role,
             stimulus,
             count,
+            sides_unknown,
             session: None,
             screen,
         })
@@ -160,7 +165,7 @@ impl Columns {
     /// If they are not.
     pub(super) fn source(&self, rule: Rule, plan: Option<&Plan>, row: u64) -> Result<SidesSource, Fault> {
         match (self.sides, plan) {
-            _ if !rule.sides_recorded => Ok(SidesSource::Unknown),
+            _ if !rule.sides_recorded || self.sides_unknown.is_some() => Ok(SidesSource::Unknown),
             (Some(_), _) => Ok(SidesSource::InFile),
             (None, Some(plan)) if plan.shows_listed_sides() => Ok(SidesSource::AsListed),
             (None, Some(plan)) if self.stimulus.is_some() && plan.has_codes() => {
