@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 use design::config::{ObjectSection, SweepSection};
 use design::record::Purpose;
 use design::{Configuration, ConfigurationId, MethodId, Study};
-use extract::{Arrangement, BoxGrid, Execution, Method};
+use extract::{Arrangement, BoxGrid, Execution, Method, MethodError};
 use field::StudyField;
 use serde::{Deserialize, Serialize};
 
@@ -140,7 +140,12 @@ pub(crate) fn check(study: &Study, machine_bytes: Option<u64>) -> Result<()> {
     let check = |key: String, object: &ObjectSection, id: MethodId, wanted: Wanted| -> Result<()> {
         let spacing = wanted.spacing(object);
         let Recipe::Extractor(method) = recipe(study, id, wanted.purpose())? else { return Ok(()) };
-        check_memory(study, &method, &grid(object, spacing), &execution, machine_bytes)
+        let grid = grid(object, spacing);
+        // What does not go together whatever the grid is the recipe's fault.
+        if let Err(error @ MethodError::Extract(_)) = method.check(&grid) {
+            bail!("{file}: method {}: recipe: {error}", study.method(id).id);
+        }
+        check_memory(study, &method, &grid, &execution, machine_bytes)
             .with_context(|| format!("{file}: {key} = {spacing:?}"))
     };
     for (i, object) in study.file.objects.iter().enumerate() {

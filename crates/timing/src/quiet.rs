@@ -1,6 +1,6 @@
 //! Whether the machine was left alone.
 
-use design::record::{BenchRun, LoadWindow};
+use design::record::{BenchRun, Failure, LoadWindow};
 
 /// A share of the CPU time above which others are said to have been at work.
 pub const BUSY: f64 = 0.05;
@@ -20,7 +20,10 @@ pub(super) fn busy_share(load: &[LoadWindow]) -> f64 {
 
 /// What a reader of the numbers should know of the machine, in plain words; empty if it was quiet.
 pub fn warnings(run: &BenchRun) -> Vec<String> {
-    let mut warnings = Vec::new();
+    let failed = |of: &Failure| {
+        format!("{} has no times, because its program failed: {}.", of.id, of.reason.trim_end_matches('.'))
+    };
+    let mut warnings: Vec<String> = run.failed.iter().map(failed).collect();
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     if run.imported_from.is_some() {
         return warnings;
@@ -58,7 +61,7 @@ pub fn warnings(run: &BenchRun) -> Vec<String> {
     if busy_share(&run.load) > BUSY {
         let percent = 100.0 * (floor.exp() - 1.0);
         warnings.push(format!(
-            "Differences below {percent:.0} % from other runs may be due to that, and are not told."
+            "Differences below {percent:.0} % from other runs may be due to that: a comparison does not report them."
         ));
     }
     for resumption in &run.resumed {

@@ -112,7 +112,7 @@ fn one_scale(of: &GroupScale<'_>, scale: &Scale, level: f64) -> Vec<Finding> {
                 named.push(format!("{} more", open.len() - NAMED));
             }
             format!(
-                " {best} {stands} highest, but {is} not told from {}: difference in log-odds and its 95 % interval.",
+                " {best} {stands} highest, but {is} not shown to differ from {}: difference in log-odds and its 95 % interval.",
                 list(&named)
             )
         }

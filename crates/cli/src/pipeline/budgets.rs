@@ -47,12 +47,14 @@ struct Found {
 }
 
 impl Pipeline<'_> {
-    /// Finds the spacing of every configuration whose method has a budget, for some purposes.
+    /// Finds the spacing of every configuration in `only`, or of all if it is empty, whose method has a budget, for some purposes.
     ///
     /// # Errors
     /// If no spacing meets one; what an extractor refuses.
-    pub(super) fn budgets(&self, purposes: &[Purpose]) -> Result<()> {
-        let with_budget = |c: &&Configuration| self.study.method(c.id.method).budget.is_some();
+    pub(crate) fn budgets(&self, purposes: &[Purpose], only: &[ConfigurationId]) -> Result<()> {
+        let with_budget = |c: &&Configuration| {
+            (only.is_empty() || only.contains(&c.id)) && self.study.method(c.id.method).budget.is_some()
+        };
         let asked: Vec<&Configuration> = self.study.configurations.iter().filter(with_budget).collect();
         if asked.is_empty() {
             return Ok(());

@@ -25,7 +25,7 @@ impl Pipeline<'_> {
     /// Times every configuration. The short plan is not run where a full run is up to date: the full one stands for it.
     pub(crate) fn timings(&self, length: PlanLength) -> Result<Stamp> {
         if self.spacings().is_empty() {
-            self.budgets(&[Purpose::Benchmark])?;
+            self.budgets(&[Purpose::Benchmark], &[])?;
         }
         let machine = machine::read();
         if length == PlanLength::Short
