@@ -36,7 +36,7 @@ fn kill_at(fixture: &Fixture, lines: usize) -> Vec<Value> {
 #[test]
 fn a_killed_benchmark_goes_on_in_the_middle_of_a_round() {
     let fixture = Fixture::new();
-    // The first line, the machine at rest, and the first invocation: one round of 18, so that 10 samples are not all.
+    // The first line, the machine at rest, and the first process: one round of 18, so that 10 samples are not all.
     let journal = kill_at(&fixture, 2 + 10);
     let again = fixture.succeed("bench", &[]);
     assert!(again.stderr.contains("an unfinished run is gone on with"), "{}", again.stderr);
@@ -160,7 +160,7 @@ fn isostudy(arguments: &[&str]) -> Run {
 #[test]
 fn comparisons_end_as_scripts_expect() {
     let pair = Pair::new();
-    let same = pair.compare(&[]);
+    let same = pair.compare(&["--all"]);
     assert_eq!(same.code, Some(0), "{}", same.stderr);
     assert!(same.stdout.contains("cannot say") && !same.stdout.contains("slower"), "{}", same.stdout);
     assert!(
@@ -200,17 +200,18 @@ fn comparisons_end_as_scripts_expect() {
     assert_eq!(pair.compare(&["--absolute", "0.01"]).code, Some(0), "slower, but by too little");
     let (csv, latex) = (pair.compare(&["--format", "csv"]), pair.compare(&["--format", "latex"]));
     assert!(
-        csv.stdout.starts_with("id,a_ms,b_ms,ratio,low,high,floor,smallest_detectable,verdict,reason\n"),
+        csv.stdout
+            .starts_with("id,a_ms,b_ms,ratio,cpu_ratio,low,high,floor,smallest_detectable,verdict,reason\n"),
         "{}",
         csv.stdout
     );
-    assert!(latex.stdout.contains("\\begin{tabular}"), "{}", latex.stdout);
+    assert!(latex.stdout.contains("\\begin{longtable}"), "{}", latex.stdout);
 
     pair.change_b(|run| run["machine"]["model"] = "Another CPU".into());
-    let refused = pair.compare(&[]);
+    let refused = pair.compare(&["--all"]);
     assert_eq!(refused.code, Some(2));
     assert!(refused.stderr.contains("Another CPU in B") && refused.stderr.contains("--across-machines"));
-    let labelled = pair.compare(&["--across-machines"]);
+    let labelled = pair.compare(&["--across-machines", "--all"]);
     assert_eq!(labelled.code, Some(1));
     assert!(labelled.stdout.contains("slower (not measured alike)"), "{}", labelled.stdout);
     assert!(labelled.stderr.contains("regression (not measured alike)"), "{}", labelled.stderr);
@@ -231,7 +232,7 @@ fn only_what_did_the_same_work_is_compared() {
     assert_eq!(found["changed"], serde_json::json!([changed]));
     let rows = found["rows"].as_array().unwrap();
     assert!(!rows.is_empty() && rows.iter().all(|row| row["id"] != *changed), "{found}");
-    let named = pair.compare(&[]);
+    let named = pair.compare(&["--all"]);
     assert!(named.stdout.contains("Asked for different extractions"), "{}", named.stdout);
 }
 
@@ -247,7 +248,11 @@ fn what_cannot_be_compared_is_refused_by_name() {
     pair.change_b(|run| run["schema"] = 1.into());
     let refused = pair.compare(&[]);
     assert_eq!(refused.code, Some(2));
-    assert!(refused.stderr.contains("b.json: schema = 1: this version reads 3"), "{}", refused.stderr);
+    assert!(
+        refused.stderr.contains("b.json: schema = 1: this version reads 3 to 4; measure it again"),
+        "{}",
+        refused.stderr
+    );
     pair.change_b(|run| run["schema"] = 3.into());
     pair.change_b(|run| run["samples"][3]["vertex_s"] = (-0.5).into());
     let refused = pair.compare(&[]);
@@ -264,7 +269,9 @@ fn what_cannot_be_compared_is_refused_by_name() {
     assert_eq!(pair.compare(&["--relative", "-1"]).code, Some(2));
     // The results folder stands for its run.
     let folder = pair.fixture.out().to_str().unwrap();
-    assert_eq!(isostudy(&["bench", "compare", folder, folder]).code, Some(0));
+    let itself = isostudy(&["bench", "compare", folder, folder, "--beside-other-work"]);
+    assert_eq!(itself.code, Some(0), "{}", itself.stderr);
+    assert!(itself.stdout.contains("A and B are the same run"), "{}", itself.stdout);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use design::record::{BenchRun, BenchSample};
 use serde::Serialize;
 
 /// The columns of a sample.
-const SAMPLE: [&str; 12] = [
+const SAMPLE: [&str; 19] = [
     "id",
     "invocation",
     "iteration",
@@ -18,12 +18,19 @@ const SAMPLE: [&str; 12] = [
     "normals_s",
     "total_s",
     "reference_s",
+    "cpu_s",
+    "page_faults",
+    "context_switches",
+    "instructions",
+    "cache_misses",
+    "branch_misses",
+    "energy_j",
 ];
 /// The columns of a property.
 const PROPERTY: [&str; 4] = ["property", "target", "machine", "matches"];
 
 /// Every sample in the order measured, a line each, under the column names of
-/// [`BenchSample`](design::record::BenchSample). Numbers are written so that they read back unchanged.
+/// [`BenchSample`](design::record::BenchSample) and [`Counters`](design::record::Counters). Numbers are written so that they read back unchanged.
 /// Without samples the names stand alone.
 pub fn samples_csv(samples: &[BenchSample]) -> String {
     table(samples, &SAMPLE)
@@ -51,17 +58,28 @@ fn table<T: Serialize>(rows: &[T], header: &[&str]) -> String {
 mod tests {
     use super::*;
     use crate::run::tests::mock_run;
+    use design::record::Counters;
+
+    fn rows<T: serde::de::DeserializeOwned>(text: &str) -> Vec<T> {
+        csv::Reader::from_reader(text.as_bytes()).deserialize().collect::<Result<_, _>>().unwrap()
+    }
 
     #[test]
     fn samples_read_back_unchanged() {
         let run = mock_run();
         let text = samples_csv(&run.samples);
         let header = "id,invocation,iteration,place,allocation_s,sampling_s,vertex_s,geometry_s,clustering_s,normals_s,\
-                      total_s,reference_s";
+                      total_s,reference_s,cpu_s,page_faults,context_switches,instructions,cache_misses,\
+                      branch_misses,energy_j";
         assert_eq!(text.lines().next(), Some(header));
-        let samples: Vec<BenchSample> =
-            csv::Reader::from_reader(text.as_bytes()).deserialize().collect::<Result<_, _>>().unwrap();
+        // A file has no nesting: a row is read as a sample, and once more as what was counted.
+        let mut samples = rows::<BenchSample>(&text);
+        samples
+            .iter_mut()
+            .zip(rows::<Counters>(&text))
+            .for_each(|(sample, counters)| sample.counters = counters);
         assert_eq!(samples, run.samples);
+        assert!(samples.iter().any(|sample| sample.counters.page_faults.is_some()));
         assert_eq!(samples_csv(&[]), format!("{header}\n"), "no samples are no empty file");
     }
 

@@ -3,7 +3,7 @@
 use crate::error::BenchError;
 use design::machine::{Build, CpuProfile, Machine};
 use design::published::BenchmarkRow;
-use design::record::{BenchRun, BenchSample};
+use design::record::{BenchRun, BenchSample, Counters};
 use std::collections::HashSet;
 
 /// A run with one sample for each row: what was published is a mean, so there is no spread and no interval can be had.
@@ -43,6 +43,7 @@ pub fn import(
         aa_iterations: 0,
         seed: 0,
         threads,
+        reference_threads: 1,
         pinned: None,
         target: profile.clone(),
         differences: crate::differences(profile, &machine),
@@ -71,6 +72,7 @@ fn sample(row: &BenchmarkRow, place: u32) -> BenchSample {
         normals_s: row.normals_s,
         total_s: stages.iter().fold(0.0, |sum, stage| sum + stage),
         reference_s: None,
+        counters: Counters::default(),
     }
 }
 

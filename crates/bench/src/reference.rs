@@ -4,6 +4,7 @@
 //! machines that were not equally fast, whatever the reason: clock, heat, a neighbour in the same cache.
 
 use std::hint::black_box;
+use std::num::NonZeroUsize;
 use std::time::{Duration, Instant};
 
 /// Words of the table: 256 KiB, more than a first-level cache.
@@ -14,19 +15,27 @@ const STEPS: u32 = 100_000;
 /// The work and its memory.
 pub struct Reference {
     table: Vec<u32>,
-}
-
-impl Default for Reference {
-    fn default() -> Self {
-        Self { table: (0..WORDS as u32).map(|i| i.wrapping_mul(0x9e37_79b9)).collect() }
-    }
+    threads: usize,
 }
 
 impl Reference {
-    /// Does the work once and says how long it took.
+    /// The work on each of so many threads at once, 0 for every core: as many as are measured, so that what wakes threads late or
+    /// keeps one of them waiting is seen here as well.
+    pub fn on(threads: u32) -> Self {
+        let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+        let threads = if threads == 0 { cores() } else { threads as usize };
+        Self { table: (0..WORDS as u32).map(|i| i.wrapping_mul(0x9e37_79b9)).collect(), threads }
+    }
+
+    /// Does the work once on each thread and says how long it took until all had done it.
     pub fn time(&mut self) -> Duration {
         let start = Instant::now();
-        black_box(self.work(STEPS));
+        std::thread::scope(|scope| {
+            for _ in 1..self.threads {
+                scope.spawn(|| black_box(self.work(STEPS)));
+            }
+            black_box(self.work(STEPS));
+        });
         start.elapsed()
     }
 
@@ -52,7 +61,7 @@ mod tests {
 
     #[test]
     fn the_work_is_always_the_same() {
-        assert_eq!(Reference::default().work(1000), Reference::default().work(1000));
-        assert_ne!(Reference::default().work(1000), Reference::default().work(1001));
+        assert_eq!(Reference::on(1).work(1000), Reference::on(1).work(1000));
+        assert_ne!(Reference::on(1).work(1000), Reference::on(1).work(1001));
     }
 }

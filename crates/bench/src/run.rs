@@ -8,7 +8,7 @@ use crate::profile::differences;
 use crate::stages::StageSeconds;
 use design::ConfigurationId;
 use design::machine::Machine;
-use design::record::{BenchRun, BenchSample, Failure, LoadWindow, PeakMemory, Resumption};
+use design::record::{BenchRun, BenchSample, Counters, Failure, LoadWindow, PeakMemory, Resumption};
 use std::collections::HashSet;
 use std::io;
 
@@ -61,6 +61,9 @@ pub struct Measurement {
     pub stages: StageSeconds,
     /// The [reference work](crate::Reference) just before it, in seconds.
     pub reference_s: Option<f64>,
+    /// What else was counted during the execution. A program of before they were counted tells none.
+    #[serde(default)]
+    pub counters: Counters,
 }
 
 /// Resident memory in bytes, as in [`PeakMemory`].
@@ -186,6 +189,7 @@ pub fn check_journal(plan: &Plan, ids: &[ConfigurationId], done: &[Entry]) -> Re
 }
 
 fn empty(plan: &Plan, machine: Machine) -> BenchRun {
+    let threads = if plan.threads == 0 { machine.threads } else { plan.threads };
     BenchRun {
         schema: BenchRun::SCHEMA,
         study: plan.study.clone(),
@@ -195,7 +199,8 @@ fn empty(plan: &Plan, machine: Machine) -> BenchRun {
         iterations: plan.iterations,
         aa_iterations: plan.aa_iterations,
         seed: plan.seed,
-        threads: if plan.threads == 0 { machine.threads } else { plan.threads },
+        threads,
+        reference_threads: threads,
         pinned: None,
         target: plan.target.clone(),
         differences: differences(&plan.target, &machine),
@@ -343,7 +348,8 @@ impl Running<'_> {
         let id = &ids[turn.subject];
         // A NaN would become `null` in the record and spoil every mean: better to stop where it came from.
         let valid = |measurement: Measurement| {
-            measurement.stages.sample(id.clone(), [0; 3], measurement.reference_s).check(1)?;
+            let sample = measurement.stages.sample(id.clone(), [0; 3], measurement.reference_s);
+            BenchSample { counters: measurement.counters, ..sample }.check(1)?;
             Ok(measurement)
         };
         match self.executor.execute(turn.subject).and_then(valid) {
@@ -372,7 +378,8 @@ impl Running<'_> {
 
     fn sample(&self, invocation: &Invocation, turn: &Turn, measurement: &Measurement) -> BenchSample {
         let at = [invocation.number, number(turn.round), turn.place];
-        measurement.stages.sample(self.ids[turn.subject].clone(), at, measurement.reference_s)
+        let sample = measurement.stages.sample(self.ids[turn.subject].clone(), at, measurement.reference_s);
+        BenchSample { counters: measurement.counters, ..sample }
     }
 
     fn measure_memory(&mut self) -> Result<(), BenchError> {

@@ -1,7 +1,7 @@
 //! The six stages of an extraction, in seconds.
 
 use design::ConfigurationId;
-use design::record::BenchSample;
+use design::record::{BenchSample, Counters};
 use extract::StageTimes;
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +15,15 @@ pub struct StageSeconds {
     pub geometry_s: f64,
     pub clustering_s: f64,
     pub normals_s: f64,
+}
+
+/// One extraction: its stages, and what else was counted meanwhile.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Timed {
+    /// How long each stage took.
+    pub stages: StageSeconds,
+    /// Over all threads of the process that extracted.
+    pub counters: Counters,
 }
 
 impl From<&StageTimes> for StageSeconds {
@@ -53,6 +62,7 @@ impl StageSeconds {
             normals_s,
             total_s,
             reference_s,
+            counters: Counters::default(),
         }
     }
 

@@ -2,9 +2,10 @@
 
 use crate::error::BenchError;
 use crate::load::resident_bytes;
+use crate::meter::Meter;
 use crate::reference::Reference;
 use crate::run::{Measurement, PeakBytes};
-use crate::stages::StageSeconds;
+use crate::stages::{StageSeconds, Timed};
 use extract::{BoxGrid, Execution, Extraction, Extractor, Method, MethodError};
 use field::StudyField;
 use serde::{Deserialize, Serialize};
@@ -47,14 +48,17 @@ impl Prepared<'_> {
 }
 
 impl Prepared<'_> {
-    /// Extracts once and says how long each stage took.
+    /// Extracts once and says how long each stage took, and what was counted meanwhile.
     ///
     /// # Errors
     /// Why it cannot be extracted.
-    pub fn time(&self, threads: u32) -> Result<StageSeconds, String> {
+    pub fn time(&self, threads: u32) -> Result<Timed, String> {
+        let meter = Meter::begin();
         let extraction = self.extract(&Execution { threads: threads as usize });
+        let counters = meter.end();
         let times = extraction.map(|extraction| black_box(extraction).times);
-        times.map(|times| StageSeconds::from(&times)).map_err(|error| error.to_string())
+        let timed = |times| Timed { stages: StageSeconds::from(&times), counters };
+        times.map(timed).map_err(|error| error.to_string())
     }
 
     /// Extracts once and says how much memory that took.
@@ -77,7 +81,7 @@ pub trait Measured {
     ///
     /// # Errors
     /// Why it cannot be extracted, for people.
-    fn time(&mut self, number: usize, threads: u32) -> Result<StageSeconds, String>;
+    fn time(&mut self, number: usize, threads: u32) -> Result<Timed, String>;
 
     /// Extracts once and says how much memory that took; `None` where it is not told.
     ///
@@ -87,7 +91,7 @@ pub trait Measured {
 }
 
 impl<'a, F: FnMut(usize) -> Result<Prepared<'a>, String>> Measured for F {
-    fn time(&mut self, number: usize, threads: u32) -> Result<StageSeconds, String> {
+    fn time(&mut self, number: usize, threads: u32) -> Result<Timed, String> {
         self(number)?.time(threads)
     }
 
@@ -131,7 +135,7 @@ pub fn serve(
     threads: u32,
     measured: &mut dyn Measured,
 ) -> io::Result<()> {
-    let mut reference = Reference::default();
+    let mut reference = Reference::on(threads);
     let mut say = |reply: &Reply| {
         writeln!(replies, "{}", serde_json::to_string(reply)?)?;
         replies.flush()
@@ -141,8 +145,10 @@ pub fn serve(
         let reply = match serde_json::from_str(&line?)? {
             Request::Time(number) => {
                 let reference_s = Some(reference.time().as_secs_f64());
-                let stages = measured.time(number, threads);
-                stages.map(|stages| Reply::Measurement(Measurement { stages, reference_s }))
+                let measurement = |Timed { stages, counters }| {
+                    Reply::Measurement(Measurement { stages, reference_s, counters })
+                };
+                measured.time(number, threads).map(measurement)
             }
             Request::Memory(number) => measured.memory(number, threads).map(Reply::Memory),
         };

@@ -41,7 +41,9 @@ const INPUT_ERROR: u8 = 2;
 /// Isosurface extraction methods in front of a clock, a ruler and people.
 #[derive(Debug, Parser)]
 #[command(name = "isostudy", version, arg_required_else_help = true, max_term_width = 100)]
-#[command(after_help = "Exit codes: 0 done, 1 a check failed, 2 wrong usage or input.")]
+#[command(
+    after_help = "Exit codes: 0 done, 1 a check failed, 2 wrong usage or input, 3 a benchmark could not have told what it must."
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

@@ -2,7 +2,7 @@
 
 use crate::prepare::Prepared;
 use crate::recipe::Recipe;
-use bench::{Measured, PeakBytes, StageSeconds};
+use bench::{Measured, PeakBytes, StageSeconds, Timed};
 use program::{Answer, Program, Samples, Worker, write_samples};
 use std::collections::HashMap;
 use std::hint::black_box;
@@ -56,7 +56,7 @@ impl<'a> Clock<'a> {
 }
 
 impl Measured for Clock<'_> {
-    fn time(&mut self, number: usize, threads: u32) -> Result<StageSeconds, String> {
+    fn time(&mut self, number: usize, threads: u32) -> Result<Timed, String> {
         let prepared = (self.prepare)(number)?;
         match &prepared.recipe {
             Recipe::Program(program) => {
@@ -64,7 +64,8 @@ impl Measured for Clock<'_> {
                 let answer = self.ask(number, &prepared, program)?;
                 // A program says how long it took, not what each stage did: it is all in one.
                 let geometry_s = answer.extraction_s.unwrap_or(answer.wall.as_secs_f64());
-                Ok(StageSeconds { sampling_s, geometry_s, ..StageSeconds::default() })
+                let stages = StageSeconds { sampling_s, geometry_s, ..StageSeconds::default() };
+                Ok(Timed { stages, ..Timed::default() })
             }
             _ => extractor(&prepared)?.time(threads),
         }

@@ -4,12 +4,15 @@ use std::process::ExitCode;
 
 /// The work was done, but something in it is not as it should be.
 const CHECK_FAILED: u8 = 1;
+/// Nothing was found, and what had to be told would not have been.
+const BLIND: u8 = 3;
 
 /// How work that could be done came out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Outcome {
     Done,
     CheckFailed,
+    Blind,
 }
 
 impl Outcome {
@@ -18,10 +21,16 @@ impl Outcome {
         if passed { Self::Done } else { Self::CheckFailed }
     }
 
-    pub(crate) fn exit_code(self) -> ExitCode {
+    /// What the command ends with.
+    pub(crate) fn status(self) -> u8 {
         match self {
-            Self::Done => ExitCode::SUCCESS,
-            Self::CheckFailed => ExitCode::from(CHECK_FAILED),
+            Self::Done => 0,
+            Self::CheckFailed => CHECK_FAILED,
+            Self::Blind => BLIND,
         }
+    }
+
+    pub(crate) fn exit_code(self) -> ExitCode {
+        ExitCode::from(self.status())
     }
 }

@@ -3,6 +3,7 @@
 use crate::machine::{CpuProfile, Machine, ProfileDifference};
 use crate::method::ConfigurationId;
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 mod validate;
 
@@ -245,6 +246,9 @@ pub struct BenchRun {
     pub seed: u64,
     /// Threads in the sampling stage.
     pub threads: u32,
+    /// Threads of the reference work: as many as sampled. Runs of schema 3 had one.
+    #[serde(default = "one")]
+    pub reference_threads: u32,
     /// The CPUs that the run was pinned to; `None` if it was not.
     pub pinned: Option<Vec<u32>>,
     /// The CPU the numbers are meant for.
@@ -269,9 +273,16 @@ pub struct BenchRun {
 }
 
 impl BenchRun {
-    /// The version of the layout that is written and read here. 2 has the edge collapse as a stage of its own, the A/A
-    /// block, load, memory and resumptions.
-    pub const SCHEMA: u32 = 3;
+    /// The version of the layout that is written here. 2 has the edge collapse as a stage of its own, the A/A block, load,
+    /// memory and resumptions; 4 has [`Counters`], and the reference work on as many threads as sampled.
+    pub const SCHEMA: u32 = 4;
+    /// The versions that are read here. What an older one has not got is `None`.
+    pub const READ: RangeInclusive<u32> = 3..=Self::SCHEMA;
+}
+
+/// Of runs from before it was recorded.
+fn one() -> u32 {
+    1
 }
 
 /// One timed extraction. The six stages add up to the total.
@@ -302,6 +313,29 @@ pub struct BenchSample {
     pub total_s: f64,
     /// Seconds that a fixed piece of work, the same in every run, took just before: the machine's speed at the time.
     pub reference_s: Option<f64>,
+    /// What else was counted meanwhile.
+    #[serde(default)]
+    pub counters: Counters,
+}
+
+/// What the measuring process used for one extraction, over all its threads, beside time. `None` is not told: by the system, or
+/// of a program that is not ours.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Counters {
+    /// Seconds of CPU time. Less than the time times the threads is time in which threads waited.
+    pub cpu_s: Option<f64>,
+    /// Pages that had to be mapped or read.
+    pub page_faults: Option<u64>,
+    /// How often the thread that extracts gave its CPU away or lost it; not those it starts.
+    pub context_switches: Option<u64>,
+    /// Instructions retired, outside the kernel.
+    pub instructions: Option<u64>,
+    /// References that the last cache did not have.
+    pub cache_misses: Option<u64>,
+    /// Branches that were predicted wrongly.
+    pub branch_misses: Option<u64>,
+    /// Energy of the whole package, in joules.
+    pub energy_j: Option<f64>,
 }
 
 /// What others had of the machine during some rounds of an invocation, or before the run.

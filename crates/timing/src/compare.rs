@@ -3,12 +3,14 @@
 use super::differences::build_differences;
 use super::floor::{NoiseFloor, between, speed_shift};
 use super::series::{self, Judgement, Series, Verdict, by_configuration, middle, thirds, values};
-use super::statements::STATEMENTS_SCHEMA;
 use design::record::{BenchRun, BenchSample};
 use design::{ConfigurationId, Stage};
 use serde::Serialize;
 use statistics::interval::Interval;
 use statistics::median;
+
+/// The version of [`Comparison`], with what a gate says of it, as JSON. 4 has limits, regressions, exit status and both runs.
+pub const COMPARISON_SCHEMA: u32 = 4;
 
 /// The chance that any one interval of a stage misses, over all its configurations together (Bonferroni).
 const MISSES: f64 = 0.05;
@@ -16,14 +18,16 @@ const MISSES: f64 = 0.05;
 /// What two runs say of each other.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
-    /// Version of this layout; [`STATEMENTS_SCHEMA`].
+    /// Version of this layout; [`COMPARISON_SCHEMA`].
     pub schema: u32,
+    /// Whether A and B are one run, sample by sample.
+    pub itself: bool,
     /// How the machines differ, each difference in a line; empty if they do not.
     pub across: Vec<String>,
     /// How the programs and their plans differ, each difference in a line; empty if they are of one build.
     pub builds: Vec<String>,
-    /// Log-ratio of the machines' speeds: the reference work's time in B over that in A. Part of every floor.
-    pub speed_shift: Option<f64>,
+    /// The machines' speeds: the reference work's time in B over that in A. Part of every floor.
+    pub reference_ratio: Option<f64>,
     /// Of each stage, total first, each configuration that both runs have.
     pub rows: Vec<Row>,
     /// Configurations that only one of the runs has.
@@ -45,6 +49,8 @@ pub struct Row {
     pub b_s: f64,
     /// B over A; `None` where a stage takes no time.
     pub ratio: Option<f64>,
+    /// Of totals, the median CPU time in A and in B, seconds over all threads; `None` where it was not counted.
+    pub cpu_s: Option<[f64; 2]>,
     /// Where the ratio may lie, at 95 % for all configurations of the stage together; `None` of single values, and of fewer
     /// rounds than that takes.
     pub interval: Option<Interval>,
@@ -58,7 +64,7 @@ pub struct Row {
 }
 
 /// What is a regression: B slower, by more than both.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Limits {
     /// Share of A's time, 0.05 for 5 %.
     pub relative: f64,
@@ -93,10 +99,11 @@ pub fn compare(a: &BenchRun, b: &BenchRun, across: Vec<String>) -> Comparison {
     };
     let stages = stages(a.imported_from.is_some() || b.imported_from.is_some());
     Comparison {
-        schema: STATEMENTS_SCHEMA,
+        schema: COMPARISON_SCHEMA,
+        itself: a.samples == b.samples && a.aa_samples == b.aa_samples,
         across,
         builds: build_differences(a, b),
-        speed_shift: shift,
+        reference_ratio: shift.map(f64::exp),
         rows: stages.into_iter().flat_map(of_stage).collect(),
         unmatched: alone,
         changed,
@@ -184,11 +191,21 @@ fn row(
         a_s,
         b_s,
         ratio,
+        cpu_s: (stage == Stage::Total).then(|| cpu_times(samples)).flatten(),
         interval,
         floor,
         smallest_detectable: smallest_detectable(),
         judgement,
     }
+}
+
+/// Medians of the CPU time, if every sample has one: a time that grows without it is time in which threads waited.
+fn cpu_times(samples: [&Vec<&BenchSample>; 2]) -> Option<[f64; 2]> {
+    let median = |samples: &Vec<&BenchSample>| -> Option<f64> {
+        let times: Option<Vec<f64>> = samples.iter().map(|sample| sample.counters.cpu_s).collect();
+        times.map(|times| middle(&times))
+    };
+    Some([median(samples[0])?, median(samples[1])?])
 }
 
 #[cfg(test)]
@@ -210,6 +227,7 @@ mod tests {
         let (a, b): (Vec<&BenchSample>, Vec<&BenchSample>) = (a.iter().collect(), b.iter().collect());
         let of = |noise| row([&a, &b], &a[0].id, Stage::Total, noise, 0.9);
         let quiet = of(Ok(0.0));
+        assert_eq!(quiet.cpu_s, None, "not counted");
         let interval = quiet.interval.unwrap();
         assert_eq!((quiet.a_s, quiet.b_s, quiet.ratio), (5.0, 14.0, Some(2.8)));
         assert!((interval.low - 1.650_957_966_889).abs() < 1e-11, "{interval:?}");

@@ -2,7 +2,7 @@
 
 use design::Study;
 use design::machine::{Machine, ProfileDifference};
-use design::record::{BenchRun, BenchSample, PeakMemory, SweepMesh};
+use design::record::{BenchRun, BenchSample, Counters, PeakMemory, SweepMesh};
 use std::path::{Path, PathBuf};
 
 pub(crate) fn paper_path() -> PathBuf {
@@ -57,6 +57,7 @@ pub(crate) fn bench_of(study: &Study, rounds: u32) -> BenchRun {
                 normals_s: n,
                 total_s: a + s + v + g + n,
                 reference_s: None,
+                counters: Counters::default(),
             });
         }
     }
@@ -70,6 +71,7 @@ pub(crate) fn bench_of(study: &Study, rounds: u32) -> BenchRun {
         aa_iterations: 0,
         seed: 1,
         threads: 2,
+        reference_threads: 1,
         pinned: None,
         target: study.target.clone(),
         machine: Machine {

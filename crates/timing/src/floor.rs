@@ -22,6 +22,10 @@ const MOST: f64 = 9.0;
 /// How many degrees of freedom the pooled noise between processes counts for beside a configuration's own.
 const POOLED_DEGREES: f64 = 4.0;
 
+/// Why the machine's speed is not known. Schema 3 had the reference work on one thread.
+const NO_REFERENCE: &str =
+    "no reference work on as many threads in both: whether the machine was as fast is not known";
+
 /// Log-ratios that are no more than noise.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NoiseFloor {
@@ -158,12 +162,16 @@ fn cochran(medians: &[ProcessMedian], deviation: f64) -> f64 {
     medians.iter().map(|m| (weight(m) * (m.log - mean).powi(2)).min(MOST)).sum()
 }
 
-/// The log-ratio of the machines' speeds: the reference work's median time in `b` over that in `a`. `None` if one has none.
+/// The log-ratio of the machines' speeds: the reference work's median time in `b` over that in `a`. `None` if one has none, or
+/// did it on another number of threads.
 pub(super) fn speed_shift(a: &BenchRun, b: &BenchRun) -> Option<f64> {
     let median = |run: &BenchRun| {
         let times: Vec<f64> = run.samples.iter().filter_map(|sample| sample.reference_s).collect();
         Some(middle(&times)).filter(|median| *median > 0.0)
     };
+    if a.reference_threads != b.reference_threads {
+        return None;
+    }
     Some((median(b)? / median(a)?).ln())
 }
 
@@ -181,7 +189,7 @@ pub(super) fn between(
     let [Some(of_a), Some(of_b)] = [a, b].map(|floor| floor.of_stage(stage, id)) else {
         return Err(NO_AA_BLOCK);
     };
-    let shift = shift.ok_or("no reference work: whether the machine was as fast is not known")?;
+    let shift = shift.ok_or(NO_REFERENCE)?;
     Ok(of_a.max(of_b) + a.load.max(b.load) + shift.abs())
 }
 

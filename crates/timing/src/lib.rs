@@ -20,9 +20,11 @@
 //! - "Cannot say" is not "equally fast".
 //! - What changes only from one hour to the next, and spares the reference work, is seen by no run.
 
+mod brief;
 mod compare;
 mod differences;
 mod floor;
+mod gate;
 mod outliers;
 mod quiet;
 mod ratios;
@@ -38,11 +40,13 @@ mod fixture;
 #[cfg(test)]
 mod simulation;
 
-pub use compare::{Comparison, Limits, Row, compare};
+pub use brief::brief;
+pub use compare::{COMPARISON_SCHEMA, Comparison, Limits, Row, compare};
 pub use differences::{build_differences, machine_differences};
 pub use floor::NoiseFloor;
+pub use gate::{Gate, GateRecord, GateResult, GateStatus};
 pub use outliers::{MAD_LIMIT, Outlier};
-pub use quiet::{BUSY, warnings};
+pub use quiet::{BUSY, beside_other_work, warnings};
 pub use ratios::Ratio;
 pub use series::{Judgement, Verdict};
 pub use statements::{STATEMENTS_SCHEMA, StageMedian, Statements, statements};

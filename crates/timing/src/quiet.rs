@@ -8,14 +8,35 @@ pub const BUSY: f64 = 0.05;
 /// The share of the CPU time, for other processes and other machines, that three windows of four stayed below. A median
 /// is moved little by what happens in less than a quarter of the rounds, and outliers show that. 0 if nothing is known.
 pub(super) fn busy_share(load: &[LoadWindow]) -> f64 {
-    let mut shares: Vec<f64> = load
-        .iter()
-        .filter(|window| window.invocation.is_some())
-        .map(|window| window.others + window.steal)
-        .collect();
+    let mut shares: Vec<f64> = shares(load).collect();
     shares.sort_unstable_by(f64::total_cmp);
     let rank = (3 * shares.len()).div_ceil(4).saturating_sub(1);
     shares.get(rank).copied().unwrap_or(0.0)
+}
+
+/// A share of the CPU time, and of the stretches of a run, above which it was not measured alone: threads are then woken late,
+/// which no share of the time accounts for.
+const BESIDE: [f64; 2] = [0.25, 0.5];
+
+/// Why a run is no evidence of anything: others had more than a quarter of the CPU time in at least half of its stretches. `None`
+/// of a run that was left alone, or of which it is not known.
+pub fn beside_other_work(run: &BenchRun) -> Option<String> {
+    let during: Vec<f64> = shares(&run.load).collect();
+    let busy = during.iter().filter(|share| **share > BESIDE[0]).count();
+    let invalid = busy > 0 && busy as f64 >= BESIDE[1] * during.len() as f64;
+    invalid.then(|| {
+        format!(
+            "measured beside other work: in {busy} of {} stretches others had more than {:.0} % of the CPU time, {:.1} % at most",
+            during.len(),
+            100.0 * BESIDE[0],
+            100.0 * during.iter().copied().fold(0.0, f64::max)
+        )
+    })
+}
+
+/// What others had of the CPU time while the run measured.
+fn shares(load: &[LoadWindow]) -> impl Iterator<Item = f64> {
+    load.iter().filter(|window| window.invocation.is_some()).map(|window| window.others + window.steal)
 }
 
 /// What a reader of the numbers should know of the machine, in plain words; empty if it was quiet.
@@ -110,6 +131,23 @@ mod tests {
         // Shares 0, .07, .1, .2, .3: the fourth of five; 1 / (1 - .2) is 1.25.
         assert_eq!(busy_share(&run.load), 0.2);
         assert!(text.contains("Differences below 25 % from other runs"), "{text}");
+    }
+
+    #[test]
+    fn a_run_beside_other_work_is_no_evidence() {
+        let mut run = fixture::bench(&fixture::study());
+        assert_eq!(beside_other_work(&run), None, "nothing is known");
+        let load = |shares: &[f64]| -> Vec<LoadWindow> {
+            let before = [window(None, 0.9, 0.0)];
+            before.into_iter().chain(shares.iter().map(|s| window(Some(0), s / 2.0, s / 2.0))).collect()
+        };
+        run.load = load(&[0.3, 0.0, 0.0, 0.3, 0.2]);
+        assert_eq!(beside_other_work(&run), None, "two of five");
+        run.load = load(&[0.25, 0.25]);
+        assert_eq!(beside_other_work(&run), None, "a quarter, and no more");
+        run.load = load(&[0.3, 0.0, 0.0, 0.934]);
+        let want = "measured beside other work: in 2 of 4 stretches others had more than 25 % of the CPU time, 93.4 % at most";
+        assert_eq!(beside_other_work(&run).as_deref(), Some(want));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::fixture;
-use design::record::{BenchRun, BenchSample, LoadWindow};
+use design::record::{BenchRun, BenchSample, Counters, LoadWindow};
 use design::{ConfigurationId, Stage};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -122,6 +122,7 @@ pub(super) fn sample(
         normals_s: 0.0,
         total_s,
         reference_s: Some(reference_s),
+        counters: Counters::default(),
     }
 }
 

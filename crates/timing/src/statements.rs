@@ -12,8 +12,7 @@ use statistics::bootstrap::Resampling;
 use statistics::interval::LEVEL;
 use statistics::{Median, median};
 
-/// The version of [`Statements`] and [`Comparison`](super::Comparison) as JSON. 3 has what a comparison could have told, and how
-/// its builds differ.
+/// The version of [`Statements`] as JSON.
 pub const STATEMENTS_SCHEMA: u32 = 3;
 
 /// What a run says of itself.

@@ -167,9 +167,14 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
         true => String::new(),
         false => " (NOT MEASURED ALIKE)".to_owned(),
     };
-    let mut totals = Table::new("bench_comparison", format!("B against A{across}"), &columns(&[]));
+    let mut with_cpu = columns(&[]);
+    with_cpu.insert(4, ("cpu_ratio", "CPU time, B / A"));
+    let mut totals = Table::new("bench_comparison", format!("B against A{across}"), &with_cpu);
     for row in comparison.of_stage(Stage::Total) {
-        totals.push(cells(row, false, &across));
+        let mut cells = cells(row, false, &across);
+        let cpu_ratio = row.cpu_s.filter(|[a, _]| *a > 0.0).map(|[a, b]| b / a);
+        cells.insert(4, Cell::number(cpu_ratio, 3));
+        totals.push(cells);
     }
     totals.notes.extend(how(a, b));
     totals.notes.push(builds(a, comparison));
@@ -184,11 +189,11 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
             "One of them does not tell what was asked of the extractor: see to it that resolutions are the same.".into(),
         );
     }
-    if let Some(shift) = comparison.speed_shift {
+    if let Some(ratio) = comparison.reference_ratio {
         totals.notes.push(format!(
             "The reference work's time changed by {} from A to B; a change of the machine is no change of the program, and \
              is part of the noise.",
-            change(shift.exp())
+            change(ratio)
         ));
     }
     if !comparison.unmatched.is_empty() {

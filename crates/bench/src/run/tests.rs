@@ -42,7 +42,8 @@ impl Executor for Mock {
             clustering_s: 0.7,
             normals_s,
         };
-        Ok(Measurement { stages, reference_s: Some(0.001) })
+        let counters = Counters { page_faults: Some(subject as u64), ..Counters::default() };
+        Ok(Measurement { stages, reference_s: Some(0.001), counters })
     }
 
     fn leave_out(&mut self, _: usize, error: BenchError) -> Result<String, BenchError> {
@@ -142,6 +143,8 @@ fn every_invocation_is_a_fresh_one_and_warms_up() {
     assert_eq!((run.samples.len(), run.aa_samples.len()), (5 * 4, 2 * 4));
     // The mock's normals count calls: the first sample kept is the ninth call.
     assert_eq!(run.samples[0].normals_s, 1e-7 * 8.0);
+    let faults = |sample: &BenchSample| sample.counters.page_faults.unwrap() as usize;
+    assert!(run.samples.iter().all(|sample| sample.id == ids()[faults(sample)]), "counted with its sample");
     let invocations: Vec<u32> = run.samples.iter().map(|sample| sample.invocation).collect();
     assert_eq!(invocations, [[0; 4], [2; 4], [2; 4], [4; 4], [4; 4]].concat());
     assert_eq!(run.pinned, Some(vec![0, 2]));
@@ -202,7 +205,10 @@ fn progress_counts_every_turn() {
 #[test]
 fn the_record_says_what_was_planned() {
     let run = mock_run();
-    assert_eq!((run.schema, run.study.as_str(), run.imported_from.as_ref()), (3, "mock", None));
+    assert_eq!(
+        (run.schema, run.study.as_str(), run.imported_from.as_ref()),
+        (BenchRun::SCHEMA, "mock", None)
+    );
     assert_eq!((run.warmup, run.iterations, run.aa_iterations), (2, 5, 2));
     assert_eq!((run.seed, run.threads), (2026, 16), "0 threads are the machine's");
     assert_eq!(run.machine, machine());

@@ -1,5 +1,6 @@
 //! `isostudy bench`: every configuration timed; and runs compared, swept and imported.
 
+mod baseline;
 mod compare;
 mod import;
 mod sweep;
@@ -26,7 +27,7 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    /// Say of every configuration whether it is faster in B than in A; exit 1 if one is slower beyond both limits
+    /// Say of every configuration whether it is faster in B than in A; exit 1 if one is slower beyond both limits, 3 if that could not have been told
     Compare(compare::Arguments),
     /// Measure the study's [benchmark.sweep]: every resolution on every number of threads; tables and figures
     Sweep(sweep::Arguments),

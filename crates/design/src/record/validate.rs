@@ -55,6 +55,9 @@ pub enum InvalidRun {
     /// A process that measured for both lists.
     #[error("invocation {0} has both samples and aa_samples: the A/A block has processes of its own")]
     SharedInvocation(u32),
+    /// A run whose every total is 0.
+    #[error("samples: every total is 0 s: nothing was measured")]
+    NothingTimed,
     /// A share of the CPU time that is none.
     #[error("load[{place}]: others = {others}, steal = {steal}: must be from 0 to 1, together too")]
     Load {
@@ -95,6 +98,14 @@ pub enum InvalidSample {
         /// What it says.
         seconds: f64,
     },
+    /// Something counted that nothing counts.
+    #[error("{what} = {value:?}: must be finite and not negative")]
+    Counter {
+        /// What was counted.
+        what: &'static str,
+        /// What it says.
+        value: f64,
+    },
     /// A reference work that took no time.
     #[error("reference work = {0:?} s: must be finite and above 0")]
     Reference(f64),
@@ -125,6 +136,9 @@ impl BenchRun {
     pub fn check(&self) -> Result<(), InvalidRun> {
         let measured = if self.imported_from.is_some() { 1 } else { self.iterations };
         let of_samples = check_samples("samples", &self.samples, measured)?;
+        if !self.samples.is_empty() && self.samples.iter().all(|sample| sample.total_s == 0.0) {
+            return Err(InvalidRun::NothingTimed);
+        }
         let of_aa = check_samples("aa_samples", &self.aa_samples, self.aa_iterations)?;
         if self.aa_iterations > 0 {
             if let Some(id) = of_samples.symmetric_difference(&of_aa).next() {
@@ -192,6 +206,11 @@ impl BenchSample {
         if let Some(seconds) = self.reference_s.filter(|seconds| !(valid(*seconds) && *seconds > 0.0)) {
             return Err(InvalidSample::Reference(seconds));
         }
+        let counted = [("cpu_s", self.counters.cpu_s), ("energy_j", self.counters.energy_j)];
+        let mut counted = counted.into_iter().filter_map(|(what, value)| Some((what, value?)));
+        if let Some((what, value)) = counted.find(|(_, value)| !valid(*value)) {
+            return Err(InvalidSample::Counter { what, value });
+        }
         let (total, sum) = (self.total_s, stages[..6].iter().map(|(_, seconds)| seconds).sum::<f64>());
         // A sum beyond every number is none.
         if !sum.is_finite() || (total - sum).abs() > ROUNDING * sum {
@@ -208,7 +227,7 @@ impl BenchSample {
 mod tests {
     use super::*;
     use crate::machine::{CpuProfile, Machine};
-    use crate::record::PeakMemory;
+    use crate::record::{Counters, PeakMemory};
 
     fn sample(id: &str, iteration: u32) -> BenchSample {
         BenchSample {
@@ -224,6 +243,7 @@ mod tests {
             normals_s: 1e-7,
             total_s: 0.001 + 0.01 + 0.1 + 0.3 + 0.7 + 1e-7,
             reference_s: Some(0.001),
+            counters: Counters { cpu_s: Some(2.0), ..Counters::default() },
         }
     }
 
@@ -244,6 +264,7 @@ mod tests {
             aa_iterations: 2,
             seed: 1,
             threads: 1,
+            reference_threads: 1,
             pinned: None,
             target,
             machine: Machine::default(),
@@ -302,6 +323,22 @@ mod tests {
             after(|run| run.samples[1].iteration = 3),
             "samples[1], ss_su: iteration = 3: the run has 3, counted from 0"
         );
+    }
+
+    #[test]
+    fn a_run_that_measured_nothing_is_refused() {
+        let nothing = |sample: &mut BenchSample| {
+            (sample.allocation_s, sample.sampling_s, sample.vertex_s) = (0.0, 0.0, 0.0);
+            (sample.geometry_s, sample.clustering_s, sample.normals_s) = (0.0, 0.0, 0.0);
+            sample.total_s = 0.0;
+        };
+        let text = after(|run| run.samples.iter_mut().for_each(nothing));
+        assert_eq!(text, "samples: every total is 0 s: nothing was measured");
+        let mut one = run();
+        one.samples[1..].iter_mut().for_each(nothing);
+        assert_eq!(one.check(), Ok(()), "one of them was");
+        let text = after(|run| run.samples[0].counters.cpu_s = Some(-1.0));
+        assert_eq!(text, "samples[0], ss_bi: cpu_s = -1.0: must be finite and not negative");
     }
 
     #[test]

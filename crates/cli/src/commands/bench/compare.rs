@@ -1,41 +1,52 @@
 //! `isostudy bench compare`: two finished runs side by side.
 
+use super::baseline;
 use crate::outcome::Outcome;
 use crate::run_file;
 use crate::terminal::{counted, say};
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
+use design::Stage;
 use design::record::BenchRun;
-use design::{ConfigurationId, Stage};
 use std::path::{Path, PathBuf};
-use timing::{Comparison, Limits};
+use timing::{Comparison, Gate, GateRecord, GateResult, GateStatus, Limits};
 
-/// Where a results folder keeps its runs; the full one stands for the short one.
-const RUNS: [&str; 3] = ["bench/full/run.json", "bench/short/run.json", "run.json"];
+/// Where a results folder keeps its runs; the full one stands for the others.
+const RUNS: [&str; 4] =
+    ["bench/full/run.json", "bench/short/run.json", "bench/selected/run.json", "run.json"];
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Results folder, or a run.json in it: what B is compared with
+    /// What B is compared with: results folder, run.json, or the name of a baseline in B's folder
     a: PathBuf,
     /// Results folder, or a run.json in it
     b: PathBuf,
     /// A slower configuration is a regression beyond this share of its time in A ...
     ///
     /// What is within the noise is never told, however small the share: the column "Smallest detectable" says how large that is.
-    #[arg(long, default_value_t = 0.05, value_name = "SHARE", value_parser = not_negative)]
+    #[arg(long, default_value = "0.05", value_name = "SHARE", value_parser = share)]
     relative: f64,
     /// ... and beyond this many seconds
     #[arg(long, default_value_t = 0.0001, value_name = "SECONDS", value_parser = not_negative)]
     absolute: f64,
+    /// Exit 3 if a total that grew by this share would not have been told: 0.10, or 10%
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    must_tell: Option<f64>,
     /// Compare runs of machines that differ, in their settings too; every heading and verdict then says so
     #[arg(long)]
     across_machines: bool,
-    /// What to print
-    #[arg(long, default_value = "markdown")]
-    format: Format,
+    /// Compare runs that were measured beside other work, which is otherwise refused
+    #[arg(long)]
+    beside_other_work: bool,
+    /// Print every row as tables, in place of ten lines
+    #[arg(long)]
+    all: bool,
+    /// Print every row, as
+    #[arg(long)]
+    format: Option<Format>,
 }
 
-/// How a table is printed.
+/// How tables are printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Format {
     Markdown,
@@ -54,21 +65,79 @@ fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A share, as 0.05 or as 5%.
+pub(super) fn share(text: &str) -> Result<f64, String> {
+    match text.strip_suffix('%') {
+        Some(percent) => Ok(not_negative(percent.trim_end())? / 100.0),
+        None => not_negative(text),
+    }
+}
+
 /// Prints the comparison; a regression is a check that failed.
 ///
 /// # Errors
 /// If the runs cannot be read or compared.
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    let [a, b] = [&arguments.a, &arguments.b].map(|path| run_file::read(&run_at(path)?));
+    let at_a = baseline::named(&arguments.a, &arguments.b).map_or_else(|| run_at(&arguments.a), Ok)?;
+    let [a, b] = [at_a, run_at(&arguments.b)?].map(|path| run_file::read(&path));
     let (a, b) = (a?, b?);
-    let across = timing::machine_differences(&a, &b);
+    let comparison = compared(&a, &b, arguments)?;
+    let limits = Limits { relative: arguments.relative, absolute_s: arguments.absolute };
+    let gate = Gate { limits, must_tell: arguments.must_tell };
+    let found = gate.judge(&a, &comparison);
+    let outcome = match found.status() {
+        GateStatus::Passed => Outcome::Done,
+        GateStatus::Failed => Outcome::CheckFailed,
+        GateStatus::Blind => Outcome::Blind,
+    };
+    let format = arguments.format.or(arguments.all.then_some(Format::Markdown));
+    match format {
+        None => {
+            for line in timing::brief([&a, &b], &comparison, &gate, &found) {
+                say(&line)?;
+            }
+            say("--all prints every row.")?;
+            return Ok(outcome);
+        }
+        Some(Format::Json) => {
+            let record = GateRecord::new([&a, &b], &comparison, gate, &found, outcome.status());
+            say(&serde_json::to_string_pretty(&record)?)?;
+        }
+        Some(format) => {
+            for table in timing::comparison_tables(&a, &b, &comparison) {
+                say(&match format {
+                    Format::Csv => table.to_csv(),
+                    Format::Latex => table.to_latex(),
+                    _ => table.to_markdown(),
+                })?;
+            }
+        }
+    }
+    tell_findings(&comparison, &gate, &found);
+    Ok(outcome)
+}
+
+/// The comparison of runs that can be compared.
+///
+/// # Errors
+/// What keeps them from being compared.
+fn compared(a: &BenchRun, b: &BenchRun, arguments: &Arguments) -> Result<Comparison> {
+    let across = timing::machine_differences(a, b);
     if !across.is_empty() && !arguments.across_machines {
         let list = across.join("\n  ");
         bail!(
             "A and B were not measured alike:\n  {list}\n--across-machines compares them nevertheless, and says so"
         );
     }
-    let comparison = timing::compare(&a, &b, across);
+    for (name, run) in [("A", a), ("B", b)] {
+        if let Some(reason) = timing::beside_other_work(run).filter(|_| !arguments.beside_other_work) {
+            bail!(
+                "{name} was {reason}. Its times are no evidence of a program: close other programs and measure again; \
+                 --beside-other-work compares it nevertheless"
+            );
+        }
+    }
+    let comparison = timing::compare(a, b, across);
     if comparison.rows.is_empty() && !comparison.changed.is_empty() {
         bail!(
             "A (study {}) and B (study {}) were asked for different extractions: other fields, spacings, isovalues or recipes; \
@@ -80,22 +149,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if comparison.rows.is_empty() {
         bail!("A and B have no configuration in common: there is nothing to compare");
     }
-    let tables = timing::comparison_tables(&a, &b, &comparison);
-    match arguments.format {
-        Format::Json => say(&serde_json::to_string_pretty(&comparison)?)?,
-        format => {
-            for table in &tables {
-                say(&match format {
-                    Format::Csv => table.to_csv(),
-                    Format::Latex => table.to_latex(),
-                    _ => table.to_markdown(),
-                })?;
-            }
-        }
+    Ok(comparison)
+}
+
+/// What was found, on standard error, where tables are on standard output.
+fn tell_findings(comparison: &Comparison, gate: &Gate, found: &GateResult<'_>) {
+    if comparison.itself {
+        tell!("A and B are the same run: this says nothing of any program");
     }
-    let limits = Limits { relative: arguments.relative, absolute_s: arguments.absolute };
-    let regressions = comparison.regressions(&limits);
-    for row in &regressions {
+    for row in &found.regressions {
         let (id, a, b) = (&row.id, 1e3 * row.a_s, 1e3 * row.b_s);
         let label = if comparison.across.is_empty() { "" } else { " (not measured alike)" };
         let stage = row.stage.label();
@@ -103,36 +165,35 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     }
     // What a total's noise hides, a stage shows.
     for stage in Stage::ALL {
-        let slower = regressions.iter().filter(|row| row.stage == stage).count();
+        let slower = found.regressions.iter().filter(|row| row.stage == stage).count();
         if slower > 0 {
             let of = comparison.of_stage(stage).count();
             tell!("{}: slower on {slower} of {}", stage.label(), counted(of as u64, "configuration"));
         }
     }
+    let percent = |ratio: f64| format!("{:.0}", 100.0 * (ratio - 1.0));
     if let Some((least, most)) = comparison.smallest_detectable(Stage::Total) {
-        let percent = |ratio: f64| format!("{:.0}", 100.0 * (ratio - 1.0));
         tell!(
             "totals that grew by less than {} to {} %, by configuration, are not told from noise here",
             percent(least),
             percent(most)
         );
     }
-    // A build that drops a configuration must not pass for one that is as fast.
-    let missing = missing_in_b(&a, &comparison);
-    for id in &missing {
+    for id in &found.missing {
         tell!("missing: {id} is in A and not in B");
     }
-    Ok(Outcome::of_check(regressions.is_empty() && missing.is_empty()))
-}
-
-/// What B should have been measured for and was not; an imported table may have fewer rows.
-fn missing_in_b<'a>(a: &BenchRun, comparison: &'a Comparison) -> Vec<&'a ConfigurationId> {
-    let of_a = |id: &&ConfigurationId| a.samples.iter().any(|sample| sample.id == **id);
-    comparison.unmatched.iter().filter(of_a).collect()
+    for row in &found.blind {
+        let asked = 100.0 * gate.must_tell.unwrap_or_default();
+        let reason = match row.smallest_detectable {
+            Some(ratio) => format!("less than {} % is not told", percent(ratio)),
+            None => row.judgement.reason.into(),
+        };
+        tell!("blind: {}: growth by {asked} % must be told, and {reason}", row.id);
+    }
 }
 
 /// The file of a run, or that in the results folder that has one.
-fn run_at(path: &Path) -> Result<PathBuf> {
+pub(super) fn run_at(path: &Path) -> Result<PathBuf> {
     if !path.is_dir() {
         return Ok(path.to_owned());
     }
