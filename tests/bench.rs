@@ -95,6 +95,112 @@ fn every_statement_is_there_in_every_format() {
     assert!(machine.contains("\ncompiler,,rustc"), "{machine}");
 }
 
+/// Times are measured here, and none is judged: that rounds and configurations are those asked for, and where they are kept.
+#[test]
+fn some_configurations_are_measured_for_as_long_as_asked() {
+    let fixture = Fixture::new();
+    let selected = || -> Value {
+        serde_json::from_slice(&std::fs::read(fixture.out().join("bench/selected/run.json")).unwrap())
+            .unwrap()
+    };
+    fixture.succeed(
+        "bench",
+        &["--only", "ss_bi", "--only", "as_sp", "--rounds", "7", "--save-baseline", "main"],
+    );
+    let run = selected();
+    let mut ids: Vec<&str> =
+        run["samples"].as_array().unwrap().iter().map(|sample| sample["id"].as_str().unwrap()).collect();
+    assert_eq!((ids.len(), &run["iterations"]), (14, &7.into()));
+    ids.sort_unstable();
+    ids.dedup();
+    assert_eq!(ids, ["as_sp", "ss_bi"]);
+    assert!(!fixture.out().join("bench/full").exists(), "the study's own run is another");
+    let sample = &run["samples"][0];
+    if cfg!(target_os = "linux") {
+        assert!(sample["counters"]["cpu_s"].as_f64().unwrap() > 0.0, "{sample}");
+        assert!(
+            sample["counters"]["page_faults"].is_u64() && sample["counters"]["context_switches"].is_u64()
+        );
+    }
+    let kept = std::fs::read(fixture.out().join("bench/baselines/main.json")).unwrap();
+    assert_eq!(serde_json::from_slice::<Value>(&kept).unwrap(), run);
+    let history = std::fs::read_to_string(fixture.out().join("bench/history.jsonl")).unwrap();
+    assert_eq!(history.lines().count(), 1);
+
+    // No machine tells a millionth: it ends after the batches that it may have, and says so.
+    let blind = fixture.run("bench", &["--only", "ss_bi", "--until", "0.0001%", "--rounds", "9"]);
+    assert_eq!(blind.code, Some(3), "{}", blind.stderr);
+    assert!(blind.stderr.contains("rounds are not enough for what --until asks"), "{}", blind.stderr);
+    let run = selected();
+    let (rounds, batch) = (run["iterations"].as_u64().unwrap(), 5);
+    assert_eq!((rounds, run["samples"].as_array().unwrap().len()), (2 * batch, 2 * batch as usize));
+    // Any change of ten thousand times is told after the first batch that has intervals at all.
+    let easy = fixture.run("bench", &["--only", "ss_bi", "--until", "1000000%", "--rounds", "100"]);
+    assert_eq!(easy.code, Some(0), "{}", easy.stderr);
+    assert!(selected()["iterations"].as_u64().unwrap() < 100);
+
+    let unknown = fixture.run("bench", &["--only", "zz_bi"]);
+    assert!(unknown.code == Some(2) && unknown.stderr.contains("ss_bi"), "{}", unknown.stderr);
+    let conflict = fixture.run("bench", &["--short", "--rounds", "3"]);
+    assert_eq!(conflict.code, Some(2));
+    assert_eq!(fixture.run("bench", &["--save-baseline", "../x"]).code, Some(2));
+}
+
+/// Both programs are this one, the new one with a slowdown of four times its time planted: that is found on any machine.
+#[cfg(unix)]
+#[test]
+fn a_planted_slowdown_is_found_between_two_programs() {
+    use std::os::unix::fs::PermissionsExt;
+    let fixture = Fixture::new();
+    let this = env!("CARGO_BIN_EXE_isostudy");
+    let slow = fixture.folder().join("slow");
+    std::fs::write(&slow, format!("#!/bin/sh\nISOSTUDY_PLANTED_SLOWDOWN=4 exec '{this}' \"$@\"\n")).unwrap();
+    std::fs::set_permissions(&slow, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let (config, out) = (fixture.config(), fixture.out().to_owned());
+    let ab = |programs: [&str; 2], more: &[&str]| {
+        let start = [
+            "bench",
+            "ab",
+            programs[0],
+            programs[1],
+            config.to_str().unwrap(),
+            "--out",
+            out.to_str().unwrap(),
+        ];
+        let short = ["--only", "ss_bi", "--only", "as_bi", "--seconds", "2", "--processes", "8"];
+        isostudy(&[&start[..], &short, more].concat())
+    };
+    let slow = slow.to_str().unwrap();
+    let found = ab([this, slow], &[]);
+    assert_eq!(found.code, Some(1), "{}{}", found.stdout, found.stderr);
+    assert!(found.stdout.lines().count() <= 10, "{}", found.stdout);
+    assert!(found.stdout.contains("All together, total time: slower by +"), "{}", found.stdout);
+    let run: Value = serde_json::from_slice(&std::fs::read(out.join("bench/ab/ab.json")).unwrap()).unwrap();
+    assert_eq!((&run["schema"], &run["processes"]), (&1.into(), &8.into()));
+    for pair in run["pairs"].as_array().unwrap() {
+        assert_eq!(
+            (&pair["old"]["id"], &pair["old"]["iteration"]),
+            (&pair["new"]["id"], &pair["new"]["iteration"])
+        );
+    }
+    let again = ab([this, slow], &["--format", "json"]);
+    assert!(again.stderr.contains("up to date"), "{}", again.stderr);
+    let json: Value = serde_json::from_str(&again.stdout).unwrap();
+    assert_eq!((&json["exit_status"], &json["same_program"]), (&1.into(), &false.into()));
+    let all = &json["rows"][0];
+    assert_eq!(
+        (&all["quantity"], &all["id"], &all["verdict"]),
+        (&"time".into(), &Value::Null, &"slower".into())
+    );
+    let ratio = all["ratio"].as_f64().unwrap();
+    assert!((3.0..8.0).contains(&ratio), "five times as long was planted: {ratio}");
+    assert_eq!(ab([slow, this], &[]).code, Some(0), "the other way round it is faster");
+    // Nothing tells a millionth.
+    assert_eq!(ab([slow, this], &["--must-tell", "0.0001%"]).code, Some(3));
+    let missing = ab(["/nowhere/isostudy", this], &[]);
+    assert!(missing.code == Some(2) && missing.stderr.contains("/nowhere/isostudy"), "{}", missing.stderr);
+}
+
 /// Runs that differ as a test wants them to.
 struct Pair {
     fixture: Fixture,

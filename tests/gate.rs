@@ -258,3 +258,52 @@ fn a_baseline_has_a_name() {
     let unknown = folder.run(&["compare", "other", "results"]);
     assert!(unknown.code == Some(2) && unknown.stderr.contains("other"), "{}", unknown.stderr);
 }
+
+#[test]
+fn a_run_is_written_as_other_benchmarks_write_theirs() {
+    let pair = Pair::new(&planted(quiet(0.0)), &planted(quiet(0.0)));
+    let folder = &pair.0;
+    folder.succeed(&["export", "a.json", "--to", "hyperfine", "--out", "h.json"]);
+    let found: Value = serde_json::from_str(&folder.read("h.json")).unwrap();
+    let results = found["results"].as_array().unwrap();
+    assert_eq!(results.len(), 3);
+    let first = &results[0];
+    assert_eq!((&first["command"], first["times"].as_array().unwrap().len()), (&"as_sp".into(), 30));
+    for key in ["mean", "median", "min", "max"] {
+        assert!((first[key].as_f64().unwrap() - 0.01).abs() < 1e-12, "{key}: {first}");
+    }
+    assert!((first["user"].as_f64().unwrap() - 0.01).abs() < 1e-12);
+    folder.succeed(&["export", "a.json", "--to", "criterion", "--out", "criterion"]);
+    let of = |name: &str| -> Value {
+        serde_json::from_str(&folder.read(&format!("criterion/planted/ss_bu/new/{name}.json"))).unwrap()
+    };
+    assert_eq!(of("benchmark")["full_id"], "planted/ss_bu");
+    assert_eq!(of("sample")["times"].as_array().unwrap().len(), 30);
+    // Criterion's times are nanoseconds.
+    assert!((of("estimates")["median"]["point_estimate"].as_f64().unwrap() - 1e7).abs() < 1.0);
+}
+
+#[test]
+fn kept_runs_have_a_history() {
+    let folder = Folder::of("bench");
+    let none = folder.run(&["history", "."]);
+    assert!(none.code == Some(2) && none.stderr.contains("--save-baseline"), "{}", none.stderr);
+    let line = |name: &str, total: f64| {
+        json!({
+            "name": name, "commit": "abc", "model": null, "rounds": 30, "workloads": {"ss_bi": "x"},
+            "totals_s": {"ss_bi": total}, "reference_s": 0.001
+        })
+        .to_string()
+    };
+    std::fs::create_dir(folder.path("bench")).unwrap();
+    folder.write("bench/history.jsonl", format!("{}\n{}\n", line("one", 0.01), line("two", 0.012)));
+    let shown = folder.succeed(&["history", "."]);
+    assert!(shown.stdout.contains("| two"), "{}", shown.stdout);
+    let csv = folder.read("bench/history.csv");
+    assert_eq!(csv.lines().nth(2), Some("2,two,abc,30,1.200,1.200,1.200,ss_bi,1.000"), "{csv}");
+    assert!(folder.read("bench/history.svg").contains("<svg"));
+    assert!(folder.path("bench/history.png").is_file());
+    folder.write("bench/history.jsonl", "{\n");
+    let broken = folder.run(&["history", "."]);
+    assert!(broken.code == Some(2) && broken.stderr.contains("history.jsonl, line 1"), "{}", broken.stderr);
+}

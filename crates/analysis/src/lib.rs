@@ -48,7 +48,7 @@ pub use answered::Answered;
 pub use ballots::{BallotGroup, ballot_groups, ballots, declared};
 
 pub use data::frames;
-pub use figures::{Figure, figures, figures_of_groups, power_figure, sweep_figures};
+pub use figures::{Figure, figures, figures_of_groups, history_figure, power_figure, sweep_figures};
 pub use fraction::Fraction;
 pub use frames::{FrameError, LongFrame, answers_frame};
 pub use inputs::{AnalysisError, Inputs};

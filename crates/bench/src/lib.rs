@@ -31,6 +31,7 @@
 //! - Times are wall-clock times, and a total is the sum of the stages, not the time round the call: dropping the
 //!   mesh is not in it.
 
+mod ab;
 mod csv_files;
 mod error;
 mod import;
@@ -39,8 +40,10 @@ mod linux;
 mod load;
 mod machine;
 mod meter;
+mod perf;
 mod pin;
 mod plan;
+mod planted;
 mod process;
 mod profile;
 mod reference;
@@ -48,6 +51,7 @@ mod run;
 mod stages;
 mod worker;
 
+pub use ab::{AbEntry, AbMeasured, AbPlan, read_ab_journal, run_ab};
 pub use csv_files::{machine_csv, samples_csv};
 pub use error::BenchError;
 pub use import::import;
@@ -56,9 +60,10 @@ pub use load::{CpuTimes, LEAST_TICKS, Shares};
 pub use machine::{FEATURES, read_machine};
 pub use pin::pin;
 pub use plan::{Invocation, Plan, Round, Turn, order};
+pub use planted::{PLANTED, Planted};
 pub use process::ProcessExecutor;
 pub use profile::{MEMORY_ALLOWANCE, ProfileRow, compare_profile, differences};
 pub use reference::Reference;
-pub use run::{Executor, Measurement, PeakBytes, check_journal, run};
+pub use run::{Executor, Measurement, PeakBytes, check_journal, run, run_until};
 pub use stages::{StageSeconds, Timed};
 pub use worker::{Measured, Prepared, Reply, Request, serve};

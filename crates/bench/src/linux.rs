@@ -7,6 +7,7 @@ use std::fs::{read_dir, read_to_string};
 use std::path::{Path, PathBuf};
 
 const CPU_FOLDER: &str = "/sys/devices/system/cpu";
+const POWER_FOLDER: &str = "/sys/class/powercap";
 const CACHE_FOLDER: &str = "/sys/devices/system/cpu/cpu0/cache";
 /// Whether the clock may rise: `1` says that it may not, and that it may.
 const NO_TURBO: &str = "/sys/devices/system/cpu/intel_pstate/no_turbo";
@@ -17,6 +18,19 @@ const CPU_LIMIT_1: [&str; 2] =
     ["/sys/fs/cgroup/cpu/cpu.cfs_quota_us", "/sys/fs/cgroup/cpu/cpu.cfs_period_us"];
 /// A container's memory limit, as cgroups version 2 and 1 write it.
 const MEMORY_LIMITS: [&str; 2] = ["/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"];
+
+/// What all packages have used since a counter of theirs began, in microjoules (RAPL); `None` where it is not there or may not be
+/// read.
+pub(crate) fn energy_uj() -> Option<u64> {
+    let package = |entry: std::fs::DirEntry| {
+        // `intel-rapl:0` is a package, `intel-rapl:0:0` a part of it.
+        let name = entry.file_name().into_string().ok()?;
+        (name.matches(':').count() == 1).then(|| entry.path().join("energy_uj"))
+    };
+    let packages: Vec<PathBuf> = read_dir(POWER_FOLDER).ok()?.flatten().filter_map(package).collect();
+    let used: Option<Vec<u64>> = packages.iter().map(|path| read(path)?.trim().parse().ok()).collect();
+    used.filter(|used| !used.is_empty()).map(|used| used.iter().sum())
+}
 
 pub(crate) fn model() -> Option<String> {
     parse_model(&read("/proc/cpuinfo")?)

@@ -1,10 +1,14 @@
-//! What this process uses while it extracts: CPU time, page faults, context switches.
+//! What this process uses while it extracts: CPU time, page faults, context switches, and what the CPU counts.
 
+use crate::linux::energy_uj;
+use crate::perf::{Counts, counts};
 use design::record::Counters;
 
 /// Readings from before an extraction.
 pub(crate) struct Meter {
     usage: Option<Usage>,
+    energy_uj: Option<u64>,
+    counts: Counts,
 }
 
 /// What the process has used since it began: over all its threads, those that have ended too, but for context switches, which are
@@ -19,17 +23,28 @@ struct Usage {
 impl Meter {
     /// Reads what there is to read.
     pub(crate) fn begin() -> Self {
-        Self { usage: usage() }
+        // What costs least time is read last, and first again.
+        Self { energy_uj: energy_uj(), usage: usage(), counts: counts() }
     }
 
     /// Reads it again, and says what was used in between.
     pub(crate) fn end(self) -> Counters {
+        let after = counts();
+        let since = |which: usize| after[which]?.checked_sub(self.counts[which]?);
         let used = self.usage.zip(usage()).map(|(before, after)| after.since(&before));
         Counters {
             cpu_s: used.map(|used| used.cpu_s),
             page_faults: used.map(|used| used.page_faults),
             context_switches: used.map(|used| used.context_switches),
-            ..Counters::default()
+            instructions: since(0),
+            cache_misses: since(1),
+            branch_misses: since(2),
+            // A counter that began again says nothing.
+            energy_j: self
+                .energy_uj
+                .zip(energy_uj())
+                .and_then(|(before, after)| after.checked_sub(before))
+                .map(|used| 1e-6 * used as f64),
         }
     }
 }

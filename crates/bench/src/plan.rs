@@ -28,8 +28,12 @@ pub struct Plan {
     pub workloads: Vec<Workload>,
     /// Rounds run and thrown away at the start of every invocation.
     pub warmup: u32,
-    /// Rounds measured; at least 1.
+    /// Rounds measured in a batch; at least 1.
     pub iterations: u32,
+    /// Batches at most, each with processes and an A/A block of its own; at least 1. A run may end after any of them.
+    pub batches: u32,
+    /// The growth of a total, as a share, that a run is to tell before it ends; recorded, and judged by who runs the plan.
+    pub until: Option<f64>,
     /// Rounds of the A/A block; 0 leaves it out.
     pub aa_iterations: u32,
     /// Whether peak memory is measured, in a process of its own for every configuration.
@@ -92,8 +96,25 @@ pub struct Turn {
 }
 
 impl Plan {
-    /// The invocations in order. Nothing but the plan decides them, so a run that was broken off can be told what is left.
+    /// The invocations of all batches in order. Nothing but the plan decides them, so a run that was broken off can be told what
+    /// is left.
     pub fn invocations(&self) -> Vec<Invocation> {
+        let batch = self.batch();
+        let (length, rounds) = (batch.len() as u32, [self.iterations, self.aa_iterations]);
+        let later = |(at, invocation): (u32, &Invocation)| {
+            let shift = at * rounds[usize::from(invocation.aa)];
+            let Range { start, end } = invocation.rounds;
+            Invocation {
+                number: at * length + invocation.number,
+                rounds: start + shift..end + shift,
+                ..*invocation
+            }
+        };
+        (0..self.batches.max(1)).flat_map(|at| batch.iter().map(move |of| later((at, of)))).collect()
+    }
+
+    /// The invocations of the first batch.
+    pub fn batch(&self) -> Vec<Invocation> {
         let blocks = match self.aa_iterations {
             0 => 1,
             _ => {
@@ -213,6 +234,17 @@ mod tests {
         assert_eq!(invocations(1, 1), [(0, m, 0..1), (1, a, 0..1)]);
         assert_eq!(invocations(1, 5), [(0, m, 0..1), (1, a, 0..2), (2, a, 2..5)]);
         assert_eq!(invocations(2, 2), [(0, m, 0..1), (1, a, 0..1), (2, m, 1..2), (3, a, 1..2)]);
+    }
+
+    #[test]
+    fn a_batch_goes_on_where_the_one_before_ended() {
+        let twice = Plan { batches: 2, ..plan(1, 30, 2) };
+        let (all, first) = (twice.invocations(), twice.batch());
+        assert_eq!(all[..5], first[..]);
+        let of = |s: &Invocation| (s.number, s.aa, s.rounds.clone());
+        let second: Vec<_> = all[5..].iter().map(of).collect();
+        let (m, a) = (false, true);
+        assert_eq!(second, [(5, m, 30..40), (6, a, 2..3), (7, m, 40..50), (8, a, 3..4), (9, m, 50..60)]);
     }
 
     #[test]

@@ -98,6 +98,24 @@ pub fn run(
     record: &mut dyn FnMut(&Entry) -> io::Result<()>,
     on_turn: &mut dyn FnMut(u64, u64),
 ) -> Result<BenchRun, BenchError> {
+    run_until(plan, ids, executor, machine, done, record, on_turn, &|_| false)
+}
+
+/// As [`run`], and ends after the first batch with which `enough` is content. It is asked of all that was measured until then.
+///
+/// # Errors
+/// As [`run`].
+#[expect(clippy::too_many_arguments, reason = "those of `run`, and one")]
+pub fn run_until(
+    plan: &Plan,
+    ids: &[ConfigurationId],
+    executor: &mut dyn Executor,
+    machine: Machine,
+    done: Vec<Entry>,
+    record: &mut dyn FnMut(&Entry) -> io::Result<()>,
+    on_turn: &mut dyn FnMut(u64, u64),
+    enough: &dyn Fn(&BenchRun) -> bool,
+) -> Result<BenchRun, BenchError> {
     check(plan, ids)?;
     let invocations = plan.invocations();
     let turns: usize =
@@ -120,8 +138,17 @@ pub fn run(
     if fresh {
         running.watch_idle()?;
     }
-    for invocation in &invocations {
-        running.invoke(invocation)?;
+    for (batch, number) in invocations.chunks(plan.batch().len()).zip(1..) {
+        for invocation in batch {
+            running.invoke(invocation)?;
+        }
+        let [rounds, aa_rounds] = [plan.iterations, plan.aa_iterations].map(|rounds| number * rounds);
+        (running.run.iterations, running.run.aa_iterations) = (rounds, aa_rounds);
+        // A run that was killed later than this had not had enough here.
+        let last = running.run.samples.iter().all(|sample| sample.iteration < rounds);
+        if last && enough(&running.run) {
+            break;
+        }
     }
     running.measure_memory()?;
     Ok(running.finished())
@@ -178,8 +205,8 @@ pub fn check_journal(plan: &Plan, ids: &[ConfigurationId], done: &[Entry]) -> Re
     }
     for entry in done {
         let (sample, rounds) = match entry {
-            Entry::Sample(sample) => (sample, plan.iterations),
-            Entry::AaSample(sample) => (sample, plan.aa_iterations),
+            Entry::Sample(sample) => (sample, plan.iterations * plan.batches.max(1)),
+            Entry::AaSample(sample) => (sample, plan.aa_iterations * plan.batches.max(1)),
             _ => continue,
         };
         let invalid = |reason| JournalError::Invalid { id: sample.id.clone(), reason };

@@ -8,6 +8,7 @@
 //! answers ─────────────────────┴─ tables, figures, report ┘
 //! ```
 
+mod ab;
 mod budgets;
 mod bundle;
 mod formats;
@@ -20,11 +21,12 @@ mod timings;
 mod web;
 mod worker;
 
+pub(crate) use ab::AbChoice;
 pub(crate) use bundle::forms_digest;
 pub(crate) use meshes::Meshes;
 pub(crate) use stimuli::MadeWith;
 pub(crate) use tables::{write_answers_only, write_without_study};
-pub(crate) use timings::PlanLength;
+pub(crate) use timings::{Choice, PlanLength};
 pub(crate) use web::Videos;
 pub(crate) use worker::{Invocation, measure};
 
@@ -77,7 +79,7 @@ impl<'a> Pipeline<'a> {
         self.finished_videos(&pairs)?;
         let forms: Vec<Stamp> = self.forms()?.into_iter().collect();
         let stills = self.stills()?;
-        let timings = self.timings(PlanLength::Short)?;
+        let timings = self.timings(&PlanLength::Short)?;
         let tables = self.tables(&meshes, &timings)?;
         self.page(&meshes, &[turntables, pairs, forms, stills, vec![timings, tables]].concat())?;
         self.store.retire_untouched(|stage| ASKED_FOR.iter().any(|start| stage.starts_with(start)))?;

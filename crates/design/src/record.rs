@@ -5,8 +5,10 @@ use crate::method::ConfigurationId;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
+mod pairs;
 mod validate;
 
+pub use pairs::{AbPair, AbProgram, AbRun, InvalidPair};
 pub use validate::{InvalidRun, InvalidSample};
 
 /// What a mesh was extracted for; each purpose has its own spacing.

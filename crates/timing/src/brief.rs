@@ -38,6 +38,11 @@ pub fn brief(
         lines.push(format!("Missing: {} in A and not in B.", ids.join(", ")));
     }
     lines.extend(undecided(&totals));
+    let more = comparison.instructions.iter().filter(|row| row.verdict == Verdict::Slower).count();
+    let fewer = comparison.instructions.iter().filter(|row| row.verdict == Verdict::Faster).count();
+    if more + fewer > 0 {
+        lines.push(format!("Instructions: more on {more}, fewer on {fewer}."));
+    }
     if let Some(share) = gate.must_tell.filter(|_| !found.blind.is_empty()) {
         let ids = listed(found.blind.iter().map(|row| row.id.to_string()));
         lines.push(format!("Blind: a change of {} would not have been told on {ids}.", percent(share)));

@@ -1,5 +1,6 @@
 //! Two runs, configuration by configuration.
 
+use super::counted::{InstructionRow, instruction_rows};
 use super::differences::build_differences;
 use super::floor::{NoiseFloor, between, speed_shift};
 use super::series::{self, Judgement, Series, Verdict, by_configuration, middle, thirds, values};
@@ -30,6 +31,8 @@ pub struct Comparison {
     pub reference_ratio: Option<f64>,
     /// Of each stage, total first, each configuration that both runs have.
     pub rows: Vec<Row>,
+    /// Instructions of each configuration, where both runs counted them: a verdict of their own, which decides nothing.
+    pub instructions: Vec<InstructionRow>,
     /// Configurations that only one of the runs has.
     pub unmatched: Vec<ConfigurationId>,
     /// Configurations of which other extractions were asked in B: another field, spacing, isovalue or recipe.
@@ -104,10 +107,19 @@ pub fn compare(a: &BenchRun, b: &BenchRun, across: Vec<String>) -> Comparison {
         across,
         builds: build_differences(a, b),
         reference_ratio: shift.map(f64::exp),
+        instructions: instruction_rows(a, b, &both.iter().map(|(id, _)| *id).collect::<Vec<_>>()),
         rows: stages.into_iter().flat_map(of_stage).collect(),
         unmatched: alone,
         changed,
     }
+}
+
+/// The growth of each total, as a ratio, that a second run like this one would tell: the smallest and the largest of the
+/// configurations. `None` if of one of them nothing would be told.
+pub fn would_tell(run: &BenchRun) -> Option<(f64, f64)> {
+    let comparison = compare(run, run, Vec::new());
+    let every = comparison.of_stage(Stage::Total).all(|row| row.smallest_detectable.is_some());
+    comparison.smallest_detectable(Stage::Total).filter(|_| every)
 }
 
 /// Whether both runs tell what a configuration asked of the extractor, and it is not the same.

@@ -20,11 +20,15 @@
 //! - "Cannot say" is not "equally fast".
 //! - What changes only from one hour to the next, and spares the reference work, is seen by no run.
 
+mod ab;
 mod brief;
 mod compare;
+mod counted;
 mod differences;
+pub mod export;
 mod floor;
 mod gate;
+pub mod history;
 mod outliers;
 mod quiet;
 mod ratios;
@@ -40,8 +44,10 @@ mod fixture;
 #[cfg(test)]
 mod simulation;
 
+pub use ab::{AB_SCHEMA, AbComparison, AbRow, Quantity, ab};
 pub use brief::brief;
-pub use compare::{COMPARISON_SCHEMA, Comparison, Limits, Row, compare};
+pub use compare::{COMPARISON_SCHEMA, Comparison, Limits, Row, compare, would_tell};
+pub use counted::InstructionRow;
 pub use differences::{build_differences, machine_differences};
 pub use floor::NoiseFloor;
 pub use gate::{Gate, GateRecord, GateResult, GateStatus};

@@ -1,9 +1,10 @@
 //! Statements and comparisons as tables.
 
 use super::compare::{Comparison, Row};
+use super::counted::counted_table;
 use super::differences::{commit, sources};
 use super::quiet::warnings;
-use super::series::by_configuration;
+use super::series::{Verdict, by_configuration};
 use super::statements::Statements;
 use crate::stage_times::{circumstances, measured, target};
 use design::Stage;
@@ -25,7 +26,12 @@ pub fn statement_tables_in_short(run: &BenchRun, statements: &Statements) -> Vec
 }
 
 fn tables(run: &BenchRun, statements: &Statements, with_ratios_of: fn(Stage) -> bool) -> Vec<Table> {
-    let mut tables = vec![medians(run, statements), ratios(statements, with_ratios_of), outliers(statements)];
+    let mut tables = vec![
+        medians(run, statements),
+        counted_table(run),
+        ratios(statements, with_ratios_of),
+        outliers(statements),
+    ];
     tables.retain(|table| !table.rows.is_empty());
     tables
 }
@@ -225,7 +231,46 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
     for row in comparison.rows.iter().filter(|row| row.stage != Stage::Total) {
         stages.push(cells(row, true, &across));
     }
-    vec![totals, stages]
+    let mut tables = vec![totals, stages];
+    if !comparison.instructions.is_empty() {
+        tables.push(instructions(comparison, &across));
+    }
+    tables
+}
+
+fn instructions(comparison: &Comparison, across: &str) -> Table {
+    let columns = [
+        ("id", "Id"),
+        ("a_m", "A, millions"),
+        ("b_m", "B, millions"),
+        ("ratio", "B / A"),
+        ("low", "from"),
+        ("high", "to"),
+        ("floor", "Noise up to"),
+        ("verdict", "B has"),
+    ];
+    let mut table =
+        Table::new("bench_instructions", format!("Instructions of B against A{across}"), &columns);
+    for row in &comparison.instructions {
+        let end = |end: fn(Interval) -> f64| Cell::number(row.interval.map(end), 5);
+        let verdict = match row.verdict {
+            Verdict::Slower => "more",
+            Verdict::Faster => "fewer",
+            Verdict::CannotSay => "cannot say",
+        };
+        table.push(vec![
+            Cell::text(&row.id),
+            Cell::Number(1e-6 * row.counts[0], 3),
+            Cell::Number(1e-6 * row.counts[1], 3),
+            Cell::Number(row.ratio, 5),
+            end(|i| i.low),
+            end(|i| i.high),
+            Cell::Number(row.floor, 5),
+            Cell::text(verdict),
+        ]);
+    }
+    table.notes.push("A verdict of its own; how the command ends is decided by times alone.".into());
+    table
 }
 
 /// How A and B were measured, once where it is the same.

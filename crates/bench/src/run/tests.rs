@@ -96,6 +96,8 @@ pub(crate) fn plan() -> Plan {
         workloads: Vec::new(),
         warmup: 2,
         iterations: 5,
+        batches: 1,
+        until: None,
         aa_iterations: 2,
         memory: true,
         seed: 2026,
@@ -107,6 +109,37 @@ pub(crate) fn plan() -> Plan {
 
 pub(crate) fn ids() -> Vec<ConfigurationId> {
     ["ss_bu", "ss_bi", "as_sp", "bs_su"].iter().map(|id| id.parse().unwrap()).collect()
+}
+
+#[test]
+fn a_run_ends_after_the_batch_that_is_enough() {
+    let plan = Plan { batches: 4, until: Some(0.05), memory: false, ..plan() };
+    let until = |batches: usize, done: Vec<Entry>, mock: &mut Mock| {
+        let mut entries = Vec::new();
+        let mut record = |entry: &Entry| {
+            entries.push(entry.clone());
+            Ok(())
+        };
+        let enough = |run: &BenchRun| run.samples.len() >= batches * 5 * 4;
+        let run = run_until(&plan, &ids(), mock, machine(), done, &mut record, &mut |_, _| (), &enough);
+        (run, entries)
+    };
+    let (run, entries) = until(2, Vec::new(), &mut Mock::default());
+    let run = run.unwrap();
+    assert_eq!((run.iterations, run.aa_iterations), (10, 4));
+    assert_eq!((run.samples.len(), run.aa_samples.len()), (10 * 4, 4 * 4));
+    assert_eq!(run.check(), Ok(()));
+    // Killed in its second batch and taken up again, it ends with the same batch and measures nothing twice.
+    let done: Vec<Entry> =
+        entries.into_iter().filter(|entry| !matches!(entry, Entry::Load(_))).take(35).collect();
+    let mut mock = Mock::default();
+    let (again, _) = until(2, done, &mut mock);
+    let again = again.unwrap();
+    assert_eq!((again.iterations, again.samples.len()), (10, 40));
+    // A whole batch is 68 calls, with warm-up.
+    assert!(mock.calls.len() < 68, "{}", mock.calls.len());
+    let (all, _) = until(9, Vec::new(), &mut Mock::default());
+    assert_eq!(all.unwrap().iterations, 20, "and no more than the plan has");
 }
 
 fn run_with(plan: &Plan, mock: &mut Mock) -> Result<BenchRun, BenchError> {

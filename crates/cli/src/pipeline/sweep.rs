@@ -88,7 +88,7 @@ impl Pipeline<'_> {
         let step = Step::begin("sweep", configurations.len() * plan.iterations as usize, 0);
         let job = Job { plan: &plan, configurations, cells: Some(cells) };
         let stamp = self.stage(&name, inputs()?, |writer| {
-            let run = self.run(&job, machine.clone(), &journal, &key, &step)?;
+            let run = self.run(&job, machine.clone(), &journal, &key, &step, &|_| false)?;
             writer.write_json(&format!("{name}/run.json"), &run)?;
             writer.write(&format!("{name}/samples.csv"), bench::samples_csv(&run.samples).as_bytes())
         })?;
@@ -105,6 +105,8 @@ impl Pipeline<'_> {
             workloads: self.workloads(&self.swept(section)?, Some(cells))?,
             warmup: benchmark.warmup,
             iterations: section.iterations,
+            batches: 1,
+            until: None,
             aa_iterations: 0,
             memory: true,
             seed: self.study.file.study.seed,

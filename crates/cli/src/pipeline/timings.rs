@@ -6,31 +6,47 @@ use super::worker::{Job, timed};
 use crate::store::{Inputs, Stamp, remove_if_there};
 use crate::terminal::progress::Step;
 use crate::{machine, recipe, run_file, source_digests};
-use anyhow::Result;
+use anyhow::{Result, bail};
 use bench::Plan;
-use design::Configuration;
 use design::machine::Machine;
 use design::record::{BenchRun, Purpose, Workload};
+use design::{Configuration, ConfigurationId};
 
-/// How many rounds are run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// How many rounds are run, and of what.
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) enum PlanLength {
     /// `benchmark.short_iterations` and no more, for a whole study in minutes.
     Short,
     /// `benchmark.iterations`, as in the paper, with A/A block and peak memory.
     Full,
+    /// As the full one, of some configurations or with other rounds.
+    Selected(Choice),
 }
+
+/// What of a study is measured, and for how long.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Choice {
+    /// Configurations; none for all.
+    pub(crate) only: Vec<ConfigurationId>,
+    /// Rounds; with `until`, rounds at most.
+    pub(crate) rounds: Option<u32>,
+    /// Growth of a total, as a share: rounds are measured until a second run like this would tell it of every total.
+    pub(crate) until: Option<f64>,
+}
+
+/// How many batches there are at most where nothing else is said.
+const BATCHES: u32 = 10;
 
 impl Pipeline<'_> {
     /// Times every configuration. The short plan is not run where a full run is up to date: the full one stands for it.
-    pub(crate) fn timings(&self, length: PlanLength) -> Result<Stamp> {
+    pub(crate) fn timings(&self, length: &PlanLength) -> Result<Stamp> {
         if self.spacings().is_empty() {
             self.budgets(&[Purpose::Benchmark], &[])?;
         }
         let machine = machine::read();
-        if length == PlanLength::Short
-            && let Some(full) =
-                self.store.peek(stage_name(PlanLength::Full), self.inputs(PlanLength::Full, &machine)?)
+        let full = PlanLength::Full;
+        if *length == PlanLength::Short
+            && let Some(full) = self.store.peek(stage_name(&full), self.inputs(&full, &machine)?)
         {
             tell!("timings: the full run is up to date and stands for the short one");
             return Ok(full);
@@ -38,12 +54,16 @@ impl Pipeline<'_> {
         let plan = self.plan(length)?;
         let inputs = self.inputs(length, &machine)?;
         let key = self.inputs(length, &machine)?.finish();
-        let count = self.timed()?.len();
+        let count = self.chosen(length)?.len();
         let step = Step::begin("timings", count * plan.iterations as usize, 0);
         let journal = self.store.journal(stage_name(length));
         let stamp = self.stage(stage_name(length), inputs, |writer| {
-            let job = Job { plan: &plan, configurations: self.timed()?, cells: None };
-            let run = self.run(&job, machine, &journal, &key, &step)?;
+            let job = Job { plan: &plan, configurations: self.chosen(length)?, cells: None };
+            let enough = |run: &BenchRun| {
+                let told = timing::would_tell(run);
+                plan.until.is_some_and(|share| told.is_some_and(|(_, most)| most <= 1.0 + share))
+            };
+            let run = self.run(&job, machine, &journal, &key, &step, &enough)?;
             let folder = stage_name(length);
             writer.write_json(&format!("{folder}/run.json"), &run)?;
             writer.write(&format!("{folder}/samples.csv"), bench::samples_csv(&run.samples).as_bytes())?;
@@ -87,14 +107,26 @@ impl Pipeline<'_> {
         run_file::read(&self.store.root().join(stamp.file("run.json")))
     }
 
-    fn plan(&self, length: PlanLength) -> Result<Plan> {
+    fn plan(&self, length: &PlanLength) -> Result<Plan> {
         let section = &self.study.file.benchmark;
-        let full = length == PlanLength::Full;
+        let full = *length != PlanLength::Short;
+        let (mut iterations, mut batches, mut until) = (section.iterations, 1, None);
+        match length {
+            PlanLength::Short => iterations = section.short_iterations,
+            PlanLength::Full => {}
+            PlanLength::Selected(Choice { until: share @ Some(_), rounds, .. }) => {
+                until = *share;
+                batches = rounds.map_or(BATCHES, |rounds| rounds.div_ceil(iterations));
+            }
+            PlanLength::Selected(Choice { rounds, .. }) => iterations = rounds.unwrap_or(iterations),
+        }
         Ok(Plan {
             study: self.study.file.study.id.clone(),
-            workloads: self.workloads(&self.timed()?, None)?,
+            workloads: self.workloads(&self.chosen(length)?, None)?,
             warmup: section.warmup,
-            iterations: if full { section.iterations } else { section.short_iterations },
+            iterations,
+            batches,
+            until,
             aa_iterations: if full { section.aa_iterations } else { 0 },
             memory: full,
             seed: self.study.file.study.seed,
@@ -105,10 +137,28 @@ impl Pipeline<'_> {
     }
 
     /// What a run depends on: the extractions, the plan, and the machine, but not how busy the machine is.
-    fn inputs(&self, length: PlanLength, machine: &Machine) -> Result<Inputs> {
+    fn inputs(&self, length: &PlanLength, machine: &Machine) -> Result<Inputs> {
         Ok(Inputs::of_sources(source_digests::TIMINGS)
             .value("machine", &machine.lasting())
             .value("plan", &self.plan(length)?))
+    }
+
+    /// What has a time, has not failed and was asked for.
+    fn chosen(&self, length: &PlanLength) -> Result<Vec<&Configuration>> {
+        match length {
+            PlanLength::Selected(Choice { only, .. }) => self.timed_of(only),
+            _ => self.timed(),
+        }
+    }
+
+    /// Of these configurations, or of all where none is named, those that have a time and have not failed.
+    pub(super) fn timed_of(&self, only: &[ConfigurationId]) -> Result<Vec<&Configuration>> {
+        let mut timed = self.timed()?;
+        timed.retain(|configuration| only.is_empty() || only.contains(&configuration.id));
+        if timed.is_empty() {
+            bail!("none of the configurations that were asked for has a time");
+        }
+        Ok(timed)
     }
 
     /// What has a time and has not failed.
@@ -143,9 +193,10 @@ impl Pipeline<'_> {
     }
 }
 
-fn stage_name(length: PlanLength) -> &'static str {
+fn stage_name(length: &PlanLength) -> &'static str {
     match length {
         PlanLength::Short => "bench/short",
         PlanLength::Full => "bench/full",
+        PlanLength::Selected(_) => "bench/selected",
     }
 }

@@ -9,7 +9,7 @@ use crate::recipe::{Recipe, recipe};
 use crate::store::{sha256, write_whole};
 use crate::terminal::progress::Step;
 use anyhow::{Context, Result, bail};
-use bench::{BenchError, Entry, Plan, ProcessExecutor};
+use bench::{BenchError, Entry, PLANTED, Plan, Planted, ProcessExecutor};
 use clap::Args;
 use design::config::SweepSection;
 use design::machine::Machine;
@@ -34,7 +34,7 @@ pub(crate) struct Invocation {
     /// The study's sweep at so many cells per axis, instead of its benchmark
     #[arg(long)]
     cells: Option<u32>,
-    /// Configurations that failed and are not counted
+    /// Configurations that failed or were not asked for, and are not counted
     #[arg(long)]
     without: Vec<String>,
     /// Spacings that were found for methods with a budget
@@ -44,7 +44,7 @@ pub(crate) struct Invocation {
 
 impl Invocation {
     /// The command that starts the process.
-    fn command(&self, program: &Path) -> Command {
+    pub(super) fn command(&self, program: &Path) -> Command {
         let mut command = Command::new(program);
         command.args(["bench", "worker"]).arg(&self.study);
         command.args(["--sha256", &self.sha256, "--threads", &self.threads.to_string()]);
@@ -90,6 +90,7 @@ impl Pipeline<'_> {
         journal: &Path,
         key: &str,
         step: &Step,
+        enough: &dyn Fn(&BenchRun) -> bool,
     ) -> Result<BenchRun> {
         let plan = job.plan;
         let done = self.take_up(journal, key, job)?;
@@ -97,23 +98,46 @@ impl Pipeline<'_> {
         write_whole(journal, lines.as_bytes())?;
         let mut file = File::options().append(true).open(journal)?;
         let program = std::env::current_exe().context("cannot find this program to start it again")?;
-        let mut spacings = tempfile::NamedTempFile::new()?;
-        spacings.write_all(&serde_json::to_vec(&*self.spacings())?)?;
-        let invocation = Invocation {
-            study: self.study.path.clone(),
-            sha256: sha256(&std::fs::read(&self.study.path)?),
-            threads: plan.threads,
-            pin: plan.pin,
-            cells: job.cells,
-            without: self.failed().iter().map(ToString::to_string).collect(),
-            spacings: Some(spacings.path().to_owned()),
-        };
+        let spacings = self.spacings_file()?;
+        let mut invocation =
+            self.invocation([plan.threads, u32::from(plan.pin)], &job.ids(), spacings.path())?;
+        if job.cells.is_some() {
+            // A sweep has a choice of its own.
+            (invocation.cells, invocation.without) = (job.cells, Vec::new());
+        }
         let worker = || invocation.command(&program);
         let mut record = |entry: &Entry| file.write_all(entry.line().as_bytes());
         let may_fail = |number: usize| is_program(self.study, job.configurations[number]);
         let mut executor = ProcessExecutor::new(&worker).leaving_out(&may_fail);
         let on_turn = &mut |done, all| step.set(done, all);
-        Ok(bench::run(plan, &job.ids(), &mut executor, machine, done, &mut record, on_turn)?)
+        let ids = job.ids();
+        Ok(bench::run_until(plan, &ids, &mut executor, machine, done, &mut record, on_turn, enough)?)
+    }
+
+    /// Spacings that were found, in a file that measuring processes read.
+    pub(super) fn spacings_file(&self) -> Result<tempfile::NamedTempFile> {
+        let mut file = tempfile::NamedTempFile::new()?;
+        file.write_all(&serde_json::to_vec(&*self.spacings())?)?;
+        Ok(file)
+    }
+
+    /// What a process that measures these configurations is told.
+    pub(super) fn invocation(
+        &self,
+        [threads, pin]: [u32; 2],
+        ids: &[ConfigurationId],
+        spacings: &Path,
+    ) -> Result<Invocation> {
+        let left_out = timed(self.study)?.into_iter().map(|c| &c.id).filter(|id| !ids.contains(id));
+        Ok(Invocation {
+            study: self.study.path.clone(),
+            sha256: sha256(&std::fs::read(&self.study.path)?),
+            threads,
+            pin: pin > 0,
+            cells: None,
+            without: left_out.map(ToString::to_string).collect(),
+            spacings: Some(spacings.to_owned()),
+        })
     }
 
     /// Goes on without what a run left out.
@@ -208,7 +232,16 @@ pub(crate) fn measure(invocation: &Invocation) -> Result<()> {
         prepare(&study, &fields, &spacings, configuration, wanted).map_err(|error| format!("{error:#}"))
     };
     let (requests, replies) = (std::io::stdin().lock(), std::io::stdout().lock());
-    Ok(bench::serve(requests, replies, pinned, invocation.threads, &mut Clock::new(prepared))?)
+    let mut clock = Clock::new(prepared);
+    let mut planted = Planted::new(&mut clock, planted_share()?);
+    Ok(bench::serve(requests, replies, pinned, invocation.threads, &mut planted)?)
+}
+
+/// By how much this process is to be slower than it is, to see whether that is found; 0 but in tests of the benchmark itself.
+fn planted_share() -> Result<f64> {
+    let Ok(text) = std::env::var(PLANTED) else { return Ok(0.0) };
+    let share: Option<f64> = text.parse().ok().filter(|share: &f64| (0.0..=100.0).contains(share));
+    share.with_context(|| format!("{PLANTED} = {text}: must be a share from 0 to 100, such as 0.05"))
 }
 
 #[cfg(test)]
