@@ -101,7 +101,7 @@ fn ten_lines_say_what_was_told_and_what_could_have_been() {
         "{}",
         run.stdout
     );
-    assert!(run.stdout.contains("No verdict on 2 totals; slower by 0."), "{}", run.stdout);
+    assert!(run.stdout.contains("No verdict on 2 totals; slower by 1."), "{}", run.stdout);
     assert!(
         run.stdout.contains("Load of others: 1 % in A, 1 % in B; reference work +0.0 %."),
         "{}",
@@ -300,7 +300,7 @@ fn kept_runs_have_a_history() {
     let shown = folder.succeed(&["history", "."]);
     assert!(shown.stdout.contains("| two"), "{}", shown.stdout);
     let csv = folder.read("bench/history.csv");
-    assert_eq!(csv.lines().nth(2), Some("2,two,abc,30,1.200,1.200,1.200,ss_bi,1.000"), "{csv}");
+    assert_eq!(csv.lines().nth(2), Some("2,two,abc,30,1.2,1.2,1.2,ss_bi,1"), "{csv}");
     assert!(folder.read("bench/history.svg").contains("<svg"));
     assert!(folder.path("bench/history.png").is_file());
     folder.write("bench/history.jsonl", "{\n");

@@ -152,6 +152,6 @@ mod tests {
             assert!((found - want).abs() < 1e-12, "{means:?}");
         }
         let text = history_table(&steps).to_csv();
-        assert_eq!(text.lines().nth(2), Some("2,two,unknown,10,1.000,0.500,2.000,ss_bi,1.000"), "{text}");
+        assert_eq!(text.lines().nth(2), Some("2,two,unknown,10,1,0.5,2,ss_bi,1"), "{text}");
     }
 }
