@@ -20,8 +20,8 @@ fi
 program=$(realpath "$ISOSTUDY")
 mkdir -p "$dir"
 
-echo "| planted | runs | slower told, all together | slower told, some configuration | faster told | would tell, all together | estimate, all together |"
-echo "|---:|---:|---:|---:|---:|---:|---:|"
+echo "| planted | quantity | runs | slower told, all together | slower told, some configuration | faster told | would tell, all together | estimate, all together |"
+echo "|---:|---|---:|---:|---:|---:|---:|---:|"
 for percent in 0 3 5 10 20; do
     new="$dir/isostudy-$percent"
     # A wrapper: the old program must not see the variable.
@@ -43,14 +43,18 @@ import json, sys
 
 folder, percent, runs = sys.argv[1], sys.argv[2], int(sys.argv[3])
 found = [json.load(open(f"{folder}/{percent}-{run}.json")) for run in range(1, runs + 1)]
-times = [[row for row in one["rows"] if row["quantity"] == "time"] for one in found]
-together = [rows[0] for rows in times]
-slower = sum(row["verdict"] == "slower" for row in together)
-some = sum(any(row["verdict"] == "slower" for row in rows[1:]) for rows in times)
-faster = sum(any(row["verdict"] == "faster" for row in rows) for rows in times)
-tell = sorted(100 * (row["smallest_detectable"] - 1) for row in together)
-ratio = sorted(100 * (row["ratio"] - 1) for row in together)
-print(f"| {percent} % | {runs} | {slower} | {some} | {faster} | {tell[0]:.1f} to {tell[-1]:.1f} % | {ratio[0]:+.1f} to {ratio[-1]:+.1f} % |")
+for quantity in ("time", "cpu-time", "instructions"):
+    each = [[row for row in one["rows"] if row["quantity"] == quantity] for one in found]
+    if not all(each):
+        continue
+    together = [rows[0] for rows in each]
+    slower = sum(row["verdict"] == "slower" for row in together)
+    some = sum(any(row["verdict"] == "slower" for row in rows[1:]) for rows in each)
+    faster = sum(any(row["verdict"] == "faster" for row in rows) for rows in each)
+    tell = sorted(100 * (row["smallest_detectable"] - 1) for row in together)
+    ratio = sorted(100 * (row["ratio"] - 1) for row in together)
+    told = f"{tell[0]:.1f} to {tell[-1]:.1f} % | {ratio[0]:+.1f} to {ratio[-1]:+.1f} %"
+    print(f"| {percent} % | {quantity} | {runs} | {slower} | {some} | {faster} | {told} |")
 PYTHON
 done
 rm -f "$dir/told"

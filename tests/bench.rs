@@ -195,6 +195,11 @@ fn a_planted_slowdown_is_found_between_two_programs() {
     let ratio = all["ratio"].as_f64().unwrap();
     assert!((3.0..8.0).contains(&ratio), "five times as long was planted: {ratio}");
     assert_eq!(ab([slow, this], &[]).code, Some(0), "the other way round it is faster");
+    let by_cpu = ab([this, slow], &["--by", "cpu-time"]);
+    if cfg!(target_os = "linux") {
+        assert_eq!(by_cpu.code, Some(1), "{}", by_cpu.stderr);
+        assert!(by_cpu.stdout.contains("All together, CPU time: slower by +"), "{}", by_cpu.stdout);
+    }
     // Nothing tells a millionth.
     assert_eq!(ab([slow, this], &["--must-tell", "0.0001%"]).code, Some(3));
     let missing = ab(["/nowhere/isostudy", this], &[]);

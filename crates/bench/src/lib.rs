@@ -4,6 +4,7 @@
 //! Plan ── invocations, turns ──> run ── Executor ──> Measurement ──> BenchRun ──┬── serde ──────── run.json
 //!                              │        └ ProcessExecutor ── serve            ├── samples_csv ── every sample
 //!                              └── Entry ──> journal ──> run                  └── machine_csv ── machine against target
+//! AbPlan ── run_ab ── Executor, Executor ──> AbMeasured               two programs, in turn
 //! read_machine, CpuProfile ──> compare_profile            published means ── import ──> BenchRun
 //! ```
 //!
@@ -28,6 +29,8 @@
 //! - Nothing here makes a machine quiet. Governor, load and what other processes had of the CPUs are recorded.
 //! - Caches, cores, memory, governor, load, containers and peak memory are read on Linux only; the CPU's model name on any
 //!   x86 and on Linux; pinning is for Linux.
+//! - Counters beside time ([`Counters`](design::record::Counters)) are those that the system tells: on Linux CPU time and page faults,
+//!   and the CPU's own where machine and kernel permit it. Allocations are not counted.
 //! - Times are wall-clock times, and a total is the sum of the stages, not the time round the call: dropping the
 //!   mesh is not in it.
 

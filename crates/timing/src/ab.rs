@@ -164,15 +164,15 @@ impl AbComparison {
         self.rows.iter().filter(move |row| row.quantity == quantity)
     }
 
-    /// Times that are slower by more than a share: all together, and of each configuration.
-    pub fn regressions(&self, relative: f64) -> Vec<&AbRow> {
+    /// What is more by more than a share: all together, and of each configuration.
+    pub fn regressions(&self, quantity: Quantity, relative: f64) -> Vec<&AbRow> {
         let beyond = |row: &&AbRow| row.verdict == Verdict::Slower && row.ratio > 1.0 + relative;
-        self.of(Quantity::Time).filter(beyond).collect()
+        self.of(quantity).filter(beyond).collect()
     }
 
-    /// Whether growth of all totals together by a share would have been told.
-    pub fn would_tell(&self, share: f64) -> bool {
-        let all = self.of(Quantity::Time).next().and_then(|row| row.smallest_detectable);
+    /// Whether growth of all configurations together by a share would have been told.
+    pub fn would_tell(&self, quantity: Quantity, share: f64) -> bool {
+        let all = self.of(quantity).next().and_then(|row| row.smallest_detectable);
         all.is_some_and(|ratio| ratio <= 1.0 + share)
     }
 
@@ -323,7 +323,7 @@ mod tests {
             assert_eq!(row.verdict, Verdict::CannotSay);
             assert!((row.smallest_detectable.unwrap().ln() - half).abs() < 1e-9);
         }
-        assert!(!found.would_tell(0.05) && found.would_tell(0.2));
+        assert!(!found.would_tell(Quantity::Time, 0.05) && found.would_tell(Quantity::Time, 0.2));
     }
 
     #[test]
@@ -332,16 +332,19 @@ mod tests {
         let made =
             run(&["ss_bi", "ss_su"], 6, 3, |place, at, _| tremble(at) + if place == 0 { 0.05 } else { 0.0 });
         let found = ab(&made);
-        let slower: Vec<_> = found.regressions(0.02).iter().map(|row| row.id.clone()).collect();
+        let slower: Vec<_> =
+            found.regressions(Quantity::Time, 0.02).iter().map(|row| row.id.clone()).collect();
         assert_eq!(slower, [None, Some("ss_bi".parse().unwrap())]);
-        assert_eq!(found.regressions(0.04).len(), 1, "half of it is all together's");
+        assert_eq!(found.regressions(Quantity::Time, 0.04).len(), 1, "half of it is all together's");
         let lines = found.brief(&made);
         assert!(
             lines.len() <= 10 && lines[1].starts_with("All together, total time: slower by +2.6 %"),
             "{lines:?}"
         );
         let better = ab(&run(&["ss_bi"], 6, 3, |_, at, _| tremble(at) - 0.05));
-        assert!(better.regressions(0.0).is_empty() && better.rows[0].verdict == Verdict::Faster);
+        assert!(
+            better.regressions(Quantity::Time, 0.0).is_empty() && better.rows[0].verdict == Verdict::Faster
+        );
     }
 
     #[test]
@@ -355,7 +358,10 @@ mod tests {
         let all = found.of(Quantity::Instructions).next().unwrap();
         assert_eq!(all.verdict, Verdict::Slower, "1 % more instructions, where time says nothing");
         assert_eq!(found.of(Quantity::Time).next().unwrap().verdict, Verdict::CannotSay);
-        assert!(found.regressions(0.0).is_empty(), "time decides");
+        assert!(
+            found.regressions(Quantity::Time, 0.0).is_empty()
+                && !found.regressions(Quantity::Instructions, 0.005).is_empty()
+        );
         made.pairs[3].new.counters.instructions = None;
         assert_eq!(ab(&made).of(Quantity::Instructions).count(), 0);
     }
@@ -375,7 +381,8 @@ mod tests {
                 let made = run(&["ss_bi", "ss_su"], 16, 15, |place, at, _| {
                     slowdown + process[2 * at as usize + place] + 0.1 * normal()
                 });
-                told[usize::from(slowdown > 0.0)] += usize::from(!ab(&made).regressions(0.0).is_empty());
+                told[usize::from(slowdown > 0.0)] +=
+                    usize::from(!ab(&made).regressions(Quantity::Time, 0.0).is_empty());
             }
         }
         assert!(told[0] <= 10, "{told:?}");

@@ -5,7 +5,10 @@
 //!            ├── A/A block ── NoiseFloor ── ratios ── Statements ── tables
 //!            └── load windows ── quiet ───────────┘
 //! BenchRun ── stage times
-//! BenchRun, BenchRun ── machine differences, compare ── Comparison ── tables, regressions
+//! BenchRun, BenchRun ── machine differences, compare ── Comparison ──┬── tables, brief
+//!                                                    Gate ── judge ──┴── GateResult, GateRecord
+//! AbRun ── ab ── AbComparison
+//! BenchRun ── export, history
 //! ```
 //!
 //! Times are compared through the logarithm of their ratio, so that twice as slow and twice as fast are equally far from

@@ -59,6 +59,7 @@ impl Pipeline<'_> {
         };
         let (journal, key) = (self.store.journal(STAGE), inputs().finish());
         let ids: Vec<ConfigurationId> = configurations.iter().map(|c| c.id.clone()).collect();
+        let step = Step::begin("bench ab", plan.processes as usize, 0);
         let stamp = self.stage(STAGE, inputs(), |writer| {
             let done = self.take_up_ab(&journal, &key)?;
             let begun = AbEntry::Begun { key: key.clone() };
@@ -71,10 +72,8 @@ impl Pipeline<'_> {
             let command = |program: &Path| -> Command { told.command(program) };
             let (of_old, of_new) = (|| command(&choice.old), || command(&choice.new));
             let (mut of_old, mut of_new) = (ProcessExecutor::new(&of_old), ProcessExecutor::new(&of_new));
-            let step = Step::begin("bench ab", plan.processes as usize, 0);
             let on_pair = &mut |done, all| step.set(done, all);
             let measured = run_ab(&plan, &ids, [&mut of_old, &mut of_new], done, &mut record, on_pair)?;
-            step.end();
             let run = AbRun {
                 schema: AbRun::SCHEMA,
                 study: self.study.file.study.id.clone(),
@@ -94,8 +93,10 @@ impl Pipeline<'_> {
             write_table(writer, STAGE, &timing::ab(&run).table())
         })?;
         remove_if_there(&journal)?;
+        step.count_all(stamp.redone);
+        step.end();
         if !stamp.redone {
-            tell!("bench ab: up to date; --force measures again");
+            tell!("bench ab: nothing was measured; --force measures again");
         }
         let path = self.store.root().join(stamp.file("ab.json"));
         let run: AbRun = serde_json::from_slice(&std::fs::read(&path)?)?;

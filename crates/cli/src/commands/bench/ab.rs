@@ -5,12 +5,12 @@ use crate::commands::study_run::{Run, Selection, with_selection};
 use crate::outcome::Outcome;
 use crate::pipeline::AbChoice;
 use crate::terminal::say;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use design::record::AbRun;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use timing::AbComparison;
+use timing::{AbComparison, Quantity};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -29,6 +29,9 @@ pub(crate) struct Arguments {
     /// Measure in so many pairs of processes; the more there are, the less chance gives either program
     #[arg(long, default_value_t = 16, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
     processes: u32,
+    /// What decides. CPU time and instructions hardly change beside other work, but do not show threads that wait
+    #[arg(long, default_value = "time")]
+    by: By,
     /// Slower is a regression beyond this share: 0.01, or 1%
     #[arg(long, default_value = "0.01", value_name = "SHARE", value_parser = share)]
     relative: f64,
@@ -44,6 +47,23 @@ pub(crate) struct Arguments {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum By {
+    Time,
+    CpuTime,
+    Instructions,
+}
+
+impl From<By> for Quantity {
+    fn from(by: By) -> Self {
+        match by {
+            By::Time => Self::Time,
+            By::CpuTime => Self::CpuTime,
+            By::Instructions => Self::Instructions,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Format {
     Markdown,
     Csv,
@@ -54,6 +74,7 @@ enum Format {
 #[derive(Serialize)]
 struct Record<'a> {
     exit_status: u8,
+    by: Quantity,
     relative: f64,
     must_tell: Option<f64>,
     regressions: Vec<&'a timing::AbRow>,
@@ -87,8 +108,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
 
 fn answer(arguments: &Arguments, run: &AbRun) -> Result<Outcome> {
     let comparison = timing::ab(run);
-    let regressions = comparison.regressions(arguments.relative);
-    let blind = arguments.must_tell.is_some_and(|share| !comparison.would_tell(share));
+    let by = Quantity::from(arguments.by);
+    if comparison.of(by).next().is_none() {
+        bail!("--by {}: not every sample has it, on this system or of these programs", by.label());
+    }
+    let regressions = comparison.regressions(by, arguments.relative);
+    let blind = arguments.must_tell.is_some_and(|share| !comparison.would_tell(by, share));
     let outcome = match () {
         () if !regressions.is_empty() => Outcome::CheckFailed,
         () if blind => Outcome::Blind,
@@ -105,6 +130,7 @@ fn answer(arguments: &Arguments, run: &AbRun) -> Result<Outcome> {
         Some(Format::Json) => {
             let record = Record {
                 exit_status: outcome.status(),
+                by,
                 relative: arguments.relative,
                 must_tell: arguments.must_tell,
                 regressions,
