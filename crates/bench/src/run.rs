@@ -105,7 +105,6 @@ pub fn run(
 ///
 /// # Errors
 /// As [`run`].
-#[expect(clippy::too_many_arguments, reason = "those of `run`, and one")]
 pub fn run_until(
     plan: &Plan,
     ids: &[ConfigurationId],
