@@ -160,8 +160,8 @@ impl Block<'_> {
         // Who starts first may get other memory.
         let first = (self.invocation % 2) as usize;
         let began = Instant::now();
-        programs[first].sit_down()?;
-        let pinned = programs[1 - first].sit_down()?;
+        programs[first].begin()?;
+        let pinned = programs[1 - first].begin()?;
         for round in 0..self.plan.warmup {
             self.round(&mut programs, Round::WarmUp(round))?;
         }

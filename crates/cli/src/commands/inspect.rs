@@ -98,8 +98,8 @@ fn times(prepared: &Prepared<'_>, arguments: &Arguments) -> Result<Vec<BenchSamp
     let mut clock = Clock::new(|_| Ok(prepared.clone()));
     let mut samples = Vec::new();
     for iteration in 0..=arguments.iterations {
-        let stages = clock.time(0, arguments.threads).map_err(|why| anyhow!(why))?;
-        samples.push(stages.sample(prepared.id.clone(), [0, iteration, 0], None));
+        let timed = clock.time(0, arguments.threads).map_err(|why| anyhow!(why))?;
+        samples.push(timed.stages.sample(prepared.id.clone(), [0, iteration, 0], None));
     }
     samples.remove(0);
     Ok(samples)

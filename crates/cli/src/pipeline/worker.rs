@@ -101,10 +101,7 @@ impl Pipeline<'_> {
         let spacings = self.spacings_file()?;
         let mut invocation =
             self.invocation([plan.threads, u32::from(plan.pin)], &job.ids(), spacings.path())?;
-        if job.cells.is_some() {
-            // A sweep has a choice of its own.
-            (invocation.cells, invocation.without) = (job.cells, Vec::new());
-        }
+        invocation.cells = job.cells;
         let worker = || invocation.command(&program);
         let mut record = |entry: &Entry| file.write_all(entry.line().as_bytes());
         let may_fail = |number: usize| is_program(self.study, job.configurations[number]);
