@@ -62,12 +62,23 @@ impl Usage {
 /// The clock tells CPU time to the nanosecond, where `/proc` counts hundredths of a second.
 #[cfg(target_os = "linux")]
 fn usage() -> Option<Usage> {
-    let cpu = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     Some(Usage {
-        cpu_s: cpu.tv_sec as f64 + 1e-9 * cpu.tv_nsec as f64,
+        cpu_s: cpu_s()?,
         page_faults: parse_faults(&std::fs::read_to_string("/proc/self/stat").ok()?)?,
         context_switches: parse_switches(&std::fs::read_to_string("/proc/self/status").ok()?)?,
     })
+}
+
+/// CPU time of this process since it began, in seconds.
+#[cfg(target_os = "linux")]
+pub(crate) fn cpu_s() -> Option<f64> {
+    let cpu = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    Some(cpu.tv_sec as f64 + 1e-9 * cpu.tv_nsec as f64)
+}
+
+#[cfg(not(target_os = "linux"))]
+pub(crate) fn cpu_s() -> Option<f64> {
+    None
 }
 
 #[cfg(not(target_os = "linux"))]
