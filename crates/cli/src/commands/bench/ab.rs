@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     /// Print every row as a table, in place of ten lines
     #[arg(long)]
     all: bool,
-    /// Print every row, as
+    /// Print every row in this format
     #[arg(long)]
     format: Option<Format>,
 }
