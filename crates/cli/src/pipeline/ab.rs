@@ -36,7 +36,7 @@ impl Pipeline<'_> {
     /// If a program cannot be read, started or asked, or a file not be written.
     pub(crate) fn ab(&self, choice: &AbChoice) -> Result<AbRun> {
         if self.spacings().is_empty() {
-            self.budgets(&[Purpose::Benchmark])?;
+            self.budgets(&[Purpose::Benchmark], &choice.only)?;
         }
         let machine = machine::read();
         let section = &self.study.file.benchmark;
