@@ -46,6 +46,60 @@ fn a_mesh_of_the_volume_is_right_and_another_level_is_not() {
     verify(&["--isovalue", "1", "--ties", "inside"], 0);
 }
 
+/// Samples that mean nothing, positive and negative whole numbers.
+fn noise(i: usize) -> i32 {
+    let mixed = (i as u32).wrapping_mul(0x9e37_79b9).wrapping_add(77);
+    let mixed = (mixed ^ mixed >> 15).wrapping_mul(0x85eb_ca6b);
+    (mixed >> 24) as i32 - 128
+}
+
+/// On a volume's own cells the truth of the samples is met, whatever the steps are: equal, unequal, turned, mirrored, sheared.
+#[test]
+fn a_volume_is_extracted_on_its_own_cells() {
+    let folder = Folder::new();
+    let spaces = [
+        ("equal", "(1,0,0) (0,1,0) (0,0,1)"),
+        ("unequal", "(0.5,0,0) (0,1,0) (0,0,3.25)"),
+        ("turned", "(0.6,0.8,0) (-0.8,0.6,0) (0,0,1.5)"),
+        ("mirrored", "(-1,0,0) (0,1,0) (0,0,2)"),
+        ("sheared", "(1,0,0) (0.5,1,0) (0,0.25,1)"),
+    ];
+    let counts = [7, 6, 5];
+    let text: Vec<String> = (0..counts.iter().product()).map(|i| noise(i).to_string()).collect();
+    let mut found = Vec::new();
+    for (name, directions) in spaces {
+        let header = format!(
+            "NRRD0004\ntype: short\ndimension: 3\nsizes: 7 6 5\nspace dimension: 3\n\
+             space origin: (3,-2,1)\nspace directions: {directions}\nencoding: text\n\n{}\n",
+            text.join(" ")
+        );
+        let volume = format!("{name}.nrrd");
+        folder.write(&volume, header);
+        let extract = ["extract", "--volume", &volume, "--isovalue", "4.5", "--out", "a.ply", "--json"];
+        let verify = ["verify", "a.ply", "--volume", &volume, "--isovalue", "4.5"];
+        let said = folder.succeed(&[&extract[..], &["--method", "mc33"]].concat());
+        let report: serde_json::Value = serde_json::from_str(&said.stdout).unwrap();
+        assert_eq!(report["own_cells"], true, "{name}");
+        assert_eq!(report["cells"], serde_json::json!([6, 5, 4]));
+        assert_eq!(said.stderr, "");
+        // Samples at random have cells that signs alone decide otherwise.
+        run(&folder, &verify, 0);
+        let counts = [report["topology"]["vertices"].clone(), report["quality"]["triangles"].clone()];
+        folder.succeed(&[&extract[..], &["--method", "mc"]].concat());
+        run(&folder, &verify, 1);
+        // The same samples turned round are the same surface, seen from the other side.
+        folder.succeed(&[&extract[..], &["--method", "mc33", "--inside", "below"]].concat());
+        run(&folder, &verify, 0);
+        found.push(counts);
+    }
+    assert!(found.iter().all(|counts| *counts == found[0]), "{found:?}");
+    // A lattice that is asked for is not the volume's.
+    let words = ["extract", "--volume", "unequal.nrrd", "--isovalue", "4.5", "--out", "a.ply", "--json"];
+    let said = folder.succeed(&[&words[..], &["--method", "mc33", "--spacing", "0.5"]].concat());
+    let report: serde_json::Value = serde_json::from_str(&said.stdout).unwrap();
+    assert_eq!((&report["own_cells"], &report["cells"][2]), (&false.into(), &26.into()));
+}
+
 #[test]
 fn what_cannot_be_compared_is_an_error() {
     let folder = Folder::new();

@@ -46,6 +46,16 @@ pub(crate) struct Source {
     values: String,
 }
 
+/// A volume to be extracted on its own cells.
+pub(crate) struct OwnCells {
+    /// The field, for measuring.
+    pub(crate) source: Source,
+    /// Along the volume's axes.
+    pub(crate) cells: [u32; 3],
+    /// Whether the grid's axes are not those of space, so that its box is not the volume.
+    pub(crate) is_turned: bool,
+}
+
 /// What is asked of a source, whoever asks.
 pub(crate) struct Options {
     /// The box to look at; the source's own unless given.
@@ -121,7 +131,7 @@ impl Options {
         if is_turned && !self.close {
             tell!("{name}: the grid is turned against the axes; the surface is closed where it leaves it");
         }
-        let (low, high) = field.value_range();
+        let values = values_of(&field);
         let (step, samples) = (field.spacing(), counts.iter().product::<usize>());
         let held = field.memory_bytes();
         let mut source = self.source(Box::new(field), Inside::Above, bounds, &path.display().to_string());
@@ -129,7 +139,7 @@ impl Options {
         if self.close || is_turned && self.bounds.is_none() {
             source = source.closed();
         }
-        source.values = format!("; the volume's samples run from {low} to {high}");
+        source.values = values;
         if self.spacing.is_none() && self.cells.is_none() {
             source.spacing = step;
             let cubes: f64 =
@@ -142,6 +152,24 @@ impl Options {
             }
         }
         Ok(source)
+    }
+
+    /// A volume that is extracted on its own cells: as it is, open where the surface leaves it.
+    ///
+    /// # Errors
+    /// If it is no field.
+    pub(crate) fn of_own_cells(&self, volume: volume::Volume, path: &Path) -> Result<OwnCells> {
+        let name = path.display();
+        let volume::Volume { counts, values, origin, steps } = volume;
+        let field = VolumeField::try_new(counts, values, origin, steps, Beyond::Continued)
+            .with_context(|| name.to_string())?;
+        let (bounds, is_turned) = (field.bounds(), !field.is_axis_aligned());
+        let (values, held) = (values_of(&field), field.memory_bytes());
+        let source = self.source(Box::new(field), Inside::Above, bounds, &name.to_string());
+        // The edge of a cube as large as a cell.
+        let spacing = glam::DMat3::from_cols_array_2d(&steps).determinant().abs().cbrt() as f32;
+        let cells = counts.map(|n| n as u32 - 1);
+        Ok(OwnCells { source: Source { spacing, held, values, ..source }, cells, is_turned })
     }
 
     /// The distance to a mesh in a file.
@@ -157,6 +185,12 @@ impl Options {
         source.values = format!("; the mesh reaches from {} to {}", place(tight.min), place(tight.max));
         Ok(if self.close { source.closed() } else { source })
     }
+}
+
+/// What is known of a volume's values, for a surface that is not there.
+fn values_of(field: &VolumeField) -> String {
+    let (low, high) = field.value_range();
+    format!("; the volume's samples run from {low} to {high}")
 }
 
 /// The distance field of the mesh in a file, and the box of its triangles.

@@ -1,22 +1,23 @@
 //! `isostudy extract`: the meshes of a study, or the surface of a formula, a volume or a mesh in a file.
 
 mod chosen_method;
+mod own_cells;
 mod quality_report;
 
 use super::named::named;
 use super::source_arguments::SourceArguments;
 use super::study_run::{Run, Selection, with_selection};
 use crate::outcome::Outcome;
-use crate::source::place;
+use crate::source::{Source, place};
 use crate::store::{write_whole, write_whole_by};
 use crate::terminal::{counted, say};
 use crate::{input, mesh_file, prepare};
 use anyhow::{Context, Result, bail};
 use clap::{ArgGroup, Args};
-use extract::{Arrangement, Clustering, Execution, Extractor, Method, Tetrahedra};
+use extract::{Arrangement, Clustering, Execution, Extraction, Extractor, Method, Tetrahedra};
 use field::StudyField;
 use mesh::TriangleMesh;
-use quality_report::QualityReport;
+use quality_report::{Cells, QualityReport};
 use raster::{Camera, Look, Shading, Viewport};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -121,16 +122,16 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     let out = arguments.out.as_deref().context("-o is needed")?;
     let format = mesh_file::format_to_write(out).with_context(|| out.display().to_string())?;
     check_outputs(arguments, out)?;
-    let source =
-        arguments.source.read()?.context("one of a study, --field, --volume and --mesh is needed")?;
-    let grid = source.grid();
     let method = arguments.method();
     let execution = Execution { threads: arguments.threads as usize };
-    prepare::check_limit(&method, &grid, &execution, source.held, arguments.source.limit())
-        .with_context(|| source.place())?;
-    let field: &dyn StudyField = &*source.field;
-    let extraction =
-        method.extract(&mut Extractor::new(), field.into(), &grid, source.isovalue, &execution)?;
+    let (extraction, source, cells) = match (&method, arguments.source.volume_alone()) {
+        (Method::Cubes(_), Some(path)) => {
+            let (extraction, own) = own_cells::extract(&arguments.source, path, &method, &execution)?;
+            (extraction, own.source, Cells::Own { counts: own.cells, is_turned: own.is_turned })
+        }
+        _ => on_a_grid(arguments, &method, &execution)?,
+    };
+    let grid = source.grid();
     if extraction.mesh.triangles.is_empty() {
         bail!(source.no_surface());
     }
@@ -145,8 +146,7 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     if arguments.quality || arguments.json {
         let accuracy =
             extract::accuracy(&extraction.mesh, &*source.field, source.isovalue, &grid, &execution)?;
-        let cells = method.cells(&grid)?;
-        let report = QualityReport::new(method, &source, (&grid, cells), &extraction, &accuracy);
+        let report = QualityReport::new(method, &source, cells, &extraction, &accuracy);
         say(&if arguments.json { serde_json::to_string_pretty(&report)? } else { report.to_text()? })?;
     }
     // With --json standard output is JSON and nothing else.
@@ -160,6 +160,23 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
         return Ok(Outcome::CheckFailed);
     }
     Ok(Outcome::Done)
+}
+
+/// The surface of a field on a grid of cubes.
+fn on_a_grid(
+    arguments: &Arguments,
+    method: &Method,
+    execution: &Execution,
+) -> Result<(Extraction, Source, Cells)> {
+    let source =
+        arguments.source.read()?.context("one of a study, --field, --volume and --mesh is needed")?;
+    let grid = source.grid();
+    prepare::check_limit(method, &grid, execution, source.held, arguments.source.limit())
+        .with_context(|| source.place())?;
+    let field: &dyn StudyField = &*source.field;
+    let extraction =
+        method.extract(&mut Extractor::new(), field.into(), &grid, source.isovalue, execution)?;
+    Ok((extraction, source, Cells::Cubes(method.cells(&grid)?)))
 }
 
 /// How many boundary edges a mesh has, and where one of them is; `None` if it has none.

@@ -22,7 +22,8 @@ pub(crate) struct SourceArguments {
     /// Box to look at: smallest corner, then largest [default: that of the volume, or round the mesh]
     #[arg(long, value_name = "X,Y,Z,X,Y,Z", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Bounds>,
-    /// Edge of the lattice's cubes [default: that of the volume's samples; otherwise 100 cubes along the longest side]
+    /// Edge of the lattice's cubes [default: that of the volume's samples; otherwise 100 cubes along the longest side.
+    /// Methods of cubes take the volume's own cells]
     #[arg(long, value_name = "LENGTH", value_parser = spacing, allow_hyphen_values = true, conflicts_with = "cells")]
     pub(super) spacing: Option<f32>,
     /// The same, as the number of cubes along the longest side
@@ -62,12 +63,14 @@ impl SourceArguments {
         Limit::of(self.memory)
     }
 
-    /// What is asked for, if anything is. What had to be done to it is said on standard error.
-    ///
-    /// # Errors
-    /// If it cannot be read or has no inside.
-    pub(super) fn read(&self) -> Result<Option<Source>> {
-        let options = Options {
+    /// The volume, where one is named and nothing says which grid it is to be sampled on, or to close its surface.
+    pub(super) fn volume_alone(&self) -> Option<&Path> {
+        let is_alone = self.bounds.is_none() && self.spacing.is_none() && self.cells.is_none() && !self.close;
+        self.volume.as_deref().filter(|_| is_alone)
+    }
+
+    pub(super) fn options(&self) -> Options {
+        Options {
             bounds: self.bounds,
             spacing: self.spacing,
             cells: self.cells,
@@ -76,7 +79,15 @@ impl SourceArguments {
             close: self.close,
             allow_open: self.allow_open,
             limit: self.limit(),
-        };
+        }
+    }
+
+    /// What is asked for, if anything is. What had to be done to it is said on standard error.
+    ///
+    /// # Errors
+    /// If it cannot be read or has no inside.
+    pub(super) fn read(&self) -> Result<Option<Source>> {
+        let options = self.options();
         if let Some(formula) = &self.field {
             let bounds = self.bounds.context("--bounds is needed")?;
             return options.of_formula(formula, bounds, "--field").map(Some);

@@ -54,6 +54,12 @@ pub enum VolumeCellsError {
 }
 
 impl VolumeCells<'_> {
+    /// The grid in steps, a cube for each cell: what a method is asked about.
+    pub fn grid(&self) -> BoxGrid {
+        let max = Vec3::from_array(self.counts.map(|n| n.saturating_sub(1) as f32));
+        BoxGrid { bounds: Bounds { min: Vec3::ZERO, max }, spacing: 1.0 }
+    }
+
     /// Extracts the surface where the samples have the isovalue, cell by cell of the volume, so that counts can be compared with other
     /// programs'. The same volume with other steps has the same triangles, but for their orientation where they are mirrored:
     /// triangles always face outward.
@@ -82,8 +88,7 @@ impl VolumeCells<'_> {
         if !(start.is_finite() && lengths.is_finite() && determinant.abs() > 1e-6 * lengths) {
             return Err(VolumeCellsError::Steps { steps, origin });
         }
-        let max = Vec3::from_array(counts.map(|n| (n - 1) as f32));
-        let grid = BoxGrid { bounds: Bounds { min: Vec3::ZERO, max }, spacing: 1.0 };
+        let grid = self.grid();
         let mut extraction =
             method.extract(extractor, Source::Samples(values), &grid, isovalue, execution)?;
         let mesh = &mut extraction.mesh;

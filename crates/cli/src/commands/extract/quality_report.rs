@@ -6,11 +6,24 @@ use crate::source::{Inside, Source};
 use crate::terminal::{counted, significant};
 use anyhow::Result;
 use design::record::{Accuracy, Counts, Distribution, Quality, Topology};
-use extract::{Arrangement, BoxGrid, Clustering, Extraction, Method};
+use extract::{Arrangement, Clustering, Extraction, Method};
 use serde::Serialize;
 
 /// The version of the JSON.
 const SCHEMA: u32 = 1;
+
+/// What was extracted on.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Cells {
+    /// Cubes of the source's spacing.
+    Cubes([u32; 3]),
+    /// A volume's own.
+    Own {
+        counts: [u32; 3],
+        /// Against the axes of space.
+        is_turned: bool,
+    },
+}
 
 /// What a mesh is worth.
 #[derive(Serialize)]
@@ -27,8 +40,11 @@ pub(super) struct QualityReport {
     clustering: Option<Clustering>,
     isovalue: f32,
     inside: Inside,
+    /// Of a volume's own cells, the edge of a cube as large as one.
     spacing: f32,
     cells: [u32; 3],
+    /// Whether they are the volume's own.
+    own_cells: bool,
     /// Wall-clock time of the extraction, seconds.
     extraction_s: f64,
     area: f64,
@@ -45,7 +61,7 @@ impl QualityReport {
     pub(super) fn new(
         method: Method,
         source: &Source,
-        (grid, cells): (&BoxGrid, [u32; 3]),
+        cells: Cells,
         extraction: &Extraction,
         accuracy: &extract::Accuracy,
     ) -> Self {
@@ -55,6 +71,15 @@ impl QualityReport {
             Method::Tetrahedra(of) => Some(of),
             _ => None,
         };
+        let (counts, own_cells, is_turned) = match cells {
+            Cells::Cubes(counts) => (counts, false, false),
+            Cells::Own { counts, is_turned } => (counts, true, is_turned),
+        };
+        let mut accuracy = records::accuracy(accuracy);
+        if is_turned {
+            // The isosurface was looked for in the box of the turned volume, so beyond it too.
+            accuracy.distance_to_mesh = None;
+        }
         Self {
             schema: SCHEMA,
             source: source.name.clone(),
@@ -64,8 +89,9 @@ impl QualityReport {
             clustering: of.map(|of| of.clustering),
             isovalue: source.asked_isovalue(),
             inside: source.inside,
-            spacing: grid.spacing,
-            cells,
+            spacing: source.spacing,
+            cells: counts,
+            own_cells,
             extraction_s: extraction.times.total().as_secs_f64(),
             area: extraction.mesh.area(),
             volume: is_closed.then(|| extraction.mesh.volume()),
@@ -73,7 +99,7 @@ impl QualityReport {
             quality: records::quality(&mesh::quality::quality(&extraction.mesh)),
             boundary_loops: topology.boundary_loops,
             topology: records::topology(&topology),
-            accuracy: records::accuracy(accuracy),
+            accuracy,
         }
     }
 
@@ -94,10 +120,14 @@ impl QualityReport {
         let faults: Vec<String> =
             faults.iter().filter(|f| f.1 > 0).map(|(name, count)| format!("{count} {name}")).collect();
         let state = if faults.is_empty() { "closed manifold".to_owned() } else { faults.join(", ") };
-        let lattice = self.arrangement.map_or_else(String::new, |of| format!("{of}, "));
+        let [arrangement, spacing] = match (self.arrangement, self.own_cells) {
+            (_, true) => ["the volume's own cells, ".to_owned(), String::new()],
+            (Some(of), _) => [format!("{of}, "), format!(" cubes of {}", self.spacing)],
+            (None, _) => [String::new(), format!(" cubes of {}", self.spacing)],
+        };
         let rows = [
             ("method", self.method.to_text()?),
-            ("lattice", format!("{lattice}{x} x {y} x {z} cubes of {}", self.spacing)),
+            ("lattice", format!("{arrangement}{x} x {y} x {z}{spacing}")),
             ("clustering", self.clustering.map_or_else(|| "none".into(), |of| of.to_string())),
             ("time", format!("{:.3} s", self.extraction_s)),
             ("vertices", t.vertices.to_string()),
@@ -126,7 +156,13 @@ impl QualityReport {
             ),
             ("without area", format!("{} triangles", q.degenerate)),
             ("to the surface", way(&self.accuracy.distance) + &lost(self.accuracy.lost_points)),
-            ("from it", self.accuracy.distance_to_mesh.as_ref().map_or_else(String::new, way)),
+            (
+                "from it",
+                self.accuracy
+                    .distance_to_mesh
+                    .as_ref()
+                    .map_or_else(|| "not measured: the volume is turned".into(), way),
+            ),
         ];
         Ok(rows.map(|(name, value)| format!("{name:<15} {value}")).join("\n"))
     }
