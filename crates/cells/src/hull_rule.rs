@@ -52,6 +52,8 @@ impl Cell {
             }
         }
         assert!(points.len() <= 32, "a set of points is 32 bits");
+        // In space, so that how facets are cut does not hang on how corners and edges are numbered.
+        points.sort_unstable_by_key(|&([x, y, z], ..)| [z, y, x]);
         let places: Vec<Place> = points.iter().map(|&(place, ..)| place).collect();
         let common = |members: &[u8]| members.iter().fold(!0, |set, &p| set & points[usize::from(p)].2);
         let all: Vec<u8> = (0..points.len() as u8).collect();
@@ -73,9 +75,21 @@ impl Cell {
             .flat_map(|facet| {
                 let point =
                     |p: u8| points[usize::from(p)].1.expect("facets off the faces have no inside corner");
-                let fan = (1..facet.len() - 1).map(|i| [facet[0], facet[i], facet[i + 1]]);
-                fan.map(|triangle| triangle.map(point)).collect::<Vec<_>>()
+                ears(facet).into_iter().map(|triangle| triangle.map(point)).collect::<Vec<_>>()
             })
             .collect()
     }
+}
+
+/// A convex polygon cut into triangles: its last point off, then the next to last, as if the points had come one by one.
+fn ears(polygon: &[u8]) -> Vec<[u8; 3]> {
+    let mut left = polygon.to_vec();
+    let mut triangles = Vec::new();
+    while left.len() >= 3 {
+        let n = left.len();
+        let last = (0..n).max_by_key(|&i| left[i]).expect("there are three");
+        triangles.push([left[(last + n - 1) % n], left[last], left[(last + 1) % n]]);
+        left.remove(last);
+    }
+    triangles
 }

@@ -13,12 +13,13 @@ mod rows;
 mod rule;
 mod sampling;
 mod slab;
+mod snap;
 mod tubes;
 mod tunnel;
 mod vertices;
 mod volume_cells;
 
-pub use rule::{Diagonals, Faces};
+pub use rule::{Diagonals, Faces, Flat};
 pub use volume_cells::{VolumeCells, VolumeCellsError};
 
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -41,8 +42,36 @@ pub(crate) struct Rule {
     pub(crate) diagonals: Diagonals,
 }
 
-/// The stages in order, timed and counted. The lattice is simple cubic: its points are the corners of the cubes.
+/// What is made of the cubes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Way {
+    /// Patches of crossings.
+    Patches(Rule),
+    /// Patches of crossings and of points that crossings were drawn to.
+    Snapped {
+        /// How near to a point a crossing must be, in lengths of its edge.
+        gamma: f32,
+        /// What faces between cells get.
+        flat: Flat,
+    },
+}
+
+/// Extracts the cubes of a simple cubic lattice one way or the other. Of snapped ones there is no trace.
 pub(crate) fn extract(
+    request: &Request,
+    way: Way,
+    progress: Option<&Progress>,
+    trace: Option<&mut Trace>,
+    extraction: &mut Extraction,
+) -> Result<(), ExtractError> {
+    match way {
+        Way::Patches(rule) => extract_patches(request, rule, progress, trace, extraction),
+        Way::Snapped { gamma, flat } => snap::extract(request, gamma, flat, progress, extraction),
+    }
+}
+
+/// The stages in order, timed and counted. The lattice is simple cubic: its points are the corners of the cubes.
+fn extract_patches(
     request: &Request,
     rule: Rule,
     progress: Option<&Progress>,

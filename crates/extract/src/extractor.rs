@@ -1,4 +1,4 @@
-//! The extractor: which of the four ways a surface is extracted in, and the buffers that stay.
+//! The extractor: which of the ways a surface is extracted in, and the buffers that stay.
 
 use field::{Kept, Plain, StudyField, Watched};
 
@@ -119,11 +119,11 @@ impl Extractor {
         source: Source,
         lattice: &Lattice,
         settings: &ExtractSettings,
-        rule: cubes::Rule,
+        way: cubes::Way,
         control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
-        let result = self.try_extract_into(source, lattice, settings, Some(rule), control, extraction);
+        let result = self.try_extract_into(source, lattice, settings, Some(way), control, extraction);
         if result.is_err() {
             extraction.clear();
         }
@@ -135,7 +135,7 @@ impl Extractor {
         source: Source,
         lattice: &Lattice,
         settings: &ExtractSettings,
-        cubes: Option<cubes::Rule>,
+        cubes: Option<cubes::Way>,
         control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
@@ -180,7 +180,7 @@ impl Extractor {
         field: &dyn StudyField,
         lattice: &Lattice,
         settings: &ExtractSettings,
-        cubes: Option<cubes::Rule>,
+        cubes: Option<cubes::Way>,
         control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
@@ -201,15 +201,15 @@ impl Extractor {
         (source, start): (Sampler, Moment),
         lattice: &Lattice,
         settings: &ExtractSettings,
-        cubes: Option<cubes::Rule>,
+        cubes: Option<cubes::Way>,
         control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
         let most_vertices = self.most_vertices.0;
         let request = Request { source, lattice, settings, control, most_vertices, start };
         let trace = self.traced.then_some(&mut self.trace);
-        if let Some(rule) = cubes {
-            cubes::extract(&request, rule, self.progress.as_deref(), trace, extraction)
+        if let Some(way) = cubes {
+            cubes::extract(&request, way, self.progress.as_deref(), trace, extraction)
         } else if lattice.arrangement().uniform().is_some() {
             self.streamer.extract(&request, self.progress.as_deref(), trace, extraction)
         } else {

@@ -218,14 +218,14 @@ pub use chunks::{
     WeldError, World, weld_chunks,
 };
 pub use control::{Control, Jobs, Threads};
-pub use cubes::{Diagonals, Faces, VolumeCells, VolumeCellsError};
+pub use cubes::{Diagonals, Faces, Flat, VolumeCells, VolumeCellsError};
 pub use distances::{DistanceError, distances};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, TetrahedraCounts};
 pub use extractor::{Extractor, extract};
 pub use field::{Aabb, Bound, FieldFault, FromFn, ScalarField, StudyField, check_field, from_fn};
 pub use grid::{Grid, GridError};
 pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
-pub use method::{Cubes, Method, MethodError, Preset, Promises, Tetrahedra, presets};
+pub use method::{Cubes, Method, MethodError, Preset, Promises, SnapCubes, Tetrahedra, presets};
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use source::Source;
 pub use trace::VertexKey;

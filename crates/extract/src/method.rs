@@ -2,10 +2,12 @@
 
 mod cubes;
 mod presets;
+mod snap_cubes;
 mod tetrahedra;
 
 pub use cubes::Cubes;
 pub use presets::{Preset, presets};
+pub use snap_cubes::SnapCubes;
 pub use tetrahedra::Tetrahedra;
 
 use crate::box_grid::BoxGrid;
@@ -48,6 +50,8 @@ pub enum Method {
     Tetrahedra(Tetrahedra),
     /// Marching cubes.
     Cubes(Cubes),
+    /// Marching cubes with crossings drawn to lattice points.
+    SnapCubes(SnapCubes),
 }
 
 /// What a method promises of every mesh, whatever the field. A promise that is not made may still hold for a field.
@@ -74,12 +78,27 @@ pub enum MethodError {
     /// The grid is not one for this method.
     #[error(transparent)]
     Grid(#[from] LatticeError),
+    /// A distance to snap from that is none.
+    #[error("gamma = {gamma:?}: must be from 0 to 0.5, in lengths of a lattice edge")]
+    Gamma {
+        /// As given.
+        gamma: f32,
+    },
     /// The method's settings do not go together, or the extraction fails.
     #[error(transparent)]
     Extract(#[from] ExtractError),
 }
 
 impl Method {
+    /// Whether the sample points are the corners of cubes, so that a volume's own cells will do
+    /// ([`VolumeCells`](crate::VolumeCells)).
+    pub fn is_of_cubes(&self) -> bool {
+        match self {
+            Self::Tetrahedra(_) => false,
+            Self::Cubes(_) | Self::SnapCubes(_) => true,
+        }
+    }
+
     /// Whether the method's settings go with each other and with the grid. What this passes is refused by
     /// [`extract_into`](Self::extract_into) only for its source, its isovalue, or want of memory, threads or numbers.
     ///
@@ -152,6 +171,7 @@ impl Method {
         match self {
             Self::Tetrahedra(tetrahedra) => tetrahedra,
             Self::Cubes(cubes) => cubes,
+            Self::SnapCubes(cubes) => cubes,
         }
     }
 }

@@ -136,7 +136,7 @@ fn presets_keep_the_promise_of_a_manifold_whatever_the_samples() {
         promised += 1;
         let arrangement = match preset.method {
             Method::Tetrahedra(Tetrahedra { arrangement, .. }) => arrangement,
-            Method::Cubes(_) => Arrangement::SimpleCubic,
+            Method::Cubes(_) | Method::SnapCubes(_) => Arrangement::SimpleCubic,
             _ => panic!("a new family"),
         };
         let mut extractor = Extractor::new();
@@ -170,11 +170,12 @@ fn presets_keep_their_other_promises() {
         let placed = |placement| match preset.method {
             Method::Tetrahedra(tetrahedra) => Method::Tetrahedra(Tetrahedra { placement, ..tetrahedra }),
             Method::Cubes(cubes) => Method::Cubes(Cubes { placement, ..cubes }),
+            Method::SnapCubes(_) => panic!("it has no placements"),
             _ => panic!("a new family"),
         };
         let arrangement = match preset.method {
             Method::Tetrahedra(Tetrahedra { arrangement, .. }) => arrangement,
-            Method::Cubes(_) => Arrangement::SimpleCubic,
+            Method::Cubes(_) | Method::SnapCubes(_) => Arrangement::SimpleCubic,
             _ => panic!("a new family"),
         };
         let lattice = GRID.lattice(arrangement).unwrap();

@@ -1,7 +1,8 @@
 //! Methods as tables of a file: what is written is read back, and what is not known is refused by name.
 
 use extract::{
-    Arrangement, Clustering, Cubes, Diagonals, Faces, Method, Placement, Positions, Tetrahedra, Topology,
+    Arrangement, Clustering, Cubes, Diagonals, Faces, Flat, Method, Placement, Positions, SnapCubes,
+    Tetrahedra, Topology,
 };
 use toml::Table;
 
@@ -113,6 +114,20 @@ fn what_is_not_known_is_refused_by_name() {
             assert!(error.lines().last().is_some_and(|line| line.contains(name)), "{text}: {error}");
         }
     }
+}
+
+#[test]
+fn snapped_cubes_are_read_and_written() {
+    for (flat, word) in [(Flat::Both, "both"), (Flat::Neither, "neither")] {
+        let wanted = Method::SnapCubes(SnapCubes { gamma: 0.25, flat });
+        let keys = format!(r#"recipe = {{ kind = "snap-cubes", gamma = 0.25, flat = "{word}" }}"#);
+        assert_eq!(read(&keys), Ok(wanted));
+        assert_eq!(toml::from_str::<Method>(&toml::to_string(&wanted).unwrap()).unwrap(), wanted);
+    }
+    let published = Method::SnapCubes(SnapCubes { gamma: 0.3, flat: Flat::Both });
+    assert_eq!(read(r#"recipe = { kind = "snap-cubes" }"#), Ok(published));
+    let error = read(r#"recipe = { kind = "snap-cubes", faces = "decider" }"#).unwrap_err();
+    assert!(error.contains("faces") && error.contains("gamma"), "{error}");
 }
 
 #[test]

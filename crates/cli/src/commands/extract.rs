@@ -124,12 +124,13 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     check_outputs(arguments, out)?;
     let method = arguments.method();
     let execution = Execution { threads: arguments.threads as usize };
-    let (extraction, source, cells) = match (&method, arguments.source.volume_alone()) {
-        (Method::Cubes(_), Some(path)) => {
+    let volume = arguments.source.volume_alone().filter(|_| method.is_of_cubes());
+    let (extraction, source, cells) = match volume {
+        Some(path) => {
             let (extraction, own) = own_cells::extract(&arguments.source, path, &method, &execution)?;
             (extraction, own.source, Cells::Own { counts: own.cells, is_turned: own.is_turned })
         }
-        _ => on_a_grid(arguments, &method, &execution)?,
+        None => on_a_grid(arguments, &method, &execution)?,
     };
     let grid = source.grid();
     if extraction.mesh.triangles.is_empty() {

@@ -15,6 +15,7 @@ use super::settled::Settled;
 use super::world::{Place, World};
 use crate::box_grid::BoxGrid;
 use crate::control::Control;
+use crate::cubes::Way;
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::extractor::Extractor;
 use crate::finish::field_targets;
@@ -531,9 +532,14 @@ impl ChunkExtractor {
         let extraction = &mut self.extraction;
         match self.how.cubes {
             None => self.extractor.extract_into(source, &lattice, &settings, control, extraction)?,
-            Some(rule) => {
-                self.extractor.extract_cubes_into(source, &lattice, &settings, rule, control, extraction)?
-            }
+            Some(rule) => self.extractor.extract_cubes_into(
+                source,
+                &lattice,
+                &settings,
+                Way::Patches(rule),
+                control,
+                extraction,
+            )?,
         }
         Ok(lattice)
     }

@@ -27,6 +27,19 @@ impl Faces {
     }
 }
 
+/// What becomes of a piece of surface in the face between two cells that have nothing else at that face. Snapping makes such pieces
+/// where the surface has two sides less than a cell apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+pub enum Flat {
+    /// Each of the cells has it, facing into itself, as published: two triangles in one place, which stand for both sides.
+    #[default]
+    Both,
+    /// Neither has it; nor has a cell at the box, beyond which nothing is inside.
+    Neither,
+}
+
 /// How polygons become triangles. No diagonal ever lies in a face of the cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

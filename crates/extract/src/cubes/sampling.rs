@@ -2,7 +2,7 @@
 
 use std::collections::TryReserveError;
 
-use super::grid::{Grid, SLOTS};
+use super::grid::Grid;
 use super::rows::{Rows, before, next};
 use crate::bits::{between, set_range};
 use crate::line::{All, Gaps, Line};
@@ -37,6 +37,8 @@ pub(super) struct Samples {
     /// 1 inside.
     pub(super) sides: Rows,
     states: Vec<State>,
+    /// Layers in sight.
+    slots: usize,
 }
 
 /// A ring of layers of samples, and a bit for each that was taken.
@@ -46,6 +48,7 @@ struct Called {
     tiles: Tiles,
     gaps: Gaps,
     wanted: Vec<u64>,
+    slots: usize,
 }
 
 /// Samples by place: given ones, or those in sight.
@@ -69,20 +72,21 @@ impl Values<'_> {
 }
 
 impl Samples {
-    pub(super) fn new(grid: &Grid, source: Sampler) -> Result<Self, TryReserveError> {
+    /// For so many layers in sight.
+    pub(super) fn new(grid: &Grid, source: Sampler, slots: usize) -> Result<Self, TryReserveError> {
         let called = match source {
-            Sampler::Field(_) => Some(Called::new(grid)?),
+            Sampler::Field(_) => Some(Called::new(grid, slots)?),
             Sampler::Given(_) => None,
         };
-        let states = filled(grid.size[1] * SLOTS, State::Outside)?;
-        Ok(Self { called, sides: Rows::new(grid, SLOTS)?, states })
+        let states = filled(grid.size[1] * slots, State::Outside)?;
+        Ok(Self { called, sides: Rows::new(grid, slots)?, states, slots })
     }
 
     pub(super) fn values<'a>(&'a self, grid: &Grid, source: Sampler<'a>) -> Values<'a> {
         let size = grid.size;
         match (source, &self.called) {
             (Sampler::Given(values), _) => Values { values, size, slots: size[2] },
-            (Sampler::Field(_), Some(called)) => Values { values: &called.values, size, slots: SLOTS },
+            (Sampler::Field(_), Some(called)) => Values { values: &called.values, size, slots: self.slots },
             (Sampler::Field(_), None) => unreachable!("made for a field"),
         }
     }
@@ -90,7 +94,7 @@ impl Samples {
     /// Whether all points of some rows are on one side.
     #[inline]
     pub(super) fn is_uniform(&self, grid: &Grid, rows: &[[usize; 2]]) -> bool {
-        let state = |[y, z]: [usize; 2]| self.states[z % SLOTS * grid.size[1] + y];
+        let state = |[y, z]: [usize; 2]| self.states[z % self.slots * grid.size[1] + y];
         let first = state(rows[0]);
         first != State::Mixed && rows.iter().all(|&row| state(row) == first)
     }
@@ -130,7 +134,7 @@ impl Samples {
             if state == State::Mixed {
                 state = state_of(sides, nx);
             }
-            self.states[layer % SLOTS * ny + row] = state;
+            self.states[layer % self.slots * ny + row] = state;
         }
     }
 
@@ -138,49 +142,73 @@ impl Samples {
     pub(super) fn fill(&mut self, sampling: Sampling, layer: usize) {
         let Sampling { grid, source, all_corners, .. } = sampling;
         let Sampler::Field(field) = source else { return };
-        let [nx, ny, nz] = grid.size;
-        for row in 0..ny {
-            let (rows, layers) =
-                (row.saturating_sub(1)..ny.min(row + 2), layer.saturating_sub(1)..nz.min(layer + 2));
-            let mut around: [[usize; 2]; 9] = [[row, layer]; 9];
-            let mut count = 1;
-            for [y, z] in layers.flat_map(|z| rows.clone().map(move |y| [y, z])) {
-                let is_self = [y, z] == [row, layer];
-                if !is_self && (all_corners || y == row || z == layer) {
-                    around[count] = [y, z];
-                    count += 1;
-                }
-            }
-            if self.is_uniform(grid, &around[..count]) {
+        for row in 0..grid.size[1] {
+            let near = Near::new(grid, [row, layer], all_corners);
+            if self.is_uniform(grid, near.rows()) {
                 continue;
             }
             let called = self.called.as_mut().expect("made for a field");
-            let lines = around.map(|[y, z]| self.sides.row(y, z));
-            for word in 0..grid.words {
-                let [mut any, mut all] = [lines[0][word]; 2];
-                for (i, line) in lines[..count].iter().enumerate() {
-                    (any, all) = (any | line[word], all & line[word]);
-                    if i == 0 || all_corners {
-                        let (next, before) = (next(line, word), before(line, word));
-                        any |= next & grid.with_next(word) | before;
-                        all &= (next | !grid.with_next(word)) & before;
-                    }
-                }
-                called.wanted[word] = any & !all & between(word, 0, nx);
-            }
+            near.for_each_word(grid, &self.sides, |word, wanted| called.wanted[word] = wanted);
             called.fill(grid, field, [row, layer]);
         }
     }
 }
 
+/// The rows at a row whose sides say which of its samples cells need.
+pub(super) struct Near {
+    around: [[usize; 2]; 9],
+    count: usize,
+    all_corners: bool,
+}
+
+impl Near {
+    /// Of a row in a layer.
+    pub(super) fn new(grid: &Grid, [row, layer]: [usize; 2], all_corners: bool) -> Self {
+        let [_, ny, nz] = grid.size;
+        let (rows, layers) =
+            (row.saturating_sub(1)..ny.min(row + 2), layer.saturating_sub(1)..nz.min(layer + 2));
+        let mut near = Self { around: [[row, layer]; 9], count: 1, all_corners };
+        for [y, z] in layers.flat_map(|z| rows.clone().map(move |y| [y, z])) {
+            let is_self = [y, z] == [row, layer];
+            if !is_self && (all_corners || y == row || z == layer) {
+                near.around[near.count] = [y, z];
+                near.count += 1;
+            }
+        }
+        near
+    }
+
+    pub(super) fn rows(&self) -> &[[usize; 2]] {
+        &self.around[..self.count]
+    }
+
+    /// Calls `visit` with each word of the row and the points of it that cells need: ends of crossed edges, or all corners of
+    /// crossed cells.
+    pub(super) fn for_each_word(&self, grid: &Grid, sides: &Rows, mut visit: impl FnMut(usize, u64)) {
+        let lines = self.around.map(|[y, z]| sides.row(y, z));
+        for word in 0..grid.words {
+            let [mut any, mut all] = [lines[0][word]; 2];
+            for (i, line) in lines[..self.count].iter().enumerate() {
+                (any, all) = (any | line[word], all & line[word]);
+                if i == 0 || self.all_corners {
+                    let (next, before) = (next(line, word), before(line, word));
+                    any |= next & grid.with_next(word) | before;
+                    all &= (next | !grid.with_next(word)) & before;
+                }
+            }
+            visit(word, any & !all & between(word, 0, grid.size[0]));
+        }
+    }
+}
+
 impl Called {
-    fn new(grid: &Grid) -> Result<Self, TryReserveError> {
+    fn new(grid: &Grid, slots: usize) -> Result<Self, TryReserveError> {
         let [nx, ny, _] = grid.size;
         let (mut tiles, mut gaps) = (Tiles::default(), Gaps::default());
         tiles.fit(grid)?;
         gaps.fit(nx)?;
-        let (values, taken) = (filled(nx * ny * SLOTS, 0.0)?, Rows::new(grid, SLOTS)?);
-        Ok(Self { values, taken, tiles, gaps, wanted: filled(grid.words, 0)? })
+        let (values, taken) = (filled(nx * ny * slots, 0.0)?, Rows::new(grid, slots)?);
+        Ok(Self { values, taken, tiles, gaps, wanted: filled(grid.words, 0)?, slots })
     }
 
     /// Finds the sides of a row that is not known to lie on one.
@@ -201,7 +229,7 @@ impl Called {
             x: &grid.at[0],
             y: grid.at[1][row],
             z: grid.at[2][layer],
-            values: &mut self.values[(layer % SLOTS * ny + row) * nx..][..nx],
+            values: &mut self.values[(layer % self.slots * ny + row) * nx..][..nx],
             taken: self.taken.row_mut(row, layer),
             sides,
         };
@@ -219,7 +247,7 @@ impl Called {
     fn fill(&mut self, grid: &Grid, field: &dyn StudyField, [row, layer]: [usize; 2]) {
         let [nx, ny, _] = grid.size;
         let (y, z) = (grid.at[1][row], grid.at[2][layer]);
-        let values = &mut self.values[(layer % SLOTS * ny + row) * nx..][..nx];
+        let values = &mut self.values[(layer % self.slots * ny + row) * nx..][..nx];
         self.gaps.clear();
         for (word, (taken, &wanted)) in
             self.taken.row_mut(row, layer).iter_mut().zip(&self.wanted).enumerate()
@@ -231,7 +259,7 @@ impl Called {
 }
 
 /// Where the points of a row of `nx` columns are.
-fn state_of(sides: &[u64], nx: usize) -> State {
+pub(super) fn state_of(sides: &[u64], nx: usize) -> State {
     let (mut any, mut all) = (0, !0);
     for (word, &sides) in sides.iter().enumerate() {
         let used = between(word, 0, nx);

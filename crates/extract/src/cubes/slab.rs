@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use super::Rule;
 use super::cells_pass::triangulate_layer;
-use super::grid::Grid;
+use super::grid::{Grid, SLOTS};
 use super::patches::Patches;
 use super::sampling::{Samples, Sampling};
 use super::vertices::{Placer, Records, VertexPass, Vertices};
@@ -40,7 +40,7 @@ pub(super) struct Workspace {
 
 impl Workspace {
     pub(super) fn new(grid: &Grid, source: Sampler) -> Result<Self, TryReserveError> {
-        Ok(Self { samples: Samples::new(grid, source)?, records: Records::new(grid)? })
+        Ok(Self { samples: Samples::new(grid, source, SLOTS)?, records: Records::new(grid)? })
     }
 }
 

@@ -45,7 +45,7 @@ impl Record {
 }
 
 /// Bits of a number below eight.
-static RANK: [u8; 8] = [0, 1, 1, 2, 1, 2, 2, 3];
+pub(super) static RANK: [u8; 8] = [0, 1, 1, 2, 1, 2, 2, 3];
 
 /// The records of the two layers of a cell, written and read only where there is something to know.
 pub(super) struct Records {

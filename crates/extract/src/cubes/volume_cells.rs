@@ -46,7 +46,7 @@ pub enum VolumeCellsError {
         origin: [f64; 3],
     },
     /// A method whose sample points are not the corners of cubes.
-    #[error("a volume's own cells are for kind \"cubes\": other methods have sample points between")]
+    #[error("a volume's own cells are for methods of cubes: other methods have sample points between")]
     Method,
     /// The extraction fails.
     #[error(transparent)]
@@ -76,7 +76,7 @@ impl VolumeCells<'_> {
         execution: &Execution,
     ) -> Result<Extraction, VolumeCellsError> {
         let Self { counts, values, origin, steps } = *self;
-        if !matches!(method, Method::Cubes(_)) {
+        if !method.is_of_cubes() {
             return Err(VolumeCellsError::Method);
         }
         if counts.iter().any(|&n| n < 2) {

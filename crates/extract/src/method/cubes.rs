@@ -2,7 +2,7 @@
 
 use super::{ByWindow, Family, MethodError, Promises};
 use crate::box_grid::BoxGrid;
-use crate::cubes::{Diagonals, Faces, Rule};
+use crate::cubes::{Diagonals, Faces, Rule, Way};
 use crate::extraction::{Extraction, check};
 use crate::extractor::Extractor;
 use crate::lattice::{Arrangement, LatticeError};
@@ -111,7 +111,7 @@ impl Family for Cubes {
             source,
             &lattice,
             &settings,
-            self.rule(),
+            Way::Patches(self.rule()),
             execution.into(),
             extraction,
         )?)

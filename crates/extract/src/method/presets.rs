@@ -3,8 +3,8 @@
 //! The first letter is the arrangement: body-centred, simple cubic, mirrored five tetrahedra, face-centred. The second is
 //! the clustering: unclustered, integrated, post-processed by an edge collapse, integrated and then collapsed.
 
-use super::{Cubes, Method, Tetrahedra};
-use crate::cubes::{Diagonals, Faces};
+use super::{Cubes, Method, SnapCubes, Tetrahedra};
+use crate::cubes::{Diagonals, Faces, Flat};
 use crate::lattice::Arrangement::{self, BodyCentred, FaceCentred, FiveTetrahedra, SimpleCubic};
 use crate::settings::Clustering::{self, EdgeCollapse, Integrated, IntegratedCollapse, None};
 use crate::settings::{Placement, Positions, Topology};
@@ -16,6 +16,7 @@ const OWN: &str = "not in the paper; see extract::Arrangement and extract::Clust
 const CUBES: &str = "Lorensen & Cline 1987, with faces that agree";
 const TRILINEAR: &str = "Chernyaev 1995, with every case decided by the interpolant's saddles";
 const EDGE_GROUPS: &str = "Lorensen & Cline 1987; Dietrich et al. 2008";
+const SNAPPED: &str = "Raman & Wenger 2008; table by convex hulls, Bhaniramka, Wenger & Crawfis 2004";
 const PLACED: &str = "Treece, Prager & Gee 1999; for the placement see extract::Placement";
 
 /// A method with a name.
@@ -38,7 +39,7 @@ pub fn presets() -> &'static [Preset] {
     &PRESETS
 }
 
-static PRESETS: [Preset; 25] = [
+static PRESETS: [Preset; 26] = [
     plain("bu", "body-centred, none", BodyCentred, None, COSTEN),
     plain("bi", "body-centred, integrated", BodyCentred, Integrated, TREECE),
     plain("bp", "body-centred, edge collapse", BodyCentred, EdgeCollapse, COLLAPSED),
@@ -64,6 +65,12 @@ static PRESETS: [Preset; 25] = [
         Diagonals::EdgeGroups,
         EDGE_GROUPS,
     ),
+    Preset {
+        id: "snapmc",
+        label: "marching cubes, snapped",
+        method: Method::SnapCubes(SnapCubes { gamma: 0.3, flat: Flat::Both }),
+        source: SNAPPED,
+    },
     published("bu-published", "body-centred, none, as published", BodyCentred, None),
     published("bi-published", "body-centred, integrated, as published", BodyCentred, Integrated),
     published("bp-published", "body-centred, edge collapse, as published", BodyCentred, EdgeCollapse),

@@ -1,0 +1,180 @@
+//! SnapMC: marching cubes whose crossings near a point of the lattice are drawn to it, so that triangles have bounded angles.
+//!
+//! Each point on whose edges there is a crossing at most `gamma` of the edge away is put on the surface; it stands for the nearest of
+//! them. The cells' patches are those of the hull rule with such corners ([`table`]). Points stay where their crossing was (Raman
+//! & Wenger 2008).
+//!
+//! It streams as [`super`] does, with more layers in sight: sides; a layer behind, samples; another behind, labels; two more, which
+//! patches the cells have, and vertices; and another, triangles.
+
+mod cells_pass;
+mod labels;
+mod table;
+mod vertices;
+
+use std::collections::TryReserveError;
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use self::cells_pass::Chosen;
+use self::labels::{Labels, Snap};
+use self::table::Table;
+use self::vertices::{Records, VertexPass, Vertices};
+use super::Flat;
+use super::grid::Grid;
+use super::sampling::{Samples, Sampling};
+use super::vertices::Placer;
+use crate::clock::Moment;
+use crate::control::Control;
+use crate::extraction::{ExtractError, Extraction};
+use crate::slabs::{Piece, assemble, on_slabs, threads_and_slabs};
+use crate::source::{Request, Sampler};
+use crate::streaming::Progress;
+
+/// Layers of sides and samples in sight.
+const SLOTS: usize = 6;
+
+/// The stages in order, timed and counted. The lattice is simple cubic.
+pub(crate) fn extract(
+    request: &Request,
+    gamma: f32,
+    flat: Flat,
+    progress: Option<&Progress>,
+    extraction: &mut Extraction,
+) -> Result<(), ExtractError> {
+    let Request { source, lattice, settings, control, most_vertices, start } = *request;
+    let (threads, slabs) = threads_and_slabs(control.threads.count(), lattice.stored_grid()[2] as usize);
+    let out_of_memory = |_| ExtractError::OutOfMemory { bytes: 3 * lattice.streaming_bytes(threads as u64) };
+    let grid = &Grid::new(lattice).map_err(out_of_memory)?;
+    let workspaces: Result<Vec<Workspace>, _> = (0..threads).map(|_| Workspace::new(grid, source)).collect();
+    let mut workspaces = workspaces.map_err(out_of_memory)?;
+    let mut pieces: Vec<Piece> = (0..slabs).map(|_| Piece::default()).collect();
+    let table = Table::get();
+    let allocation = start.elapsed();
+
+    let streaming = Moment::now();
+    let placer = &Placer::new(lattice, settings, None);
+    let snap = Snap { isovalue: settings.isovalue, gamma };
+    let cells = lattice.cells()[2] as usize;
+    let done = AtomicUsize::new(0);
+    let layer_done = || {
+        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+        if let Some(progress) = progress {
+            progress(done, cells);
+        }
+        if let Some(progress) = control.progress {
+            progress(done, cells);
+        }
+    };
+    let layer_done = &layer_done;
+    let job = Job { grid, source, snap, flat, table, placer, most_vertices, control, layer_done };
+    on_slabs(cells, control.threads, &mut workspaces, &mut pieces, |own, workspace, piece| {
+        stream_slab(&job, own, workspace, piece)
+    })?;
+    drop(workspaces);
+    let times = [allocation, streaming.elapsed()];
+    assemble(request, &mut pieces, threads, times, None, extraction)?;
+    extraction.counts.tetrahedra = None;
+    Ok(())
+}
+
+/// What all slabs of an extraction share.
+struct Job<'a> {
+    grid: &'a Grid<'a>,
+    source: Sampler<'a>,
+    snap: Snap,
+    flat: Flat,
+    table: &'a Table,
+    placer: &'a Placer<'a>,
+    most_vertices: u32,
+    control: Control<'a>,
+    layer_done: &'a (dyn Fn() + Sync),
+}
+
+/// Buffers of one thread, a few layers each.
+struct Workspace {
+    samples: Samples,
+    labels: Labels,
+    chosen: Chosen,
+    records: Records,
+}
+
+impl Workspace {
+    fn new(grid: &Grid, source: Sampler) -> Result<Self, TryReserveError> {
+        Ok(Self {
+            samples: Samples::new(grid, source, SLOTS)?,
+            labels: Labels::new(grid)?,
+            chosen: Chosen::new(grid)?,
+            records: Records::new(grid)?,
+        })
+    }
+}
+
+/// Extracts the layers `own` of cells: their triangles, and the vertices of their points but for those of the highest layer,
+/// which are the next slab's.
+fn stream_slab(
+    job: &Job,
+    own: Range<usize>,
+    Workspace { samples, labels, chosen, records }: &mut Workspace,
+    piece: &mut Piece,
+) -> Result<(), ExtractError> {
+    let Job { grid, source, snap, flat, table, placer, .. } = *job;
+    let layers = grid.size[2];
+    let (lowest, highest) = (own.start, own.end);
+    let numbered = lowest..highest + 1;
+    // Whether a point is used is for the cells on both sides of its layer to say; which patch those have, for the next.
+    let chosen_cells = lowest.saturating_sub(1)..(layers - 1).min(highest + 1);
+    let labelled = lowest.saturating_sub(2)..layers.min(highest + 3);
+    let filled = lowest.saturating_sub(3)..layers.min(highest + 4);
+    let sided = lowest.saturating_sub(4)..layers.min(highest + 5);
+    let sampling = Sampling { grid, source, isovalue: snap.isovalue, all_corners: true };
+    let mut vertices = Vertices::default();
+    piece.clear(false);
+    chosen.clear_used(chosen_cells.start);
+    let mut last = Moment::now();
+    let mut lap = || {
+        let now = Moment::now();
+        now - std::mem::replace(&mut last, now)
+    };
+    for step in sided.start..=highest + 4 {
+        if sided.contains(&step) {
+            job.control.check()?;
+            samples.find_sides(sampling, step);
+        }
+        if let Some(layer) = step.checked_sub(1).filter(|layer| filled.contains(layer)) {
+            samples.fill(sampling, layer);
+        }
+        piece.times.sampling += lap();
+
+        let values = samples.values(grid, source);
+        if let Some(layer) = step.checked_sub(2).filter(|layer| labelled.contains(layer)) {
+            labels.find(grid, samples, values, snap, layer);
+        }
+        let Some(layer) = step.checked_sub(4) else { continue };
+        if chosen_cells.contains(&layer) {
+            chosen.layer(grid, labels, table, flat, layer);
+        }
+        if !numbered.contains(&layer) {
+            continue;
+        }
+        let pass = VertexPass { grid, labels, used: &chosen.used, values, placer };
+        pass.layer(layer, layer < highest || layer + 1 == layers, records, &mut vertices)?;
+        if vertices.numbered > u64::from(job.most_vertices) {
+            return Err(ExtractError::TooManyVertices { limit: job.most_vertices });
+        }
+        piece.times.vertex += lap();
+
+        let Some(z) = layer.checked_sub(1).filter(|z| own.contains(z)) else { continue };
+        if z + 1 == own.end {
+            // Only the highest cells have vertices of the slab above.
+            piece.tail = piece.surface.triangles.len();
+        }
+        chosen.triangulate(grid, table, records, z, &mut piece.surface)?;
+        piece.times.geometry += lap();
+        (job.layer_done)();
+    }
+    piece.positions = vertices.positions;
+    // As if seen from both ends.
+    piece.crossing_ends = 2 * vertices.crossings;
+    Ok(())
+}

@@ -1,0 +1,151 @@
+//! Label pass: which points the surface is drawn to, and along which of their edges.
+
+use std::collections::TryReserveError;
+
+use super::super::grid::Grid;
+use super::super::rows::Rows;
+use super::super::sampling::{Near, Samples, State, Values, state_of};
+use crate::memory::filled;
+
+/// Layers in sight: of a cell, the two of its corners, and one more on either side.
+const SLOTS: usize = 4;
+/// The way of a point that equals the isovalue: nowhere.
+const HERE: u8 = 6;
+/// From a point to its neighbours, the lowest number first: axis, and whether it is the next one.
+const WAYS: [(usize, bool); 6] = [(2, false), (1, false), (0, false), (0, true), (1, true), (2, true)];
+
+/// A few layers of labels. What is neither inside nor on the surface is outside.
+pub(super) struct Labels {
+    pub(super) inside: Rows,
+    pub(super) on: Rows,
+    /// Of points on the surface.
+    ways: Vec<u8>,
+    states: Vec<State>,
+    size: [usize; 3],
+}
+
+impl Labels {
+    pub(super) fn new(grid: &Grid) -> Result<Self, TryReserveError> {
+        let [nx, ny, _] = grid.size;
+        Ok(Self {
+            inside: Rows::new(grid, SLOTS)?,
+            on: Rows::new(grid, SLOTS)?,
+            ways: filled(nx * ny * SLOTS, HERE)?,
+            states: filled(ny * SLOTS, State::Outside)?,
+            size: grid.size,
+        })
+    }
+
+    /// Whether all points of some rows are inside, or all outside.
+    #[inline]
+    pub(super) fn is_uniform(&self, rows: &[[usize; 2]]) -> bool {
+        let state = |[y, z]: [usize; 2]| self.states[z % SLOTS * self.size[1] + y];
+        let first = state(rows[0]);
+        first != State::Mixed && rows.iter().all(|&row| state(row) == first)
+    }
+
+    /// Whether a point is outside; beyond the grid all are.
+    pub(super) fn is_outside(&self, place: [Option<usize>; 3]) -> bool {
+        let [Some(x), Some(y), Some(z)] = place else { return true };
+        if x >= self.size[0] || y >= self.size[1] || z >= self.size[2] {
+            return true;
+        }
+        let bit = |rows: &Rows| rows.row(y, z)[x / 64] >> (x % 64) & 1;
+        bit(&self.inside) | bit(&self.on) == 0
+    }
+
+    /// The edge whose crossing a point on the surface stands for: where it begins, and its axis. `None` where the point's own
+    /// sample equals the isovalue.
+    pub(super) fn edge(&self, [x, y, z]: [usize; 3]) -> Option<([usize; 3], usize)> {
+        let way = self.ways[(z % SLOTS * self.size[1] + y) * self.size[0] + x];
+        let &(axis, is_next) = WAYS.get(usize::from(way))?;
+        let mut from = [x, y, z];
+        from[axis] -= usize::from(!is_next);
+        Some((from, axis))
+    }
+
+    /// Labels a layer. Of the layers next to it, sides and samples are known.
+    pub(super) fn find(&mut self, grid: &Grid, samples: &Samples, values: Values, snap: Snap, layer: usize) {
+        let [nx, ny, _] = grid.size;
+        for row in 0..ny {
+            let sides = &samples.sides.row(row, layer)[..grid.words];
+            self.inside.row_mut(row, layer).copy_from_slice(sides);
+            self.on.row_mut(row, layer).fill(0);
+            let near = Near::new(grid, [row, layer], true);
+            if !samples.is_uniform(grid, near.rows()) {
+                near.for_each_word(grid, &samples.sides, |word, wanted| {
+                    let (mut left, mut on) = (wanted, 0);
+                    while left != 0 {
+                        let bit = left.trailing_zeros();
+                        left &= left - 1;
+                        let x = 64 * word + bit as usize;
+                        let is_inside = sides[word] >> bit & 1 != 0;
+                        let Some(way) = snap.way(grid, samples, values, [x, row, layer], is_inside) else {
+                            continue;
+                        };
+                        on |= 1 << bit;
+                        self.ways[(layer % SLOTS * ny + row) * nx + x] = way;
+                    }
+                    self.on.row_mut(row, layer)[word] = on;
+                    self.inside.row_mut(row, layer)[word] &= !on;
+                });
+            }
+            let is_on = self.on.row(row, layer).iter().any(|&on| on != 0);
+            let state = if is_on { State::Mixed } else { state_of(sides, nx) };
+            self.states[layer % SLOTS * ny + row] = state;
+        }
+    }
+}
+
+/// When crossings are drawn to a point.
+#[derive(Clone, Copy)]
+pub(super) struct Snap {
+    pub(super) isovalue: f32,
+    /// How near they must be, in lengths of the edge.
+    pub(super) gamma: f32,
+}
+
+impl Snap {
+    /// Along which edge a point is drawn, the one with the nearest crossing, if there is one near enough.
+    fn way(
+        self,
+        grid: &Grid,
+        samples: &Samples,
+        values: Values,
+        place: [usize; 3],
+        is_inside: bool,
+    ) -> Option<u8> {
+        let (value, isovalue) = (values.at(place), self.isovalue);
+        if value == isovalue {
+            return Some(HERE);
+        }
+        let gamma = f64::from(self.gamma);
+        let to_level = |value: f32| (f64::from(isovalue) - f64::from(value)).abs();
+        let (mut nearest, mut found) = (f64::INFINITY, None);
+        for (way, (axis, is_next)) in (0..).zip(WAYS) {
+            let mut there = place;
+            match is_next {
+                true if place[axis] + 1 < grid.size[axis] => there[axis] += 1,
+                false if place[axis] > 0 => there[axis] -= 1,
+                _ => continue,
+            }
+            let [x, y, z] = there;
+            let is_crossed = (samples.sides.row(y, z)[x / 64] >> (x % 64) & 1 != 0) != is_inside;
+            if !is_crossed {
+                continue;
+            }
+            let other = values.at(there);
+            if other == isovalue {
+                continue;
+            }
+            let length = (f64::from(other) - f64::from(value)).abs();
+            let [own, others] = [value, other].map(|value| to_level(value) / length);
+            // The lower end is asked first.
+            let is_asked = own <= gamma && (is_next || !(others <= gamma));
+            if is_asked && own < nearest {
+                (nearest, found) = (own, Some(way));
+            }
+        }
+        found
+    }
+}
