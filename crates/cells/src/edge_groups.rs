@@ -15,12 +15,20 @@ pub struct EdgeGroups {
     groups: Vec<EdgeGroup>,
 }
 
-/// Triples of edges that a symmetry takes to each other.
-#[derive(Debug, Clone)]
-struct EdgeGroup {
-    triples: usize,
-    is_path: bool,
-    expected: f64,
+/// Triples of edges that symmetries take to each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgeGroup {
+    /// How many there are.
+    pub triples: usize,
+    /// One of them.
+    pub example: [u8; 3],
+    /// Whether they are paths in space, end to end and not in one plane: group 2 of the paper.
+    pub is_path: bool,
+    /// The radius ratio ([`radius_ratio`]) over corners spread evenly along their edges, ends aside: the least, the mean and the
+    /// greatest.
+    pub quality: [f64; 3],
+    /// The shares below 0.1 and below 0.3.
+    pub below: [f64; 2],
 }
 
 impl EdgeGroups {
@@ -53,10 +61,14 @@ impl EdgeGroups {
                 members += usize::from(found.group[place].replace(group).is_none());
             }
             let corners = [a, b, c].map(|e| edges[e].map(usize::from));
+            let (quality, below) = qualities(cell, corners);
+            let example = [a, b, c].map(|e| e as u8);
             found.groups.push(EdgeGroup {
                 triples: members,
+                example,
                 is_path: is_path(corners),
-                expected: expected_quality(cell, corners),
+                quality,
+                below,
             });
         }
         found
@@ -68,8 +80,17 @@ impl EdgeGroups {
     }
 
     fn group(&self, triangle: [u8; 3]) -> &EdgeGroup {
-        let group = self.group[self.place(triangle.map(usize::from))];
-        &self.groups[usize::from(group.expect("the edges are not in one face"))]
+        &self.groups[self.number(triangle).expect("the edges are not in one face")]
+    }
+
+    /// The group of a triple of edges; `None` if they are in one face.
+    pub fn number(&self, triangle: [u8; 3]) -> Option<usize> {
+        self.group[self.place(triangle.map(usize::from))].map(usize::from)
+    }
+
+    /// The groups, by their numbers.
+    pub fn all(&self) -> &[EdgeGroup] {
+        &self.groups
     }
 
     /// How many triples of edges each group has.
@@ -79,7 +100,7 @@ impl EdgeGroups {
 
     /// The mean radius ratio of each group, in the order of the sizes.
     pub fn expected_qualities(&self) -> Vec<f64> {
-        self.groups.iter().map(|group| group.expected).collect()
+        self.groups.iter().map(|group| group.quality[1]).collect()
     }
 
     /// Whether the triangle's edges are a path in space, end to end and not in one plane: group 2, whose triangles are the
@@ -96,7 +117,7 @@ impl EdgeGroups {
     /// # Panics
     /// If the edges are in one face.
     pub fn expected_quality(&self, triangle: [u8; 3]) -> f64 {
-        self.group(triangle).expected
+        self.group(triangle).quality[1]
     }
 }
 
@@ -113,21 +134,28 @@ fn is_path(edges: [[usize; 2]; 3]) -> bool {
     })
 }
 
-fn expected_quality(cell: &Cell, edges: [[usize; 2]; 3]) -> f64 {
+/// Least, mean and greatest radius ratio, and the shares below 0.1 and 0.3.
+fn qualities(cell: &Cell, edges: [[usize; 2]; 3]) -> ([f64; 3], [f64; 2]) {
     let along = |edge: [usize; 2], i: usize| {
         let share = (i as f64 + 1.0) / (POINTS as f64 + 1.0);
         let [a, b] = edge.map(|c| cell.corners()[c].map(f64::from));
         [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * share)
     };
-    let mut sum = 0.0;
+    let (mut least, mut sum, mut greatest, mut below) = (1.0f64, 0.0, 0.0f64, [0.0; 2]);
     for i in 0..POINTS {
         for j in 0..POINTS {
             for k in 0..POINTS {
-                sum += radius_ratio([along(edges[0], i), along(edges[1], j), along(edges[2], k)]);
+                let ratio = radius_ratio([along(edges[0], i), along(edges[1], j), along(edges[2], k)]);
+                (least, sum, greatest) = (least.min(ratio), sum + ratio, greatest.max(ratio));
+                below = [
+                    below[0] + f64::from(u8::from(ratio < 0.1)),
+                    below[1] + f64::from(u8::from(ratio < 0.3)),
+                ];
             }
         }
     }
-    sum / (POINTS as f64).powi(3)
+    let count = (POINTS as f64).powi(3);
+    ([least, sum / count, greatest], below.map(|n| n / count))
 }
 
 /// Twice the radius of a triangle's inscribed circle over that of its circumscribed one: 1 if it is equilateral, 0 without area.

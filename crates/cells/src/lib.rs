@@ -48,10 +48,12 @@ mod hull;
 mod hull_rule;
 mod loops;
 mod symmetry;
+mod table;
 mod triangulation;
 
 pub use cell::{Cell, CellError};
-pub use edge_groups::{EdgeGroups, radius_ratio};
+pub use edge_groups::{EdgeGroup, EdgeGroups, radius_ratio};
 pub use hull_rule::{Label, Point};
 pub use symmetry::{Symmetry, classes, classes_with_complement, symmetries};
+pub use table::{Table, TableError};
 pub use triangulation::Triangulator;

@@ -408,3 +408,31 @@ fn diagonals_leave_56_triangles_of_group_2() {
         .count();
     assert_eq!(hull, 80);
 }
+
+/// The published facts, computed once more in Python over 59^3 places: the bad group is a path, is never good and is bad ten times
+/// as often as any other; three groups whose edges share no corner are never bad.
+#[test]
+fn groups_have_the_known_distributions() {
+    let groups = EdgeGroups::new(&Cell::cube());
+    let is_close = |a: f64, b: f64| (a - b).abs() < 6e-4;
+    let bad = groups.all().iter().find(|group| group.is_path).unwrap();
+    assert!(
+        is_close(bad.quality[2], 0.828) && is_close(bad.below[0], 0.050) && is_close(bad.below[1], 0.223)
+    );
+    let others = groups.all().iter().filter(|group| !group.is_path);
+    assert!(others.clone().all(|group| group.below[0] < 0.1 * 1.3 * bad.below[0]));
+    let never = others.filter(|group| group.quality[0] >= 0.698).map(|group| group.triples);
+    assert_eq!(never.collect::<BTreeSet<_>>(), BTreeSet::from([8, 12, 24]));
+}
+
+/// The tetrahedra of the body-centred lattice have 4 groups, those of a cube cut along its diagonal 9.
+#[test]
+fn tetrahedra_have_four_groups_or_nine() {
+    let disphenoid = Cell::try_new(&[[0, 0, 0], [2, 0, 0], [1, 1, 1], [1, 1, -1]]).unwrap();
+    let freudenthal = Cell::try_new(&[[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1]]).unwrap();
+    for (cell, groups) in [(disphenoid, 4), (freudenthal, 9)] {
+        let found = EdgeGroups::new(&cell);
+        assert_eq!(found.all().len(), groups);
+        assert_eq!(found.sizes().iter().sum::<usize>(), 16);
+    }
+}

@@ -16,6 +16,7 @@ pub(crate) mod pairs;
 pub(crate) mod report;
 pub(crate) mod serve;
 pub(crate) mod study;
+pub(crate) mod table;
 pub(crate) mod turntable;
 pub(crate) mod validate;
 pub(crate) mod verify;

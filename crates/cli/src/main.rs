@@ -85,6 +85,8 @@ enum Command {
     Inspect(commands::inspect::Arguments),
     /// Measure how far two surfaces are from each other: Hausdorff, mean and RMS, both ways
     Distance(commands::distance::Arguments),
+    /// Check a table of triangles by signs, a method's or one in a file, and say how good its triangles can be
+    Table(commands::table::Arguments),
     /// Check whether a mesh, made by any program, has the topology of the volume it was made of
     Verify(commands::verify::Arguments),
     /// Judge a questionnaire before anyone answers, and deal its forms
@@ -109,6 +111,7 @@ fn run(command: &Command) -> Result<Outcome> {
         Command::Study(arguments) => commands::study::run(arguments),
         Command::Extract(arguments) => commands::extract::run(arguments),
         Command::Methods(arguments) => commands::methods::run(arguments),
+        Command::Table(arguments) => commands::table::run(arguments),
         Command::Turntable(arguments) => commands::turntable::run(arguments),
         Command::Pairs(arguments) => commands::pairs::run(arguments),
         Command::Bundle(arguments) => commands::bundle::run(arguments),

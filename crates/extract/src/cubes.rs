@@ -22,6 +22,8 @@ mod volume_cells;
 pub use rule::{Diagonals, Faces, Flat};
 pub use volume_cells::{VolumeCells, VolumeCellsError};
 
+use cells::{Cell, Table};
+
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use self::grid::Grid;
@@ -40,6 +42,12 @@ use crate::trace::Trace;
 pub(crate) struct Rule {
     pub(crate) faces: Faces,
     pub(crate) diagonals: Diagonals,
+}
+
+/// The table of a rule, where it is one of signs alone.
+pub(crate) fn table(rule: Rule) -> Option<Table> {
+    let entries = Patches::get(rule).by_signs(rule.faces)?;
+    Some(Table::try_new(Cell::cube(), entries).expect("patches fit together"))
 }
 
 /// What is made of the cubes.

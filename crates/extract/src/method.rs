@@ -99,6 +99,17 @@ impl Method {
         }
     }
 
+    /// The tables by which signs decide triangles, before anything is merged or moved: of the cube; or of the tetrahedra of a cube's
+    /// worth of a uniform lattice, corners in half cells from its base point. None where samples decide as well, and for snapped cubes
+    /// and the arrangements that are cut cube by cube.
+    pub fn tables(&self) -> Vec<cells::Table> {
+        match self {
+            Self::Tetrahedra(of) => crate::tetrahedra::tables(of.arrangement),
+            Self::Cubes(of) => of.table().into_iter().collect(),
+            Self::SnapCubes(_) => Vec::new(),
+        }
+    }
+
     /// Whether the method's settings go with each other and with the grid. What this passes is refused by
     /// [`extract_into`](Self::extract_into) only for its source, its isovalue, or want of memory, threads or numbers.
     ///

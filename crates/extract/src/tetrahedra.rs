@@ -5,6 +5,8 @@
 //! spoke's two ends and two consecutive points of its ring, always turning the same way. So corners have roles: base,
 //! far end, then the two ring points. The roles fix which edge comes first in a triangle.
 
+use cells::{Cell, Table};
+
 use crate::lattice::{Arrangement, Directions, Uniform, members};
 
 /// The tetrahedra round one lattice edge.
@@ -86,6 +88,32 @@ pub(crate) fn spokes(arrangement: Arrangement) -> Vec<Spoke> {
         })
         .map(|d| Spoke::new(directions, d))
         .collect()
+}
+
+/// The tables of the tetrahedra of a cube's worth of the lattice, corners in half cells from its base point; none of the
+/// arrangements that are cut cube by cube.
+pub(crate) fn tables(arrangement: Arrangement) -> Vec<Table> {
+    if arrangement.uniform().is_none() {
+        return Vec::new();
+    }
+    let offsets = &arrangement.directions().offsets;
+    let tetrahedra = spokes(arrangement).into_iter().flat_map(|spoke| spoke.ring);
+    let table = |tetrahedron: Tetrahedron| {
+        let place = |d: u8| offsets[usize::from(d)].map(i32::from);
+        let [a, b, c] = tetrahedron.corners.map(place);
+        // Its edges stand in the order of `EDGES`.
+        let cell = Cell::try_new(&[[0; 3], a, b, c]).expect("a tetrahedron is a cell");
+        Table::try_new(cell, CASES.map(triangles).to_vec()).expect("cases fit together")
+    };
+    tetrahedra.map(table).collect()
+}
+
+fn triangles(case: Case) -> Vec<[u8; 3]> {
+    match case {
+        Empty => Vec::new(),
+        Triangle(triangle) => vec![triangle],
+        Quad([a, b, c, d]) => vec![[a, b, c], [d, c, b]],
+    }
 }
 
 /// Two centres share the tetrahedra round the edge between them; the lower one has them, unless it lies outside.

@@ -120,6 +120,15 @@ impl Patches {
         (self.patches.len() - 1) as u16
     }
 
+    /// The triangles of all patterns where signs decide them, by corners inside; `None` where samples do, or need a vertex in a cell.
+    pub(super) fn by_signs(&self, faces: Faces) -> Option<Vec<Vec<[u8; 3]>>> {
+        let is_decided = matches!(faces, Faces::SeparateInside | Faces::JoinInside);
+        let patch = |inside| self.at(self.choose(faces, inside, 0.0, || unreachable!("signs say all")));
+        let is_whole = |patch: &Patch| patch.polygons.is_empty() && patch.inner.is_empty();
+        (is_decided && (0..=255).all(|inside| is_whole(patch(inside))))
+            .then(|| (0..=255).map(|inside| patch(inside).triangles.clone()).collect())
+    }
+
     pub(super) fn at(&self, number: u16) -> &Patch {
         &self.patches[usize::from(number)]
     }

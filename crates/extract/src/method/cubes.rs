@@ -33,6 +33,10 @@ impl Cubes {
 
     const UNMOVED_HALO: u32 = 1;
 
+    pub(super) fn table(&self) -> Option<cells::Table> {
+        crate::cubes::table(self.rule())
+    }
+
     fn rule(&self) -> Rule {
         Rule { faces: self.faces, diagonals: self.diagonals }
     }

@@ -141,7 +141,7 @@ impl Snap {
             let length = (f64::from(other) - f64::from(value)).abs();
             let [own, others] = [value, other].map(|value| to_level(value) / length);
             // The lower end is asked first.
-            let is_asked = own <= gamma && (is_next || !(others <= gamma));
+            let is_asked = own <= gamma && (is_next || others > gamma || others.is_nan());
             if is_asked && own < nearest {
                 (nearest, found) = (own, Some(way));
             }
