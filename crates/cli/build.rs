@@ -7,7 +7,7 @@ use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const CRATES: [&str; 17] = [
+const CRATES: [&str; 18] = [
     "mesh",
     "cells",
     "design",
@@ -16,6 +16,7 @@ const CRATES: [&str; 17] = [
     "expression",
     "volume",
     "extract",
+    "trilinear",
     "program",
     "raster",
     "bench",

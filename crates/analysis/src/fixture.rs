@@ -95,6 +95,7 @@ fn mesh(study: &Study, row: &BenchmarkRow, purpose: Purpose) -> MeshRecord {
     let vertices = row.vertices + u64::from(purpose == Purpose::Indexed && object.id == "ss");
     MeshRecord {
         schema: MeshRecord::SCHEMA,
+        trilinear: None,
         id: row.id.clone(),
         purpose,
         spacing: object.benchmark_spacing,

@@ -196,9 +196,11 @@ mod tests {
         // A hole in a quad, all of whose crossings are still used.
         let quad = good.iter().position(|e| e.len() == 4).unwrap();
         let hole = (0..4)
-            .map(|i| check(&move |t: &mut Vec<Vec<[u8; 3]>>| {
+            .map(|i| {
+                check(&move |t: &mut Vec<Vec<[u8; 3]>>| {
                     t[quad].remove(i);
-                }))
+                })
+            })
             .all(|error| matches!(error, TableError::Edges { .. } | TableError::Rim { .. }));
         assert!(hole);
         // One entry that joins what the others keep apart: the table with complements has holes.

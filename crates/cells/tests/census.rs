@@ -416,21 +416,22 @@ fn groups_have_the_known_distributions() {
     let groups = EdgeGroups::new(&Cell::cube());
     let is_close = |a: f64, b: f64| (a - b).abs() < 6e-4;
     let bad = groups.all().iter().find(|group| group.is_path).unwrap();
-    assert!(
-        is_close(bad.quality[2], 0.828) && is_close(bad.below[0], 0.050) && is_close(bad.below[1], 0.223)
-    );
+    assert!(is_close(bad.below[0], 0.050) && is_close(bad.below[1], 0.223), "{bad:?}");
+    // It comes near the greatest, 2 sqrt 2 - 2, towards the ends of edges alone.
+    assert!((0.81..0.8285).contains(&bad.quality[2]), "{bad:?}");
     let others = groups.all().iter().filter(|group| !group.is_path);
     assert!(others.clone().all(|group| group.below[0] < 0.1 * 1.3 * bad.below[0]));
     let never = others.filter(|group| group.quality[0] >= 0.698).map(|group| group.triples);
     assert_eq!(never.collect::<BTreeSet<_>>(), BTreeSet::from([8, 12, 24]));
 }
 
-/// The tetrahedra of the body-centred lattice have 4 groups, those of a cube cut along its diagonal 9.
+/// A tetrahedron has 4 triples of edges at a corner and 12 that are paths. Eight symmetries leave 4 groups of the body-centred lattice's.
+/// A cube's, cut along its diagonal, has one symmetry beside the identity, which keeps 4 paths: 2 + (12 + 4) / 2 groups.
 #[test]
-fn tetrahedra_have_four_groups_or_nine() {
+fn tetrahedra_have_four_groups_or_ten() {
     let disphenoid = Cell::try_new(&[[0, 0, 0], [2, 0, 0], [1, 1, 1], [1, 1, -1]]).unwrap();
     let freudenthal = Cell::try_new(&[[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1]]).unwrap();
-    for (cell, groups) in [(disphenoid, 4), (freudenthal, 9)] {
+    for (cell, groups) in [(disphenoid, 4), (freudenthal, 10)] {
         let found = EdgeGroups::new(&cell);
         assert_eq!(found.all().len(), groups);
         assert_eq!(found.sizes().iter().sum::<usize>(), 16);

@@ -28,6 +28,7 @@ mod run_file;
 mod source;
 mod source_digests;
 mod store;
+mod trilinear_truth;
 mod video;
 
 use anyhow::Result;

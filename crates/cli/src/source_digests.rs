@@ -6,6 +6,7 @@ const DESIGN: &str = env!("ISOSTUDY_SOURCES_DESIGN");
 const RESPONSES: &str = env!("ISOSTUDY_SOURCES_RESPONSES");
 const FIELD: &str = env!("ISOSTUDY_SOURCES_FIELD");
 const EXTRACT: &str = env!("ISOSTUDY_SOURCES_EXTRACT");
+const TRILINEAR: &str = env!("ISOSTUDY_SOURCES_TRILINEAR");
 const EXPRESSION: &str = env!("ISOSTUDY_SOURCES_EXPRESSION");
 const VOLUME: &str = env!("ISOSTUDY_SOURCES_VOLUME");
 const PROGRAM: &str = env!("ISOSTUDY_SOURCES_PROGRAM");
@@ -20,7 +21,8 @@ const PAGE: &str = env!("ISOSTUDY_SOURCES_PAGE");
 const CLI: &str = env!("ISOSTUDY_SOURCES_CLI");
 
 /// What makes meshes.
-pub(crate) const MESHES: &[&str] = &[MESH, FIELD, EXPRESSION, VOLUME, CELLS, EXTRACT, PROGRAM, CLI];
+pub(crate) const MESHES: &[&str] =
+    &[MESH, FIELD, EXPRESSION, VOLUME, CELLS, EXTRACT, TRILINEAR, PROGRAM, CLI];
 /// What makes pictures of meshes.
 pub(crate) const PICTURES: &[&str] = &[MESH, RASTER, CLI];
 /// What makes timings.

@@ -44,12 +44,30 @@ pub struct MeshRecord {
     pub topology: Topology,
     /// How well the mesh stands for its isosurface.
     pub accuracy: Accuracy,
+    /// What the trilinear interpolant of the samples has instead, where the samples are the corners of the grid's cells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub trilinear: Option<Trilinear>,
 }
 
 impl MeshRecord {
     /// The version of the layout that is written and read here. 2 has counts that every method has, and those of tetrahedra beside
     /// them.
     pub const SCHEMA: u32 = 2;
+}
+
+/// The topology of the trilinear level set of a grid of samples; names as in `trilinear::Summary`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Trilinear {
+    /// Connected pieces.
+    pub components: u64,
+    /// Summed over them.
+    pub euler_characteristic: i64,
+    /// Tunnels of the surface.
+    pub genus: i64,
+    /// Cells whose surface has a tunnel.
+    pub tunnel_cells: u64,
+    /// Cells that the method decided otherwise than the interpolant, if it decides cell by cell.
+    pub cells_otherwise: Option<u64>,
 }
 
 /// What was counted while a mesh was made. What its method does not have, or does not tell, is `None`.

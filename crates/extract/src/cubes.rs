@@ -50,6 +50,26 @@ pub(crate) fn table(rule: Rule) -> Option<Table> {
     Some(Table::try_new(Cell::cube(), entries).expect("patches fit together"))
 }
 
+/// How many cells of a grid of samples have another patch by a rule's faces than the trilinear interpolant has.
+pub(crate) fn cells_otherwise(rule: Rule, [nx, ny, nz]: [usize; 3], values: &[f32], isovalue: f32) -> u64 {
+    let patches = Patches::get(rule);
+    let mut count = 0;
+    for z in 0..nz - 1 {
+        for y in 0..ny - 1 {
+            for x in 0..nx - 1 {
+                let at = |c: usize| values[((z + (c >> 2)) * ny + y + (c >> 1 & 1)) * nx + x + (c & 1)];
+                let inside = (0..8).fold(0, |set, c| set | u8::from(at(c) > isovalue) << c);
+                if matches!(inside, 0 | 255) {
+                    continue;
+                }
+                let by = |faces| patches.choose(faces, inside, isovalue, || std::array::from_fn(at));
+                count += u64::from(by(rule.faces) != by(Faces::Trilinear));
+            }
+        }
+    }
+    count
+}
+
 /// What is made of the cubes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Way {

@@ -14,9 +14,10 @@ use crate::box_grid::BoxGrid;
 use crate::cubes::Rule;
 use crate::extraction::{ExtractError, Extraction};
 use crate::extractor::Extractor;
-use crate::lattice::{Arrangement, CellBox, LatticeError};
-use crate::settings::{Execution, ExtractSettings};
+use crate::lattice::{Arrangement, Border, CellBox, LatticeError};
+use crate::settings::{Execution, ExtractSettings, Positions, Topology};
 use crate::source::Source;
+use field::StudyField;
 
 /// A way to make a mesh. The same method, field, grid and isovalue give the same mesh to the byte, on any number of
 /// threads.
@@ -96,6 +97,59 @@ impl Method {
         match self {
             Self::Tetrahedra(_) => false,
             Self::Cubes(_) | Self::SnapCubes(_) => true,
+        }
+    }
+
+    /// The samples at the corners of a grid's cells, x fastest, where the method takes them, and how many there are along each axis;
+    /// `None` if its sample points are others.
+    ///
+    /// # Errors
+    /// [`LatticeError`] if the grid is not one for this method.
+    pub fn corner_samples(
+        &self,
+        field: &dyn StudyField,
+        grid: &BoxGrid,
+    ) -> Result<Option<([usize; 3], Vec<f32>)>, LatticeError> {
+        let has_corners = match self {
+            Self::Tetrahedra(of) => {
+                of.arrangement == Arrangement::SimpleCubic
+                    && of.topology == Topology::Guarded
+                    && of.positions == Positions::Indexed
+            }
+            _ => self.is_of_cubes(),
+        };
+        if !has_corners {
+            return Ok(None);
+        }
+        let lattice = grid.lattice(Arrangement::SimpleCubic)?;
+        let counts = lattice.cells().map(|n| n as usize + 1);
+        let first = lattice.origin();
+        let axis = |axis: usize| -> Vec<f32> {
+            let at =
+                |i: usize| lattice.coordinate(axis, 2 * (i64::from(first[axis]) + i as i64), Border::OnBox);
+            (0..counts[axis]).map(at).collect()
+        };
+        let [x, y, z] = [axis(0), axis(1), axis(2)];
+        let mut samples = vec![0.0; counts.iter().product()];
+        for (row, values) in samples.chunks_exact_mut(counts[0]).enumerate() {
+            field.sample_row(&x, y[row % counts[1]], z[row / counts[1]], values);
+        }
+        Ok(Some((counts, samples)))
+    }
+
+    /// How many cells of a grid of samples, x fastest, two or more along each axis, the method decides otherwise than the trilinear
+    /// interpolant of the samples: what ambiguous faces join, and whether there is a tunnel. `None` where it does not decide cell by
+    /// cell what is joined.
+    ///
+    /// # Panics
+    /// If there are not as many samples as the counts say.
+    pub fn cells_otherwise(&self, counts: [usize; 3], values: &[f32], isovalue: f32) -> Option<u64> {
+        assert_eq!(values.len(), counts.iter().product::<usize>(), "samples for the counts");
+        match self {
+            Self::Cubes(of) if counts.iter().all(|&n| n > 1) => {
+                Some(of.cells_otherwise(counts, values, isovalue))
+            }
+            _ => None,
         }
     }
 

@@ -92,6 +92,17 @@ pub(super) fn quality(inputs: &Inputs<'_>) -> Option<Table> {
     (!table.rows.is_empty()).then_some(table)
 }
 
+/// Columns of the trilinear truth.
+const TRUTHS: [(&str, &str); 4] = [
+    ("trilinear_components", "Components of the interpolant"),
+    ("trilinear_euler_characteristic", "Euler characteristic of the interpolant"),
+    ("tunnel_cells", "Cells with a tunnel"),
+    ("cells_otherwise", "Cells decided otherwise"),
+];
+const TRUTHS_NOTE: &str = "The interpolant: the level set of the samples, interpolated trilinearly in each cell, counted exactly. Cells decided \
+     otherwise: those in which the method joins what the interpolant keeps apart, or the other way round. Nothing stands where the \
+     method's samples are not the corners of the cells, or it does not decide by cells.";
+
 /// Topology of the meshes at both spacings.
 pub(super) fn topology(inputs: &Inputs<'_>) -> Option<Table> {
     let mut table = Table::new(
@@ -113,25 +124,43 @@ pub(super) fn topology(inputs: &Inputs<'_>) -> Option<Table> {
             ("folded_faces", "Folded faces"),
         ],
     );
+    let mut meshes: Vec<(Purpose, &MeshRecord)> = Vec::new();
     for purpose in [Purpose::Benchmark, Purpose::Stimulus] {
-        for (_, mesh) in MeshSet::of(inputs, purpose).in_order() {
-            let t = &mesh.topology;
-            table.push(vec![
-                Cell::text(&mesh.id),
-                Cell::text(purpose_label(purpose)),
-                Cell::count(t.vertices),
-                Cell::count(t.edges),
-                Cell::count(t.triangles),
-                Cell::Count(t.euler_characteristic),
-                Cell::count(t.components),
-                Cell::count(t.boundary_edges),
-                Cell::count(t.non_manifold_edges),
-                Cell::count(t.non_manifold_vertices),
-                Cell::count(t.misoriented_edges),
-                Cell::count(t.duplicate_faces),
-                Cell::count(t.folded_faces),
-            ]);
+        meshes.extend(MeshSet::of(inputs, purpose).in_order().map(|(_, mesh)| (purpose, mesh)));
+    }
+    // What the samples' interpolant has, where some method's samples are those of cells.
+    let has_truth = meshes.iter().any(|(_, mesh)| mesh.trilinear.is_some());
+    if has_truth {
+        for (name, heading) in TRUTHS {
+            table.columns.push(Column { name: name.into(), heading: heading.into() });
         }
+        table.notes.push(TRUTHS_NOTE.into());
+    }
+    for (purpose, mesh) in meshes {
+        let t = &mesh.topology;
+        let mut row = vec![
+            Cell::text(&mesh.id),
+            Cell::text(purpose_label(purpose)),
+            Cell::count(t.vertices),
+            Cell::count(t.edges),
+            Cell::count(t.triangles),
+            Cell::Count(t.euler_characteristic),
+            Cell::count(t.components),
+            Cell::count(t.boundary_edges),
+            Cell::count(t.non_manifold_edges),
+            Cell::count(t.non_manifold_vertices),
+            Cell::count(t.misoriented_edges),
+            Cell::count(t.duplicate_faces),
+            Cell::count(t.folded_faces),
+        ];
+        if has_truth {
+            let of = mesh.trilinear.as_ref();
+            row.push(of.map_or(Cell::Missing, |of| Cell::count(of.components)));
+            row.push(of.map_or(Cell::Missing, |of| Cell::Count(of.euler_characteristic)));
+            row.push(of.map_or(Cell::Missing, |of| Cell::count(of.tunnel_cells)));
+            row.push(of.and_then(|of| of.cells_otherwise).map_or(Cell::Missing, Cell::count));
+        }
+        table.push(row);
     }
     (!table.rows.is_empty()).then_some(table)
 }

@@ -6,6 +6,7 @@ use crate::prepare::{Prepared, Wanted};
 use crate::records::mesh_record;
 use crate::store::{Inputs, Stamp};
 use crate::terminal::progress::Step;
+use crate::trilinear_truth::trilinear_truth;
 use crate::{recipe, source_digests};
 use anyhow::{Context, Result};
 use design::record::{MeshRecord, Purpose};
@@ -95,7 +96,9 @@ impl Pipeline<'_> {
             let Made { mesh, counts } = self.make(configuration, &prepared, step)?;
             let accuracy = self.accuracy(&prepared, &mesh)?;
             let cells = prepared.cells()?;
-            let record = mesh_record(&configuration.id, purpose, spacing, cells, counts, &mesh, &accuracy);
+            let truth = trilinear_truth(&prepared, cells);
+            let record =
+                mesh_record(&configuration.id, purpose, spacing, cells, counts, &mesh, &accuracy, truth);
             // The indexed variant is only measured: nothing is rendered from it.
             if purpose != Purpose::Indexed {
                 let mut ply = Vec::new();

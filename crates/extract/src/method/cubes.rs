@@ -37,6 +37,10 @@ impl Cubes {
         crate::cubes::table(self.rule())
     }
 
+    pub(super) fn cells_otherwise(&self, counts: [usize; 3], values: &[f32], isovalue: f32) -> u64 {
+        crate::cubes::cells_otherwise(self.rule(), counts, values, isovalue)
+    }
+
     fn rule(&self) -> Rule {
         Rule { faces: self.faces, diagonals: self.diagonals }
     }
