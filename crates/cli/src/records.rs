@@ -4,7 +4,6 @@
 use design::ConfigurationId;
 use design::record::{
     Accuracy, Counts, Distribution, Histogram, MeshRecord, Purpose, Quality, TetrahedraCounts, Topology,
-    Trilinear,
 };
 use mesh::TriangleMesh;
 
@@ -16,7 +15,6 @@ pub(crate) fn mesh_record(
     counts: Counts,
     mesh: &TriangleMesh,
     accuracy: &extract::Accuracy,
-    trilinear: Option<Trilinear>,
 ) -> MeshRecord {
     MeshRecord {
         schema: MeshRecord::SCHEMA,
@@ -28,7 +26,7 @@ pub(crate) fn mesh_record(
         quality: quality(&mesh::quality::quality(mesh)),
         topology: topology(&mesh::topology::topology(mesh)),
         accuracy: self::accuracy(accuracy),
-        trilinear,
+        trilinear: None,
     }
 }
 

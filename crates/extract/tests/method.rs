@@ -222,6 +222,13 @@ fn presets_have_names_of_their_own() {
                 assert!(id.starts_with("mc") && preset.label.starts_with("marching cubes"), "{id}");
                 continue;
             }
+            Method::SnapCubes(_) => {
+                assert!(
+                    id.starts_with("snapmc") && preset.label.starts_with("marching cubes, snapped"),
+                    "{id}"
+                );
+                continue;
+            }
             _ => panic!("a new family"),
         };
         let mut letters = id.chars();

@@ -96,9 +96,9 @@ impl Pipeline<'_> {
             let Made { mesh, counts } = self.make(configuration, &prepared, step)?;
             let accuracy = self.accuracy(&prepared, &mesh)?;
             let cells = prepared.cells()?;
-            let truth = trilinear_truth(&prepared, cells);
-            let record =
-                mesh_record(&configuration.id, purpose, spacing, cells, counts, &mesh, &accuracy, truth);
+            let mut record =
+                mesh_record(&configuration.id, purpose, spacing, cells, counts, &mesh, &accuracy);
+            record.trilinear = trilinear_truth(&prepared, cells);
             // The indexed variant is only measured: nothing is rendered from it.
             if purpose != Purpose::Indexed {
                 let mut ply = Vec::new();
