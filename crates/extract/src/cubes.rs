@@ -8,6 +8,7 @@
 mod cells_pass;
 mod exact;
 mod grid;
+mod moved;
 mod patches;
 mod rows;
 mod rule;
@@ -19,6 +20,7 @@ mod tunnel;
 mod vertices;
 mod volume_cells;
 
+pub(crate) use moved::EdgeMoves;
 pub use rule::{Diagonals, Faces, Flat};
 pub use volume_cells::{VolumeCells, VolumeCellsError};
 
@@ -75,6 +77,13 @@ pub(crate) fn cells_otherwise(rule: Rule, [nx, ny, nz]: [usize; 3], values: &[f3
 pub(crate) enum Way {
     /// Patches of crossings.
     Patches(Rule),
+    /// Patches of crossings that are moved.
+    Moved {
+        /// What decides the patches.
+        rule: Rule,
+        /// How they are moved.
+        moves: EdgeMoves,
+    },
     /// Patches of crossings and of points that crossings were drawn to.
     Snapped {
         /// How near to a point a crossing must be, in lengths of its edge.
@@ -93,7 +102,11 @@ pub(crate) fn extract(
     extraction: &mut Extraction,
 ) -> Result<(), ExtractError> {
     match way {
-        Way::Patches(rule) => extract_patches(request, rule, progress, trace, extraction),
+        Way::Patches(rule) => extract_patches(request, rule, 0.0, progress, trace, extraction),
+        Way::Moved { rule, moves } => {
+            extract_patches(request, rule, moves.pull, progress, trace, extraction)?;
+            moves.apply(request, extraction)
+        }
         Way::Snapped { gamma, flat } => snap::extract(request, gamma, flat, progress, extraction),
     }
 }
@@ -102,6 +115,7 @@ pub(crate) fn extract(
 fn extract_patches(
     request: &Request,
     rule: Rule,
+    pull: f32,
     progress: Option<&Progress>,
     trace: Option<&mut Trace>,
     extraction: &mut Extraction,
@@ -117,7 +131,7 @@ fn extract_patches(
     let allocation = start.elapsed();
 
     let streaming = Moment::now();
-    let placer = &Placer::new(lattice, settings, request.level());
+    let placer = &Placer::new(lattice, settings, request.level()).pulled(pull);
     let isovalue = settings.isovalue;
     let cells = lattice.cells()[2] as usize;
     let done = AtomicUsize::new(0);

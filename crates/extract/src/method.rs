@@ -1,11 +1,13 @@
 //! A method as plain data: everything that decides a mesh, but for the field, the grid and the isovalue.
 
 mod cubes;
+mod macet;
 mod presets;
 mod snap_cubes;
 mod tetrahedra;
 
 pub use cubes::Cubes;
+pub use macet::Macet;
 pub use presets::{Preset, presets};
 pub use snap_cubes::SnapCubes;
 pub use tetrahedra::Tetrahedra;
@@ -53,6 +55,8 @@ pub enum Method {
     Cubes(Cubes),
     /// Marching cubes with crossings drawn to lattice points.
     SnapCubes(SnapCubes),
+    /// Marching cubes with edges turned square to the surface.
+    Macet(Macet),
 }
 
 /// What a method promises of every mesh, whatever the field. A promise that is not made may still hold for a field.
@@ -85,17 +89,32 @@ pub enum MethodError {
         /// As given.
         gamma: f32,
     },
+    /// Moves that are none.
+    #[error(
+        "pull = {pull:?}, steps = {steps}, share = {share:?}: pull and share must be from 0 to 1, steps at most 64"
+    )]
+    Macet {
+        /// As given.
+        pull: f32,
+        /// As given.
+        steps: u32,
+        /// As given.
+        share: f32,
+    },
+    /// There are samples, and the method calls the field between them.
+    #[error("the method calls the field; samples alone do not suffice")]
+    NeedsField,
     /// The method's settings do not go together, or the extraction fails.
     #[error(transparent)]
     Extract(#[from] ExtractError),
 }
 
 impl Method {
-    /// Whether the sample points are the corners of cubes, so that a volume's own cells will do
+    /// Whether the samples at the corners of cubes are all that the method asks for, so that a volume's own cells will do
     /// ([`VolumeCells`](crate::VolumeCells)).
     pub fn is_of_cubes(&self) -> bool {
         match self {
-            Self::Tetrahedra(_) => false,
+            Self::Tetrahedra(_) | Self::Macet(_) => false,
             Self::Cubes(_) | Self::SnapCubes(_) => true,
         }
     }
@@ -116,7 +135,7 @@ impl Method {
                     && of.topology == Topology::Guarded
                     && of.positions == Positions::Indexed
             }
-            _ => self.is_of_cubes(),
+            Self::Cubes(_) | Self::SnapCubes(_) | Self::Macet(_) => true,
         };
         if !has_corners {
             return Ok(None);
@@ -146,10 +165,12 @@ impl Method {
     pub fn cells_otherwise(&self, counts: [usize; 3], values: &[f32], isovalue: f32) -> Option<u64> {
         assert_eq!(values.len(), counts.iter().product::<usize>(), "samples for the counts");
         match self {
-            Self::Cubes(of) if counts.iter().all(|&n| n > 1) => {
-                Some(of.cells_otherwise(counts, values, isovalue))
+            Self::Cubes(of) => Some(of.cells_otherwise(counts, values, isovalue)),
+            Self::Macet(Macet { faces, diagonals, .. }) => {
+                let table = Cubes { faces: *faces, diagonals: *diagonals, ..Cubes::default() };
+                Some(table.cells_otherwise(counts, values, isovalue))
             }
-            _ => None,
+            Self::Tetrahedra(_) | Self::SnapCubes(_) => None,
         }
     }
 
@@ -160,6 +181,12 @@ impl Method {
         match self {
             Self::Tetrahedra(of) => crate::tetrahedra::tables(of.arrangement),
             Self::Cubes(of) => of.table().into_iter().collect(),
+            Self::Macet(Macet { faces, diagonals, .. }) => {
+                Cubes { faces: *faces, diagonals: *diagonals, ..Cubes::default() }
+                    .table()
+                    .into_iter()
+                    .collect()
+            }
             Self::SnapCubes(_) => Vec::new(),
         }
     }
@@ -237,6 +264,7 @@ impl Method {
             Self::Tetrahedra(tetrahedra) => tetrahedra,
             Self::Cubes(cubes) => cubes,
             Self::SnapCubes(cubes) => cubes,
+            Self::Macet(macet) => macet,
         }
     }
 }

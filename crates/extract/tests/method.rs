@@ -136,7 +136,7 @@ fn presets_keep_the_promise_of_a_manifold_whatever_the_samples() {
         promised += 1;
         let arrangement = match preset.method {
             Method::Tetrahedra(Tetrahedra { arrangement, .. }) => arrangement,
-            Method::Cubes(_) | Method::SnapCubes(_) => Arrangement::SimpleCubic,
+            Method::Cubes(_) | Method::SnapCubes(_) | Method::Macet(_) => Arrangement::SimpleCubic,
             _ => panic!("a new family"),
         };
         let mut extractor = Extractor::new();
@@ -154,7 +154,7 @@ fn presets_keep_the_promise_of_a_manifold_whatever_the_samples() {
             }
         }
     }
-    assert_eq!(promised, 19, "all but those as published");
+    assert_eq!(promised, 20, "all but those as published");
 }
 
 #[test]
@@ -170,12 +170,12 @@ fn presets_keep_their_other_promises() {
         let placed = |placement| match preset.method {
             Method::Tetrahedra(tetrahedra) => Method::Tetrahedra(Tetrahedra { placement, ..tetrahedra }),
             Method::Cubes(cubes) => Method::Cubes(Cubes { placement, ..cubes }),
-            Method::SnapCubes(_) => panic!("it has no placements"),
+            Method::SnapCubes(_) | Method::Macet(_) => panic!("it has no placements"),
             _ => panic!("a new family"),
         };
         let arrangement = match preset.method {
             Method::Tetrahedra(Tetrahedra { arrangement, .. }) => arrangement,
-            Method::Cubes(_) | Method::SnapCubes(_) => Arrangement::SimpleCubic,
+            Method::Cubes(_) | Method::SnapCubes(_) | Method::Macet(_) => Arrangement::SimpleCubic,
             _ => panic!("a new family"),
         };
         let lattice = GRID.lattice(arrangement).unwrap();
@@ -227,6 +227,10 @@ fn presets_have_names_of_their_own() {
                     id.starts_with("snapmc") && preset.label.starts_with("marching cubes, snapped"),
                     "{id}"
                 );
+                continue;
+            }
+            Method::Macet(_) => {
+                assert!(id.starts_with("macet") && preset.label.starts_with("marching cubes, edges"), "{id}");
                 continue;
             }
             _ => panic!("a new family"),

@@ -1,7 +1,7 @@
 //! Methods as tables of a file: what is written is read back, and what is not known is refused by name.
 
 use extract::{
-    Arrangement, Clustering, Cubes, Diagonals, Faces, Flat, Method, Placement, Positions, SnapCubes,
+    Arrangement, Clustering, Cubes, Diagonals, Faces, Flat, Macet, Method, Placement, Positions, SnapCubes,
     Tetrahedra, Topology,
 };
 use toml::Table;
@@ -128,6 +128,17 @@ fn snapped_cubes_are_read_and_written() {
     assert_eq!(read(r#"recipe = { kind = "snap-cubes" }"#), Ok(published));
     let error = read(r#"recipe = { kind = "snap-cubes", faces = "decider" }"#).unwrap_err();
     assert!(error.contains("faces") && error.contains("gamma"), "{error}");
+}
+
+#[test]
+fn macet_is_read_and_written() {
+    let wanted = Macet { faces: Faces::Decider, pull: 0.5, steps: 7, share: 0.25, ..Macet::default() };
+    let keys = r#"recipe = { kind = "macet", faces = "decider", pull = 0.5, steps = 7, share = 0.25 }"#;
+    assert_eq!(read(keys), Ok(Method::Macet(wanted)));
+    let text = toml::to_string(&Method::Macet(wanted)).unwrap();
+    assert_eq!(toml::from_str::<Method>(&text).unwrap(), Method::Macet(wanted));
+    assert_eq!(Macet::default().diagonals, Diagonals::EdgeGroups);
+    assert!(read(r#"recipe = { kind = "macet", gamma = 0.3 }"#).unwrap_err().contains("gamma"));
 }
 
 #[test]

@@ -225,6 +225,8 @@ pub(super) struct Placer<'a> {
     isovalue: f32,
     /// How near to either end it may lie.
     apart: Apart,
+    /// How far a vertex is drawn from its crossing to the middle of its edge: 0 to 1.
+    pull: f32,
     /// Whether the settings want vertices elsewhere, and to find roots with.
     refines: bool,
     level: Option<Level<'a>>,
@@ -233,12 +235,18 @@ pub(super) struct Placer<'a> {
 impl<'a> Placer<'a> {
     pub(super) fn new(lattice: &Lattice, settings: &ExtractSettings, level: Option<Level<'a>>) -> Self {
         Self {
+            pull: 0.0,
             isovalue: settings.isovalue,
             apart: Apart::new(lattice, Topology::Guarded),
             // The weighted mean of one crossing is that crossing.
             refines: settings.refine_crossings || settings.placement == Placement::CurvatureWeighted,
             level: level.filter(|_| settings.refine_crossings),
         }
+    }
+
+    /// The same with vertices drawn to the middles of their edges, but for edges in the sides of the box.
+    pub(super) fn pulled(self, pull: f32) -> Self {
+        Self { pull, ..self }
     }
 
     /// The crossing by linear interpolation, on the edge that begins at a place. Of the edge alone, so that chunks, slabs and cells
@@ -255,8 +263,18 @@ impl<'a> Placer<'a> {
         let [from, to] = [0, 1].map(|step| grid.at[axis][place[axis] + step]);
         let least = self.apart.at(position).ratio(Company::Singles, 0, 0.0);
         let ratio = linear_ratio(self.isovalue - here, here, there).clamp(least, 1.0 - least);
+        let ratio = if self.pull > 0.0 { self.drawn(ratio, grid, place, axis) } else { ratio };
         position[axis] = (from + (to - from) * ratio).clamp(from, to);
         position
+    }
+
+    #[inline(never)]
+    fn drawn(&self, ratio: f32, grid: &Grid, place: [usize; 3], axis: usize) -> f32 {
+        let is_on_side = |other: usize| place[other] == 0 || place[other] + 1 == grid.size[other];
+        if (0..3).any(|other| other != axis && is_on_side(other)) {
+            return ratio;
+        }
+        ratio + (0.5 - ratio) * self.pull
     }
 
     /// Where the settings want it, if elsewhere.

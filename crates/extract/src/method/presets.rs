@@ -3,7 +3,7 @@
 //! The first letter is the arrangement: body-centred, simple cubic, mirrored five tetrahedra, face-centred. The second is
 //! the clustering: unclustered, integrated, post-processed by an edge collapse, integrated and then collapsed.
 
-use super::{Cubes, Method, SnapCubes, Tetrahedra};
+use super::{Cubes, Macet, Method, SnapCubes, Tetrahedra};
 use crate::cubes::{Diagonals, Faces, Flat};
 use crate::lattice::Arrangement::{self, BodyCentred, FaceCentred, FiveTetrahedra, SimpleCubic};
 use crate::settings::Clustering::{self, EdgeCollapse, Integrated, IntegratedCollapse, None};
@@ -17,6 +17,7 @@ const CUBES: &str = "Lorensen & Cline 1987, with faces that agree";
 const TRILINEAR: &str = "Chernyaev 1995, with every case decided by the interpolant's saddles";
 const EDGE_GROUPS: &str = "Lorensen & Cline 1987; Dietrich et al. 2008";
 const SNAPPED: &str = "Raman & Wenger 2008; table by convex hulls, Bhaniramka, Wenger & Crawfis 2004";
+const TURNED: &str = "our reading of Macet, Dietrich et al. 2009, on the table of Dietrich et al. 2008";
 const PLACED: &str = "Treece, Prager & Gee 1999; for the placement see extract::Placement";
 
 /// A method with a name.
@@ -39,7 +40,7 @@ pub fn presets() -> &'static [Preset] {
     &PRESETS
 }
 
-static PRESETS: [Preset; 26] = [
+static PRESETS: [Preset; 27] = [
     plain("bu", "body-centred, none", BodyCentred, None, COSTEN),
     plain("bi", "body-centred, integrated", BodyCentred, Integrated, TREECE),
     plain("bp", "body-centred, edge collapse", BodyCentred, EdgeCollapse, COLLAPSED),
@@ -70,6 +71,18 @@ static PRESETS: [Preset; 26] = [
         label: "marching cubes, snapped",
         method: Method::SnapCubes(SnapCubes { gamma: 0.3, flat: Flat::Both }),
         source: SNAPPED,
+    },
+    Preset {
+        id: "macet",
+        label: "marching cubes, edges turned",
+        method: Method::Macet(Macet {
+            faces: Faces::SeparateInside,
+            diagonals: Diagonals::EdgeGroups,
+            pull: 1.0,
+            steps: 4,
+            share: 1.0,
+        }),
+        source: TURNED,
     },
     published("bu-published", "body-centred, none, as published", BodyCentred, None),
     published("bi-published", "body-centred, integrated, as published", BodyCentred, Integrated),

@@ -1,0 +1,116 @@
+//! Macet as a method: our reading of it.
+
+use super::{Family, MethodError, Promises};
+use crate::box_grid::BoxGrid;
+use crate::cubes::{Diagonals, EdgeMoves, Faces, Rule, Way};
+use crate::extraction::{Extraction, check};
+use crate::extractor::Extractor;
+use crate::lattice::{Arrangement, LatticeError};
+use crate::settings::{Clustering, Execution, ExtractSettings, Topology};
+use crate::source::Source;
+
+/// Marching cubes whose edges are turned square to the surface before they are cut (Macet: Dietrich, Scheidegger, Schreiner, Comba,
+/// Nedel & Silva 2009). Triangles are those of the table; vertices go where they make good ones.
+///
+/// What is published is the idea: cuts are best where edges stand square on the surface, in steps along the gradient and along the
+/// tangent plane by turns, and away from the ends of edges. Step, number and displacement are not; here they are settings. A vertex
+/// begins near the middle of its edge. It goes along the gradient to the surface, then in the tangent plane towards where it began,
+/// and so on; at the end it is the surface's nearest point. No step turns a triangle over.
+///
+/// With the feature `serde` the keys are those of the fields, all with defaults.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+pub struct Macet {
+    /// What ambiguous faces and cells get.
+    pub faces: Faces,
+    /// How polygons become triangles.
+    pub diagonals: Diagonals,
+    /// Where on its edge a vertex begins: at 0 at the crossing, at 1 in the middle.
+    pub pull: f32,
+    /// How many pairs of steps there are: one along the gradient, one along the tangent plane. At most 64.
+    pub steps: u32,
+    /// The share of the way in the tangent plane that a step takes: 0 to 1.
+    pub share: f32,
+}
+
+impl Default for Macet {
+    /// The table of edge groups, and eight steps, as in Unified Macet.
+    fn default() -> Self {
+        Self {
+            faces: Faces::SeparateInside,
+            diagonals: Diagonals::EdgeGroups,
+            pull: 1.0,
+            steps: 4,
+            share: 1.0,
+        }
+    }
+}
+
+const MOST_STEPS: u32 = 64;
+
+impl Macet {
+    const ARRANGEMENT: Arrangement = Arrangement::SimpleCubic;
+
+    fn settings(isovalue: f32) -> ExtractSettings {
+        let (clustering, topology) = (Clustering::None, Topology::Guarded);
+        ExtractSettings { isovalue, clustering, topology, ..ExtractSettings::default() }
+    }
+
+    fn check_moves(&self) -> Result<(), MethodError> {
+        let is_share = |value: f32| (0.0..=1.0).contains(&value);
+        if is_share(self.pull) && is_share(self.share) && self.steps <= MOST_STEPS {
+            return Ok(());
+        }
+        let Self { pull, steps, share, .. } = *self;
+        Err(MethodError::Macet { pull, steps, share })
+    }
+}
+
+impl Family for Macet {
+    fn check(&self, grid: &BoxGrid) -> Result<(), MethodError> {
+        self.check_moves()?;
+        grid.lattice(Self::ARRANGEMENT)?;
+        Ok(())
+    }
+
+    fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError> {
+        Ok(grid.lattice(Self::ARRANGEMENT)?.cells())
+    }
+
+    fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError> {
+        Ok(grid.lattice(Self::ARRANGEMENT)?.memory_bytes_for(&Self::settings(0.0), execution))
+    }
+
+    fn promises(&self) -> Promises {
+        Promises {
+            manifold: true,
+            closed_off_the_box: true,
+            same_triangles_for_all_placements: false,
+            chunks: false,
+            samples_suffice: false,
+        }
+    }
+
+    fn extract_into(
+        &self,
+        extractor: &mut Extractor,
+        source: Source,
+        grid: &BoxGrid,
+        isovalue: f32,
+        execution: &Execution,
+        extraction: &mut Extraction,
+    ) -> Result<(), MethodError> {
+        self.check_moves()?;
+        if matches!(source, Source::Samples(_) | Source::Window { .. }) {
+            return Err(MethodError::NeedsField);
+        }
+        let settings = Self::settings(isovalue);
+        check(&settings, Self::ARRANGEMENT)?;
+        let lattice = grid.lattice(Self::ARRANGEMENT)?;
+        let rule = Rule { faces: self.faces, diagonals: self.diagonals };
+        let way =
+            Way::Moved { rule, moves: EdgeMoves { pull: self.pull, steps: self.steps, share: self.share } };
+        Ok(extractor.extract_cubes_into(source, &lattice, &settings, way, execution.into(), extraction)?)
+    }
+}
