@@ -71,6 +71,7 @@
 //! | meshes, one after the other | an [`Extractor`], which keeps its buffers |
 //! | the samples' own topology | [`Cubes`] with [`Faces::Trilinear`], preset `mc33` |
 //! | counts to compare with other programs | [`VolumeCells`], preset `mc` |
+//! | no thin triangles, bounded angles | [`SnapCubes`], preset `snapmc` |
 //! | terrain, for a game | a [`Grid`], a [`ChunkExtractor`] and [`Grid::touched`]: see [`engine`]; `examples/endless.rs` walks through one |
 //! | regular triangles | [`Arrangement::BodyCentred`], [`Clustering::Integrated`], [`Placement::Relaxed`] |
 //! | few samples | [`Arrangement::SimpleCubic`], [`Clustering::Integrated`] |
@@ -103,6 +104,9 @@
 //!   outside. The crate `trilinear` counts the same without a mesh; 100,000 random grids agree (`tests/cubes_trilinear.rs`).
 //! - A vertex is a crossing, but for a few in cells whose polygons have all diagonals in faces, or whose tube has a rung there.
 //!   Vertices stand in storage order of the lower ends of their edges, then of the axes.
+//! - [`SnapCubes`] draws crossings to nearby samples, so that angles are bounded; its mesh is closed off the box, and a manifold only
+//!   where sheets of the surface keep a cell apart. [`Macet`] keeps the table's triangles and moves their vertices, and calls the
+//!   field to do so. Neither makes chunks.
 //! - [`VolumeCells`] takes a volume's own cells, turned, mirrored, sheared and of unequal steps as they may be. At
 //!   `isovalue.next_down()` vertices and triangles are as many as VTK's Flying Edges makes at `isovalue`, which has equal samples
 //!   inside (`tests/cubes_vtk.rs`).
