@@ -94,7 +94,8 @@ fn worst(mesh: &TriangleMesh) -> [f64; 3] {
 #[test]
 fn triangles_are_far_better_and_no_farther_from_the_surface_on_average() {
     for case in cases() {
-        let (plain, moved) = (run(table(), &case, 1).mesh, run(Method::Macet(Macet::default()), &case, 1).mesh);
+        let (plain, moved) =
+            (run(table(), &case, 1).mesh, run(Method::Macet(Macet::default()), &case, 1).mesh);
         let of = |mesh: &TriangleMesh| accuracy(mesh, &*case.field, 0.0, &grid(case.spacing), &ONE).unwrap();
         let (before, after) = (of(&plain), of(&moved));
         let ([from, _, _], [angle, most, ratio]) = (worst(&plain), worst(&moved));

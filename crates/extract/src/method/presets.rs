@@ -16,8 +16,8 @@ const OWN: &str = "not in the paper; see extract::Arrangement and extract::Clust
 const CUBES: &str = "Lorensen & Cline 1987, with faces that agree";
 const TRILINEAR: &str = "Chernyaev 1995, with every case decided by the interpolant's saddles";
 const EDGE_GROUPS: &str = "Lorensen & Cline 1987; Dietrich et al. 2008";
-const SNAPPED: &str = "Raman & Wenger 2008; table by convex hulls, Bhaniramka, Wenger & Crawfis 2004";
-const TURNED: &str = "our reading of Macet, Dietrich et al. 2009, on the table of Dietrich et al. 2008";
+const SNAPPED: &str = "Raman & Wenger 2008; table by hulls, Bhaniramka et al. 2004";
+const TURNED: &str = "our reading of Macet, Dietrich et al. 2009; table of Dietrich et al. 2008";
 const PLACED: &str = "Treece, Prager & Gee 1999; for the placement see extract::Placement";
 
 /// A method with a name.
