@@ -4,7 +4,8 @@
 use std::time::Duration;
 
 use extract::{
-    Arrangement, BoxGrid, Cubes, Diagonals, Execution, Extractor, Faces, Method, Source, Tetrahedra,
+    Arrangement, BoxGrid, Cubes, Diagonals, Execution, Extractor, Faces, Method, SnapCubes, Source,
+    Tetrahedra,
 };
 use field::{Gyroid, StudyField};
 use glam::Vec3;
@@ -34,6 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("separate inside, quality", cubes(Faces::SeparateInside, Diagonals::Quality)),
         ("decider, fan", cubes(Faces::Decider, Diagonals::Fan)),
         ("trilinear, fan", cubes(Faces::Trilinear, Diagonals::Fan)),
+        ("snapped", Method::SnapCubes(SnapCubes::default())),
         (
             "simple cubic tetrahedra",
             Method::Tetrahedra(Tetrahedra {

@@ -97,7 +97,9 @@ pub(crate) fn tables(arrangement: Arrangement) -> Vec<Table> {
         return Vec::new();
     }
     let offsets = &arrangement.directions().offsets;
-    let tetrahedra = spokes(arrangement).into_iter().flat_map(|spoke| spoke.ring);
+    // An edge between centres has its tetrahedra in both of their cells.
+    let is_own = |spoke: &Spoke| offsets[usize::from(spoke.direction)].iter().all(|&offset| offset >= 0);
+    let tetrahedra = spokes(arrangement).into_iter().filter(is_own).flat_map(|spoke| spoke.ring);
     let table = |tetrahedron: Tetrahedron| {
         let place = |d: u8| offsets[usize::from(d)].map(i32::from);
         let [a, b, c] = tetrahedron.corners.map(place);

@@ -51,7 +51,8 @@ fn mesh_of(method: &Method, counts: [usize; 3], values: &[f32], isovalue: f32) -
     let mesh = method.extract(&mut Extractor::new(), source, &grid(counts), isovalue, &ONE).unwrap().mesh;
     if method.promises().samples_suffice {
         let source = Source::Samples(values);
-        let given = method.extract(&mut Extractor::new(), source, &grid(counts), isovalue, &ONE).unwrap().mesh;
+        let given =
+            method.extract(&mut Extractor::new(), source, &grid(counts), isovalue, &ONE).unwrap().mesh;
         assert!(given.triangles == mesh.triangles && given.positions == mesh.positions, "{method:?}");
     }
     mesh
@@ -148,9 +149,8 @@ fn singular_cells() {
                 check(&method, [2; 3], &mesh_of(&method, [2; 3], &alone, 0.0), "alone");
                 let counts = [5, 5, 5];
                 let fold = |x: usize| x % 2;
-                let all: Vec<f32> = (0..125)
-                    .map(|i| alone[fold(i % 5) + 2 * fold(i / 5 % 5) + 4 * fold(i / 25)])
-                    .collect();
+                let all: Vec<f32> =
+                    (0..125).map(|i| alone[fold(i % 5) + 2 * fold(i / 5 % 5) + 4 * fold(i / 25)]).collect();
                 check(&method, counts, &mesh_of(&method, counts, &all, 0.0), "mirrored");
             }
         }
