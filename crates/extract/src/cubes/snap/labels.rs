@@ -117,7 +117,7 @@ impl Snap {
     ) -> Option<u8> {
         let (value, isovalue) = (values.at(place), self.isovalue);
         if value == isovalue {
-            return Some(HERE);
+            return (!is_wall(grid, samples, place)).then_some(HERE);
         }
         let gamma = f64::from(self.gamma);
         let to_level = |value: f32| (f64::from(isovalue) - f64::from(value)).abs();
@@ -148,4 +148,17 @@ impl Snap {
         }
         found
     }
+}
+
+/// Whether a point lies on a side of the box with nothing inside next to it on that side. A patch through it would lie in the side,
+/// where no cell has one, and a solid that ends there would be open.
+#[cold]
+fn is_wall(grid: &Grid, samples: &Samples, place: [usize; 3]) -> bool {
+    let sides: Vec<usize> =
+        (0..3).filter(|&axis| place[axis] == 0 || place[axis] + 1 == grid.size[axis]).collect();
+    let near = |axis: usize| place[axis].saturating_sub(1)..grid.size[axis].min(place[axis] + 2);
+    let is_inside = |[x, y, z]: [usize; 3]| samples.sides.row(y, z)[x / 64] >> (x % 64) & 1 != 0;
+    let around = near(2).flat_map(|z| near(1).flat_map(move |y| near(0).map(move |x| [x, y, z])));
+    let mut beside = around.filter(|there| sides.iter().any(|&axis| there[axis] == place[axis]));
+    !sides.is_empty() && !beside.any(is_inside)
 }
