@@ -71,6 +71,12 @@ impl fmt::Display for TableError {
 
 impl std::error::Error for TableError {}
 
+/// How a face is met by entries with the same sides of its corners, and the first of them.
+struct Met {
+    arcs: Vec<[u8; 2]>,
+    first: usize,
+}
+
 impl Table {
     /// The table of these entries.
     ///
@@ -81,8 +87,7 @@ impl Table {
         if entries.len() != wanted {
             return Err(TableError::Entries { found: entries.len(), wanted });
         }
-        // The arcs in each face by the sides of its corners, and the entry that was first to have them.
-        let mut arcs: BTreeMap<(usize, u32), (Vec<[u8; 2]>, usize)> = BTreeMap::new();
+        let mut arcs: BTreeMap<(usize, u32), Met> = BTreeMap::new();
         for (entry, triangles) in entries.iter().enumerate() {
             let is_edge = |e: u8| usize::from(e) < cell.edges().len();
             if !triangles.iter().flatten().all(|&e| is_edge(e)) {
@@ -110,10 +115,10 @@ impl Table {
                 let corners = face.iter().fold(0, |set, &c| set | 1 << c);
                 let found: Vec<[u8; 2]> =
                     rim.iter().copied().filter(|side| common(side) >> f & 1 != 0).collect();
-                let (known, first) =
-                    arcs.entry((f, entry as u32 & corners)).or_insert_with(|| (found.clone(), entry));
-                if *known != found {
-                    return Err(TableError::Face { entries: [*first, entry], corners });
+                let met = || Met { arcs: found.clone(), first: entry };
+                let known = arcs.entry((f, entry as u32 & corners)).or_insert_with(met);
+                if known.arcs != found {
+                    return Err(TableError::Face { entries: [known.first, entry], corners });
                 }
             }
         }
@@ -157,7 +162,9 @@ mod tests {
     use super::*;
     use crate::Triangulator;
 
-    fn entries(cell: &Cell, joined: u32) -> Vec<Vec<[u8; 3]>> {
+    type Entries = Vec<Vec<[u8; 3]>>;
+
+    fn entries(cell: &Cell, joined: u32) -> Entries {
         let triangulator = Triangulator::new(cell);
         let fans = |inside| {
             cell.loops(inside, joined).into_iter().flat_map(|p| triangulator.fan(&p).unwrap()).collect()
@@ -180,7 +187,7 @@ mod tests {
     fn each_fault_is_found() {
         let cube = Cell::cube();
         let good = entries(&cube, 0);
-        let check = |change: &dyn Fn(&mut Vec<Vec<[u8; 3]>>)| {
+        let check = |change: &dyn Fn(&mut Entries)| {
             let mut bad = good.clone();
             change(&mut bad);
             Table::try_new(cube.clone(), bad).unwrap_err()
@@ -188,7 +195,7 @@ mod tests {
         assert_eq!(check(&|t| drop(t.pop())), TableError::Entries { found: 255, wanted: 256 });
         assert_eq!(check(&|t| t[1].clear()), TableError::Edges { entry: 1 });
         assert_eq!(check(&|t| t[1][0][0] = 99), TableError::Edges { entry: 1 });
-        let twice = |t: &mut Vec<Vec<[u8; 3]>>| {
+        let twice = |t: &mut Entries| {
             let first = t[1][0];
             t[1].push(first);
         };
@@ -197,7 +204,7 @@ mod tests {
         let quad = good.iter().position(|e| e.len() == 4).unwrap();
         let hole = (0..4)
             .map(|i| {
-                check(&move |t: &mut Vec<Vec<[u8; 3]>>| {
+                check(&move |t: &mut Entries| {
                     t[quad].remove(i);
                 })
             })

@@ -3,12 +3,17 @@
 use crate::prepare::Prepared;
 use crate::recipe::Recipe;
 use design::record::Trilinear;
+use extract::CornerSamples;
 use trilinear::{Samples, Ties, topology};
 
 /// The truth that a mesh is held against; `None` where the method's samples are not the corners of the grid's cells, or not all numbers.
 pub(crate) fn trilinear_truth(prepared: &Prepared<'_>, cells: [u32; 3]) -> Option<Trilinear> {
     let (counts, values) = match &prepared.recipe {
-        Recipe::Extractor(method) => method.corner_samples(prepared.field, &prepared.grid).ok()??,
+        Recipe::Extractor(method) => {
+            let CornerSamples { counts, values } =
+                method.corner_samples(prepared.field, &prepared.grid).ok()??;
+            (counts, values)
+        }
         Recipe::Program(_) => (cells.map(|n| n as usize + 1), prepared.samples(cells)),
         Recipe::Meshes(_) => return None,
     };

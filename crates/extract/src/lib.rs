@@ -229,7 +229,9 @@ pub use extractor::{Extractor, extract};
 pub use field::{Aabb, Bound, FieldFault, FromFn, ScalarField, StudyField, check_field, from_fn};
 pub use grid::{Grid, GridError};
 pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
-pub use method::{Cubes, Macet, Method, MethodError, Preset, Promises, SnapCubes, Tetrahedra, presets};
+pub use method::{
+    CornerSamples, Cubes, Macet, Method, MethodError, Preset, Promises, SnapCubes, Tetrahedra, presets,
+};
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use source::Source;
 pub use trace::VertexKey;

@@ -76,6 +76,15 @@ pub struct Promises {
     pub samples_suffice: bool,
 }
 
+/// Samples at the corners of a grid's cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CornerSamples {
+    /// Samples along each axis.
+    pub counts: [usize; 3],
+    /// All of them, x fastest.
+    pub values: Vec<f32>,
+}
+
 /// Why a method makes no mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -119,8 +128,7 @@ impl Method {
         }
     }
 
-    /// The samples at the corners of a grid's cells, x fastest, where the method takes them, and how many there are along each axis;
-    /// `None` if its sample points are others.
+    /// The samples at the corners of a grid's cells, where the method takes them; `None` if its sample points are others.
     ///
     /// # Errors
     /// [`LatticeError`] if the grid is not one for this method.
@@ -128,7 +136,7 @@ impl Method {
         &self,
         field: &dyn StudyField,
         grid: &BoxGrid,
-    ) -> Result<Option<([usize; 3], Vec<f32>)>, LatticeError> {
+    ) -> Result<Option<CornerSamples>, LatticeError> {
         let has_corners = match self {
             Self::Tetrahedra(of) => {
                 of.arrangement == Arrangement::SimpleCubic
@@ -153,7 +161,7 @@ impl Method {
         for (row, values) in samples.chunks_exact_mut(counts[0]).enumerate() {
             field.sample_row(&x, y[row % counts[1]], z[row / counts[1]], values);
         }
-        Ok(Some((counts, samples)))
+        Ok(Some(CornerSamples { counts, values: samples }))
     }
 
     /// How many cells of a grid of samples, x fastest, two or more along each axis, the method decides otherwise than the trilinear

@@ -31,7 +31,7 @@ fn cases() -> Vec<Case> {
     let of = |name, field: Box<dyn StudyField>, spacing| Case { name, field, spacing };
     vec![
         of("sphere", Box::new(Sphere { radius: 1.0 }), 0.05),
-        of("asteroid", Box::new(Asteroid::default()), 0.03),
+        of("asteroid", Box::<Asteroid>::default(), 0.03),
         of("gyroid", Box::new(Gyroid { frequency: 9.0 }), 0.03),
         of("Marschner-Lobb", Box::new(Ripples), 0.02),
     ]
