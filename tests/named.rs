@@ -255,6 +255,8 @@ fn quoted(message: &str) -> Vec<String> {
 fn the_page_has_the_keys_and_names_of_extractors() {
     has_the_keys_and_names_of("tetrahedra", Some(("arrangement", "body-centred")), 5);
     has_the_keys_and_names_of("cubes", None, 3);
+    has_the_keys_and_names_of("snap-cubes", None, 1);
+    has_the_keys_and_names_of("macet", None, 2);
 }
 
 fn has_the_keys_and_names_of(kind: &str, needed: Option<(&str, &str)>, names: usize) {
