@@ -49,7 +49,9 @@ fn main() {
         }
         if name == "cli" {
             let src = folder.join("src");
-            let pages = take_module(&mut files, &src, PAGES);
+            let mut pages = take_module(&mut files, &src, PAGES);
+            // The pages have its words.
+            pages.push(root.join("docs/glossary.md"));
             ASIDE.iter().for_each(|module| drop(take_module(&mut files, &src, module)));
             name_digest("page", &root, pages);
         }

@@ -4,10 +4,9 @@ mod answers;
 mod axis;
 mod bars;
 mod canvas;
-mod contests;
 mod distributions;
-mod factor_share;
 mod forest;
+mod glance;
 mod history;
 mod legend;
 mod marks;
@@ -47,6 +46,17 @@ pub struct Figure {
     pub png: Vec<u8>,
 }
 
+impl Figure {
+    /// Width and height as it is shown, in pixels: half of what the PNG has.
+    pub fn size(&self) -> [u32; 2] {
+        let attribute = |name: &str| {
+            let rest = self.svg.split_once(&format!("{name}=\""))?.1;
+            rest.split_once('"')?.0.parse::<f64>().ok()
+        };
+        ["width", "height"].map(|name| attribute(name).map_or(0, |size| size.round() as u32))
+    }
+}
+
 /// Every figure whose inputs are there, in the order of the paper's and then our own.
 ///
 /// # Errors
@@ -55,13 +65,14 @@ pub fn figures(inputs: &Inputs<'_>) -> Result<Vec<Figure>, AnalysisError> {
     drafts(inputs).into_par_iter().map(Unfinished::finish).collect()
 }
 
-/// The figures that need nothing but answers: worths and respondents.
+/// The figures that need nothing but answers: contrasts, worths and respondents.
 ///
 /// # Errors
 /// If drawing fails, which is not to be expected.
 pub fn figures_of_groups(groups: &[BallotGroup]) -> Result<Vec<Figure>, AnalysisError> {
     let ballots: Vec<ShownBallot> = groups.iter().flat_map(|group| group.ballots.iter().copied()).collect();
-    let drafts = [worths::draft(groups), respondents::draft(&ballots)];
+    let hypotheses = crate::hypotheses::of_groups(groups);
+    let drafts = [glance::contrasts(None, &hypotheses), worths::draft(groups), respondents::draft(&ballots)];
     drafts.into_iter().flatten().map(Unfinished::finish).collect()
 }
 
@@ -76,13 +87,12 @@ fn drafts(inputs: &Inputs<'_>) -> Vec<Unfinished> {
         drafts.iter_mut().for_each(|draft| draft.caption += &format!(" {found}"));
     }
     if let Some(answered) = inputs.answers {
-        let Answered { tally, shown, declared, groups, .. } = answered;
+        let Answered { tally, shown, declared, groups, hypotheses, .. } = answered;
+        drafts.extend(glance::contrasts(Some(inputs.study), hypotheses));
         drafts.push(answers::per_question(inputs.study, tally, answered.sides_differ()));
         drafts.push(preferences::per_object(inputs.study, tally));
         drafts.push(preferences::overall(inputs.study, tally));
-        drafts.extend(factor_share::draft(inputs.study, tally));
         drafts.extend(worths::draft(groups));
-        drafts.extend(contests::by_object(inputs.study, declared));
         drafts.extend(respondents::draft(shown));
         drafts.extend(prediction::draft(inputs, shown, declared));
     }

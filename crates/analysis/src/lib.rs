@@ -20,6 +20,7 @@ mod data;
 mod figures;
 mod fraction;
 mod frames;
+mod glance;
 mod hypotheses;
 mod inputs;
 mod leave_one_out;

@@ -1,7 +1,8 @@
 //! What Costen (2026) printed: its tables, its claims, and what becomes of them here.
 //!
 //! This folder alone knows the paper's text. Two calls lead into it, [`add_tables`] and [`sections`], and give nothing for a study
-//! that has none of its objects, lattices and published numbers; a third, [`unexplained_differences`], is for whoever checks.
+//! that has none of its objects, lattices and published numbers; [`does_not_hold`] gives the claims that fail, and
+//! [`unexplained_differences`] is for whoever checks.
 //!
 //! ```text
 //! verdict ── comparison ── claims ── benchmark, recomputed
@@ -39,10 +40,19 @@ fn insert(tables: &mut Vec<Table>, after: &str, table: Option<Table>) {
     tables.splice(place..place, table);
 }
 
+/// The published claims of which the opposite is here, or another number.
+pub(crate) fn does_not_hold(inputs: &Inputs<'_>) -> Vec<Block> {
+    recomputed::failing(inputs)
+}
+
 /// The sections of a report that hold the paper against our numbers; `table` gives a table by name, once.
 pub(crate) fn sections(inputs: &Inputs<'_>, mut table: impl FnMut(&str) -> Option<Table>) -> Vec<Section> {
     let mut section = |id, heading, mut blocks: Vec<Block>, name: &str| {
-        blocks.extend(table(name).map(Block::Folded));
+        blocks.extend(table(name).map(|table| match name {
+            // Its verdicts are what somebody came for.
+            "claims" => Block::Table(table),
+            _ => Block::Folded(table),
+        }));
         Section { id, heading, blocks }
     };
     vec![

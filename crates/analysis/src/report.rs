@@ -9,6 +9,8 @@ mod checks;
 mod declaration;
 mod factors;
 mod finding;
+mod limits;
+mod machine;
 mod markdown;
 mod names;
 mod prediction;
@@ -16,6 +18,7 @@ mod preference;
 mod reliability;
 mod screens;
 mod sides;
+mod summary;
 mod tipping;
 mod worths;
 
@@ -45,10 +48,25 @@ use table::Table;
 pub struct Report {
     /// Its title.
     pub title: String,
+    /// The abstract, a line each.
+    pub summary: Vec<SummaryLine>,
+    /// The methods in words; none of answers without a study.
+    pub methods: Option<Table>,
     /// What was asked of whom.
     pub lead: Vec<String>,
+    /// What limits the results, a line each.
+    pub limits: Vec<String>,
     /// Its sections; none is empty.
     pub sections: Vec<Section>,
+}
+
+/// A line of the abstract.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SummaryLine {
+    /// What it is about, such as `Found`.
+    pub label: &'static str,
+    /// The line.
+    pub text: String,
 }
 
 /// What sentences are made from.
@@ -66,6 +84,10 @@ struct Evidence<'a> {
     excluded: usize,
     /// Whether the file says which item was on which side.
     sides_recorded: bool,
+    /// Whether it says on what screens people looked.
+    screens_recorded: bool,
+    /// Whether it says at which place a question was shown.
+    order_recorded: bool,
     /// What was assumed of the answers' file, in sentences.
     assumptions: Vec<String>,
     groups: &'a [BallotGroup],
@@ -87,6 +109,8 @@ impl<'a> Evidence<'a> {
             asked: 0,
             excluded: 0,
             sides_recorded: true,
+            screens_recorded: false,
+            order_recorded: false,
             assumptions: Vec::new(),
             groups: &[],
             hypotheses: &[],
@@ -104,6 +128,8 @@ impl<'a> Evidence<'a> {
             asked: asked::asked(study, answered),
             excluded: answered.excluded.len(),
             sides_recorded: answered.responses.sides_recorded,
+            screens_recorded: !answered.responses.screens.is_empty(),
+            order_recorded: answered.responses.answers.iter().any(|answer| answer.order.is_some()),
             assumptions: answered.responses.assumptions(),
             groups: &answered.groups,
             hypotheses: &answered.hypotheses,
@@ -163,16 +189,18 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Repo
     let evidence =
         Evidence { side_favoured: sides::is_favoured(tables), ..Evidence::of_study(study, inputs.answers) };
     let mut builder = Builder::new(tables, figures);
-    let mut paper = Vec::new();
-    for (name, at_once) in PAPER {
-        paper.extend(builder.table(name).map(|t| if at_once { Block::Table(t) } else { Block::Folded(t) }));
+    let methods = builder.table("methods");
+    let fails = paper::does_not_hold(inputs);
+    if inputs.answers.is_some() {
+        builder.preferences(&evidence, fails);
+    } else {
+        builder.section("fails", "What does not hold", fails);
     }
-    paper.extend(builder.figures(&["preference_overall", "answers"]));
-    builder.section("tables", "The tables of the study", paper);
+    let papers = paper::sections(inputs, |name| builder.table(name));
+    builder.sections.extend(papers);
     if let Some(Answered { tally, shown, declared, .. }) = inputs.answers {
         builder.section("factors", "What the sums hide", factors::findings(study, tally, &evidence));
-        builder.add_figures(&["factor_share", "preference_objects"]);
-        builder.preferences(&evidence);
+        builder.add_figures(&["preference_objects"]);
         let predicted = Prediction::of(inputs, shown, declared);
         builder.section(
             "prediction",
@@ -181,11 +209,18 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Repo
         );
         builder.add_figures(&["prediction"]);
         builder.add_tables(&["prediction", "prediction_objects", "prediction_correlations"]);
+        builder.reliance(&evidence);
     }
-    let papers = paper::sections(inputs, |name| builder.table(name));
-    builder.sections.extend(papers);
-    let (title, lead) = (study.file.study.title.clone(), lead(&evidence, tables));
-    builder.finish(title, lead)
+    let mut paper = Vec::new();
+    for (name, at_once) in PAPER {
+        paper.extend(builder.table(name).map(|t| if at_once { Block::Table(t) } else { Block::Folded(t) }));
+    }
+    paper.extend(builder.figures(&["preference_overall", "answers"]));
+    builder.section("tables", "The tables of the study", paper);
+    builder.section("machine", "Machine and timing", machine::described(inputs));
+    builder.add_figures(&["pass_times", "stage_times"]);
+    let title = study.file.study.title.clone();
+    builder.finish(title, &evidence, Some(inputs), methods)
 }
 
 /// The report of answers without a study, as [`report`]; `groups` are their [`open_groups`](crate::open_groups).
@@ -206,6 +241,8 @@ pub fn report_of_groups(
         asked: 0,
         excluded: 0,
         sides_recorded: answers.sides_recorded,
+        screens_recorded: !answers.screens.is_empty(),
+        order_recorded: answers.answers.iter().any(|answer| answer.order.is_some()),
         assumptions: answers.assumptions(),
         shown: &shown,
         groups,
@@ -215,11 +252,13 @@ pub fn report_of_groups(
         scales: scale::scales(groups),
     };
     let mut builder = Builder::new(tables, figures);
-    builder.preferences(&evidence);
-    builder.finish(title.into(), lead(&evidence, tables))
+    builder.preferences(&evidence, Vec::new());
+    builder.reliance(&evidence);
+    builder.finish(title.into(), &evidence, None, None)
 }
 
-fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
+/// `respondents` is that table, if there is one.
+fn lead(evidence: &Evidence<'_>, respondents: Option<&Table>) -> Vec<String> {
     let (people, questions) = (evidence.participants(), evidence.questions());
     let answers = evidence.shown.len();
     if answers == 0 && evidence.excluded > 0 {
@@ -229,7 +268,7 @@ fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
         )];
     }
     if answers == 0 {
-        let controls = tables.iter().find(|table| table.name == "respondents").map_or(0, checks::controls);
+        let controls = respondents.map_or(0, checks::controls);
         return vec![match controls {
             0 => "No answers were given, so nothing is said about preference.".into(),
             _ => format!(
@@ -284,6 +323,8 @@ fn lead(evidence: &Evidence<'_>, tables: &[Table]) -> Vec<String> {
 
 /// Puts sections together, and knows which tables and figures have not been printed.
 struct Builder {
+    /// The table of people, wherever it is printed.
+    respondents: Option<Table>,
     tables: Vec<Table>,
     figures: Vec<Figure>,
     sections: Vec<Section>,
@@ -291,7 +332,8 @@ struct Builder {
 
 impl Builder {
     fn new(tables: &[Table], figures: &[Figure]) -> Self {
-        Self { tables: tables.to_vec(), figures: figures.to_vec(), sections: Vec::new() }
+        let respondents = tables.iter().find(|table| table.name == "respondents").cloned();
+        Self { respondents, tables: tables.to_vec(), figures: figures.to_vec(), sections: Vec::new() }
     }
 
     fn table(&mut self, name: &str) -> Option<Table> {
@@ -329,10 +371,15 @@ impl Builder {
     }
 
     /// What answers alone can tell.
-    fn preferences(&mut self, evidence: &Evidence<'_>) {
+    ///
+    /// `fails` is what was claimed and does not hold.
+    fn preferences(&mut self, evidence: &Evidence<'_>, fails: Vec<Block>) {
         if evidence.shown.is_empty() {
-            return;
+            return self.section("fails", "What does not hold", fails);
         }
+        let mut glance = self.figures(&["contrasts"]);
+        glance.extend(self.table("contrasts").map(Block::Table));
+        self.section("contrasts", "Every contrast at a glance", glance);
         let sorted = preference::findings(evidence);
         let cautioned = |blocks: Vec<Block>| match blocks.is_empty() {
             true => blocks,
@@ -340,11 +387,18 @@ impl Builder {
         };
         self.section("holds", "What holds", cautioned(sorted.holds));
         self.section("depends", "What depends on what", cautioned(sorted.depends));
-        self.add_figures(&["object_interaction"]);
+        self.section("fails", "What does not hold", fails);
         self.section("open", "What stays open", sorted.open);
         self.section("worths", "Worths on one scale", worths::findings(evidence));
         self.add_figures(&["worths"]);
         self.add_tables(&["scale", "differences", "fit", "worths", "models"]);
+    }
+
+    /// How far answers can be relied on, and what they cannot answer.
+    fn reliance(&mut self, evidence: &Evidence<'_>) {
+        if evidence.shown.is_empty() {
+            return;
+        }
         let audit = self.tables.iter().find(|table| table.name == "audit");
         let sides = sides::findings(evidence, audit);
         self.section("unanswerable", "What cannot be answered here", sides);
@@ -363,12 +417,26 @@ impl Builder {
         self.add_tables(&["audit", "screened", "screens", "respondents"]);
     }
 
-    fn finish(mut self, title: String, lead: Vec<String>) -> Report {
+    fn finish(
+        mut self,
+        title: String,
+        evidence: &Evidence<'_>,
+        inputs: Option<&Inputs<'_>>,
+        methods: Option<Table>,
+    ) -> Report {
+        let lead = lead(evidence, self.respondents.as_ref());
         let rest = self.figures.drain(..).map(Block::Figure);
         let rest: Vec<Block> = rest.chain(self.tables.drain(..).map(Block::Folded)).collect();
         self.section("appendix", "All other figures and tables", rest);
         self.sections.retain(|section| !section.blocks.is_empty());
-        Report { title, lead, sections: self.sections }
+        Report {
+            title,
+            summary: summary::lines(evidence, inputs),
+            methods,
+            lead,
+            limits: limits::all(evidence),
+            sections: self.sections,
+        }
     }
 }
 

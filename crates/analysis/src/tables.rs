@@ -7,6 +7,7 @@ pub(crate) mod audit;
 pub(crate) mod benchmark;
 pub(crate) mod contrasts;
 pub(crate) mod design;
+pub(crate) mod glance;
 mod mesh_quality;
 pub(crate) mod models;
 mod omnibus;
@@ -19,6 +20,7 @@ pub(crate) mod screens;
 
 use crate::answered::Answered;
 use crate::ballots::ALL_METHODS;
+use crate::glance::rows;
 use crate::inputs::Inputs;
 use crate::prediction::Prediction;
 use crate::recorded::Recorded;
@@ -27,7 +29,7 @@ use table::Table;
 
 /// Every table whose inputs are there, in the order of the paper's and then our own.
 pub fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
-    let mut tables = vec![design::configurations(inputs.study)];
+    let mut tables = vec![design::methods(inputs.study), design::configurations(inputs.study)];
     tables.extend(benchmark::benchmark(inputs));
     tables.extend(design::questionnaire(inputs.study));
     if let Some(answers) = inputs.answers {
@@ -70,7 +72,9 @@ fn statistics(inputs: &Inputs<'_>, answers: &Answered) -> Vec<Table> {
             )
         },
     );
-    let mut tables = vec![contrasts::study_tests(hypotheses), omnibus::omnibus(study, declared)];
+    let glance = glance::contrasts(&rows(Some(study), hypotheses));
+    let mut tables: Vec<Table> = glance.into_iter().collect();
+    tables.extend([contrasts::study_tests(hypotheses), omnibus::omnibus(study, declared)]);
     tables.extend(models);
     tables.extend(scale::tables(&scale::scales(groups)));
     tables.push(agreement::agreement(study, declared));

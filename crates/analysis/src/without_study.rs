@@ -13,7 +13,10 @@ use table::{Cell, Table};
 /// `audit` and `screens`, as far as they have rows. `groups` are [`open_groups`] of the same answers; `shown_s` is how long what a
 /// question shows lasts, in seconds.
 pub fn answer_tables(answers: &Responses, groups: &[BallotGroup], shown_s: Option<f64>) -> Vec<Table> {
-    let mut tables = vec![counts(answers), tables::contrasts::pair_tests(groups)];
+    let hypotheses = crate::hypotheses::of_groups(groups);
+    let mut tables = vec![counts(answers)];
+    tables.extend(tables::glance::contrasts(&crate::glance::rows(None, &hypotheses)));
+    tables.push(tables::contrasts::pair_tests(groups));
     tables.extend(tables::models::model_tables(groups, answers.sides_recorded));
     tables.extend(tables::scale::tables(&tables::scale::scales(groups)));
     let recorded = Recorded::without_study(answers, shown_s);

@@ -3,13 +3,13 @@
 use statistics::interval::Interval;
 pub(crate) use table::digits::{counted, number};
 
-/// Below this a p value is not printed in digits.
-const LEAST_P: f64 = 1e-6;
+/// Below this a p value is not printed in digits; the tables have them.
+const LEAST_P: f64 = 1e-3;
 
-/// `p = 0.0094`: two digits that count, no more; `p < 0.000001` below that.
+/// `p = 0.0094`: two digits that count, no more; `p < 0.001` below that.
 pub(crate) fn p(p: f64) -> String {
     match p {
-        p if p < LEAST_P => "p < 0.000001".into(),
+        p if p < LEAST_P => "p < 0.001".into(),
         p if p > 0.995 => "p = 1".into(),
         p => {
             let decimals = (1.0 - p.log10().floor()).clamp(2.0, 7.0) as usize;
@@ -83,9 +83,9 @@ mod tests {
         let want = [
             "p = 0.82",
             "p = 0.0094",
-            "p = 0.00033",
-            "p = 0.000046",
-            "p < 0.000001",
+            "p < 0.001",
+            "p < 0.001",
+            "p < 0.001",
             "p = 1",
             "p = 0.050",
             "p = 0.049",

@@ -1,11 +1,12 @@
 //! The chain of stages from a study file to the page that shows it all.
 //!
 //! ```text
-//! objects ─ budgets ─ meshes ─┬─ turntables ─ pairs, key ─┐
-//! comparisons ─ forms, key ───┼───────────────────────────┤
-//!                             └─ stills ──────────────────┤
-//! objects ─ budgets ─ timings ─┐                          ├─ page ─ manifest
-//! answers ─────────────────────┴─ tables, figures, report ┘
+//! objects ─ budgets ─ meshes ─┬─ turntables ─┬─ pairs, key ─┐
+//! comparisons ─ forms, key ───┼──────────────┼──────────────┤
+//!                             └─ stills ─────┼──────────────┤
+//! objects ─ budgets ─ timings ─┐             │              ├─ page ─ manifest
+//!              first frames ───┼─────────────┘              │
+//! answers ─────────────────────┴─ tables, figures, report ──┘
 //! ```
 
 mod ab;
@@ -14,6 +15,7 @@ mod bundle;
 mod formats;
 mod meshes;
 mod pages;
+mod pictures;
 mod stimuli;
 mod sweep;
 mod tables;
@@ -80,8 +82,9 @@ impl<'a> Pipeline<'a> {
         let forms: Vec<Stamp> = self.forms()?.into_iter().collect();
         let stills = self.stills()?;
         let timings = self.timings(&PlanLength::Short)?;
-        let tables = self.tables(&meshes, &timings)?;
-        self.page(&meshes, &[turntables, pairs, forms, stills, vec![timings, tables]].concat())?;
+        let pictures = self.pictures(&turntables)?;
+        let tables = self.tables(&meshes, &timings, &pictures)?;
+        self.page(&meshes, &[turntables, pairs, forms, stills, pictures, vec![timings, tables]].concat())?;
         self.store.retire_untouched(|stage| ASKED_FOR.iter().any(|start| stage.starts_with(start)))?;
         self.unexplained()
     }

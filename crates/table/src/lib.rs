@@ -312,7 +312,7 @@ mod tests {
         table.push(vec![Cell::P(1e-9, 4)]);
         assert!(table.to_markdown().contains("| &lt; 0.0001 |"), "{}", table.to_markdown());
         assert!(table.to_latex().contains("\\textless{} 0.0001"), "{}", table.to_latex());
-        assert!(table.to_html().contains("<td class=\"number\">&lt; 0.0001</td>"), "{}", table.to_html());
+        assert!(table.to_html().contains("<td class=\"number\">&lt; 0.001</td>"), "{}", table.to_html());
     }
 
     #[test]

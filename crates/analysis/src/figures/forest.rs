@@ -11,7 +11,7 @@ const ROW: f64 = 21.0;
 const HEADING: f64 = 30.0;
 const BOTTOM: f64 = 44.0;
 /// Room for labels on the left and remarks on the right.
-const LABELS: (f64, f64) = (215.0, 225.0);
+const LABELS: (f64, f64) = (265.0, 235.0);
 const EM: f64 = 11.0;
 
 /// One estimate.
@@ -78,6 +78,12 @@ pub(super) fn draw(
             y += ROW;
         }
     }
+}
+
+/// Says what the remarks are, above them; returns where the blocks begin.
+pub(super) fn remark_heading(canvas: &mut Canvas, text: &str, top: f64) -> f64 {
+    canvas.text(text, (WIDTH - LABELS.1 + 14.0, top + HEADING - 9.0), EM, Align::Start);
+    top
 }
 
 fn bar(canvas: &mut Canvas, from: f64, to: f64, y: f64) {

@@ -85,7 +85,22 @@ pub(crate) fn table(inputs: &Inputs<'_>, tally: Option<&Tally>) -> Option<Table>
          published definition. Ours: by the right definition, where the reason names another."
             .into(),
     );
+    table.parts = vec![for_people(&table)];
     (!table.rows.is_empty()).then_some(table)
+}
+
+/// Verdict first, the unit with the claim; ids and what follows from the published tables are in the CSV.
+fn for_people(table: &Table) -> Table {
+    let columns = ["verdict", "statement", "published", "ours", "reason"];
+    let mut part = table.block("", &columns);
+    part.caption.clone_from(&table.caption);
+    for (row, whole) in part.rows.iter_mut().zip(&table.rows) {
+        let unit = whole[2].in_full();
+        if !matches!(unit.as_str(), "" | "ratio") {
+            row[1] = Cell::text(format!("{} ({unit})", row[1].in_full()));
+        }
+    }
+    part
 }
 
 /// Equal as printed, else within 3 % for `near`'s reason if there is one, else different for `far`'s.

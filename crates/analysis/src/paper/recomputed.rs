@@ -22,7 +22,14 @@ pub(super) fn findings(inputs: &Inputs<'_>) -> Vec<Block> {
         let tallied = tallied(claims.iter().map(|(_, found)| &found.verdict));
         found.push(format!("Of {} of its text, {tallied}.", counted(claims.len(), "claim")));
     }
-    for (claim, finding) in &claims {
+    found.into_iter().map(|text| Block::Finding(Finding::new(Standing::Noted, text))).collect()
+}
+
+/// Each claim of the text that differs here, and why.
+pub(super) fn failing(inputs: &Inputs<'_>) -> Vec<Block> {
+    let tally = inputs.answers.map(|answers| &answers.tally);
+    let mut found = Vec::new();
+    for (claim, finding) in claims::all(inputs, tally) {
         if let Verdict::Differs { reason } = &finding.verdict {
             let numbers = match (claim.value, finding.ours) {
                 (Some(published), Some(ours)) => {
@@ -37,7 +44,7 @@ pub(super) fn findings(inputs: &Inputs<'_>) -> Vec<Block> {
             ));
         }
     }
-    found.into_iter().map(|text| Block::Finding(Finding::new(Standing::Noted, text))).collect()
+    found.into_iter().map(|text| Block::Finding(Finding::new(Standing::Fails, text))).collect()
 }
 
 /// `12 are equal, 3 differ and 1 is not comparable`.

@@ -7,8 +7,22 @@ impl Report {
     /// GitHub-flavoured Markdown; figures are links to `figures/<name>.svg` beside it.
     pub fn to_markdown(&self) -> String {
         let mut text = format!("# {}\n", escape(&self.title));
+        text.push('\n');
+        for line in &self.summary {
+            text.push_str(&format!("- **{}:** {}\n", line.label, escape(&line.text)));
+        }
+        if let Some(methods) = &self.methods {
+            text.push_str(&format!("\n## Methods\n\n{}", methods.to_markdown()));
+        }
+        text.push_str("\n## Participants and limits\n");
         for paragraph in &self.lead {
             text.push_str(&format!("\n{}\n", escape(paragraph)));
+        }
+        if !self.limits.is_empty() {
+            text.push('\n');
+        }
+        for limit in &self.limits {
+            text.push_str(&format!("- {}\n", escape(limit)));
         }
         for section in &self.sections {
             text.push_str(&format!("\n## {}\n", section.heading));

@@ -49,7 +49,7 @@ pub(super) fn caution(evidence: &Evidence<'_>) -> Vec<Block> {
     asked.into_iter().chain(sides_and_methods(evidence)).collect()
 }
 
-fn sides_and_methods(evidence: &Evidence<'_>) -> Vec<Block> {
+pub(super) fn sides_and_methods(evidence: &Evidence<'_>) -> Vec<Block> {
     if !evidence.sides_recorded {
         return Vec::new();
     }

@@ -21,6 +21,24 @@ pub(super) fn level(study: &Study, method: MethodId, factor: Factor) -> Cell {
     level.map_or(Cell::Missing, |level| Cell::text(&study.level(level).label))
 }
 
+/// The methods in words.
+pub(super) fn methods(study: &Study) -> Table {
+    let factors: Vec<Factor> = study.declared_factors().collect();
+    let mut columns = vec![("id".to_owned(), "Code".to_owned()), ("method".into(), "Method".into())];
+    columns.extend(factors.iter().map(|&factor| {
+        let spec = study.factor(factor);
+        (spec.name.clone(), spec.heading())
+    }));
+    let columns: Vec<(&str, &str)> = columns.iter().map(|(name, heading)| (&**name, &**heading)).collect();
+    let mut table = Table::new("methods", "Methods", &columns);
+    for method in &study.methods {
+        let mut row = vec![Cell::text(method.id), Cell::text(&method.label)];
+        row.extend(factors.iter().map(|&factor| level(study, method.id, factor)));
+        table.push(row);
+    }
+    table
+}
+
 /// The configurations: object, method, spacings (the paper's appendix A).
 pub(super) fn configurations(study: &Study) -> Table {
     let mut columns = vec![("id".to_owned(), "Id".to_owned()), ("object".into(), "Object".into())];

@@ -1,6 +1,9 @@
 //! The pages that people read: `index.html`, which shows a study, and the report.
 
+mod glossary;
 mod index;
 mod report;
+mod templates;
 
-pub(super) use report::write as write_report;
+pub(super) use report::{Abstract, PictureData, write as write_report};
+pub(super) use templates::fits;

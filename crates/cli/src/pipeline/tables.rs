@@ -1,7 +1,7 @@
 //! Tables, figures and the report, from records, timings and answers.
 
 use super::formats::{write_figure, write_table};
-use super::pages::write_report;
+use super::pages::{Abstract, PictureData, fits, write_report};
 use super::{Meshes, Pipeline};
 use crate::source_digests;
 use crate::store::{Inputs, Stamp, Store, Writer, sha256};
@@ -17,10 +17,10 @@ use table::Table;
 
 impl Pipeline<'_> {
     /// Every table and figure of the study.
-    pub(crate) fn tables(&self, meshes: &Meshes, timings: &Stamp) -> Result<Stamp> {
+    pub(crate) fn tables(&self, meshes: &Meshes, timings: &Stamp, pictures: &[Stamp]) -> Result<Stamp> {
         let step = Step::begin("tables", 1, 1);
         let mut inputs = study_inputs(self.study)?.stamp(timings);
-        for stamp in meshes.stamps() {
+        for stamp in meshes.stamps().chain(pictures) {
             inputs = inputs.stamp(stamp);
         }
         let stamp = self.store.stage("tables", inputs, |writer| {
@@ -34,7 +34,7 @@ impl Pipeline<'_> {
                 bench: Some(&run),
                 answers: answers.as_ref(),
             };
-            write(writer, &inputs, true)?;
+            write(writer, &inputs, &self.read_pictures()?, true)?;
             writer.write_json(UNEXPLAINED, &analysis::unexplained_differences(&inputs))
         })?;
         step.count(stamp.redone);
@@ -60,7 +60,7 @@ pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store)
     let mut made = None;
     store.stage("answers", study_inputs(study)?, |writer| {
         writer.write(READING, reading.report.to_csv().as_bytes())?;
-        made = Some(write(writer, &inputs, false)?);
+        made = Some(write(writer, &inputs, &[], false)?);
         Ok(())
     })?;
     Ok(made.unwrap_or_else(|| analysis::tables(&inputs)))
@@ -96,6 +96,7 @@ pub(crate) fn write_without_study(
         write_report(
             writer,
             &analysis::report_of_groups(&title, &reading.responses, &groups, &tables, &figures),
+            &[],
             false,
         )
     })?;
@@ -108,6 +109,8 @@ pub(super) struct TableEntry {
     pub(super) name: String,
     pub(super) caption: String,
     pub(super) html: String,
+    /// Whether it is set to fit the page.
+    pub(super) fits: bool,
 }
 
 /// What the page needs to know of a figure: `figures/contents.json` lists these.
@@ -115,22 +118,35 @@ pub(super) struct TableEntry {
 pub(super) struct FigureEntry {
     pub(super) name: String,
     pub(super) caption: String,
+    /// Size as shown, in pixels.
+    pub(super) width: u32,
+    pub(super) height: u32,
 }
 
 /// Cells and rows of the answers that were not taken as they stand.
 const READING: &str = "tables/reading.csv";
 const UNEXPLAINED: &str = "tables/unexplained.json";
 pub(super) const TABLE_CONTENTS: &str = "tables/contents.json";
+/// What the report says first.
+pub(super) const ABSTRACT: &str = "tables/abstract.json";
 pub(super) const FIGURE_CONTENTS: &str = "figures/contents.json";
 
 /// The tables that were written. `gallery` says whether an `index.html` will stand beside the report.
-fn write(writer: &mut Writer<'_>, inputs: &analysis::Inputs<'_>, gallery: bool) -> Result<Vec<Table>> {
+fn write(
+    writer: &mut Writer<'_>,
+    inputs: &analysis::Inputs<'_>,
+    pictures: &[PictureData],
+    gallery: bool,
+) -> Result<Vec<Table>> {
     let tables = analysis::tables(inputs);
     write_tables(writer, &tables)?;
     let figures = analysis::figures(inputs).context("figures")?;
     write_figures(writer, &figures)?;
     let report = analysis::report(inputs, &tables, &figures);
-    write_report(writer, &report, gallery)?;
+    write_report(writer, &report, pictures, gallery)?;
+    if gallery {
+        writer.write_json(ABSTRACT, &Abstract::of(&report))?;
+    }
     write_frames(writer, &analysis::frames(inputs))?;
     Ok(tables)
 }
@@ -147,7 +163,9 @@ fn write_figures(writer: &mut Writer<'_>, figures: &[Figure]) -> Result<()> {
     let mut entries = Vec::new();
     for figure in figures {
         write_figure(writer, "figures", figure)?;
-        entries.push(FigureEntry { name: figure.name.clone(), caption: figure.caption.clone() });
+        let [width, height] = figure.size();
+        let (name, caption) = (figure.name.clone(), figure.caption.clone());
+        entries.push(FigureEntry { name, caption, width, height });
     }
     writer.write_json(FIGURE_CONTENTS, &entries)
 }
@@ -157,7 +175,9 @@ fn write_tables(writer: &mut Writer<'_>, tables: &[Table]) -> Result<()> {
     for table in tables {
         write_table(writer, "tables", table)?;
         let (name, caption) = (table.name.clone(), table.caption.clone());
-        entries.push(TableEntry { name, caption, html: table.to_html() });
+        let fits = fits(&name);
+        let html = if fits { table.to_html_cards() } else { table.to_html() };
+        entries.push(TableEntry { name, caption, html, fits });
     }
     writer.write_json(TABLE_CONTENTS, &entries)
 }

@@ -1,20 +1,21 @@
 //! The page that shows a study.
 
-use crate::pipeline::tables::{FIGURE_CONTENTS, FigureEntry, TABLE_CONTENTS, TableEntry};
+use super::glossary;
+use super::report::{Abstract, PictureData};
+use super::templates::{Picture, caption, environment};
+use crate::pipeline::pictures;
+use crate::pipeline::tables::{ABSTRACT, FIGURE_CONTENTS, FigureEntry, TABLE_CONTENTS, TableEntry};
 use crate::pipeline::{Meshes, Pipeline};
 use crate::source_digests;
 use crate::store::{Inputs, Stamp};
 use crate::terminal::progress::Step;
 use anyhow::{Context, Result};
-use design::config::SideRule;
+use design::config::{SideRule, StillSection};
 use design::{Comparison, Configuration, Study};
-use minijinja::syntax::SyntaxConfig;
+use minijinja::context;
 use minijinja::value::Serde;
-use minijinja::{Environment, context};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-
-const TEMPLATE: &str = include_str!("index.html");
 
 /// A turntable or a pair on the page.
 #[derive(Serialize)]
@@ -22,6 +23,15 @@ struct Card {
     object: String,
     title: String,
     file: String,
+}
+
+/// A still picture on the page.
+#[derive(Serialize)]
+struct StillCard<'a> {
+    #[serde(flatten)]
+    still: &'a StillSection,
+    width: u32,
+    height: u32,
 }
 
 impl Pipeline<'_> {
@@ -41,16 +51,20 @@ impl Pipeline<'_> {
     }
 
     fn render_page(&self) -> Result<String> {
-        let mut environment = Environment::new();
-        environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build()?);
-        environment.add_template("index.html", TEMPLATE)?;
-        let tables: Vec<TableEntry> = self.read_contents(TABLE_CONTENTS)?;
-        let figures: Vec<FigureEntry> = self.read_contents(FIGURE_CONTENTS)?;
+        let said: Abstract = self.read_json(ABSTRACT)?;
+        let pictures = self.page_pictures()?;
+        let stills = self.still_cards()?;
+        let tables: Vec<TableEntry> = self.read_json(TABLE_CONTENTS)?;
+        let figures: Vec<FigureEntry> = self.read_json(FIGURE_CONTENTS)?;
         let forms = self.study.file.forms.as_ref();
         let sides_differ = forms.is_some_and(|forms| forms.sides != SideRule::AsListed);
-        let text = environment.get_template("index.html")?.render(context! {
+        let text = environment()?.get_template("index.html")?.render(context! {
+            lines => Serde(&said.lines),
+            pictures => Serde(&pictures),
+            caption => self.pictured().first().map(|c| caption(&self.study.object(c).name)),
+            glossary => Serde(&glossary::parts()),
             study => Serde(&self.study.file.study),
-            stills => Serde(&self.study.file.stills),
+            stills => Serde(&stills),
             tables => Serde(&tables),
             figures => Serde(&figures),
             turntables => Serde(&turntable_cards(self.study)),
@@ -63,7 +77,34 @@ impl Pipeline<'_> {
         Ok(text)
     }
 
-    fn read_contents<T: DeserializeOwned>(&self, path: &str) -> Result<T> {
+    fn page_pictures(&self) -> Result<Vec<Picture>> {
+        let made = self.read_pictures()?;
+        let picture = |(configuration, data): (&Configuration, PictureData)| Picture {
+            source: pictures::path(configuration),
+            alt: format!("{} on the {}", data.label, data.object),
+            label: data.label,
+            width: data.size[0],
+            height: data.size[1],
+        };
+        Ok(self.pictured().into_iter().zip(made).map(picture).collect())
+    }
+
+    /// The stills that were made, with their sizes.
+    fn still_cards(&self) -> Result<Vec<StillCard<'_>>> {
+        let size = |still| -> Result<Option<StillCard<'_>>> {
+            let still: &StillSection = still;
+            let path = self.store.root().join(format!("figures/{}.png", still.id));
+            if !path.exists() {
+                return Ok(None);
+            }
+            let bytes = std::fs::read(&path).with_context(|| path.display().to_string())?;
+            let pixmap = raster::pixmap_from_png(&bytes).with_context(|| path.display().to_string())?;
+            Ok(Some(StillCard { still, width: pixmap.width(), height: pixmap.height() }))
+        };
+        self.study.file.stills.iter().filter_map(|still| size(still).transpose()).collect()
+    }
+
+    fn read_json<T: DeserializeOwned>(&self, path: &str) -> Result<T> {
         let text = std::fs::read(self.store.root().join(path)).with_context(|| path.to_owned())?;
         serde_json::from_slice(&text).with_context(|| path.to_owned())
     }

@@ -1,0 +1,48 @@
+// Animations are large: those of a section load when it is opened, and not before.
+const sections = [...document.querySelectorAll("details")];
+for (const section of sections) {
+  const load = () => {
+    if (!section.open) return;
+    for (const image of section.querySelectorAll("img[data-src]")) {
+      image.src = image.dataset.src;
+      image.removeAttribute("data-src");
+    }
+  };
+  section.addEventListener("toggle", load);
+  load();
+}
+// A link into a closed section opens it.
+const reveal = () => {
+  const target = document.getElementById(location.hash.slice(1));
+  const section = target?.closest("details");
+  if (section) section.open = true;
+};
+addEventListener("hashchange", reveal);
+reveal();
+// Tables can be searched and opened together; without this script nothing says so.
+const tables = sections.filter((section) => section.classList.contains("data"));
+for (const tools of document.querySelectorAll(".tools")) {
+  tools.hidden = tables.length === 0;
+  const [input, button, found] = [tools.querySelector("input"), tools.querySelector("button"), tools.querySelector("output")];
+  input.addEventListener("input", () => {
+    const wanted = input.value.trim().toLowerCase();
+    let left = 0;
+    for (const section of tables) {
+      const named = section.querySelector("summary").textContent.toLowerCase().includes(wanted);
+      let rows = 0;
+      for (const row of section.querySelectorAll("tbody tr")) {
+        row.hidden = !named && !row.textContent.toLowerCase().includes(wanted);
+        rows += !row.hidden;
+      }
+      section.hidden = !named && rows === 0;
+      left += !section.hidden;
+    }
+    found.textContent = wanted ? `${left} of ${tables.length} tables` : "";
+  });
+  button.addEventListener("click", () => {
+    const open = button.getAttribute("aria-pressed") !== "true";
+    for (const section of tables) section.open = open;
+    button.setAttribute("aria-pressed", String(open));
+    button.textContent = open ? "Close all tables" : "Open all tables";
+  });
+}

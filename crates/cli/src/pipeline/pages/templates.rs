@@ -1,0 +1,46 @@
+//! The templates of both pages, and what they share: style, script, and pieces of a page.
+
+use anyhow::Result;
+use minijinja::Environment;
+use minijinja::syntax::SyntaxConfig;
+use serde::Serialize;
+
+/// Tables that fit any page, their rows cards on a narrow screen: who reads no other reads these.
+const FITTING: [&str; 3] = ["contrasts", "claims", "methods"];
+
+/// Both pages by name: `index.html` and `report.html`.
+pub(super) fn environment() -> Result<Environment<'static>> {
+    let mut environment = Environment::new();
+    environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build()?);
+    for (name, text) in [
+        ("style.css", include_str!("style.css")),
+        ("script.js", include_str!("script.js")),
+        ("shared.html", include_str!("shared.html")),
+        ("index.html", include_str!("index.html")),
+        ("report.html", include_str!("report.html")),
+    ] {
+        environment.add_template(name, text)?;
+    }
+    Ok(environment)
+}
+
+/// Whether a table of this name is set to fit.
+pub(in crate::pipeline) fn fits(name: &str) -> bool {
+    FITTING.contains(&name)
+}
+
+/// A picture of one method, as a page sees it.
+#[derive(Serialize)]
+pub(super) struct Picture {
+    /// A file beside the page, or the picture itself.
+    pub(super) source: String,
+    pub(super) label: String,
+    pub(super) alt: String,
+    pub(super) width: u32,
+    pub(super) height: u32,
+}
+
+/// What stands under the pictures of the methods.
+pub(super) fn caption(object: &str) -> String {
+    format!("The methods on one object, the {object}: the first frame of each turntable.")
+}
