@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# The questionnaire in headless Chromium. Needs Node with npm, and a chromium on the PATH (or CHROMIUM=path).
+# The questionnaire and the pages of results in headless Chromium. Needs Node with npm, and a chromium on the PATH (or CHROMIUM=path).
 # Without them nothing is tested, which is said loudly; BROWSER_REQUIRED=1 makes that an error.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 CHROMIUM=${CHROMIUM:-$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)}
 skip() {
-  echo "SKIPPED: $1 - the questionnaire's page was not tested in a browser" >&2
+  echo "SKIPPED: $1 - no page was tested in a browser" >&2
   exit "${BROWSER_REQUIRED:-0}"
 }
 [ -n "$CHROMIUM" ] || skip "NO CHROMIUM"
@@ -18,4 +18,4 @@ npm install --prefix "$MODULES" --silent --no-audit --no-fund --no-save playwrig
   skip "NPM COULD NOT INSTALL playwright-core AND axe-core"
 cargo build --release --locked --quiet --package isostudy
 export ISOSTUDY=${CARGO_TARGET_DIR:-$PWD/target}/release/isostudy CHROMIUM MODULES
-node --test tests/browser/questionnaire.mjs
+node --test tests/browser/questionnaire.mjs tests/browser/pages.mjs

@@ -177,3 +177,21 @@ fn what_is_written_for_pwcmp_is_read_again() {
     }
     assert_eq!(std::fs::read_to_string(again).unwrap(), std::fs::read_to_string(straight).unwrap());
 }
+
+/// What is published of the paper's answers is what these sources make of them.
+#[test]
+fn published_tables_are_those_of_the_answers() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let published = root.join("results/published/tables");
+    let fixture = Fixture::new();
+    let out = fixture.folder().join("analysed");
+    let mut command = isostudy();
+    command.arg("analyse").arg(root.join("study/paper/responses.csv"));
+    Run::succeed(command.arg("--study").arg(root.join("configs/paper.toml")).arg("--out").arg(&out));
+    for name in ["contrasts", "preference_groups", "preference_overall", "preference_margins", "tests"] {
+        let read = |folder: &Path| std::fs::read_to_string(folder.join(format!("{name}.csv"))).unwrap();
+        let (before, now) = (read(&published), read(&out.join("tables")));
+        assert!(before.lines().count() > 2, "{name}");
+        assert_eq!(before, now, "{name}: scripts/publish-results.sh renews what is published");
+    }
+}

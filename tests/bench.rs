@@ -487,6 +487,29 @@ fn a_sweep_that_makes_no_sense_is_refused_by_key() {
     );
 }
 
+/// The default study is in the program, has none of the paper's faults, and needs no checkout; the paper's are named.
+#[test]
+fn a_configuration_is_inspected_anywhere() {
+    let fixture = Fixture::new();
+    let inspect = |more: &[&str]| {
+        let words =
+            [&["inspect", "ss_bi", "--resolution", "20", "--iterations", "1", "--json"], more].concat();
+        let done = Run::of(command::isostudy().args(&words).current_dir(fixture.folder()));
+        assert_eq!(done.code, Some(0), "{}", done.stderr);
+        let panel: Value = serde_json::from_str(&done.stdout).unwrap();
+        (panel["mesh"]["topology"].clone(), done.stderr)
+    };
+    let (own, said) = inspect(&[]);
+    // A closed sphere.
+    assert_eq!((&own["euler_characteristic"], &own["boundary_edges"]), (&2.into(), &0.into()), "{own}");
+    assert!(!said.contains("faults") && said.contains("the streaming extractor"), "{said}");
+    let config = fixture.config();
+    let (papers, said) = inspect(&["--study", config.to_str().unwrap()]);
+    assert_ne!(papers["boundary_edges"], 0);
+    assert!(said.contains("repeats faults of the paper: accumulated positions"), "{said}");
+    assert!(said.contains("the published topology") && said.contains("the dense extractor"), "{said}");
+}
+
 /// The panel of the published slides: 20 cells per axis. Counts of the lattice are exact; how many vertices there are is
 /// decided by rounding where the sphere touches its volume, and 2,180 were published.
 #[test]

@@ -72,7 +72,8 @@ pub fn figures(inputs: &Inputs<'_>) -> Result<Vec<Figure>, AnalysisError> {
 pub fn figures_of_groups(groups: &[BallotGroup]) -> Result<Vec<Figure>, AnalysisError> {
     let ballots: Vec<ShownBallot> = groups.iter().flat_map(|group| group.ballots.iter().copied()).collect();
     let hypotheses = crate::hypotheses::of_groups(groups);
-    let drafts = [glance::contrasts(None, &hypotheses), worths::draft(groups), respondents::draft(&ballots)];
+    let drafts =
+        [glance::contrasts(None, &hypotheses), worths::draft(None, groups), respondents::draft(&ballots)];
     drafts.into_iter().flatten().map(Unfinished::finish).collect()
 }
 
@@ -80,6 +81,7 @@ fn drafts(inputs: &Inputs<'_>) -> Vec<Unfinished> {
     let mut drafts = Vec::new();
     drafts.extend(meshes::triangles(inputs));
     drafts.extend(meshes::pass_times(inputs));
+    drafts.extend(meshes::radius_ratios(inputs));
     drafts.extend(meshes::aspect_ratios(inputs));
     drafts.extend(stages::stage_times(inputs));
     drafts.extend(distributions::aspect_ratios(inputs));
@@ -92,7 +94,7 @@ fn drafts(inputs: &Inputs<'_>) -> Vec<Unfinished> {
         drafts.push(answers::per_question(inputs.study, tally, answered.sides_differ()));
         drafts.push(preferences::per_object(inputs.study, tally));
         drafts.push(preferences::overall(inputs.study, tally));
-        drafts.extend(worths::draft(groups));
+        drafts.extend(worths::draft(Some(inputs.study), groups));
         drafts.extend(respondents::draft(shown));
         drafts.extend(prediction::draft(inputs, shown, declared));
     }

@@ -66,9 +66,17 @@ impl StageTimes {
     }
 }
 
-/// Where and how often a run was measured, for a note under a table of means.
+/// Where and how often a run was measured, for a note under a table of means. What the machine has instead of the target is
+/// said once, by the report.
 pub fn conditions(run: &BenchRun) -> String {
-    format!("Times: means over {}", circumstances(run))
+    let target = match run.differences.is_empty() {
+        true => format!("which matches the target {}", run.target.name),
+        false => format!(
+            "which does not match the target {}; the report says how, under \u{201c}Machine and timing\u{201d}",
+            run.target.name
+        ),
+    };
+    format!("Times: means over {}, {target}.", measured(run))
 }
 
 /// How often and where a run was measured, and whether that is the target.

@@ -43,6 +43,11 @@ impl Axis {
         axis
     }
 
+    /// Shares from 0 to 1, with room for a mark beyond either end.
+    pub(super) fn around_shares() -> Self {
+        Self { low: -0.04, high: 1.04, ..Self::up_to(1.0) }
+    }
+
     /// Logarithmic, from 1 to `largest` or a little more, marked at 1, 1.5, 2, 3, 5, 7 and their tenfolds; over more than
     /// two decades at the tenfolds alone.
     pub(super) fn logarithmic(largest: f64) -> Self {
@@ -84,6 +89,28 @@ impl Axis {
         let ticks = (low..=high).step_by(step).map(f64::from).collect();
         let room = 0.1 * f64::from((high - low).max(1));
         Self { low: f64::from(low) - room, high: f64::from(high) + room, ticks, logarithmic: false }
+    }
+
+    /// Values between the marks of a logarithmic axis, tenths of the first decade and as many of the others; none of a linear one.
+    pub(super) fn minor(&self) -> Vec<f64> {
+        if !self.logarithmic {
+            return Vec::new();
+        }
+        let mut ticks = Vec::new();
+        let mut decade = 10_f64.powf(self.low.log10().floor());
+        while decade < self.high {
+            ticks.extend((10..100).map(|tenth| decade * f64::from(tenth) / 10.0));
+            decade *= 10.0;
+        }
+        ticks.retain(|tick| (self.low..=self.high).contains(tick));
+        if ticks.len() > 45 {
+            // Whole steps alone.
+            ticks.retain(|tick| {
+                let digit = tick / 10_f64.powf(tick.log10().floor());
+                (digit - digit.round()).abs() < 1e-6
+            });
+        }
+        ticks
     }
 
     /// Where a value falls between the axis's bottom and top; cut to both.

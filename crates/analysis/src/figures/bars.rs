@@ -72,21 +72,16 @@ pub(super) fn largest(clusters: &[Cluster]) -> f64 {
 }
 
 impl BarPanel {
-    /// Draws the panel into a rectangle.
+    /// Draws the panel into a rectangle. Labels that are wider than what they are of read upwards.
     pub(super) fn draw(&self, canvas: &mut Canvas, from: (f64, f64), to: (f64, f64)) {
         let (left, right) = (from.0 + LEFT, to.0 - RIGHT);
-        let (top, bottom) = (from.1 + TOP, to.1 - BOTTOM);
+        let upwards = self.label_room(right - left);
+        let (top, bottom) = (from.1 + TOP, to.1 - BOTTOM - upwards);
         frame(canvas, &self.axis, &self.axis_label, (left, right), (bottom, top));
         if !self.heading.is_empty() {
             canvas.text(&self.heading, ((left + right) / 2.0, from.1 + 19.0), 12.5, Align::Middle);
         }
-        // In bar widths: a bar is 1, the gap in a cluster 0.35, the gap between clusters 1.6.
-        let slots_wide = |c: &Cluster| {
-            let bars: usize = c.slots.iter().map(|s| s.bars.len()).sum();
-            bars as f64 + 0.35 * c.slots.len().saturating_sub(1) as f64
-        };
-        let wide: f64 = self.clusters.iter().map(slots_wide).sum::<f64>() + 1.6 * self.clusters.len() as f64;
-        let unit = ((right - left) / wide).min(84.0);
+        let (wide, unit) = self.unit(right - left);
         let mut x = (left + right) / 2.0 - unit * wide / 2.0 + 0.8 * unit;
         for cluster in &self.clusters {
             let start = x;
@@ -96,17 +91,44 @@ impl BarPanel {
                     self.bar(canvas, bar, (x, x + unit), (bottom, top));
                     x += unit;
                 }
-                canvas.text(&slot.label, ((slot_start + x) / 2.0, bottom + 14.0), EM, Align::Middle);
+                let middle = (slot_start + x) / 2.0;
+                if upwards > 0.0 {
+                    let down = bottom + 8.0 + text_width(&slot.label, EM) / 2.0;
+                    canvas.text_upwards(&slot.label, (middle + 0.36 * EM, down), EM);
+                } else {
+                    canvas.text(&slot.label, (middle, bottom + 14.0), EM, Align::Middle);
+                }
                 x += 0.35 * unit;
             }
             x -= 0.35 * unit;
-            canvas.text(&cluster.label, ((start + x) / 2.0, bottom + 31.0), 12.0, Align::Middle);
+            canvas.text(&cluster.label, ((start + x) / 2.0, bottom + upwards + 31.0), 12.0, Align::Middle);
             x += 1.6 * unit;
         }
         if let Some(cap) = self.cap {
             canvas.dashes(left, right, self.axis.place(cap, bottom, top), BLACK);
         }
         canvas.line(vec![(left, bottom), (right, bottom)], BLACK, 1.0);
+    }
+
+    /// The panel's width in bars, and the width of a bar. A bar is 1, the gap in a cluster 0.35, the gap between clusters 1.6.
+    fn unit(&self, room: f64) -> (f64, f64) {
+        let slots_wide = |c: &Cluster| {
+            let bars: usize = c.slots.iter().map(|s| s.bars.len()).sum();
+            bars as f64 + 0.35 * c.slots.len().saturating_sub(1) as f64
+        };
+        let wide: f64 = self.clusters.iter().map(slots_wide).sum::<f64>() + 1.6 * self.clusters.len() as f64;
+        (wide, (room / wide).min(84.0))
+    }
+
+    /// What labels take below the plot beyond one line: their length where they read upwards, else nothing.
+    fn label_room(&self, room: f64) -> f64 {
+        let (_, unit) = self.unit(room);
+        let slots = || self.clusters.iter().flat_map(|c| &c.slots);
+        let wide = |slot: &Slot| text_width(&slot.label, EM) > unit * (slot.bars.len() as f64 + 0.3);
+        if !slots().any(wide) {
+            return 0.0;
+        }
+        slots().map(|slot| text_width(&slot.label, EM)).fold(0.0, f64::max) - EM
     }
 
     fn bar(&self, canvas: &mut Canvas, bar: &Bar, (x0, x1): (f64, f64), (bottom, top): (f64, f64)) {

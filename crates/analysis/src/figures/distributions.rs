@@ -2,15 +2,14 @@
 
 use super::axis::Axis;
 use super::bars::frame;
-use super::canvas::{Align, BLACK, Canvas};
-use super::meshes::method_legend;
+use super::canvas::{Align, BLACK, Canvas, text_width};
 use super::{Unfinished, WIDTH, canvas_with_legend, style};
 use crate::inputs::Inputs;
 use crate::mesh_set::MeshSet;
 use design::record::{Distribution, MeshRecord, Purpose};
 use design::{MethodId, Study};
 
-const ROW: f64 = 290.0;
+const ROW: f64 = 400.0;
 const PER_ROW: usize = 3;
 
 type Measure = (&'static str, fn(&MeshRecord) -> &Distribution);
@@ -27,8 +26,7 @@ pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Unfinished> {
     }
     let objects: Vec<usize> = (0..inputs.study.file.objects.len()).collect();
     let blocks: Vec<&[usize]> = objects.chunks(PER_ROW).collect();
-    let legend = method_legend(inputs, false);
-    let (mut canvas, top) = canvas_with_legend(&legend, 2.0 * ROW * blocks.len() as f64);
+    let (mut canvas, top) = canvas_with_legend(&[], 2.0 * ROW * blocks.len() as f64);
     let mut y = top;
     for block in blocks {
         for (label, of) in MEASURES {
@@ -68,13 +66,15 @@ fn panel(
     to: (f64, f64),
 ) {
     let (left, right) = (from.0 + 80.0, to.0 - 10.0);
-    let (top, bottom) = (from.1 + 16.0, to.1 - 44.0);
+    let labels = study.methods.iter().map(|method| text_width(&method.label, 11.0)).fold(0.0, f64::max);
+    let (top, bottom) = (from.1 + 16.0, to.1 - 34.0 - labels);
     frame(canvas, axis, label, (left, right), (bottom, top));
     let pitch = (right - left) / boxes.len() as f64;
     let half = (0.32 * pitch).min(24.0);
     for (i, (method, distribution)) in boxes.iter().enumerate() {
         let x = left + pitch * (i as f64 + 0.5);
-        canvas.text(method.to_string(), (x, bottom + 14.0), 11.0, Align::Middle);
+        let label = &study.method(*method).label;
+        canvas.text_upwards(label, (x + 4.0, bottom + 8.0 + text_width(label, 11.0) / 2.0), 11.0);
         let Some(d) = distribution else { continue };
         let y = |value: f64| axis.place(value, bottom, top);
         for (inner, outer) in [(d.q25, d.q05), (d.q75, d.q95)] {
@@ -86,5 +86,5 @@ fn panel(
         canvas.line(vec![(x - half, y(d.median)), (x + half, y(d.median))], fill.ink(), 2.0);
     }
     canvas.line(vec![(left, bottom), (right, bottom)], BLACK, 1.0);
-    canvas.text(name, ((left + right) / 2.0, bottom + 31.0), 12.0, Align::Middle);
+    canvas.text(name, ((left + right) / 2.0, bottom + labels + 22.0), 12.0, Align::Middle);
 }

@@ -68,7 +68,7 @@ pub(super) fn draw(
         for row in &block.rows {
             let middle = y + ROW / 2.0;
             canvas.text(&row.label, (left - 14.0, middle + 0.36 * EM), EM, Align::End);
-            canvas.text(&row.remark, (right + 14.0, middle + 0.36 * EM), EM, Align::Start);
+            remark(canvas, &row.remark, right + 14.0, middle + 0.36 * EM);
             if let Some(interval) = row.interval {
                 bar(canvas, x(interval.low), x(interval.high), middle);
             }
@@ -82,8 +82,16 @@ pub(super) fn draw(
 
 /// Says what the remarks are, above them; returns where the blocks begin.
 pub(super) fn remark_heading(canvas: &mut Canvas, text: &str, top: f64) -> f64 {
-    canvas.text(text, (WIDTH - LABELS.1 + 14.0, top + HEADING - 9.0), EM, Align::Start);
+    remark(canvas, text, WIDTH - LABELS.1 + 14.0, top + HEADING - 9.0);
     top
+}
+
+/// Tabs part a remark into columns.
+fn remark(canvas: &mut Canvas, text: &str, x: f64, baseline: f64) {
+    const COLUMNS: [f64; 3] = [0.0, 78.0, 142.0];
+    for (part, column) in text.split('\t').zip(COLUMNS) {
+        canvas.text(part, (x + column, baseline), EM, Align::Start);
+    }
 }
 
 fn bar(canvas: &mut Canvas, from: f64, to: f64, y: f64) {

@@ -32,7 +32,7 @@ pub(super) fn contrasts(study: Option<&Study>, hypotheses: &[Hypothesis]) -> Opt
     let height = forest::height(&shares) + gap + forest::height(&differences);
     let height = if differences.is_empty() { forest::height(&shares) } else { height };
     let (mut canvas, top) = canvas_with_legend(&legend, height + GAP);
-    let top = forest::remark_heading(&mut canvas, "answers, people, adjusted p", top);
+    let top = forest::remark_heading(&mut canvas, "answers\tpeople\tadjusted p", top);
     let label = "share of answers for the first: 0.5 is no preference";
     forest::draw(&mut canvas, &shares, &Axis::spanning(0.0, 1.0), label, 0.5, top);
     if !differences.is_empty() {
@@ -57,14 +57,14 @@ fn blocks(rows: &[glance::Row], differences: bool) -> Vec<Block> {
             blocks.push(Block { heading, rows: Vec::new() });
         }
         let counts = |[a, b, c]: [u64; 3]| format!("{a}:{b}:{c}");
-        let parts = [row.answers.map(counts), Some(counts(row.people)), Some(p(row.adjusted))];
+        let parts = [row.answers.map_or(String::new(), counts), counts(row.people), p(row.adjusted)];
         let label = if row.place.is_empty() { "all answers".into() } else { row.place.clone() };
         blocks.last_mut().expect("one was pushed").rows.push(Row {
             label,
             value: Some(row.share),
             interval: row.interval,
             mark: Mark::nth(0, row.standing == Standing::Holds),
-            remark: parts.into_iter().flatten().collect::<Vec<_>>().join("   "),
+            remark: parts.join("\t"),
         });
     }
     blocks

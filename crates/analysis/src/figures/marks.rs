@@ -1,6 +1,6 @@
 //! Marks told apart by shape, so that neither colour nor lightness is needed.
 
-use super::canvas::{BLACK, Canvas, WHITE};
+use super::canvas::{BLACK, Canvas, Colour, WHITE};
 
 /// Shapes, in the order they are given out.
 const SHAPES: [Shape; 6] =
@@ -32,6 +32,7 @@ pub(super) enum Filling {
 pub(super) struct Mark {
     shape: Shape,
     filling: Filling,
+    colour: Colour,
 }
 
 impl Mark {
@@ -42,7 +43,12 @@ impl Mark {
 
     /// As [`Mark::nth`], of more than two kinds.
     pub(super) fn of(n: usize, filling: Filling) -> Self {
-        Self { shape: SHAPES[n % SHAPES.len()], filling }
+        Self { shape: SHAPES[n % SHAPES.len()], filling, colour: BLACK }
+    }
+
+    /// In a colour, which says no more than the shape does.
+    pub(super) fn coloured(self, colour: Colour) -> Self {
+        Self { colour, ..self }
     }
 
     pub(super) fn draw(self, canvas: &mut Canvas, (x, y): (f64, f64)) {
@@ -75,13 +81,13 @@ impl Mark {
         };
         // White-edged, so that marks on top of each other stay apart.
         canvas.polygon(outline(6.2), WHITE);
-        canvas.polygon(outline(5.0), BLACK);
+        canvas.polygon(outline(5.0), self.colour);
         match self.filling {
             Filling::Full => {}
             Filling::Hollow => canvas.polygon(outline(3.2), WHITE),
             Filling::Dotted => {
                 canvas.polygon(outline(3.2), WHITE);
-                canvas.polygon(outline(1.6), BLACK);
+                canvas.polygon(outline(1.6), self.colour);
             }
             Filling::Holed => canvas.polygon(outline(2.0), WHITE),
         }

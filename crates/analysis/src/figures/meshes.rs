@@ -6,24 +6,19 @@ use super::legend::Swatch;
 use super::{Unfinished, WIDTH, canvas_with_legend, style};
 use crate::inputs::Inputs;
 use crate::mesh_set::{MeshSet, known};
+use design::ConfigurationId;
 use design::published::BenchmarkRow;
-use design::record::{MeshRecord, Purpose};
-use design::{ConfigurationId, Method};
-use timing::stage_times::StageTimes;
+use design::record::{BenchRun, BenchSample, MeshRecord, Purpose};
+use statistics::interval::LEVEL;
+use statistics::{Median, median};
 
 /// Where the paper cuts the axis of aspect ratios.
 const CUT: f64 = 10.0;
-const HEIGHT: f64 = 420.0;
+const HEIGHT: f64 = 520.0;
 
-/// The methods with their fills, and the mark of published values where there are any.
-pub(super) fn method_legend(inputs: &Inputs<'_>, published: bool) -> Vec<(Swatch, String)> {
-    let study = inputs.study;
-    let entry = |m: &Method| (Swatch::Area(style::method(study, m.id)), format!("{}: {}", m.id, m.label));
-    let mut legend: Vec<_> = study.methods.iter().map(entry).collect();
-    if published {
-        legend.push((Swatch::Diamond, "published".into()));
-    }
-    legend
+/// The mark of published values where there are any; methods have their names under their bars.
+fn published_legend(published: bool) -> Vec<(Swatch, String)> {
+    if published { vec![(Swatch::Diamond, "published".into())] } else { Vec::new() }
 }
 
 /// One cluster an object, one slot a method; `bars` gives a slot's bars.
@@ -40,7 +35,7 @@ fn clusters(
             .map(|method| {
                 let id = ConfigurationId { object: object.id.clone(), method };
                 let row = study.published.benchmark.iter().find(|row| row.id == id);
-                Slot { label: method.to_string(), bars: bars(&id, row) }
+                Slot { label: study.method(method).label.clone(), bars: bars(&id, row) }
             })
             .collect(),
     };
@@ -88,47 +83,104 @@ pub(super) fn triangles(inputs: &Inputs<'_>) -> Option<Unfinished> {
         cap: None,
     };
     let caption = "Triangles of each configuration at the benchmark spacing.".into();
-    Some(draft("triangles", caption, &panel, &method_legend(inputs, published)))
+    Some(draft("triangles", caption, &panel, &published_legend(published)))
 }
 
+/// Above the times of ours, medians with intervals; below what share of the whole a pass takes, beside the published share:
+/// seconds of two machines say nothing about each other.
 pub(super) fn pass_times(inputs: &Inputs<'_>) -> Option<Unfinished> {
     let run = inputs.bench?;
-    let clusters = clusters(inputs, |id, row| {
-        let times = StageTimes::of(run, id);
-        let fill = style::method(inputs.study, id.method);
-        let ms = |s: f64| 1e3 * s;
-        let vertex = times.map(|t| ms(t.vertex_s));
-        let geometry = times.map(|t| ms(t.geometry_s));
-        vec![
-            Bar::of(vertex, fill, row.map(|r| ms(r.vertex_s))),
-            Bar::of(geometry, fill.striped(), row.map(|r| ms(r.geometry_s))),
-        ]
-    });
-    if largest(&clusters) == 0.0 {
+    let whole = |sample: &BenchSample| sample.total_s - sample.normals_s;
+    let passes: [fn(&BenchSample) -> f64; 2] = [|s| s.vertex_s, |s| s.geometry_s + s.clustering_s];
+    let bars = |value: &dyn Fn(&BenchSample, f64) -> f64, published: fn(&BenchmarkRow) -> [f64; 2]| {
+        clusters(inputs, |id, row| {
+            let fill = style::method(inputs.study, id.method);
+            let published = row.map(published);
+            let bar = |(place, fill): (usize, style::Fill)| {
+                let of = median_of(run, id, |sample| value(sample, passes[place](sample)));
+                Bar {
+                    interval: of.as_ref().and_then(|of| of.interval_at(LEVEL)),
+                    ..Bar::of(
+                        of.map(|of| of.median),
+                        fill,
+                        published.map(|of| of[place]).filter(|p| p.is_finite()),
+                    )
+                }
+            };
+            [(0, fill), (1, fill.striped())].map(bar).into()
+        })
+    };
+    let times = bars(&|_, pass| 1e3 * pass, |_| [f64::NAN; 2]);
+    if largest(&times) == 0.0 {
         return None;
     }
-    let published = has_published(&clusters);
-    let mut legend = method_legend(inputs, false);
+    let shares = bars(&|sample, pass| pass / whole(sample), |row| {
+        [row.vertex_s, row.geometry_s].map(|pass| pass / row.total_without_normals_s)
+    });
     let white = style::Fill { outline: super::canvas::BLACK, ..style::Fill::plain(super::canvas::WHITE) };
-    legend.push((Swatch::Area(white), "vertex pass (left bar)".into()));
-    legend.push((Swatch::Area(white.striped()), "geometry pass (right bar)".into()));
-    let mut caption =
-        format!("Time of the vertex and the geometry pass. {}", timing::stage_times::conditions(run));
-    if published {
-        legend.push((Swatch::Diamond, "published".into()));
-        if !run.differences.is_empty() {
-            caption.push_str(" Published times are from another machine.");
-        }
+    let mut legend = vec![
+        (Swatch::Area(white), "vertex pass (left bar)".into()),
+        (Swatch::Area(white.striped()), "geometry pass (right bar)".into()),
+        (Swatch::Whisker, "95 % interval of the median".into()),
+    ];
+    let mut caption = format!(
+        "Time of the vertex and the geometry pass, medians over rounds: in milliseconds, and as shares of the whole \
+         extraction without normals. {}",
+        timing::stage_times::conditions(run).replace("means over ", "")
+    );
+    if has_published(&shares) {
+        legend.push((Swatch::Diamond, "published share".into()));
+        caption.push_str(" Published times are from another machine, so they are shown as shares alone.");
     }
+    let (mut canvas, top) = canvas_with_legend(&legend, 2.0 * HEIGHT);
+    for (place, (axis_label, clusters)) in
+        [("median time, ms", times), ("share of the whole", shares)].into_iter().enumerate()
+    {
+        let panel = BarPanel {
+            heading: String::new(),
+            axis_label: axis_label.into(),
+            axis: Axis::from_zero(largest(&clusters)),
+            clusters,
+            broken: false,
+            cap: None,
+        };
+        let y = top + HEIGHT * place as f64;
+        panel.draw(&mut canvas, (0.0, y), (WIDTH, y + HEIGHT));
+    }
+    Some(Unfinished { name: "pass_times", caption, canvas })
+}
+
+/// The median of something over a configuration's samples, with its interval.
+pub(super) fn median_of(
+    run: &BenchRun,
+    id: &ConfigurationId,
+    value: impl Fn(&BenchSample) -> f64,
+) -> Option<Median> {
+    median(run.samples.iter().filter(|sample| sample.id == *id).map(value).collect(), LEVEL)
+}
+
+/// A bounded measure of shape, which no sliver drives.
+pub(super) fn radius_ratios(inputs: &Inputs<'_>) -> Option<Unfinished> {
+    let meshes = MeshSet::of(inputs, Purpose::Benchmark);
+    if meshes.is_empty() {
+        return None;
+    }
+    let clusters = clusters(inputs, |id, _| {
+        let mean = meshes.get(id).and_then(|m| known(&m.quality.radius_ratio, |d| d.mean));
+        vec![Bar::of(mean, style::method(inputs.study, id.method), None)]
+    });
     let panel = BarPanel {
         heading: String::new(),
-        axis_label: "time, ms".into(),
-        axis: Axis::from_zero(largest(&clusters)),
+        axis_label: "mean radius ratio".into(),
+        axis: Axis::up_to(1.0),
         clusters,
         broken: false,
         cap: None,
     };
-    Some(draft("pass_times", caption, &panel, &legend))
+    let caption = "Mean radius ratio of the triangles at the benchmark spacing: 1 is equilateral, 0 is flat. A few flat \
+                   triangles change it little, unlike the mean aspect ratio."
+        .into();
+    Some(draft("radius_ratio", caption, &panel, &[]))
 }
 
 pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Unfinished> {
@@ -167,5 +219,5 @@ pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Unfinished> {
     };
     let axis_label = "mean aspect ratio".into();
     let panel = BarPanel { heading: String::new(), axis_label, axis, clusters, broken: true, cap: None };
-    Some(draft("aspect_ratio", caption, &panel, &method_legend(inputs, published)))
+    Some(draft("aspect_ratio", caption, &panel, &published_legend(published)))
 }

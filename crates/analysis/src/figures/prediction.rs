@@ -5,6 +5,7 @@ use super::canvas::BLACK;
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
+use super::style::object_colour;
 use super::{Unfinished, WIDTH, canvas_with_legend};
 use crate::inputs::Inputs;
 use crate::prediction::{MetricPrediction, Prediction, Scale};
@@ -24,7 +25,7 @@ pub(super) fn draft(
     let counts = outcome_counts(declared);
     let mut legend: Vec<(Swatch, String)> = Vec::new();
     for (o, object) in study.file.objects.iter().enumerate() {
-        legend.push((Swatch::Mark(Mark::nth(o, true)), object.name.clone()));
+        legend.push((Swatch::Mark(Mark::nth(o, true).coloured(object_colour(o))), object.name.clone()));
     }
     // Only of two factors does one of them say something that the other does not.
     if let Some([outer, _]) = preference::two_factors(study)
@@ -46,9 +47,17 @@ pub(super) fn draft(
     }
     let caption = "Each pair shown: by how much the better value is better, against the share of decided answers for it. Marks \
                    above the dashed line: the better value won. The line is the share that Davidson's model on this metric \
-                   alone expects. Pairs without a decided answer or a difference are left out."
+                   alone expects. Pairs without a decided answer or a difference are left out. Marks are moved up or down by at most \
+                   0.015, so that no two lie on each other."
         .into();
     Some(Unfinished { name: "prediction", caption, canvas })
+}
+
+/// By how much a mark is moved, by the number of its question: spread evenly by the golden section, and the same each time.
+fn jitter(question: usize) -> f64 {
+    const MOST: f64 = 0.015;
+    let place = (question as f64 * 0.618_033_988_75).fract();
+    MOST * (2.0 * place - 1.0)
 }
 
 /// Whether a question's methods differ in the first of two factors.
@@ -75,7 +84,8 @@ fn panel(study: &Study, found: &MetricPrediction, counts: &[[u64; 3]]) -> Scatte
         most = most.max(advantage.abs());
         let same = !differs(study, comparison);
         let at = (of_scale(advantage.abs()), better as f64 / (left + right) as f64);
-        marks.push((at, Mark::nth(comparison.object, same)));
+        let at = (at.0, at.1 + jitter(question));
+        marks.push((at, Mark::nth(comparison.object, same).coloured(object_colour(comparison.object))));
     }
     let x = match found.metric.scale {
         Scale::Difference => Axis::from_zero(most),
@@ -92,7 +102,7 @@ fn panel(study: &Study, found: &MetricPrediction, counts: &[[u64; 3]]) -> Scatte
     Scatter {
         heading: found.metric.label.into(),
         labels: (format!("{label}; {} is better", found.metric.better), "share for the better".into()),
-        y: Axis::up_to(1.0),
+        y: Axis::around_shares(),
         lines: lines.collect(),
         dashed: Some(0.5),
         marks,

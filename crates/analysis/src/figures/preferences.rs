@@ -12,17 +12,16 @@ use crate::tally::Tally;
 use design::published::PreferenceKind;
 use design::{Method, MethodId, Study};
 
-const ROW: f64 = 306.0;
-
-fn legend_of(study: &Study) -> Vec<(Swatch, String)> {
-    let entry = |m: &Method| (Swatch::Area(style::method(study, m.id)), format!("{}: {}", m.id, m.label));
-    study.methods.iter().map(entry).collect()
-}
+const ROW: f64 = 420.0;
+const OVERALL: f64 = 440.0;
+/// How much of the width the shares of showings have.
+const LARGE: f64 = 0.62;
 
 pub(super) fn per_object(study: &Study, tally: &Tally) -> Unfinished {
-    let mut legend = legend_of(study);
-    legend.push((Swatch::Whisker, "95 % interval over respondents".into()));
-    legend.push((Swatch::Dashes, "largest possible".into()));
+    let legend = vec![
+        (Swatch::Whisker, "95 % interval over respondents".into()),
+        (Swatch::Dashes, "largest possible".into()),
+    ];
     let rows = rows_of_groups(study);
     let (mut canvas, top) = canvas_with_legend(&legend, ROW * rows.len() as f64);
     for (r, row) in rows.iter().enumerate() {
@@ -61,7 +60,7 @@ fn group_panel(study: &Study, tally: &Tally, group: usize) -> BarPanel {
         let of_group: Vec<&GroupFactor> = factors.iter().filter(|f| f.group == group).collect();
         cap = of_group.iter().map(|f| f.cap().value()).fold(cap, f64::max);
         let slot = |factor: &&GroupFactor| Slot {
-            label: factor.method.to_string(),
+            label: study.method(factor.method).label.clone(),
             bars: vec![Bar {
                 interval: interval(tally, factor, o),
                 ..Bar::of(Some(factor.share.factor().value()), style::method(study, factor.method), None)
@@ -133,10 +132,10 @@ pub(super) fn overall(study: &Study, tally: &Tally) -> Unfinished {
             label: Some(format!("{:.3}", sum.value())),
             interval: None,
         };
-        Slot { label: method.to_string(), bars: vec![bar] }
+        Slot { label: study.method(method).label.clone(), bars: vec![bar] }
     };
     let slots: Vec<Slot> = preference::overall(study, &factors).into_iter().map(slot).collect();
-    let mut legend = legend_of(study);
+    let mut legend = Vec::new();
     let white = Fill { outline: BLACK, ..Fill::plain(WHITE) };
     if let Some([outer, inner]) = preference::two_factors(study) {
         let any = |of_outer| factors.iter().any(|f| compares_first(study, f.group) == of_outer);
@@ -151,19 +150,43 @@ pub(super) fn overall(study: &Study, tally: &Tally) -> Unfinished {
     if slots.iter().flat_map(|s| &s.bars).any(|bar| bar.published.is_some()) {
         legend.push((Swatch::Diamond, "published".into()));
     }
+    let share = |method: &Method| {
+        let own = factors.iter().filter(|f| f.method == method.id);
+        let (wins, shown) = own.fold((0, 0), |(w, n), f| (w + f.share.wins, n + f.appearances));
+        let share = (shown > 0).then(|| wins as f64 / shown as f64)?;
+        let bar = Bar {
+            label: Some(format!("{:.0} %", 100.0 * share)),
+            ..Bar::of(Some(share), style::method(study, method.id), None)
+        };
+        Some(Slot { label: method.label.clone(), bars: vec![bar] })
+    };
+    let shares = BarPanel {
+        heading: "share of showings that were won".into(),
+        axis_label: "wins / showings".into(),
+        axis: Axis::up_to(1.0),
+        clusters: vec![Cluster {
+            label: "all objects".into(),
+            slots: study.methods.iter().filter_map(share).collect(),
+        }],
+        broken: false,
+        cap: None,
+    };
     let clusters = vec![Cluster { label: "all objects".into(), slots }];
     let panel = BarPanel {
-        heading: String::new(),
+        heading: "as published: sums of factors".into(),
         axis_label: "sum of preference factors".into(),
         axis: Axis::from_zero(1.05 * largest(&clusters)),
         clusters,
         broken: false,
         cap: None,
     };
-    let (mut canvas, top) = canvas_with_legend(&legend, 380.0);
-    panel.draw(&mut canvas, (0.0, top), (WIDTH, top + 380.0));
-    let mut caption =
-        String::from("Overall preference: the sum of a configuration's factors over its comparison groups.");
+    let (mut canvas, top) = canvas_with_legend(&legend, OVERALL);
+    shares.draw(&mut canvas, (0.0, top), (LARGE * WIDTH, top + OVERALL));
+    panel.draw(&mut canvas, (LARGE * WIDTH, top), (WIDTH, top + OVERALL));
+    let mut caption = String::from(
+        "Overall preference. Large: in what share of the answers that showed a method it was chosen, one scale for all. Small: as \
+         published, the sum of a configuration's factors over its comparison groups.",
+    );
     caption.push_str(&weights(study, &factors));
     Unfinished { name: "preference_overall", caption, canvas }
 }

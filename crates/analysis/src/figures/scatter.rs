@@ -76,6 +76,10 @@ impl Scatter {
             canvas.line(vec![(x, top), (x, bottom + 4.0)], GRID, 0.5);
             canvas.text(text, (x, bottom + 16.0), EM, Align::Middle);
         }
+        for tick in self.x.minor() {
+            let x = self.x.place(tick, left, right);
+            canvas.line(vec![(x, bottom), (x, bottom + 3.0)], BLACK, 0.5);
+        }
         canvas.line(vec![(left, bottom), (right, bottom)], BLACK, 1.0);
         canvas.text(&self.labels.0, ((left + right) / 2.0, bottom + 34.0), EM, Align::Middle);
         canvas.text(&self.heading, ((left + right) / 2.0, from.1 + 20.0), 12.5, Align::Middle);

@@ -3,12 +3,17 @@
 use super::axis::Axis;
 use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
 use super::legend::Swatch;
+use super::meshes::median_of;
 use super::{Unfinished, WIDTH, canvas_with_legend, style};
 use crate::inputs::Inputs;
 use design::ConfigurationId;
-use timing::stage_times::{StageTimes, conditions};
+use design::record::BenchSample;
+use statistics::interval::{Interval, LEVEL};
+use timing::stage_times::conditions;
 
-const ROW: f64 = 280.0;
+const ROW: f64 = 400.0;
+/// The place of sampling among the stages.
+const SAMPLING: usize = 1;
 const PER_ROW: usize = 3;
 
 pub(super) fn stage_times(inputs: &Inputs<'_>) -> Option<Unfinished> {
@@ -19,8 +24,9 @@ pub(super) fn stage_times(inputs: &Inputs<'_>) -> Option<Unfinished> {
     if with_samples.is_empty() {
         return None;
     }
-    let legend: Vec<_> =
+    let mut legend: Vec<_> =
         style::stages().into_iter().map(|(name, fill)| (Swatch::Area(fill), name.to_owned())).collect();
+    legend.push((Swatch::Whisker, "95 % interval of the median".into()));
     let blocks: Vec<&[usize]> = with_samples.chunks(PER_ROW).collect();
     let (mut canvas, top) = canvas_with_legend(&legend, 2.0 * ROW * blocks.len() as f64);
     let mut y = top;
@@ -35,8 +41,9 @@ pub(super) fn stage_times(inputs: &Inputs<'_>) -> Option<Unfinished> {
         }
     }
     let caption = format!(
-        "Time of each stage, stacked; above with, below without sampling the field. Every panel has its own scale. {}",
-        conditions(run)
+        "Time of each stage, stacked; above with, below without sampling the field. Every panel has its own scale. Bars are \
+         medians over rounds; the medians of stages are scaled to add up to that of the whole. {}",
+        conditions(run).replace("means over ", "")
     );
     Some(Unfinished { name: "stage_times", caption, canvas })
 }
@@ -45,20 +52,42 @@ fn panel(inputs: &Inputs<'_>, object: usize, sampling: bool) -> BarPanel {
     let object = &inputs.study.file.objects[object];
     let bar = |method| {
         let id = ConfigurationId { object: object.id.clone(), method };
-        let Some(t) = inputs.bench.and_then(|run| StageTimes::of(run, &id)) else { return Bar::default() };
-        let seconds = [t.allocation_s, t.sampling_s, t.vertex_s, t.geometry_s, t.normals_s];
-        let stages =
-            style::stages().into_iter().zip(seconds).filter(|((name, _), _)| sampling || *name != "sampling");
-        Bar { segments: stages.map(|((_, fill), s)| (1e3 * s, fill)).collect(), ..Bar::default() }
+        let Some(run) = inputs.bench else { return Bar::default() };
+        let stage: [fn(&BenchSample) -> f64; 5] = [
+            |s| s.allocation_s,
+            |s| s.sampling_s,
+            |s| s.vertex_s,
+            |s| s.geometry_s + s.clustering_s,
+            |s| s.normals_s,
+        ];
+        let whole = |s: &BenchSample| if sampling { s.total_s } else { s.total_s - s.sampling_s };
+        let medians = stage.map(|stage| median_of(run, &id, stage).map_or(0.0, |of| of.median));
+        let Some(total) = median_of(run, &id, whole) else { return Bar::default() };
+        let shown = |place: &usize| sampling || *place != SAMPLING;
+        let sum: f64 = (0..stage.len()).filter(shown).map(|place| medians[place]).sum();
+        // Medians of parts do not add up to the median of the whole.
+        let scale = if sum > 0.0 { 1e3 * total.median / sum } else { 0.0 };
+        let fills = style::stages();
+        Bar {
+            segments: (0..stage.len())
+                .filter(shown)
+                .map(|place| (scale * medians[place], fills[place].1))
+                .collect(),
+            interval: total.interval_at(LEVEL).map(|i| Interval { low: 1e3 * i.low, high: 1e3 * i.high }),
+            ..Bar::default()
+        }
     };
     let methods = inputs.study.method_ids().into_iter();
-    let slots: Vec<Slot> = methods.map(|m| Slot { label: m.to_string(), bars: vec![bar(m)] }).collect();
+    let slots: Vec<Slot> =
+        methods.map(|m| Slot { label: inputs.study.method(m).label.clone(), bars: vec![bar(m)] }).collect();
     let label = if sampling { object.name.clone() } else { format!("{}, without sampling", object.name) };
     let mut clusters = vec![Cluster { label, slots }];
     // A costly field takes seconds; milliseconds would only add zeros.
-    let (unit, factor) = if largest(&clusters) >= 1000.0 { ("time, s", 1e-3) } else { ("time, ms", 1.0) };
+    let (unit, factor) =
+        if largest(&clusters) >= 1000.0 { ("median time, s", 1e-3) } else { ("median time, ms", 1.0) };
     for bar in clusters.iter_mut().flat_map(|c| &mut c.slots).flat_map(|s| &mut s.bars) {
         bar.segments.iter_mut().for_each(|segment| segment.0 *= factor);
+        bar.interval = bar.interval.map(|i| Interval { low: factor * i.low, high: factor * i.high });
     }
     BarPanel {
         heading: String::new(),

@@ -43,12 +43,19 @@ impl Fill {
         if y1 - y0 < 0.25 || x1 - x0 < 0.25 {
             return;
         }
-        canvas.rectangle((x0, y0), (x1, y1), self.colour);
-        if self.stripes {
-            stripes(canvas, (x0, y0), (x1, y1), self.ink());
+        // An outline that is a line reaches half a pixel beyond the area, on one side: stacked areas would not be flush.
+        canvas.rectangle((x0, y0), (x1, y1), self.outline);
+        if self.colour == self.outline && !self.stripes {
+            return;
         }
-        let corners = vec![(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)];
-        canvas.line(corners, self.outline, 1.0);
+        let (inner, outer) = ((x0 + 1.0, y0 + 1.0), (x1 - 1.0, y1 - 1.0));
+        if outer.0 <= inner.0 || outer.1 <= inner.1 {
+            return;
+        }
+        canvas.rectangle(inner, outer, self.colour);
+        if self.stripes {
+            stripes(canvas, inner, outer, self.ink());
+        }
     }
 }
 
@@ -96,6 +103,18 @@ fn tells_methods(study: &Study) -> bool {
     };
     let distinct = |i: usize| !all[..i].contains(&all[i]);
     (0..all.len()).all(|i| fits(all[i], [FILLINGS, HUES.len()]) && distinct(i))
+}
+
+/// The colour of an object's marks: dark enough for white paper, and apart in lightness.
+pub(super) fn object_colour(object: usize) -> Colour {
+    const COLOURS: [Colour; 5] = [
+        RGBColor(0x00, 0x5b, 0x8f),
+        RGBColor(0xb8, 0x55, 0x00),
+        RGBColor(0x22, 0x22, 0x22),
+        RGBColor(0x00, 0x7a, 0x5a),
+        RGBColor(0x9b, 0x3f, 0x78),
+    ];
+    COLOURS[object % COLOURS.len()]
 }
 
 /// Which hue and which filling a method has, by place. No two of up to 24 methods of a study have both in common.

@@ -5,12 +5,15 @@ use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::{Unfinished, canvas_with_legend};
-use crate::ballots::BallotGroup;
+use crate::ballots::{ALL_METHODS, BallotGroup};
+use crate::words::capital;
+use design::Study;
 use statistics::{Pairs, Participants, clustered_covariance, fit_on_one_scale};
 use table::digits::number;
 
-pub(super) fn draft(groups: &[BallotGroup]) -> Option<Unfinished> {
-    let blocks: Vec<Block> = groups.iter().filter_map(block).collect();
+/// In words where there is a study: its ids of groups and items are the same letters.
+pub(super) fn draft(study: Option<&Study>, groups: &[BallotGroup]) -> Option<Unfinished> {
+    let blocks: Vec<Block> = groups.iter().filter_map(|group| block(study, group)).collect();
     if blocks.is_empty() {
         return None;
     }
@@ -29,7 +32,7 @@ pub(super) fn draft(groups: &[BallotGroup]) -> Option<Unfinished> {
     Some(Unfinished { name: "worths", caption, canvas })
 }
 
-fn block(group: &BallotGroup) -> Option<Block> {
+fn block(study: Option<&Study>, group: &BallotGroup) -> Option<Block> {
     let items = group.items.len();
     let fitted = fit_on_one_scale(&Pairs::of(items, &group.ballots)).ok()?;
     let participants = Participants::of(items, &group.ballots);
@@ -46,7 +49,7 @@ fn block(group: &BallotGroup) -> Option<Block> {
             _ => worth,
         };
         Row {
-            label: name.clone(),
+            label: study.map_or(name.clone(), |study| item_in_words(study, group, name)),
             value: Some(fitted.log_worths[item]),
             interval,
             mark: Mark::nth(0, item > 0),
@@ -54,5 +57,30 @@ fn block(group: &BallotGroup) -> Option<Block> {
         }
     };
     let rows = group.items.iter().enumerate().map(row).collect();
-    Some(Block { heading: group.name.clone(), rows })
+    let heading = study.map_or(group.name.clone(), |study| group_in_words(study, &group.name));
+    Some(Block { heading, rows })
+}
+
+fn group_in_words(study: &Study, name: &str) -> String {
+    if let Some(group) = study.groups.iter().find(|group| group.id == name) {
+        return capital(&group.label);
+    }
+    match name {
+        ALL_METHODS => "All methods on one scale".into(),
+        factor => format!("{}, over all other factors", capital(factor)),
+    }
+}
+
+/// A method's label, or that of a level of the factor after which the group is named.
+fn item_in_words(study: &Study, group: &BallotGroup, name: &str) -> String {
+    let factor =
+        study.declared_factors().map(|factor| study.factor(factor)).find(|factor| factor.name == group.name);
+    let level = factor.and_then(|factor| factor.levels.iter().find(|level| level.code == name));
+    let method = study.methods.iter().find(|method| method.id.as_str() == name);
+    match (level, method) {
+        (Some(level), _) if level.label == "none" => level.phrase.clone(),
+        (Some(level), _) => level.label.clone(),
+        (None, Some(method)) => method.label.clone(),
+        (None, None) => name.to_owned(),
+    }
 }

@@ -192,16 +192,17 @@ fn next(evidence: &Evidence<'_>, rows: &[Row]) -> String {
     let undecided =
         rows.iter().filter(|row| matches!(row.standing, Standing::Open | Standing::TooFew)).count();
     if evidence.shown.is_empty() {
-        return "Ask people: `isostudy design power` says how many, and `isostudy bundle` makes what they see.".into();
+        return "Ask people: isostudy design power says how many, and isostudy bundle makes what they see."
+            .into();
     }
     if limits::sides_are_confounded(evidence) {
-        return "Ask new people with the sides of each pair exchanged for half of them: `configs/balanced.toml` is such a \
+        return "Ask new people with the sides of each pair exchanged for half of them: configs/balanced.toml is such a \
                 study."
             .into();
     }
     if undecided > 0 {
         return format!(
-            "{} {} undecided: `isostudy design power` says how many people would decide them.",
+            "{} {} undecided: isostudy design power says how many people would decide them.",
             capital(&counted(undecided, "contrast")),
             if undecided == 1 { "stays" } else { "stay" }
         );

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Renews results/published from results/paper: tables, the first part of the report, six figures, one turntable.
+# Run `isostudy study configs/paper.toml` first. An argument names another folder of results.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+FROM=${1:-results/paper}
+TO=results/published
+TABLES="contrasts preference_groups preference_overall preference_margins tests claims comparison_summary benchmark quality topology accuracy prediction"
+FIGURES="contrasts preference_overall prediction radius_ratio triangles pass_times"
+TURNTABLE=as_si
+
+[ -f "$FROM/manifest.json" ] || { echo "$FROM: has no manifest; run isostudy study configs/paper.toml" >&2; exit 2; }
+rm -rf "$TO"
+mkdir -p "$TO/tables" "$TO/figures"
+for name in $TABLES; do cp "$FROM/tables/$name.csv" "$TO/tables/"; done
+for name in $FIGURES; do cp "$FROM/figures/$name.svg" "$TO/figures/"; done
+# Up to the results one by one.
+awk '/^## What holds/ { exit } { print }' "$FROM/report.md" >"$TO/report.md"
+gif=$(awk -F, -v id="$TURNTABLE" '$3 == id && $2 == "" { print $1 }' "$FROM/key/stimuli.csv")
+cp "$FROM/$gif" "$TO/turntable_$TURNTABLE.gif"
+python3 - "$FROM/manifest.json" "$(git rev-parse HEAD)" "$(git show -s --format=%cs HEAD)" >"$TO/made.txt" <<'PY'
+import json, sys
+manifest, commit, date = json.load(open(sys.argv[1])), sys.argv[2], sys.argv[3]
+machine = manifest["machine"]
+print(f"study: {manifest['study']}, seed {manifest['seed']}, isostudy {manifest['version']}")
+print(f"commit: {commit}")
+print(f"date: {date}")
+print(f"machine: {machine['model']}, {machine['cores']} cores, {machine['threads']} threads, {machine['os']}")
+PY
+# A megabyte is enough for everything but the animation.
+size=$(du -sb "$TO" | cut -f1)
+[ "$size" -lt 3000000 ] || { echo "$TO: $size bytes; at most 3,000,000" >&2; exit 1; }
+echo "$TO: $size bytes"
