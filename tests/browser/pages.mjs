@@ -162,7 +162,7 @@ test('tables can be found by a word and opened together', async () => {
 
 // Each kind of fault, planted: a check that cannot fail is none.
 for (const [kind, start, plant] of [
-  ['a box wider than its page', 'too wide: ', () => { document.querySelector('dl.summary').style.width = '2400px'; }],
+  ['a box wider than its page', 'too wide: ', () => { document.querySelector('dl.summary').style.minWidth = '2400px'; }],
   ['a table that scrolls unseen', 'too wide inside: ', () => { Object.assign(document.querySelector('.fit').style, { width: '200px', overflowX: 'hidden', whiteSpace: 'nowrap' }); }],
   ['a verdict beyond the edge', 'verdict not seen: ', () => { Object.assign(document.querySelector('.fit').style, { transform: 'translateX(-900px)' }); }],
   ['a verdict in a region that scrolls', 'verdict not seen: ', () => { Object.assign(document.querySelector('.fit'), { role: 'region', tabIndex: 0, ariaLabel: 'x' }); }],

@@ -1,7 +1,7 @@
 //! What a page of HTML must be, checked without a browser.
 
 /// Elements of HTML that have no end tag.
-const VOID: [&str; 6] = ["meta", "br", "hr", "img", "link", "!doctype"];
+const VOID: [&str; 7] = ["meta", "br", "hr", "img", "input", "link", "!doctype"];
 
 /// What is opened and not closed, or closed and not open, or quoted wrongly.
 pub(crate) fn unclosed(page: &str) -> Vec<String> {

@@ -128,7 +128,7 @@ impl BarPanel {
         if !slots().any(wide) {
             return 0.0;
         }
-        slots().map(|slot| text_width(&slot.label, EM)).fold(0.0, f64::max) - EM
+        slots().map(|slot| text_width(&slot.label, EM)).fold(0.0, f64::max)
     }
 
     fn bar(&self, canvas: &mut Canvas, bar: &Bar, (x0, x1): (f64, f64), (bottom, top): (f64, f64)) {

@@ -52,6 +52,15 @@ fn rows_of_groups(study: &Study) -> Vec<Vec<usize>> {
     rows
 }
 
+/// What a method is called among those of its group: the level in which they differ, since the heading names the rest.
+fn in_group(study: &Study, group: usize, method: MethodId) -> String {
+    let level = match study.groups[group].members[..] {
+        [first, second, ..] => study.level_of(method, study.difference(first, second)),
+        _ => None,
+    };
+    level.map_or(study.method(method).label.clone(), |level| study.level(level).label.clone())
+}
+
 fn group_panel(study: &Study, tally: &Tally, group: usize) -> BarPanel {
     let mut cap: f64 = 0.0;
     let mut clusters = Vec::new();
@@ -60,7 +69,7 @@ fn group_panel(study: &Study, tally: &Tally, group: usize) -> BarPanel {
         let of_group: Vec<&GroupFactor> = factors.iter().filter(|f| f.group == group).collect();
         cap = of_group.iter().map(|f| f.cap().value()).fold(cap, f64::max);
         let slot = |factor: &&GroupFactor| Slot {
-            label: study.method(factor.method).label.clone(),
+            label: in_group(study, group, factor.method),
             bars: vec![Bar {
                 interval: interval(tally, factor, o),
                 ..Bar::of(Some(factor.share.factor().value()), style::method(study, factor.method), None)

@@ -18,6 +18,7 @@ fn every_table_is_there_and_scripts_find_their_columns() {
     assert_eq!(
         names,
         [
+            "methods",
             "configurations",
             "benchmark",
             "asteroid",
@@ -29,6 +30,7 @@ fn every_table_is_there_and_scripts_find_their_columns() {
             "preference_margins",
             "preference_objects",
             "preference_arrangements",
+            "contrasts",
             "tests",
             "omnibus",
             "worths",
@@ -191,7 +193,7 @@ fn absent_parts_leave_out_their_tables() {
     let names =
         |inputs: &Inputs<'_>| -> Vec<String> { tables(inputs).into_iter().map(|table| table.name).collect() };
     let nothing = Inputs { study: &all.study, meshes: &[], bench: None, answers: None };
-    assert_eq!(names(&nothing), ["configurations", "questionnaire", "claims"]);
+    assert_eq!(names(&nothing), ["methods", "configurations", "questionnaire", "claims"]);
     let answers_only = Inputs { answers: Some(&all.answers), ..nothing };
     assert!(names(&answers_only).contains(&"preference_overall".to_owned()));
     assert!(!names(&answers_only).contains(&"benchmark".to_owned()));
