@@ -185,7 +185,17 @@ fn the_papers_answers() {
     for block in report.sections.iter().flat_map(|s| &s.blocks) {
         printed += usize::from(matches!(block, Block::Table(_) | Block::Folded(_) | Block::Figure(_)));
     }
+    printed += usize::from(report.methods.is_some());
     assert_eq!(printed, tables.len() + figures.len());
+    // What stands before everything else.
+    let labels: Vec<&str> = report.summary.iter().map(|line| line.label).collect();
+    assert_eq!(labels, ["Compared", "By whom", "Found", "How sure", "Limits", "Next"]);
+    let line = |label: &str| &report.summary.iter().find(|line| line.label == label).unwrap().text;
+    assert!(line("Found").starts_with("People preferred integrated clustering over no clustering (86 %), "));
+    assert!(line("Found").contains("Simple cubic, integrated was chosen most: in 73 % of its showings."));
+    assert!(line("How sure").starts_with("21 of 43 contrasts hold at the level of 0.05"));
+    assert!(line("Limits").starts_with("No pair was shown with its sides exchanged"));
+    assert!(report.limits.iter().any(|limit| limit.starts_with("Display: the source files do not say")));
 }
 
 #[test]
@@ -313,7 +323,7 @@ fn answers_without_a_study() {
     // Pairs in both orders: the side can be asked about; but the answers separate the items, so nothing is estimated.
     let side = texts(&report, "unanswerable");
     assert_eq!(side, ["Over all questions 15 answers went left, 12 right and 3 to neither."]);
-    assert!(report.to_markdown().starts_with("# Trees\n\n10 participants gave 30 answers to 3 questions.\n"));
+    assert!(report.to_markdown().starts_with("# Trees\n\n- **Compared:** 3 items: ash, elm and oak.\n"));
     let titled = report_of("<b> [x](y) *\n# z", &groups(&answers), &[]);
     assert!(
         titled.to_markdown().starts_with("# &lt;b> \\[x\\](y) \\* # z\n\n10 participants"),
