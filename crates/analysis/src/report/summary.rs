@@ -174,9 +174,7 @@ fn regular(inputs: &Inputs<'_>) -> Option<String> {
 /// What the results survive.
 fn sure(evidence: &Evidence<'_>) -> Option<String> {
     let tested = || evidence.hypotheses.iter().filter(|h| h.is_tested() && !h.is_question());
-    if tested().next().is_none() {
-        return None;
-    }
+    tested().next()?;
     let holding: Vec<_> = tested().filter(|h| h.differs()).collect();
     let survive = holding.iter().filter(|h| h.adjusted_over_all.is_none_or(|p| p <= h.rules.level)).count();
     Some(format!(

@@ -44,7 +44,7 @@ fn html(text: &str) -> String {
 
 fn between(text: &str, mark: char, tag: &str) -> String {
     let parts: Vec<&str> = text.split(mark).collect();
-    if parts.len() % 2 == 0 {
+    if parts.len().is_multiple_of(2) {
         return text.to_owned();
     }
     let wrap = |(i, part): (usize, &&str)| match i % 2 {
