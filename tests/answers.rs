@@ -186,8 +186,7 @@ fn published_tables_are_those_of_the_answers() {
     let fixture = Fixture::new();
     let out = fixture.folder().join("analysed");
     let mut command = isostudy();
-    command.arg("analyse").arg(root.join("study/paper/responses.csv"));
-    Run::succeed(command.arg("--study").arg(root.join("configs/paper.toml")).arg("--out").arg(&out));
+    Run::succeed(command.arg("analyse").arg(root.join("configs/paper.toml")).arg("--out").arg(&out));
     for name in ["contrasts", "preference_groups", "preference_overall", "preference_margins", "tests"] {
         let read = |folder: &Path| std::fs::read_to_string(folder.join(format!("{name}.csv"))).unwrap();
         let (before, now) = (read(&published), read(&out.join("tables")));
