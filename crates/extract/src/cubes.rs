@@ -9,6 +9,7 @@ mod cells_pass;
 mod exact;
 mod grid;
 mod moved;
+mod nets;
 mod patches;
 mod rows;
 mod rule;
@@ -21,11 +22,14 @@ mod vertices;
 mod volume_cells;
 
 pub(crate) use moved::EdgeMoves;
+pub(crate) use nets::Sharp;
 pub use rule::{Diagonals, Faces, Flat};
 pub use volume_cells::{VolumeCells, VolumeCellsError};
 
 use cells::{Cell, Table};
 
+use std::collections::TryReserveError;
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use self::grid::Grid;
@@ -91,6 +95,13 @@ pub(crate) enum Way {
         /// What faces between cells get.
         flat: Flat,
     },
+    /// The dual of patches: vertices in cells.
+    Nets {
+        /// One for each patch, rather than one in all.
+        patches: bool,
+        /// Where tangent planes meet, rather than at the mean of crossings. Then there must be a field.
+        sharp: Option<Sharp>,
+    },
 }
 
 /// Extracts the cubes of a simple cubic lattice one way or the other. Of snapped ones there is no trace.
@@ -108,6 +119,7 @@ pub(crate) fn extract(
             moves.apply(request, extraction)
         }
         Way::Snapped { gamma, flat } => snap::extract(request, gamma, flat, progress, extraction),
+        Way::Nets { patches, sharp } => nets::extract(request, patches, sharp, progress, trace, extraction),
     }
 }
 
@@ -120,19 +132,40 @@ fn extract_patches(
     trace: Option<&mut Trace>,
     extraction: &mut Extraction,
 ) -> Result<(), ExtractError> {
-    let Request { source, lattice, settings, control, most_vertices, start } = *request;
+    let Request { source, settings, control, most_vertices, .. } = *request;
+    let patches = Patches::get(rule);
+    let placer = &Placer::new(request.lattice, settings, request.level()).pulled(pull);
+    let (isovalue, traced) = (settings.isovalue, trace.is_some());
+    let new = |grid: &Grid| Workspace::new(grid, source);
+    in_slabs(request, progress, trace, extraction, 1, new, |grid, layer_done, own, workspace, piece| {
+        let job =
+            Job { grid, source, isovalue, rule, patches, placer, most_vertices, traced, control, layer_done };
+        stream_slab(&job, own, workspace, piece)
+    })
+}
+
+/// Streams the slabs of a simple cubic lattice, and makes one mesh of them, timed and counted. `work` does the layers of cells it is
+/// given, with a workspace of `new`, and says when it has done one. Workspaces hold so many `times` what a lattice's layers do.
+fn in_slabs<W: Send>(
+    request: &Request,
+    progress: Option<&Progress>,
+    trace: Option<&mut Trace>,
+    extraction: &mut Extraction,
+    times: u64,
+    new: impl Fn(&Grid) -> Result<W, TryReserveError>,
+    work: impl Fn(&Grid, &(dyn Fn() + Sync), Range<usize>, &mut W, &mut Piece) -> Result<(), ExtractError> + Sync,
+) -> Result<(), ExtractError> {
+    let Request { lattice, control, start, .. } = *request;
     let (threads, slabs) = threads_and_slabs(control.threads.count(), lattice.stored_grid()[2] as usize);
-    let out_of_memory = |_| ExtractError::OutOfMemory { bytes: lattice.streaming_bytes(threads as u64) };
+    let out_of_memory =
+        |_| ExtractError::OutOfMemory { bytes: times * lattice.streaming_bytes(threads as u64) };
     let grid = &Grid::new(lattice).map_err(out_of_memory)?;
-    let workspaces: Result<Vec<Workspace>, _> = (0..threads).map(|_| Workspace::new(grid, source)).collect();
+    let workspaces: Result<Vec<W>, _> = (0..threads).map(|_| new(grid)).collect();
     let mut workspaces = workspaces.map_err(out_of_memory)?;
     let mut pieces: Vec<Piece> = (0..slabs).map(|_| Piece::default()).collect();
-    let patches = Patches::get(rule);
     let allocation = start.elapsed();
 
     let streaming = Moment::now();
-    let placer = &Placer::new(lattice, settings, request.level()).pulled(pull);
-    let isovalue = settings.isovalue;
     let cells = lattice.cells()[2] as usize;
     let done = AtomicUsize::new(0);
     let layer_done = || {
@@ -144,11 +177,8 @@ fn extract_patches(
             progress(done, cells);
         }
     };
-    let (traced, layer_done) = (trace.is_some(), &layer_done);
-    let job =
-        Job { grid, source, isovalue, rule, patches, placer, most_vertices, traced, control, layer_done };
     on_slabs(cells, control.threads, &mut workspaces, &mut pieces, |own, workspace, piece| {
-        stream_slab(&job, own, workspace, piece)
+        work(grid, &layer_done, own, workspace, piece)
     })?;
     drop(workspaces);
     let times = [allocation, streaming.elapsed()];

@@ -230,7 +230,8 @@ pub use field::{Aabb, Bound, FieldFault, FromFn, ScalarField, StudyField, check_
 pub use grid::{Grid, GridError};
 pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
 pub use method::{
-    CornerSamples, Cubes, Macet, Method, MethodError, Preset, Promises, SnapCubes, Tetrahedra, presets,
+    CornerSamples, Cubes, DualContouring, Macet, Method, MethodError, Preset, Promises, SnapCubes,
+    SurfaceNets, Tetrahedra, presets,
 };
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use source::Source;

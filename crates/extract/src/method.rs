@@ -1,23 +1,27 @@
 //! A method as plain data: everything that decides a mesh, but for the field, the grid and the isovalue.
 
 mod cubes;
+mod dual_contouring;
 mod macet;
 mod presets;
 mod snap_cubes;
+mod surface_nets;
 mod tetrahedra;
 
 pub use cubes::Cubes;
+pub use dual_contouring::DualContouring;
 pub use macet::Macet;
 pub use presets::{Preset, presets};
 pub use snap_cubes::SnapCubes;
+pub use surface_nets::SurfaceNets;
 pub use tetrahedra::Tetrahedra;
 
 use crate::box_grid::BoxGrid;
-use crate::cubes::Rule;
+use crate::cubes::Way;
 use crate::extraction::{ExtractError, Extraction};
 use crate::extractor::Extractor;
 use crate::lattice::{Arrangement, Border, CellBox, LatticeError};
-use crate::settings::{Execution, ExtractSettings, Positions, Topology};
+use crate::settings::{Execution, ExtractSettings};
 use crate::source::Source;
 use field::StudyField;
 
@@ -57,6 +61,10 @@ pub enum Method {
     SnapCubes(SnapCubes),
     /// Marching cubes with edges turned square to the surface.
     Macet(Macet),
+    /// Surface nets, the dual of marching cubes.
+    SurfaceNets(SurfaceNets),
+    /// Dual contouring: surface nets with vertices where tangent planes meet.
+    DualContouring(DualContouring),
 }
 
 /// What a method promises of every mesh, whatever the field. A promise that is not made may still hold for a field.
@@ -98,6 +106,12 @@ pub enum MethodError {
         /// As given.
         gamma: f32,
     },
+    /// A share of the largest eigenvalue that is none.
+    #[error("truncation = {truncation:?}: must be from 0 to 1, a share of the largest eigenvalue")]
+    Truncation {
+        /// As given.
+        truncation: f32,
+    },
     /// Moves that are none.
     #[error(
         "pull = {pull:?}, steps = {steps}, share = {share:?}: pull and share must be from 0 to 1, steps at most 64"
@@ -122,10 +136,7 @@ impl Method {
     /// Whether the samples at the corners of cubes are all that the method asks for, so that a volume's own cells will do
     /// ([`VolumeCells`](crate::VolumeCells)).
     pub fn is_of_cubes(&self) -> bool {
-        match self {
-            Self::Tetrahedra(_) | Self::Macet(_) => false,
-            Self::Cubes(_) | Self::SnapCubes(_) => true,
-        }
+        self.family().is_of_cubes()
     }
 
     /// The samples at the corners of a grid's cells, where the method takes them; `None` if its sample points are others.
@@ -137,15 +148,7 @@ impl Method {
         field: &dyn StudyField,
         grid: &BoxGrid,
     ) -> Result<Option<CornerSamples>, LatticeError> {
-        let has_corners = match self {
-            Self::Tetrahedra(of) => {
-                of.arrangement == Arrangement::SimpleCubic
-                    && of.topology == Topology::Guarded
-                    && of.positions == Positions::Indexed
-            }
-            Self::Cubes(_) | Self::SnapCubes(_) | Self::Macet(_) => true,
-        };
-        if !has_corners {
+        if !self.family().has_corners() {
             return Ok(None);
         }
         let lattice = grid.lattice(Arrangement::SimpleCubic)?;
@@ -172,31 +175,14 @@ impl Method {
     /// If there are not as many samples as the counts say.
     pub fn cells_otherwise(&self, counts: [usize; 3], values: &[f32], isovalue: f32) -> Option<u64> {
         assert_eq!(values.len(), counts.iter().product::<usize>(), "samples for the counts");
-        match self {
-            Self::Cubes(of) => Some(of.cells_otherwise(counts, values, isovalue)),
-            Self::Macet(Macet { faces, diagonals, .. }) => {
-                let table = Cubes { faces: *faces, diagonals: *diagonals, ..Cubes::default() };
-                Some(table.cells_otherwise(counts, values, isovalue))
-            }
-            Self::Tetrahedra(_) | Self::SnapCubes(_) => None,
-        }
+        self.family().cells_otherwise(counts, values, isovalue)
     }
 
     /// The tables by which signs decide triangles, before anything is merged or moved: of the cube; or of the tetrahedra of a cube's
     /// worth of a uniform lattice, corners in half cells from its base point. None where samples decide as well, and for snapped cubes
     /// and the arrangements that are cut cube by cube.
     pub fn tables(&self) -> Vec<cells::Table> {
-        match self {
-            Self::Tetrahedra(of) => crate::tetrahedra::tables(of.arrangement),
-            Self::Cubes(of) => of.table().into_iter().collect(),
-            Self::Macet(Macet { faces, diagonals, .. }) => {
-                Cubes { faces: *faces, diagonals: *diagonals, ..Cubes::default() }
-                    .table()
-                    .into_iter()
-                    .collect()
-            }
-            Self::SnapCubes(_) => Vec::new(),
-        }
+        self.family().tables()
     }
 
     /// Whether the method's settings go with each other and with the grid. What this passes is refused by
@@ -273,6 +259,8 @@ impl Method {
             Self::Cubes(cubes) => cubes,
             Self::SnapCubes(cubes) => cubes,
             Self::Macet(macet) => macet,
+            Self::SurfaceNets(nets) => nets,
+            Self::DualContouring(nets) => nets,
         }
     }
 }
@@ -304,7 +292,7 @@ pub(crate) struct ByWindow {
     pub(crate) arrangement: Arrangement,
     pub(crate) settings: ExtractSettings,
     /// By cubes that are not cut any further, which then are the arrangement's.
-    pub(crate) cubes: Option<Rule>,
+    pub(crate) cubes: Option<Way>,
     /// How many cells from the rim of a window on its mesh is that of the whole, before vertices are moved or edges
     /// collapsed.
     pub(crate) halo: u32,
@@ -316,6 +304,22 @@ trait Family {
     fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError>;
     fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError>;
     fn promises(&self) -> Promises;
+    /// As [`Method::is_of_cubes`].
+    fn is_of_cubes(&self) -> bool {
+        true
+    }
+    /// Whether the sample points are the corners of cubes, wherever else the field is called.
+    fn has_corners(&self) -> bool {
+        true
+    }
+    /// As [`Method::cells_otherwise`].
+    fn cells_otherwise(&self, _counts: [usize; 3], _values: &[f32], _isovalue: f32) -> Option<u64> {
+        None
+    }
+    /// As [`Method::tables`].
+    fn tables(&self) -> Vec<cells::Table> {
+        Vec::new()
+    }
     /// As [`Method::halo`].
     fn halo(&self) -> Option<u32> {
         None

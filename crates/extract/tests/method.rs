@@ -136,7 +136,11 @@ fn presets_keep_the_promise_of_a_manifold_whatever_the_samples() {
         promised += 1;
         let arrangement = match preset.method {
             Method::Tetrahedra(Tetrahedra { arrangement, .. }) => arrangement,
-            Method::Cubes(_) | Method::SnapCubes(_) | Method::Macet(_) => Arrangement::SimpleCubic,
+            Method::Cubes(_)
+            | Method::SnapCubes(_)
+            | Method::Macet(_)
+            | Method::SurfaceNets(_)
+            | Method::DualContouring(_) => Arrangement::SimpleCubic,
             _ => panic!("a new family"),
         };
         let mut extractor = Extractor::new();
@@ -154,7 +158,7 @@ fn presets_keep_the_promise_of_a_manifold_whatever_the_samples() {
             }
         }
     }
-    assert_eq!(promised, 20, "all but those as published");
+    assert_eq!(promised, 22, "all but those as published");
 }
 
 #[test]
@@ -170,12 +174,18 @@ fn presets_keep_their_other_promises() {
         let placed = |placement| match preset.method {
             Method::Tetrahedra(tetrahedra) => Method::Tetrahedra(Tetrahedra { placement, ..tetrahedra }),
             Method::Cubes(cubes) => Method::Cubes(Cubes { placement, ..cubes }),
-            Method::SnapCubes(_) | Method::Macet(_) => panic!("it has no placements"),
+            Method::SnapCubes(_) | Method::Macet(_) | Method::SurfaceNets(_) | Method::DualContouring(_) => {
+                panic!("it has no placements")
+            }
             _ => panic!("a new family"),
         };
         let arrangement = match preset.method {
             Method::Tetrahedra(Tetrahedra { arrangement, .. }) => arrangement,
-            Method::Cubes(_) | Method::SnapCubes(_) | Method::Macet(_) => Arrangement::SimpleCubic,
+            Method::Cubes(_)
+            | Method::SnapCubes(_)
+            | Method::Macet(_)
+            | Method::SurfaceNets(_)
+            | Method::DualContouring(_) => Arrangement::SimpleCubic,
             _ => panic!("a new family"),
         };
         let lattice = GRID.lattice(arrangement).unwrap();
@@ -229,6 +239,16 @@ fn presets_have_names_of_their_own() {
                 );
                 continue;
             }
+            Method::SurfaceNets(nets) => {
+                assert!(preset.label.starts_with("surface nets"), "{id}");
+                assert_eq!(id, if nets.patches { "nets-manifold" } else { "nets" });
+                continue;
+            }
+            Method::DualContouring(nets) => {
+                assert!(preset.label.starts_with("dual contouring"), "{id}");
+                assert_eq!(id, if nets.patches { "dc-manifold" } else { "dc" });
+                continue;
+            }
             Method::Macet(_) => {
                 assert!(id.starts_with("macet") && preset.label.starts_with("marching cubes, edges"), "{id}");
                 continue;
@@ -260,7 +280,7 @@ fn presets_have_names_of_their_own() {
         assert_eq!((method.placement, method.topology), (placement, topology), "{id}");
         assert_eq!(preset.label, format!("{plain}{ending}"));
     }
-    let is_plain = |id: &str| id.len() == 2 && id != "mc";
+    let is_plain = |id: &str| id.len() == 2 && !["mc", "dc"].contains(&id);
     let plain = presets().iter().filter(|preset| is_plain(preset.id)).count();
     assert_eq!(plain, Arrangement::ALL.iter().map(|&a| supported(a)).sum::<usize>());
 }

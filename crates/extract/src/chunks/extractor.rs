@@ -15,7 +15,6 @@ use super::settled::Settled;
 use super::world::{Place, World};
 use crate::box_grid::BoxGrid;
 use crate::control::Control;
-use crate::cubes::Way;
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::extractor::Extractor;
 use crate::finish::field_targets;
@@ -532,14 +531,9 @@ impl ChunkExtractor {
         let extraction = &mut self.extraction;
         match self.how.cubes {
             None => self.extractor.extract_into(source, &lattice, &settings, control, extraction)?,
-            Some(rule) => self.extractor.extract_cubes_into(
-                source,
-                &lattice,
-                &settings,
-                Way::Patches(rule),
-                control,
-                extraction,
-            )?,
+            Some(way) => {
+                self.extractor.extract_cubes_into(source, &lattice, &settings, way, control, extraction)?
+            }
         }
         Ok(lattice)
     }

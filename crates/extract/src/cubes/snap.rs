@@ -14,7 +14,6 @@ mod vertices;
 
 use std::collections::TryReserveError;
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use self::cells_pass::Chosen;
 use self::labels::{Labels, Snap};
@@ -22,12 +21,13 @@ use self::table::Table;
 use self::vertices::{Records, VertexPass, Vertices};
 use super::Flat;
 use super::grid::Grid;
+use super::in_slabs;
 use super::sampling::{Samples, Sampling};
 use super::vertices::Placer;
 use crate::clock::Moment;
 use crate::control::Control;
 use crate::extraction::{ExtractError, Extraction};
-use crate::slabs::{Piece, assemble, on_slabs, threads_and_slabs};
+use crate::slabs::Piece;
 use crate::source::{Request, Sampler};
 use crate::streaming::Progress;
 
@@ -42,40 +42,15 @@ pub(crate) fn extract(
     progress: Option<&Progress>,
     extraction: &mut Extraction,
 ) -> Result<(), ExtractError> {
-    let Request { source, lattice, settings, control, most_vertices, start } = *request;
-    let (threads, slabs) = threads_and_slabs(control.threads.count(), lattice.stored_grid()[2] as usize);
-    let out_of_memory = |_| ExtractError::OutOfMemory { bytes: 3 * lattice.streaming_bytes(threads as u64) };
-    let grid = &Grid::new(lattice).map_err(out_of_memory)?;
-    let workspaces: Result<Vec<Workspace>, _> = (0..threads).map(|_| Workspace::new(grid, source)).collect();
-    let mut workspaces = workspaces.map_err(out_of_memory)?;
-    let mut pieces: Vec<Piece> = (0..slabs).map(|_| Piece::default()).collect();
+    let Request { source, settings, control, most_vertices, .. } = *request;
     let table = Table::get();
-    let allocation = start.elapsed();
-
-    let streaming = Moment::now();
-    let placer = &Placer::new(lattice, settings, None);
+    let placer = &Placer::new(request.lattice, settings, None);
     let snap = Snap { isovalue: settings.isovalue, gamma };
-    let cells = lattice.cells()[2] as usize;
-    let done = AtomicUsize::new(0);
-    let layer_done = || {
-        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
-        if let Some(progress) = progress {
-            progress(done, cells);
-        }
-        if let Some(progress) = control.progress {
-            progress(done, cells);
-        }
-    };
-    let layer_done = &layer_done;
-    let job = Job { grid, source, snap, flat, table, placer, most_vertices, control, layer_done };
-    on_slabs(cells, control.threads, &mut workspaces, &mut pieces, |own, workspace, piece| {
+    let new = |grid: &Grid| Workspace::new(grid, source);
+    in_slabs(request, progress, None, extraction, 3, new, |grid, layer_done, own, workspace, piece| {
+        let job = Job { grid, source, snap, flat, table, placer, most_vertices, control, layer_done };
         stream_slab(&job, own, workspace, piece)
-    })?;
-    drop(workspaces);
-    let times = [allocation, streaming.elapsed()];
-    assemble(request, &mut pieces, threads, times, None, extraction)?;
-    extraction.counts.tetrahedra = None;
-    Ok(())
+    })
 }
 
 /// What all slabs of an extraction share.

@@ -33,14 +33,6 @@ impl Cubes {
 
     const UNMOVED_HALO: u32 = 1;
 
-    pub(super) fn table(&self) -> Option<cells::Table> {
-        crate::cubes::table(self.rule())
-    }
-
-    pub(super) fn cells_otherwise(&self, counts: [usize; 3], values: &[f32], isovalue: f32) -> u64 {
-        crate::cubes::cells_otherwise(self.rule(), counts, values, isovalue)
-    }
-
     fn rule(&self) -> Rule {
         Rule { faces: self.faces, diagonals: self.diagonals }
     }
@@ -97,9 +89,17 @@ impl Family for Cubes {
         Some(ByWindow {
             arrangement: Self::ARRANGEMENT,
             settings: self.settings(isovalue),
-            cubes: Some(self.rule()),
+            cubes: Some(Way::Patches(self.rule())),
             halo: Self::UNMOVED_HALO,
         })
+    }
+
+    fn cells_otherwise(&self, counts: [usize; 3], values: &[f32], isovalue: f32) -> Option<u64> {
+        Some(crate::cubes::cells_otherwise(self.rule(), counts, values, isovalue))
+    }
+
+    fn tables(&self) -> Vec<cells::Table> {
+        crate::cubes::table(self.rule()).into_iter().collect()
     }
 
     fn extract_into(

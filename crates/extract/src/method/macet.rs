@@ -57,6 +57,10 @@ impl Macet {
         ExtractSettings { isovalue, clustering, topology, ..ExtractSettings::default() }
     }
 
+    fn rule(&self) -> Rule {
+        Rule { faces: self.faces, diagonals: self.diagonals }
+    }
+
     fn check_moves(&self) -> Result<(), MethodError> {
         let is_share = |value: f32| (0.0..=1.0).contains(&value);
         if is_share(self.pull) && is_share(self.share) && self.steps <= MOST_STEPS {
@@ -92,6 +96,18 @@ impl Family for Macet {
         }
     }
 
+    fn is_of_cubes(&self) -> bool {
+        false
+    }
+
+    fn cells_otherwise(&self, counts: [usize; 3], values: &[f32], isovalue: f32) -> Option<u64> {
+        Some(crate::cubes::cells_otherwise(self.rule(), counts, values, isovalue))
+    }
+
+    fn tables(&self) -> Vec<cells::Table> {
+        crate::cubes::table(self.rule()).into_iter().collect()
+    }
+
     fn extract_into(
         &self,
         extractor: &mut Extractor,
@@ -108,9 +124,10 @@ impl Family for Macet {
         let settings = Self::settings(isovalue);
         check(&settings, Self::ARRANGEMENT)?;
         let lattice = grid.lattice(Self::ARRANGEMENT)?;
-        let rule = Rule { faces: self.faces, diagonals: self.diagonals };
-        let way =
-            Way::Moved { rule, moves: EdgeMoves { pull: self.pull, steps: self.steps, share: self.share } };
+        let way = Way::Moved {
+            rule: self.rule(),
+            moves: EdgeMoves { pull: self.pull, steps: self.steps, share: self.share },
+        };
         Ok(extractor.extract_cubes_into(source, &lattice, &settings, way, execution.into(), extraction)?)
     }
 }

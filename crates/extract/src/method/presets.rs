@@ -3,7 +3,7 @@
 //! The first letter is the arrangement: body-centred, simple cubic, mirrored five tetrahedra, face-centred. The second is
 //! the clustering: unclustered, integrated, post-processed by an edge collapse, integrated and then collapsed.
 
-use super::{Cubes, Macet, Method, SnapCubes, Tetrahedra};
+use super::{Cubes, DualContouring, Macet, Method, SnapCubes, SurfaceNets, Tetrahedra};
 use crate::cubes::{Diagonals, Faces, Flat};
 use crate::lattice::Arrangement::{self, BodyCentred, FaceCentred, FiveTetrahedra, SimpleCubic};
 use crate::settings::Clustering::{self, EdgeCollapse, Integrated, IntegratedCollapse, None};
@@ -18,6 +18,10 @@ const TRILINEAR: &str = "Chernyaev 1995, with every case decided by the interpol
 const EDGE_GROUPS: &str = "Lorensen & Cline 1987; Dietrich et al. 2008";
 const SNAPPED: &str = "Raman & Wenger 2008; table by hulls, Bhaniramka et al. 2004";
 const TURNED: &str = "our reading of Macet, Dietrich et al. 2009; table of Dietrich et al. 2008";
+const NETS: &str = "Gibson 1998, by values and without relaxation";
+const PATCHES: &str = "Nielson 2004; Wenger 2013";
+const PLANES: &str = "Ju, Losasso, Schaefer & Warren 2002, on a uniform grid";
+const PLANES_OF_PATCHES: &str = "Schaefer, Ju & Warren 2007, on a uniform grid; Wenger 2013";
 const PLACED: &str = "Treece, Prager & Gee 1999; for the placement see extract::Placement";
 
 /// A method with a name.
@@ -40,7 +44,7 @@ pub fn presets() -> &'static [Preset] {
     &PRESETS
 }
 
-static PRESETS: [Preset; 27] = [
+static PRESETS: [Preset; 31] = [
     plain("bu", "body-centred, none", BodyCentred, None, COSTEN),
     plain("bi", "body-centred, integrated", BodyCentred, Integrated, TREECE),
     plain("bp", "body-centred, edge collapse", BodyCentred, EdgeCollapse, COLLAPSED),
@@ -83,6 +87,30 @@ static PRESETS: [Preset; 27] = [
             share: 1.0,
         }),
         source: TURNED,
+    },
+    Preset {
+        id: "nets",
+        label: "surface nets",
+        method: Method::SurfaceNets(SurfaceNets { patches: false }),
+        source: NETS,
+    },
+    Preset {
+        id: "nets-manifold",
+        label: "surface nets, manifold",
+        method: Method::SurfaceNets(SurfaceNets { patches: true }),
+        source: PATCHES,
+    },
+    Preset {
+        id: "dc",
+        label: "dual contouring",
+        method: Method::DualContouring(DualContouring { patches: false, truncation: 1e-3, in_cell: true }),
+        source: PLANES,
+    },
+    Preset {
+        id: "dc-manifold",
+        label: "dual contouring, manifold",
+        method: Method::DualContouring(DualContouring { patches: true, truncation: 1e-3, in_cell: true }),
+        source: PLANES_OF_PATCHES,
     },
     published("bu-published", "body-centred, none, as published", BodyCentred, None),
     published("bi-published", "body-centred, integrated, as published", BodyCentred, Integrated),

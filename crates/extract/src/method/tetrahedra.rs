@@ -92,6 +92,20 @@ impl Family for Tetrahedra {
         }
     }
 
+    fn is_of_cubes(&self) -> bool {
+        false
+    }
+
+    fn has_corners(&self) -> bool {
+        self.arrangement == Arrangement::SimpleCubic
+            && self.topology == Topology::Guarded
+            && self.positions == Positions::Indexed
+    }
+
+    fn tables(&self) -> Vec<cells::Table> {
+        crate::tetrahedra::tables(self.arrangement)
+    }
+
     /// A vertex of a cell is one of its neighbours' too, their other vertices give it its normal, and those depend on
     /// samples one lattice edge away. Where cubes are cut each by itself the last step leads no farther. A vertex that is
     /// moved looks at its triangles, and one that is relaxed at its neighbours first.

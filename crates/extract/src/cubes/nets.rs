@@ -1,0 +1,160 @@
+//! Surface nets: a vertex in each cell that the surface crosses, and a quadrilateral round each lattice edge that it crosses.
+//!
+//! The surface is the dual of [`super`]'s: what is a polygon there is a vertex here. A vertex is the mean of the crossings of its cell
+//! (Gibson 1998 and its followers; "naive" without relaxation), or with patches of each loop of surface round it (Nielson 2004).
+//! Where two cells share a face on which each of them has one loop through all four crossings, an edge would have four
+//! quadrilaterals: there both cells join the inside corners of that face instead (Wenger 2013), which cuts each loop in two.
+//!
+//! With tangent planes a vertex is where those of the field at the crossings meet (dual contouring; Ju, Losasso, Schaefer & Warren 2002).
+//!
+//! It streams: sides; a layer behind, samples; another behind, the vertices of a layer of cells; then the quadrilaterals of the edges
+//! that begin at the points below it.
+
+mod plan;
+mod quads;
+mod sharp;
+mod tangents;
+mod vertices;
+
+pub(crate) use sharp::Sharp;
+
+use std::collections::TryReserveError;
+use std::ops::Range;
+
+use self::plan::{Plans, Table};
+use self::quads::QuadPass;
+use self::tangents::Tangents;
+use self::vertices::{Records, VertexPass, Vertices};
+use super::grid::{Grid, SLOTS};
+use super::in_slabs;
+use super::sampling::{Samples, Sampling};
+use super::vertices::Placer;
+use crate::clock::Moment;
+use crate::extraction::{ExtractError, Extraction};
+use crate::slabs::Piece;
+use crate::source::{Request, Sampler};
+use crate::streaming::Progress;
+use crate::trace::Trace;
+
+/// The stages in order, timed and counted. The lattice is simple cubic.
+pub(super) fn extract(
+    request: &Request,
+    patches: bool,
+    sharp: Option<Sharp>,
+    progress: Option<&Progress>,
+    trace: Option<&mut Trace>,
+    extraction: &mut Extraction,
+) -> Result<(), ExtractError> {
+    let table = Table::get(patches);
+    let placer = &Placer::new(request.lattice, request.settings, None);
+    let traced = trace.is_some();
+    let new = |grid: &Grid| Workspace::new(grid, request.source, table);
+    in_slabs(request, progress, trace, extraction, 1, new, |grid, layer_done, own, workspace, piece| {
+        let job = Job { grid, request, sharp, placer, traced, layer_done };
+        stream_slab(&job, own, workspace, piece)
+    })
+}
+
+/// What all slabs of an extraction share.
+struct Job<'a> {
+    grid: &'a Grid<'a>,
+    request: &'a Request<'a>,
+    /// By tangent planes, if there is a field to have them.
+    sharp: Option<Sharp>,
+    placer: &'a Placer<'a>,
+    /// Whether vertices get keys and triangles the numbers of their cells.
+    traced: bool,
+    /// Called when a layer of cells is done.
+    layer_done: &'a (dyn Fn() + Sync),
+}
+
+/// Buffers of one thread, a few layers each.
+struct Workspace {
+    samples: Samples,
+    records: Records,
+    plans: Plans,
+}
+
+impl Workspace {
+    fn new(grid: &Grid, source: Sampler, table: &'static Table) -> Result<Self, TryReserveError> {
+        Ok(Self {
+            samples: Samples::new(grid, source, SLOTS)?,
+            records: Records::new(grid)?,
+            plans: Plans::new(table),
+        })
+    }
+}
+
+/// Extracts the layers `own` of cells: their vertices, and the quadrilaterals of the edges that begin at their lower points. Those lead
+/// to cells one layer down, which are the slab's below.
+fn stream_slab(
+    job: &Job,
+    own: Range<usize>,
+    Workspace { samples, records, plans }: &mut Workspace,
+    piece: &mut Piece,
+) -> Result<(), ExtractError> {
+    let Job { grid, request, sharp, placer, .. } = *job;
+    let Request { source, settings, most_vertices, .. } = *request;
+    let layers = grid.size[2];
+    let numbered = own.start.saturating_sub(1)..own.end;
+    let filled = numbered.start..own.end + 1;
+    let sided = numbered.start.saturating_sub(1)..layers.min(own.end + 2);
+    let sampling = Sampling { grid, source, isovalue: settings.isovalue, all_corners: false };
+    let mut vertices = Vertices { keys: job.traced.then(Vec::new), ..Vertices::default() };
+    let level = sharp.and(request.level());
+    let mut tangents = level.map(Tangents::new);
+    piece.clear(job.traced);
+    let mut last = Moment::now();
+    let mut lap = || {
+        let now = Moment::now();
+        now - std::mem::replace(&mut last, now)
+    };
+    for step in sided.start..own.end + 2 {
+        if sided.contains(&step) {
+            request.control.check()?;
+            samples.find_sides(sampling, step);
+        }
+        if let Some(layer) = step.checked_sub(1).filter(|layer| filled.contains(layer)) {
+            samples.fill(sampling, layer);
+        }
+        piece.times.sampling += lap();
+
+        let Some(layer) = step.checked_sub(2).filter(|layer| numbered.contains(layer)) else { continue };
+        let samples = &*samples;
+        let pass = VertexPass { grid, samples, values: samples.values(grid, source), placer };
+        let by_planes = sharp.zip(tangents.as_mut());
+        let cells = pass.layer(layer, by_planes, plans, records, &mut vertices)?;
+        if vertices.numbered() > u64::from(most_vertices) {
+            return Err(ExtractError::TooManyVertices { limit: most_vertices });
+        }
+        piece.times.vertex += lap();
+
+        if !own.contains(&layer) {
+            piece.below = vertices.numbered();
+            continue;
+        }
+        piece.surface.cells_visited += cells;
+        let pass = QuadPass { grid, samples, plans, records, positions: &vertices.positions, level };
+        let mut crossings = pass.layer(layer, &mut piece.surface)?;
+        if layer == own.start {
+            // Only the lowest points have quadrilaterals with vertices of the slab below.
+            piece.head = piece.surface.triangles.len();
+        }
+        if layer + 2 == layers {
+            crossings += pass.crossings(layer + 1);
+        }
+        // As if seen from both ends.
+        piece.crossing_ends += 2 * crossings;
+        piece.times.geometry += lap();
+        (job.layer_done)();
+    }
+    piece.tail = piece.surface.triangles.len();
+    // Those of the slab below were needed for diagonals alone.
+    vertices.positions.drain(..piece.below as usize);
+    piece.positions = vertices.positions;
+    if let (Some(trace), Some(mut keys)) = (&mut piece.surface.trace, vertices.keys) {
+        keys.drain(..piece.below as usize);
+        trace.keys = keys;
+    }
+    Ok(())
+}
