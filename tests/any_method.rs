@@ -468,6 +468,13 @@ fn a_program_that_fails_while_it_is_timed_is_left_out_of_the_times() {
     assert_eq!(panel["mesh"]["counts"], record["counts"]);
     assert_eq!(panel["iterations"], 2);
     assert!(panel["times"][6]["median"].as_f64().unwrap() > 0.0);
+    // One with a budget has the spacing that the study found for it.
+    let budget = ["inspect", "fo_fp", "--study", "study.toml", "--iterations", "1", "--json"];
+    let panel: serde_json::Value = serde_json::from_str(&folder.succeed(&budget).stdout).unwrap();
+    let record: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.path("out/meshes/benchmark/fo_fp.json")).unwrap()).unwrap();
+    assert_eq!(panel["mesh"]["spacing"], record["spacing"]);
+    assert_ne!(panel["mesh"]["spacing"], 0.1);
     // A mesh that was made by hand is measured, and has no time.
     let artist = folder.succeed(&["inspect", "vo_artist", "--study", "study.toml"]).stdout;
     assert!(artist.contains("timing: none, the mesh was read from a file"), "{artist}");

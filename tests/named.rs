@@ -169,7 +169,7 @@ fn a_new_study_passes_every_check() {
     assert_eq!(check.stdout, "my terrain/study.toml: no faults\n");
     let valid = folder.succeed(&["validate", "my terrain/study.toml"]);
     assert!(
-        valid.stdout.ends_with("study.toml: valid; 2 questions in 1 groups, no answers\n"),
+        valid.stdout.ends_with("study.toml: valid; 2 questions in 1 group, no answers\n"),
         "{}",
         valid.stdout
     );

@@ -81,6 +81,18 @@ pub(crate) fn cpu_s() -> Option<f64> {
     None
 }
 
+/// CPU time of this thread since it began, in seconds.
+#[cfg(target_os = "linux")]
+pub(crate) fn thread_cpu_s() -> Option<f64> {
+    let cpu = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Some(cpu.tv_sec as f64 + 1e-9 * cpu.tv_nsec as f64)
+}
+
+#[cfg(not(target_os = "linux"))]
+pub(crate) fn thread_cpu_s() -> Option<f64> {
+    None
+}
+
 #[cfg(not(target_os = "linux"))]
 fn usage() -> Option<Usage> {
     None

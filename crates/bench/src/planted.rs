@@ -1,6 +1,6 @@
 //! A slowdown that is planted, to see whether it is found: for the tests of this benchmark, and for nothing else.
 
-use crate::meter::cpu_s;
+use crate::meter::thread_cpu_s;
 use crate::run::PeakBytes;
 use crate::stages::Timed;
 use crate::worker::Measured;
@@ -42,11 +42,11 @@ impl Measured for Planted<'_> {
     }
 }
 
-/// Works for so many seconds of CPU time, or of the clock where CPU time is not told; returns how many it were.
+/// Works for so many seconds of this thread's CPU time, or of the clock where CPU time is not told; returns how many it were.
 fn spin(seconds: f64) -> f64 {
     let began = Instant::now();
-    let before = cpu_s();
-    let spent = || match (before, cpu_s()) {
+    let before = thread_cpu_s();
+    let spent = || match (before, thread_cpu_s()) {
         (Some(before), Some(now)) => now - before,
         _ => began.elapsed().as_secs_f64(),
     };

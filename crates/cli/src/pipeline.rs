@@ -105,6 +105,11 @@ impl<'a> Pipeline<'a> {
         read(&self.spacings)
     }
 
+    /// The spacings that budgets led to.
+    pub(crate) fn found_spacings(&self) -> Spacings {
+        self.spacings().clone()
+    }
+
     fn keep_spacing(&self, id: ConfigurationId, purpose: Purpose, spacing: f64) {
         self.spacings.write().unwrap_or_else(PoisonError::into_inner).keep(id, purpose, spacing);
     }

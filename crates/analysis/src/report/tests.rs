@@ -208,7 +208,8 @@ fn a_planted_effect_holds_whoever_stands_left() {
         found.text,
         "The body-centred lattice was preferred to the simple cubic lattice: 162 answers against 0, none without preference. \
          Mean score 1.00 (95 % interval 0.63 to 1.00, 18 participants); exact sign-flip test, p < 0.001, p < 0.001 \
-         after Holm's correction for 4 tests."
+         after Holm's correction for 4 tests. How large a liking for a side would undo it cannot be said: no answer went \
+         the other way."
     );
     let found = of(&said, "open", "9 of 13 comparisons");
     assert_eq!(found.standing, Standing::Open);
@@ -326,7 +327,7 @@ fn answers_without_a_study() {
     assert!(report.to_markdown().starts_with("# Trees\n\n- **Compared:** 3 items: ash, elm and oak.\n"));
     let titled = report_of("<b> [x](y) *\n# z", &groups(&answers), &[]);
     assert!(
-        titled.to_markdown().starts_with("# &lt;b> \\[x\\](y) \\* # z\n\n10 participants"),
+        titled.to_markdown().starts_with("# &lt;b> \\[x\\](y) \\* # z\n\n- **Compared:**"),
         "a title is no mark-up"
     );
 }

@@ -4,9 +4,11 @@ use crate::fields::Fields;
 use crate::made::Made;
 use crate::measured::Clock;
 use crate::outcome::Outcome;
+use crate::pipeline::Pipeline;
 use crate::prepare::{self, Prepared, Spacings, Wanted, prepare};
-use crate::recipe::{self, Recipe};
+use crate::recipe::{self, Recipe, recipe};
 use crate::records::mesh_record;
+use crate::store::Store;
 use crate::terminal::say;
 use crate::{input, machine};
 use analysis::Panel;
@@ -107,17 +109,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         Some(cells) => Wanted::Cells(cells, Purpose::Benchmark),
         None => Wanted::For(Purpose::Benchmark),
     };
-    let spacing = wanted.spacing(object);
     let fields = Fields::new(&study);
-    let prepared = prepare(&study, &fields, &Spacings::default(), configuration, wanted)?;
-    if let Recipe::Program(_) = &prepared.recipe
-        && !arguments.allow_programs
-    {
+    let budget = study.method(id.method).budget.filter(|_| arguments.resolution.is_none());
+    let is_program =
+        |of| Ok::<_, anyhow::Error>(matches!(recipe(&study, of, Purpose::Benchmark)?, Recipe::Program(_)));
+    let needs_program =
+        is_program(id.method)? || budget.map_or(Ok(false), |budget| is_program(budget.of()))?;
+    if needs_program && !arguments.allow_programs {
         let all = recipe::commands(&study)?.join("\n  ");
         bail!(
             "{id} is made by a program, which may do whatever you may do; --allow-programs runs it. This study has\n  {all}"
         );
     }
+    let spacings = match budget {
+        Some(_) => found_spacings(&study, &id, arguments.threads)?,
+        None => Spacings::default(),
+    };
+    let spacing = spacings.of(&id, Purpose::Benchmark).unwrap_or_else(|| wanted.spacing(object));
+    let prepared = prepare(&study, &fields, &spacings, configuration, wanted)?;
     let execution = Execution { threads: arguments.threads as usize };
     let machine = machine::read();
     if let Recipe::Extractor(method) = &prepared.recipe {
@@ -137,6 +146,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let panel = Panel::new(&study, configuration, machine, record, &samples, threads);
     say(&if arguments.json { serde_json::to_string_pretty(&panel)? } else { panel.to_text() })?;
     Ok(Outcome::Done)
+}
+
+/// The spacing that a configuration's budget leads to, looked for in a folder that vanishes.
+fn found_spacings(study: &Study, id: &ConfigurationId, threads: u32) -> Result<Spacings> {
+    let folder = tempfile::tempdir()?;
+    let pipeline = Pipeline::new(study, Store::open(folder.path(), false)?, threads as usize);
+    pipeline.budgets(&[Purpose::Benchmark], std::slice::from_ref(id))?;
+    Ok(pipeline.found_spacings())
 }
 
 /// The times of all extractions but the first, which is warm-up; none of a mesh that is read from a file.

@@ -42,9 +42,19 @@ pub(super) fn lock(folder: &Path) -> Result<File, JournalError> {
     DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(failed)?;
     regular(folder)?;
     let lock = owned(&folder.join(LOCK)).map_err(failed)?;
-    lock.try_lock().map_err(|_| JournalError::InUse { path: folder.into() })?;
-    Ok(lock)
+    // A program that was started while the folder was open inherits the lock for the moment until it runs.
+    for _ in 0..TRIES {
+        if lock.try_lock().is_ok() {
+            return Ok(lock);
+        }
+        std::thread::sleep(BETWEEN_TRIES);
+    }
+    Err(JournalError::InUse { path: folder.into() })
 }
+
+/// How often a lock is tried before somebody else has it, and the pause between.
+const TRIES: usize = 20;
+const BETWEEN_TRIES: Duration = Duration::from_millis(10);
 
 /// Sees to it that whatever of a journal is there is a file: a pipe would be waited for without end.
 fn regular(folder: &Path) -> Result<(), JournalError> {
