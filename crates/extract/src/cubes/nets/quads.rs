@@ -1,5 +1,6 @@
 //! Quadrilateral pass: one round each crossed edge that four cells share, as two triangles.
 
+use std::cmp::Ordering;
 use std::collections::TryReserveError;
 
 use glam::Vec3;
@@ -126,7 +127,11 @@ impl QuadPass<'_> {
         // Not a number is in the plane.
         if apart > BENT * level.spacing * normal.length() {
             let [lowest, other] = [a.midpoint(c), b.midpoint(d)].map(|middle| level.difference(middle).abs());
-            return other < lowest || (!(lowest < other) && is_shorter);
+            return match other.partial_cmp(&lowest) {
+                Some(Ordering::Less) => true,
+                Some(Ordering::Greater) => false,
+                _ => is_shorter,
+            };
         }
         is_shorter
     }
