@@ -327,7 +327,17 @@ fn bad_input_is_refused_before_any_work() {
         (
             "recipe = { kind = \"tetrahedra\", arrangement = \"body-centred\", clustering = \"integrated\" }",
             "recipe = { kind = \"cones\" }",
-            vec!["study.toml: methods[0].recipe", "cones", "tetrahedra", "program", "meshes"],
+            vec![
+                "study.toml: methods[0].recipe",
+                "cones",
+                "tetrahedra",
+                "`dual-contouring`, `program`, `meshes`",
+            ],
+        ),
+        (
+            "arrangement = \"face-centred\", clustering = \"edge-collapse\"",
+            "arrangement = \"face-centred\", clustering = \"integrated\"",
+            vec!["study.toml: methods[2].recipe", "integrated clustering does not go with face-centred"],
         ),
         (
             "recipe = { kind = \"tetrahedra\", arrangement = \"face-centred\"",

@@ -2,7 +2,7 @@
 
 use crate::fields::{self, Fields};
 use crate::memory::Limit;
-use crate::recipe::{Recipe, recipe};
+use crate::recipe::{self, Recipe, recipe};
 use anyhow::{Context, Result, bail};
 use design::config::{ObjectSection, SweepSection};
 use design::record::Purpose;
@@ -143,7 +143,7 @@ pub(crate) fn check(study: &Study, machine_bytes: Option<u64>) -> Result<()> {
         let grid = grid(object, spacing);
         // What does not go together whatever the grid is the recipe's fault.
         if let Err(error @ MethodError::Extract(_)) = method.check(&grid) {
-            bail!("{file}: method {}: recipe: {error}", study.method(id).id);
+            bail!("{}: {error}", recipe::key(study, id));
         }
         check_memory(study, &method, &grid, &execution, machine_bytes)
             .with_context(|| format!("{file}: {key} = {spacing:?}"))

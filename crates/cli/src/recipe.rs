@@ -127,8 +127,11 @@ fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
                 let own = StudyKind::ALL.map(|kind| format!("`{}`", kind.name())).join(", ");
                 // The study's own kinds are kinds too; values of other keys have variants as well.
                 let is_kind = error.contains(&format!("unknown variant `{kind}`"));
-                let more = if is_kind { format!(", {own}") } else { String::new() };
-                anyhow::Error::msg(format!("{}{more}", error.trim_end()))
+                let text = match is_kind {
+                    true => format!("{}, {own}", error.lines().next().unwrap_or_default()),
+                    false => error.trim_end().to_owned(),
+                };
+                anyhow::Error::msg(text)
             })?;
             Ok(Recipe::Extractor(match (method, purpose) {
                 (Method::Tetrahedra(of), Purpose::Indexed) => {
