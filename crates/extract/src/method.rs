@@ -3,6 +3,7 @@
 mod cubes;
 mod dual_contouring;
 mod macet;
+mod of_cubes;
 mod presets;
 mod snap_cubes;
 mod surface_nets;
@@ -304,30 +305,13 @@ trait Family {
     fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError>;
     fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError>;
     fn promises(&self) -> Promises;
-    /// As [`Method::is_of_cubes`].
-    fn is_of_cubes(&self) -> bool {
-        true
-    }
+    fn is_of_cubes(&self) -> bool;
     /// Whether the sample points are the corners of cubes, wherever else the field is called.
-    fn has_corners(&self) -> bool {
-        true
-    }
-    /// As [`Method::cells_otherwise`].
-    fn cells_otherwise(&self, _counts: [usize; 3], _values: &[f32], _isovalue: f32) -> Option<u64> {
-        None
-    }
-    /// As [`Method::tables`].
-    fn tables(&self) -> Vec<cells::Table> {
-        Vec::new()
-    }
-    /// As [`Method::halo`].
-    fn halo(&self) -> Option<u32> {
-        None
-    }
-    /// As [`Method::by_window`].
-    fn by_window(&self, _isovalue: f32) -> Option<ByWindow> {
-        None
-    }
+    fn has_corners(&self) -> bool;
+    fn cells_otherwise(&self, counts: [usize; 3], values: &[f32], isovalue: f32) -> Option<u64>;
+    fn tables(&self) -> Vec<cells::Table>;
+    fn halo(&self) -> Option<u32>;
+    fn by_window(&self, isovalue: f32) -> Option<ByWindow>;
     fn extract_into(
         &self,
         extractor: &mut Extractor,

@@ -1,13 +1,9 @@
 //! Marching cubes as a method.
 
-use super::{ByWindow, Family, MethodError, Promises};
-use crate::box_grid::BoxGrid;
+use super::Promises;
+use super::of_cubes::OfCubes;
 use crate::cubes::{Diagonals, Faces, Rule, Way};
-use crate::extraction::{Extraction, check};
-use crate::extractor::Extractor;
-use crate::lattice::{Arrangement, LatticeError};
-use crate::settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
-use crate::source::Source;
+use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topology};
 
 /// Marching cubes: cubes that are not cut any further, a polygon for each loop of surface round one (Lorensen & Cline 1987), and
 /// what others made of them.
@@ -28,40 +24,14 @@ pub struct Cubes {
 }
 
 impl Cubes {
-    /// The lattice has the corners of the cubes; nothing is merged.
-    const ARRANGEMENT: Arrangement = Arrangement::SimpleCubic;
-
-    const UNMOVED_HALO: u32 = 1;
-
-    fn rule(&self) -> Rule {
+    fn table(&self) -> Rule {
         Rule { faces: self.faces, diagonals: self.diagonals }
-    }
-
-    fn settings(&self, isovalue: f32) -> ExtractSettings {
-        ExtractSettings {
-            isovalue,
-            clustering: Clustering::None,
-            topology: Topology::Guarded,
-            positions: Positions::Indexed,
-            placement: self.placement,
-            refine_crossings: self.refine_crossings,
-        }
     }
 }
 
-impl Family for Cubes {
-    fn check(&self, grid: &BoxGrid) -> Result<(), MethodError> {
-        check(&self.settings(0.0), Self::ARRANGEMENT)?;
-        grid.lattice(Self::ARRANGEMENT)?;
-        Ok(())
-    }
-
-    fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError> {
-        Ok(grid.lattice(Self::ARRANGEMENT)?.cells())
-    }
-
-    fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError> {
-        Ok(grid.lattice(Self::ARRANGEMENT)?.memory_bytes_for(&self.settings(0.0), execution))
+impl OfCubes for Cubes {
+    fn way(&self) -> Way {
+        Way::Patches(self.table())
     }
 
     fn promises(&self) -> Promises {
@@ -74,54 +44,35 @@ impl Family for Cubes {
         }
     }
 
-    /// A vertex of a cell is one of its neighbours' too, and their other vertices give it its normal; no vertex depends on
-    /// samples beyond its own cells. One that is moved looks at its triangles, and one that is relaxed at its neighbours first.
-    fn halo(&self) -> Option<u32> {
-        match self.placement {
-            Placement::MeanOfCrossings => Some(Self::UNMOVED_HALO),
-            Placement::Projected => Some(Self::UNMOVED_HALO + 1),
-            Placement::Relaxed => Some(Self::UNMOVED_HALO + 2),
-            Placement::CurvatureWeighted => None,
+    fn settings(&self, isovalue: f32) -> ExtractSettings {
+        ExtractSettings {
+            isovalue,
+            clustering: Clustering::None,
+            topology: Topology::Guarded,
+            positions: Positions::Indexed,
+            placement: self.placement,
+            refine_crossings: self.refine_crossings,
         }
     }
 
-    fn by_window(&self, isovalue: f32) -> Option<ByWindow> {
-        Some(ByWindow {
-            arrangement: Self::ARRANGEMENT,
-            settings: self.settings(isovalue),
-            cubes: Some(Way::Patches(self.rule())),
-            halo: Self::UNMOVED_HALO,
-        })
+    fn rule(&self) -> Option<Rule> {
+        Some(self.table())
     }
 
-    fn cells_otherwise(&self, counts: [usize; 3], values: &[f32], isovalue: f32) -> Option<u64> {
-        Some(crate::cubes::cells_otherwise(self.rule(), counts, values, isovalue))
+    /// One that is moved looks at its triangles, and one that is relaxed at its neighbours first.
+    fn halo(&self) -> Option<u32> {
+        let more = match self.placement {
+            Placement::MeanOfCrossings => 0,
+            Placement::Projected => 1,
+            Placement::Relaxed => 2,
+            Placement::CurvatureWeighted => return None,
+        };
+        Some(self.unmoved_halo()? + more)
     }
 
-    fn tables(&self) -> Vec<cells::Table> {
-        crate::cubes::table(self.rule()).into_iter().collect()
-    }
-
-    fn extract_into(
-        &self,
-        extractor: &mut Extractor,
-        source: Source,
-        grid: &BoxGrid,
-        isovalue: f32,
-        execution: &Execution,
-        extraction: &mut Extraction,
-    ) -> Result<(), MethodError> {
-        let settings = self.settings(isovalue);
-        // Before the lattice, as in `check`.
-        check(&settings, Self::ARRANGEMENT)?;
-        let lattice = grid.lattice(Self::ARRANGEMENT)?;
-        Ok(extractor.extract_cubes_into(
-            source,
-            &lattice,
-            &settings,
-            Way::Patches(self.rule()),
-            execution.into(),
-            extraction,
-        )?)
+    /// A vertex of a cell is one of its neighbours' too, and their other vertices give it its normal; no vertex depends on
+    /// samples beyond its own cells.
+    fn unmoved_halo(&self) -> Option<u32> {
+        Some(1)
     }
 }

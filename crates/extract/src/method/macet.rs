@@ -1,13 +1,8 @@
 //! Macet as a method: our reading of it.
 
-use super::{Family, MethodError, Promises};
-use crate::box_grid::BoxGrid;
+use super::of_cubes::OfCubes;
+use super::{MethodError, Promises};
 use crate::cubes::{Diagonals, EdgeMoves, Faces, Rule, Way};
-use crate::extraction::{Extraction, check};
-use crate::extractor::Extractor;
-use crate::lattice::{Arrangement, LatticeError};
-use crate::settings::{Clustering, Execution, ExtractSettings, Topology};
-use crate::source::Source;
 
 /// Marching cubes whose edges are turned square to the surface before they are cut (Macet: Dietrich, Scheidegger, Schreiner, Comba,
 /// Nedel & Silva 2009). Triangles are those of the table; vertices go where they make good ones.
@@ -50,40 +45,15 @@ impl Default for Macet {
 const MOST_STEPS: u32 = 64;
 
 impl Macet {
-    const ARRANGEMENT: Arrangement = Arrangement::SimpleCubic;
-
-    fn settings(isovalue: f32) -> ExtractSettings {
-        let (clustering, topology) = (Clustering::None, Topology::Guarded);
-        ExtractSettings { isovalue, clustering, topology, ..ExtractSettings::default() }
-    }
-
-    fn rule(&self) -> Rule {
+    fn table(&self) -> Rule {
         Rule { faces: self.faces, diagonals: self.diagonals }
-    }
-
-    fn check_moves(&self) -> Result<(), MethodError> {
-        let is_share = |value: f32| (0.0..=1.0).contains(&value);
-        if is_share(self.pull) && is_share(self.share) && self.steps <= MOST_STEPS {
-            return Ok(());
-        }
-        let Self { pull, steps, share, .. } = *self;
-        Err(MethodError::Macet { pull, steps, share })
     }
 }
 
-impl Family for Macet {
-    fn check(&self, grid: &BoxGrid) -> Result<(), MethodError> {
-        self.check_moves()?;
-        grid.lattice(Self::ARRANGEMENT)?;
-        Ok(())
-    }
-
-    fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError> {
-        Ok(grid.lattice(Self::ARRANGEMENT)?.cells())
-    }
-
-    fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError> {
-        Ok(grid.lattice(Self::ARRANGEMENT)?.memory_bytes_for(&Self::settings(0.0), execution))
+impl OfCubes for Macet {
+    fn way(&self) -> Way {
+        let moves = EdgeMoves { pull: self.pull, steps: self.steps, share: self.share };
+        Way::Moved { rule: self.table(), moves }
     }
 
     fn promises(&self) -> Promises {
@@ -96,38 +66,20 @@ impl Family for Macet {
         }
     }
 
-    fn is_of_cubes(&self) -> bool {
-        false
-    }
-
-    fn cells_otherwise(&self, counts: [usize; 3], values: &[f32], isovalue: f32) -> Option<u64> {
-        Some(crate::cubes::cells_otherwise(self.rule(), counts, values, isovalue))
-    }
-
-    fn tables(&self) -> Vec<cells::Table> {
-        crate::cubes::table(self.rule()).into_iter().collect()
-    }
-
-    fn extract_into(
-        &self,
-        extractor: &mut Extractor,
-        source: Source,
-        grid: &BoxGrid,
-        isovalue: f32,
-        execution: &Execution,
-        extraction: &mut Extraction,
-    ) -> Result<(), MethodError> {
-        self.check_moves()?;
-        if matches!(source, Source::Samples(_) | Source::Window { .. }) {
-            return Err(MethodError::NeedsField);
+    fn check_settings(&self) -> Result<(), MethodError> {
+        let is_share = |value: f32| (0.0..=1.0).contains(&value);
+        if is_share(self.pull) && is_share(self.share) && self.steps <= MOST_STEPS {
+            return Ok(());
         }
-        let settings = Self::settings(isovalue);
-        check(&settings, Self::ARRANGEMENT)?;
-        let lattice = grid.lattice(Self::ARRANGEMENT)?;
-        let way = Way::Moved {
-            rule: self.rule(),
-            moves: EdgeMoves { pull: self.pull, steps: self.steps, share: self.share },
-        };
-        Ok(extractor.extract_cubes_into(source, &lattice, &settings, way, execution.into(), extraction)?)
+        let Self { pull, steps, share, .. } = *self;
+        Err(MethodError::Macet { pull, steps, share })
+    }
+
+    fn rule(&self) -> Option<Rule> {
+        Some(self.table())
+    }
+
+    fn calls_the_field(&self) -> bool {
+        true
     }
 }

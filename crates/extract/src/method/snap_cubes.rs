@@ -1,13 +1,8 @@
 //! SnapMC as a method.
 
-use super::{Family, MethodError, Promises};
-use crate::box_grid::BoxGrid;
+use super::of_cubes::OfCubes;
+use super::{MethodError, Promises};
 use crate::cubes::{Flat, Way};
-use crate::extraction::{Extraction, check};
-use crate::extractor::Extractor;
-use crate::lattice::{Arrangement, LatticeError};
-use crate::settings::{Clustering, Execution, ExtractSettings, Topology};
-use crate::source::Source;
 
 /// Marching cubes whose crossings near a point of the lattice are drawn to it, so that triangles have bounded angles (Raman & Wenger
 /// 2008): from 12.7 to 144.2 degrees with the default, whatever the samples (`tests/snap.rs` tries every triangle of the table).
@@ -36,36 +31,9 @@ impl Default for SnapCubes {
     }
 }
 
-impl SnapCubes {
-    const ARRANGEMENT: Arrangement = Arrangement::SimpleCubic;
-    /// More layers are in sight than where nothing is snapped.
-    const MORE_MEMORY: u64 = 2;
-
-    fn settings(isovalue: f32) -> ExtractSettings {
-        let (clustering, topology) = (Clustering::None, Topology::Guarded);
-        ExtractSettings { isovalue, clustering, topology, ..ExtractSettings::default() }
-    }
-
-    fn check_gamma(&self) -> Result<(), MethodError> {
-        let gamma = self.gamma;
-        if (0.0..=0.5).contains(&gamma) { Ok(()) } else { Err(MethodError::Gamma { gamma }) }
-    }
-}
-
-impl Family for SnapCubes {
-    fn check(&self, grid: &BoxGrid) -> Result<(), MethodError> {
-        self.check_gamma()?;
-        grid.lattice(Self::ARRANGEMENT)?;
-        Ok(())
-    }
-
-    fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError> {
-        Ok(grid.lattice(Self::ARRANGEMENT)?.cells())
-    }
-
-    fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError> {
-        let lattice = grid.lattice(Self::ARRANGEMENT)?;
-        Ok(Self::MORE_MEMORY * lattice.memory_bytes_for(&Self::settings(0.0), execution))
+impl OfCubes for SnapCubes {
+    fn way(&self) -> Way {
+        Way::Snapped { gamma: self.gamma, flat: self.flat }
     }
 
     /// Where several sheets meet in one cell, snapping joins them along edges and at points.
@@ -79,20 +47,12 @@ impl Family for SnapCubes {
         }
     }
 
-    fn extract_into(
-        &self,
-        extractor: &mut Extractor,
-        source: Source,
-        grid: &BoxGrid,
-        isovalue: f32,
-        execution: &Execution,
-        extraction: &mut Extraction,
-    ) -> Result<(), MethodError> {
-        self.check_gamma()?;
-        let settings = Self::settings(isovalue);
-        check(&settings, Self::ARRANGEMENT)?;
-        let lattice = grid.lattice(Self::ARRANGEMENT)?;
-        let way = Way::Snapped { gamma: self.gamma, flat: self.flat };
-        Ok(extractor.extract_cubes_into(source, &lattice, &settings, way, execution.into(), extraction)?)
+    fn check_settings(&self) -> Result<(), MethodError> {
+        let gamma = self.gamma;
+        if (0.0..=0.5).contains(&gamma) { Ok(()) } else { Err(MethodError::Gamma { gamma }) }
+    }
+
+    fn layers(&self) -> u64 {
+        2
     }
 }

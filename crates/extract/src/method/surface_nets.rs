@@ -1,13 +1,8 @@
 //! Surface nets as a method.
 
-use super::{ByWindow, Family, MethodError, Promises};
-use crate::box_grid::BoxGrid;
+use super::Promises;
+use super::of_cubes::OfCubes;
 use crate::cubes::Way;
-use crate::extraction::{Extraction, check};
-use crate::extractor::Extractor;
-use crate::lattice::{Arrangement, LatticeError};
-use crate::settings::{Clustering, Execution, ExtractSettings, Topology};
-use crate::source::Source;
 
 /// Surface nets, the dual of marching cubes: a vertex in each cube that the surface crosses, at the mean of the crossings of its edges,
 /// and a quadrilateral round each crossed edge (Gibson 1998, without relaxation). Each is two triangles, on either side of its
@@ -26,37 +21,9 @@ pub struct SurfaceNets {
     pub patches: bool,
 }
 
-impl SurfaceNets {
-    const ARRANGEMENT: Arrangement = Arrangement::SimpleCubic;
-
-    fn settings(isovalue: f32) -> ExtractSettings {
-        let (clustering, topology) = (Clustering::None, Topology::Guarded);
-        ExtractSettings { isovalue, clustering, topology, ..ExtractSettings::default() }
-    }
-
+impl OfCubes for SurfaceNets {
     fn way(&self) -> Way {
         Way::Nets { patches: self.patches, sharp: None }
-    }
-
-    /// A triangle has vertices of the next lower cells, whose triangles give them normals; how such a cell is cut may be for the
-    /// next one to say.
-    fn unmoved_halo(&self) -> u32 {
-        if self.patches { 3 } else { 2 }
-    }
-}
-
-impl Family for SurfaceNets {
-    fn check(&self, grid: &BoxGrid) -> Result<(), MethodError> {
-        grid.lattice(Self::ARRANGEMENT)?;
-        Ok(())
-    }
-
-    fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError> {
-        Ok(grid.lattice(Self::ARRANGEMENT)?.cells())
-    }
-
-    fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError> {
-        Ok(grid.lattice(Self::ARRANGEMENT)?.memory_bytes_for(&Self::settings(0.0), execution))
     }
 
     fn promises(&self) -> Promises {
@@ -69,38 +36,9 @@ impl Family for SurfaceNets {
         }
     }
 
-    fn halo(&self) -> Option<u32> {
-        Some(self.unmoved_halo())
-    }
-
-    fn by_window(&self, isovalue: f32) -> Option<ByWindow> {
-        Some(ByWindow {
-            arrangement: Self::ARRANGEMENT,
-            settings: Self::settings(isovalue),
-            cubes: Some(self.way()),
-            halo: self.unmoved_halo(),
-        })
-    }
-
-    fn extract_into(
-        &self,
-        extractor: &mut Extractor,
-        source: Source,
-        grid: &BoxGrid,
-        isovalue: f32,
-        execution: &Execution,
-        extraction: &mut Extraction,
-    ) -> Result<(), MethodError> {
-        let settings = Self::settings(isovalue);
-        check(&settings, Self::ARRANGEMENT)?;
-        let lattice = grid.lattice(Self::ARRANGEMENT)?;
-        Ok(extractor.extract_cubes_into(
-            source,
-            &lattice,
-            &settings,
-            self.way(),
-            execution.into(),
-            extraction,
-        )?)
+    /// A triangle has vertices of the next lower cells, whose triangles give them normals; how such a cell is cut may be for the
+    /// next one to say.
+    fn unmoved_halo(&self) -> Option<u32> {
+        Some(if self.patches { 3 } else { 2 })
     }
 }

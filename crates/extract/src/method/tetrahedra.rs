@@ -102,6 +102,10 @@ impl Family for Tetrahedra {
             && self.positions == Positions::Indexed
     }
 
+    fn cells_otherwise(&self, _counts: [usize; 3], _values: &[f32], _isovalue: f32) -> Option<u64> {
+        None
+    }
+
     fn tables(&self) -> Vec<cells::Table> {
         crate::tetrahedra::tables(self.arrangement)
     }
