@@ -541,3 +541,55 @@ fn what_cannot_be_said_ends_nothing() {
     assert!(ended.success(), "{ended}");
     assert!(folder.path("a.ply").is_file());
 }
+
+/// Turned boxes, written as formulas: every point of the files that come out is on the box, its corners are there, and a net of the same
+/// cubes cuts them off.
+#[test]
+fn dual_contouring_keeps_the_edges_of_a_formula() {
+    use glam::{DMat3, DVec3, EulerRot};
+    let folder = Folder::of("extract");
+    let spacing = 2.2 / 40.0;
+    for turn in 0..6 {
+        let angle = 0.37 + 0.71 * f64::from(turn);
+        let turned = DMat3::from_euler(EulerRot::ZYX, angle, 0.6 * angle, 1.3 * angle);
+        let half = DVec3::new(0.43, 0.52 + 0.01 * f64::from(turn), 0.58);
+        let side = |axis: usize| {
+            let n = turned.col(axis);
+            format!("abs(({:.9})*x + ({:.9})*y + ({:.9})*z) - {:.9}", n.x, n.y, n.z, half[axis])
+        };
+        let formula = format!("max({}, {}, {})", side(0), side(1), side(2));
+        let extract = |method: &str, name: &str| {
+            let bounds = "--bounds=-1.1,-1.1,-1.1,1.1,1.1,1.1";
+            folder.succeed(&[
+                "extract", "--field", &formula, bounds, "--cells", "40", "--method", method, "-o", name,
+            ]);
+            mesh_of(&folder, name)
+        };
+        let (edges, net) = (extract("dc", "dc.ply"), extract("nets", "nets.ply"));
+        assert!(topology(&edges).is_closed_manifold(), "{turn}");
+        let distance = |p: DVec3| {
+            let q = (turned.transpose() * p).abs() - half;
+            (q.max(DVec3::ZERO).length() + q.max_element().min(0.0)).abs() / spacing
+        };
+        let farthest = |mesh: &TriangleMesh| {
+            let points = mesh.triangles.iter().flat_map(|t| {
+                let [a, b, c] = t.map(|v| mesh.positions[v as usize].as_dvec3());
+                let at =
+                    move |i: i32, j: i32| a + (b - a) * f64::from(i) / 4.0 + (c - a) * f64::from(j) / 4.0;
+                (0..=4).flat_map(move |i| (0..=4 - i).map(move |j| at(i, j)))
+            });
+            points.map(distance).fold(0.0, f64::max)
+        };
+        assert!(farthest(&edges) < 0.01, "{turn}: {} cells", farthest(&edges));
+        assert!(farthest(&net) > 0.2, "{turn}: {} cells", farthest(&net));
+        let missed = |mesh: &TriangleMesh, corner: DVec3| {
+            let to = mesh.positions.iter().map(|p| p.as_dvec3().distance(corner) / spacing);
+            to.fold(f64::INFINITY, f64::min)
+        };
+        for c in 0..8 {
+            let sign = |axis: usize| if c >> axis & 1 != 0 { 1.0 } else { -1.0 };
+            let corner = turned * (half * DVec3::new(sign(0), sign(1), sign(2)));
+            assert!(missed(&edges, corner) < 0.01, "{turn}, corner {c}: {} cells", missed(&edges, corner));
+        }
+    }
+}

@@ -165,6 +165,15 @@ impl StudyField for Expression {
         });
     }
 
+    /// By automatic differentiation, exact but for rounding; not known of formulas with noise. Where `min`, `max` or `abs` have an edge
+    /// it is that of one side.
+    fn gradient(&self, p: Vec3) -> Option<Vec3> {
+        if self.noises.iter().any(Option::is_some) {
+            return None;
+        }
+        Some(WORKSPACE.with_borrow_mut(|workspace| self.value.gradient(p, &mut workspace.evaluator)))
+    }
+
     /// By interval arithmetic.
     fn range(&self, bounds: Bounds, _value: f32) -> Option<(f32, f32)> {
         self.range.of(bounds)

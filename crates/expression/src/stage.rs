@@ -3,8 +3,10 @@
 use fidget_core::Context;
 use fidget_core::context::Node;
 use fidget_core::eval::{BulkEvaluator, BulkOutput, Function, MathFunction, Tape};
+use fidget_core::types::Grad;
 use fidget_core::var::Var;
-use fidget_core::vm::{GenericVmTape, VmFloatSliceEval, VmFunction};
+use fidget_core::vm::{GenericVmTape, VmFloatSliceEval, VmFunction, VmGradSliceEval};
+use glam::Vec3;
 
 use crate::ExpressionError;
 
@@ -12,6 +14,8 @@ use crate::ExpressionError;
 #[derive(Clone)]
 pub(crate) struct Stage {
     tape: GenericVmTape<255>,
+    /// The same, for values with their derivatives.
+    derivatives: GenericVmTape<255>,
     /// Which column each of the tape's inputs is.
     inputs: Vec<usize>,
 }
@@ -20,6 +24,7 @@ pub(crate) struct Stage {
 #[derive(Default)]
 pub(crate) struct Evaluator {
     evaluator: VmFloatSliceEval<255>,
+    derivatives: VmGradSliceEval<255>,
     /// The columns in the order of a tape's inputs, while it is evaluated.
     inputs: Vec<Vec<f32>>,
 }
@@ -35,7 +40,20 @@ impl Stage {
                 inputs[input] = column;
             }
         }
-        Ok(Self { tape, inputs })
+        Ok(Self { tape, derivatives: function.grad_slice_tape(Default::default()), inputs })
+    }
+
+    /// How the first value changes along x, y and z at a point, by automatic differentiation. Columns beyond those three must not be
+    /// needed.
+    pub(crate) fn gradient(&self, p: Vec3, Evaluator { derivatives, .. }: &mut Evaluator) -> Vec3 {
+        let axis = |axis: usize| {
+            let along = Vec3::AXES[axis];
+            vec![Grad::new(p[axis], along.x, along.y, along.z)]
+        };
+        let inputs: Vec<Vec<Grad>> = self.inputs.iter().map(|&column| axis(column)).collect();
+        let found = derivatives.eval(&self.derivatives, &inputs).expect("one value a variable and point");
+        let at = found[0][0];
+        Vec3::new(at.dx, at.dy, at.dz)
     }
 
     pub(crate) fn needs(&self, column: usize) -> bool {
@@ -46,7 +64,7 @@ impl Stage {
     pub(crate) fn eval<'a>(
         &self,
         columns: &mut [Vec<f32>],
-        Evaluator { evaluator, inputs }: &'a mut Evaluator,
+        Evaluator { evaluator, inputs, .. }: &'a mut Evaluator,
     ) -> BulkOutput<'a, f32> {
         let inputs = {
             inputs.resize_with(inputs.len().max(self.inputs.len()), Vec::new);

@@ -162,6 +162,10 @@ where
         (**self).range(bounds, value)
     }
 
+    fn gradient(&self, p: Vec3) -> Option<Vec3> {
+        (**self).gradient(p)
+    }
+
     fn nearest_on_isosurface(&self, p: DVec3, isovalue: f32) -> Option<Foot> {
         (**self).nearest_on_isosurface(p, isovalue)
     }

@@ -38,6 +38,10 @@ impl<F: StudyField> StudyField for Negated<F> {
         self.0.range(bounds, -value).map(|(low, high)| (-high, -low))
     }
 
+    fn gradient(&self, p: Vec3) -> Option<Vec3> {
+        self.0.gradient(p).map(|gradient| -gradient)
+    }
+
     fn nearest_on_isosurface(&self, p: DVec3, isovalue: f32) -> Option<Foot> {
         self.0.nearest_on_isosurface(p, -isovalue)
     }

@@ -32,6 +32,10 @@ impl StudyField for Sphere {
         has_sound_lengths(bounds).then_some(1.0)
     }
 
+    fn gradient(&self, p: Vec3) -> Option<Vec3> {
+        Some(-p.normalize_or_zero())
+    }
+
     /// Known while the isosurface is a sphere: where `isovalue` is below the radius.
     fn nearest_on_isosurface(&self, p: DVec3, isovalue: f32) -> Option<Foot> {
         let radius = f64::from(self.radius) - f64::from(isovalue);

@@ -72,6 +72,11 @@ impl<F: StudyField> StudyField for Walled<F> {
         if self.is_clear(bounds) { self.field.slope(bounds) } else { None }
     }
 
+    /// The field's; on a wall and beyond it nothing is known.
+    fn gradient(&self, p: Vec3) -> Option<Vec3> {
+        if self.is_within(p) { self.field.gradient(p) } else { None }
+    }
+
     fn range(&self, bounds: Bounds, value: f32) -> Option<(f32, f32)> {
         if self.is_clear(bounds) {
             return self.field.range(bounds, value);
