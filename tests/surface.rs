@@ -560,13 +560,13 @@ fn dual_contouring_keeps_the_edges_of_a_formula() {
         let formula = format!("max({}, {}, {})", side(0), side(1), side(2));
         let extract = |method: &str, name: &str| {
             let bounds = "--bounds=-1.1,-1.1,-1.1,1.1,1.1,1.1";
-            folder.succeed(&[
-                "extract", "--field", &formula, bounds, "--cells", "40", "--method", method, "-o", name,
-            ]);
+            folder.succeed(&["--field", &formula, bounds, "--cells", "40", "--method", method, "-o", name]);
             mesh_of(&folder, name)
         };
-        let (edges, net) = (extract("dc", "dc.ply"), extract("nets", "nets.ply"));
-        assert!(topology(&edges).is_closed_manifold(), "{turn}");
+        let (edges, net) = (extract("dc-manifold", "dc.ply"), extract("nets", "nets.ply"));
+        let found = topology(&edges);
+        assert!(found.is_closed_manifold(), "{turn}: {found:?}");
+        assert_eq!(topology(&extract("dc", "one.ply")).boundary_edges, 0, "{turn}");
         let distance = |p: DVec3| {
             let q = (turned.transpose() * p).abs() - half;
             (q.max(DVec3::ZERO).length() + q.max_element().min(0.0)).abs() / spacing
