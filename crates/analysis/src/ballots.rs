@@ -78,6 +78,7 @@ pub(crate) fn outcome(choice: Choice) -> Outcome {
 
 /// The study's comparison groups, then the levels of each declared factor pooled over all else, where more than one group has
 /// them, named after the factor; then all methods (`all`), where the groups hang together. Groups without an answer are left out.
+/// Items stand in the study's order, after the reference that its analysis names, or the reference's level.
 pub fn ballot_groups(study: &Study, ballots: &[ShownBallot]) -> Vec<BallotGroup> {
     let methods = study.method_ids();
     let mut groups: Vec<BallotGroup> = study
@@ -85,9 +86,10 @@ pub fn ballot_groups(study: &Study, ballots: &[ShownBallot]) -> Vec<BallotGroup>
         .iter()
         .enumerate()
         .map(|(g, group)| {
-            let place = |method| group.members.iter().position(|&m| m == method);
+            let members = reference_first(group.members.clone(), |&method| is_reference(study, method));
+            let place = |method| members.iter().position(|&m| m == method);
             let own = ballots.iter().filter(|b| study.comparisons[b.question()].group == g);
-            let items = group.members.iter().map(MethodId::to_string).collect();
+            let items = members.iter().map(MethodId::to_string).collect();
             let ballots = relabel(own, |item| place(methods[item]));
             BallotGroup { name: group.id.clone(), items, ballots, objects: Vec::new() }
         })
@@ -98,8 +100,15 @@ pub fn ballot_groups(study: &Study, ballots: &[ShownBallot]) -> Vec<BallotGroup>
     };
     for factor in study.declared_factors().rev() {
         let differs = |b: &&ShownBallot| study.difference(methods[b.left()], methods[b.right()]) == factor;
-        let place = |item: usize| study.level_of(methods[item], factor).map(|level| level.index);
-        let items = study.factor(factor).levels.iter().map(|level| level.code.clone()).collect();
+        let reference = methods.iter().find(|&&method| is_reference(study, method));
+        let reference = reference.and_then(|&method| study.level_of(method, factor));
+        let levels = (0..study.factor(factor).levels.len()).collect();
+        let levels = reference_first(levels, |&level| reference.is_some_and(|of| of.index == level));
+        let place = |item: usize| {
+            let level = study.level_of(methods[item], factor)?;
+            levels.iter().position(|&other| other == level.index)
+        };
+        let items = levels.iter().map(|&level| study.factor(factor).levels[level].code.clone()).collect();
         let pooled = relabel(ballots.iter().filter(differs), place);
         let name = study.factor(factor).name.clone();
         let group = BallotGroup { name, items, ballots: pooled, objects: Vec::new() };
@@ -108,6 +117,16 @@ pub fn ballot_groups(study: &Study, ballots: &[ShownBallot]) -> Vec<BallotGroup>
     groups.extend(all_methods(study, ballots));
     groups.retain(|group| !group.ballots.is_empty());
     groups
+}
+
+fn is_reference(study: &Study, method: MethodId) -> bool {
+    study.file.analysis.reference.as_deref() == Some(method.as_str())
+}
+
+/// The others keep their order.
+fn reference_first<T>(mut items: Vec<T>, is_reference: impl Fn(&T) -> bool) -> Vec<T> {
+    items.sort_by_key(|item| !is_reference(item));
+    items
 }
 
 /// The group of all methods.
@@ -120,6 +139,7 @@ fn all_methods(study: &Study, ballots: &[ShownBallot]) -> Option<BallotGroup> {
         study.comparisons.iter().any(|c| c.left.method == *method || c.right.method == *method)
     };
     let items: Vec<MethodId> = methods.iter().copied().filter(compared).collect();
+    let items = reference_first(items, |&method| is_reference(study, method));
     let place = |item: usize| items.iter().position(|&method| method == methods[item]);
     let own = relabel(ballots.iter(), place);
     // Linked to the first, directly or through others.

@@ -21,8 +21,8 @@ pub(crate) fn of_study(study: &Study) -> Result<Option<Reading>> {
     }
     if section.reference.is_some() {
         bail!(
-            "{}: responses.reference is of answers without a study alone; with one, a group's first method in the \
-             study's order has the log worth 0",
+            "{}: responses.reference is of answers without a study alone; a study names its reference as \
+             analysis.reference",
             study.path.display()
         );
     }

@@ -10,7 +10,7 @@ use crate::machine::CpuProfile;
 use crate::method::{ConfigurationId, Method};
 use crate::read::{parse_toml, read_table};
 use crate::study::{Comparison, Configuration, Group, Published, Study};
-use checks::{check_forms, check_objects, check_primary, check_sections, check_stills};
+use checks::{check_forms, check_objects, check_primary, check_reference, check_sections, check_stills};
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 use std::path::Path;
@@ -94,6 +94,7 @@ impl Study {
             file,
         };
         check_primary(&checker, &study)?;
+        check_reference(&checker, &study)?;
         Ok(study)
     }
 }

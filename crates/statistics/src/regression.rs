@@ -5,7 +5,7 @@
 //! l_left - l_right = beta'x; the adjacent-category logits of left, tie, right are u/2 -+ ln nu). Exchanging the sides
 //! of a question changes nothing. Without a tie among the answers it is the logistic model alone.
 
-use super::ballot::Answer;
+use super::ballot::{Answer, ShownBallot};
 use super::fit::FitError;
 use super::model::add_log_linear;
 use super::newton::{Curvature, Matrix, inverse, maximise, times};
@@ -39,6 +39,27 @@ pub struct Regression {
 /// [`FitError::Nothing`] without an answer or a covariate, [`FitError::OnlyTies`], [`FitError::Collinear`] if covariates are,
 /// and [`FitError::NoMaximum`] if they separate the answers.
 pub fn regression<A: Answer>(covariates: &[Option<Vec<f64>>], ballots: &[A]) -> Result<Regression, FitError> {
+    fit_with(covariates, ballots, 0.0)
+}
+
+/// As [`regression`] of the left side's advantages, if everybody likes the left side by so many log-odds (the right, below
+/// zero).
+///
+/// # Errors
+/// As [`regression`].
+pub fn regression_given_side(
+    covariates: &[Option<Vec<f64>>],
+    ballots: &[ShownBallot],
+    left: f64,
+) -> Result<Regression, FitError> {
+    fit_with(covariates, ballots, left)
+}
+
+fn fit_with<A: Answer>(
+    covariates: &[Option<Vec<f64>>],
+    ballots: &[A],
+    given_side: f64,
+) -> Result<Regression, FitError> {
     let of = |ballot: &&A| covariates.get(ballot.question()).is_some_and(Option::is_some);
     let used: Vec<&A> = ballots.iter().filter(of).collect();
     let width = covariates.iter().flatten().map(Vec::len).next().unwrap_or(0);
@@ -65,7 +86,7 @@ pub fn regression<A: Answer>(covariates: &[Option<Vec<f64>>], ballots: &[A]) -> 
         let mut sum = Curvature::zero(size);
         for (x, answers) in rows.iter().zip(&answers) {
             if let Some(x) = x {
-                add_log_linear(&mut sum, x, 0.0, tie, *answers, at);
+                add_log_linear(&mut sum, x, given_side, tie, *answers, at);
             }
         }
         sum
@@ -79,7 +100,7 @@ pub fn regression<A: Answer>(covariates: &[Option<Vec<f64>>], ballots: &[A]) -> 
         let mut answer = [0.0; 3];
         answer[outcome] = 1.0;
         if let Some(x) = &rows[question] {
-            add_log_linear(&mut one, x, 0.0, tie, answer, &at);
+            add_log_linear(&mut one, x, given_side, tie, answer, &at);
         }
         one.gradient
     };

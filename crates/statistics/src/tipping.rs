@@ -3,10 +3,13 @@
 //! Where a method always stood on the right, people who like the right look like people who like the method. No analysis
 //! tells them apart, but one can ask how far such a liking would have to go.
 
+use super::ballot::ShownBallot;
 use super::fit::{fit_given_side, has_spread};
 use super::participants::Participants;
+use super::regression::regression_given_side;
 use super::sandwich::Clusters;
 use crate::interval::Interval;
+use std::collections::BTreeMap;
 
 /// No liking beyond this is looked at, in log-odds: at 5 a side wins 99.3 % of the decided answers about equal items.
 pub const FARTHEST_TIP: f64 = 5.0;
@@ -53,6 +56,62 @@ pub fn tipping(participants: &Participants, item: usize, other: usize) -> Option
         let known = has_spread(se, independent);
         known.then(|| fit.clustered_interval(&clustered, participants.number(), item, other))
     };
+    towards_zero(interval)
+}
+
+/// As [`tipping`], of a difference of two preferences: how much more `item` is preferred to `other` in the first part's answers
+/// than in the second's. Davidson's model with worths of each part's own and one weight of ties, fitted to both at once, so that
+/// a participant's answers to both hang together.
+///
+/// `None` as there, and where a part's answers separate its items.
+///
+/// # Panics
+/// If there is no such item among so many.
+pub fn tipping_of_difference(
+    parts: [&[ShownBallot]; 2],
+    items: usize,
+    item: usize,
+    other: usize,
+) -> Option<Tipping> {
+    assert!(item.max(other) < items && item != other, "no items {item} and {other} among {items}");
+    // What `item` is worth more in the first part, what it is worth in the second, and each part's other items; `other` is at
+    // zero in both.
+    let mut places: BTreeMap<(usize, usize), usize> = BTreeMap::from([((0, item), 0), ((1, item), 1)]);
+    for (of, part) in parts.iter().enumerate() {
+        for shown in part.iter().flat_map(|ballot| [ballot.left(), ballot.right()]).filter(|&i| i != other) {
+            let next = places.len();
+            places.entry((of, shown)).or_insert(next);
+        }
+    }
+    let mut covariates: Vec<Option<Vec<f64>>> = Vec::new();
+    let mut kinds: BTreeMap<(usize, usize, usize), usize> = BTreeMap::new();
+    let mut ballots = Vec::new();
+    for (of, part) in parts.iter().enumerate() {
+        for ballot in *part {
+            let sides = [ballot.left(), ballot.right()];
+            let kind = *kinds.entry((of, sides[0], sides[1])).or_insert_with(|| {
+                let mut x = vec![0.0; places.len()];
+                for (shown, sign) in sides.into_iter().zip([1.0, -1.0]).filter(|&(shown, _)| shown != other) {
+                    x[places[&(of, shown)]] += sign;
+                    if (of, shown) == (0, item) {
+                        x[1] += sign;
+                    }
+                }
+                covariates.push(Some(x));
+                covariates.len() - 1
+            });
+            ballots.push(ShownBallot::new(ballot.participant(), kind, sides, ballot.outcome()));
+        }
+    }
+    towards_zero(|left| {
+        let fit = regression_given_side(&covariates, &ballots, left).ok()?;
+        let se = fit.clustered.as_ref()?[0][0].sqrt();
+        has_spread(se, fit.covariance[0][0].sqrt()).then(|| fit.coefficient(0))?.map(|of| of.interval)
+    })
+}
+
+/// The smallest liking for either side with which an interval reaches zero.
+fn towards_zero(interval: impl Fn(f64) -> Option<Interval>) -> Option<Tipping> {
     let alone = interval(0.0)?;
     let positive = alone.low > 0.0;
     let excludes = |left: f64| {
@@ -80,7 +139,8 @@ pub fn tipping(participants: &Participants, item: usize, other: usize) -> Option
 mod tests {
     use super::*;
     use crate::simulation::{Plan, Population, simulate, stream};
-    use crate::{Outcome, ShownBallot, golden};
+    use crate::{Outcome, golden};
+    use design::Arrangement;
 
     #[track_caller]
     fn at(tip: Tip, want: f64) {
@@ -120,6 +180,28 @@ mod tests {
         let found = tipping(&Participants::of(2, &lattices), 1, 0).unwrap();
         at(found.left, 0.114_780_348_128_463_3);
         assert_eq!(found.right, Tip::Beyond);
+    }
+
+    #[test]
+    fn differences_of_the_papers_results_as_scipy_has_them() {
+        // NumPy 2.4.6 and SciPy 1.17.1: brentq of the interval's end over the offset. Items U, P, I.
+        let study = golden::study();
+        let [body, simple] = [Arrangement::BodyCentred, Arrangement::SimpleCubic]
+            .map(|arrangement| golden::clusterings(&study, Some(arrangement)));
+        let found = tipping_of_difference([&body, &simple], 3, 1, 0).unwrap();
+        at(found.left, 2.574_579_152_523_849);
+        assert_eq!(found.right, Tip::Beyond);
+        // The other part first, and the other item first, the same.
+        for other_way in [
+            tipping_of_difference([&simple, &body], 3, 1, 0),
+            tipping_of_difference([&body, &simple], 3, 0, 1),
+        ] {
+            at(other_way.unwrap().left, 2.574_579_152_523_849);
+        }
+        let open = tipping_of_difference([&body, &simple], 3, 2, 0).unwrap();
+        assert_eq!(open, Tipping { left: Tip::Open, right: Tip::Open });
+        let beyond = tipping_of_difference([&body, &simple], 3, 2, 1).unwrap();
+        assert_eq!(beyond, Tipping { left: Tip::Beyond, right: Tip::Beyond });
     }
 
     #[test]

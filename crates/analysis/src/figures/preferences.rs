@@ -6,6 +6,7 @@ use super::canvas::{BLACK, WHITE};
 use super::legend::Swatch;
 use super::style::{self, Fill};
 use super::{Unfinished, WIDTH, canvas_with_legend};
+use crate::Fraction;
 use crate::preference::{self, GroupFactor};
 use crate::tables::preferences::interval;
 use crate::tally::Tally;
@@ -96,13 +97,29 @@ fn compares_first(study: &Study, group: usize) -> bool {
     preference::two_factors(study).is_some_and(|[outer, _]| preference::shared(study, group, outer).is_none())
 }
 
-/// Which half of a sum weighs more, and why; nothing if both reach equally far or there is one alone.
-fn weights(study: &Study, factors: &[GroupFactor]) -> String {
+/// The largest factor that a method of a group can reach where everybody answers: the questions that show it over all.
+fn largest_of_complete(study: &Study, group: usize) -> Option<Fraction> {
+    let group = &study.groups[group];
+    let shows = |method: MethodId| {
+        let sides = |&&q: &&usize| {
+            let asked = &study.comparisons[q];
+            asked.left.method == method || asked.right.method == method
+        };
+        group.comparisons.iter().filter(sides).count()
+    };
+    let most = group.members.iter().map(|&method| shows(method)).max()?;
+    (most > 0).then(|| Fraction::new(most as i128, group.comparisons.len() as i128))
+}
+
+/// Which half of a sum weighs more where everybody answers, and why; nothing if both reach equally far or there is one alone.
+fn weights(study: &Study) -> String {
     let Some([outer, inner]) = preference::two_factors(study) else { return String::new() };
     let [outer, inner] = [outer, inner].map(|factor| study.factor(factor).name.as_str());
     let reach = |of_outer| {
-        let of_kind = factors.iter().filter(|f| compares_first(study, f.group) == of_outer);
-        of_kind.map(GroupFactor::cap).max_by(|a, b| a.value().total_cmp(&b.value()))
+        let of_kind = (0..study.groups.len()).filter(|&group| compares_first(study, group) == of_outer);
+        of_kind
+            .filter_map(|group| largest_of_complete(study, group))
+            .max_by(|a, b| a.value().total_cmp(&b.value()))
     };
     let (Some(of_outer), Some(of_inner)) = (reach(true), reach(false)) else { return String::new() };
     let half = match of_outer.value() - of_inner.value() {
@@ -128,7 +145,7 @@ pub(super) fn overall(study: &Study, tally: &Tally) -> Unfinished {
         let mut cells = study.published.preferences.iter();
         cells.find(|c| c.kind == PreferenceKind::Overall && c.method() == Some(method)).map(|c| c.factor)
     };
-    let slot = |(method, sum): (MethodId, crate::Fraction)| {
+    let slot = |(method, sum): (MethodId, Fraction)| {
         let fill = style::method(study, method);
         let of_method = factors.iter().filter(|f| f.method == method);
         let segment = |f: &GroupFactor| {
@@ -196,6 +213,6 @@ pub(super) fn overall(study: &Study, tally: &Tally) -> Unfinished {
         "Overall preference. Large: in what share of the answers that showed a method it was chosen, one scale for all. Small: as \
          published, the sum of a configuration's factors over its comparison groups.",
     );
-    caption.push_str(&weights(study, &factors));
+    caption.push_str(&weights(study));
     Unfinished { name: "preference_overall", caption, canvas }
 }

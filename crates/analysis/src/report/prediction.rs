@@ -116,17 +116,20 @@ fn held_out(study: &Study, prediction: &Prediction) -> Vec<Finding> {
         );
         found.push(Finding::new(Standing::Noted, text));
     }
-    if let Some(side) = &prediction.side_held_out {
-        let text = format!(
+    let text = match &prediction.side_held_out {
+        Some(side) => format!(
             "The side alone, whatever stood there, foretells {} of {} ({}), with log loss {}: a metric has to be read against \
              that as well.",
             number(side.accuracy.hits, 0),
             number(side.accuracy.of, 0),
             percent(side.accuracy.share),
             number(side.log_loss, 3)
-        );
-        found.push(Finding::new(Standing::Noted, text));
-    }
+        ),
+        None => "What the side alone foretells has no estimate. Without some object, every decided answer chose the same side, \
+                 or no answer was decided."
+            .into(),
+    };
+    found.push(Finding::new(Standing::Noted, text));
     found
 }
 

@@ -358,6 +358,10 @@ fn dependence(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> Option<Findin
         tested(hypothesis),
         over_all(hypothesis)
     );
+    let text = match standing {
+        Standing::Holds => text + &tipping::sentence(evidence, hypothesis),
+        _ => text,
+    };
     Some(Finding::new(standing, text))
 }
 

@@ -1,12 +1,13 @@
 //! How large a liking for a side would undo a result, where methods and sides go together.
 
 use super::Evidence;
-use crate::hypotheses::{Hypothesis, Target};
+use crate::hypotheses::{Hypothesis, On, Target};
 use crate::words::number;
 use design::contrast::Over;
 use design::{Level, MethodId, Study};
 use statistics::{
     FARTHEST_TIP, Pairs, Participants, ShownBallot, SideDesign, Tip, Tipping, side_design, tipping,
+    tipping_of_difference,
 };
 
 /// Beyond so many different patterns of answers it takes minutes.
@@ -14,32 +15,45 @@ const MOST_PATTERNS: usize = 5_000;
 /// Of so many people nearly all have patterns of their own.
 const MOST_PEOPLE: usize = 50_000;
 
+/// Answers about the first two of so many items, and others that they were compared with: of a preference, or of the two
+/// that differ.
+struct About {
+    items: usize,
+    parts: Vec<Vec<ShownBallot>>,
+}
+
 /// Said after a result that holds; empty where sides cannot have made it, and where nothing can be said.
 pub(super) fn sentence(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> String {
-    let Target::Contrast { levels, over } = hypothesis.target else { return String::new() };
-    let Some(study) = evidence.study.filter(|_| hypothesis.test.participants() <= MOST_PEOPLE) else {
-        return String::new();
-    };
-    let mut items: Vec<Level> = levels.to_vec();
-    let ballots = about(study, evidence.shown, over, &mut items);
-    if side_design(&Pairs::of(items.len(), &ballots)) == SideDesign::Counterbalanced {
+    if !evidence.sides_recorded || hypothesis.test.participants() > MOST_PEOPLE {
         return String::new();
     }
-    let participants = Participants::of(items.len(), &ballots);
-    if participants.kinds() > MOST_PATTERNS {
+    let Some(About { items, parts }) = about(evidence, hypothesis) else { return String::new() };
+    let parts: Vec<Vec<ShownBallot>> = parts.iter().map(|part| linked(items, part)).collect();
+    let items = parts.iter().flatten().flat_map(|b| [b.left(), b.right()]).max().map_or(2, |last| last + 1);
+    let counterbalanced =
+        |part: &Vec<ShownBallot>| side_design(&Pairs::of(items, part)) == SideDesign::Counterbalanced;
+    let patterns = |part: &Vec<ShownBallot>| Participants::of(items, part).kinds();
+    if parts.iter().all(counterbalanced) || parts.iter().any(|part| patterns(part) > MOST_PATTERNS) {
         return String::new();
     }
-    let Some(Tipping { left, right }) = tipping(&participants, 0, 1) else {
-        return " How large a liking for a side would undo it cannot be said: no answer went the other way."
-            .into();
+    let found = match &parts[..] {
+        [one, other] => tipping_of_difference([one, other], items, 0, 1),
+        [all] => tipping(&Participants::of(items, all), 0, 1),
+        _ => return String::new(),
     };
-    match (left, right) {
-        (Tip::At(at), _) => undone("left", at),
-        (_, Tip::At(at)) => undone("right", at),
-        (Tip::Beyond, Tip::Beyond) => {
+    match found {
+        None if parts.len() == 2 => " How large a liking for a side would undo it cannot be said: in one of the two no answer \
+                                     went the other way, or everybody answered alike."
+            .into(),
+        None => {
+            " How large a liking for a side would undo it cannot be said: no answer went the other way, or everybody answered alike.".into()
+        }
+        Some(Tipping { left: Tip::At(at), .. }) => undone("left", at),
+        Some(Tipping { right: Tip::At(at), .. }) => undone("right", at),
+        Some(Tipping { left: Tip::Beyond, right: Tip::Beyond }) => {
             format!(" No liking for a side up to {FARTHEST_TIP} log-odds would undo it.")
         }
-        _ => String::new(),
+        Some(_) => String::new(),
     }
 }
 
@@ -51,9 +65,67 @@ fn undone(side: &str, at: f64) -> String {
     )
 }
 
+fn about(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> Option<About> {
+    match (&hypothesis.target, evidence.study) {
+        (Target::Contrast { levels, over }, Some(study)) => {
+            let overs = match *over {
+                Over::Difference(one, other) => vec![Over::Within(one), Over::Within(other)],
+                Over::ObjectDifference(one, other) => vec![Over::Object(one), Over::Object(other)],
+                over => vec![over],
+            };
+            let mut items: Vec<Level> = levels.to_vec();
+            let own = |over| about_levels(study, evidence.shown, over, &mut items);
+            let parts = overs.into_iter().map(own).collect();
+            Some(About { items: items.len(), parts })
+        }
+        (Target::Items { group, first, second, on }, _) => {
+            let group = evidence.groups.iter().find(|of| of.name == *group)?;
+            let place = |name: &String| group.items.iter().position(|item| item == name);
+            let (first, second) = (place(first)?, place(second)?);
+            let mut order: Vec<usize> = (0..group.items.len()).collect();
+            order.sort_by_key(|&item| (item != first, item != second));
+            let new =
+                |item: usize| order.iter().position(|&other| other == item).expect("one of the group's");
+            let on_object = |object: Option<&String>| -> Vec<ShownBallot> {
+                let meant = |b: &&ShownBallot| object.is_none_or(|name| group.objects[b.question()] == *name);
+                let own = group.ballots.iter().filter(meant);
+                own.map(|b| b.with_items([new(b.left()), new(b.right())])).collect()
+            };
+            let parts = match on {
+                On::All => vec![on_object(None)],
+                On::Object(name) => vec![on_object(Some(name))],
+                On::Difference(names) => names.iter().map(|name| on_object(Some(name))).collect(),
+            };
+            Some(About { items: group.items.len(), parts })
+        }
+        _ => None,
+    }
+}
+
+/// The answers about items that were compared with the first, directly or through others, numbered anew after the first two.
+fn linked(items: usize, ballots: &[ShownBallot]) -> Vec<ShownBallot> {
+    let mut places: Vec<Option<usize>> = vec![None; items];
+    (places[0], places[1]) = (Some(0), Some(1));
+    let mut next = 2;
+    while let Some(ballot) =
+        ballots.iter().find(|b| places[b.left()].is_some() != places[b.right()].is_some())
+    {
+        let new = if places[ballot.left()].is_none() { ballot.left() } else { ballot.right() };
+        places[new] = Some(next);
+        next += 1;
+    }
+    let renumbered = |b: &ShownBallot| Some(b.with_items([places[b.left()]?, places[b.right()]?]));
+    ballots.iter().filter_map(renumbered).collect()
+}
+
 /// The answers about levels of the same factor as `items`, which grow by those that others are compared with, everything else
 /// equal; as far as a contrast goes.
-fn about(study: &Study, shown: &[ShownBallot], over: Over, items: &mut Vec<Level>) -> Vec<ShownBallot> {
+fn about_levels(
+    study: &Study,
+    shown: &[ShownBallot],
+    over: Over,
+    items: &mut Vec<Level>,
+) -> Vec<ShownBallot> {
     let factor = items[0].factor;
     let methods = study.method_ids();
     let level = |method: MethodId| study.level_of(method, factor);

@@ -62,6 +62,8 @@ pub struct AnalysisSection {
     pub families: FamilyRule,
     /// The contrasts that matter most, such as `B-S` or `B-S within U`: a family of their own, corrected first.
     pub primary: Vec<String>,
+    /// The id of the method that stands at 0 on every scale that has it; otherwise the first of each group does.
+    pub reference: Option<String>,
     /// The rules whose breakers the main analysis leaves out; empty if everybody counts.
     pub exclude: Vec<Exclusion>,
 }
@@ -76,6 +78,7 @@ impl Default for AnalysisSection {
             margin: 0.2,
             families: FamilyRule::ByKind,
             primary: Vec::new(),
+            reference: None,
             exclude: Vec::new(),
         }
     }

@@ -31,7 +31,8 @@ pub struct ResponsesSection {
     pub duplicates: Option<String>,
     /// What people were asked about each pair, where no form of the study says it.
     pub asked: Option<String>,
-    /// The item whose log worth is 0, of answers without a study; otherwise the first by name. A study's is its first method.
+    /// The item whose log worth is 0, of answers without a study; otherwise the first by name. A study has
+    /// [`AnalysisSection::reference`](super::AnalysisSection::reference).
     pub reference: Option<String>,
     /// How long what a question shows lasts, in seconds, above 0: nobody has seen it in less. A study's turntables say it too.
     pub shown_s: Option<f64>,

@@ -1,11 +1,12 @@
 //! What may stand in each section of a study file.
 
-use crate::Arrangement;
 use crate::check::{Checker, ConfigError, short};
 use crate::config::{FieldSection, ObjectSection, StudyFile, SweepSection};
 use crate::contrast::contrasts;
 use crate::method::is_summed;
 use crate::study::{Configuration, Study};
+use crate::{Arrangement, MethodId};
+use std::collections::BTreeSet;
 
 /// Everything that does not need another section to judge.
 pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigError> {
@@ -306,4 +307,18 @@ pub(super) fn check_primary(c: &Checker<'_>, study: &Study) -> Result<(), Config
             c.refuse(format!("analysis.primary[{i}]"), &primary[i], limit)
         }
     }
+}
+
+/// Whether the study compares the method that its analysis calls the reference.
+pub(super) fn check_reference(c: &Checker<'_>, study: &Study) -> Result<(), ConfigError> {
+    let Some(reference) = &study.file.analysis.reference else { return Ok(()) };
+    let sides =
+        study.comparisons.iter().flat_map(|comparison| [comparison.left.method, comparison.right.method]);
+    let compared: BTreeSet<MethodId> = sides.collect();
+    if compared.iter().any(|method| method.as_str() == reference) {
+        return Ok(());
+    }
+    let known: Vec<&str> = compared.iter().map(MethodId::as_str).collect();
+    let limit = format!("is not a method that this study compares, which are: {}", known.join(", "));
+    c.refuse("analysis.reference", reference, limit)
 }

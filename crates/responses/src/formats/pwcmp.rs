@@ -1,7 +1,8 @@
 //! pwcmp's comparisons: one row an answer, `observer, session, scene, condition_A, condition_B, is_A_selected`.
 //!
 //! The format names no questions: a question is a scene with a pair. It does not say which condition was on the left, so sides
-//! are not recorded. The session is the form where an observer has one alone. There are no ties: where an observer has one won and
+//! are not recorded. The session is the form where every observer has one alone, and the study, if it is known, dealt forms
+//! of these numbers. There are no ties: where an observer has one won and
 //! one lost row with the same conditions, scene and session, both are one answer without preference, as
 //! [`Ties::Split`](crate::Ties::Split) writes it. Source: M. Perez-Ortiz and R. Mantiuk, "A practical guide and
 //! software for analysing pairwise comparison experiments" (2017), and the examples of their pwcmp.
@@ -51,17 +52,18 @@ pub(crate) fn read(
     }
     let form = match find("session") {
         None => None,
-        Some(session) => match sessions(source, *row, participant, session)? {
-            Sessions::Several => {
-                let action = "observers have several sessions: not read as forms";
+        Some(session) => {
+            let found = sessions(source, *row, participant, session, plan)?;
+            if let Some(action) = found.action() {
                 report.cell(Kind::Noted, *row, session, &header[session], action);
-                None
             }
-            Sessions::Only => None,
-            Sessions::Forms => Some(session),
-        },
+            (found == Sessions::Forms).then_some(session)
+        }
     };
-    report.column_rule = "questions by scene and pair".into();
+    report.column_rule = match form {
+        Some(_) => "questions by scene and pair, sessions as forms".into(),
+        None => "questions by scene and pair".into(),
+    };
     let columns = Columns {
         participant: Some(participant),
         sides: Some((
@@ -97,15 +99,36 @@ enum Sessions {
     Forms,
     /// When an observer answered.
     Several,
+    /// Something else than the forms that the study dealt.
+    Foreign,
 }
 
-fn sessions(source: &Source<'_>, header: u64, observer: usize, session: usize) -> Result<Sessions, Fault> {
+impl Sessions {
+    /// Why they are not read, where they say something.
+    fn action(self) -> Option<&'static str> {
+        match self {
+            Self::Only | Self::Forms => None,
+            Self::Several => Some("observers have several sessions: not read as forms"),
+            Self::Foreign => Some("no form of the study has such a number: not read as forms"),
+        }
+    }
+}
+
+fn sessions(
+    source: &Source<'_>,
+    header: u64,
+    observer: usize,
+    session: usize,
+    plan: Option<&Plan>,
+) -> Result<Sessions, Fault> {
     let mut of: HashMap<String, String> = HashMap::new();
-    let (mut several, mut only) = (false, true);
+    let (mut several, mut only, mut foreign) = (false, true, false);
+    let dealt = plan.filter(|plan| plan.forms() > 0);
     source.each(|record| {
         if record.row > header && !record.is_blank() {
             let session = crate::decode::records::trim(record.cell(session));
             only &= session == ONLY_SESSION;
+            foreign |= dealt.is_some_and(|plan| plan.sheet(session).is_none());
             match of.get(record.cell(observer)) {
                 Some(first) => several |= first != session,
                 None => drop(of.insert(record.cell(observer).to_owned(), session.to_owned())),
@@ -116,6 +139,7 @@ fn sessions(source: &Source<'_>, header: u64, observer: usize, session: usize) -
     Ok(match (several, only) {
         (true, _) => Sessions::Several,
         (false, true) => Sessions::Only,
+        (false, false) if foreign => Sessions::Foreign,
         (false, false) => Sessions::Forms,
     })
 }

@@ -17,6 +17,8 @@ const NEARLY_ALL: f64 = 0.8;
 pub(super) struct Seen {
     /// People whose times were compared.
     people: usize,
+    /// People with too few times to be compared.
+    untimed: usize,
     /// The least p of two rows, times the number of pairs and three times over; 1 if no two have nearly all times in common.
     pub(super) p: f64,
     /// Who has times in common beyond chance.
@@ -25,9 +27,13 @@ pub(super) struct Seen {
 
 impl Seen {
     pub(super) fn evidence(&self) -> String {
-        match self.copies.is_empty() {
+        let found = match self.copies.is_empty() {
             true => format!("no two of {} people took the same times", self.people),
             false => format!("to the millisecond, {}", list(&self.copies)),
+        };
+        match self.untimed {
+            0 => found,
+            untimed => format!("{found}; {untimed} of all have too few times to be compared"),
         }
     }
 }
@@ -63,7 +69,7 @@ pub(super) fn look(rows: &Rows) -> Option<Seen> {
             shared.entry(*time).and_modify(|n| *n += 1);
         }
     }
-    let mut seen = Seen { people, p: 1.0, copies: Vec::new() };
+    let mut seen = Seen { people, untimed: timed.len() - people, p: 1.0, copies: Vec::new() };
     for Twins { people: [a, b], timed, common } in twins {
         let chance = |time: &Timed| (shared[time].saturating_sub(2) + 1) as f64 / people as f64;
         let row: f64 = common.iter().map(chance).product();
