@@ -194,3 +194,52 @@ fn published_tables_are_those_of_the_answers() {
         assert_eq!(before, now, "{name}: scripts/publish-results.sh renews what is published");
     }
 }
+
+/// Naming a reference moves the zero of every scale that has it, and nothing that is tested or counted.
+#[test]
+fn a_studys_reference_stands_at_zero_and_changes_nothing_else() {
+    let fixture = Fixture::new();
+    fixture.succeed("analyse", &[]);
+    let table =
+        |name: &str| std::fs::read_to_string(fixture.out().join(format!("tables/{name}.csv"))).unwrap();
+    let unmoved = ["contrasts", "tests", "preference_groups", "agreement"];
+    let before = unmoved.map(table);
+    let worths = || -> std::collections::BTreeMap<(String, String), (String, f64)> {
+        let text = table("scale");
+        let rows = text.lines().skip(1).map(|line| {
+            let cells: Vec<&str> = line.split(',').map(|cell| cell.trim_matches('"')).collect();
+            ((cells[0].into(), cells[1].into()), (cells[2].into(), cells[3].parse().unwrap()))
+        });
+        rows.collect()
+    };
+    let first = worths();
+    let config = std::fs::read_to_string(fixture.config()).unwrap();
+    let named = config.replace("\n[analysis]\n", "\n[analysis]\nreference = \"si\"\n");
+    assert_ne!(named, config);
+    std::fs::write(fixture.config(), named).unwrap();
+    fixture.succeed("analyse", &[]);
+    assert_eq!(unmoved.map(table), before);
+    let moved = worths();
+    assert_eq!(moved.len(), first.len());
+    // si, where a group has it; of factors, its levels; elsewhere the first in the study's order.
+    for (group, reference) in [
+        ("S", "si"),
+        ("I", "si"),
+        ("all", "si"),
+        ("clustering", "I"),
+        ("arrangement", "S"),
+        ("B", "bu"),
+        ("P", "sp"),
+    ] {
+        let of = |worths: &std::collections::BTreeMap<_, (String, f64)>, item: &str| {
+            worths[&(group.to_owned(), item.to_owned())].1
+        };
+        let own: Vec<&(String, String)> = moved.keys().filter(|(of, _)| of == group).collect();
+        assert!(own.len() >= 2, "{group}");
+        for (_, item) in own {
+            assert_eq!(moved[&(group.to_owned(), item.clone())].0, reference, "{group} {item}");
+            let want = of(&first, item) - of(&first, reference);
+            assert!((of(&moved, item) - want).abs() < 1e-8, "{group} {item}: {} {want}", of(&moved, item));
+        }
+    }
+}

@@ -164,7 +164,10 @@ fn relabel<'a>(
     place: impl Fn(usize) -> Option<usize>,
 ) -> Vec<ShownBallot> {
     let renamed = |b: &ShownBallot| Some(b.with_items([place(b.left())?, place(b.right())?]));
-    ballots.filter_map(renamed).collect()
+    let mut renamed: Vec<ShownBallot> = ballots.filter_map(renamed).collect();
+    // There may be millions, and they grew by doubling.
+    renamed.shrink_to_fit();
+    renamed
 }
 
 #[cfg(test)]

@@ -23,6 +23,7 @@ mod worths;
 
 use crate::answered::Answered;
 use crate::ballots::BallotGroup;
+use crate::figure::Figure;
 use crate::inputs::{AnalysisError, Inputs};
 use canvas::Canvas;
 pub use history::history_figure;
@@ -32,30 +33,6 @@ use rayon::prelude::*;
 use statistics::ShownBallot;
 
 pub use sweep::sweep_figures;
-
-/// A figure.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Figure {
-    /// File name without extension.
-    pub name: String,
-    /// Caption: what is shown, and what is left out.
-    pub caption: String,
-    /// The drawing as SVG. Text stays text, in DejaVu Sans or what the viewer has instead.
-    pub svg: String,
-    /// The drawing as PNG, 2000 pixels wide, 8-bit RGB.
-    pub png: Vec<u8>,
-}
-
-impl Figure {
-    /// Width and height as it is shown, in pixels: half of what the PNG has.
-    pub fn size(&self) -> [u32; 2] {
-        let attribute = |name: &str| {
-            let rest = self.svg.split_once(&format!("{name}=\""))?.1;
-            rest.split_once('"')?.0.parse::<f64>().ok()
-        };
-        ["width", "height"].map(|name| attribute(name).map_or(0, |size| size.round() as u32))
-    }
-}
 
 /// Every figure whose inputs are there, in the order of the paper's and then our own.
 ///
@@ -85,7 +62,7 @@ fn drafts(inputs: &Inputs<'_>) -> Vec<Unfinished> {
     drafts.extend(meshes::aspect_ratios(inputs));
     drafts.extend(stages::stage_times(inputs));
     drafts.extend(distributions::aspect_ratios(inputs));
-    if let Some(found) = crate::tables::benchmark::budgets(inputs) {
+    if let Some(found) = crate::tables::design::budgets(inputs) {
         drafts.iter_mut().for_each(|draft| draft.caption += &format!(" {found}"));
     }
     if let Some(answered) = inputs.answers {

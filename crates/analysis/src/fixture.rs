@@ -96,6 +96,7 @@ fn mesh(study: &Study, row: &BenchmarkRow, purpose: Purpose) -> MeshRecord {
     MeshRecord {
         schema: MeshRecord::SCHEMA,
         trilinear: None,
+        program: None,
         id: row.id.clone(),
         purpose,
         spacing: object.benchmark_spacing,

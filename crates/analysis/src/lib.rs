@@ -17,6 +17,7 @@ mod answered;
 pub mod audit;
 mod ballots;
 mod data;
+mod figure;
 mod figures;
 mod fraction;
 mod frames;
@@ -49,7 +50,8 @@ pub use answered::Answered;
 pub use ballots::{BallotGroup, ballot_groups, ballots, declared};
 
 pub use data::frames;
-pub use figures::{Figure, figures, figures_of_groups, history_figure, power_figure, sweep_figures};
+pub use figure::Figure;
+pub use figures::{figures, figures_of_groups, history_figure, power_figure, sweep_figures};
 pub use fraction::Fraction;
 pub use frames::{FrameError, LongFrame, answers_frame};
 pub use inputs::{AnalysisError, Inputs};

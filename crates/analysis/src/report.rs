@@ -26,7 +26,7 @@ pub use crate::statement::{Block, Finding, Section, Standing};
 
 use crate::answered::Answered;
 use crate::ballots::BallotGroup;
-use crate::figures::Figure;
+use crate::figure::Figure;
 use crate::hypotheses::{self, Hypothesis, Rules};
 use crate::inputs::Inputs;
 use crate::omnibus::{self, Omnibus};

@@ -1,6 +1,6 @@
 //! What a report is made of: sections of paragraphs, statements, tables and figures.
 
-use crate::figures::Figure;
+use crate::figure::Figure;
 use table::Table;
 
 /// What a statement is worth.

@@ -29,7 +29,8 @@ use table::Table;
 
 /// Every table whose inputs are there, in the order of the paper's and then our own.
 pub fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
-    let mut tables = vec![design::methods(inputs.study), design::configurations(inputs.study)];
+    let mut tables = vec![design::methods(inputs.study), design::configurations(inputs)];
+    tables.extend(design::programs(inputs));
     tables.extend(benchmark::benchmark(inputs));
     tables.extend(design::questionnaire(inputs.study));
     if let Some(answers) = inputs.answers {

@@ -51,8 +51,6 @@ pub struct MethodCount {
 }
 
 /// How many answers of one respondent, in one group's questions on one object, went to one method.
-///
-/// Kept in 20 bytes, since there may be millions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TallyRow {
     /// Row of the respondent, from 0.
@@ -155,7 +153,10 @@ fn rows(study: &Study, counts: Counts<4>) -> Vec<TallyRow> {
         let chosen = chosen.map(|method| methods[method as usize]);
         Some(TallyRow { respondent: participant? - 1, object: object?, group: group?, chosen, answers })
     };
-    counts.into_iter().filter_map(row).collect()
+    let mut rows: Vec<TallyRow> = counts.into_iter().filter_map(row).collect();
+    // There may be millions, and they grew by doubling.
+    rows.shrink_to_fit();
+    rows
 }
 
 fn count_questions(study: &Study, counts: Counts<2>) -> Vec<QuestionCount> {

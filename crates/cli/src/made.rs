@@ -4,11 +4,11 @@ use crate::prepare::Prepared;
 use crate::recipe::Recipe;
 use crate::{mesh_file, records};
 use anyhow::{Context, Result, bail};
-use design::record::Counts;
+use design::record::{Counts, MadeBy};
 use extract::{Execution, Extractor};
 use glam::Vec3;
 use mesh::TriangleMesh;
-use program::{Program, ProgramError, Request, Samples, Worker};
+use program::{Program, ProgramError, Ready, Request, Samples, Worker};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -16,6 +16,8 @@ use std::path::Path;
 pub(crate) struct Made {
     pub(crate) mesh: TriangleMesh,
     pub(crate) counts: Counts,
+    /// The program that made it.
+    pub(crate) program: Option<MadeBy>,
 }
 
 impl Prepared<'_> {
@@ -44,13 +46,13 @@ impl Prepared<'_> {
             Recipe::Extractor(_) => {
                 let extraction =
                     self.extractor().context("an extractor")?.extract_with(extractor, execution)?;
-                Made { counts: records::counts(&extraction.counts), mesh: extraction.mesh }
+                Made { counts: records::counts(&extraction.counts), mesh: extraction.mesh, program: None }
             }
             Recipe::Program(program) => self.by_program(program)?,
             Recipe::Meshes(files) => {
                 let path = files.get(&self.id.object).context("checked when the study was read")?;
                 let mesh = with_normals(mesh_file::read(path)?);
-                Made { counts: records::counts_of_mesh(&mesh, None), mesh }
+                Made { counts: records::counts_of_mesh(&mesh, None), mesh, program: None }
             }
         })
     }
@@ -61,9 +63,11 @@ impl Prepared<'_> {
         let path = worker.folder().join("mesh.ply");
         let samples = self.samples(cells);
         let answer = worker.extract(&self.request(Samples::Values(&samples), cells, Some(&path)))?;
+        let Ready { name, version, note } = worker.ready().clone();
+        let made_by = MadeBy { name, version, note };
         worker.finish()?;
         let mesh = with_normals(answer.mesh.context("a mesh was asked for")?);
-        Ok(Made { counts: records::counts_of_mesh(&mesh, Some(cells)), mesh })
+        Ok(Made { counts: records::counts_of_mesh(&mesh, Some(cells)), mesh, program: Some(made_by) })
     }
 
     /// What a program is asked.

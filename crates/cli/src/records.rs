@@ -27,6 +27,7 @@ pub(crate) fn mesh_record(
         topology: topology(&mesh::topology::topology(mesh)),
         accuracy: self::accuracy(accuracy),
         trilinear: None,
+        program: None,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, bail};
 use raster::Animation;
-use serve::page::Kind;
+use serve::page::MediaFormat;
 use std::io::{ErrorKind, Write};
 use std::process::{Command, Stdio};
 
@@ -51,15 +51,15 @@ pub(crate) fn check() -> Result<()> {
 }
 
 /// The kind that the `ffmpeg` on the PATH can make: H.264, which every browser plays, else VP9; `None` without one.
-pub(crate) fn kind() -> Option<Kind> {
+pub(crate) fn kind() -> Option<MediaFormat> {
     let asked =
         Command::new("ffmpeg").args(["-v", "error", "-encoders"]).stderr(Stdio::null()).output().ok()?;
     let known = String::from_utf8_lossy(&asked.stdout).into_owned();
     let has = |name: &str| known.split_whitespace().any(|word| word == name);
     match () {
         () if !asked.status.success() => None,
-        () if has("libx264") => Some(Kind::Mp4),
-        () if has("libvpx-vp9") => Some(Kind::WebM),
+        () if has("libx264") => Some(MediaFormat::Mp4),
+        () if has("libvpx-vp9") => Some(MediaFormat::WebM),
         () => None,
     }
 }
@@ -71,7 +71,7 @@ pub(crate) fn kind() -> Option<Kind> {
 /// If ffmpeg fails, with what it said.
 pub(crate) fn mp4(animation: &Animation, scale: u32) -> Result<Vec<u8>> {
     let enlarged = if scale > 1 && is_even(animation) { 1 } else { 2 };
-    video(animation, Kind::Mp4, AS_PUBLISHED, &scaled(enlarged, "neighbor"))
+    video(animation, MediaFormat::Mp4, AS_PUBLISHED, &scaled(enlarged, "neighbor"))
 }
 
 /// One turn of a pair as video of its own size; of twice that where a side is odd, which the format does not hold. Colours are as exact as 8
@@ -82,7 +82,7 @@ pub(crate) fn mp4(animation: &Animation, scale: u32) -> Result<Vec<u8>> {
 ///
 /// # Panics
 /// If `kind` is none of video.
-pub(crate) fn for_web(animation: &Animation, kind: Kind, quality: u32) -> Result<Vec<u8>> {
+pub(crate) fn for_web(animation: &Animation, kind: MediaFormat, quality: u32) -> Result<Vec<u8>> {
     let enlarged = if is_even(animation) { 1 } else { 2 };
     let filter = scaled(enlarged, "neighbor+accurate_rnd+full_chroma_int");
     video(animation, kind, &quality.to_string(), &filter)
@@ -96,16 +96,18 @@ fn scaled(times: u32, flags: &str) -> String {
     format!("scale=iw*{times}:ih*{times}:flags={flags}:out_color_matrix=bt709:out_range=tv")
 }
 
-fn video(animation: &Animation, kind: Kind, quality: &str, filter: &str) -> Result<Vec<u8>> {
+fn video(animation: &Animation, kind: MediaFormat, quality: &str, filter: &str) -> Result<Vec<u8>> {
     let folder = tempfile::tempdir()?;
     // A file and not a pipe: the index is written when all else is known.
     let path = folder.path().join(format!("pair.{}", kind.ending()));
     let size = format!("{}x{}", animation.width, animation.height);
     let rate = format!("100/{}", animation.delay_cs);
     let codec: &[&str] = match kind {
-        Kind::Mp4 => &["-c:v", "libx264", "-crf", quality, "-movflags", "+faststart"],
-        Kind::WebM => &["-c:v", "libvpx-vp9", "-b:v", "0", "-crf", quality, "-cpu-used", "3", "-row-mt", "0"],
-        Kind::Gif => panic!("an animation is no video"),
+        MediaFormat::Mp4 => &["-c:v", "libx264", "-crf", quality, "-movflags", "+faststart"],
+        MediaFormat::WebM => {
+            &["-c:v", "libvpx-vp9", "-b:v", "0", "-crf", quality, "-cpu-used", "3", "-row-mt", "0"]
+        }
+        MediaFormat::Gif => panic!("an animation is no video"),
     };
     let mut ffmpeg = Command::new("ffmpeg")
         .args(["-v", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", &size, "-r", &rate, "-i", "-"])

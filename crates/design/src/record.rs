@@ -47,12 +47,32 @@ pub struct MeshRecord {
     /// What the trilinear interpolant of the samples has instead, where the samples are the corners of the grid's cells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub trilinear: Option<Trilinear>,
+    /// The program that made it, as it calls itself; `None` of what is not made by a program.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub program: Option<MadeBy>,
+}
+
+/// What a program says of itself.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MadeBy {
+    /// Its name.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+    /// What a reader of its times should know.
+    #[serde(default)]
+    pub note: Option<String>,
 }
 
 impl MeshRecord {
     /// The version of the layout that is written and read here. 2 has counts that every method has, and those of tetrahedra beside
     /// them.
     pub const SCHEMA: u32 = 2;
+
+    /// Whether it was made on a grid of cells. A mesh that was there already was not.
+    pub fn has_grid(&self) -> bool {
+        self.counts.cells.is_some()
+    }
 }
 
 /// The topology of the trilinear level set of a grid of samples; names as in `trilinear::Summary`.
@@ -336,6 +356,13 @@ pub struct BenchSample {
     /// What else was counted meanwhile.
     #[serde(default)]
     pub counters: Counters,
+}
+
+impl BenchSample {
+    /// Whether its stages were told apart. A program's are not: all it does stands as geometry, and sampling may be ours.
+    pub fn has_stages(&self) -> bool {
+        self.allocation_s + self.vertex_s + self.clustering_s + self.normals_s > 0.0
+    }
 }
 
 /// What the measuring process used for one extraction, over all its threads, beside time. `None` is not told: by the system, or

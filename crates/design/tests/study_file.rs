@@ -388,6 +388,7 @@ fn full_study() -> StudyFile {
             margin: 0.2,
             families: FamilyRule::One,
             primary: vec![text()],
+            reference: Some(text()),
             exclude: vec![Exclusion::Outlying],
         },
         published: Some(PublishedSection {

@@ -46,14 +46,14 @@ fn field(name: &str) -> Option<(Box<dyn StudyField>, Bounds)> {
     })
 }
 
-struct Subject {
+struct Case {
     field: Box<dyn StudyField>,
     lattice: Lattice,
     extractor: Extractor,
     extraction: Extraction,
 }
 
-impl Subject {
+impl Case {
     fn new(name: &str, cells: u32) -> Option<Self> {
         let (field, bounds) = field(name)?;
         let lattice =
@@ -90,18 +90,18 @@ impl Subject {
 
 #[divan::bench(args = FIELDS, consts = CELLS)]
 fn whole<const N: u32>(bencher: Bencher, name: &str) {
-    let Some(mut subject) = Subject::new(name, N) else { return };
-    bencher.counter(ItemsCount::new(subject.lattice.stored_samples())).bench_local(|| {
-        subject.run(None, Clustering::Integrated, 1);
+    let Some(mut case) = Case::new(name, N) else { return };
+    bencher.counter(ItemsCount::new(case.lattice.stored_samples())).bench_local(|| {
+        case.run(None, Clustering::Integrated, 1);
     });
 }
 
 /// [`whole`] with another placement of vertices.
 fn placed<const N: u32>(bencher: Bencher, name: &str, placement: Placement, refine_crossings: bool) {
-    let Some(mut subject) = Subject::new(name, N) else { return };
+    let Some(mut case) = Case::new(name, N) else { return };
     let settings = ExtractSettings { placement, refine_crossings, ..ExtractSettings::default() };
     bencher.bench_local(|| {
-        let Subject { field, lattice, extractor, extraction } = &mut subject;
+        let Case { field, lattice, extractor, extraction } = &mut case;
         extractor
             .extract_into(Source::Study(&**field), lattice, &settings, &Execution { threads: 1 }, extraction)
             .expect("the subjects can be extracted");
@@ -131,42 +131,42 @@ fn placed_at_refined_crossings<const N: u32>(bencher: Bencher, name: &str) {
 /// [`whole`] with an edge collapse after it.
 #[divan::bench(args = FIELDS, consts = CELLS, sample_count = 20)]
 fn collapsed<const N: u32>(bencher: Bencher, name: &str) {
-    let Some(mut subject) = Subject::new(name, N) else { return };
-    bencher.bench_local(|| subject.run(None, Clustering::IntegratedCollapse, 1));
+    let Some(mut case) = Case::new(name, N) else { return };
+    bencher.bench_local(|| case.run(None, Clustering::IntegratedCollapse, 1));
 }
 
 #[divan::bench(args = FIELDS, consts = CELLS)]
 fn all_samples<const N: u32>(bencher: Bencher, name: &str) {
-    let Some(mut subject) = Subject::new(name, N) else { return };
-    let samples = subject.samples();
+    let Some(mut case) = Case::new(name, N) else { return };
+    let samples = case.samples();
     bencher.counter(ItemsCount::new(samples.len())).bench_local(|| {
-        subject.run(Some(&samples), Clustering::Integrated, 1);
+        case.run(Some(&samples), Clustering::Integrated, 1);
     });
 }
 
 #[divan::bench(args = FIELDS, consts = CELLS)]
 fn all_samples_two_threads<const N: u32>(bencher: Bencher, name: &str) {
-    let Some(mut subject) = Subject::new(name, N) else { return };
-    let samples = subject.samples();
-    bencher.bench_local(|| subject.run(Some(&samples), Clustering::Integrated, 2));
+    let Some(mut case) = Case::new(name, N) else { return };
+    let samples = case.samples();
+    bencher.bench_local(|| case.run(Some(&samples), Clustering::Integrated, 2));
 }
 
 #[divan::bench(args = FIELDS, consts = CELLS)]
 fn all_samples_unclustered<const N: u32>(bencher: Bencher, name: &str) {
-    let Some(mut subject) = Subject::new(name, N) else { return };
-    let samples = subject.samples();
-    bencher.bench_local(|| subject.run(Some(&samples), Clustering::None, 1));
+    let Some(mut case) = Case::new(name, N) else { return };
+    let samples = case.samples();
+    bencher.bench_local(|| case.run(Some(&samples), Clustering::None, 1));
 }
 
 /// Stages are not functions of their own but run turn and turn about, layer by layer: each is timed inside, and its
 /// share is spun away again for the benchmark to see. So every sample takes the whole and its stage on top.
 fn stage<const N: u32>(bencher: Bencher, name: &str, given: bool, of: fn(&StageTimes) -> Duration) {
-    let Some(mut subject) = Subject::new(name, N) else { return };
-    let samples = given.then(|| subject.samples());
+    let Some(mut case) = Case::new(name, N) else { return };
+    let samples = given.then(|| case.samples());
     bencher
         .with_inputs(|| {
-            subject.run(samples.as_deref(), Clustering::Integrated, 1);
-            of(&subject.extraction.times)
+            case.run(samples.as_deref(), Clustering::Integrated, 1);
+            of(&case.extraction.times)
         })
         .bench_local_values(|time| {
             let start = std::time::Instant::now();

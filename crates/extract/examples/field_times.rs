@@ -85,7 +85,7 @@ fn main() {
                 }
             }
             let taken = AtomicUsize::new(0);
-            let mut kept = field::Kept::default();
+            let mut kept = field::FieldCache::default();
             let prepared = field.prepared(&mut kept);
             let counting = Counting(prepared.unwrap_or(field), &taken);
             extractor.extract(Source::Study(&counting), &lattice, &settings, &execution).unwrap();

@@ -11,7 +11,7 @@ use crate::isosurface::{Isosurface, REACH};
 use crate::level::Level;
 use crate::sampling::{SHARE, mapped, on_threads};
 use crate::settings::Execution;
-use field::{Kept, StudyField};
+use field::{FieldCache, StudyField};
 
 /// Points on a mesh, and on the isosurface.
 const POINTS: u64 = 8_192;
@@ -85,7 +85,7 @@ pub fn accuracy(
     // Without an area there is nothing to be far from.
     let surface = Surface::try_new(mesh).ok();
 
-    let mut kept = Kept::default();
+    let mut kept = FieldCache::default();
     let level = Level { field: field.prepared(&mut kept).unwrap_or(field), isovalue, spacing };
     let isosurface = Isosurface::new(field, level, grid, execution)?;
     let beyond = points_on(&isosurface.triangles);

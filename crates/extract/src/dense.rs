@@ -20,7 +20,7 @@ use crate::settings::ExtractSettings;
 use crate::sides::Sides;
 use crate::triangles::triangulate;
 use crate::vertices::VertexStage;
-use field::{Kept, StudyField};
+use field::{FieldCache, StudyField};
 
 /// The stages in order, timed and counted. At most `most_vertices` may come of it.
 pub(crate) fn extract(
@@ -40,7 +40,7 @@ pub(crate) fn extract(
     let mut edges = EdgeTable::new(layout.len());
     let allocation = clock.lap();
 
-    let mut kept = Kept::default();
+    let mut kept = FieldCache::default();
     let field = field.prepared(&mut kept).unwrap_or(field);
     let coordinates = Coordinates::sampled(lattice, &layout, settings.positions, Border::of(settings))?;
     sample(field, &layout, &coordinates, control, &mut samples)?;

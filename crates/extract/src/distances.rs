@@ -11,7 +11,7 @@ use crate::isosurface::Isosurface;
 use crate::level::Level;
 use crate::sampling::on_threads;
 use crate::settings::Execution;
-use field::{Kept, StudyField};
+use field::{FieldCache, StudyField};
 
 /// Why a mesh and an isosurface cannot be measured against each other.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -46,7 +46,7 @@ pub fn distances(
     sampling: &Sampling,
     execution: &Execution,
 ) -> Result<Metro, DistanceError> {
-    let mut kept = Kept::default();
+    let mut kept = FieldCache::default();
     let prepared = field.prepared(&mut kept).unwrap_or(field);
     let level = Level { field: prepared, isovalue, spacing: grid.spacing };
     let isosurface = Isosurface::new(field, level, grid, execution)?;

@@ -1,6 +1,6 @@
 //! The extractor: which of the ways a surface is extracted in, and the buffers that stay.
 
-use field::{Kept, Plain, StudyField, Watched};
+use field::{FieldCache, Plain, StudyField, Watched};
 
 use crate::by_cell::CellStreamer;
 use crate::clock::Moment;
@@ -44,7 +44,7 @@ use crate::trace::Trace;
 pub struct Extractor {
     streamer: Streamer,
     cell_streamer: CellStreamer,
-    kept: Kept,
+    kept: FieldCache,
     progress: Option<Box<Progress>>,
     /// Where the last mesh came from, if `traced`.
     pub(crate) trace: Trace,

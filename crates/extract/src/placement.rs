@@ -7,10 +7,12 @@ mod crossings;
 mod curvature;
 mod moves;
 mod relaxation;
+mod surroundings;
 
-pub(crate) use self::crossings::{CrossingPlacer, Surroundings, crossing_ratio};
+pub(crate) use self::crossings::{CrossingPlacer, crossing_ratio};
 pub(crate) use self::moves::{MOST_PASSES, Moves, on_box};
 pub(crate) use self::relaxation::relaxed;
+pub(crate) use self::surroundings::Surroundings;
 use crate::ExtractError;
 use crate::settings::ExtractSettings;
 

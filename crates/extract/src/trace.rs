@@ -50,7 +50,7 @@ impl VertexKey {
     }
 }
 
-/// Whence each vertex and each triangle of a mesh before edges are collapsed.
+/// Where each vertex and each triangle of a mesh came from, before edges are collapsed.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Trace {
     pub(crate) keys: Vec<VertexKey>,

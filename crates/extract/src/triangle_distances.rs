@@ -1,6 +1,6 @@
 //! How far each triangle of a mesh is from the isosurface.
 
-use field::{Kept, StudyField};
+use field::{FieldCache, StudyField};
 use glam::DVec3;
 use mesh::TriangleMesh;
 
@@ -32,7 +32,7 @@ pub fn triangle_distances(
     spacing: f32,
     execution: &Execution,
 ) -> Result<Vec<Option<f64>>, ExtractError> {
-    let mut kept = Kept::default();
+    let mut kept = FieldCache::default();
     let level = Level { field: field.prepared(&mut kept).unwrap_or(field), isovalue, spacing };
     let distance = |p: DVec3| foot(field, &level, p).map(|foot| foot.distance);
     on_threads(execution, (mesh.triangles.len() / SHARE).max(1), || {

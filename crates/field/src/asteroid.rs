@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::asteroid_table::AsteroidTable;
 use super::sine::sin;
-use super::{Kept, StudyField};
+use super::{FieldCache, StudyField};
 
 /// A lumpy ball: `f(p) = radius - |p/k| + amplitude * fbm(frequency * ((p/|p|)/k))`, `/k` by component.
 ///
@@ -58,7 +58,7 @@ impl StudyField for Asteroid {
     }
 
     /// With the hashes in tables, and bounds.
-    fn prepared<'a>(&self, kept: &'a mut Kept) -> Option<&'a dyn StudyField> {
+    fn prepared<'a>(&self, kept: &'a mut FieldCache) -> Option<&'a dyn StudyField> {
         let table =
             kept.get_or_make(|table: &AsteroidTable| table.is_of(self), || AsteroidTable::new(self))?;
         Some(table)

@@ -129,7 +129,7 @@ pub trait StudyField: Sync {
 
     /// The same field, value by value to the bit, made ready for very many samples, where that is worth while. What it
     /// takes lies in `kept`, which may hold what another field, or this one before, left there.
-    fn prepared<'a>(&self, _kept: &'a mut Kept) -> Option<&'a dyn StudyField> {
+    fn prepared<'a>(&self, _kept: &'a mut FieldCache) -> Option<&'a dyn StudyField> {
         None
     }
 }
@@ -174,16 +174,16 @@ where
         (**self).isosurface_triangles(isovalue)
     }
 
-    fn prepared<'a>(&self, kept: &'a mut Kept) -> Option<&'a dyn StudyField> {
+    fn prepared<'a>(&self, kept: &'a mut FieldCache) -> Option<&'a dyn StudyField> {
         (**self).prepared(kept)
     }
 }
 
 /// What a field keeps from one extraction to the next, so that it need not be made again.
 #[derive(Debug, Default)]
-pub struct Kept(Option<Box<dyn Any + Send + Sync>>);
+pub struct FieldCache(Option<Box<dyn Any + Send + Sync>>);
 
-impl Kept {
+impl FieldCache {
     /// What is kept, if it is a `T` and `fits`; otherwise what `make` gives, which is kept from now on.
     pub fn get_or_make<T: Any + Send + Sync>(
         &mut self,

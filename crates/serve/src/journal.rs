@@ -9,6 +9,7 @@
 
 mod copy;
 mod files;
+mod owned;
 mod place;
 mod seal;
 mod summary;

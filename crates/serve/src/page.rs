@@ -17,7 +17,7 @@ pub const FILES: [(&str, &str, &str); 7] = [
 /// How a pair is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Kind {
+pub enum MediaFormat {
     /// H.264.
     Mp4,
     /// VP9.
@@ -26,7 +26,7 @@ pub enum Kind {
     Gif,
 }
 
-impl Kind {
+impl MediaFormat {
     /// The ending of the files' names, without a dot.
     pub fn ending(self) -> &'static str {
         match self {
@@ -60,14 +60,14 @@ impl Kind {
 pub struct Media {
     /// Every kind that there is a file of for every pair, with the bytes of each and its frames a turn; the page takes the first
     /// that the browser plays.
-    pub kinds: Vec<(Kind, u64, u32)>,
+    pub kinds: Vec<(MediaFormat, u64, u32)>,
     /// Width and height of each surface as it was made, in pixels: shown no larger than that, times `page_scale`.
     pub surface: [u32; 2],
 }
 
 impl Media {
     /// Bytes that a participant loads, by kind: the longest form's pairs, each once.
-    pub fn loaded(&self, file: &FormFile) -> Vec<(Kind, u64)> {
+    pub fn loaded(&self, file: &FormFile) -> Vec<(MediaFormat, u64)> {
         let pairs = file.forms.iter().map(|form| form.training.len() + form.questions.len()).max();
         self.kinds.iter().map(|&(kind, bytes, _)| (kind, bytes * pairs.unwrap_or(0) as u64)).collect()
     }
@@ -75,7 +75,7 @@ impl Media {
 
 #[derive(Serialize)]
 struct KnownKind {
-    kind: Kind,
+    kind: MediaFormat,
     bytes: u64,
     frames: u32,
     #[serde(rename = "type", skip_serializing_if = "Option::is_none")]
@@ -109,8 +109,12 @@ struct Known<'a> {
 /// `forms.js`: a script and not JSON, since a page from a folder may load the one but not the other. With a server the page
 /// is told no forms; it is dealt one. `digest` tells one version of the study from another.
 pub fn forms_js(file: &FormFile, digest: &str, media: &Media, server: bool) -> String {
-    let known_kind =
-        |&(kind, bytes, frames): &(Kind, u64, u32)| KnownKind { kind, bytes, frames, asked: kind.asked() };
+    let known_kind = |&(kind, bytes, frames): &(MediaFormat, u64, u32)| KnownKind {
+        kind,
+        bytes,
+        frames,
+        asked: kind.asked(),
+    };
     // Practice is the same in every form, and tells nothing of who is dealt which.
     let first = file.forms.first().map_or(&[][..], |form| &form.training);
     let known = Known {

@@ -1,11 +1,9 @@
 //! What participants send, and when it is refused.
 
-use crate::screen::Screen;
+use crate::screen::{LONGEST_MS, Screen};
 use design::forms::FormEntry;
 use serde::{Deserialize, Serialize};
 
-/// Longest time for one answer that is believed, in milliseconds: a day.
-pub const LONGEST_MS: u32 = 86_400_000;
 /// Longest identifier of a panel.
 const LONGEST_ID: usize = 64;
 

@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Longest time for one answer that is believed, in milliseconds: a day.
+pub const LONGEST_MS: u32 = 86_400_000;
+
 /// Whether the two surfaces were side by side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -86,7 +89,7 @@ impl Screen {
         let Self { viewport_width, viewport_height, pixel_ratio, surface_px, .. } = *self;
         [viewport_width, viewport_height, surface_px].iter().all(|&pixels| pixels <= LARGEST_PX)
             && (0.01..=100.0).contains(&pixel_ratio)
-            && self.hidden_ms <= crate::record::LONGEST_MS
+            && self.hidden_ms <= LONGEST_MS
     }
 
     /// As it can be given to others: windows, which may be as large as nobody else's, rounded down to whole steps of 50 pixels.

@@ -12,7 +12,7 @@ use http::{get, post, raw};
 use rusqlite::Connection;
 use serde_json::{Value, json};
 use serve::journal::Loss;
-use serve::page::{Kind, Media};
+use serve::page::{Media, MediaFormat};
 use serve::{Limits, Settings};
 use std::fs::{self, File};
 use std::io::{Read, Write};
@@ -62,7 +62,7 @@ fn settings(folder: &Path, loss: Loss) -> Settings {
         key,
         digest: "d".into(),
         stimuli: folder.join("stimuli"),
-        media: Media { kinds: vec![(Kind::Gif, 1, 10)], surface: [8, 8] },
+        media: Media { kinds: vec![(MediaFormat::Gif, 1, 10)], surface: [8, 8] },
         answers: folder.join("answers"),
         address: SocketAddr::from(([127, 0, 0, 1], 0)),
         admin_token: TOKEN.into(),

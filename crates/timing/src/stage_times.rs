@@ -22,6 +22,8 @@ pub struct StageTimes {
     pub normals_s: f64,
     /// Median of the samples' totals without normals.
     pub median_without_normals_s: f64,
+    /// Whether the stages were told apart, see [`BenchSample::has_stages`].
+    pub has_stages: bool,
 }
 
 impl StageTimes {
@@ -57,6 +59,7 @@ impl StageTimes {
             clustering_s: mean(|s| s.clustering_s),
             normals_s: mean(|s| s.normals_s),
             median_without_normals_s: median,
+            has_stages: samples.iter().any(|sample| sample.has_stages()),
         })
     }
 

@@ -24,9 +24,9 @@ pub(crate) fn meshes(study: &Study, records: &[MeshRecord]) -> LongFrame {
         });
     }
     rows.text("purpose", |mesh| Some(purpose(mesh.purpose).into()));
-    rows.number("spacing", |mesh| Some(mesh.spacing));
+    rows.number("spacing", |mesh| mesh.has_grid().then_some(mesh.spacing));
     for (axis, name) in ["cells_x", "cells_y", "cells_z"].into_iter().enumerate() {
-        rows.count(name, |mesh| Some(mesh.cells[axis].into()));
+        rows.count(name, |mesh| mesh.has_grid().then(|| mesh.cells[axis].into()));
     }
     COUNTS.iter().for_each(|(name, of)| rows.count(name, |mesh| of(&mesh.counts)));
     TETRAHEDRA.iter().for_each(|(name, of)| rows.count(name, |mesh| mesh.counts.of_tetrahedra(*of)));

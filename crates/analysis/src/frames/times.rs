@@ -15,20 +15,22 @@ pub(crate) fn times(run: &BenchRun) -> LongFrame {
     rows.count("invocation", |(_, sample)| Some(sample.invocation.into()));
     rows.count("iteration", |(_, sample)| Some(sample.iteration.into()));
     rows.count("place", |(_, sample)| Some(sample.place.into()));
-    STAGES.iter().for_each(|(name, of)| rows.number(name, |(_, sample)| Some(of(sample))));
+    STAGES.iter().for_each(|(name, of, everybody)| {
+        rows.number(name, |(_, sample)| (*everybody || sample.has_stages()).then(|| of(sample)));
+    });
     rows.number("reference_s", |(_, sample)| sample.reference_s);
     LongFrame { name: "times", frame: rows.frame(), texts: Vec::new() }
 }
 
-/// A column of seconds, and where they stand.
-type Timed = (&'static str, fn(&BenchSample) -> f64);
+/// A column of seconds, where they stand, and whether programs have them too.
+type Timed = (&'static str, fn(&BenchSample) -> f64, bool);
 
 const STAGES: [Timed; 7] = [
-    ("allocation_s", |s| s.allocation_s),
-    ("sampling_s", |s| s.sampling_s),
-    ("vertex_s", |s| s.vertex_s),
-    ("geometry_s", |s| s.geometry_s),
-    ("clustering_s", |s| s.clustering_s),
-    ("normals_s", |s| s.normals_s),
-    ("total_s", |s| s.total_s),
+    ("allocation_s", |s| s.allocation_s, false),
+    ("sampling_s", |s| s.sampling_s, true),
+    ("vertex_s", |s| s.vertex_s, false),
+    ("geometry_s", |s| s.geometry_s, true),
+    ("clustering_s", |s| s.clustering_s, false),
+    ("normals_s", |s| s.normals_s, false),
+    ("total_s", |s| s.total_s, true),
 ];

@@ -3,8 +3,7 @@
 use crate::inputs::Inputs;
 use crate::mesh_set::{MeshSet, discard_fraction, known};
 use crate::published_ratio;
-use crate::tables::design::{level, method_columns};
-use design::config::BudgetSection;
+use crate::tables::design::{budgets, level, method_columns};
 use design::record::{MeshRecord, Purpose};
 use table::{Cell, Table};
 use timing::stage_times::{StageTimes, conditions};
@@ -14,7 +13,10 @@ type Entry = (&'static str, &'static str, fn(&MeshRecord) -> Cell);
 
 /// What is known of a mesh; after the first come the columns that tell the method.
 const MESH_COLUMNS: &[Entry] = &[
-    ("resolution", "Cubes", |m| Cell::text(format!("{}x{}x{}", m.cells[0], m.cells[1], m.cells[2]))),
+    ("resolution", "Cubes", |m| match m.has_grid() {
+        true => Cell::text(format!("{}x{}x{}", m.cells[0], m.cells[1], m.cells[2])),
+        false => Cell::Missing,
+    }),
     ("tetrahedra", "Tetrahedra", |m| maybe(m.counts.of_tetrahedra(|t| t.tetrahedra))),
     ("tetrahedra_evaluated", "Evaluated", |m| maybe(m.counts.of_tetrahedra(|t| t.tetrahedra_evaluated))),
     ("evaluated_fraction", "Evaluated fraction", |m| {
@@ -64,16 +66,24 @@ type TimeEntry = (&'static str, &'static str, fn(&StageTimes) -> Cell);
 const TIME_COLUMNS: &[TimeEntry] = &[
     ("total_without_normals_s", "Total, s", |t| Cell::Number(t.total_without_normals_s(), 6)),
     ("total_without_normals_median_s", "Median, s", |t| Cell::Number(t.median_without_normals_s, 6)),
-    ("allocation_s", "Allocation, s", |t| Cell::Number(t.allocation_s, 6)),
+    ("allocation_s", "Allocation, s", |t| told_apart(t, t.allocation_s)),
     ("sampling_s", "Sampling, s", |t| Cell::Number(t.sampling_s, 6)),
     ("sampling_fraction", "Sampling fraction", |t| fraction(t, t.sampling_s)),
-    ("vertex_s", "Vertex, s", |t| Cell::Number(t.vertex_s, 6)),
-    ("vertex_fraction", "Vertex fraction", |t| fraction(t, t.vertex_s)),
+    ("vertex_s", "Vertex, s", |t| told_apart(t, t.vertex_s)),
+    ("vertex_fraction", "Vertex fraction", |t| match t.has_stages {
+        true => fraction(t, t.vertex_s),
+        false => Cell::Missing,
+    }),
     ("geometry_s", "Geometry, s", |t| Cell::Number(t.geometry_s, 6)),
-    ("clustering_s", "Edge collapse within it, s", |t| Cell::Number(t.clustering_s, 6)),
+    ("clustering_s", "Edge collapse within it, s", |t| told_apart(t, t.clustering_s)),
     ("geometry_fraction", "Geometry fraction", |t| fraction(t, t.geometry_s)),
-    ("normals_s", "Normals, s", |t| Cell::Number(t.normals_s, 6)),
+    ("normals_s", "Normals, s", |t| told_apart(t, t.normals_s)),
 ];
+
+/// Seconds of a stage; empty where stages were not told apart.
+fn told_apart(times: &StageTimes, seconds: f64) -> Cell {
+    Cell::number(times.has_stages.then_some(seconds), 6)
+}
 
 /// Stands for the columns that tell the method.
 const FACTORS: &str = "factors";
@@ -181,7 +191,7 @@ pub(crate) fn whole(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Optio
     let mut table = Table::new("benchmark", "Benchmark", &columns);
     for (configuration, mesh) in meshes.in_order().filter(|(c, _)| holds(c.object)) {
         let mut row = vec![Cell::text(&mesh.id), (MESH_COLUMNS[0].2)(mesh)];
-        row.extend(matched.then_some(Cell::Number(mesh.spacing, 5)));
+        row.extend(matched.then(|| Cell::number(mesh.has_grid().then_some(mesh.spacing), 5)));
         row.extend(factors.iter().map(|&factor| level(study, mesh.id.method, factor)));
         row.extend(MESH_COLUMNS[1..].iter().map(|(_, _, cell)| cell(mesh)));
         if let Some(run) = inputs.bench {
@@ -195,6 +205,11 @@ pub(crate) fn whole(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Optio
         table
             .notes
             .push(format!("{} Total and fractions leave the normals out, as published.", conditions(run)));
+        if run.samples.iter().any(|sample| !sample.has_stages()) {
+            let told =
+                "A program does not tell its stages: all its work stands as geometry, normals included.";
+            table.notes.push(told.into());
+        }
     }
     table.notes.push(
         "Discarded, as published, counts some triangles twice; discarded is the true number. The aspect ratio is \
@@ -204,18 +219,4 @@ pub(crate) fn whole(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Optio
     );
     table.notes.extend(budgets(inputs));
     (!table.rows.is_empty()).then_some(table)
-}
-
-/// Which methods have another spacing than their object, and why, in a sentence.
-pub(crate) fn budgets(inputs: &Inputs<'_>) -> Option<String> {
-    let with_budget = |method: &design::Method| {
-        let budget = method.budget?;
-        let what = match budget {
-            BudgetSection::TimeOf(of) => format!("as much time as {of}"),
-            _ => format!("as many {} as {}", budget.names()[1], budget.of()),
-        };
-        Some(format!("{} to have {what}", method.id))
-    };
-    let found: Vec<String> = inputs.study.methods.iter().filter_map(with_budget).collect();
-    (!found.is_empty()).then(|| format!("Spacings were chosen for {}, object by object.", found.join(", ")))
 }

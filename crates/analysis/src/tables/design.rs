@@ -1,5 +1,9 @@
 //! Tables that follow from the study file alone.
 
+use crate::inputs::Inputs;
+use crate::mesh_set::MeshSet;
+use ::design::config::BudgetSection;
+use ::design::record::{MadeBy, Purpose};
 use ::design::{Factor, MethodId, Study};
 use table::{Cell, Table};
 
@@ -39,8 +43,25 @@ pub(super) fn methods(study: &Study) -> Table {
     table
 }
 
-/// The configurations: object, method, spacings (the paper's appendix A).
-pub(super) fn configurations(study: &Study) -> Table {
+/// The programs that made meshes, as they call themselves; `None` where none did.
+pub(super) fn programs(inputs: &Inputs<'_>) -> Option<Table> {
+    let columns = [("method", "Method"), ("program", "Program"), ("version", "Version"), ("note", "Note")];
+    let mut table = Table::new("programs", "Programs", &columns);
+    for method in &inputs.study.methods {
+        let mut of_method = inputs.meshes.iter().filter(|mesh| mesh.id.method == method.id);
+        if let Some(MadeBy { name, version, note }) = of_method.find_map(|mesh| mesh.program.as_ref()) {
+            let note = note.as_ref().map_or(Cell::Missing, Cell::text);
+            table.push(vec![Cell::text(&method.label), Cell::text(name), Cell::text(version), note]);
+        }
+    }
+    (!table.rows.is_empty()).then_some(table)
+}
+
+/// The configurations: object, method, spacings (the paper's appendix A). Meshes that were there already have none; those that
+/// meet a budget have what was found, once they are made.
+pub(super) fn configurations(inputs: &Inputs<'_>) -> Table {
+    let study = inputs.study;
+    let made = [Purpose::Benchmark, Purpose::Stimulus].map(|purpose| MeshSet::of(inputs, purpose));
     let mut columns = vec![("id".to_owned(), "Id".to_owned()), ("object".into(), "Object".into())];
     let factors = method_columns(study);
     columns.extend(factors.iter().map(|&factor| {
@@ -55,11 +76,33 @@ pub(super) fn configurations(study: &Study) -> Table {
         let object = study.object(configuration);
         let mut row = vec![Cell::text(&configuration.id), Cell::text(&object.name)];
         row.extend(factors.iter().map(|&factor| level(study, configuration.id.method, factor)));
-        row.push(Cell::Number(object.benchmark_spacing, 3));
-        row.push(Cell::Number(object.stimulus_spacing, 3));
+        let budget = study.method(configuration.id.method).budget;
+        for (meshes, of_object) in made.iter().zip([object.benchmark_spacing, object.stimulus_spacing]) {
+            row.push(match (meshes.get(&configuration.id), budget) {
+                (Some(mesh), _) if !mesh.has_grid() => Cell::Missing,
+                (Some(mesh), Some(_)) => Cell::Number(mesh.spacing, 5),
+                (None, Some(_)) => Cell::Missing,
+                (_, None) => Cell::Number(of_object, 3),
+            });
+        }
         table.push(row);
     }
+    table.notes.extend(budgets(inputs));
     table
+}
+
+/// Which methods have another spacing than their object, and why, in a sentence.
+pub(crate) fn budgets(inputs: &Inputs<'_>) -> Option<String> {
+    let with_budget = |method: &::design::Method| {
+        let budget = method.budget?;
+        let what = match budget {
+            BudgetSection::TimeOf(of) => format!("as much time as {of}"),
+            _ => format!("as many {} as {}", budget.names()[1], budget.of()),
+        };
+        Some(format!("{} to have {what}", method.id))
+    };
+    let found: Vec<String> = inputs.study.methods.iter().filter_map(with_budget).collect();
+    (!found.is_empty()).then(|| format!("Spacings were chosen for {}, object by object.", found.join(", ")))
 }
 
 /// The questions: what is shown on which side (appendix C).

@@ -124,7 +124,7 @@ fn judge(arguments: &Arguments, run: &BenchRun) -> Outcome {
     let told = timing::would_tell(run);
     if let Some((least, most)) = told {
         tell!(
-            "timings: between two runs like this one, growth of a total is told from {} to {} on, by configuration",
+            "timings: between two runs like this one, totals must grow by {} to {} to be found, by configuration",
             percent(least),
             percent(most)
         );

@@ -11,7 +11,7 @@ use crate::{input, video};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use design::forms::FormFile;
-use serve::page::{Kind, Media};
+use serve::page::{Media, MediaFormat};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -75,10 +75,10 @@ pub(super) fn make(
         if !fit_to_show(&study, Some(out), with_faults)? {
             return Ok(());
         }
-        let before = videos(out, Kind::Mp4)? + videos(out, Kind::WebM)?;
+        let before = videos(out, MediaFormat::Mp4)? + videos(out, MediaFormat::WebM)?;
         pipeline.finished_videos(&pairs)?;
         let media = pipeline.bundle(&forms, &pairs, wanted(out)?)?;
-        if before > 0 && media.kinds.iter().all(|&(kind, ..)| kind == Kind::Gif) {
+        if before > 0 && media.kinds.iter().all(|&(kind, ..)| kind == MediaFormat::Gif) {
             tell!("{before} videos are removed from the bundle; `isostudy bundle --mp4` makes them");
         }
         tell_load(&media, &file);
@@ -89,7 +89,7 @@ pub(super) fn make(
 }
 
 /// How many videos of a kind the bundle has.
-pub(super) fn videos(out: &Path, kind: Kind) -> Result<usize> {
+pub(super) fn videos(out: &Path, kind: MediaFormat) -> Result<usize> {
     Ok(input::files_of(&stimuli(out), kind.ending())?.len())
 }
 

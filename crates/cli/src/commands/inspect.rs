@@ -133,7 +133,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         prepare::check_memory(&study, method, &prepared.grid, &execution, machine.memory_bytes)
             .with_context(|| format!("{id} with spacing {spacing}"))?;
     }
-    let Made { mesh, counts } =
+    let Made { mesh, counts, .. } =
         prepared.make(&mut Extractor::new(), &execution).with_context(|| id.to_string())?;
     let Prepared { field, grid, isovalue, .. } = &prepared;
     let accuracy = extract::accuracy(&mesh, *field, *isovalue, grid, &execution)?;

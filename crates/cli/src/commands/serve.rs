@@ -10,7 +10,7 @@ use crate::pipeline::Videos;
 use anyhow::{Result, bail};
 use clap::Args;
 use serve::journal::Loss;
-use serve::page::Kind;
+use serve::page::MediaFormat;
 use serve::{Limits, Settings};
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -54,8 +54,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let (file, key, digest) = forms(&study)?;
     let wanted = |out: &Path| {
         Ok(match () {
-            () if videos(out, Kind::Mp4)? > 0 => Videos::Kept(Kind::Mp4),
-            () if videos(out, Kind::WebM)? > 0 => Videos::Kept(Kind::WebM),
+            () if videos(out, MediaFormat::Mp4)? > 0 => Videos::Made(MediaFormat::Mp4),
+            () if videos(out, MediaFormat::WebM)? > 0 => Videos::Made(MediaFormat::WebM),
             () => Videos::Needed,
         })
     };

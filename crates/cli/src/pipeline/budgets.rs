@@ -181,8 +181,7 @@ impl Pipeline<'_> {
         let made = prepared.make(&mut Extractor::new(), &Execution { threads: self.threads })?;
         match budget {
             BudgetSection::SamplesOf(_) => {
-                let samples = made.counts.samples;
-                Ok(samples.with_context(|| format!("{} takes no samples", configuration.id))? as f64)
+                Ok(made.counts.samples.context("checked when the study was read")? as f64)
             }
             _ => Ok(made.counts.triangles as f64),
         }

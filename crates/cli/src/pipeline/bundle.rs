@@ -1,6 +1,6 @@
 //! What participants get, and what the researcher keeps: the forms, the bundle, the keys, the contact sheet.
 
-use super::web::{Videos, Web};
+use super::web::{LEAST_PADDING, Videos, Web};
 use super::{Meshes, Pipeline};
 use crate::picture;
 use crate::source_digests;
@@ -13,14 +13,11 @@ use design::record::Purpose;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use raster::tiny_skia::Pixmap;
-use serve::page::{Kind, Media};
+use serve::page::{Media, MediaFormat};
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 
 const BUNDLE: &str = "bundle";
-
-/// So that the largest file, too, ends like the others.
-pub(super) const LEAST_PADDING: usize = 64;
 
 /// Noise after the end of a GIF, where no reader looks, or in an MP4's free space: unlike zeros it neither shows nor can be compressed.
 fn pad(bytes: &mut Vec<u8>, size: usize, seed: u64, name: &str) {
@@ -65,8 +62,8 @@ impl Pipeline<'_> {
         let text = std::fs::read(self.store.root().join(forms.file("forms.json")))?;
         let file: FormFile = serde_json::from_slice(&text)?;
         let Web { stamps: shown, kinds } = self.web(&file, pairs, videos)?;
-        let ends = |file: &&FileStamp, kind: Kind| file.path.ends_with(&format!(".{}", kind.ending()));
-        let size = |kind: Kind| {
+        let ends = |file: &&FileStamp, kind: MediaFormat| file.path.ends_with(&format!(".{}", kind.ending()));
+        let size = |kind: MediaFormat| {
             let of_kind = shown.iter().flat_map(|stamp| &stamp.files).filter(|file| ends(file, kind));
             of_kind.map(|file| file.bytes).max().unwrap_or(0) as usize + LEAST_PADDING
         };
@@ -99,18 +96,18 @@ impl Pipeline<'_> {
                 let mut bytes = std::fs::read(root.join(&file.path))?;
                 let size = size(kind);
                 match kind {
-                    Kind::Mp4 => {
+                    MediaFormat::Mp4 => {
                         // A box that says it is free space: as long as what follows, its own eight bytes included.
                         bytes.extend(u32::try_from(size - bytes.len())?.to_be_bytes());
                         bytes.extend(b"free");
                     }
-                    Kind::WebM => {
+                    MediaFormat::WebM => {
                         // An element that says it is void, with its length in eight bytes, the first of which says so.
                         let length = (size - bytes.len() - 9) as u64;
                         bytes.push(0xec);
                         bytes.extend((length | 1 << 56).to_be_bytes());
                     }
-                    Kind::Gif => {}
+                    MediaFormat::Gif => {}
                 }
                 pad(&mut bytes, size, seed, &file.path);
                 writer.write(&format!("{BUNDLE}/stimuli/{name}"), &bytes)?;

@@ -93,12 +93,13 @@ impl Pipeline<'_> {
         let inputs = self.extraction_inputs(configuration, purpose)?.value("spacing", &spacing);
         self.stage(&format!("mesh/{name}/{}", configuration.id), inputs, |writer| {
             let prepared = self.prepare(configuration, Wanted::For(purpose))?;
-            let Made { mesh, counts } = self.make(configuration, &prepared, step)?;
+            let Made { mesh, counts, program } = self.make(configuration, &prepared, step)?;
             let accuracy = self.accuracy(&prepared, &mesh)?;
             let cells = prepared.cells()?;
             let mut record =
                 mesh_record(&configuration.id, purpose, spacing, cells, counts, &mesh, &accuracy);
             record.trilinear = trilinear_truth(&prepared, cells);
+            record.program = program;
             // The indexed variant is only measured: nothing is rendered from it.
             if purpose != Purpose::Indexed {
                 let mut ply = Vec::new();

@@ -147,7 +147,7 @@ impl Pipeline<'_> {
     fn sweep_mesh(&self, configuration: &Configuration, cells: u32) -> Result<SweepMesh> {
         let wanted = Wanted::Cells(cells, Purpose::Indexed);
         let prepared = self.prepare(configuration, wanted)?;
-        let Made { mesh, counts } = prepared
+        let Made { mesh, counts, .. } = prepared
             .make_any(&mut Extractor::new(), &Execution { threads: self.threads })
             .with_context(|| format!("{} at {cells} cells per axis", configuration.id))?;
         let quality = mesh::quality::quality(&mesh);

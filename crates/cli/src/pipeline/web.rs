@@ -2,7 +2,6 @@
 //! browsers that play none.
 
 use super::Pipeline;
-use super::bundle::LEAST_PADDING;
 use crate::store::{Inputs, Stamp};
 use crate::terminal::progress::Step;
 use crate::{source_digests, video};
@@ -11,7 +10,7 @@ use design::forms::FormFile;
 use raster::{Animation, Reduction};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use serve::page::Kind;
+use serve::page::MediaFormat;
 
 const FOLDER: &str = "stimuli/web";
 const CHOSEN: &str = "key/web.json";
@@ -36,6 +35,9 @@ const fn reduction(eighths: u32, step: u32) -> Reduction {
     Reduction { eighths, step }
 }
 
+/// So that the largest file, too, ends like the others.
+pub(super) const LEAST_PADDING: usize = 64;
+
 /// Videos beside the animations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Videos {
@@ -45,7 +47,7 @@ pub(crate) enum Videos {
     Always,
     /// Those of this kind that were made before, as long as they show the pairs; else where they are needed. So a machine without
     /// ffmpeg serves what another one has made.
-    Kept(Kind),
+    Made(MediaFormat),
 }
 
 /// What was chosen.
@@ -66,7 +68,7 @@ pub(crate) struct Web {
     /// Where they are.
     pub(crate) stamps: Vec<Stamp>,
     /// Each kind with its frames a turn.
-    pub(crate) kinds: Vec<(Kind, u32)>,
+    pub(crate) kinds: Vec<(MediaFormat, u32)>,
 }
 
 impl Pipeline<'_> {
@@ -85,15 +87,15 @@ impl Pipeline<'_> {
         let fits = pairs.iter().all(|pair| bytes(pair) <= room);
         if fits && videos == Videos::Needed {
             self.store.retire_untouched(|stage| stage != "web")?;
-            return Ok(Web { stamps: pairs.to_vec(), kinds: vec![(Kind::Gif, frames)] });
+            return Ok(Web { stamps: pairs.to_vec(), kinds: vec![(MediaFormat::Gif, frames)] });
         }
-        let kind = if let Videos::Kept(kind) = videos { Some(kind) } else { video::kind() };
+        let kind = if let Videos::Made(kind) = videos { Some(kind) } else { video::kind() };
         let inputs = || {
             let inputs =
                 Inputs::of_sources(source_digests::PICTURES).value("room", &room).value("kind", &kind);
             pairs.iter().fold(inputs, |inputs, pair| inputs.stamp(pair))
         };
-        if matches!(videos, Videos::Kept(_)) && self.store.peek("web", inputs()).is_none() {
+        if matches!(videos, Videos::Made(_)) && self.store.peek("web", inputs()).is_none() {
             return self.web(forms, pairs, Videos::Needed);
         }
         let step = Step::begin("web", 1, 2 * pairs.len());
@@ -137,8 +139,8 @@ impl Pipeline<'_> {
         let text = std::fs::read(self.store.root().join(CHOSEN)).context(CHOSEN)?;
         let chosen: Chosen = serde_json::from_slice(&text).context(CHOSEN)?;
         tell_choice(&chosen, kind, section.web_mb);
-        let mut kinds: Vec<(Kind, u32)> = kind.map(|kind| (kind, frames)).into_iter().collect();
-        kinds.push((Kind::Gif, frames / chosen.step));
+        let mut kinds: Vec<(MediaFormat, u32)> = kind.map(|kind| (kind, frames)).into_iter().collect();
+        kinds.push((MediaFormat::Gif, frames / chosen.step));
         let as_they_are = if fits { pairs } else { &[] };
         Ok(Web { stamps: [&[stamp], as_they_are].concat(), kinds })
     }
@@ -181,7 +183,7 @@ impl Pipeline<'_> {
     }
 }
 
-fn tell_choice(chosen: &Chosen, kind: Option<Kind>, web_mb: u32) {
+fn tell_choice(chosen: &Chosen, kind: Option<MediaFormat>, web_mb: u32) {
     let Chosen { eighths, step, quality } = *chosen;
     if let (Some(kind), Some(quality)) = (kind, quality) {
         tell!("{} with constant rate factor {quality}", kind.ending());

@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 use mesh::Bounds;
 
 use super::curvature::Planes;
+use super::surroundings::Surroundings;
 use crate::bracket::Bracket;
 use crate::lattice::{DIRECTIONS, DirectionSet, Lattice, members};
 use crate::level::Level;
@@ -13,17 +14,6 @@ use crate::settings::{ExtractSettings, Placement};
 const MOST_CALLS: usize = 4;
 /// A crossing is known to this share of its lattice edge.
 const TOLERANCE: f64 = 1e-4;
-
-/// What is known at a sample point of the lattice.
-pub(crate) struct Surroundings {
-    pub(crate) position: Vec3,
-    /// Field minus isovalue.
-    pub(crate) difference: f32,
-    /// The same at the neighbours; not a number where there is none.
-    pub(crate) neighbours: [f32; DIRECTIONS],
-    /// The ways there, where they are not all as long as the spacing says.
-    pub(crate) ways: Option<[Vec3; DIRECTIONS]>,
-}
 
 /// Places the vertices of clusters.
 #[derive(Clone, Copy)]

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use glam::{DMat3, DVec3};
 
-use super::crossings::Surroundings;
+use super::surroundings::Surroundings;
 use crate::lattice::{Arrangement, DIRECTIONS, Directions};
 
 /// A plane through a lattice edge: the parallelogram of the edge, which is its diagonal, and two neighbours of it.

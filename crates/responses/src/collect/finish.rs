@@ -61,6 +61,8 @@ impl Collector<'_> {
         }
         self.name_pairs();
         let unknown_stimuli = self.unknown_stimuli();
+        // Millions of answers live as long as the program, and they grew by doubling.
+        self.answers.shrink_to_fit();
         Ok(Responses {
             participants: self.participants,
             questions: self.questions,

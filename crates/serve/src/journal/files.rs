@@ -1,13 +1,14 @@
 //! The files: `answers.sqlite`, `identities.sqlite`, and `lock`.
 
 use super::copy::Copied;
+use super::owned::owned;
 use super::{JournalError, seal};
 use crate::export::Given;
 use crate::record::{Answer, Choice, Identifiers};
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags};
-use std::fs::{DirBuilder, File, OpenOptions, Permissions};
-use std::os::unix::fs::{DirBuilderExt, OpenOptionsExt, PermissionsExt};
+use std::fs::{DirBuilder, File};
+use std::os::unix::fs::DirBuilderExt;
 use std::path::Path;
 use std::time::Duration;
 
@@ -103,14 +104,6 @@ pub(super) fn open(from: &Path, folder: &Path) -> Result<Opened, JournalError> {
 /// Nothing is missing: the log may be merged into the database, and removed, when it is closed.
 pub(super) fn may_tidy(database: &Connection) -> rusqlite::Result<()> {
     database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, false).map(drop)
-}
-
-/// A file that nobody else may read, made if it is not there.
-pub(super) fn owned(path: &Path) -> std::io::Result<File> {
-    let file =
-        OpenOptions::new().read(true).write(true).create(true).truncate(false).mode(0o600).open(path)?;
-    file.set_permissions(Permissions::from_mode(0o600))?;
-    Ok(file)
 }
 
 pub(super) fn error(folder: &Path, source: rusqlite::Error) -> JournalError {

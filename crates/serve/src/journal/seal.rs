@@ -1,7 +1,7 @@
 //! How much a folder held when it was last written to: `count`, a small file beside the databases. SQLite cannot know that a
 //! file of its own is gone or was cut; this tells.
 
-use super::files::owned;
+use super::owned::owned;
 use std::fmt;
 use std::fs::File;
 use std::io::{self, Read};

@@ -116,7 +116,7 @@ fn times_are_told_by_question() {
     assert_eq!(journal.summary(2, &key).unwrap().questions, expected);
 }
 
-const LATE: u32 = crate::record::LONGEST_MS + 1;
+const LATE: u32 = crate::screen::LONGEST_MS + 1;
 
 #[test]
 fn forms_are_dealt_evenly_even_when_people_give_up() {

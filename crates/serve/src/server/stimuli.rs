@@ -1,7 +1,7 @@
 //! Stimuli, which are all but a thousandth of what a server sends.
 
 use super::Site;
-use crate::page::Kind;
+use crate::page::MediaFormat;
 use axum::body::{Body, Bytes, HttpBody};
 use axum::extract::Path as Matched;
 use axum::http::{HeaderValue, StatusCode, header};
@@ -29,7 +29,7 @@ pub(super) fn turns() -> Arc<Semaphore> {
 
 /// A stimulus by its code name: names are looked up, never joined to a path.
 pub(super) async fn stimulus(Matched(name): Matched<String>, site: Site) -> Response {
-    let known = |kind: Kind| {
+    let known = |kind: MediaFormat| {
         let code = name.strip_suffix(kind.ending())?.strip_suffix('.')?;
         Some((site.stimuli.get(code)?, kind))
     };

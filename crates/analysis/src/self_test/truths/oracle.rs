@@ -13,7 +13,8 @@ mod respondents;
 mod worths;
 
 pub(super) use agreement::triads;
-pub(super) use hypotheses::{Hypothesis, Range, hypotheses};
+pub(super) use exact::Range;
+pub(super) use hypotheses::{Hypothesis, hypotheses};
 pub(super) use worths::{compare_scales, compare_worths};
 
 use super::people::Given;

@@ -174,7 +174,7 @@ fn tell_findings(comparison: &Comparison, gate: &Gate, found: &GateResult<'_>) {
     let percent = |ratio: f64| format!("{:.0}", 100.0 * (ratio - 1.0));
     if let Some((least, most)) = comparison.smallest_detectable(Stage::Total) {
         tell!(
-            "totals that grew by less than {} to {} %, by configuration, are not told from noise here",
+            "growth of totals below {} to {} %, by configuration, would not be found here",
             percent(least),
             percent(most)
         );

@@ -29,7 +29,7 @@ fn every_key_is_read() {
     let section = with(
         "[analysis]\ndeclared = 2026-11-21\nfirst_answer = \"2026-12-01\"\nanswers_known = false\nlevel = 0.01\nmargin = 0.3\n\
          families = \"one\"\nprimary = [\"U-I\", \"U-I sphere\"]\n\
-         exclude = [\"one-sided\", \"controls\", \"repeats\", \"time\", \"outlying\"]",
+         reference = \"bi\"\nexclude = [\"one-sided\", \"controls\", \"repeats\", \"time\", \"outlying\"]",
     );
     let expected = AnalysisSection {
         declared: Some(day("2026-11-21")),
@@ -39,6 +39,7 @@ fn every_key_is_read() {
         margin: 0.3,
         families: FamilyRule::One,
         primary: vec!["U-I".into(), "U-I sphere".into()],
+        reference: Some("bi".into()),
         exclude: vec![
             Exclusion::OneSided,
             Exclusion::Controls,
@@ -141,4 +142,11 @@ fn the_papers_choices_were_made_when_its_answers_were_known() {
     for study in ["balanced.toml", "two-methods.toml"] {
         assert_eq!(load(study).file.analysis, AnalysisSection::default(), "{study}");
     }
+}
+
+#[test]
+fn the_reference_is_a_method_that_is_compared() {
+    let refused = with("[analysis]\nreference = \"si\"").unwrap_err().to_string();
+    let told = "two-methods.toml: analysis.reference = si: is not a method that this study compares, which are: bi, bu";
+    assert!(refused.ends_with(told), "{refused}");
 }

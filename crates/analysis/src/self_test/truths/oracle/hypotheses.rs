@@ -1,34 +1,12 @@
 //! Every contrast and every question, as the table of tests has to have them.
 
 use super::exact::{
-    Ratio, add, benjamini_hochberg, binomial, common_divisor, equivalence, holm, interval, mean, minus,
-    ratio, sign_flip, trinomial, value,
+    Range, Ratio, add, benjamini_hochberg, binomial, common_divisor, equivalence, holm, interval, mean,
+    minus, ratio, sign_flip, trinomial, value,
 };
 use super::omnibus::by_object;
 use super::{Compares, Expected, Oracle, Question, Want};
 use std::collections::BTreeMap;
-
-/// A p, and what it may be rounded up to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::self_test::truths) struct Range {
-    pub(in crate::self_test::truths) low: f64,
-    pub(in crate::self_test::truths) high: f64,
-}
-
-impl Range {
-    /// Whether a printed p is that. What is too small for a double is printed as the least double.
-    pub(super) fn holds(&self, p: f64) -> bool {
-        let least = f64::MIN_POSITIVE;
-        (self.low * (1.0 - 1e-7)..=self.high * (1.0 + 1e-7)).contains(&p) || (self.low < least && p < least)
-    }
-
-    /// Adjusts several at once, by a rule under which no p falls when another rises.
-    fn adjusted(all: &[Self], rule: impl Fn(&[f64]) -> Vec<f64>) -> Vec<Self> {
-        let [low, high] =
-            [|p: &Self| p.low, |p: &Self| p.high].map(|end| rule(&all.iter().map(end).collect::<Vec<_>>()));
-        low.into_iter().zip(high).map(|(low, high)| Self { low, high }).collect()
-    }
-}
 
 /// One hypothesis.
 #[derive(Debug, Clone)]
