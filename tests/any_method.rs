@@ -188,6 +188,19 @@ fn any_method_on_any_object_from_file_to_report() {
     }
     // Another spacing stands in the table, and why under it and under the figures.
     assert_ne!(cell("fo_fp", "spacing"), cell("fo_bi", "spacing"));
+    let configurations = folder.table("out/tables/configurations.csv");
+    let at = configurations[0].iter().position(|title| title == "benchmark_spacing").unwrap();
+    let said = |id: &str| configurations.iter().find(|row| row[0] == id).unwrap()[at].clone();
+    assert_eq!(said("fo_fp"), cell("fo_fp", "spacing"));
+    // A mesh that was there has no grid; a program says who it is, and its stages are not told apart.
+    assert_eq!([said("fo_artist"), cell("fo_artist", "resolution"), cell("fo_artist", "spacing")], [""; 3]);
+    for stage in ["allocation_s", "vertex_s", "clustering_s", "normals_s"] {
+        assert_eq!(cell("fo_program", stage), "", "{stage}");
+        assert_ne!(cell("fo_bi", stage), "", "{stage}");
+    }
+    let programs = folder.table("out/tables/programs.csv");
+    assert_eq!(programs.len(), 2, "{programs:?}");
+    assert!(programs[1].iter().take(3).all(|cell| !cell.is_empty()), "{programs:?}");
     let why = "Spacings were chosen for fp to have as many triangles as bi";
     for page in ["tables/benchmark.md", "index.html"] {
         assert!(fs::read_to_string(folder.path("out").join(page)).unwrap().contains(why), "{page}");
@@ -442,7 +455,17 @@ fn a_program_that_fails_is_left_out_by_name() {
         let benchmark = folder.table("out/tables/benchmark.csv");
         let ids: BTreeSet<&str> = benchmark[1..].iter().map(|row| row[0].as_str()).collect();
         assert!(ids.contains("fo_bi") && !ids.contains("fo_program"), "{ids:?}");
-        assert!(folder.path("out/index.html").exists());
+        let left_out = folder.table("out/tables/left_out.csv");
+        let ids: Vec<&str> = left_out[1..].iter().map(|row| row[0].as_str()).collect();
+        assert_eq!(ids, ["fo_program", "te_program", "vo_program"]);
+        assert!(left_out[1][1].contains(told), "{left_out:?}");
+        let page = std::fs::read_to_string(folder.path("out/index.html")).unwrap();
+        assert!(page.contains("The programs of fo_program, te_program and vo_program failed"), "{told}");
+        // Every picture that the page names is there.
+        let sources = page.split("src=\"").skip(1).map(|rest| rest.split('"').next().unwrap());
+        let missing: Vec<&str> =
+            sources.filter(|file| !folder.path(&format!("out/{file}")).exists()).collect();
+        assert_eq!(missing, [""; 0], "{told}");
         let bundle = folder.run(&["bundle", "study.toml", "--out", "out", "--allow-programs"]);
         assert_eq!(bundle.code, Some(2), "{}", bundle.stderr);
     }

@@ -50,6 +50,7 @@ impl Everything {
             meshes: &self.meshes,
             bench: Some(&self.bench),
             answers: Some(&self.answers),
+            left_out: &[],
         }
     }
 }

@@ -1,8 +1,8 @@
 //! What tables and figures are made from.
 
 use crate::answered::Answered;
-use design::Study;
 use design::record::{BenchRun, MeshRecord};
+use design::{ConfigurationId, Study};
 
 /// What tables and figures are made from. Absent or empty parts leave out what depends on them.
 #[derive(Debug, Clone, Copy)]
@@ -15,6 +15,8 @@ pub struct Inputs<'a> {
     pub bench: Option<&'a BenchRun>,
     /// The answers to this study's comparisons.
     pub answers: Option<&'a Answered>,
+    /// What has no mesh or no times because its program failed, and why.
+    pub left_out: &'a [(ConfigurationId, String)],
 }
 
 /// Why figures could not be made.

@@ -88,6 +88,8 @@ struct Evidence<'a> {
     screens_recorded: bool,
     /// Whether it says at which place a question was shown.
     order_recorded: bool,
+    /// The configurations that failed.
+    left_out: Vec<String>,
     /// What was assumed of the answers' file, in sentences.
     assumptions: Vec<String>,
     groups: &'a [BallotGroup],
@@ -111,6 +113,7 @@ impl<'a> Evidence<'a> {
             sides_recorded: true,
             screens_recorded: false,
             order_recorded: false,
+            left_out: Vec::new(),
             assumptions: Vec::new(),
             groups: &[],
             hypotheses: &[],
@@ -186,8 +189,11 @@ const PAPER: [(&str, bool); 8] = [
 /// The report of a study. `tables` and `figures` are those made from the same inputs; each is printed once.
 pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Report {
     let study = inputs.study;
-    let evidence =
-        Evidence { side_favoured: sides::is_favoured(tables), ..Evidence::of_study(study, inputs.answers) };
+    let evidence = Evidence {
+        side_favoured: sides::is_favoured(tables),
+        left_out: inputs.left_out.iter().map(|(id, _)| id.to_string()).collect(),
+        ..Evidence::of_study(study, inputs.answers)
+    };
     let mut builder = Builder::new(tables, figures);
     let methods = builder.table("methods");
     let fails = paper::does_not_hold(inputs);
@@ -243,6 +249,7 @@ pub fn report_of_groups(
         sides_recorded: answers.sides_recorded,
         screens_recorded: !answers.screens.is_empty(),
         order_recorded: answers.answers.iter().any(|answer| answer.order.is_some()),
+        left_out: Vec::new(),
         assumptions: answers.assumptions(),
         shown: &shown,
         groups,

@@ -31,6 +31,7 @@ use table::Table;
 pub fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
     let mut tables = vec![design::methods(inputs.study), design::configurations(inputs)];
     tables.extend(design::programs(inputs));
+    tables.extend(design::left_out(inputs));
     tables.extend(benchmark::benchmark(inputs));
     tables.extend(design::questionnaire(inputs.study));
     if let Some(answers) = inputs.answers {

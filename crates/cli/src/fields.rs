@@ -343,7 +343,13 @@ fn read_checked(source: &MeshSourceSection, path: &Path) -> Result<Vec<u8>> {
 fn read_placed(source: &MeshSourceSection, path: &Path) -> Result<TriangleMesh> {
     let format = mesh_file::format_to_read(path)?;
     let mesh = format.read(read_checked(source, path)?.as_slice())?;
+    let holes = mesh::repair::boundary_loops(&mesh)?.len();
     let solid = mesh::repair::closed_solid(&mesh)?;
+    if holes > 0 {
+        let closed =
+            if holes == 1 { "1 hole was closed".into() } else { format!("{holes} holes were closed") };
+        tell!("{}: {closed}; allow_open = true takes a mesh with its holes", path.display());
+    }
     let axes = source.axes.each_ref().map(|axis| axis_vector(axis));
     let offset = DVec3::from_array(source.offset);
     Ok(solid.transformed(|p| {

@@ -142,6 +142,11 @@ impl<'a> Pipeline<'a> {
         read(&self.failed).keys().cloned().collect()
     }
 
+    /// The configurations that failed, in order, and why.
+    fn left_out(&self) -> Vec<(ConfigurationId, String)> {
+        read(&self.failed).iter().map(|(id, why)| (id.clone(), why.clone())).collect()
+    }
+
     /// Clears away what is no longer part of the study, and writes the manifest of what is.
     pub(crate) fn finish(&self) -> Result<()> {
         self.store.remove_retired()?;

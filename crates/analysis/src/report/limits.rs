@@ -55,6 +55,10 @@ pub(super) fn all(evidence: &Evidence<'_>) -> Vec<String> {
 /// What limits the results most, in one line.
 pub(super) fn short(evidence: &Evidence<'_>) -> String {
     let mut parts = Vec::new();
+    if !evidence.left_out.is_empty() {
+        let named = list(&evidence.left_out);
+        parts.push(format!("The programs of {named} failed, so that nothing is said about them."));
+    }
     if evidence.shown.is_empty() {
         parts.push("Nothing is said about preference.".to_owned());
     } else if sides_are_confounded(evidence) {

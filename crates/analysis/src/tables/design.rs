@@ -57,6 +57,16 @@ pub(super) fn programs(inputs: &Inputs<'_>) -> Option<Table> {
     (!table.rows.is_empty()).then_some(table)
 }
 
+/// What failed; `None` if nothing did.
+pub(super) fn left_out(inputs: &Inputs<'_>) -> Option<Table> {
+    let mut table = Table::new("left_out", "Left out", &[("id", "Id"), ("reason", "Reason")]);
+    table.rows = inputs.left_out.iter().map(|(id, why)| vec![Cell::text(id), Cell::text(why)]).collect();
+    table
+        .notes
+        .push("The programs of these configurations failed, so that nothing here is about them.".into());
+    (!table.rows.is_empty()).then_some(table)
+}
+
 /// The configurations: object, method, spacings (the paper's appendix A). Meshes that were there already have none; those that
 /// meet a budget have what was found, once they are made.
 pub(super) fn configurations(inputs: &Inputs<'_>) -> Table {

@@ -192,7 +192,7 @@ fn absent_parts_leave_out_their_tables() {
     let all = Everything::of(fixture::study());
     let names =
         |inputs: &Inputs<'_>| -> Vec<String> { tables(inputs).into_iter().map(|table| table.name).collect() };
-    let nothing = Inputs { study: &all.study, meshes: &[], bench: None, answers: None };
+    let nothing = Inputs { study: &all.study, meshes: &[], bench: None, answers: None, left_out: &[] };
     assert_eq!(names(&nothing), ["methods", "configurations", "questionnaire", "claims"]);
     let answers_only = Inputs { answers: Some(&all.answers), ..nothing };
     assert!(names(&answers_only).contains(&"preference_overall".to_owned()));
@@ -209,7 +209,13 @@ fn another_study_works_as_well() {
     let answers = Answered::of(&study, fixture::parse("Q17,Q8\nL,R\nNP,R\n", &study)).unwrap();
     let paper = fixture::study();
     let (meshes, bench) = (fixture::meshes(&paper), fixture::bench(&paper));
-    let inputs = Inputs { study: &study, meshes: &meshes, bench: Some(&bench), answers: Some(&answers) };
+    let inputs = Inputs {
+        study: &study,
+        meshes: &meshes,
+        bench: Some(&bench),
+        answers: Some(&answers),
+        left_out: &[],
+    };
     let tables = tables(&inputs);
     let overall = named(&tables, "preference_overall").to_csv();
     assert_eq!(overall, "configuration,factor\nbi,0.25\nsi,0.5\n");

@@ -23,6 +23,10 @@ impl Pipeline<'_> {
         for stamp in meshes.stamps().chain(pictures) {
             inputs = inputs.stamp(stamp);
         }
+        let left_out = self.left_out();
+        let inputs = inputs.value("left out", &left_out);
+        let left_out = self.left_out();
+        let inputs = inputs.value("left out", &left_out);
         let stamp = self.store.stage("tables", inputs, |writer| {
             let records = self.mesh_records(meshes)?;
             let run = self.bench_run(timings)?;
@@ -33,6 +37,7 @@ impl Pipeline<'_> {
                 meshes: &records,
                 bench: Some(&run),
                 answers: answers.as_ref(),
+                left_out: &left_out,
             };
             write(writer, &inputs, &self.read_pictures()?, true)?;
             writer.write_json(UNEXPLAINED, &analysis::unexplained_differences(&inputs))
@@ -56,7 +61,8 @@ impl Pipeline<'_> {
 /// If the files cannot be written.
 pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store) -> Result<Vec<Table>> {
     let answers = Answered::of(study, reading.responses);
-    let inputs = analysis::Inputs { study, meshes: &[], bench: None, answers: answers.as_ref() };
+    let inputs =
+        analysis::Inputs { study, meshes: &[], bench: None, answers: answers.as_ref(), left_out: &[] };
     let mut made = None;
     store.stage("answers", study_inputs(study)?, |writer| {
         writer.write(READING, reading.report.to_csv().as_bytes())?;

@@ -11,7 +11,7 @@ use crate::store::{Inputs, Stamp};
 use crate::terminal::progress::Step;
 use anyhow::{Context, Result};
 use design::config::{SideRule, StillSection};
-use design::{Comparison, Configuration, Study};
+use design::{Comparison, Configuration};
 use minijinja::context;
 use minijinja::value::Serde;
 use serde::Serialize;
@@ -67,8 +67,8 @@ impl Pipeline<'_> {
             stills => Serde(&stills),
             tables => Serde(&tables),
             figures => Serde(&figures),
-            turntables => Serde(&turntable_cards(self.study)),
-            pairs => Serde(&pair_cards(self.study)),
+            turntables => Serde(&self.turntable_cards()),
+            pairs => Serde(&self.pair_cards()),
             sides_differ => sides_differ,
             objects => Serde(&self.study.file.objects),
             turntable => Serde(&self.study.file.turntable),
@@ -108,24 +108,31 @@ impl Pipeline<'_> {
         let text = std::fs::read(self.store.root().join(path)).with_context(|| path.to_owned())?;
         serde_json::from_slice(&text).with_context(|| path.to_owned())
     }
-}
 
-fn turntable_cards(study: &Study) -> Vec<Card> {
-    let (codes, _) = study.code_names();
-    let card = |(configuration, code): (&Configuration, String)| Card {
-        object: study.object(configuration).id.clone(),
-        title: format!("{}: {}", configuration.id, study.method(configuration.id.method).label),
-        file: format!("stimuli/turntables/{code}.gif"),
-    };
-    study.configurations.iter().zip(codes).map(card).collect()
-}
+    /// Those that were made.
+    fn turntable_cards(&self) -> Vec<Card> {
+        let (codes, _) = self.study.code_names();
+        let card = |(configuration, code): (&Configuration, String)| {
+            (!self.has_failed(&configuration.id)).then(|| Card {
+                object: self.study.object(configuration).id.clone(),
+                title: format!("{}: {}", configuration.id, self.study.method(configuration.id.method).label),
+                file: format!("stimuli/turntables/{code}.gif"),
+            })
+        };
+        self.study.configurations.iter().zip(codes).filter_map(card).collect()
+    }
 
-fn pair_cards(study: &Study) -> Vec<Card> {
-    let (_, codes) = study.code_names();
-    let card = |(comparison, code): (&Comparison, String)| Card {
-        object: study.file.objects[comparison.object].id.clone(),
-        title: format!("{}: {} | {}", comparison.question, comparison.left, comparison.right),
-        file: format!("stimuli/pairs/{code}.gif"),
-    };
-    study.comparisons.iter().zip(codes).map(card).collect()
+    /// Those that were made.
+    fn pair_cards(&self) -> Vec<Card> {
+        let (_, codes) = self.study.code_names();
+        let card = |(comparison, code): (&Comparison, String)| {
+            let failed = self.has_failed(&comparison.left) || self.has_failed(&comparison.right);
+            (!failed).then(|| Card {
+                object: self.study.file.objects[comparison.object].id.clone(),
+                title: format!("{}: {} | {}", comparison.question, comparison.left, comparison.right),
+                file: format!("stimuli/pairs/{code}.gif"),
+            })
+        };
+        self.study.comparisons.iter().zip(codes).filter_map(card).collect()
+    }
 }
