@@ -42,11 +42,15 @@ pub(super) fn sentence(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> Stri
         _ => return String::new(),
     };
     match found {
-        None if parts.len() == 2 => " How large a liking for a side would undo it cannot be said: in one of the two no answer \
+        None if parts.len() == 2 => {
+            " How large a liking for a side would undo it cannot be said: in one of the two no answer \
                                      went the other way, or everybody answered alike."
-            .into(),
+                .into()
+        }
         None => {
-            " How large a liking for a side would undo it cannot be said: no answer went the other way, or everybody answered alike.".into()
+            let alone = hypothesis.test.counts.is_some_and(|[first, _, second]| first == 0 || second == 0);
+            let why = if alone { "no answer went the other way" } else { "everybody answered alike" };
+            format!(" How large a liking for a side would undo it cannot be said: {why}.")
         }
         Some(Tipping { left: Tip::At(at), .. }) => undone("left", at),
         Some(Tipping { right: Tip::At(at), .. }) => undone("right", at),
