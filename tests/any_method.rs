@@ -201,7 +201,7 @@ fn any_method_on_any_object_from_file_to_report() {
     let programs = folder.table("out/tables/programs.csv");
     assert_eq!(programs.len(), 2, "{programs:?}");
     assert!(programs[1].iter().take(3).all(|cell| !cell.is_empty()), "{programs:?}");
-    let why = "Spacings were chosen for fp to have as many triangles as bi";
+    let why = "Spacings were chosen for fp to have as many triangles as bi to 1 %";
     for page in ["tables/benchmark.md", "index.html"] {
         assert!(fs::read_to_string(folder.path("out").join(page)).unwrap().contains(why), "{page}");
     }
@@ -403,6 +403,16 @@ fn bad_input_is_refused_before_any_work() {
             "vertices_of = \"bi\"",
             vec!["vertices_of", "triangles_of", "samples_of", "time_of"],
         ),
+        (
+            "triangles_of = \"bi\"",
+            "triangles_of = \"bi\", time_of = \"bi\"",
+            vec!["study.toml", "one of the keys triangles_of, samples_of and time_of"],
+        ),
+        (
+            "triangles_of = \"bi\"",
+            "triangles_of = \"bi\", within = 2",
+            vec!["study.toml: methods[2].match.within = 2", "0.5"],
+        ),
     ] {
         let folder = Study::new();
         folder.edit(from, to);
@@ -424,6 +434,9 @@ fn a_budget_that_cannot_be_met_is_said() {
     assert_eq!(ran.code, Some(2), "{}", ran.stderr);
     let told = "study.toml: methods[2].match.triangles_of = bi: no spacing gives te_fp";
     assert!(ran.stderr.contains(told) && ran.stderr.contains("triangles to 1 %"), "{}", ran.stderr);
+    // Who takes what is nearer than that says so.
+    folder.edit("match = { triangles_of = \"bi\" }", "match = { triangles_of = \"bi\", within = 0.2 }");
+    folder.succeed(&["extract", "study.toml", "--out", "out", "--allow-programs"]);
 }
 
 /// A program that crashes, hangs or answers with nonsense fails by name; the others go on, and the exit code says so.

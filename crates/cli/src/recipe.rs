@@ -1,7 +1,7 @@
 //! What a study's recipes ask for: an extractor of ours, a program, or meshes that are there.
 
 use anyhow::{Context, Result, bail};
-use design::config::BudgetSection;
+use design::config::Quantity;
 use design::record::Purpose;
 use design::{MethodId, Study};
 use extract::{Method, Positions, Tetrahedra};
@@ -176,12 +176,12 @@ fn check_budget(study: &Study, method: &design::Method) -> Result<()> {
     let is_there =
         |id| Ok::<bool, anyhow::Error>(matches!(recipe(study, id, Purpose::Benchmark)?, Recipe::Meshes(_)));
     let i = study.place(method.id);
-    let [name, what] = budget.names();
-    let key = format!("{}: methods[{i}].match.{name} = {}", study.path.display(), budget.of());
+    let [name, what] = budget.quantity.names();
+    let key = format!("{}: methods[{i}].match.{name} = {}", study.path.display(), budget.of);
     if is_there(method.id)? {
         bail!("{key}: meshes that are there have no spacing to choose");
     }
-    if !matches!(budget, BudgetSection::TrianglesOf(_)) && is_there(budget.of())? {
+    if budget.quantity != Quantity::Triangles && is_there(budget.of)? {
         bail!("{key}: meshes that are there have no {what} to match; triangles_of can match them");
     }
     Ok(())

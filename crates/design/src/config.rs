@@ -10,7 +10,7 @@ mod methods;
 mod pictures;
 mod responses;
 
-pub use crate::method::{BudgetSection, StimulusLook};
+pub use crate::method::{BudgetSection, Quantity, StimulusLook};
 pub use analysis::{AnalysisSection, Declaration, Exclusion, FamilyRule};
 pub use field::{FieldSection, Inside, MeshSourceSection};
 pub use forms::{FormsSection, OrderRule, ShownNames, SideRule, TrainingSection};

@@ -6,7 +6,7 @@ mod factor;
 mod look;
 mod recipe;
 
-pub use budget::BudgetSection;
+pub use budget::{BudgetSection, Quantity};
 pub use crossing::{Arrangement, Clustering, Crossed};
 pub(crate) use crossing::{expand, is_summed};
 pub use factor::{Factor, FactorSpec, Level, LevelSpec};

@@ -280,8 +280,8 @@ fn full_study() -> StudyFile {
         objects: fields().map(object).into(),
         arrangements: vec![Arrangement::BodyCentred],
         clusterings: vec![Clustering::None],
-        methods: [BudgetSection::TrianglesOf(bi), BudgetSection::SamplesOf(bi), BudgetSection::TimeOf(bi)]
-            .map(method)
+        methods: [Quantity::Triangles, Quantity::Samples, Quantity::Time]
+            .map(|quantity| method(BudgetSection { quantity, of: bi, within: 0.02 }))
             .into(),
         factors: vec![FactorSection {
             name: text(),

@@ -2,7 +2,7 @@
 
 use crate::inputs::Inputs;
 use crate::mesh_set::MeshSet;
-use ::design::config::BudgetSection;
+use ::design::config::Quantity;
 use ::design::record::{MadeBy, Purpose};
 use ::design::{Factor, MethodId, Study};
 use table::{Cell, Table};
@@ -60,7 +60,11 @@ pub(super) fn programs(inputs: &Inputs<'_>) -> Option<Table> {
 /// What failed; `None` if nothing did.
 pub(super) fn left_out(inputs: &Inputs<'_>) -> Option<Table> {
     let mut table = Table::new("left_out", "Left out", &[("id", "Id"), ("reason", "Reason")]);
-    table.rows = inputs.left_out.iter().map(|(id, why)| vec![Cell::text(id), Cell::text(why)]).collect();
+    for (id, why) in inputs.left_out {
+        // What a program wrote has lines.
+        let why: Vec<&str> = why.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+        table.push(vec![Cell::text(id), Cell::text(why.join(" / "))]);
+    }
     table
         .notes
         .push("The programs of these configurations failed, so that nothing here is about them.".into());
@@ -105,11 +109,11 @@ pub(super) fn configurations(inputs: &Inputs<'_>) -> Table {
 pub(crate) fn budgets(inputs: &Inputs<'_>) -> Option<String> {
     let with_budget = |method: &::design::Method| {
         let budget = method.budget?;
-        let what = match budget {
-            BudgetSection::TimeOf(of) => format!("as much time as {of}"),
-            _ => format!("as many {} as {}", budget.names()[1], budget.of()),
-        };
-        Some(format!("{} to have {what}", method.id))
+        let (what, of) = (budget.quantity.names()[1], budget.of);
+        let much = if budget.quantity == Quantity::Time { "much" } else { "many" };
+        let within = table::digits::number(100.0 * budget.within, 2);
+        let within = within.trim_end_matches('0').trim_end_matches('.');
+        Some(format!("{} to have as {much} {what} as {of} to {within} %", method.id))
     };
     let found: Vec<String> = inputs.study.methods.iter().filter_map(with_budget).collect();
     (!found.is_empty()).then(|| format!("Spacings were chosen for {}, object by object.", found.join(", ")))

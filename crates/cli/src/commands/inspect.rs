@@ -113,8 +113,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let budget = study.method(id.method).budget.filter(|_| arguments.resolution.is_none());
     let is_program =
         |of| Ok::<_, anyhow::Error>(matches!(recipe(&study, of, Purpose::Benchmark)?, Recipe::Program(_)));
-    let needs_program =
-        is_program(id.method)? || budget.map_or(Ok(false), |budget| is_program(budget.of()))?;
+    let needs_program = is_program(id.method)? || budget.map_or(Ok(false), |budget| is_program(budget.of))?;
     if needs_program && !arguments.allow_programs {
         let all = recipe::commands(&study)?.join("\n  ");
         bail!(

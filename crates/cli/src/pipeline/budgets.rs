@@ -6,7 +6,7 @@ use crate::prepare::{self, Wanted};
 use crate::recipe::Recipe;
 use crate::terminal::progress::Step;
 use anyhow::{Context, Result, bail};
-use design::config::BudgetSection;
+use design::config::{BudgetSection, Quantity};
 use design::record::Purpose;
 use design::{Configuration, ConfigurationId};
 use extract::{Execution, Extractor};
@@ -19,9 +19,6 @@ const MOST_STEPS: u32 = 24;
 /// this factor finer and coarser.
 const MORE_STEPS: u32 = 96;
 const AROUND: f64 = 1.2;
-/// How far what is found may be from what is asked for, as a share of it.
-const COUNTS_WITHIN: f64 = 0.01;
-const TIME_WITHIN: f64 = 0.05;
 /// Extractions of which the median is taken where time is matched.
 const ROUNDS: usize = 5;
 
@@ -74,7 +71,7 @@ impl Pipeline<'_> {
 
     fn budget(&self, configuration: &Configuration, purpose: Purpose, step: &Step) -> Result<()> {
         let budget = self.study.method(configuration.id.method).budget.context("it has one")?;
-        let of = ConfigurationId { object: configuration.id.object.clone(), method: budget.of() };
+        let of = ConfigurationId { object: configuration.id.object.clone(), method: budget.of };
         let reference = self.study.configurations.iter().find(|c| c.id == of);
         let reference = reference.context("methods are crossed with objects")?;
         let inputs = self
@@ -105,12 +102,12 @@ impl Pipeline<'_> {
     ) -> Result<Found> {
         let start = Wanted::For(purpose).spacing(self.study.object(configuration));
         let wanted = self.measure(reference, budget, Wanted::Spacing(start, purpose))?;
-        let (within, power) = match budget {
-            BudgetSection::TrianglesOf(_) => (COUNTS_WITHIN, 2.0),
-            BudgetSection::SamplesOf(_) => (COUNTS_WITHIN, 3.0),
-            BudgetSection::TimeOf(_) => (TIME_WITHIN, 2.0),
+        let within = budget.within;
+        let power = match budget.quantity {
+            Quantity::Triangles | Quantity::Time => 2.0,
+            Quantity::Samples => 3.0,
         };
-        let [key, what] = budget.names();
+        let [key, what] = budget.quantity.names();
         // The finest spacing that gives too little, and the coarsest that gives too much.
         let (mut coarse, mut fine): (Option<Tried>, Option<Tried>) = (None, None);
         let mut spacing = start;
@@ -151,7 +148,7 @@ impl Pipeline<'_> {
         bail!(
             "{}: methods[{i}].match.{key} = {}: no spacing gives {} {wanted} {what} to {} %: {}",
             self.study.path.display(),
-            budget.of(),
+            budget.of,
             configuration.id,
             100.0 * within,
             nearest.join(", ")
@@ -166,7 +163,7 @@ impl Pipeline<'_> {
             prepare::check_memory(self.study, method, &prepared.grid, &execution, machine)
                 .with_context(|| format!("{} with spacing {:?}", configuration.id, prepared.grid.spacing))?;
         }
-        if let BudgetSection::TimeOf(_) = budget {
+        if budget.quantity == Quantity::Time {
             let mut seconds = Vec::new();
             // One thread, as engines extract; the first is for warming up.
             for _ in 0..=ROUNDS {
@@ -179,10 +176,8 @@ impl Pipeline<'_> {
             return Ok(seconds[ROUNDS / 2]);
         }
         let made = prepared.make(&mut Extractor::new(), &Execution { threads: self.threads })?;
-        match budget {
-            BudgetSection::SamplesOf(_) => {
-                Ok(made.counts.samples.context("checked when the study was read")? as f64)
-            }
+        match budget.quantity {
+            Quantity::Samples => Ok(made.counts.samples.context("checked when the study was read")? as f64),
             _ => Ok(made.counts.triangles as f64),
         }
     }

@@ -119,14 +119,15 @@ fn check_budget(
     section: &MethodSection,
 ) -> Result<(), ConfigError> {
     let Some(budget) = section.budget else { return Ok(()) };
-    let key = || format!("methods[{i}].match.{}", budget.names()[0]);
-    let limit = match file.methods.iter().find(|other| other.id == budget.of()) {
+    let key = || format!("methods[{i}].match.{}", budget.quantity.names()[0]);
+    c.number(&format!("methods[{i}].match.within"), budget.within, 0.0001, 0.5)?;
+    let limit = match file.methods.iter().find(|other| other.id == budget.of) {
         Some(other) if other.id == section.id => "must name another method of this study",
         Some(other) if other.budget.is_some() => "must name a method that has no match of its own",
         Some(_) => return Ok(()),
         None => "must name a method of this study",
     };
-    c.refuse(key(), budget.of(), limit)
+    c.refuse(key(), budget.of, limit)
 }
 
 fn factors(c: &Checker<'_>, sections: &[FactorSection]) -> Result<Vec<FactorSpec>, ConfigError> {
