@@ -67,6 +67,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use fidget_core::Context;
+use fidget_core::types::Grad;
 use fidget_core::var::Var;
 use field::{Fractal, StudyField};
 use glam::Vec3;
@@ -165,13 +166,25 @@ impl StudyField for Expression {
         });
     }
 
-    /// By automatic differentiation, exact but for rounding; not known of formulas with noise. Where `min`, `max` or `abs` have an edge
-    /// it is that of one side.
+    /// By automatic differentiation, exact but for rounding. Where `min`, `max` or `abs` have an edge, or noise a crest, it is that of one
+    /// side.
     fn gradient(&self, p: Vec3) -> Option<Vec3> {
-        if self.noises.iter().any(Option::is_some) {
-            return None;
-        }
-        Some(WORKSPACE.with_borrow_mut(|workspace| self.value.gradient(p, &mut workspace.evaluator)))
+        WORKSPACE.with_borrow_mut(|Workspace { evaluator, .. }| {
+            let mut columns: Vec<Grad> = Vec::with_capacity(3 + self.noises.len());
+            columns.extend([0, 1, 2].map(|axis| {
+                let along = Vec3::AXES[axis];
+                Grad::new(p[axis], along.x, along.y, along.z)
+            }));
+            for noise in &self.noises {
+                let value = noise.as_ref().map(|(arguments, noise)| {
+                    let found = arguments.differentiate(&columns, evaluator);
+                    noise_call::derivative(noise, [found[0][0], found[1][0], found[2][0]])
+                });
+                columns.push(value.unwrap_or_default());
+            }
+            let value = self.value.differentiate(&columns, evaluator)[0][0];
+            Some(Vec3::new(value.dx, value.dy, value.dz))
+        })
     }
 
     /// By interval arithmetic.

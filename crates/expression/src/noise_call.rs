@@ -5,8 +5,10 @@
 
 use fidget_core::Context;
 use fidget_core::context::Node;
+use fidget_core::types::Grad;
 use fidget_core::var::Var;
 use field::{Fractal, MOST_OCTAVES, NoiseShape};
+use glam::DVec3;
 
 use crate::ExpressionError;
 
@@ -74,6 +76,15 @@ pub(crate) fn call(
 /// Noise at a point, as a formula sees it.
 pub(crate) fn value(noise: &Fractal, [x, y, z]: [f32; 3]) -> f32 {
     noise.value([x, y, z].map(f64::from).into()) as f32
+}
+
+/// The same with its changes along the axes, from those of its arguments.
+pub(crate) fn derivative(noise: &Fractal, arguments: [Grad; 3]) -> Grad {
+    let (value, gradient) = noise.value_and_gradient(arguments.map(|argument| f64::from(argument.v)).into());
+    let along = |part: fn(&Grad) -> f32| {
+        gradient.dot(DVec3::from_array([0, 1, 2].map(|axis| f64::from(part(&arguments[axis]))))) as f32
+    };
+    Grad::new(value as f32, along(|g| g.dx), along(|g| g.dy), along(|g| g.dz))
 }
 
 fn whole(

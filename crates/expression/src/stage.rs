@@ -6,7 +6,6 @@ use fidget_core::eval::{BulkEvaluator, BulkOutput, Function, MathFunction, Tape}
 use fidget_core::types::Grad;
 use fidget_core::var::Var;
 use fidget_core::vm::{GenericVmTape, VmFloatSliceEval, VmFunction, VmGradSliceEval};
-use glam::Vec3;
 
 use crate::ExpressionError;
 
@@ -43,17 +42,14 @@ impl Stage {
         Ok(Self { tape, derivatives: function.grad_slice_tape(Default::default()), inputs })
     }
 
-    /// How the first value changes along x, y and z at a point, by automatic differentiation. Columns beyond those three must not be
-    /// needed.
-    pub(crate) fn gradient(&self, p: Vec3, Evaluator { derivatives, .. }: &mut Evaluator) -> Vec3 {
-        let axis = |axis: usize| {
-            let along = Vec3::AXES[axis];
-            vec![Grad::new(p[axis], along.x, along.y, along.z)]
-        };
-        let inputs: Vec<Vec<Grad>> = self.inputs.iter().map(|&column| axis(column)).collect();
-        let found = derivatives.eval(&self.derivatives, &inputs).expect("one value a variable and point");
-        let at = found[0][0];
-        Vec3::new(at.dx, at.dy, at.dz)
+    /// The values at a point with their changes along x, y and z, by automatic differentiation: from those of the columns.
+    pub(crate) fn differentiate<'a>(
+        &self,
+        columns: &[Grad],
+        Evaluator { derivatives, .. }: &'a mut Evaluator,
+    ) -> BulkOutput<'a, Grad> {
+        let inputs: Vec<Vec<Grad>> = self.inputs.iter().map(|&column| vec![columns[column]]).collect();
+        derivatives.eval(&self.derivatives, &inputs).expect("one value a variable and point")
     }
 
     pub(crate) fn needs(&self, column: usize) -> bool {

@@ -1,6 +1,6 @@
 //! The asteroid of the evaluation: a flattened ball with value noise on its directions.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::asteroid_table::AsteroidTable;
 use super::sine::sin;
@@ -57,6 +57,19 @@ impl StudyField for Asteroid {
         (self.radius - (p / self.stretch).length()) + self.amplitude * self.noise(direction * self.frequency)
     }
 
+    /// By the chain rule, in double precision but for the hashes.
+    fn gradient(&self, p: Vec3) -> Option<Vec3> {
+        let (p, stretch) = (p.as_dvec3(), self.stretch.as_dvec3());
+        let distance = p.length();
+        let direction = p / distance;
+        let frequency = f64::from(self.frequency);
+        let of_noise = self.noise_gradient((direction / stretch * frequency).as_vec3()) * frequency / stretch;
+        let across = (of_noise - direction * direction.dot(of_noise)) / distance;
+        let ball = p / (stretch * stretch) / (p / stretch).length();
+        // At the origin it is not a number, and there is none.
+        Some((across * f64::from(self.amplitude) - ball).as_vec3()).filter(|gradient| gradient.is_finite())
+    }
+
     /// With the hashes in tables, and bounds.
     fn prepared<'a>(&self, kept: &'a mut FieldCache) -> Option<&'a dyn StudyField> {
         let table =
@@ -81,6 +94,21 @@ impl Asteroid {
         }
         if weights == 0.0 { 0.0 } else { sum / weights }
     }
+
+    fn noise_gradient(&self, q: Vec3) -> DVec3 {
+        let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
+        let (mut weight, mut frequency) = (1.0, 1.0);
+        for _ in 0..self.octaves {
+            if weight == 0.0 {
+                break;
+            }
+            sum += value_noise_gradient(q * frequency) * f64::from(frequency * weight);
+            weights += f64::from(weight);
+            frequency *= self.lacunarity;
+            weight *= self.gain;
+        }
+        if weights == 0.0 { DVec3::ZERO } else { sum / weights }
+    }
 }
 
 /// Smoothly interpolated hashes of the eight whole-number points round `q`, scaled from [0, 1) to [-1, 1).
@@ -96,6 +124,26 @@ fn value_noise(q: Vec3) -> f32 {
     let near = blend(along_x(0.0, 0.0), along_x(1.0, 0.0), w.y);
     let far = blend(along_x(0.0, 1.0), along_x(1.0, 1.0), w.y);
     blend(near, far, w.z) * 2.0 - 1.0
+}
+
+/// Of the interpolated hashes: on each axis the difference of two faces of the unit cell, times how fast the blend goes.
+fn value_noise_gradient(q: Vec3) -> DVec3 {
+    let base = Vec3::new(libm::floorf(q.x), libm::floorf(q.y), libm::floorf(q.z));
+    let t = (q - base).as_dvec3();
+    let high = t * t * (DVec3::splat(3.0) - 2.0 * t);
+    let weights = [DVec3::ONE - high, high];
+    let steepness = 6.0 * t * (DVec3::ONE - t);
+    let mut gradient = DVec3::ZERO;
+    for corner in 0..8 {
+        let side = [corner & 1, corner >> 1 & 1, corner >> 2];
+        let hash = f64::from(hash(base + Vec3::from_array(side.map(|side| side as f32))));
+        for axis in 0..3 {
+            let [a, b] = [(axis + 1) % 3, (axis + 2) % 3];
+            let sign = if side[axis] == 1 { 1.0 } else { -1.0 };
+            gradient[axis] += sign * hash * weights[side[a]][a] * weights[side[b]][b];
+        }
+    }
+    gradient * steepness * 2.0
 }
 
 /// A fraction in [0, 1) for a whole-number point.

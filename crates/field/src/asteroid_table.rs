@@ -196,6 +196,10 @@ impl StudyField for AsteroidTable {
         }
     }
 
+    fn gradient(&self, p: Vec3) -> Option<Vec3> {
+        self.asteroid.gradient(p)
+    }
+
     fn slope(&self, bounds: Bounds) -> Option<f32> {
         let (noise, nearest) = self.noise_slope(bounds).filter(|_| has_sound_lengths(bounds))?;
         let ball = 1.0 / self.asteroid.stretch.min_element();

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::noise::{NOISE_SLOPE, Near, noise, noise_range};
+use crate::noise::{NOISE_SLOPE, Near, noise, noise_and_gradient, noise_range};
 
 /// The most octaves of a [`Fractal`].
 pub const MOST_OCTAVES: u32 = 16;
@@ -57,6 +57,17 @@ impl Fractal {
         sum
     }
 
+    /// [`value`](Self::value) to the bit, and its gradient; where the noise of an octave is 0, that of one side of the crest or crease.
+    pub fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
+        let (mut sum, mut gradient) = (0.0, DVec3::ZERO);
+        for (octave, weight) in self.octaves() {
+            let (n, of_noise) = noise_and_gradient(octave.place(p), octave.seed);
+            sum += self.shaped(n) * weight;
+            gradient += of_noise * (self.shaped_slope(n) * octave.frequency * weight);
+        }
+        (sum, gradient)
+    }
+
     /// A bound on the change a unit of length: that of the noise, times 2^k for octave k, and times 2 where it is squared.
     pub fn slope(&self) -> f64 {
         let steepness = if self.shape == NoiseShape::Ridged { 2.0 } else { 1.0 };
@@ -105,6 +116,15 @@ impl Fractal {
             NoiseShape::Plain => n,
             NoiseShape::Ridged => (1.0 - n.abs()) * (1.0 - n.abs()),
             NoiseShape::Billowed => n.abs(),
+        }
+    }
+
+    /// How the shape changes with the noise.
+    fn shaped_slope(&self, n: f64) -> f64 {
+        match self.shape {
+            NoiseShape::Plain => 1.0,
+            NoiseShape::Ridged => -2.0 * (1.0 - n.abs()) * n.signum(),
+            NoiseShape::Billowed => n.signum(),
         }
     }
 

@@ -36,6 +36,12 @@ impl StudyField for Gyroid {
         }
     }
 
+    fn gradient(&self, p: Vec3) -> Option<Vec3> {
+        let [(sx, cx), (sy, cy), (sz, cz)] =
+            p.to_array().map(|v| (libm::sinf(v * self.frequency), libm::cosf(v * self.frequency)));
+        Some(Vec3::new(cx * cy - sz * sx, cy * cz - sx * sy, cz * cx - sy * sz) * self.frequency)
+    }
+
     /// Each partial derivative lies between -1 and 1 times the frequency.
     fn slope(&self, bounds: Bounds) -> Option<f32> {
         let is_sound = bounds.min.is_finite() && bounds.max.is_finite() && self.frequency.is_finite();

@@ -18,6 +18,12 @@ use self::parts::Enclosed;
 use self::winding::WindingColumns;
 use super::{SAFE, StudyField};
 
+/// As near to the surface as this, in sizes of coordinates and triangles, which triangle is the nearest is a matter of rounding; the
+/// way to one that is not may lead anywhere.
+const ON_SURFACE: f64 = 1e-6;
+/// A triangle that is so flat, in squared lengths of its longest side, faces where the rounding of its corners says.
+const THINNEST: f64 = 1e-5;
+
 /// Why a mesh has no inside to measure from.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MeshFieldError {
@@ -285,6 +291,26 @@ impl StudyField for MeshDistance {
     fn slope(&self, bounds: Bounds) -> Option<f32> {
         let is_far = || self.caps.cannot_tell_in(bounds);
         (is_sound(bounds.min) && is_sound(bounds.max) && is_far()).then_some(1.0)
+    }
+
+    /// Towards the inside, of length 1: away from the nearest point of the surface or towards it. On the surface it is against the
+    /// normal of a nearest triangle. Nothing is known near a hole, and where the nearest triangle is as good as a line.
+    fn gradient(&self, p: Vec3) -> Option<Vec3> {
+        if !is_sound(p) || !self.caps.cannot_tell(p) {
+            return None;
+        }
+        let q = p.as_dvec3();
+        let triangles = self.winding.triangles();
+        let found = self.nearest.nearest(q, f64::INFINITY, |t| triangles[t]);
+        let corners = triangles[found.triangle].map(|corner| corner.as_dvec3());
+        let [ab, ac, bc] = [corners[1] - corners[0], corners[2] - corners[0], corners[2] - corners[1]];
+        let longest = ab.length_squared().max(ac.length_squared()).max(bc.length_squared());
+        if found.distance > ON_SURFACE * (q.abs().max_element() + longest.sqrt()) {
+            let away = (q - found.position) / found.distance;
+            return Some((if self.winding.at(p) > 0 { away } else { -away }).as_vec3());
+        }
+        let normal = ab.cross(ac);
+        (normal.length() > THINNEST * longest).then(|| -normal.normalize().as_vec3())
     }
 
     /// Known for the isovalue 0 and a mesh without holes: the nearest point of its triangles.

@@ -161,6 +161,9 @@ macro_rules! in_plain_numbers {
             fn sample_row(&self, x: &[f32], y: f32, z: f32, values: &mut [f32]) {
                 StudyField::sample_row(self, x, y, z, values);
             }
+            fn gradient(&self, p: [f32; 3]) -> Option<[f32; 3]> {
+                StudyField::gradient(self, p.into()).map(Into::into)
+            }
             fn bound(&self, bounds: Aabb) -> Bound {
                 let range = self.range(bounds.into(), f32::NAN);
                 let range = range.filter(|(least, greatest)| !(least.is_nan() || greatest.is_nan()));

@@ -44,6 +44,20 @@ impl Relief {
         self.ground + self.terraced(self.relief * sum)
     }
 
+    /// The height, and how it changes along x and y.
+    pub(super) fn height_and_slopes(&self, x: f64, y: f64) -> (f64, [f64; 2]) {
+        let place = DVec3::new(x / self.period, y / self.period, 0.0);
+        let (mut sum, mut slopes) = (0.0, DVec3::ZERO);
+        for (noise, share) in self.shared() {
+            let (value, gradient) = noise.value_and_gradient(place);
+            sum += centred(noise, value) * share;
+            slopes += gradient * (centring(noise) * share);
+        }
+        let height = self.relief * sum;
+        let slopes = slopes * (self.terraced_slope(height) * self.relief / self.period);
+        (self.ground + self.terraced(height), [slopes.x, slopes.y])
+    }
+
     /// Heights over a rectangle, each side from low to high.
     pub(super) fn range(&self, [x, y]: [(f64, f64); 2]) -> (f64, f64) {
         let low = DVec3::new(x.0 / self.period, y.0 / self.period, 0.0);
@@ -80,10 +94,25 @@ impl Relief {
         let steps = height / self.terrace;
         let below = steps.floor();
         let part = steps - below;
-        let way = ((part - (1.0 - RISER)) / RISER).max(0.0);
+        let way = riser_way(part);
         let rise = way * way * (3.0 - 2.0 * way);
         (below + SLOPING * part + (1.0 - SLOPING) * rise) * self.terrace
     }
+
+    /// How fast it grows with the height without terraces.
+    fn terraced_slope(&self, height: f64) -> f64 {
+        if self.terrace == 0.0 {
+            return 1.0;
+        }
+        let steps = height / self.terrace;
+        let way = riser_way(steps - steps.floor());
+        SLOPING + (1.0 - SLOPING) * 6.0 * way * (1.0 - way) / RISER
+    }
+}
+
+/// How much of a riser is below a part of its terrace, 0 to 1.
+fn riser_way(part: f64) -> f64 {
+    ((part - (1.0 - RISER)) / RISER).max(0.0)
 }
 
 /// From the shape's range to [-1, 1].
