@@ -22,7 +22,7 @@ mod vertices;
 mod volume_cells;
 
 pub(crate) use moved::EdgeMoves;
-pub(crate) use nets::Sharp;
+pub(crate) use nets::{Nets, Sharp};
 pub use rule::{Diagonals, Faces, Flat};
 pub use volume_cells::{VolumeCells, VolumeCellsError};
 
@@ -96,12 +96,7 @@ pub(crate) enum Way {
         flat: Flat,
     },
     /// The dual of patches: vertices in cells.
-    Nets {
-        /// One for each patch, rather than one in all.
-        patches: bool,
-        /// Where tangent planes meet, rather than at the mean of crossings. Then there must be a field.
-        sharp: Option<Sharp>,
-    },
+    Nets(Nets),
 }
 
 /// Extracts the cubes of a simple cubic lattice one way or the other. Of snapped ones there is no trace.
@@ -119,7 +114,7 @@ pub(crate) fn extract(
             moves.apply(request, extraction)
         }
         Way::Snapped { gamma, flat } => snap::extract(request, gamma, flat, progress, extraction),
-        Way::Nets { patches, sharp } => nets::extract(request, patches, sharp, progress, trace, extraction),
+        Way::Nets(nets) => nets::extract(request, nets, progress, trace, extraction),
     }
 }
 

@@ -113,6 +113,12 @@ pub enum MethodError {
         /// As given.
         truncation: f32,
     },
+    /// More steps than there may be.
+    #[error("smoothing = {smoothing}: must be from 0 to 64, steps")]
+    Smoothing {
+        /// As given.
+        smoothing: u32,
+    },
     /// Moves that are none.
     #[error(
         "pull = {pull:?}, steps = {steps}, share = {share:?}: pull and share must be from 0 to 1, steps at most 64"
@@ -268,6 +274,11 @@ impl Method {
 
 /// What only the extractor of chunks asks.
 impl Method {
+    /// Whether the method's own settings are in their ranges, whatever the grid.
+    pub(crate) fn check_ranges(&self) -> Result<(), MethodError> {
+        self.family().check_ranges()
+    }
+
     /// How many cells beyond a box's own samples can matter to its chunk; `None` where there is no such number, or there
     /// are no chunks.
     pub(crate) fn halo(&self) -> Option<u32> {
@@ -301,6 +312,10 @@ pub(crate) struct ByWindow {
 
 /// What a family of methods implements; see the functions of [`Method`] with the same names.
 trait Family {
+    /// Whether the family's own settings are in their ranges, whatever the grid.
+    fn check_ranges(&self) -> Result<(), MethodError> {
+        Ok(())
+    }
     fn check(&self, grid: &BoxGrid) -> Result<(), MethodError>;
     fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError>;
     fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError>;

@@ -2,7 +2,7 @@
 
 use extract::{
     Arrangement, Clustering, Cubes, Diagonals, Faces, Flat, Macet, Method, Placement, Positions, SnapCubes,
-    Tetrahedra, Topology,
+    SurfaceNets, Tetrahedra, Topology,
 };
 use toml::Table;
 
@@ -139,6 +139,21 @@ fn macet_is_read_and_written() {
     assert_eq!(toml::from_str::<Method>(&text).unwrap(), Method::Macet(wanted));
     assert_eq!(Macet::default().diagonals, Diagonals::EdgeGroups);
     assert!(read(r#"recipe = { kind = "macet", gamma = 0.3 }"#).unwrap_err().contains("gamma"));
+}
+
+#[test]
+fn surface_nets_are_read_and_written() {
+    let wanted = Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 8 });
+    assert_eq!(read(r#"recipe = { kind = "surface-nets", patches = true, smoothing = 8 }"#), Ok(wanted));
+    assert_eq!(toml::from_str::<Method>(&toml::to_string(&wanted).unwrap()).unwrap(), wanted);
+    assert_eq!(
+        read(r#"recipe = { kind = "surface-nets" }"#),
+        Ok(Method::SurfaceNets(SurfaceNets::default()))
+    );
+    let error = read(r#"recipe = { kind = "surface-nets", smoothing = -1 }"#).unwrap_err();
+    assert!(error.contains("-1"), "{error}");
+    let error = read(r#"recipe = { kind = "surface-nets", smooth = 1 }"#).unwrap_err();
+    assert!(error.contains("smooth") && error.contains("smoothing"), "{error}");
 }
 
 #[test]

@@ -13,8 +13,8 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 const ONE: Execution = Execution { threads: 1 };
-const NETS: Method = Method::SurfaceNets(SurfaceNets { patches: false });
-const MANIFOLD: Method = Method::SurfaceNets(SurfaceNets { patches: true });
+const NETS: Method = Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0 });
+const MANIFOLD: Method = Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 0 });
 
 /// Samples of a box, x fastest, with steps of 1.
 struct Volume {
@@ -287,7 +287,10 @@ fn threads_and_chunks_do_not_show() {
     let gyroid = Gyroid { frequency: 9.0 };
     let bounds = Bounds { min: Vec3::splat(-1.03), max: Vec3::new(1.1, 0.9, 2.4) };
     let grid = BoxGrid { bounds, spacing: 0.05 };
-    for method in [NETS, MANIFOLD] {
+    let smoothed = [false, true]
+        .into_iter()
+        .flat_map(|patches| [1, 4].map(|smoothing| Method::SurfaceNets(SurfaceNets { patches, smoothing })));
+    for method in [NETS, MANIFOLD].into_iter().chain(smoothed) {
         let field: &dyn StudyField = &gyroid;
         let of = |threads| {
             let execution = Execution { threads };
@@ -327,4 +330,109 @@ fn turning_the_field_round_turns_the_triangles() {
         sorted
     };
     assert_eq!(sorted(&mesh.triangles), sorted(&other.triangles));
+}
+
+/// Steps computed here in double precision: two cells are linked where the face between them has a crossing. No vertex leaves its cell,
+/// and quadrilaterals stay those that they were.
+#[test]
+fn smoothing_goes_half_the_way_to_linked_cells() {
+    let volume = Volume::noise([9, 8, 10], 4, true);
+    let plain = volume.mesh(&NETS);
+    let cells: Vec<[usize; 3]> =
+        plain.positions.iter().map(|p| p.to_array().map(|x| x.floor() as usize)).collect();
+    let crossings = volume.shared_crossings();
+    // Off the box every crossed edge of a face has a quadrilateral.
+    let is_linked = |a: [usize; 3], b: [usize; 3]| {
+        let steps = [0, 1, 2].map(|axis| a[axis].abs_diff(b[axis]));
+        steps.iter().sum::<usize>() == 1
+            && crossings.iter().any(|&(point, axis)| {
+                [a, b]
+                    .iter()
+                    .all(|cell| (0..3).all(|i| point[i] == cell[i] || (i != axis && point[i] == cell[i] + 1)))
+            })
+    };
+    let links: Vec<Vec<usize>> = cells
+        .iter()
+        .map(|&a| (0..cells.len()).filter(|&other| is_linked(a, cells[other])).collect())
+        .collect();
+    let mut wanted: Vec<[f64; 3]> = plain.positions.iter().map(|p| p.to_array().map(f64::from)).collect();
+    let quads = |mesh: &TriangleMesh| -> Vec<Vec<u32>> {
+        let of = |pair: &[[u32; 3]]| {
+            let mut all = pair.concat();
+            all.sort_unstable();
+            all.dedup();
+            all
+        };
+        mesh.triangles.chunks(2).map(of).collect()
+    };
+    let mut at_sides = 0;
+    for steps in 1..=6 {
+        let before = wanted.clone();
+        for (v, place) in wanted.iter_mut().enumerate() {
+            for axis in 0..3 {
+                let mean =
+                    links[v].iter().map(|&other| before[other][axis]).sum::<f64>() / links[v].len() as f64;
+                let low = cells[v][axis] as f64;
+                place[axis] = f64::midpoint(before[v][axis], mean).clamp(low, low + 1.0);
+            }
+        }
+        let mesh = volume.mesh(&Method::SurfaceNets(SurfaceNets { patches: false, smoothing: steps }));
+        for (p, want) in mesh.positions.iter().zip(&wanted) {
+            let is_there =
+                p.to_array().iter().zip(want).all(|(is, want)| (f64::from(*is) - want).abs() < 1e-4);
+            assert!(is_there, "{steps}: {p} {want:?}");
+        }
+        for (p, cell) in mesh.positions.iter().zip(&cells) {
+            for (x, low) in p.to_array().iter().zip(cell) {
+                let beyond = x - *low as f32;
+                assert!((0.0..=1.0).contains(&beyond));
+                at_sides += u32::from(beyond == 0.0 || beyond == 1.0);
+            }
+        }
+        assert_eq!(quads(&mesh), quads(&plain));
+        // Each is cut along its shorter diagonal.
+        for pair in mesh.triangles.chunks(2) {
+            let shared: Vec<u32> = pair[0].iter().copied().filter(|v| pair[1].contains(v)).collect();
+            let others: Vec<u32> = pair.concat().into_iter().filter(|v| !shared.contains(v)).collect();
+            let long =
+                |of: &[u32]| mesh.positions[of[0] as usize].distance_squared(mesh.positions[of[1] as usize]);
+            assert!(long(&shared) <= long(&others) && shared.len() == 2);
+        }
+    }
+    assert!(at_sides > 0, "none was held back");
+}
+
+/// A ball of samples that say only in or out comes out in steps; smoothing takes them out. Its Euler characteristic stays.
+#[test]
+fn smoothing_takes_the_steps_out_of_labels() {
+    let (size, radius) = (41, 15.3);
+    let ball = Volume::of([size; 3], |place| {
+        let square: f32 = place.iter().map(|&i| (i as f32 - 20.2) * (i as f32 - 20.2)).sum();
+        if square < radius * radius { 1.0 } else { -1.0 }
+    });
+    let errors = [0, 2, 8].map(|smoothing| {
+        let mesh = ball.mesh(&Method::SurfaceNets(SurfaceNets { patches: true, smoothing }));
+        let found = topology(&mesh);
+        assert!(found.is_closed_manifold() && found.euler_characteristic == 2);
+        let facing = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| mesh.positions[v as usize] - Vec3::splat(20.2));
+            f64::from((b - a).cross(c - a).normalize().dot((a + b + c).normalize()))
+        };
+        mesh.triangles.iter().map(|t| 1.0 - facing(t)).sum::<f64>() / mesh.triangles.len() as f64
+    });
+    assert!(errors[1] < 0.4 * errors[0] && errors[2] < 0.5 * errors[1], "{errors:?}");
+}
+
+#[test]
+fn more_smoothing_than_there_may_be_is_refused() {
+    for (smoothing, is_allowed) in [(64, true), (65, false), (u32::MAX, false)] {
+        let method = Method::SurfaceNets(SurfaceNets { patches: false, smoothing });
+        let grid = Volume::noise([5; 3], 1, true).grid();
+        assert_eq!(method.check(&grid).is_ok(), is_allowed);
+        let chunks = ChunkExtractor::in_box(&grid, &method, &ChunkSettings::default());
+        assert_eq!(chunks.is_ok(), is_allowed);
+        if let Err(error) = chunks {
+            assert_eq!(error.to_string(), format!("smoothing = {smoothing}: must be from 0 to 64, steps"));
+        }
+    }
 }

@@ -22,7 +22,7 @@ use crate::grid::Grid;
 use crate::lattice::{Border, CellBox, Lattice, LatticeError};
 use crate::level::Level;
 use crate::memory::refill;
-use crate::method::{ByWindow, Method};
+use crate::method::{ByWindow, Method, MethodError};
 use crate::normals::accumulate;
 use crate::settings::{ExtractSettings, Placement, Positions};
 use crate::source::Source;
@@ -40,7 +40,7 @@ const MOST_EXTRA: u32 = 64;
 /// To decide as the whole would, more is sampled than the chunk's own cells ([`window`](Self::window)): two cells on every
 /// side, or one where cubes are cut each by itself ([`Arrangement`](crate::Arrangement)) or not at all
 /// ([`Cubes`](crate::Cubes)); one more with [`Placement::Projected`],
-/// two with [`Placement::Relaxed`]. Edges collapse in an order that runs through a whole connected piece of surface, and
+/// two with [`Placement::Relaxed`], and one for each step of [`SurfaceNets::smoothing`](crate::SurfaceNets::smoothing). Edges collapse in an order that runs through a whole connected piece of surface, and
 /// an early collapse can decide a late one anywhere on it: with edge collapse the window therefore grows until it holds
 /// every piece of surface that enters the chunk, if need be to the whole box, and there must be one. For terrain that
 /// is edited all the time take [`Clustering::Integrated`](crate::Clustering), which regularises triangles without
@@ -132,6 +132,9 @@ pub enum ChunkError {
     /// [`Normals::Field`] of samples.
     #[error("samples have no gradient between them: Normals::Field needs a field")]
     NormalsNeedField,
+    /// A setting of the method is out of its range.
+    #[error(transparent)]
+    Settings(#[from] MethodError),
     /// A method without chunks.
     #[error("this method makes no chunks")]
     Method,
@@ -177,7 +180,7 @@ impl ChunkExtractor {
     /// An extractor for chunks of a grid without an end, without buffers yet.
     ///
     /// # Errors
-    /// [`ChunkError::Method`], [`ChunkError::Accumulated`], [`ChunkError::Placement`], [`ChunkError::EndlessCollapse`], and
+    /// [`ChunkError::Settings`], [`ChunkError::Method`], [`ChunkError::Accumulated`], [`ChunkError::Placement`], [`ChunkError::EndlessCollapse`], and
     /// [`ChunkError::Extract`] where the method's settings do not go together or the isovalue is not finite.
     pub fn try_new(grid: &Grid, method: &Method, settings: &ChunkSettings) -> Result<Self, ChunkError> {
         let extractor = Self::new(Place::Endless(*grid), method, settings)?;
@@ -196,6 +199,7 @@ impl ChunkExtractor {
     }
 
     fn new(place: Place, method: &Method, settings: &ChunkSettings) -> Result<Self, ChunkError> {
+        method.check_ranges()?;
         let how = method.by_window(settings.isovalue).ok_or(ChunkError::Method)?;
         let world = World { place, method: *method, settings: *settings };
         let ByWindow { arrangement, settings, .. } = how;

@@ -12,6 +12,7 @@
 
 mod plan;
 mod quads;
+mod relaxed;
 mod sharp;
 mod tangents;
 mod vertices;
@@ -36,8 +37,36 @@ use crate::source::{Request, Sampler};
 use crate::streaming::Progress;
 use crate::trace::Trace;
 
+/// What decides a net.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Nets {
+    /// A vertex for each patch of a cell, rather than one in all.
+    pub(crate) patches: bool,
+    /// Where tangent planes meet, rather than at the mean of crossings. Then there must be a field.
+    pub(crate) sharp: Option<Sharp>,
+    /// So many steps towards the linked vertices.
+    pub(crate) smoothing: u32,
+}
+
 /// The stages in order, timed and counted. The lattice is simple cubic.
 pub(super) fn extract(
+    request: &Request,
+    Nets { patches, sharp, smoothing }: Nets,
+    progress: Option<&Progress>,
+    trace: Option<&mut Trace>,
+    extraction: &mut Extraction,
+) -> Result<(), ExtractError> {
+    if smoothing == 0 {
+        return extract_unmoved(request, patches, sharp, progress, trace, extraction);
+    }
+    // Vertices stay in their cells, and the trace is what says which those are.
+    let mut own = Trace::default();
+    let trace = trace.unwrap_or(&mut own);
+    extract_unmoved(request, patches, sharp, progress, Some(trace), extraction)?;
+    relaxed::relax(request, smoothing, trace, extraction)
+}
+
+fn extract_unmoved(
     request: &Request,
     patches: bool,
     sharp: Option<Sharp>,

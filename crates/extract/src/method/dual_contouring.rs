@@ -2,7 +2,7 @@
 
 use super::of_cubes::OfCubes;
 use super::{MethodError, Promises};
-use crate::cubes::{Sharp, Way};
+use crate::cubes::{Nets, Sharp, Way};
 
 /// Dual contouring on a uniform grid (Ju, Losasso, Schaefer & Warren 2002): the connections of [surface nets](super::SurfaceNets), with
 /// each vertex where the field's tangent planes at the crossings of its cube meet, so that edges and corners are kept.
@@ -35,7 +35,7 @@ impl Default for DualContouring {
 impl OfCubes for DualContouring {
     fn way(&self) -> Way {
         let sharp = Sharp { truncation: self.truncation, in_cell: self.in_cell };
-        Way::Nets { patches: self.patches, sharp: Some(sharp) }
+        Way::Nets(Nets { patches: self.patches, sharp: Some(sharp), smoothing: 0 })
     }
 
     fn promises(&self) -> Promises {

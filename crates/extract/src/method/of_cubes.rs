@@ -47,6 +47,10 @@ pub(super) trait OfCubes {
 }
 
 impl<T: OfCubes> Family for T {
+    fn check_ranges(&self) -> Result<(), MethodError> {
+        self.check_settings()
+    }
+
     fn check(&self, grid: &BoxGrid) -> Result<(), MethodError> {
         self.check_settings()?;
         check(&self.settings(0.0), ARRANGEMENT)?;

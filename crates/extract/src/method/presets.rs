@@ -91,13 +91,13 @@ static PRESETS: [Preset; 31] = [
     Preset {
         id: "nets",
         label: "surface nets",
-        method: Method::SurfaceNets(SurfaceNets { patches: false }),
+        method: Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0 }),
         source: NETS,
     },
     Preset {
         id: "nets-manifold",
         label: "surface nets, manifold",
-        method: Method::SurfaceNets(SurfaceNets { patches: true }),
+        method: Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 0 }),
         source: PATCHES,
     },
     Preset {

@@ -1,11 +1,11 @@
 //! Surface nets as a method.
 
-use super::Promises;
 use super::of_cubes::OfCubes;
-use crate::cubes::Way;
+use super::{MethodError, Promises};
+use crate::cubes::{Nets, Way};
 
 /// Surface nets, the dual of marching cubes: a vertex in each cube that the surface crosses, at the mean of the crossings of its edges,
-/// and a quadrilateral round each crossed edge (Gibson 1998, without relaxation). Each is two triangles, on either side of its
+/// and a quadrilateral round each crossed edge (Gibson 1998). Each is two triangles, on either side of its
 /// shorter diagonal.
 ///
 /// Where the surface leaves the box the mesh ends half a cell before it, since a vertex lies in a cell.
@@ -19,11 +19,17 @@ pub struct SurfaceNets {
     /// quadrilaterals, inside corners joined on the face between (Wenger 2013): then the mesh is a manifold. Without, sheets of the
     /// surface that cross one cell share its vertex.
     pub patches: bool,
+    /// How many times all vertices go half the way to the mean of those that they share a side of a quadrilateral with; at most 64. None
+    /// leaves its cube (Gibson 1998). It takes the steps out of samples that only say in or out; of others it wears off what they know.
+    pub smoothing: u32,
 }
+
+/// The most steps of [`SurfaceNets::smoothing`]: each needs one more cell round a chunk.
+const MOST_SMOOTHING: u32 = 64;
 
 impl OfCubes for SurfaceNets {
     fn way(&self) -> Way {
-        Way::Nets { patches: self.patches, sharp: None }
+        Way::Nets(Nets { patches: self.patches, sharp: None, smoothing: self.smoothing })
     }
 
     fn promises(&self) -> Promises {
@@ -36,9 +42,14 @@ impl OfCubes for SurfaceNets {
         }
     }
 
+    fn check_settings(&self) -> Result<(), MethodError> {
+        let smoothing = self.smoothing;
+        if smoothing <= MOST_SMOOTHING { Ok(()) } else { Err(MethodError::Smoothing { smoothing }) }
+    }
+
     /// A triangle has vertices of the next lower cells, whose triangles give them normals; how such a cell is cut may be for the
-    /// next one to say.
+    /// next one to say. Each step of smoothing looks one cell farther.
     fn unmoved_halo(&self) -> Option<u32> {
-        Some(if self.patches { 3 } else { 2 })
+        Some(self.smoothing + if self.patches { 3 } else { 2 })
     }
 }

@@ -21,6 +21,50 @@ const ROUND: [[usize; 2]; 4] = [[1, 1], [0, 1], [0, 0], [1, 0]];
 /// How far the diagonals pass each other where corners are not in one plane, in spacings.
 const BENT: f32 = 1e-3;
 
+/// The corners of a quadrilateral round an edge: that in the lowest cell, and on from there, counter-clockwise seen against the edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Quadrilateral {
+    pub(super) corners: [u32; 4],
+    /// Whether the edge leads out of the solid.
+    pub(super) leads_out: bool,
+}
+
+impl Quadrilateral {
+    /// The one that two triangles were made of.
+    pub(super) fn of([first, second]: [[u32; 3]; 2]) -> Self {
+        let leads_out = first[2] == second[1];
+        let mut corners = match leads_out {
+            true => [first[0], first[1], first[2], second[2]],
+            false => [first[0], first[2], first[1], second[1]],
+        };
+        // Vertices are numbered by their cells, so that in the lowest has the least number. Cut the other way, it is the last.
+        if corners[3] < corners[0] {
+            corners.rotate_right(1);
+        }
+        Self { corners, leads_out }
+    }
+
+    /// Two triangles, on either side of the diagonal through the lowest cell or of the other.
+    pub(super) fn cut(self, by_other: bool) -> [[u32; 3]; 2] {
+        let mut corners = self.corners;
+        if by_other {
+            corners.rotate_left(1);
+        }
+        let [a, b, c, d] = corners;
+        if self.leads_out { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] }
+    }
+
+    /// Two triangles, on either side of the shorter diagonal; of equal ones, of that through the lowest cell.
+    pub(super) fn by_shorter_diagonal(self, positions: &[Vec3]) -> [[u32; 3]; 2] {
+        self.cut(is_other_shorter(self.corners.map(|corner| positions[corner as usize])))
+    }
+}
+
+/// Whether the diagonal from the second corner to the fourth is shorter than that through the lowest cell.
+fn is_other_shorter([a, b, c, d]: [Vec3; 4]) -> bool {
+    b.distance_squared(d) < a.distance_squared(c)
+}
+
 /// What the pass reads. Records are those of the cells above a layer of points and below it.
 pub(super) struct QuadPass<'a> {
     pub(super) grid: &'a Grid<'a>,
@@ -99,7 +143,7 @@ impl QuadPass<'_> {
     /// The two triangles round an edge, on either side of the better diagonal.
     fn quadrilateral(&self, place: [usize; 3], axis: usize, leads_out: bool) -> [[u32; 3]; 2] {
         let across = [(axis + 1) % 3, (axis + 2) % 3];
-        let mut corners = ROUND.map(|back| {
+        let corners = ROUND.map(|back| {
             let (mut cell, mut corner) = (place, 0);
             for (axis, back) in across.into_iter().zip(back) {
                 cell[axis] -= back;
@@ -109,18 +153,16 @@ impl QuadPass<'_> {
             let edge = self.plans.table.number(corner, axis);
             record.first + self.plans.at(record.plan).of_edge(edge)
         });
-        if self.is_other_better(corners.map(|corner| self.positions[corner as usize])) {
-            corners.rotate_left(1);
-        }
-        let [a, b, c, d] = corners;
-        if leads_out { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] }
+        let places = corners.map(|corner| self.positions[corner as usize]);
+        Quadrilateral { corners, leads_out }.cut(self.is_other_better(places))
     }
 
     /// Whether the diagonal from the second corner to the fourth is better than that through the lowest cell: shorter; or where tangent
     /// planes were asked for and the corners are not in one plane, with its middle nearer to the isovalue. An edge of the object
     /// that runs from corner to corner is a diagonal then.
-    fn is_other_better(&self, [a, b, c, d]: [Vec3; 4]) -> bool {
-        let is_shorter = b.distance_squared(d) < a.distance_squared(c);
+    fn is_other_better(&self, corners: [Vec3; 4]) -> bool {
+        let [a, b, c, d] = corners;
+        let is_shorter = is_other_shorter(corners);
         let Some(level) = self.level else { return is_shorter };
         let normal = (c - a).cross(d - b);
         let apart = (b - a).dot(normal).abs();
@@ -134,5 +176,22 @@ impl QuadPass<'_> {
             };
         }
         is_shorter
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_say_what_they_were_made_of() {
+        for corners in [[2, 3, 9, 4], [0, 5, 7, 1]] {
+            for leads_out in [false, true] {
+                let quadrilateral = Quadrilateral { corners, leads_out };
+                for by_other in [false, true] {
+                    assert_eq!(Quadrilateral::of(quadrilateral.cut(by_other)), quadrilateral);
+                }
+            }
+        }
     }
 }
