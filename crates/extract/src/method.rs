@@ -113,6 +113,12 @@ pub enum MethodError {
         /// As given.
         truncation: f32,
     },
+    /// A tolerance that is none.
+    #[error("tolerance = {tolerance:?}: must be 0 or more, in lengths of a lattice edge")]
+    Tolerance {
+        /// As given.
+        tolerance: f32,
+    },
     /// More steps than there may be.
     #[error("smoothing = {smoothing}: must be from 0 to 64, steps")]
     Smoothing {

@@ -7,7 +7,8 @@ use mesh::topology::topology;
 use mesh::{Bounds, TriangleMesh};
 
 const ONE: Execution = Execution { threads: 1 };
-const FREE: DualContouring = DualContouring { patches: false, truncation: 1e-3, in_cell: false };
+const FREE: DualContouring =
+    DualContouring { patches: false, truncation: 1e-3, in_cell: false, tolerance: 0.0 };
 
 struct Formula<F>(F);
 

@@ -1,8 +1,8 @@
 //! Methods as tables of a file: what is written is read back, and what is not known is refused by name.
 
 use extract::{
-    Arrangement, Clustering, Cubes, Diagonals, Faces, Flat, Macet, Method, Placement, Positions, SnapCubes,
-    SurfaceNets, Tetrahedra, Topology,
+    Arrangement, Clustering, Cubes, Diagonals, DualContouring, Faces, Flat, Macet, Method, Placement,
+    Positions, SnapCubes, SurfaceNets, Tetrahedra, Topology,
 };
 use toml::Table;
 
@@ -154,6 +154,18 @@ fn surface_nets_are_read_and_written() {
     assert!(error.contains("-1"), "{error}");
     let error = read(r#"recipe = { kind = "surface-nets", smooth = 1 }"#).unwrap_err();
     assert!(error.contains("smooth") && error.contains("smoothing"), "{error}");
+}
+
+#[test]
+fn dual_contouring_is_read_and_written() {
+    let wanted = DualContouring { patches: true, truncation: 0.01, in_cell: true, tolerance: 0.25 };
+    let keys = r#"recipe = { kind = "dual-contouring", patches = true, truncation = 0.01, in_cell = true, tolerance = 0.25 }"#;
+    assert_eq!(read(keys), Ok(Method::DualContouring(wanted)));
+    let text = toml::to_string(&Method::DualContouring(wanted)).unwrap();
+    assert_eq!(toml::from_str::<Method>(&text).unwrap(), Method::DualContouring(wanted));
+    assert_eq!(DualContouring::default().tolerance, 0.0);
+    let error = read(r#"recipe = { kind = "dual-contouring", smoothing = 1 }"#).unwrap_err();
+    assert!(error.contains("smoothing") && error.contains("tolerance"), "{error}");
 }
 
 #[test]

@@ -10,6 +10,7 @@
 //! It streams: sides; a layer behind, samples; another behind, the vertices of a layer of cells; then the quadrilaterals of the edges
 //! that begin at the points below it.
 
+mod octree;
 mod plan;
 mod quads;
 mod relaxed;
@@ -46,24 +47,30 @@ pub(crate) struct Nets {
     pub(crate) sharp: Option<Sharp>,
     /// So many steps towards the linked vertices.
     pub(crate) smoothing: u32,
+    /// How far vertices may be from tangent planes, in spacings, when cells become larger ones; 0 if they do not.
+    pub(crate) tolerance: f32,
 }
 
 /// The stages in order, timed and counted. The lattice is simple cubic.
 pub(super) fn extract(
     request: &Request,
-    Nets { patches, sharp, smoothing }: Nets,
+    Nets { patches, sharp, smoothing, tolerance }: Nets,
     progress: Option<&Progress>,
     trace: Option<&mut Trace>,
     extraction: &mut Extraction,
 ) -> Result<(), ExtractError> {
-    if smoothing == 0 {
+    let sharp_and_merged = sharp.filter(|_| tolerance > 0.0);
+    if smoothing == 0 && sharp_and_merged.is_none() {
         return extract_unmoved(request, patches, sharp, progress, trace, extraction);
     }
-    // Vertices stay in their cells, and the trace is what says which those are.
+    // The trace says which cell a vertex is of.
     let mut own = Trace::default();
     let trace = trace.unwrap_or(&mut own);
     extract_unmoved(request, patches, sharp, progress, Some(trace), extraction)?;
-    relaxed::relax(request, smoothing, trace, extraction)
+    match sharp_and_merged {
+        Some(sharp) => octree::simplify(request, sharp, tolerance, trace, extraction),
+        None => relaxed::relax(request, smoothing, trace, extraction),
+    }
 }
 
 fn extract_unmoved(

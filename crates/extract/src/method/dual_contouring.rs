@@ -4,7 +4,7 @@ use super::of_cubes::OfCubes;
 use super::{MethodError, Promises};
 use crate::cubes::{Nets, Sharp, Way};
 
-/// Dual contouring on a uniform grid (Ju, Losasso, Schaefer & Warren 2002): the connections of [surface nets](super::SurfaceNets), with
+/// Dual contouring (Ju, Losasso, Schaefer & Warren 2002) on a uniform grid, or an octree made of one: the connections of [surface nets](super::SurfaceNets), with
 /// each vertex where the field's tangent planes at the crossings of its cube meet, so that edges and corners are kept.
 ///
 /// Crossings are roots of the field on their edges. Normals are the field's own gradients where it has some, else central differences.
@@ -24,18 +24,23 @@ pub struct DualContouring {
     /// Whether a vertex stays in its cube, at the best point there. A corner or an edge that pokes into a cube without a crossing is
     /// then cut off, by up to half a cube; without, as published, triangles may turn over.
     pub in_cell: bool,
+    /// How far a vertex may be from the tangent plane at any crossing of its cell, in lengths of a lattice edge, where eight cells become
+    /// one and theirs again, as far as the topology stays what it is. Triangles then are within a few times that of the surface, and few
+    /// where it is flat. With 0, the default, cells stay as they are. The vertex of a larger cell stays in it, and cells at the box are
+    /// never merged.
+    pub tolerance: f32,
 }
 
 impl Default for DualContouring {
     fn default() -> Self {
-        Self { patches: false, truncation: 1e-3, in_cell: false }
+        Self { patches: false, truncation: 1e-3, in_cell: false, tolerance: 0.0 }
     }
 }
 
 impl OfCubes for DualContouring {
     fn way(&self) -> Way {
         let sharp = Sharp { truncation: self.truncation, in_cell: self.in_cell };
-        Way::Nets(Nets { patches: self.patches, sharp: Some(sharp), smoothing: 0 })
+        Way::Nets(Nets { patches: self.patches, sharp: Some(sharp), smoothing: 0, tolerance: self.tolerance })
     }
 
     fn promises(&self) -> Promises {
@@ -49,8 +54,11 @@ impl OfCubes for DualContouring {
     }
 
     fn check_settings(&self) -> Result<(), MethodError> {
-        let truncation = self.truncation;
-        if (0.0..=1.0).contains(&truncation) { Ok(()) } else { Err(MethodError::Truncation { truncation }) }
+        let Self { truncation, tolerance, .. } = *self;
+        if !(0.0..=1.0).contains(&truncation) {
+            return Err(MethodError::Truncation { truncation });
+        }
+        if tolerance >= 0.0 { Ok(()) } else { Err(MethodError::Tolerance { tolerance }) }
     }
 
     fn calls_the_field(&self) -> bool {

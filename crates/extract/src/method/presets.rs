@@ -103,13 +103,23 @@ static PRESETS: [Preset; 31] = [
     Preset {
         id: "dc",
         label: "dual contouring",
-        method: Method::DualContouring(DualContouring { patches: false, truncation: 1e-3, in_cell: false }),
+        method: Method::DualContouring(DualContouring {
+            patches: false,
+            truncation: 1e-3,
+            in_cell: false,
+            tolerance: 0.0,
+        }),
         source: PLANES,
     },
     Preset {
         id: "dc-manifold",
         label: "dual contouring, manifold",
-        method: Method::DualContouring(DualContouring { patches: true, truncation: 1e-3, in_cell: false }),
+        method: Method::DualContouring(DualContouring {
+            patches: true,
+            truncation: 1e-3,
+            in_cell: false,
+            tolerance: 0.0,
+        }),
         source: PLANES_OF_PATCHES,
     },
     published("bu-published", "body-centred, none, as published", BodyCentred, None),

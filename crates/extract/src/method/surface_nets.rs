@@ -29,7 +29,7 @@ const MOST_SMOOTHING: u32 = 64;
 
 impl OfCubes for SurfaceNets {
     fn way(&self) -> Way {
-        Way::Nets(Nets { patches: self.patches, sharp: None, smoothing: self.smoothing })
+        Way::Nets(Nets { patches: self.patches, sharp: None, smoothing: self.smoothing, tolerance: 0.0 })
     }
 
     fn promises(&self) -> Promises {

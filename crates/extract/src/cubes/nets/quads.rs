@@ -65,6 +65,31 @@ fn is_other_shorter([a, b, c, d]: [Vec3; 4]) -> bool {
     b.distance_squared(d) < a.distance_squared(c)
 }
 
+/// Whether the diagonal from the second corner to the fourth is better than that through the lowest cell: shorter. Where tangent planes
+/// were asked for and the corners are not in one plane, it is the one with its middle nearer to the isovalue: an edge of the object that
+/// runs from corner to corner is a diagonal then. Where they are in one plane, none that leaves the quadrilateral is taken.
+pub(super) fn is_other_better(level: Option<Level>, corners: [Vec3; 4]) -> bool {
+    let [a, b, c, d] = corners;
+    let is_shorter = is_other_shorter(corners);
+    let Some(level) = level else { return is_shorter };
+    let normal = (c - a).cross(d - b);
+    let apart = (b - a).dot(normal).abs();
+    // Not a number is in the plane.
+    if apart > BENT * level.spacing * normal.length() {
+        let [lowest, other] = [a.midpoint(c), b.midpoint(d)].map(|middle| level.difference(middle).abs());
+        return match other.partial_cmp(&lowest) {
+            Some(Ordering::Less) => true,
+            Some(Ordering::Greater) => false,
+            _ => is_shorter,
+        };
+    }
+    // On either side of a diagonal within there is a triangle that faces as the other does.
+    let faces = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a);
+    let lowest = faces([a, b, c]).dot(faces([a, c, d]));
+    let other = faces([b, c, d]).dot(faces([b, d, a]));
+    if (lowest > 0.0) == (other > 0.0) { is_shorter } else { other > 0.0 }
+}
+
 /// What the pass reads. Records are those of the cells above a layer of points and below it.
 pub(super) struct QuadPass<'a> {
     pub(super) grid: &'a Grid<'a>,
@@ -154,28 +179,7 @@ impl QuadPass<'_> {
             record.first + self.plans.at(record.plan).of_edge(edge)
         });
         let places = corners.map(|corner| self.positions[corner as usize]);
-        Quadrilateral { corners, leads_out }.cut(self.is_other_better(places))
-    }
-
-    /// Whether the diagonal from the second corner to the fourth is better than that through the lowest cell: shorter; or where tangent
-    /// planes were asked for and the corners are not in one plane, with its middle nearer to the isovalue. An edge of the object
-    /// that runs from corner to corner is a diagonal then.
-    fn is_other_better(&self, corners: [Vec3; 4]) -> bool {
-        let [a, b, c, d] = corners;
-        let is_shorter = is_other_shorter(corners);
-        let Some(level) = self.level else { return is_shorter };
-        let normal = (c - a).cross(d - b);
-        let apart = (b - a).dot(normal).abs();
-        // Not a number is in the plane.
-        if apart > BENT * level.spacing * normal.length() {
-            let [lowest, other] = [a.midpoint(c), b.midpoint(d)].map(|middle| level.difference(middle).abs());
-            return match other.partial_cmp(&lowest) {
-                Some(Ordering::Less) => true,
-                Some(Ordering::Greater) => false,
-                _ => is_shorter,
-            };
-        }
-        is_shorter
+        Quadrilateral { corners, leads_out }.cut(is_other_better(self.level, places))
     }
 }
 

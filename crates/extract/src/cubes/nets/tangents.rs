@@ -36,16 +36,19 @@ impl<'a> Tangents<'a> {
     pub(super) fn at(&mut self, grid: &Grid, from: [usize; 3], axis: usize, ends: [f32; 2]) -> Tangent {
         let [x, y, z] = from;
         let level = self.level;
-        *self.known[z % 2].entry([x, y, axis]).or_insert_with(|| {
-            let start = grid.position(from);
-            let mut edge = DVec3::ZERO;
-            edge[axis] = f64::from(grid.at[axis][from[axis] + 1]) - f64::from(grid.at[axis][from[axis]]);
-            let at = |ratio: f64| start.as_dvec3() + edge * ratio;
-            let crossing = at(root(level, at, ends.map(|value| value - level.isovalue)));
-            let normal = level.normal(crossing.as_vec3()).map(|normal| normal.as_dvec3());
-            (crossing, normal.filter(|normal| normal.is_finite()))
-        })
+        *self.known[z % 2].entry([x, y, axis]).or_insert_with(|| tangent(level, grid, from, axis, ends))
     }
+}
+
+/// The same, found anew.
+pub(super) fn tangent(level: Level, grid: &Grid, from: [usize; 3], axis: usize, ends: [f32; 2]) -> Tangent {
+    let start = grid.position(from);
+    let mut edge = DVec3::ZERO;
+    edge[axis] = f64::from(grid.at[axis][from[axis] + 1]) - f64::from(grid.at[axis][from[axis]]);
+    let at = |ratio: f64| start.as_dvec3() + edge * ratio;
+    let crossing = at(root(level, at, ends.map(|value| value - level.isovalue)));
+    let normal = level.normal(crossing.as_vec3()).map(|normal| normal.as_dvec3());
+    (crossing, normal.filter(|normal| normal.is_finite()))
 }
 
 /// Where between two points, 0 to 1, the field has the isovalue, if it is the differences from it that are given at the points; a half if
