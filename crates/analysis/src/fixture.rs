@@ -155,6 +155,7 @@ fn mesh(study: &Study, row: &BenchmarkRow, purpose: Purpose) -> MeshRecord {
             folded_faces: 0,
             components: 1,
             euler_characteristic: 2,
+            self_intersections: Some(0),
         },
         accuracy: Accuracy {
             distance: spread(2e-4, 1e-4, 0.0, 8_192, (0.0, 0.1 * object.benchmark_spacing, 50)),

@@ -24,7 +24,7 @@ pub(crate) fn mesh_record(
         cells,
         counts,
         quality: quality(&mesh::quality::quality(mesh)),
-        topology: topology(&mesh::topology::topology(mesh)),
+        topology: topology(&mesh::topology::topology(mesh), mesh),
         accuracy: self::accuracy(accuracy),
         trilinear: None,
         program: None,
@@ -115,7 +115,8 @@ fn distribution(d: &mesh::distribution::Distribution) -> Distribution {
     }
 }
 
-pub(crate) fn topology(t: &mesh::topology::TopologyReport) -> Topology {
+/// `t` is the mesh's.
+pub(crate) fn topology(t: &mesh::topology::TopologyReport, mesh: &TriangleMesh) -> Topology {
     Topology {
         vertices: t.vertices,
         edges: t.edges,
@@ -128,5 +129,7 @@ pub(crate) fn topology(t: &mesh::topology::TopologyReport) -> Topology {
         folded_faces: t.folded_faces,
         components: t.components,
         euler_characteristic: t.euler_characteristic,
+        // Of no triangles there is no such number.
+        self_intersections: mesh::self_intersections(mesh).ok(),
     }
 }

@@ -218,7 +218,7 @@ pub struct Histogram {
     pub above: u64,
 }
 
-/// Topology of a mesh. Names as in `mesh::topology::TopologyReport`, whose docs define them.
+/// Topology of a mesh. Names as in `mesh::topology::TopologyReport`, whose docs define them, but for the last.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "defined where they are counted, in `mesh::topology`")]
 pub struct Topology {
@@ -233,6 +233,10 @@ pub struct Topology {
     pub folded_faces: u64,
     pub components: u64,
     pub euler_characteristic: i64,
+    /// Pairs of triangles that pass through each other, as `mesh::self_intersections` counts them. Records of before this was counted
+    /// have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub self_intersections: Option<u64>,
 }
 
 /// What one configuration of a sweep is at one resolution, with positions computed from indices.

@@ -1,7 +1,7 @@
 //! Triangle meshes: what a mesh is, what every triangle is worth, and what is wrong with the topology.
 //!
 //! A [`TriangleMesh`] is plain data. [`quality`] measures its triangles, [`topology`] its connections, [`repair`]
-//! closes holes, [`normals`] gives it vertex normals, [`metro`] says how far it is from another, and a [`MeshFormat`]
+//! closes holes, [`self_intersections`] counts triangles that pass through each other, [`normals`] gives it vertex normals, [`metro`] says how far it is from another, and a [`MeshFormat`]
 //! moves it in and out of files: OBJ, PLY and STL both ways, binary glTF out. [`NearestTriangles`] finds the nearest
 //! triangle to a point. Everything is deterministic; only [`metro`] uses threads.
 //!
@@ -33,7 +33,7 @@
 //!
 //! - A [`TriangleMesh`] is plain data: an index out of range, a number that is not one, a triangle without area are the
 //!   caller's affair. Functions that panic on the first of them say so.
-//! - Self-intersections go unseen.
+//! - Self-intersections go unseen, but for [`self_intersections`].
 //!
 //! # Sources
 //!
@@ -54,6 +54,7 @@ mod obj;
 mod ply;
 pub mod quality;
 pub mod repair;
+mod self_intersections;
 mod stl;
 pub mod topology;
 mod triangle_mesh;
@@ -65,5 +66,6 @@ pub use nearest::{NearestPoint, NearestTriangles};
 pub use numbers::{COORDINATE_LIMIT, MeshError, is_sound, used_vertices};
 pub use obj::{ObjError, read_obj, write_obj};
 pub use ply::{PlyError, read_ply, write_ply};
+pub use self_intersections::self_intersections;
 pub use stl::{StlError, read_stl, weld, write_stl};
 pub use triangle_mesh::{Bounds, TriangleMesh};

@@ -42,6 +42,7 @@ pub(crate) fn meshes(study: &Study, records: &[MeshRecord]) -> LongFrame {
     rows.count("lost_vertices", |mesh| Some(mesh.accuracy.lost_vertices));
     TOPOLOGY.iter().for_each(|(name, of)| rows.count(name, |mesh| Some(of(&mesh.topology))));
     rows.whole("euler_characteristic", |mesh| Some(mesh.topology.euler_characteristic));
+    rows.count("self_intersections", |mesh| mesh.topology.self_intersections);
     LongFrame { name: "meshes", frame: rows.frame(), texts: Vec::new() }
 }
 

@@ -122,6 +122,7 @@ pub(super) fn topology(inputs: &Inputs<'_>) -> Option<Table> {
             ("misoriented_edges", "Misoriented edges"),
             ("duplicate_faces", "Duplicate faces"),
             ("folded_faces", "Folded faces"),
+            ("self_intersections", "Intersecting pairs"),
         ],
     );
     let mut meshes: Vec<(Purpose, &MeshRecord)> = Vec::new();
@@ -152,6 +153,7 @@ pub(super) fn topology(inputs: &Inputs<'_>) -> Option<Table> {
             Cell::count(t.misoriented_edges),
             Cell::count(t.duplicate_faces),
             Cell::count(t.folded_faces),
+            t.self_intersections.map_or(Cell::Missing, Cell::count),
         ];
         if has_truth {
             let of = mesh.trilinear.as_ref();

@@ -98,7 +98,7 @@ impl QualityReport {
             counts: records::counts(&extraction.counts),
             quality: records::quality(&mesh::quality::quality(&extraction.mesh)),
             boundary_loops: topology.boundary_loops,
-            topology: records::topology(&topology),
+            topology: records::topology(&topology, &extraction.mesh),
             accuracy,
         }
     }
@@ -141,6 +141,7 @@ impl QualityReport {
                     counted(self.boundary_loops, "boundary loop")
                 ),
             ),
+            ("intersections", intersecting(t.self_intersections)),
             ("area", significant(self.area)),
             ("volume", self.volume.map_or_else(|| "none: the surface is open".into(), significant)),
             (
@@ -175,4 +176,13 @@ fn way(distances: &Distribution) -> String {
 
 fn lost(points: u64) -> String {
     if points == 0 { String::new() } else { format!(", {} without a distance", counted(points, "point")) }
+}
+
+/// How many triangles pass through each other, in words.
+fn intersecting(pairs: Option<u64>) -> String {
+    match pairs {
+        Some(0) => "no triangle passes through another".to_owned(),
+        Some(pairs) => format!("{} of triangles that pass through each other", counted(pairs, "pair")),
+        None => "not counted".to_owned(),
+    }
 }
