@@ -78,6 +78,12 @@ impl Apart {
         }
     }
 
+    /// The same for any sample point, where there is a box.
+    #[inline(always)]
+    pub(crate) fn everywhere(self) -> Option<Self> {
+        self.spacing.is_none().then_some(self)
+    }
+
     /// The share of the edge in `direction` at which a crossing lies that linear interpolation puts at `ratio`.
     #[inline(always)]
     pub(crate) fn ratio(self, company: Company, direction: usize, ratio: f32) -> f32 {

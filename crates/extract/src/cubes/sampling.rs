@@ -65,6 +65,13 @@ impl Values<'_> {
         self.values[(z % self.slots * self.size[1] + y) * self.size[0] + x]
     }
 
+    /// Those of a row, as far as they are there.
+    #[inline]
+    pub(super) fn row(&self, y: usize, z: usize) -> &[f32] {
+        let start = (z % self.slots * self.size[1] + y) * self.size[0];
+        &self.values[start..start + self.size[0]]
+    }
+
     /// At the corners of a cell.
     pub(super) fn corners(&self, [x, y, z]: [usize; 3]) -> [f32; 8] {
         std::array::from_fn(|c| self.at([x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)]))

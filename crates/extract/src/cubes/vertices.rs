@@ -2,7 +2,7 @@
 
 use std::collections::TryReserveError;
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 use super::Rule;
 use super::grid::Grid;
@@ -266,6 +266,22 @@ impl<'a> Placer<'a> {
         let ratio = if self.pull > 0.0 { self.drawn(ratio, grid, place, axis) } else { ratio };
         position[axis] = (from + (to - from) * ratio).clamp(from, to);
         position
+    }
+
+    /// The shares of four edges at which their crossings are, by linear interpolation, where no vertex is drawn away. `from` says where
+    /// each begins.
+    #[inline(always)]
+    pub(super) fn shares(&self, from: impl Fn(usize) -> Vec3, here: Vec4, there: Vec4) -> Vec4 {
+        let least = match self.apart.everywhere() {
+            Some(apart) => Vec4::splat(apart.ratio(Company::Singles, 0, 0.0)),
+            None => Vec4::from_array(std::array::from_fn(|edge| {
+                self.apart.at(from(edge)).ratio(Company::Singles, 0, 0.0)
+            })),
+        };
+        let share = (Vec4::splat(self.isovalue) - here) / (there - here);
+        // As `linear_ratio` has it.
+        let share = Vec4::select(share.is_finite_mask(), share, Vec4::splat(0.5));
+        share.max(least).min(1.0 - least)
     }
 
     #[inline(never)]

@@ -4,25 +4,42 @@ use std::collections::HashMap;
 use std::sync::OnceLock;
 
 use cells::Cell;
+use glam::{BVec4A, Vec3};
 
 /// Edges of a cube.
 pub(super) const EDGES: usize = 12;
 /// Faces of a cube: low and high along x, y and z.
 const FACES: usize = 6;
 
+/// The corners that the four edges along each axis begin at.
+pub(super) const EDGE_STARTS: [[usize; 4]; 3] = [[0, 2, 4, 6], [0, 1, 4, 5], [0, 1, 2, 3]];
+
+/// The edges whose crossings a vertex is the mean of.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Mean {
+    /// One bit each.
+    pub(super) set: u16,
+    /// The same by axis, in the order of [`EDGE_STARTS`].
+    pub(super) edges: [BVec4A; 3],
+    /// How many there are.
+    pub(super) count: f32,
+    /// How many of them have the higher coordinate along each axis, not counting those along it.
+    pub(super) at_high_ends: Vec3,
+}
+
 /// The vertices of a cell.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Plan {
-    /// Of each vertex, the edges whose crossings it is the mean of, one bit each.
-    pub(super) means: Vec<u16>,
+    /// One for each vertex.
+    pub(super) means: Vec<Mean>,
     /// The vertex of each edge that has a quadrilateral; 0 for others.
     of_edge: [u8; EDGES],
 }
 
 impl Plan {
     /// Which of the cell's vertices a crossed edge leads to.
-    #[inline]
-    pub(super) fn of_edge(&self, edge: u8) -> u32 {
+    #[cfg(test)]
+    fn of_edge(&self, edge: u8) -> u32 {
         u32::from(self.of_edge[usize::from(edge)])
     }
 }
@@ -39,8 +56,8 @@ pub(super) struct Table {
     faces: [usize; FACES],
     /// By signs: the face on which one loop has all four crossings, if there is one.
     joinable: Vec<Option<u8>>,
-    /// By signs and joined face, the last for none.
-    plans: Vec<[Plan; FACES + 1]>,
+    /// By number: seven times the signs, and the joined face or six for none.
+    plans: Vec<Plan>,
 }
 
 impl Table {
@@ -67,9 +84,11 @@ impl Table {
         let mut table =
             Self { cube, patches, edges, numbers, faces, joinable: Vec::new(), plans: Vec::new() };
         table.joinable = (0..=255).map(|inside| table.find_joinable(inside)).collect();
-        let of =
-            |inside| std::array::from_fn(|face| table.plan(inside, (face < FACES).then_some(face as u8), 0));
-        table.plans = (0..=255).map(of).collect();
+        let of = |number: usize| {
+            let (inside, face) = (number / (FACES + 1), number % (FACES + 1));
+            table.plan(inside as u8, (face < FACES).then_some(face as u8), 0)
+        };
+        table.plans = (0..FIRST_MADE as usize).map(of).collect();
         table
     }
 
@@ -102,6 +121,22 @@ impl Table {
         self.numbers[axis][usize::from(corner)]
     }
 
+    fn mean(&self, edges: &[u8]) -> Mean {
+        let set = edges.iter().fold(0, |set, edge| set | 1 << edge);
+        let mut at_high_ends = Vec3::ZERO;
+        for &edge in edges {
+            let (corner, along) = self.edge(edge);
+            for axis in (0..3).filter(|&axis| axis != usize::from(along) && corner >> axis & 1 != 0) {
+                at_high_ends[axis] += 1.0;
+            }
+        }
+        let of_axis = |axis: usize| {
+            let is_in = |corner: usize| edges.contains(&self.number(corner as u8, axis));
+            BVec4A::from_array(EDGE_STARTS[axis].map(is_in))
+        };
+        Mean { set, edges: [0, 1, 2].map(of_axis), count: edges.len() as f32, at_high_ends }
+    }
+
     /// The vertices of a cell by its inside corners, the face whose inside corners it joins, and its faces at the box, one bit each. Edges
     /// at the box have no quadrilateral; a loop that is cut there into several runs of quadrilaterals has a vertex for each.
     fn plan(&self, inside: u8, joined: Option<u8>, at_box: u8) -> Plan {
@@ -115,13 +150,12 @@ impl Table {
             };
             (0..FACES).any(at)
         };
-        let set = |edges: &[u8]| edges.iter().fold(0, |set, edge| set | 1 << edge);
         let loops = self.cube.loops(u32::from(inside), joined);
         let mut plan = Plan::default();
         if !self.patches {
             let crossed = loops.concat();
             if crossed.iter().any(|&edge| !is_open(edge)) {
-                plan.means.push(set(&crossed));
+                plan.means.push(self.mean(&crossed));
             }
             return plan;
         }
@@ -135,7 +169,7 @@ impl Table {
                     continue;
                 }
                 if !goes_on {
-                    plan.means.push(set(&polygon));
+                    plan.means.push(self.mean(&polygon));
                     goes_on = true;
                 }
                 plan.of_edge[usize::from(edge)] = plan.means.len() as u8 - 1;
@@ -175,11 +209,18 @@ impl Plans {
     pub(super) fn at(&self, number: u32) -> &Plan {
         match number.checked_sub(FIRST_MADE) {
             Some(made) => &self.made[made as usize],
-            None => {
-                let plans = &self.table.plans[number as usize / (FACES + 1)];
-                &plans[number as usize % (FACES + 1)]
-            }
+            None => &self.table.plans[number as usize],
         }
+    }
+
+    /// Which of a plan's vertices a crossed edge leads to.
+    #[inline]
+    pub(super) fn vertex(&self, number: u32, edge: u8) -> u32 {
+        if !self.table.patches {
+            // There is one.
+            return 0;
+        }
+        u32::from(self.at(number).of_edge[usize::from(edge)])
     }
 }
 
@@ -217,7 +258,7 @@ mod tests {
                         assert_eq!(table.number(corner, usize::from(axis)), edge);
                         let is_crossed = (inside >> corner ^ inside >> (corner | 1 << axis)) & 1 != 0;
                         if is_crossed && at_box == 0 {
-                            assert!(plan.means[plan.of_edge(edge) as usize] >> edge & 1 != 0);
+                            assert!(plan.means[plan.of_edge(edge) as usize].set >> edge & 1 != 0);
                         }
                     }
                     assert!(at_box != 63 || plan.means.is_empty());

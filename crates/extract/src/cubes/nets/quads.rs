@@ -18,6 +18,22 @@ use crate::triangles::Triangulation;
 /// seen against the edge.
 const ROUND: [[usize; 2]; 4] = [[1, 1], [0, 1], [0, 0], [1, 0]];
 
+/// Of each axis and cell, the corner of the cell that the edge begins at.
+const CORNERS: [[u8; 4]; 3] = {
+    let mut corners = [[0; 4]; 3];
+    let mut axis = 0;
+    while axis < 3 {
+        let mut cell = 0;
+        while cell < 4 {
+            let [first, second] = ROUND[cell];
+            corners[axis][cell] = (first << ((axis + 1) % 3) | second << ((axis + 2) % 3)) as u8;
+            cell += 1;
+        }
+        axis += 1;
+    }
+    corners
+};
+
 /// How far the diagonals pass each other where corners are not in one plane, in spacings.
 const BENT: f32 = 1e-3;
 
@@ -45,6 +61,7 @@ impl Quadrilateral {
     }
 
     /// Two triangles, on either side of the diagonal through the lowest cell or of the other.
+    #[inline]
     pub(super) fn cut(self, by_other: bool) -> [[u32; 3]; 2] {
         let mut corners = self.corners;
         if by_other {
@@ -61,6 +78,7 @@ impl Quadrilateral {
 }
 
 /// Whether the diagonal from the second corner to the fourth is shorter than that through the lowest cell.
+#[inline(always)]
 fn is_other_shorter([a, b, c, d]: [Vec3; 4]) -> bool {
     b.distance_squared(d) < a.distance_squared(c)
 }
@@ -68,10 +86,18 @@ fn is_other_shorter([a, b, c, d]: [Vec3; 4]) -> bool {
 /// Whether the diagonal from the second corner to the fourth is better than that through the lowest cell: shorter. Where tangent planes
 /// were asked for and the corners are not in one plane, it is the one with its middle nearer to the isovalue: an edge of the object that
 /// runs from corner to corner is a diagonal then. Where they are in one plane, none that leaves the quadrilateral is taken.
+#[inline]
 pub(super) fn is_other_better(level: Option<Level>, corners: [Vec3; 4]) -> bool {
-    let [a, b, c, d] = corners;
     let is_shorter = is_other_shorter(corners);
-    let Some(level) = level else { return is_shorter };
+    match level {
+        None => is_shorter,
+        Some(level) => is_other_sharper(level, corners, is_shorter),
+    }
+}
+
+/// The same where tangent planes were asked for.
+fn is_other_sharper(level: Level, corners: [Vec3; 4], is_shorter: bool) -> bool {
+    let [a, b, c, d] = corners;
     let normal = (c - a).cross(d - b);
     let apart = (b - a).dot(normal).abs();
     // Not a number is in the plane.
@@ -109,6 +135,9 @@ impl QuadPass<'_> {
         let [_, ny, nz] = self.grid.size;
         let mut crossings = 0;
         for y in 0..ny {
+            // Of the rows of cells round an edge; the lower ones of the first row and layer are asked for by none.
+            let (back, below) = (y.saturating_sub(1), z.saturating_sub(1));
+            let rows = [[back, below], [y, below], [back, z], [y, z]].map(|[y, z]| self.records.start(y, z));
             for word in 0..self.grid.words {
                 let Some((here, crossed)) = self.crossed([y, z], word) else { break };
                 crossings += crossed.iter().map(|bits| u64::from(bits.count_ones())).sum::<u64>();
@@ -125,8 +154,20 @@ impl QuadPass<'_> {
                     left &= left - 1;
                     let place = [64 * word + bit as usize, y, z];
                     result.triangles.try_reserve(6)?;
-                    for axis in (0..3).filter(|&axis| shared[axis] >> bit & 1 != 0) {
-                        result.triangles.extend(self.quadrilateral(place, axis, here >> bit & 1 != 0));
+                    let (x, leads_out) = (place[0], here >> bit & 1 != 0);
+                    let is_shared = |axis: usize| shared[axis] >> bit & 1 != 0;
+                    let [low_low, high_low, low_high, high_high] = rows;
+                    if is_shared(0) {
+                        let cells = [low_low + x, high_low + x, high_high + x, low_high + x];
+                        result.triangles.extend_from_slice(&self.quadrilateral(cells, 0, leads_out));
+                    }
+                    if is_shared(1) {
+                        let cells = [high_low + x - 1, high_high + x - 1, high_high + x, high_low + x];
+                        result.triangles.extend_from_slice(&self.quadrilateral(cells, 1, leads_out));
+                    }
+                    if is_shared(2) {
+                        let cells = [low_high + x - 1, low_high + x, high_high + x, high_high + x - 1];
+                        result.triangles.extend_from_slice(&self.quadrilateral(cells, 2, leads_out));
                     }
                     if let Some(trace) = &mut result.trace {
                         trace.close_cell(self.grid.lattice, place, result.triangles.len())?;
@@ -165,21 +206,29 @@ impl QuadPass<'_> {
         Some((here, crossed))
     }
 
-    /// The two triangles round an edge, on either side of the better diagonal.
-    fn quadrilateral(&self, place: [usize; 3], axis: usize, leads_out: bool) -> [[u32; 3]; 2] {
-        let across = [(axis + 1) % 3, (axis + 2) % 3];
-        let corners = ROUND.map(|back| {
-            let (mut cell, mut corner) = (place, 0);
-            for (axis, back) in across.into_iter().zip(back) {
-                cell[axis] -= back;
-                corner |= (back as u8) << axis;
-            }
-            let record = self.records.at(cell);
-            let edge = self.plans.table.number(corner, axis);
-            record.first + self.plans.at(record.plan).of_edge(edge)
-        });
-        let places = corners.map(|corner| self.positions[corner as usize]);
-        Quadrilateral { corners, leads_out }.cut(is_other_better(self.level, places))
+    /// The two triangles round an edge along an axis, on either side of the better diagonal. `cells` are the places of the records of the
+    /// cells round it, as [`ROUND`] has them.
+    #[inline(always)]
+    fn quadrilateral(&self, cells: [usize; 4], axis: usize, leads_out: bool) -> [[u32; 3]; 2] {
+        let [a, b, c, d] = cells;
+        let of = CORNERS[axis];
+        let corners = [
+            self.vertex(a, of[0], axis),
+            self.vertex(b, of[1], axis),
+            self.vertex(c, of[2], axis),
+            self.vertex(d, of[3], axis),
+        ];
+        let [a, b, c, d] = corners;
+        let place = |v: u32| self.positions[v as usize];
+        let by_other = is_other_better(self.level, [place(a), place(b), place(c), place(d)]);
+        Quadrilateral { corners, leads_out }.cut(by_other)
+    }
+
+    /// The vertex of a cell that the edge from one of its corners along an axis leads to.
+    #[inline(always)]
+    fn vertex(&self, place: usize, corner: u8, axis: usize) -> u32 {
+        let record = self.records.at(place);
+        record.first + self.plans.vertex(record.plan, self.plans.table.number(corner, axis))
     }
 }
 

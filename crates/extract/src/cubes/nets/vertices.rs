@@ -2,13 +2,13 @@
 
 use std::collections::TryReserveError;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec4};
 
 use super::super::grid::Grid;
 use super::super::rows::next;
 use super::super::sampling::{Samples, Values};
 use super::super::vertices::{Placer, corner_of};
-use super::plan::{EDGES, Plans};
+use super::plan::{EDGE_STARTS, EDGES, Mean, Plans};
 use super::sharp::Sharp;
 use super::tangents::{Tangent, Tangents};
 use crate::memory::{filled, push};
@@ -33,13 +33,15 @@ impl Records {
         Ok(Self { records: filled(2 * nx * ny, Record::default())?, size: [nx, ny] })
     }
 
-    fn place(&self, [x, y, z]: [usize; 3]) -> usize {
-        (z % 2 * self.size[1] + y) * self.size[0] + x
+    /// Where the records of a row start.
+    #[inline]
+    pub(super) fn start(&self, y: usize, z: usize) -> usize {
+        (z % 2 * self.size[1] + y) * self.size[0]
     }
 
     #[inline]
-    pub(super) fn at(&self, cell: [usize; 3]) -> Record {
-        self.records[self.place(cell)]
+    pub(super) fn at(&self, place: usize) -> Record {
+        self.records[place]
     }
 }
 
@@ -87,6 +89,9 @@ impl VertexPass<'_> {
                 continue;
             }
             let lines = rows.map(|[y, z]| self.samples.sides.row(y, z));
+            let values = rows.map(|[y, z]| self.values.row(y, z));
+            let [ys, zs] = [[grid.at[1][y], grid.at[1][y + 1]], [grid.at[2][z], grid.at[2][z + 1]]];
+            let start = records.start(y, z);
             for word in 0..grid.words {
                 let corners: [u64; 8] = std::array::from_fn(|c| {
                     let line = lines[c >> 1];
@@ -102,12 +107,15 @@ impl VertexPass<'_> {
                     let cell = [64 * word + bit as usize, y, z];
                     let inside = (0..8).fold(0, |set, c| set | ((corners[c] >> bit & 1) as u8) << c);
                     let plan = plans.number(inside, self.joined(plans, cell, inside), self.at_box(cell));
-                    let place = records.place(cell);
-                    records.records[place] = Record { first: vertices.numbered() as u32, plan };
-                    for (number, &mean) in plans.at(plan).means.iter().enumerate() {
+                    records.records[start + cell[0]] = Record { first: vertices.numbered() as u32, plan };
+                    for (number, mean) in plans.at(plan).means.iter().enumerate() {
                         let position = match &mut by_planes {
-                            None => self.mean(plans, cell, mean),
-                            Some((sharp, tangents)) => self.meeting(plans, cell, mean, *sharp, tangents),
+                            None => {
+                                let x = cell[0];
+                                let values = std::array::from_fn(|c| values[c >> 1][x + (c & 1)]);
+                                self.mean([[grid.at[0][x], grid.at[0][x + 1]], ys, zs], values, mean)
+                            }
+                            Some((sharp, tangents)) => self.meeting(plans, cell, mean.set, *sharp, tangents),
                         };
                         push(&mut vertices.positions, position)?;
                         if let Some(keys) = &mut vertices.keys {
@@ -123,6 +131,7 @@ impl VertexPass<'_> {
     }
 
     /// The face on which this cell and its neighbour both join their inside corners.
+    #[inline]
     fn joined(&self, plans: &Plans, cell: [usize; 3], inside: u8) -> Option<u8> {
         let face = plans.table.joinable(inside)?;
         let (axis, is_high) = (usize::from(face / 2), face % 2 != 0);
@@ -140,7 +149,7 @@ impl VertexPass<'_> {
     }
 
     /// The faces of a cell that lie on the box, one bit each: low and high along x, y and z.
-    #[inline]
+    #[inline(always)]
     fn at_box(&self, cell: [usize; 3]) -> u8 {
         let size = self.grid.size;
         (0..3).fold(0, |set, axis| {
@@ -149,13 +158,25 @@ impl VertexPass<'_> {
         })
     }
 
-    /// The mean of the crossings of some edges.
-    fn mean(&self, plans: &Plans, cell: [usize; 3], edges: u16) -> Vec3 {
-        let mut sum = Vec3::ZERO;
-        for (from, axis, values) in self.crossed(plans, cell, edges) {
-            sum += self.placer.position(self.grid, from, axis, values);
+    /// The mean of the crossings of some edges of a cell between coordinates, with samples at its corners. In shares of its edges, so
+    /// that far from the origin no digits are lost.
+    #[inline]
+    fn mean(&self, ends: [[f32; 2]; 3], values: [f32; 8], of: &Mean) -> Vec3 {
+        let [low, high] = [0, 1].map(|end| Vec3::new(ends[0][end], ends[1][end], ends[2][end]));
+        let mut shares = of.at_high_ends;
+        for axis in 0..3 {
+            let corners = EDGE_STARTS[axis];
+            let here = Vec4::from_array(corners.map(|c| values[c]));
+            let there = Vec4::from_array(corners.map(|c| values[c | 1 << axis]));
+            let from = |edge: usize| {
+                let c = corners[edge];
+                Vec3::new(ends[0][c & 1], ends[1][c >> 1 & 1], ends[2][c >> 2])
+            };
+            let share = self.placer.shares(from, here, there);
+            let counted = Vec4::select(of.edges[axis], share, Vec4::ZERO);
+            shares[axis] += counted.element_sum();
         }
-        sum / edges.count_ones() as f32
+        (low + (high - low) * (shares / of.count)).max(low).min(high)
     }
 
     /// Where the tangent planes at the crossings of some edges meet.
