@@ -14,7 +14,7 @@ use crate::{MeshError, TriangleMesh, used_vertices};
 /// Vertices at one place count as one, whatever their numbers are. Triangles without area meet nothing. The answer is exact: signs of
 /// volumes and areas are computed with as many digits as they need (Shewchuk 1997).
 ///
-/// Takes O(n log n) where triangles are about equally large, and a second for about a million of them.
+/// Takes O(n log n) where triangles are about equally large: a second or two for a million of them.
 ///
 /// # Errors
 /// As [`used_vertices`].

@@ -5,7 +5,7 @@ use crate::connectivity::{Connectivity, is_proper};
 use crate::corner_fans::{DisjointSets, corner_fans};
 
 /// Counts of what a mesh is made of and of its faults. Indices decide, coordinates do not: two vertices at the
-/// same place are two vertices, and self-intersections go unseen.
+/// same place are two vertices, and self-intersections go unseen ([`self_intersections`](crate::self_intersections) counts them).
 ///
 /// Triangles that repeat an index are counted in `collapsed_triangles` and nowhere else.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
