@@ -1,5 +1,7 @@
 //! Gradients are those of the values: against differences between samples, at random places.
 
+#![cfg(feature = "shapes")]
+
 use field::{
     Asteroid, Fractal, Gyroid, MeshDistance, Negated, NoiseShape, ScalarField, Sphere, StudyField, Terrain,
     TerrainCharacter, TerrainSettings, Walled,
