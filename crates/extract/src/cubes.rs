@@ -50,6 +50,16 @@ pub(crate) struct Rule {
     pub(crate) diagonals: Diagonals,
 }
 
+/// Whether a face's inside corners are one region of it, where they alternate with outside ones. `round` has the samples at its
+/// corners in order, from an inside one on.
+pub(crate) fn joins(faces: Faces, isovalue: f32, round: impl FnOnce() -> [f32; 4]) -> bool {
+    match faces {
+        Faces::SeparateInside => false,
+        Faces::JoinInside => true,
+        Faces::Decider | Faces::Trilinear => exact::is_joined(round(), isovalue),
+    }
+}
+
 /// The table of a rule, where it is one of signs alone.
 pub(crate) fn table(rule: Rule) -> Option<Table> {
     let entries = Patches::get(rule).by_signs(rule.faces)?;

@@ -194,6 +194,7 @@ mod guard;
 mod isosurface;
 mod lattice;
 mod level;
+mod levels;
 #[cfg(test)]
 mod limits;
 mod line;
@@ -229,6 +230,7 @@ pub use extractor::{Extractor, extract};
 pub use field::{Aabb, Bound, FieldFault, FromFn, ScalarField, StudyField, check_field, from_fn};
 pub use grid::{Grid, GridError};
 pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
+pub use levels::{LevelError, LevelExtractor, LevelSettings, Neighbours};
 pub use method::{
     CornerSamples, Cubes, DualContouring, Macet, Method, MethodError, Preset, Promises, SnapCubes,
     SurfaceNets, Tetrahedra, presets,

@@ -197,7 +197,7 @@ impl ChunkExtractor {
 
     fn new(place: Place, method: &Method, settings: &ChunkSettings) -> Result<Self, ChunkError> {
         let how = method.by_window(settings.isovalue).ok_or(ChunkError::Method)?;
-        let world = World { place, method: *method, settings: *settings };
+        let world = World { place, method: *method, settings: *settings, levels: None };
         let ByWindow { arrangement, settings, .. } = how;
         check(&settings, arrangement)?;
         if settings.positions != Positions::Indexed {

@@ -1,0 +1,157 @@
+//! How far vertices of a chunk stand back from finer neighbours, so that a transition has room.
+
+use super::neighbours::{Neighbours, number};
+use crate::grid::Grid;
+use crate::lattice::CellBox;
+use crate::trace::VertexKey;
+
+/// Where the corners of a chunk's cells go: away from finer chunks by the width of a transition, and other points between corners as
+/// these do. All chunks that have a corner say the same of it.
+pub(super) struct Shift {
+    cells: CellBox,
+    grid: Grid,
+    width: f64,
+    neighbours: Neighbours,
+    /// By the side, edge or corner of the chunk that a corner of a cell is on; -1, 0 or 1 along each axis.
+    ways: [[i8; 3]; 27],
+}
+
+impl Shift {
+    pub(super) fn new(cells: CellBox, grid: &Grid, neighbours: &Neighbours, width: f32) -> Self {
+        let mut ways = [[0; 3]; 27];
+        for (i, way) in ways.iter_mut().enumerate() {
+            let on = [i % 3, i / 3 % 3, i / 9].map(|d| d as i32 - 1);
+            *way = away(neighbours, on);
+        }
+        Self { cells, grid: *grid, width: f64::from(width), neighbours: *neighbours, ways }
+    }
+
+    /// On which side, edge or corner of the chunk a corner of a cell is.
+    fn on(&self, corner: [i64; 3]) -> [i32; 3] {
+        [0, 1, 2].map(|axis| {
+            let is = |end: i32| i32::from(corner[axis] == i64::from(end));
+            is(self.cells.end[axis]) - is(self.cells.start[axis])
+        })
+    }
+
+    fn way(&self, corner: [i64; 3]) -> [i8; 3] {
+        self.ways[number(self.on(corner))]
+    }
+
+    /// Where a vertex goes that is at `p`. In a lattice edge it goes as the edge's ends do, in a cell as its corners.
+    pub(super) fn moved(&self, key: VertexKey, p: [f32; 3]) -> [f32; 3] {
+        let (from, axis) = (key.stored(), key.direction());
+        let axes: &[usize] = if axis < 3 { &[axis] } else { &[0, 1, 2] };
+        let corners = 1 << axes.len();
+        let corner = |c: usize| {
+            let mut corner = from;
+            axes.iter().enumerate().for_each(|(i, &axis)| corner[axis] += (c >> i & 1) as i64);
+            corner
+        };
+        if (0..corners).all(|c| self.way(corner(c)) == [0; 3]) {
+            return p;
+        }
+        let ratio = |axis: usize| {
+            let [low, high] = [0, 1].map(|step| self.grid.coordinate(axis, 2 * (from[axis] + step)));
+            ((f64::from(p[axis]) - low) / (high - low)).clamp(0.0, 1.0)
+        };
+        let mut moved = p.map(f64::from);
+        for c in 0..corners {
+            let part =
+                |(i, &axis): (usize, &usize)| if c >> i & 1 != 0 { ratio(axis) } else { 1.0 - ratio(axis) };
+            let weight: f64 = axes.iter().enumerate().map(part).product();
+            let way = self.way(corner(c));
+            for (axis, moved) in moved.iter_mut().enumerate() {
+                *moved += weight * self.width * self.grid.spacing() * f64::from(way[axis]);
+            }
+        }
+        moved.map(|c| c as f32)
+    }
+
+    /// Which copy of a vertex the chunk has: 0 but on an edge of the chunk beyond which there is one of its level, with finer ones on the
+    /// sides between them.
+    pub(super) fn copy(&self, key: VertexKey) -> u8 {
+        let (on, axis) = (self.on(key.stored()), key.direction());
+        if axis > 2 {
+            return 0;
+        }
+        let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+        let step = |along: [usize; 2]| {
+            let mut direction = [0; 3];
+            along.iter().for_each(|&axis| direction[axis] = on[axis]);
+            self.neighbours.step(direction)
+        };
+        let is_alone = on[b] != 0 && on[c] != 0 && step([b, b]) < 0 && step([c, c]) < 0 && step([b, c]) == 0;
+        if is_alone { if on[b] > 0 { 1 } else { 2 } } else { 0 }
+    }
+}
+
+/// Which way a corner goes that is on a side, an edge or a corner of a chunk: from the finer chunks that touch it, along each axis. Chunks of
+/// the level that touch it and are connected by sides go the same way; one that is coarser keeps it.
+fn away(neighbours: &Neighbours, on: [i32; 3]) -> [i8; 3] {
+    // Of the up to eight chunks at the corner, one bit an axis: whether it is beyond.
+    let beyond = |set: usize| [0, 1, 2].map(|axis| if set >> axis & 1 != 0 { on[axis] } else { 0 });
+    let is_there = |set: usize| (0..3).all(|axis| set >> axis & 1 == 0 || on[axis] != 0);
+    let step = |set: usize| neighbours.step(beyond(set));
+    let all: Vec<usize> = (0..8).filter(|&set| is_there(set)).collect();
+    if all.iter().any(|&set| step(set) > 0) || all.iter().all(|&set| step(set) == 0) {
+        return [0; 3];
+    }
+    let mut connected = vec![0];
+    let mut next = 0;
+    while let Some(&set) = connected.get(next) {
+        next += 1;
+        for other in (0..3).map(|axis| set ^ 1 << axis) {
+            if is_there(other) && step(other) == 0 && !connected.contains(&other) {
+                connected.push(other);
+            }
+        }
+    }
+    [0, 1, 2].map(|axis| {
+        // The chunk itself is on the lower side of its upper sides.
+        let where_ = |&set: &usize| if set >> axis & 1 != 0 { on[axis] } else { -on[axis] };
+        connected.iter().map(where_).sum::<i32>().signum() as i8
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Neighbours of a chunk in a world where `step` says it of each octant round the corner above the chunk.
+    fn round(step: impl Fn([i32; 3]) -> u32) -> Neighbours {
+        Neighbours::try_new(1, |d| step(d.map(|d| d.max(0)))).unwrap()
+    }
+
+    #[test]
+    fn corners_go_away_from_finer_chunks() {
+        let east = round(|[x, _, _]| 1 - x as u32);
+        assert_eq!(away(&east, [1, 0, 0]), [-1, 0, 0]);
+        assert_eq!(away(&east, [1, 1, 1]), [-1, 0, 0]);
+        assert_eq!(away(&east, [-1, 0, 0]), [0; 3]);
+        // The chunk pokes into finer ones; and is round a finer one.
+        let alone = round(|d| u32::from(d == [0; 3]));
+        assert_eq!(away(&alone, [1, 1, 1]), [-1, -1, -1]);
+        assert_eq!(away(&alone, [1, 0, 1]), [-1, 0, -1]);
+        let hole = round(|d| u32::from(d != [1, 1, 1]));
+        assert_eq!(away(&hole, [1, 1, 1]), [-1, -1, -1]);
+        assert_eq!(away(&hole, [1, 1, 0]), [0; 3]);
+        let column = round(|[x, y, _]| u32::from([x, y] != [1, 0]));
+        assert_eq!(away(&column, [1, 1, 0]), [-1, 1, 0]);
+        // Two that meet in an edge go apart.
+        let crossed = round(|[x, y, _]| u32::from(x == y));
+        assert_eq!(away(&crossed, [1, 1, 0]), [-1, -1, 0]);
+        // A coarser one keeps the corner.
+        let kept = Neighbours::try_new(1, |[x, y, _]| {
+            if x > 0 {
+                0
+            } else if y > 0 {
+                2
+            } else {
+                1
+            }
+        })
+        .unwrap();
+        assert_eq!((away(&kept, [1, 1, 0]), away(&kept, [1, 0, 0])), ([0; 3], [-1, 0, 0]));
+    }
+}
