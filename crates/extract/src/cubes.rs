@@ -22,7 +22,7 @@ mod vertices;
 mod volume_cells;
 
 pub(crate) use moved::EdgeMoves;
-pub(crate) use nets::Sharp;
+pub(crate) use nets::{ROUND, Sharp, is_other_better};
 pub use rule::{Diagonals, Faces, Flat};
 pub use volume_cells::{VolumeCells, VolumeCellsError};
 

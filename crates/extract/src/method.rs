@@ -279,6 +279,16 @@ impl Method {
         self.family().by_window(isovalue)
     }
 
+    /// Whether the settings that only its family has are in their ranges.
+    pub(crate) fn check_own(&self) -> Result<(), MethodError> {
+        self.family().check_own()
+    }
+
+    /// Whether samples can never suffice.
+    pub(crate) fn calls_the_field_always(&self) -> bool {
+        self.family().calls_the_field_always()
+    }
+
     /// The cells whose samples can matter to the chunk of a box, in a grid without an end. `None` where that is not known
     /// beforehand: with edge collapse it is the whole piece of surface.
     pub fn window(&self, cells: CellBox) -> Option<CellBox> {
@@ -301,6 +311,10 @@ pub(crate) struct ByWindow {
 
 /// What a family of methods implements; see the functions of [`Method`] with the same names.
 trait Family {
+    /// Whether the settings that only the family has are in their ranges.
+    fn check_own(&self) -> Result<(), MethodError>;
+    /// Whether the field is called between the samples whatever the settings are.
+    fn calls_the_field_always(&self) -> bool;
     fn check(&self, grid: &BoxGrid) -> Result<(), MethodError>;
     fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError>;
     fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError>;

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use extract::{
     Aabb, Arrangement, CellBox, Chunk, ChunkError, ChunkExtractor, ChunkSettings, Control, Cubes, Diagonals,
-    Faces, Grid, LevelError, LevelExtractor, LevelSettings, Method, Neighbours, Normals, ScalarField, Source,
-    Tetrahedra, WeldError, from_fn, weld_chunks,
+    DualContouring, Faces, Grid, LevelError, LevelExtractor, LevelSettings, Method, Neighbours, Normals,
+    ScalarField, Source, SurfaceNets, Tetrahedra, WeldError, from_fn, weld_chunks,
 };
 use glam::Vec3;
 use mesh::TriangleMesh;
@@ -97,6 +97,11 @@ fn noise(seed: u32, levels: f32, reach: f32) -> impl ScalarField {
     })
 }
 
+const DUALS: [Method; 2] = [
+    Method::SurfaceNets(SurfaceNets { patches: false }),
+    Method::DualContouring(DualContouring { patches: false, truncation: 0.1, in_cell: true }),
+];
+
 const FACES: [Faces; 4] = [Faces::SeparateInside, Faces::JoinInside, Faces::Decider, Faces::Trilinear];
 
 /// Whether two coarse octants meet in an edge with fine ones on both sides of it. There a fine edge may have four triangles.
@@ -117,7 +122,7 @@ fn seams_of_cubes_are_closed_whatever_the_samples() {
             let method = cubes(faces, Diagonals::Fan);
             let mut extractor = extractor(0.5, &method, width);
             let mut triangles = 0;
-            for fine in 0..256 {
+            for fine in (0..256).step_by(if f == 0 { 1 } else { 3 }) {
                 let field = noise(fine + 256 * f as u32, 1e6, 3.4);
                 let chunks = chunks(&mut extractor, &field, fine, CELLS);
                 let report = welded(&chunks);
@@ -128,7 +133,7 @@ fn seams_of_cubes_are_closed_whatever_the_samples() {
                 assert_eq!(open_edges(&by_position(&chunks)), 0, "{faces:?} {width} {fine:08b}");
                 triangles += chunks.iter().map(|chunk| chunk.seam).sum::<u32>();
             }
-            assert!(triangles > 50_000, "{triangles}");
+            assert!(triangles > 20_000, "{triangles}");
         }
     }
 }
@@ -222,7 +227,7 @@ fn shapes_keep_their_topology_in_all_256_ways() {
     for (s, shape) in shapes().iter().enumerate() {
         for (width, step) in [(0.0, 5), (0.25, 1), (0.5, 3)] {
             let mut extractor = extractor(0.125, &method, width);
-            for fine in (0..256).step_by(if shape.is_smooth { step } else { 3 * step }) {
+            for fine in (0..256).step_by(if s == 0 { step } else { 2 * step + 1 }) {
                 let chunks = chunks(&mut extractor, &*shape.field, fine, 10);
                 let report = welded(&chunks);
                 assert!(report.is_closed_manifold(), "{s} {width} {fine:08b}: {report:?}");
@@ -325,23 +330,21 @@ fn octrees_of_three_levels_are_closed() {
     for seed in 0..40 {
         let octree = Octree::random(seed);
         met += usize::from((0..3).all(|level| octree.leaves.iter().any(|leaf| leaf.0 == level)));
-        for width in [0.0, 0.3] {
-            let method = cubes(FACES[seed as usize % 4], Diagonals::Fan);
+        let of_cubes = cubes(FACES[seed as usize % 4], Diagonals::Fan);
+        for (method, width) in [(of_cubes, 0.0), (of_cubes, 0.3), (DUALS[0], 0.0), (DUALS[1], 0.0)] {
             let mut extractor = extractor(0.25, &method, width);
             let reach = 4.0 * 0.25 * REACH as f32 - 1.1;
-            let report = welded(&octree.chunks(&mut extractor, &noise(seed, 1e6, reach), 4));
-            assert_eq!(
-                [report.boundary_edges, report.misoriented_edges],
-                [0; 2],
-                "{seed} {width}: {report:?}"
-            );
-            assert!(report.triangles > 1_000, "{report:?}");
+            let chunks = octree.chunks(&mut extractor, &noise(seed, 1e6, reach), 4);
+            let mesh = weld_chunks(&chunks).unwrap();
+            assert!(mesh.triangles.len() > 1_000);
+            assert_eq!(open_edges(&mesh), 0, "{seed} {method:?} {width}");
+            assert_eq!(topology(&mesh).boundary_edges, 0, "{seed} {method:?} {width}");
             let ball = ball(3.2, [0.2, 0.03, -0.3]);
             let chunks = octree.chunks(&mut extractor, &ball, 4);
             let report = welded(&chunks);
-            assert!(report.is_closed_manifold(), "{seed} {width}: {report:?}");
-            assert_eq!(report.euler_characteristic, 2, "{seed} {width}");
-            assert_eq!(open_edges(&by_position(&chunks)), 0, "{seed} {width}");
+            assert!(report.is_closed_manifold(), "{seed} {method:?} {width}: {report:?}");
+            assert_eq!(report.euler_characteristic, 2, "{seed} {method:?} {width}");
+            assert_eq!(open_edges(&by_position(&chunks)), 0, "{seed} {method:?} {width}");
         }
     }
     assert!(met > 20, "{met}");
@@ -382,10 +385,10 @@ fn a_chunk_among_its_own_level_is_that_of_the_grid() {
 /// What is said not to matter does not, and what is said to matter can.
 #[test]
 fn neighbours_that_are_seen_alike_make_the_same_chunk() {
-    let method = cubes(Faces::default(), Diagonals::Fan);
+    let of_cubes = cubes(Faces::default(), Diagonals::Fan);
     let field = noise(5, 1e6, 9.0);
     let cells = CellBox { start: [-4; 3], end: [4; 3] };
-    for width in [0.0, 0.25] {
+    for (method, width) in [(of_cubes, 0.0), (of_cubes, 0.25), (DUALS[0], 0.0)] {
         let mut extractor = extractor(0.5, &method, width);
         let mut known: HashMap<Neighbours, Chunk> = HashMap::new();
         for seed in 0..300u32 {
@@ -415,26 +418,38 @@ fn neighbours_that_are_seen_alike_make_the_same_chunk() {
 /// A change in a box that a chunk says it is not touched by leaves it as it is, seams and all.
 #[test]
 fn edits_beyond_a_chunk_and_its_seams_leave_it() {
-    let method = cubes(Faces::default(), Diagonals::Fan);
-    let mut extractor = extractor(0.5, &method, 0.25);
-    let neighbours = Neighbours::try_new(1, |[x, _, z]| if x > 0 || z < 0 { 0 } else { 1 }).unwrap();
-    let cells = CellBox { start: [-4; 3], end: [4; 3] };
-    let before = noise(1, 1e6, 9.0);
-    let chunk = extractor.extract(&before, 1, cells, &neighbours, Control::default()).unwrap();
-    let (mut touched, mut changed) = (0, 0);
-    for i in 0..300 {
-        let lowest = [i % 7, i / 7 % 7, i / 49].map(|n| 2.0 * n as f32 - 7.3);
-        let hole = Aabb { min: lowest, max: lowest.map(|c| c + 1.1) };
-        let after = from_fn(|p: [f32; 3]| {
-            let is_in = (0..3).all(|a| (hole.min[a]..=hole.max[a]).contains(&p[a]));
-            if is_in { -before.sample(p) } else { before.sample(p) }
-        });
-        let again = extractor.extract(&after, 1, cells, &neighbours, Control::default()).unwrap();
-        touched += usize::from(chunk.is_touched_by(hole));
-        changed += usize::from(again != chunk);
-        assert!(again == chunk || chunk.is_touched_by(hole), "{hole:?}");
+    for method in [cubes(Faces::default(), Diagonals::Fan), DUALS[0]] {
+        let mut extractor = extractor(0.5, &method, 0.25);
+        let level_at = |[x, y, z]: [i32; 3]| {
+            if x < 0 {
+                2
+            } else if y < 0 || z > 0 {
+                0
+            } else {
+                1
+            }
+        };
+        let neighbours =
+            Neighbours::try_new(1, |d| if d[0] < 0 && d != [-1, 0, 0] { 1 } else { level_at(d) }).unwrap();
+        let cells = CellBox { start: [-4; 3], end: [4; 3] };
+        let before = noise(1, 1e6, 9.0);
+        let chunk = extractor.extract(&before, 1, cells, &neighbours, Control::default()).unwrap();
+        assert!(chunk.seam > 100);
+        let (mut touched, mut changed) = (0, 0);
+        for i in 0..729 {
+            let lowest = [i % 9, i / 9 % 9, i / 81].map(|n| 2.0 * n as f32 - 9.3);
+            let hole = Aabb { min: lowest, max: lowest.map(|c| c + 1.1) };
+            let after = from_fn(|p: [f32; 3]| {
+                let is_in = (0..3).all(|a| (hole.min[a]..=hole.max[a]).contains(&p[a]));
+                if is_in { -before.sample(p) } else { before.sample(p) }
+            });
+            let again = extractor.extract(&after, 1, cells, &neighbours, Control::default()).unwrap();
+            touched += usize::from(chunk.is_touched_by(hole));
+            changed += usize::from(again != chunk);
+            assert!(again == chunk || chunk.is_touched_by(hole), "{method:?} {hole:?}");
+        }
+        assert!(changed > 100 && touched < 700, "{changed} {touched}");
     }
-    assert!(changed > 50 && touched < 250, "{changed} {touched}");
 }
 
 #[test]
@@ -467,6 +482,17 @@ fn what_cannot_be_done_is_an_error() {
     assert_eq!(refused(Source::Field(&field), 99, cells), LevelError::Level { level: 99 });
     let empty = CellBox::default();
     assert!(matches!(refused(Source::Field(&field), 1, empty), LevelError::Chunk(ChunkError::Cells { .. })));
+    let mut nets = LevelExtractor::try_new(&grid, &DUALS[0], &LevelSettings::default()).unwrap();
+    let coarser = Neighbours::try_new(1, |_| 2).unwrap();
+    let odd = CellBox { start: [1, 0, 0], ..cells };
+    assert_eq!(
+        nets.extract(&field, 1, odd, &coarser, Control::default()),
+        Err(LevelError::Odd { cells: odd })
+    );
+    let patches = Method::SurfaceNets(SurfaceNets { patches: true });
+    assert_eq!(of(&patches, 0.0), Err(LevelError::Method));
+    let wrong = Method::DualContouring(DualContouring { truncation: f32::NAN, ..DualContouring::default() });
+    assert!(matches!(of(&wrong, 0.0), Err(LevelError::Chunk(ChunkError::Settings(_)))));
     // Twice the numbers are beyond i32.
     let far = CellBox { start: [i32::MAX - 5000, 0, 0], end: [i32::MAX - 4990, 4, 4] };
     let error = extractor.extract(&field, 1, far, &finer, Control::default()).unwrap_err();
@@ -478,4 +504,41 @@ fn what_cannot_be_done_is_an_error() {
     let one = extractor.extract(&field, 1, cells, &finer, Control::default()).unwrap();
     assert!(matches!(weld_chunks([&one, &other]), Err(WeldError::Worlds { .. })));
     assert!(matches!(weld_chunks([&one, &one]), Err(WeldError::Overlap { .. })));
+}
+
+/// One vertex a cell is no manifold where sheets share it, but nothing is open, whatever the samples.
+#[test]
+fn seams_of_duals_are_closed_whatever_the_samples() {
+    for method in DUALS {
+        let mut extractor = extractor(0.5, &method, 0.0);
+        let mut triangles = 0;
+        for fine in 0..256 {
+            let field = noise(fine, 1e6, 3.4);
+            let chunks = chunks(&mut extractor, &field, fine, CELLS);
+            assert_eq!(open_edges(&weld_chunks(&chunks).unwrap()), 0, "{method:?} {fine:08b}");
+            triangles += chunks.iter().map(|chunk| chunk.seam).sum::<u32>();
+        }
+        assert!(triangles > 50_000, "{triangles}");
+    }
+}
+
+#[test]
+fn shapes_of_duals_keep_their_topology_in_all_256_ways() {
+    for method in DUALS {
+        let mut extractor = extractor(0.125, &method, 0.0);
+        for (s, shape) in shapes().iter().enumerate() {
+            for fine in (0..256).step_by(if s == 0 { 1 } else { 7 }) {
+                let chunks = chunks(&mut extractor, &*shape.field, fine, 10);
+                let report = welded(&chunks);
+                assert_eq!(report.unused_vertices, 0);
+                assert_eq!(open_edges(&by_position(&chunks)), 0, "{method:?} {s} {fine:08b}");
+                // Thin parts may share a cell's vertex.
+                if shape.is_smooth {
+                    assert!(report.is_closed_manifold(), "{method:?} {s} {fine:08b}: {report:?}");
+                    assert_eq!(report.euler_characteristic, 2, "{method:?} {s} {fine:08b}");
+                    assert_eq!(turned_over(&chunks, &*shape.field), 0, "{method:?} {s} {fine:08b}");
+                }
+            }
+        }
+    }
 }

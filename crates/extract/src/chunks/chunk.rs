@@ -1,5 +1,7 @@
 //! What is extracted of a box of cells.
 
+use std::collections::TryReserveError;
+
 use field::Aabb;
 use glam::Vec3;
 use mesh::TriangleMesh;
@@ -7,6 +9,7 @@ use mesh::TriangleMesh;
 use super::world::{OfLevels, World};
 use crate::grid::Grid;
 use crate::lattice::CellBox;
+use crate::memory::refill;
 use crate::method::Method;
 use crate::trace::VertexKey;
 
@@ -192,6 +195,32 @@ impl Chunk {
         self.level = of.level;
         self.world = self.world.map(|world| World { levels: Some(of), ..world });
         self.close();
+    }
+
+    /// Takes away the vertices of other cells that no triangle has.
+    pub(crate) fn drop_strangers(&mut self) -> Result<(), TryReserveError> {
+        let own = |key: &VertexKey| key.level() == self.level && self.cells.contains(key.cell());
+        let mut numbers = Vec::new();
+        refill(&mut numbers, self.keys.len(), u32::MAX)?;
+        let used = self.triangles.iter().flatten().map(|&v| v as usize);
+        used.chain((0..self.keys.len()).filter(|&v| own(&self.keys[v]))).for_each(|v| numbers[v] = 0);
+        let mut next = 0;
+        for v in 0..numbers.len() {
+            if numbers[v] == u32::MAX {
+                continue;
+            }
+            let to = next as usize;
+            (self.keys[to], self.positions[to], numbers[v]) = (self.keys[v], self.positions[v], next);
+            if let Some(&normal) = self.normals.get(v) {
+                self.normals[to] = normal;
+            }
+            next += 1;
+        }
+        self.keys.truncate(next as usize);
+        self.positions.truncate(next as usize);
+        self.normals.truncate(next as usize);
+        self.triangles.iter_mut().flatten().for_each(|v| *v = numbers[*v as usize]);
+        Ok(())
     }
 
     /// It depends on the samples of another chunk, too.

@@ -22,7 +22,7 @@ use crate::grid::Grid;
 use crate::lattice::{Border, CellBox, Lattice, LatticeError};
 use crate::level::Level;
 use crate::memory::refill;
-use crate::method::{ByWindow, Method};
+use crate::method::{ByWindow, Method, MethodError};
 use crate::normals::accumulate;
 use crate::settings::{ExtractSettings, Placement, Positions};
 use crate::source::Source;
@@ -135,6 +135,9 @@ pub enum ChunkError {
     /// A method without chunks.
     #[error("this method makes no chunks")]
     Method,
+    /// The method's own settings are not in their ranges, or it calls the field and there are samples.
+    #[error(transparent)]
+    Settings(#[from] MethodError),
     /// [`Positions::Accumulated`]: a position depends on all before it.
     #[error("chunks need indexed positions")]
     Accumulated,
@@ -196,6 +199,7 @@ impl ChunkExtractor {
     }
 
     fn new(place: Place, method: &Method, settings: &ChunkSettings) -> Result<Self, ChunkError> {
+        method.check_own()?;
         let how = method.by_window(settings.isovalue).ok_or(ChunkError::Method)?;
         let world = World { place, method: *method, settings: *settings, levels: None };
         let ByWindow { arrangement, settings, .. } = how;
@@ -347,6 +351,9 @@ impl ChunkExtractor {
         chunk: &mut Chunk,
     ) -> Result<(), ChunkError> {
         crate::placement::check(&self.how.settings, false)?;
+        if self.world.method.calls_the_field_always() {
+            return Err(MethodError::NeedsField.into());
+        }
         if self.world.settings.normals == Normals::Field {
             return Err(ChunkError::NormalsNeedField);
         }

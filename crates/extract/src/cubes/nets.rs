@@ -16,6 +16,7 @@ mod sharp;
 mod tangents;
 mod vertices;
 
+pub(crate) use quads::{ROUND, is_other_better};
 pub(crate) use sharp::Sharp;
 
 use std::collections::TryReserveError;

@@ -4,13 +4,15 @@ use std::collections::{HashMap, TryReserveError};
 
 use field::{Plain, StudyField};
 
+use super::duals::{Known, Needed, Seams};
 use super::layer::{Plane, layer};
 use super::neighbours::Neighbours;
 use super::shift::Shift;
 use super::transitions::{Corner, Decision, triangulate};
 use crate::chunks::{Chunk, ChunkError, ChunkExtractor, ChunkSettings, OfLevels};
 use crate::control::Control;
-use crate::grid::{Grid, GridError};
+use crate::cubes::Faces;
+use crate::grid::Grid;
 use crate::lattice::CellBox;
 use crate::memory::push;
 use crate::method::Method;
@@ -144,6 +146,8 @@ pub struct LevelExtractor {
     /// A layer of a neighbour's cells.
     layer: Chunk,
     plane: Plane,
+    /// Vertices of neighbours' cells.
+    known: Known,
     /// Vertices of other levels that a chunk has, by key.
     added: HashMap<VertexKey, u32>,
 }
@@ -154,15 +158,19 @@ impl LevelExtractor {
     /// # Errors
     /// [`LevelError::Method`], [`LevelError::Width`]; [`LevelError::Chunk`] for what [`ChunkExtractor::try_new`] refuses.
     pub fn try_new(grid: &Grid, method: &Method, settings: &LevelSettings) -> Result<Self, LevelError> {
-        let is_dual = match method {
-            Method::Cubes(_) => false,
-            _ => return Err(LevelError::Method),
+        let has_levels = match method {
+            Method::Cubes(_) => true,
+            Method::SurfaceNets(nets) => !nets.patches,
+            Method::DualContouring(nets) => !nets.patches,
+            _ => false,
         };
+        if !has_levels {
+            return Err(LevelError::Method);
+        }
         let width = settings.width;
         if !(0.0..=0.5).contains(&width) {
             return Err(LevelError::Width { width });
         }
-        let _ = is_dual;
         let mut made = Self {
             grid: *grid,
             method: *method,
@@ -170,6 +178,7 @@ impl LevelExtractor {
             extractors: Vec::new(),
             layer: Chunk::default(),
             plane: Plane::default(),
+            known: Known::default(),
             added: HashMap::new(),
         };
         made.at(0)?;
@@ -183,11 +192,23 @@ impl LevelExtractor {
 
     /// The neighbours as far as they matter to a chunk's mesh: of two that are equal here, nothing needs to be extracted again.
     pub fn seen(&self, neighbours: &Neighbours) -> Neighbours {
+        let axes = |direction: [i32; 3]| (0..3).filter(move |&axis| direction[axis] != 0);
+        if !matches!(self.method, Method::Cubes(_)) {
+            return neighbours
+                .only(|direction, _| direction.iter().all(|&d| d <= 0) && axes(direction).count() < 3);
+        }
         if self.settings.width > 0.0 && neighbours.has_finer() {
             return *neighbours;
         }
-        let is_side = |direction: [i32; 3]| direction.iter().filter(|&&d| d != 0).count() == 1;
-        neighbours.only(|direction, step| step < 0 && is_side(direction))
+        // One at an edge decides whether vertices in the edge are its own, too, if those at both sides are finer.
+        let is_finer = |direction: [i32; 3]| {
+            axes(direction).all(|axis| {
+                let mut side = [0; 3];
+                side[axis] = direction[axis];
+                neighbours.step(side) < 0
+            })
+        };
+        neighbours.only(|direction, _| is_finer(direction) && axes(direction).count() < 3)
     }
 
     /// Extracts the surface in a box of cells of a level, as [`extract_into`](Self::extract_into).
@@ -244,22 +265,34 @@ impl LevelExtractor {
             return Err(LevelError::Finest);
         }
         self.at(level)?.extract_into(source, cells, control, chunk)?;
+        chunk.level = level;
+        match self.method {
+            Method::Cubes(cubes) => self.cubes(field, cubes.faces, job, chunk)?,
+            _ => self.duals(field, job, chunk)?,
+        }
+        chunk.close_level(OfLevels { level, width: self.settings.width });
+        Ok(())
+    }
+
+    /// Adds transition cells, and moves the chunk's own vertices back from them.
+    fn cubes(
+        &mut self,
+        field: &dyn StudyField,
+        faces: Faces,
+        job: &Job,
+        chunk: &mut Chunk,
+    ) -> Result<(), LevelError> {
+        let Job { level, cells, neighbours, .. } = *job;
         let own = chunk.keys.len();
         self.added.clear();
-        match self.method {
-            Method::Cubes(cubes) => {
-                for side in (0..6).map(|side| (side / 2, side % 2 != 0)) {
-                    let mut direction = [0; 3];
-                    direction[side.0] = if side.1 { 1 } else { -1 };
-                    if neighbours.step(direction) < 0 {
-                        self.transitions(field, cubes.faces, side, job, (chunk, own))?;
-                    }
-                }
+        for side in (0..6).map(|side| (side / 2, side % 2 != 0)) {
+            let mut direction = [0; 3];
+            direction[side.0] = if side.1 { 1 } else { -1 };
+            if neighbours.step(direction) < 0 {
+                self.transitions(field, faces, side, job, (chunk, own))?;
             }
-            _ => unreachable!("no other method has levels"),
         }
-        let (width, grid) =
-            (self.settings.width, self.grid.coarser(level).map_err(|_| LevelError::Level { level })?);
+        let (width, grid) = (self.settings.width, self.grid_of(level)?);
         let shift = Shift::new(cells, &grid, neighbours, width);
         for (key, p) in chunk.keys[..own].iter_mut().zip(&mut chunk.positions) {
             if width > 0.0 {
@@ -267,15 +300,59 @@ impl LevelExtractor {
             }
             *key = key.at_level(level, shift.copy(*key));
         }
-        chunk.close_level(OfLevels { level, width });
         Ok(())
+    }
+
+    /// Puts polygons of several levels in the place of those at sides whose neighbours are of another level.
+    fn duals(&mut self, field: &dyn StudyField, job: &Job, chunk: &mut Chunk) -> Result<(), LevelError> {
+        let Job { source, level, cells, neighbours, control } = *job;
+        let own = chunk.keys.len();
+        let grid = |step: i32| level.checked_add_signed(step).and_then(|level| self.grid_of(level).ok());
+        let seams = Seams {
+            field,
+            isovalue: self.settings.chunks.isovalue,
+            normals: self.settings.chunks.normals,
+            is_sharp: matches!(self.method, Method::DualContouring(_)),
+            level,
+            cells,
+            neighbours,
+            grids: [grid(-1), grid(0), grid(1)],
+        };
+        self.known.clear();
+        for Needed { step, cells } in seams.needed()? {
+            let there = level.saturating_add_signed(step);
+            self.extract_layer(there, source, cells, control)?;
+            self.known.learn(&self.layer, there)?;
+            chunk.also_sampled(&self.layer);
+        }
+        seams.remove(chunk);
+        seams.add(&self.known, chunk)?;
+        chunk.keys[..own].iter_mut().for_each(|key| *key = key.at_level(level, 0));
+        Ok(chunk.drop_strangers()?)
+    }
+
+    /// Extracts cells of a level into `self.layer`.
+    fn extract_layer(
+        &mut self,
+        level: u32,
+        source: Source,
+        cells: CellBox,
+        control: Control,
+    ) -> Result<(), LevelError> {
+        let mut layer = std::mem::take(&mut self.layer);
+        let extracted = self.at(level).and_then(|extractor| {
+            extractor.extract_into(source, cells, control, &mut layer)?;
+            Ok(())
+        });
+        self.layer = layer;
+        extracted
     }
 
     /// Adds the transition cells of a side.
     fn transitions(
         &mut self,
         field: &dyn StudyField,
-        faces: crate::cubes::Faces,
+        faces: Faces,
         side: (usize, bool),
         job: &Job,
         (chunk, own): (&mut Chunk, usize),
@@ -283,13 +360,10 @@ impl LevelExtractor {
         let Job { source, level, cells, control, .. } = *job;
         let (across, is_high) = side;
         let fine = level - 1;
-        let grid = self.grid.coarser(fine).map_err(|_| LevelError::Level { level })?;
+        let grid = self.grid_of(fine)?;
         let ends = [cells.start, cells.end].map(|corner| corner.map(|i| i.saturating_mul(2)));
         let cells_there = layer(across, ends[usize::from(is_high)][across], ends);
-        let mut there = std::mem::take(&mut self.layer);
-        let extracted = self.at(fine)?.extract_into(source, cells_there, control, &mut there);
-        self.layer = there;
-        extracted?;
+        self.extract_layer(fine, source, cells_there, control)?;
         let isovalue = self.settings.chunks.isovalue;
         self.plane.read(across, &self.layer, (field, isovalue), &grid)?;
         let Self { layer, plane, added, .. } = self;
@@ -312,6 +386,10 @@ impl LevelExtractor {
         Ok(())
     }
 
+    fn grid_of(&self, level: u32) -> Result<Grid, LevelError> {
+        self.grid.coarser(level).map_err(|_| LevelError::Level { level })
+    }
+
     /// The extractor of a level.
     fn at(&mut self, level: u32) -> Result<&mut ChunkExtractor, LevelError> {
         let i = level as usize;
@@ -323,11 +401,7 @@ impl LevelExtractor {
         }
         let made = match self.extractors[i].take() {
             Some(made) => made,
-            None => {
-                let wrong = |_: GridError| LevelError::Level { level };
-                let grid = self.grid.coarser(level).map_err(wrong)?;
-                ChunkExtractor::try_new(&grid, &self.method, &self.settings.chunks)?
-            }
+            None => ChunkExtractor::try_new(&self.grid_of(level)?, &self.method, &self.settings.chunks)?,
         };
         Ok(self.extractors[i].insert(made))
     }

@@ -43,7 +43,7 @@ impl OfCubes for DualContouring {
             manifold: self.patches,
             closed_off_the_box: true,
             same_triangles_for_all_placements: false,
-            chunks: false,
+            chunks: true,
             samples_suffice: false,
         }
     }
@@ -55,5 +55,10 @@ impl OfCubes for DualContouring {
 
     fn calls_the_field(&self) -> bool {
         true
+    }
+
+    /// As for surface nets: crossings and their normals are those of their edges alone.
+    fn unmoved_halo(&self) -> Option<u32> {
+        Some(if self.patches { 3 } else { 2 })
     }
 }

@@ -47,6 +47,14 @@ pub(super) trait OfCubes {
 }
 
 impl<T: OfCubes> Family for T {
+    fn check_own(&self) -> Result<(), MethodError> {
+        self.check_settings()
+    }
+
+    fn calls_the_field_always(&self) -> bool {
+        self.calls_the_field()
+    }
+
     fn check(&self, grid: &BoxGrid) -> Result<(), MethodError> {
         self.check_settings()?;
         check(&self.settings(0.0), ARRANGEMENT)?;

@@ -16,7 +16,7 @@ use crate::triangles::Triangulation;
 
 /// Of the four cells round an edge along x, y or z, how many cells back each is, along the two other axes in cyclic order; counter-clockwise
 /// seen against the edge.
-const ROUND: [[usize; 2]; 4] = [[1, 1], [0, 1], [0, 0], [1, 0]];
+pub(crate) const ROUND: [[usize; 2]; 4] = [[1, 1], [0, 1], [0, 0], [1, 0]];
 
 /// How far the diagonals pass each other where corners are not in one plane, in spacings.
 const BENT: f32 = 1e-3;
@@ -109,30 +109,30 @@ impl QuadPass<'_> {
             let edge = self.plans.table.number(corner, axis);
             record.first + self.plans.at(record.plan).of_edge(edge)
         });
-        if self.is_other_better(corners.map(|corner| self.positions[corner as usize])) {
+        if is_other_better(corners.map(|corner| self.positions[corner as usize]), self.level) {
             corners.rotate_left(1);
         }
         let [a, b, c, d] = corners;
         if leads_out { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] }
     }
+}
 
-    /// Whether the diagonal from the second corner to the fourth is better than that through the lowest cell: shorter; or where tangent
-    /// planes were asked for and the corners are not in one plane, with its middle nearer to the isovalue. An edge of the object
-    /// that runs from corner to corner is a diagonal then.
-    fn is_other_better(&self, [a, b, c, d]: [Vec3; 4]) -> bool {
-        let is_shorter = b.distance_squared(d) < a.distance_squared(c);
-        let Some(level) = self.level else { return is_shorter };
-        let normal = (c - a).cross(d - b);
-        let apart = (b - a).dot(normal).abs();
-        // Not a number is in the plane.
-        if apart > BENT * level.spacing * normal.length() {
-            let [lowest, other] = [a.midpoint(c), b.midpoint(d)].map(|middle| level.difference(middle).abs());
-            return match other.partial_cmp(&lowest) {
-                Some(Ordering::Less) => true,
-                Some(Ordering::Greater) => false,
-                _ => is_shorter,
-            };
-        }
-        is_shorter
+/// Whether the diagonal from the second corner to the fourth is better than that through the lowest cell: shorter; or where tangent
+/// planes were asked for and the corners are not in one plane, with its middle nearer to the isovalue. An edge of the object
+/// that runs from corner to corner is a diagonal then.
+pub(crate) fn is_other_better([a, b, c, d]: [Vec3; 4], level: Option<Level>) -> bool {
+    let is_shorter = b.distance_squared(d) < a.distance_squared(c);
+    let Some(level) = level else { return is_shorter };
+    let normal = (c - a).cross(d - b);
+    let apart = (b - a).dot(normal).abs();
+    // Not a number is in the plane.
+    if apart > BENT * level.spacing * normal.length() {
+        let [lowest, other] = [a.midpoint(c), b.midpoint(d)].map(|middle| level.difference(middle).abs());
+        return match other.partial_cmp(&lowest) {
+            Some(Ordering::Less) => true,
+            Some(Ordering::Greater) => false,
+            _ => is_shorter,
+        };
     }
+    is_shorter
 }
