@@ -205,12 +205,9 @@ impl Chunk {
         let used = self.triangles.iter().flatten().map(|&v| v as usize);
         used.chain((0..self.keys.len()).filter(|&v| own(&self.keys[v]))).for_each(|v| numbers[v] = 0);
         let mut next = 0;
-        for v in 0..numbers.len() {
-            if numbers[v] == u32::MAX {
-                continue;
-            }
+        for (v, number) in numbers.iter_mut().enumerate().filter(|(_, number)| **number != u32::MAX) {
             let to = next as usize;
-            (self.keys[to], self.positions[to], numbers[v]) = (self.keys[v], self.positions[v], next);
+            (self.keys[to], self.positions[to], *number) = (self.keys[v], self.positions[v], next);
             if let Some(&normal) = self.normals.get(v) {
                 self.normals[to] = normal;
             }

@@ -94,13 +94,13 @@ impl Seams<'_> {
                 }
                 let step = self.neighbours.step(direction);
                 let mut cells = self.scaled(step)?;
-                for axis in 0..3 {
+                for (axis, way) in direction.into_iter().enumerate() {
                     let is_on = (0..2).any(|i| edges.on[i] && axis == (edges.along + 1 + i) % 3);
-                    if direction[axis] < 0 {
+                    if way < 0 {
                         cells.end[axis] = cells.start[axis];
-                        cells.start[axis] -= 1;
+                        cells.start[axis] = cells.start[axis].saturating_sub(1);
                     } else if is_line && is_on {
-                        cells.end[axis] = cells.start[axis] + 1;
+                        cells.end[axis] = cells.start[axis].saturating_add(1);
                     }
                 }
                 if !needed.iter().any(|other| other.step == step && other.cells.contains_box(&cells)) {

@@ -197,8 +197,9 @@ impl LevelExtractor {
             return neighbours
                 .only(|direction, _| direction.iter().all(|&d| d <= 0) && axes(direction).count() < 3);
         }
-        if self.settings.width > 0.0 && neighbours.has_finer() {
-            return *neighbours;
+        if self.settings.width > 0.0 {
+            // Where a finer chunk touches a corner of the chunk, all that touch it decide on its place.
+            return neighbours.only(|direction, _| neighbours.has_finer_at(direction));
         }
         // One at an edge decides whether vertices in the edge are its own, too, if those at both sides are finer.
         let is_finer = |direction: [i32; 3]| {

@@ -61,6 +61,16 @@ impl Neighbours {
         self.steps.iter().any(|&step| step < 0)
     }
 
+    /// Whether a finer chunk touches one of the chunk's corners that the neighbour in a direction touches.
+    pub(super) fn has_finer_at(&self, direction: [i32; 3]) -> bool {
+        (0..8).any(|corner| {
+            let on = [0, 1, 2].map(|axis| 2 * (corner >> axis & 1) - 1);
+            let touches = (0..3).all(|axis| direction[axis] == 0 || direction[axis] == on[axis]);
+            let there = |set: usize| [0, 1, 2].map(|axis| if set >> axis & 1 != 0 { on[axis] } else { 0 });
+            touches && (1..8).any(|set| self.step(there(set)) < 0)
+        })
+    }
+
     /// Those in some directions; the others are of the chunk's own level.
     pub(super) fn only(mut self, matters: impl Fn([i32; 3], i32) -> bool) -> Self {
         for (i, step) in self.steps.iter_mut().enumerate() {
