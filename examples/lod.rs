@@ -311,7 +311,7 @@ impl World {
             marks: marks.chain([(LEVELS as f32, "seams".into())]).collect(),
         };
         let colouring = Colouring { values: Values::PerTriangle(colours), scale };
-        let turn = Turntable { elevation_rad: 0.9, ..Turntable::around(1.35) };
+        let turn = Turntable { elevation_rad: 0.9, ..Turntable::around(1.5) };
         let animation =
             turntable_coloured(&mesh, &colouring, &turn, &Shading::default(), Look::Flat, &|| ())?;
         animation.write_gif(File::create(path)?)?;

@@ -14,6 +14,7 @@ use crate::control::Control;
 use crate::cubes::Faces;
 use crate::grid::Grid;
 use crate::lattice::CellBox;
+use crate::level::Level;
 use crate::memory::push;
 use crate::method::Method;
 use crate::source::Source;
@@ -295,9 +296,11 @@ impl LevelExtractor {
         }
         let (width, grid) = (self.settings.width, self.grid_of(level)?);
         let shift = Shift::new(cells, &grid, neighbours, width);
+        let (isovalue, spacing) = (self.settings.chunks.isovalue, grid.spacing() as f32);
+        let surface = Level { field, isovalue, spacing };
         for (key, p) in chunk.keys[..own].iter_mut().zip(&mut chunk.positions) {
             if width > 0.0 {
-                *p = shift.moved(*key, *p);
+                *p = shift.moved(*key, *p, &surface);
             }
             *key = key.at_level(level, shift.copy(*key));
         }

@@ -1,8 +1,11 @@
 //! How far vertices of a chunk stand back from finer neighbours, so that a transition has room.
 
+use glam::Vec3;
+
 use super::neighbours::{Neighbours, number};
 use crate::grid::Grid;
 use crate::lattice::CellBox;
+use crate::level::Level;
 use crate::trace::VertexKey;
 
 /// Where the corners of a chunk's cells go: away from finer chunks by the width of a transition, and other points between corners as
@@ -38,8 +41,10 @@ impl Shift {
         self.ways[number(self.on(corner))]
     }
 
-    /// Where a vertex goes that is at `p`. In a lattice edge it goes as the edge's ends do, in a cell as its corners.
-    pub(super) fn moved(&self, key: VertexKey, p: [f32; 3]) -> [f32; 3] {
+    /// Where a vertex goes that is at `p`. In a lattice edge it goes as the edge's ends do, in a cell as its corners; but only as far as
+    /// that leads along the surface, so that no ditch shows (Lengyel 2010). The field says where that is: the normals of triangles are those
+    /// of their neighbourhood, and would move two vertices near each other apart.
+    pub(super) fn moved(&self, key: VertexKey, p: [f32; 3], level: &Level) -> [f32; 3] {
         let (from, axis) = (key.stored(), key.direction());
         let axes: &[usize] = if axis < 3 { &[axis] } else { &[0, 1, 2] };
         let corners = 1 << axes.len();
@@ -55,17 +60,19 @@ impl Shift {
             let [low, high] = [0, 1].map(|step| self.grid.coordinate(axis, 2 * (from[axis] + step)));
             ((f64::from(p[axis]) - low) / (high - low)).clamp(0.0, 1.0)
         };
-        let mut moved = p.map(f64::from);
+        let mut way_of = [0.0; 3];
         for c in 0..corners {
             let part =
                 |(i, &axis): (usize, &usize)| if c >> i & 1 != 0 { ratio(axis) } else { 1.0 - ratio(axis) };
             let weight: f64 = axes.iter().enumerate().map(part).product();
             let way = self.way(corner(c));
-            for (axis, moved) in moved.iter_mut().enumerate() {
-                *moved += weight * self.width * self.grid.spacing() * f64::from(way[axis]);
+            for (axis, sum) in way_of.iter_mut().enumerate() {
+                *sum += weight * self.width * self.grid.spacing() * f64::from(way[axis]);
             }
         }
-        moved.map(|c| c as f32)
+        let n = level.normal(Vec3::from(p)).unwrap_or(Vec3::ZERO).to_array().map(f64::from);
+        let off: f64 = (0..3).map(|axis| n[axis] * way_of[axis]).sum();
+        [0, 1, 2].map(|axis| (f64::from(p[axis]) + way_of[axis] - off * n[axis]) as f32)
     }
 
     /// Which copy of a vertex the chunk has: 0 but on an edge of the chunk beyond which there is one of its level, with finer ones on the
