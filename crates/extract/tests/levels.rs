@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use extract::{
     Aabb, Arrangement, CellBox, Chunk, ChunkError, ChunkExtractor, ChunkSettings, Control, Cubes, Diagonals,
     DualContouring, Faces, Grid, LevelError, LevelExtractor, LevelSettings, Method, Neighbours, Normals,
-    ScalarField, Source, SurfaceNets, Tetrahedra, WeldError, from_fn, weld_chunks,
+    Placement, ScalarField, Source, SurfaceNets, Tetrahedra, WeldError, from_fn, weld_chunks,
 };
 use glam::Vec3;
 use mesh::TriangleMesh;
@@ -342,7 +342,10 @@ fn octrees_of_three_levels_are_closed() {
         let octree = Octree::random(seed);
         met += usize::from((0..3).all(|level| octree.leaves.iter().any(|leaf| leaf.0 == level)));
         let of_cubes = cubes(FACES[seed as usize % 4], Diagonals::Fan);
-        for (method, width) in [(of_cubes, 0.0), (of_cubes, 0.3), (DUALS[0], 0.0), (DUALS[1], 0.0)] {
+        let moved = Method::Cubes(Cubes { placement: Placement::Relaxed, ..Cubes::default() });
+        let all =
+            [(of_cubes, 0.0), (of_cubes, 0.3), (DUALS[0], 0.0), (DUALS[1], 0.0), (moved, 0.0), (moved, 0.2)];
+        for (method, width) in all.into_iter().take(if seed < 4 { 6 } else { 4 }) {
             let mut extractor = extractor(0.25, &method, width);
             let reach = 4.0 * 0.25 * REACH as f32 - 1.1;
             let chunks = octree.chunks(&mut extractor, &noise(seed, 1e6, reach), 4);

@@ -127,21 +127,23 @@ impl Seams<'_> {
 
     /// Takes away the triangles of a chunk of one level that lie round edges where a neighbour has another level: they come in pairs.
     pub(super) fn remove(&self, chunk: &mut Chunk) {
-        let is_kept = |pair: &[[u32; 3]]| {
+        let is_kept = |keys: &[VertexKey], pair: &[[u32; 3]]| {
             pair.iter().flatten().all(|&v| {
-                let cell = chunk.keys[v as usize].cell();
+                let cell = keys[v as usize].cell();
                 let direction = [0, 1, 2].map(|axis| -i32::from(cell[axis] < self.cells.start[axis]));
                 self.neighbours.step(direction) == 0
             })
         };
-        let (mut triangles, mut cells) = (Vec::new(), Vec::new());
-        for (pair, of) in chunk.triangles.chunks(2).zip(chunk.triangle_cells.chunks(2)) {
-            if is_kept(pair) {
-                triangles.extend_from_slice(pair);
-                cells.extend_from_slice(of);
+        let mut kept = 0;
+        for i in (0..chunk.triangles.len()).step_by(2) {
+            if is_kept(&chunk.keys, &chunk.triangles[i..i + 2]) {
+                chunk.triangles.copy_within(i..i + 2, kept);
+                chunk.triangle_cells.copy_within(i..i + 2, kept);
+                kept += 2;
             }
         }
-        (chunk.triangles, chunk.triangle_cells) = (triangles, cells);
+        chunk.triangles.truncate(kept);
+        chunk.triangle_cells.truncate(kept);
     }
 
     /// Adds the polygons of all minimal edges on lower sides with a neighbour of another level. `known` has the vertices of the cells

@@ -373,7 +373,8 @@ impl LevelExtractor {
         let Self { layer, plane, added, .. } = self;
         let decision = Decision { faces, field, isovalue, grid: &grid };
         let mut triangles: Vec<([i32; 3], [Corner; 3])> = Vec::new();
-        triangulate((chunk, own), side, plane, &decision, |cell, triangle| triangles.push((cell, triangle)));
+        let take = |cell, triangle| push(&mut triangles, (cell, triangle));
+        triangulate((chunk, own), side, plane, &decision, take)?;
         for (cell, triangle) in triangles {
             let mut numbers = [0; 3];
             for (number, corner) in numbers.iter_mut().zip(triangle) {

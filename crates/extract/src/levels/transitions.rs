@@ -1,5 +1,7 @@
 //! Transition cells along the sides of a chunk of marching cubes that have finer neighbours.
 
+use std::collections::TryReserveError;
+
 use field::StudyField;
 use glam::Vec3;
 
@@ -36,8 +38,8 @@ pub(super) fn triangulate(
     (across, is_high): (usize, bool),
     plane: &Plane,
     decision: &Decision,
-    mut take: impl FnMut([i32; 3], [Corner; 3]),
-) {
+    mut take: impl FnMut([i32; 3], [Corner; 3]) -> Result<(), TryReserveError>,
+) -> Result<(), TryReserveError> {
     let patterns = Patterns::get();
     let axes = [(across + 1) % 3, (across + 2) % 3];
     // Seen along the way into the chunk, x and y of the transition cell are these axes of the plane.
@@ -96,8 +98,9 @@ pub(super) fn triangulate(
         for [a, b, c] in patterns.triangles(inside, joined) {
             // A vertex is missing only where a field breaks its promises.
             if let (Some(a), Some(b), Some(c)) = (corner(a), corner(b), corner(c)) {
-                take(cell, [a, b, c]);
+                take(cell, [a, b, c])?;
             }
         }
     }
+    Ok(())
 }
