@@ -112,7 +112,8 @@ impl World {
 
     /// Goes so many frames, and prints what came of it.
     fn walk(mut self, frames: u32, speed: f32) -> Result<Self, Box<dyn Error>> {
-        let mut times = Vec::new();
+        // Of all frames, and of those in which chunks were made.
+        let mut times = [Vec::new(), Vec::new()];
         let (mut new, mut again, mut dug, mut most_open) = (0, 0, 0, 0);
         for frame in 0..frames {
             // West by south-west, so that numbers become negative.
@@ -125,7 +126,8 @@ impl World {
             let time = start.elapsed().as_secs_f64() * 1e3;
             // All is new in the first frame.
             if frame > 0 {
-                times.push(time);
+                times[0].push(time);
+                times[1].extend((made != [0; 2]).then_some(time));
                 (new, again, dug) = (new + made[0], again + made[1] - reached, dug + reached);
             }
             if frame % 10 == 0 {
@@ -136,18 +138,18 @@ impl World {
         let total = |of: &dyn Fn(&Held) -> usize| self.held.values().map(of).sum::<usize>();
         let triangles = total(&|held| held.chunk.triangles.len());
         let seams = total(&|held| held.chunk.seam as usize + held.skirts);
-        times.sort_unstable_by(f64::total_cmp);
-        let (median, longest) = (times.get(times.len() / 2), times.last());
         println!("{:?}: {frames} frames at {speed} m/s", self.between);
         println!("  chunks of levels 0 to 3: {:?}", [0, 1, 2, 3].map(chunks));
         println!(
             "  extracted: {new} new chunks, {again} again since neighbours changed, {dug} since a hole was dug"
         );
-        println!(
-            "  a frame's work: median {:.2} ms, longest {:.2} ms",
-            median.copied().unwrap_or_default(),
-            longest.copied().unwrap_or_default()
-        );
+        for (what, mut times) in ["a frame's work", "that of frames which make chunks"].into_iter().zip(times)
+        {
+            times.sort_unstable_by(f64::total_cmp);
+            if let (Some(median), Some(longest)) = (times.get(times.len() / 2), times.last()) {
+                println!("  {what}: median {median:.2} ms, longest {longest:.2} ms, {} frames", times.len());
+            }
+        }
         println!("  triangles: {}, {seams} of them between levels", triangles + total(&|held| held.skirts));
         println!("  open edges: {most_open}");
         Ok(self)
