@@ -573,3 +573,27 @@ fn a_width_makes_no_ditch() {
         assert!(farthest(0.5, fine) < farthest(0.0, fine) + 0.016, "{fine:08b}");
     }
 }
+
+/// Triangles and open edges by the crate transvoxel 2.0.0 of eight blocks of side 8, those in the west with 8 cells a side and those in the
+/// east with 16: without transition cells, and with them.
+#[test]
+fn counts_are_those_of_another_program() {
+    let sphere = |[x, y, z]: [f32; 3]| 5.03 - Vec3::new(x, y, z).length();
+    let bumpy = move |[x, y, z]: [f32; 3]| {
+        sphere([x, y, z]) + 0.8 * (1.7 * x).sin() * (1.3 * y).cos() * (1.9 * z).sin()
+    };
+    let (sphere, bumpy) = (from_fn(sphere), from_fn(bumpy));
+    let method = cubes(Faces::default(), Diagonals::Fan);
+    let mut extractor = extractor(0.5, &method, 0.0);
+    for (field, without, with) in [(&sphere as &dyn ScalarField, 2_432, 2_560), (&bumpy, 2_896, 3_024)] {
+        let chunks = chunks(&mut extractor, field, 0b1010_1010, 8);
+        let all: usize = chunks.iter().map(|chunk| chunk.triangles.len()).sum();
+        let seams: usize = chunks.iter().map(|chunk| chunk.seam as usize).sum();
+        assert_eq!([all - seams, all], [without, with]);
+        let mut apart = chunks;
+        for chunk in &mut apart {
+            chunk.triangles.truncate(chunk.triangles.len() - chunk.seam as usize);
+        }
+        assert_eq!(open_edges(&by_position(&apart)), 128);
+    }
+}
