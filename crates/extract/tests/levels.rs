@@ -423,6 +423,8 @@ fn neighbours_that_are_seen_alike_make_the_same_chunk() {
             .unwrap();
             let seen = extractor.seen(&neighbours);
             let chunk = extractor.extract(&field, 3, cells, &neighbours, Control::default()).unwrap();
+            let of_seen = extractor.extract(&field, 3, cells, &seen, Control::default()).unwrap();
+            assert!(of_seen == chunk && extractor.seen(&seen) == seen);
             assert_eq!(*known.entry(seen).or_insert_with(|| chunk.clone()), chunk);
         }
         assert!((10..299).contains(&known.len()), "{}", known.len());

@@ -2,8 +2,16 @@
 
 use super::extractor::LevelError;
 
-/// All directions, the middle one to the chunk itself.
-const DIRECTIONS: usize = 27;
+/// All directions, x fastest, the middle one to the chunk itself.
+pub(super) const DIRECTIONS: [[i32; 3]; 27] = {
+    let mut all = [[0; 3]; 27];
+    let mut i = 0;
+    while i < 27 {
+        all[i] = [i as i32 % 3 - 1, i as i32 / 3 % 3 - 1, i as i32 / 9 - 1];
+        i += 1;
+    }
+    all
+};
 
 /// Of which levels the chunks round a chunk are: at its 6 sides, its 12 edges and its 8 corners.
 ///
@@ -20,12 +28,12 @@ const DIRECTIONS: usize = 27;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Neighbours {
-    steps: [i8; DIRECTIONS],
+    steps: [i8; 27],
 }
 
 impl Neighbours {
     /// All of the chunk's own level.
-    pub const SAME: Self = Self { steps: [0; DIRECTIONS] };
+    pub const SAME: Self = Self { steps: [0; 27] };
 
     /// The neighbours of a chunk of a level. `level_at` is asked for the level of what touches the chunk in a direction, whose parts are
     /// each -1, 0 or 1 and not all 0: one that is not 0 leads to a side, two to an edge, three to a corner. Where several chunks touch it
@@ -34,9 +42,8 @@ impl Neighbours {
     /// # Errors
     /// [`LevelError::Step`] if the levels at a side or an edge differ from the chunk's by more than one.
     pub fn try_new(level: u32, mut level_at: impl FnMut([i32; 3]) -> u32) -> Result<Self, LevelError> {
-        let mut steps = [0; DIRECTIONS];
-        for (i, step) in steps.iter_mut().enumerate() {
-            let direction = direction(i);
+        let mut steps = [0; 27];
+        for (step, direction) in steps.iter_mut().zip(DIRECTIONS) {
             let axes = direction.iter().filter(|&&d| d != 0).count();
             if axes == 0 {
                 continue;
@@ -63,27 +70,25 @@ impl Neighbours {
 
     /// Whether a finer chunk touches one of the chunk's corners that the neighbour in a direction touches.
     pub(super) fn has_finer_at(&self, direction: [i32; 3]) -> bool {
-        (0..8).any(|corner| {
-            let on = [0, 1, 2].map(|axis| 2 * (corner >> axis & 1) - 1);
-            let touches = (0..3).all(|axis| direction[axis] == 0 || direction[axis] == on[axis]);
-            let there = |set: usize| [0, 1, 2].map(|axis| if set >> axis & 1 != 0 { on[axis] } else { 0 });
-            touches && (1..8).any(|set| self.step(there(set)) < 0)
-        })
+        let touches = |corner: [i32; 3], direction: [i32; 3]| {
+            (0..3).all(|axis| direction[axis] == 0 || direction[axis] == corner[axis])
+        };
+        let is_corner = |direction: &[i32; 3]| !direction.contains(&0);
+        let corners = DIRECTIONS.into_iter().filter(is_corner).filter(|&corner| touches(corner, direction));
+        let mut touching = corners
+            .flat_map(|corner| DIRECTIONS.into_iter().filter(move |&direction| touches(corner, direction)));
+        touching.any(|direction| self.step(direction) < 0)
     }
 
     /// Those in some directions; the others are of the chunk's own level.
     pub(super) fn only(mut self, matters: impl Fn([i32; 3], i32) -> bool) -> Self {
-        for (i, step) in self.steps.iter_mut().enumerate() {
-            if !matters(direction(i), (*step).into()) {
+        for (step, direction) in self.steps.iter_mut().zip(DIRECTIONS) {
+            if !matters(direction, (*step).into()) {
                 *step = 0;
             }
         }
         self
     }
-}
-
-fn direction(number: usize) -> [i32; 3] {
-    [number % 3, number / 3 % 3, number / 9].map(|i| i as i32 - 1)
 }
 
 pub(super) fn number(direction: [i32; 3]) -> usize {

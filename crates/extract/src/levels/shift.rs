@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::neighbours::{Neighbours, number};
+use super::neighbours::{DIRECTIONS, Neighbours, number};
 use crate::grid::Grid;
 use crate::lattice::CellBox;
 use crate::level::Level;
@@ -21,11 +21,7 @@ pub(super) struct Shift {
 
 impl Shift {
     pub(super) fn new(cells: CellBox, grid: &Grid, neighbours: &Neighbours, width: f32) -> Self {
-        let mut ways = [[0; 3]; 27];
-        for (i, way) in ways.iter_mut().enumerate() {
-            let on = [i % 3, i / 3 % 3, i / 9].map(|d| d as i32 - 1);
-            *way = away(neighbours, on);
-        }
+        let ways = DIRECTIONS.map(|on| away(neighbours, on));
         Self { cells, grid: *grid, width: f64::from(width), neighbours: *neighbours, ways }
     }
 
@@ -82,14 +78,14 @@ impl Shift {
         if axis > 2 {
             return 0;
         }
-        let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
-        let step = |along: [usize; 2]| {
-            let mut direction = [0; 3];
-            along.iter().for_each(|&axis| direction[axis] = on[axis]);
-            self.neighbours.step(direction)
-        };
-        let is_alone = on[b] != 0 && on[c] != 0 && step([b, b]) < 0 && step([c, c]) < 0 && step([b, c]) == 0;
-        if is_alone { if on[b] > 0 { 1 } else { 2 } } else { 0 }
+        let mut edge = on;
+        edge[axis] = 0;
+        let is_edge = edge.iter().filter(|&&d| d != 0).count() == 2;
+        match is_edge && is_alone(&self.neighbours, edge) {
+            true if edge[(axis + 1) % 3] > 0 => 1,
+            true => 2,
+            false => 0,
+        }
     }
 }
 
@@ -97,28 +93,37 @@ impl Shift {
 /// the level that touch it and are connected by sides go the same way; one that is coarser keeps it.
 fn away(neighbours: &Neighbours, on: [i32; 3]) -> [i8; 3] {
     // Of the up to eight chunks at the corner, one bit an axis: whether it is beyond.
-    let beyond = |set: usize| [0, 1, 2].map(|axis| if set >> axis & 1 != 0 { on[axis] } else { 0 });
-    let is_there = |set: usize| (0..3).all(|axis| set >> axis & 1 == 0 || on[axis] != 0);
-    let step = |set: usize| neighbours.step(beyond(set));
-    let all: Vec<usize> = (0..8).filter(|&set| is_there(set)).collect();
-    if all.iter().any(|&set| step(set) > 0) || all.iter().all(|&set| step(set) == 0) {
+    let is_beyond = |set: usize, axis: usize| set >> axis & 1 != 0;
+    let is_there = |set: usize| (0..3).all(|axis| on[axis] != 0 || !is_beyond(set, axis));
+    let step =
+        |set: usize| neighbours.step([0, 1, 2].map(|axis| if is_beyond(set, axis) { on[axis] } else { 0 }));
+    let all = || (0..8).filter(|&set| is_there(set));
+    if all().any(|set| step(set) > 0) || all().all(|set| step(set) == 0) {
         return [0; 3];
     }
-    let mut connected = vec![0];
-    let mut next = 0;
-    while let Some(&set) = connected.get(next) {
-        next += 1;
-        for other in (0..3).map(|axis| set ^ 1 << axis) {
-            if is_there(other) && step(other) == 0 && !connected.contains(&other) {
-                connected.push(other);
-            }
-        }
+    // By sets, one bit each, until there are no more.
+    let (mut connected, mut before) = (1_u8, 0);
+    while connected != before {
+        before = connected;
+        let touches = |set: usize| (0..3).any(|axis| before >> (set ^ 1 << axis) & 1 != 0);
+        let found = all().filter(|&set| step(set) == 0 && touches(set));
+        connected = found.fold(before, |found, set| found | 1 << set);
     }
     [0, 1, 2].map(|axis| {
         // The chunk itself is on the lower side of its upper sides.
-        let where_ = |&set: &usize| if set >> axis & 1 != 0 { on[axis] } else { -on[axis] };
-        connected.iter().map(where_).sum::<i32>().signum() as i8
+        let place = |set: usize| if is_beyond(set, axis) { on[axis] } else { -on[axis] };
+        all().filter(|set| connected >> set & 1 != 0).map(place).sum::<i32>().signum() as i8
     })
+}
+
+/// Whether chunks of the level meet in an edge of a chunk, with finer ones on both sides of it.
+fn is_alone(neighbours: &Neighbours, edge: [i32; 3]) -> bool {
+    let mut sides = (0..3).filter(|&axis| edge[axis] != 0).map(|axis| {
+        let mut side = [0; 3];
+        side[axis] = edge[axis];
+        side
+    });
+    sides.all(|side| neighbours.step(side) < 0) && neighbours.step(edge) == 0
 }
 
 #[cfg(test)]
