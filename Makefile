@@ -21,10 +21,10 @@ test-long: bunny ## run the tests that take minutes: 74,640 volumes against the 
 quick: bunny ## the same study made small, into results/quick/
 	$(ISOSTUDY) study configs/quick.toml
 
-terrain: cache/methods/bin/python ## methods for terrain in games, with cells and with triangles alike, into results/terrain/
+terrain: cache/methods/installed ## methods for terrain in games, with cells and with triangles alike, into results/terrain/
 	PATH="$(CURDIR)/cache/methods/bin:$$PATH" $(ISOSTUDY) study configs/terrain.toml --allow-programs
 
-cache/methods/bin/python: scripts/methods/requirements.txt
+cache/methods/installed: scripts/methods/requirements.txt
 	python3 -m venv cache/methods
 	cache/methods/bin/pip install --quiet --requirement scripts/methods/requirements.txt
 	touch $@
