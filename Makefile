@@ -3,7 +3,7 @@
 ISOSTUDY = cargo run --release --locked --quiet --package isostudy --bin isostudy --
 BUNNY ?=
 
-.PHONY: help study test test-long quick bench bench-sweep figures check bunny clean
+.PHONY: help study test test-long quick terrain bench bench-sweep figures check bunny clean
 
 help: ## list these entries
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 11
@@ -20,6 +20,14 @@ test-long: bunny ## run the tests that take minutes: 74,640 volumes against the 
 
 quick: bunny ## the same study made small, into results/quick/
 	$(ISOSTUDY) study configs/quick.toml
+
+terrain: cache/methods/installed ## methods for terrain in games, with cells and with triangles alike, into results/terrain/
+	PATH="$(CURDIR)/cache/methods/bin:$$PATH" $(ISOSTUDY) study configs/terrain.toml --allow-programs
+
+cache/methods/installed: scripts/methods/requirements.txt
+	python3 -m venv cache/methods
+	cache/methods/bin/pip install --quiet --requirement scripts/methods/requirements.txt
+	touch $@
 
 bench: bunny ## time every configuration 100 times, as the paper does, and renew the tables
 	$(ISOSTUDY) bench configs/paper.toml
@@ -42,4 +50,4 @@ bunny: ## fetch and verify the Stanford bunny into cache/ (BUNNY=path takes a fi
 
 clean: ## remove what was built and made; the bunny stays
 	cargo clean
-	rm -rf results
+	find results -mindepth 1 -maxdepth 1 ! -name README.md ! -name published -exec rm -r {} +

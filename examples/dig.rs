@@ -9,7 +9,7 @@ use extract::{
     Arrangement, BoxGrid, Chunk, ChunkExtractor, ChunkSettings, Clustering, Control, Execution, Method,
     Source, Tetrahedra, extract, weld_chunks,
 };
-use field::{Asteroid, Kept, StudyField};
+use field::{Asteroid, FieldCache, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
 
@@ -103,7 +103,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let tetrahedra = Tetrahedra { clustering, ..Tetrahedra::new(arrangement) };
     let control = Control::default();
 
-    let (asteroid, mut kept) = (Asteroid::default(), Kept::default());
+    let (asteroid, mut kept) = (Asteroid::default(), FieldCache::default());
     let solid = asteroid.prepared(&mut kept).unwrap_or(&asteroid);
     let mut field = Dug { solid, holes: Vec::new(), deepest: DEEPEST * lattice.spacing() };
     let mut extractor =

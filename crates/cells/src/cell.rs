@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::hull::{Hull, Place, hull};
 
-/// A convex cell with corners at whole coordinates.
+/// A convex cell with corners at whole coordinates. That of a [`transition`](Self::transition) has corners within faces and edges.
 ///
 /// Corners keep their numbers. Edges are numbered by their lower corner, then by their higher one; faces by their corners.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -61,6 +61,11 @@ impl Cell {
             }
         }
         let Hull::Solid(faces) = hull(corners) else { return Err(CellError::Flat) };
+        Ok(Self::with_faces(corners.to_vec(), faces))
+    }
+
+    /// The cell with these faces, which are taken as given.
+    fn with_faces(corners: Vec<Place>, faces: Vec<Vec<u8>>) -> Self {
         let mut edges: Vec<[u8; 2]> = faces
             .iter()
             .flat_map(|face| (0..face.len()).map(|i| side(face, i)))
@@ -78,14 +83,14 @@ impl Cell {
             let has = |list: &Vec<u8>| list.contains(&(item as u8));
             lists.iter().enumerate().fold(0, |set, (f, list)| set | u32::from(has(list)) << f)
         };
-        Ok(Self {
+        Self {
             faces_at_edge: (0..edges.len()).map(|e| faces_with(&face_edges, e)).collect(),
             faces_at_corner: (0..corners.len()).map(|c| faces_with(&faces, c)).collect(),
-            corners: corners.to_vec(),
+            corners,
             edges,
             faces,
             face_edges,
-        })
+        }
     }
 
     /// The cube: corner `i` at `(i & 1, i >> 1 & 1, i >> 2)`.
@@ -114,6 +119,22 @@ impl Cell {
     pub fn octahedron() -> Self {
         let corners = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
         Self::try_new(&corners).expect("an octahedron is a cell")
+    }
+
+    /// The cell between a square of a coarse grid and the four of the fine grid in its place, for seams of two resolutions
+    /// (Lengyel 2010). Corner `i + 3 j` is `(i, j, 0)` of the fine squares, corner `9 + i + 2 j` is `(2 i, 2 j, 1)` of the coarse one.
+    ///
+    /// Faces 0 to 3 are the fine squares, x fastest; face 4 is the coarse one; 5 to 8 are the sides at y = 0, y = 2, x = 0 and
+    /// x = 2, with five corners each. A corner of the coarse square is on the side of the fine one that it stands for: no edge
+    /// between the squares is ever crossed, and no side is ever ambiguous.
+    pub fn transition() -> Self {
+        let fine = (0..9).map(|c| [c % 3, c / 3, 0]);
+        let coarse = (0..4).map(|c| [c % 2 * 2, c / 2 * 2, 1]);
+        let squares = [0, 1, 3, 4].map(|c| vec![c, c + 3, c + 4, c + 1]);
+        let others: [&[u8]; 5] =
+            [&[9, 10, 12, 11], &[0, 1, 2, 10, 9], &[6, 11, 12, 8, 7], &[0, 9, 11, 6, 3], &[2, 5, 8, 12, 10]];
+        let faces = squares.into_iter().chain(others.map(<[u8]>::to_vec));
+        Self::with_faces(fine.chain(coarse).collect(), faces.collect())
     }
 
     /// The corners, as given.

@@ -15,4 +15,5 @@ pub use extractor::{ChunkError, ChunkExtractor};
 pub use layout::SampleLayout;
 pub use settings::{ChunkSettings, Normals};
 pub use weld::{Mismatch, WeldError, weld_chunks};
+pub(crate) use world::OfLevels;
 pub use world::World;

@@ -22,7 +22,7 @@ mod vertices;
 mod volume_cells;
 
 pub(crate) use moved::EdgeMoves;
-pub(crate) use nets::{Nets, Sharp};
+pub(crate) use nets::{Nets, ROUND, Sharp, is_other_better};
 pub use rule::{Diagonals, Faces, Flat};
 pub use volume_cells::{VolumeCells, VolumeCellsError};
 
@@ -48,6 +48,16 @@ use crate::trace::Trace;
 pub(crate) struct Rule {
     pub(crate) faces: Faces,
     pub(crate) diagonals: Diagonals,
+}
+
+/// Whether a face's inside corners are one region of it, where they alternate with outside ones. `round` has the samples at its
+/// corners in order, from an inside one on.
+pub(crate) fn joins(faces: Faces, isovalue: f32, round: impl FnOnce() -> [f32; 4]) -> bool {
+    match faces {
+        Faces::SeparateInside => false,
+        Faces::JoinInside => true,
+        Faces::Decider | Faces::Trilinear => exact::is_joined(round(), isovalue),
+    }
 }
 
 /// The table of a rule, where it is one of signs alone.

@@ -84,6 +84,20 @@ impl Grid {
         Ok(Self { origin, spacing })
     }
 
+    /// The grid of a level: cubes `2^level` times as large, with the same corner `[0, 0, 0]`. Its corner `i` is this grid's corner
+    /// `2^level * i`, to the bit.
+    ///
+    /// # Errors
+    /// [`GridError::Spacing`] if the cubes are too large for `f32`.
+    pub fn coarser(&self, level: u32) -> Result<Self, GridError> {
+        Self::try_new(self.origin, self.spacing * 2f64.powi(level.min(1 << 10) as i32))
+    }
+
+    /// The grid that this is the `level` of.
+    pub(crate) fn finer(self, level: u32) -> Self {
+        Self { spacing: self.spacing * 0.5f64.powi(level as i32), ..self }
+    }
+
     /// Corner `[0, 0, 0]`.
     pub fn origin(&self) -> [f64; 3] {
         self.origin

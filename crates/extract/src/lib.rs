@@ -73,6 +73,7 @@
 //! | counts to compare with other programs | [`VolumeCells`], preset `mc` |
 //! | no thin triangles, bounded angles | [`SnapCubes`], preset `snapmc` |
 //! | terrain, for a game | a [`Grid`], a [`ChunkExtractor`] and [`Grid::touched`]: see [`engine`]; `examples/endless.rs` walks through one |
+//! | the same with coarse chunks far away | a [`LevelExtractor`]; `examples/lod.rs` |
 //! | regular triangles | [`Arrangement::BodyCentred`], [`Clustering::Integrated`], [`Placement::Relaxed`] |
 //! | few samples | [`Arrangement::SimpleCubic`], [`Clustering::Integrated`] |
 //! | published numbers | [`Topology::Published`], [`Positions::Accumulated`] |
@@ -85,6 +86,12 @@
 //! those of the whole, so that a seam does not show even where chunks are drawn side by side. A chunk looks at samples up
 //! to two cells beyond its own, or four where vertices are moved; what they decide is all that can change its triangles, and
 //! [`Chunk::is_touched_by`] says of an edit whether it reaches them. With edge collapse the way is farther: see [`ChunkExtractor`].
+//!
+//! # Levels of detail
+//!
+//! A [`LevelExtractor`] makes chunks of several levels, each with cubes twice as large as the one before. Between chunks that differ by
+//! one level it puts transition cells, for marching cubes, or polygons round minimal edges, for nets and dual contouring with one
+//! vertex per cell. All of them weld to a closed mesh, whatever the samples. A chunk needs the levels of its [`Neighbours`] alone.
 //!
 //! # Three ways
 //!
@@ -129,6 +136,7 @@
 //! | a chunk beyond the lattice, or without a cell | [`ChunkError::Cells`] |
 //! | chunks with refined crossings, weights by curvature, or moves after edge collapse | [`ChunkError::Placement`] |
 //! | chunks of different fields, or one twice | [`WeldError::Mismatch`], [`WeldError::Overlap`] |
+//! | levels of neighbours that differ by more than one | [`LevelError::Step`] |
 //! | memory that is not there | [`ExtractError::OutOfMemory`], [`ExtractError::NoMemoryForMesh`] |
 //! | more than 2^32 - 1 vertices | [`ExtractError::TooManyVertices`] |
 //!
@@ -147,6 +155,9 @@
 //! - W. E. Lorensen, H. E. Cline: Marching cubes. SIGGRAPH (1987). G. M. Nielson, B. Hamann: The asymptotic decider. IEEE
 //!   Visualization (1991). E. V. Chernyaev: Marching cubes 33. CERN CN 95-17 (1995). The cases of cubes; how they are decided here
 //!   is derived in `cubes/tunnel.rs`.
+//! - E. Lengyel: Voxel-based terrain for real-time virtual simulations. PhD thesis, UC Davis (2010). Transition cells, and how
+//!   vertices stand back from them; their patterns are derived here.
+//! - T. Ju, F. Losasso, S. Schaefer, J. Warren: Dual contouring of Hermite data. ACM TOG 21 (2002). Minimal edges.
 //! - S. L. Chan, E. O. Purisima: A new tetrahedral tesselation scheme for isosurface generation. Computers & Graphics
 //!   22 (1998). The body-centred tetrahedra. The mirrored five and the face-centred 24 stand beside them in the
 //!   literature; which 24 are meant here, and why, is with [`Arrangement::FaceCentred`].
@@ -194,6 +205,7 @@ mod guard;
 mod isosurface;
 mod lattice;
 mod level;
+mod levels;
 #[cfg(test)]
 mod limits;
 mod line;
@@ -229,6 +241,7 @@ pub use extractor::{Extractor, extract};
 pub use field::{Aabb, Bound, FieldFault, FromFn, ScalarField, StudyField, check_field, from_fn};
 pub use grid::{Grid, GridError};
 pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
+pub use levels::{LevelError, LevelExtractor, LevelSettings, Neighbours};
 pub use method::{
     CornerSamples, Cubes, DualContouring, Macet, Method, MethodError, Preset, Promises, SnapCubes,
     SurfaceNets, Tetrahedra, presets,

@@ -280,11 +280,6 @@ impl Method {
 
 /// What only the extractor of chunks asks.
 impl Method {
-    /// Whether the method's own settings are in their ranges, whatever the grid.
-    pub(crate) fn check_ranges(&self) -> Result<(), MethodError> {
-        self.family().check_ranges()
-    }
-
     /// How many cells beyond a box's own samples can matter to its chunk; `None` where there is no such number, or there
     /// are no chunks.
     pub(crate) fn halo(&self) -> Option<u32> {
@@ -294,6 +289,16 @@ impl Method {
     /// How a window is extracted, where the method is one that chunks are made by.
     pub(crate) fn by_window(&self, isovalue: f32) -> Option<ByWindow> {
         self.family().by_window(isovalue)
+    }
+
+    /// Whether the settings that only its family has are in their ranges.
+    pub(crate) fn check_own(&self) -> Result<(), MethodError> {
+        self.family().check_own()
+    }
+
+    /// Whether samples can never suffice.
+    pub(crate) fn calls_the_field_always(&self) -> bool {
+        self.family().calls_the_field_always()
     }
 
     /// The cells whose samples can matter to the chunk of a box, in a grid without an end. `None` where that is not known
@@ -318,10 +323,10 @@ pub(crate) struct ByWindow {
 
 /// What a family of methods implements; see the functions of [`Method`] with the same names.
 trait Family {
-    /// Whether the family's own settings are in their ranges, whatever the grid.
-    fn check_ranges(&self) -> Result<(), MethodError> {
-        Ok(())
-    }
+    /// Whether the settings that only the family has are in their ranges.
+    fn check_own(&self) -> Result<(), MethodError>;
+    /// Whether the field is called between the samples whatever the settings are.
+    fn calls_the_field_always(&self) -> bool;
     fn check(&self, grid: &BoxGrid) -> Result<(), MethodError>;
     fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError>;
     fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError>;

@@ -19,6 +19,10 @@ const DIRECTION_BITS: u32 = 5;
 const PLACE_BITS: u32 = 34;
 /// Added to places, so that none is negative.
 const BIAS: i64 = 1 << (PLACE_BITS - 1);
+/// Above the place, two bits for the arrangement; above these, five for the level and two for the copy.
+const LEVEL_SHIFT: u32 = DIRECTION_BITS + 3 * PLACE_BITS + 2;
+/// Bits for a level.
+const LEVEL_BITS: u32 = 5;
 
 impl VertexKey {
     /// Of a stored point of the whole lattice.
@@ -42,6 +46,22 @@ impl VertexKey {
     pub fn cell(self) -> [i32; 3] {
         let arrangement = Arrangement::ALL[(self.0 >> (DIRECTION_BITS + 3 * PLACE_BITS)) as usize & 3];
         cell_of_stored(arrangement, self.stored()).map(|i| i as i32)
+    }
+
+    /// The direction of the first lattice edge, or beyond them the number of a vertex in the cell.
+    pub(crate) fn direction(self) -> usize {
+        (self.0 & ((1 << DIRECTION_BITS) - 1)) as usize
+    }
+
+    /// The same in the grid of a level. Where chunks meet in an edge and have finer ones between them, each has a copy of its own.
+    pub(crate) fn at_level(self, level: u32, copy: u8) -> Self {
+        let tag = u128::from(copy) << LEVEL_BITS | u128::from(level);
+        Self(self.0 & ((1 << LEVEL_SHIFT) - 1) | tag << LEVEL_SHIFT)
+    }
+
+    /// The level whose grid the vertex is of: 0 but for chunks of a [`LevelExtractor`](crate::LevelExtractor).
+    pub fn level(self) -> u32 {
+        (self.0 >> LEVEL_SHIFT) as u32 & ((1 << LEVEL_BITS) - 1)
     }
 
     /// The key as a number: for a hash table of one's own, or a file.
@@ -96,6 +116,9 @@ mod tests {
         assert_eq!(key([-3, 4, -5], 3).cell(), [-3, 4, -5]);
         assert!(key([9, 9, -1], 13) < key([-9, -9, 0], 0) && key([9, -1, 0], 13) < key([-9, 0, 0], 0));
         assert!(key([-1, 0, 0], 13) < key([0, 0, 0], 0) && key([0, 0, 0], 0) < key([0, 0, 0], 1));
+        let tagged = key([-3, 4, -5], 13).at_level(31, 2);
+        assert_eq!((tagged.stored(), tagged.direction(), tagged.level()), ([-3, 4, -5], 13, 31));
+        assert_eq!((tagged.cell(), tagged.at_level(0, 0)), ([-3, 4, -5], key([-3, 4, -5], 13)));
         // The centre of a body-centred cell, and its lowest corner.
         let centred = |place| VertexKey::new(Arrangement::BodyCentred, place, 0).cell();
         assert_eq!(centred([0, 0, 0]), [-1; 3]);

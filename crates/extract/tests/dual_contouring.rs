@@ -1,6 +1,9 @@
 //! Dual contouring keeps corners, edges and tips, converges on smooth surfaces, and has the connections of surface nets.
 
-use extract::{BoxGrid, DualContouring, Execution, Extractor, Method, MethodError, Source, SurfaceNets};
+use extract::{
+    BoxGrid, ChunkError, ChunkExtractor, ChunkSettings, DualContouring, Execution, Extractor, Method,
+    MethodError, Source, SurfaceNets, weld_chunks,
+};
 use field::StudyField;
 use glam::{Mat3, Vec3};
 use mesh::topology::topology;
@@ -214,4 +217,25 @@ fn what_has_no_normals_and_no_sense_is_refused() {
     let broken = Formula(|p: Vec3| if p.x > 0.3 { f32::NAN } else { 0.6 - p.length() });
     let mesh = mesh(method, &broken, 16);
     assert!(mesh.positions.iter().all(|p| p.is_finite()) && !mesh.triangles.is_empty());
+}
+
+/// Chunks of any size weld to the whole, byte for byte, and take no samples.
+#[test]
+fn chunks_are_those_of_the_whole() {
+    let turned = boxed(Vec3::new(0.61, 0.43, 0.72), Mat3::from_rotation_z(0.4) * Mat3::from_rotation_x(0.7));
+    for method in every_setting() {
+        let whole = mesh(method, &turned, 23);
+        let mut extractor = ChunkExtractor::in_box(&grid(23), &method, &ChunkSettings::default()).unwrap();
+        for side in [5, 16] {
+            let boxes: Vec<_> = extractor.grid(side).collect();
+            let parts: Vec<_> = boxes
+                .into_iter()
+                .map(|cells| extractor.extract(Source::Study(&turned), cells, &ONE).unwrap())
+                .collect();
+            assert_eq!(weld_chunks(&parts).unwrap(), whole, "{method:?} {side}");
+        }
+        let cells = extractor.grid(5).next().unwrap();
+        let error = extractor.extract(Source::Samples(&[0.0; 24 * 24 * 24]), cells, &ONE).unwrap_err();
+        assert_eq!(error, ChunkError::Settings(MethodError::NeedsField));
+    }
 }

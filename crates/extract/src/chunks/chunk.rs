@@ -1,12 +1,15 @@
 //! What is extracted of a box of cells.
 
+use std::collections::TryReserveError;
+
 use field::Aabb;
 use glam::Vec3;
 use mesh::TriangleMesh;
 
-use super::world::World;
+use super::world::{OfLevels, World};
 use crate::grid::Grid;
 use crate::lattice::CellBox;
+use crate::memory::refill;
 use crate::method::Method;
 use crate::trace::VertexKey;
 
@@ -26,14 +29,20 @@ pub struct Chunk {
     /// Outward, of unit length: those of the whole mesh. As many as positions, or none
     /// ([`Normals::None`](crate::Normals)).
     pub normals: Vec<[f32; 3]>,
-    /// Numbers of vertices, counter-clockwise seen from outside, in the order of the whole mesh.
+    /// Numbers of vertices, counter-clockwise seen from outside, in the order of the whole mesh. Those of
+    /// [seams](crate::LevelExtractor) to other levels come last.
     pub triangles: Vec<[u32; 3]>,
-    /// The key of each vertex. Ascending, unless edges were collapsed: then vertices are numbered by first use.
+    /// The key of each vertex. Ascending, unless edges were collapsed: then vertices are numbered by first use. Vertices that only
+    /// seams have come last.
     pub keys: Vec<VertexKey>,
-    /// The cell of each triangle by its number in `cells`, x fastest. Ascending. See [`cell_of`](Self::cell_of).
+    /// The cell of each triangle by its number in `cells`, x fastest. Ascending, seams aside. See [`cell_of`](Self::cell_of).
     pub triangle_cells: Vec<u32>,
-    /// The cells whose samples were looked at.
+    /// The cells whose samples were looked at, those of seams aside.
     pub window: CellBox,
+    /// The level whose grid the cells are of: 0 but for chunks of a [`LevelExtractor`](crate::LevelExtractor).
+    pub level: u32,
+    /// How many of the triangles, the last ones, are of seams to other levels.
+    pub seam: u32,
     /// The box of those samples.
     pub(super) sampled: Aabb,
     /// The box of the vertices.
@@ -54,6 +63,8 @@ impl Default for Chunk {
             keys: Vec::new(),
             triangle_cells: Vec::new(),
             window: CellBox::default(),
+            level: 0,
+            seam: 0,
             sampled: Aabb { min: [f32::NEG_INFINITY; 3], max: [f32::INFINITY; 3] },
             bounds: None,
             world: None,
@@ -98,7 +109,7 @@ impl Chunk {
         self.world.as_ref()
     }
 
-    /// Whether it is a chunk of this grid, by this method.
+    /// Whether it is a chunk of this grid, by this method. Of a level, the grid is that of the level.
     pub fn is_of(&self, grid: &Grid, method: &Method) -> bool {
         self.world.is_some_and(|world| world.grid() == Some(grid) && world.method() == method)
     }
@@ -162,7 +173,7 @@ impl Chunk {
     }
 
     /// Empty and of no world; its vectors keep their room.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         let Self { positions, normals, triangles, keys, triangle_cells, .. } = self;
         positions.clear();
         normals.clear();
@@ -176,6 +187,46 @@ impl Chunk {
             keys: std::mem::take(keys),
             triangle_cells: std::mem::take(triangle_cells),
             ..Self::default()
+        };
+    }
+
+    /// Makes it one of several levels, seams and all.
+    pub(crate) fn close_level(&mut self, of: OfLevels) {
+        self.level = of.level;
+        self.world = self.world.map(|world| World { levels: Some(of), ..world });
+        self.close();
+    }
+
+    /// Takes away the vertices of other cells that no triangle has.
+    pub(crate) fn drop_strangers(&mut self) -> Result<(), TryReserveError> {
+        let own = |key: &VertexKey| key.level() == self.level && self.cells.contains(key.cell());
+        let mut numbers = Vec::new();
+        refill(&mut numbers, self.keys.len(), u32::MAX)?;
+        let used = self.triangles.iter().flatten().map(|&v| v as usize);
+        used.chain((0..self.keys.len()).filter(|&v| own(&self.keys[v]))).for_each(|v| numbers[v] = 0);
+        let mut next = 0;
+        for (v, number) in numbers.iter_mut().enumerate().filter(|(_, number)| **number != u32::MAX) {
+            let to = next as usize;
+            (self.keys[to], self.positions[to], *number) = (self.keys[v], self.positions[v], next);
+            if let Some(&normal) = self.normals.get(v) {
+                self.normals[to] = normal;
+            }
+            next += 1;
+        }
+        self.keys.truncate(next as usize);
+        self.positions.truncate(next as usize);
+        self.normals.truncate(next as usize);
+        self.triangles.iter_mut().flatten().for_each(|v| *v = numbers[*v as usize]);
+        Ok(())
+    }
+
+    /// It depends on the samples of another chunk, too.
+    pub(crate) fn also_sampled(&mut self, other: &Self) {
+        let axes = [0, 1, 2];
+        let (one, other) = (self.sampled, other.sampled);
+        self.sampled = Aabb {
+            min: axes.map(|i| one.min[i].min(other.min[i])),
+            max: axes.map(|i| one.max[i].max(other.max[i])),
         };
     }
 

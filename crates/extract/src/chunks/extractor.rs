@@ -199,9 +199,9 @@ impl ChunkExtractor {
     }
 
     fn new(place: Place, method: &Method, settings: &ChunkSettings) -> Result<Self, ChunkError> {
-        method.check_ranges()?;
+        method.check_own()?;
         let how = method.by_window(settings.isovalue).ok_or(ChunkError::Method)?;
-        let world = World { place, method: *method, settings: *settings };
+        let world = World { place, method: *method, settings: *settings, levels: None };
         let ByWindow { arrangement, settings, .. } = how;
         check(&settings, arrangement)?;
         if settings.positions != Positions::Indexed {
@@ -351,6 +351,9 @@ impl ChunkExtractor {
         chunk: &mut Chunk,
     ) -> Result<(), ChunkError> {
         crate::placement::check(&self.how.settings, false)?;
+        if self.world.method.calls_the_field_always() {
+            return Err(MethodError::NeedsField.into());
+        }
         if self.world.settings.normals == Normals::Field {
             return Err(ChunkError::NormalsNeedField);
         }

@@ -21,7 +21,7 @@ pub enum WeldError {
         /// What they are chunks of.
         worlds: Box<[World; 2]>,
     },
-    /// Two chunks have triangles of one cell.
+    /// Two chunks of one level have triangles of one cell.
     #[error("cell {cell:?} is in two of the chunks")]
     Overlap {
         /// The cell.
@@ -66,7 +66,7 @@ impl From<TryReserveError> for WeldError {
 ///
 /// Of all chunks of a lattice this makes the mesh of the whole, to the byte: positions, normals, triangles and their
 /// order. Of some of them it makes that part of it, in the same order. The order of the chunks does not matter. Chunks that
-/// were never extracted are left out.
+/// were never extracted are left out. Of chunks of [several levels](crate::LevelExtractor) it makes one mesh, finer levels first.
 ///
 /// # Errors
 /// [`WeldError::Worlds`], [`WeldError::Overlap`] and [`WeldError::Mismatch`] if the chunks are not of one extraction. Two
@@ -75,7 +75,7 @@ pub fn weld_chunks<'a>(chunks: impl IntoIterator<Item = &'a Chunk>) -> Result<Tr
     let mut in_order: Vec<&Chunk> = chunks.into_iter().filter(|chunk| chunk.world.is_some()).collect();
     for pair in in_order.windows(2) {
         if let (Some(first), Some(second)) = (pair[0].world, pair[1].world)
-            && first != second
+            && first.of_finest() != second.of_finest()
         {
             return Err(WeldError::Worlds { worlds: Box::new([first, second]) });
         }
@@ -85,13 +85,14 @@ pub fn weld_chunks<'a>(chunks: impl IntoIterator<Item = &'a Chunk>) -> Result<Tr
     let mut triangles = with_room(in_order.iter().map(|chunk| chunk.triangle_cells.len()).sum())?;
     for (c, chunk) in in_order.iter().enumerate() {
         triangles.extend(
-            (0..chunk.triangle_cells.len()).map(|t| (from_below(chunk.cell_of(t)), c as u32, t as u32)),
+            (0..chunk.triangle_cells.len())
+                .map(|t| ((chunk.level, from_below(chunk.cell_of(t))), c as u32, t as u32)),
         );
     }
     triangles.sort_unstable();
     let overlap = triangles.windows(2).find(|pair| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1);
     if let Some(pair) = overlap {
-        return Err(WeldError::Overlap { cell: from_below(pair[0].0) });
+        return Err(WeldError::Overlap { cell: from_below(pair[0].0.1) });
     }
 
     let mut welded = Welded::default();

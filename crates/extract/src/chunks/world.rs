@@ -13,6 +13,17 @@ pub struct World {
     pub(super) place: Place,
     pub(super) method: Method,
     pub(super) settings: ChunkSettings,
+    /// Of chunks that there are several levels of.
+    pub(crate) levels: Option<OfLevels>,
+}
+
+/// One of several levels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct OfLevels {
+    /// Of the grid.
+    pub(crate) level: u32,
+    /// Of transitions, in cells.
+    pub(crate) width: f32,
 }
 
 /// Where the cells are.
@@ -49,6 +60,14 @@ impl World {
         &self.settings
     }
 
+    /// The same for all chunks that weld: with levels, the world of the finest one.
+    pub(super) fn of_finest(self) -> Self {
+        let (Some(OfLevels { level, width }), Place::Endless(grid)) = (self.levels, self.place) else {
+            return self;
+        };
+        Self { place: Place::Endless(grid.finer(level)), levels: Some(OfLevels { level: 0, width }), ..self }
+    }
+
     /// The lowest corner of a cell.
     pub(super) fn position(&self, cell: [i32; 3]) -> [f64; 3] {
         match &self.place {
@@ -71,6 +90,12 @@ impl fmt::Display for World {
             }
         }
         let ChunkSettings { isovalue, normals } = self.settings;
-        write!(f, " with isovalue {isovalue} and normals {normals:?} by {:?}", self.method)
+        write!(f, " with isovalue {isovalue} and normals {normals:?} by {:?}", self.method)?;
+        match self.levels {
+            Some(OfLevels { level, width }) => {
+                write!(f, " at level {level} with transitions of {width} cells")
+            }
+            None => Ok(()),
+        }
     }
 }

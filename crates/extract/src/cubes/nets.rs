@@ -18,6 +18,7 @@ mod sharp;
 mod tangents;
 mod vertices;
 
+pub(crate) use quads::{ROUND, is_other_better};
 pub(crate) use sharp::Sharp;
 
 use std::collections::TryReserveError;

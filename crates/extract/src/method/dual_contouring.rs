@@ -48,7 +48,7 @@ impl OfCubes for DualContouring {
             manifold: self.patches,
             closed_off_the_box: true,
             same_triangles_for_all_placements: false,
-            chunks: false,
+            chunks: self.tolerance == 0.0,
             samples_suffice: false,
         }
     }
@@ -63,5 +63,11 @@ impl OfCubes for DualContouring {
 
     fn calls_the_field(&self) -> bool {
         true
+    }
+
+    /// As for surface nets: crossings and their normals are those of their edges alone.
+    fn unmoved_halo(&self) -> Option<u32> {
+        // Merged cells may reach across the whole box.
+        (self.tolerance == 0.0).then_some(if self.patches { 3 } else { 2 })
     }
 }

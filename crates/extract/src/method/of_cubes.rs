@@ -47,8 +47,12 @@ pub(super) trait OfCubes {
 }
 
 impl<T: OfCubes> Family for T {
-    fn check_ranges(&self) -> Result<(), MethodError> {
+    fn check_own(&self) -> Result<(), MethodError> {
         self.check_settings()
+    }
+
+    fn calls_the_field_always(&self) -> bool {
+        self.calls_the_field()
     }
 
     fn check(&self, grid: &BoxGrid) -> Result<(), MethodError> {

@@ -57,6 +57,14 @@ impl Tetrahedra {
 }
 
 impl Family for Tetrahedra {
+    fn check_own(&self) -> Result<(), MethodError> {
+        Ok(())
+    }
+
+    fn calls_the_field_always(&self) -> bool {
+        false
+    }
+
     fn check(&self, grid: &BoxGrid) -> Result<(), MethodError> {
         check(&self.settings(0.0), self.arrangement)?;
         grid.lattice(self.arrangement)?;

@@ -16,7 +16,7 @@ use crate::triangles::Triangulation;
 
 /// Of the four cells round an edge along x, y or z, how many cells back each is, along the two other axes in cyclic order; counter-clockwise
 /// seen against the edge.
-const ROUND: [[usize; 2]; 4] = [[1, 1], [0, 1], [0, 0], [1, 0]];
+pub(crate) const ROUND: [[usize; 2]; 4] = [[1, 1], [0, 1], [0, 0], [1, 0]];
 
 /// Of each axis and cell, the corner of the cell that the edge begins at.
 const CORNERS: [[u8; 4]; 3] = {
@@ -87,7 +87,7 @@ fn is_other_shorter([a, b, c, d]: [Vec3; 4]) -> bool {
 /// were asked for and the corners are not in one plane, it is the one with its middle nearer to the isovalue: an edge of the object that
 /// runs from corner to corner is a diagonal then. Where they are in one plane, none that leaves the quadrilateral is taken.
 #[inline]
-pub(super) fn is_other_better(level: Option<Level>, corners: [Vec3; 4]) -> bool {
+pub(crate) fn is_other_better(level: Option<Level>, corners: [Vec3; 4]) -> bool {
     let is_shorter = is_other_shorter(corners);
     match level {
         None => is_shorter,

@@ -1,0 +1,343 @@
+//! A camera over a terrain without an end, which is there in four levels of detail: fine near by, coarse far away. As it moves, chunks
+//! are divided and joined. Those whose neighbours changed are extracted again, and those that a hole reaches, which is dug every second.
+//! Prints how many, what a frame needs, how many triangles there are, and how many edges are open: none. Beside it the cheap way: a skirt
+//! along every side of a chunk.
+//!
+//! With a file it leaves a turntable of the last frame, with levels as colours, and the seams between them.
+//!
+//! `cargo run --release -p isostudy-raster --example lod -- [frames] [metres per second] [cubes|nets|dc] [file.gif]`
+
+#[path = "browser/src/ground.rs"]
+mod ground;
+
+use std::collections::{HashMap, HashSet};
+use std::error::Error;
+use std::fs::File;
+use std::time::Instant;
+
+use extract::{
+    Chunk, Control, Cubes, DualContouring, Grid, LevelExtractor, LevelSettings, Method, Neighbours,
+    SurfaceNets, weld_chunks,
+};
+use glam::Vec3;
+use ground::{Ground, Hole};
+use mesh::TriangleMesh;
+use raster::{Colouring, Look, Scale, Shading, Turntable, Values, turntable_coloured};
+
+/// Levels, the finest of which has cells of a metre.
+const LEVELS: u32 = 4;
+/// Cells along a side of a chunk of any level.
+const CHUNK: u32 = 16;
+/// Chunks of the coarsest level that are seen to every side, and up and down.
+const SIGHT: [i32; 3] = [3, 3, 1];
+/// A chunk is divided that is nearer than so many of its sides. With 1 or more, levels of neighbours differ by one at most.
+const NEAR: f32 = 1.5;
+/// Of transitions, in cells.
+const WIDTH: f32 = 0.25;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let number = |i: usize, default: u32| arguments.get(i).map_or(Ok(default), |text| text.parse());
+    let (frames, speed) = (number(0, 900)?, number(1, 24)?);
+    let method = match arguments.get(2).map_or("cubes", String::as_str) {
+        "cubes" => Method::Cubes(Cubes::default()),
+        "nets" => Method::SurfaceNets(SurfaceNets { patches: false }),
+        "dc" => Method::DualContouring(DualContouring { in_cell: true, ..DualContouring::default() }),
+        other => return Err(format!("{other}: must be cubes, nets or dc").into()),
+    };
+    let grid = Grid::try_new([0.0; 3], 1.0)?;
+    let walk = |between| World::new(&grid, &method, between)?.walk(frames, speed as f32);
+    let world = walk(Between::Seams)?;
+    // What duals have at a side reaches into the neighbour: it is no skirt.
+    if matches!(method, Method::Cubes(_)) {
+        walk(Between::Skirts)?;
+    }
+    if let Some(path) = arguments.get(3) {
+        world.draw(path)?;
+        println!("{path}");
+    }
+    Ok(())
+}
+
+/// What stands between chunks of two levels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Between {
+    Seams,
+    Skirts,
+}
+
+/// A chunk: its level and its place among those of the level.
+type Id = (u32, [i32; 3]);
+
+/// A chunk that is there, and the neighbours that it was made for.
+struct Held {
+    seen: Neighbours,
+    chunk: Chunk,
+    /// Triangles of skirts.
+    skirts: usize,
+    /// Whether the ground has changed since.
+    is_stale: bool,
+}
+
+struct World {
+    grids: Vec<Grid>,
+    between: Between,
+    extractor: LevelExtractor,
+    ground: Ground,
+    camera: Vec3,
+    /// What is to be seen.
+    wanted: Vec<Id>,
+    /// What the camera is too near for.
+    divided: HashSet<Id>,
+    held: HashMap<Id, Held>,
+    /// Buffers that are free.
+    free: Vec<Chunk>,
+}
+
+impl World {
+    fn new(grid: &Grid, method: &Method, between: Between) -> Result<Self, Box<dyn Error>> {
+        let grids: Result<_, _> = (0..LEVELS).map(|level| grid.coarser(level)).collect();
+        Ok(Self {
+            grids: grids?,
+            between,
+            extractor: LevelExtractor::try_new(grid, method, &LevelSettings::default().with_width(WIDTH))?,
+            ground: Ground::default(),
+            camera: Vec3::ZERO,
+            wanted: Vec::new(),
+            divided: HashSet::new(),
+            held: HashMap::new(),
+            free: Vec::new(),
+        })
+    }
+
+    /// Goes so many frames, and prints what came of it.
+    fn walk(mut self, frames: u32, speed: f32) -> Result<Self, Box<dyn Error>> {
+        // Of all frames, and of those in which chunks were made.
+        let mut times = [Vec::new(), Vec::new()];
+        let (mut new, mut again, mut dug, mut most_open) = (0, 0, 0, 0);
+        for frame in 0..frames {
+            // West by south-west, so that numbers become negative.
+            let way = frame as f32 * speed / 60.0;
+            let (x, y) = (-way, -0.4 * way);
+            self.camera = Vec3::new(x, y, self.ground.height(x, y) + 10.0);
+            let start = Instant::now();
+            let reached = if frame % 60 == 30 { self.dig() } else { 0 };
+            let made = self.frame()?;
+            let time = start.elapsed().as_secs_f64() * 1e3;
+            // All is new in the first frame.
+            if frame > 0 {
+                times[0].push(time);
+                times[1].extend((made != [0; 2]).then_some(time));
+                (new, again, dug) = (new + made[0], again + made[1] - reached, dug + reached);
+            }
+            if frame % 10 == 0 {
+                most_open = most_open.max(self.open_edges()?);
+            }
+        }
+        let chunks = |level| self.held.keys().filter(|id| id.0 == level).count();
+        let total = |of: &dyn Fn(&Held) -> usize| self.held.values().map(of).sum::<usize>();
+        let triangles = total(&|held| held.chunk.triangles.len());
+        let seams = total(&|held| held.chunk.seam as usize + held.skirts);
+        println!("{:?}: {frames} frames at {speed} m/s", self.between);
+        println!("  chunks of levels 0 to 3: {:?}", [0, 1, 2, 3].map(chunks));
+        println!(
+            "  extracted: {new} new chunks, {again} again since neighbours changed, {dug} since a hole was dug"
+        );
+        for (what, mut times) in ["a frame's work", "that of frames which make chunks"].into_iter().zip(times)
+        {
+            times.sort_unstable_by(f64::total_cmp);
+            if let (Some(median), Some(longest)) = (times.get(times.len() / 2), times.last()) {
+                println!("  {what}: median {median:.2} ms, longest {longest:.2} ms, {} frames", times.len());
+            }
+        }
+        println!("  triangles: {}, {seams} of them between levels", triangles + total(&|held| held.skirts));
+        println!("  open edges: {most_open}");
+        Ok(self)
+    }
+
+    /// Makes the chunks that the camera's place asks for. Returns how many are new, and how many were made again.
+    fn frame(&mut self) -> Result<[usize; 2], Box<dyn Error>> {
+        let before = std::mem::take(&mut self.wanted);
+        self.look();
+        if self.wanted == before && !self.held.values().any(|held| held.is_stale) {
+            return Ok([0; 2]);
+        }
+        let mut old = std::mem::take(&mut self.held);
+        let mut made = [0, 0];
+        for &id in &self.wanted {
+            let neighbours = Neighbours::try_new(id.0, |direction| self.level_at(id, direction))?;
+            let seen = match self.between {
+                Between::Seams => self.extractor.seen(&neighbours),
+                Between::Skirts => Neighbours::SAME,
+            };
+            let before = old.remove(&id);
+            let held = match before {
+                Some(held) if held.seen == seen && !held.is_stale => held,
+                before => {
+                    made[usize::from(before.is_some())] += 1;
+                    let mut chunk =
+                        before.map(|held| held.chunk).or_else(|| self.free.pop()).unwrap_or_default();
+                    let cells = self.grids[id.0 as usize].chunk(id.1, CHUNK);
+                    self.extractor.extract_into(
+                        &self.ground,
+                        id.0,
+                        cells,
+                        &seen,
+                        Control::default(),
+                        &mut chunk,
+                    )?;
+                    let skirts = match self.between {
+                        Between::Seams => 0,
+                        Between::Skirts => skirts(&chunk, &self.grids[id.0 as usize]).len(),
+                    };
+                    Held { seen, chunk, skirts, is_stale: false }
+                }
+            };
+            self.held.insert(id, held);
+        }
+        self.free.extend(old.into_values().map(|held| held.chunk));
+        Ok(made)
+    }
+
+    /// Digs a hole ahead of the camera. Returns how many chunks are to be made again.
+    fn dig(&mut self) -> usize {
+        let [x, y] = [self.camera.x - 9.0, self.camera.y];
+        let hole = Hole { centre: [x, y, self.ground.height(x, y)], radius: 3.0 };
+        self.ground.holes.push(hole);
+        let reached = |held: &&mut Held| held.chunk.is_touched_by(hole.reach());
+        let touched = self.held.values_mut().filter(reached);
+        touched.map(|held| held.is_stale = true).count()
+    }
+
+    /// Finds the chunks to be seen from where the camera is.
+    fn look(&mut self) {
+        let top = LEVELS - 1;
+        let here = self.root_of_camera();
+        let mut open: Vec<Id> = Vec::new();
+        for z in -SIGHT[2]..=SIGHT[2] {
+            for y in -SIGHT[1]..=SIGHT[1] {
+                open.extend((-SIGHT[0]..=SIGHT[0]).map(|x| (top, [here[0] + x, here[1] + y, z])));
+            }
+        }
+        self.divided.clear();
+        while let Some((level, id)) = open.pop() {
+            if level == 0 || !self.is_near((level, id)) {
+                self.wanted.push((level, id));
+                continue;
+            }
+            self.divided.insert((level, id));
+            let part = |o: i32| [0, 1, 2].map(|axis| 2 * id[axis] + (o >> axis & 1));
+            open.extend((0..8).map(|o| (level - 1, part(o))));
+        }
+    }
+
+    fn root_of_camera(&self) -> [i32; 3] {
+        self.grids[LEVELS as usize - 1].chunk_at(self.camera.to_array(), CHUNK)
+    }
+
+    /// Whether the camera is too near for a chunk as it is.
+    fn is_near(&self, (level, id): Id) -> bool {
+        let grid = &self.grids[level as usize];
+        let bounds = grid.bounds(grid.chunk(id, CHUNK));
+        let [min, max] = [bounds.min, bounds.max].map(Vec3::from);
+        let away = (self.camera.clamp(min, max) - self.camera).abs().max_element();
+        away < NEAR * (max.x - min.x)
+    }
+
+    /// The level of what touches a chunk in a direction; its own beyond what is seen.
+    fn level_at(&self, (level, id): Id, direction: [i32; 3]) -> u32 {
+        let there = [0, 1, 2].map(|axis| id[axis] + direction[axis]);
+        let at = |level_there: u32| (level_there, there.map(|i| i >> (level_there - level)));
+        let ((_, root), here) = (at(LEVELS - 1), self.root_of_camera());
+        let from = [root[0] - here[0], root[1] - here[1], root[2]];
+        if (0..3).any(|axis| from[axis].abs() > SIGHT[axis]) {
+            return level;
+        }
+        let divided = (level..LEVELS).rev().take_while(|&l| self.divided.contains(&at(l))).count() as u32;
+        LEVELS - 1 - divided
+    }
+
+    /// Edges with one triangle, but for those where sight ends.
+    fn open_edges(&self) -> Result<usize, Box<dyn Error>> {
+        let mesh = weld_chunks(self.held.values().map(|held| &held.chunk))?;
+        let mut runs: HashMap<[u32; 2], i32> = HashMap::new();
+        for [a, b, c] in &mesh.triangles {
+            for [from, to] in [[a, b], [b, c], [c, a]] {
+                *runs.entry([*from.min(to), *from.max(to)]).or_default() += if from < to { 1 } else { -1 };
+            }
+        }
+        let (top, here) = (&self.grids[LEVELS as usize - 1], self.root_of_camera());
+        let ends = [-1, 1].map(|side| {
+            let root = [0, 1].map(|axis| here[axis] + side * SIGHT[axis] + i32::from(side > 0));
+            top.position([root[0] * CHUNK as i32, root[1] * CHUNK as i32, 0])
+        });
+        // Duals end half a cell before.
+        let slack = if matches!(self.held.values().next(), Some(held) if is_dual(&held.chunk)) {
+            top.spacing()
+        } else {
+            0.0
+        };
+        let is_at_end = |v: u32, axis: usize, end: usize| {
+            (f64::from(mesh.positions[v as usize][axis]) - ends[end][axis]).abs() <= slack
+        };
+        let is_rim = |[a, b]: &[u32; 2]| {
+            [0, 1].into_iter().any(|axis| {
+                [0, 1].into_iter().any(|end| is_at_end(*a, axis, end) && is_at_end(*b, axis, end))
+            })
+        };
+        Ok(runs.iter().filter(|(edge, run)| **run != 0 && !is_rim(edge)).count())
+    }
+
+    /// Draws a turn round what there is, with levels as colours.
+    fn draw(&self, path: &str) -> Result<(), Box<dyn Error>> {
+        let mut mesh = TriangleMesh::default();
+        let mut colours = Vec::new();
+        let radius = (SIGHT[0] as f32 + 0.5) * (CHUNK << (LEVELS - 1)) as f32;
+        let top = &self.grids[LEVELS as usize - 1];
+        let bounds = top.bounds(top.chunk(self.root_of_camera(), CHUNK));
+        let middle = Vec3::from(bounds.min).midpoint(Vec3::from(bounds.max)).with_z(0.0);
+        for Held { chunk, .. } in self.held.values() {
+            let first = mesh.positions.len() as u32;
+            mesh.positions.extend(chunk.positions.iter().map(|&p| (Vec3::from(p) - middle) / radius));
+            mesh.normals.extend(chunk.normals.iter().copied().map(Vec3::from));
+            mesh.triangles.extend(chunk.triangles.iter().map(|t| t.map(|v| v + first)));
+            let own = chunk.triangles.len() - chunk.seam as usize;
+            let colour = |t| if t < own { chunk.level as f32 } else { LEVELS as f32 };
+            colours.extend((0..chunk.triangles.len()).map(colour));
+        }
+        let marks = (0..LEVELS).map(|level| (level as f32, format!("level {level}")));
+        let scale = Scale {
+            title: "levels of detail".into(),
+            dark: LEVELS as f32,
+            bright: 0.0,
+            marks: marks.chain([(LEVELS as f32, "seams".into())]).collect(),
+        };
+        let colouring = Colouring { values: Values::PerTriangle(colours), scale };
+        let turn = Turntable { elevation_rad: 0.9, ..Turntable::around(1.5) };
+        let animation =
+            turntable_coloured(&mesh, &colouring, &turn, &Shading::default(), Look::Flat, &|| ())?;
+        animation.write_gif(File::create(path)?)?;
+        Ok(())
+    }
+}
+
+fn is_dual(chunk: &Chunk) -> bool {
+    chunk.world().is_some_and(|world| !matches!(world.method(), Method::Cubes(_)))
+}
+
+/// The triangles of a band that hangs from every edge in which a chunk ends, a cell down into the ground.
+fn skirts(chunk: &Chunk, grid: &Grid) -> Vec<[Vec3; 3]> {
+    let mut runs: HashMap<[u32; 2], i32> = HashMap::new();
+    for [a, b, c] in &chunk.triangles {
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            *runs.entry([*from.min(to), *from.max(to)]).or_default() += if from < to { 1 } else { -1 };
+        }
+    }
+    let at = |v: u32| Vec3::from(chunk.positions[v as usize]);
+    let below = |v: u32| at(v) - Vec3::from(chunk.normals[v as usize]) * grid.spacing() as f32;
+    let band = |([low, high], run): ([u32; 2], i32)| {
+        let [from, to] = if run > 0 { [high, low] } else { [low, high] };
+        [[at(from), at(to), below(to)], [at(from), below(to), below(from)]]
+    };
+    runs.into_iter().filter(|(_, run)| *run != 0).flat_map(band).collect()
+}
