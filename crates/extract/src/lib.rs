@@ -191,6 +191,7 @@ mod extractor;
 mod finish;
 mod grid;
 mod guard;
+mod in_sight;
 mod isosurface;
 mod lattice;
 mod level;

@@ -7,12 +7,14 @@ use glam::Vec3;
 use super::Rule;
 use super::grid::Grid;
 use super::patches::{Patch, Patches};
+use super::records::Records;
 use super::rows::next;
-use super::sampling::{Samples, Values};
+use super::sampling::Samples;
 use crate::bits::between;
+use crate::in_sight::Values;
 use crate::lattice::Lattice;
 use crate::level::Level;
-use crate::memory::{filled, push};
+use crate::memory::push;
 use crate::placement::crossing_ratio;
 use crate::settings::{ExtractSettings, Placement, Topology};
 use crate::spot::{Apart, Company, linear_ratio};
@@ -47,30 +49,6 @@ impl Record {
 /// Bits of a number below eight.
 pub(super) static RANK: [u8; 8] = [0, 1, 1, 2, 1, 2, 2, 3];
 
-/// The records of the two layers of a cell, written and read only where there is something to know.
-pub(super) struct Records {
-    records: Vec<Record>,
-    size: [usize; 2],
-}
-
-impl Records {
-    pub(super) fn new(grid: &Grid) -> Result<Self, TryReserveError> {
-        let [nx, ny, _] = grid.size;
-        Ok(Self { records: filled(2 * nx * ny, Record::default())?, size: [nx, ny] })
-    }
-
-    /// Where the records of a row start.
-    #[inline]
-    pub(super) fn start(&self, row: usize, layer: usize) -> usize {
-        (layer % 2 * self.size[1] + row) * self.size[0]
-    }
-
-    #[inline]
-    pub(super) fn at(&self, place: usize) -> Record {
-        self.records[place]
-    }
-}
-
 /// What the pass reads.
 pub(super) struct VertexPass<'a> {
     pub(super) grid: &'a Grid<'a>,
@@ -102,7 +80,7 @@ impl VertexPass<'_> {
         &self,
         layer: usize,
         is_own: bool,
-        records: &mut Records,
+        records: &mut Records<Record>,
         vertices: &mut Vertices,
     ) -> Result<(), TryReserveError> {
         let grid = self.grid;
@@ -141,22 +119,23 @@ impl VertexPass<'_> {
                         patch: 0,
                         crossed: of(crossed[0]) | of(crossed[1]) << 1 | of(crossed[2]) << 2,
                     };
-                    let mut inner = None;
+                    let mut inner = 0;
                     if of(cells) != 0 {
                         let inside = (0..4)
                             .fold(0, |set, i| set | of(here[i]) << (2 * i) | of(after[i]) << (2 * i + 1));
                         let values = || self.values.corners(place);
                         record.patch = self.patches.choose(self.rule.faces, inside, self.isovalue, values);
-                        let patch = self.patches.at(record.patch);
-                        inner = (!patch.inner.is_empty()).then_some(patch);
+                        inner = self.patches.inner(record.patch);
                     }
                     let crossings = record.crossed.count_ones();
-                    vertices.numbered += u64::from(crossings);
-                    vertices.numbered += inner.map_or(0, |patch| patch.inner.len() as u64);
-                    records.records[start + place[0]] = record;
+                    vertices.numbered += u64::from(crossings) + u64::from(inner);
+                    records.set(start + place[0], record);
                     if is_own {
                         vertices.crossings += u64::from(crossings);
-                        self.place(place, record.crossed, inner, vertices)?;
+                        self.place(place, record.crossed, vertices)?;
+                        if inner != 0 {
+                            self.place_inner(place, self.patches.at(record.patch), vertices)?;
+                        }
                     }
                 }
             }
@@ -164,14 +143,9 @@ impl VertexPass<'_> {
         Ok(())
     }
 
-    /// Places the vertices of a point.
-    fn place(
-        &self,
-        place: [usize; 3],
-        crossed: u8,
-        inner: Option<&Patch>,
-        vertices: &mut Vertices,
-    ) -> Result<(), TryReserveError> {
+    /// Places the vertices on the edges that begin at a point.
+    #[inline]
+    fn place(&self, place: [usize; 3], crossed: u8, vertices: &mut Vertices) -> Result<(), TryReserveError> {
         let value = self.values.at(place);
         for axis in (0..3).filter(|axis| crossed >> axis & 1 != 0) {
             let mut there = place;
@@ -183,7 +157,18 @@ impl VertexPass<'_> {
             }
             self.name(place, axis, vertices)?;
         }
-        for (v, edges) in inner.iter().flat_map(|patch| patch.inner.iter().enumerate()) {
+        Ok(())
+    }
+
+    /// Places the vertices in the cell that begins at a point.
+    #[inline(never)]
+    fn place_inner(
+        &self,
+        place: [usize; 3],
+        patch: &Patch,
+        vertices: &mut Vertices,
+    ) -> Result<(), TryReserveError> {
+        for (v, edges) in patch.inner.iter().enumerate() {
             let mut sum = Vec3::ZERO;
             let mut target = Vec3::ZERO;
             for &edge in edges {
