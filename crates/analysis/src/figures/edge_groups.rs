@@ -54,7 +54,7 @@ fn draft(tables: &[TableQuality], surfaces: &[String], worst: usize) -> Unfinish
     let (good, bad) = (Fill::plain(LEFT), Fill::plain(RIGHT));
     let legend = [
         (Swatch::Area(good), "a kind of triangle".to_owned()),
-        (Swatch::Area(bad), "the kind whose edges are a path in space".to_owned()),
+        (Swatch::Area(bad), "a kind whose edges are a path in space".to_owned()),
     ];
     let (mut canvas, top) = canvas_with_legend(&legend, ROW * (1 + rows.len()) as f64);
     let boxes = tables.iter().map(|table| (table.name.as_str(), &table.ratios[..], good)).collect();

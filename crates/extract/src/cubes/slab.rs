@@ -62,7 +62,7 @@ pub(super) fn stream_slab(
     let filled = lowest..layers.min(highest + 2);
     let sided = lowest.saturating_sub(1)..layers.min(highest + 3);
     let sampling = Sampling { grid, source, isovalue, all_corners: rule.faces.reads_all_corners() };
-    let mut vertices = Vertices { keys: job.traced.then(Vec::new), ..Vertices::default() };
+    let mut vertices = Vertices::new(job.traced);
     piece.clear(job.traced);
     let mut laps = Laps::new();
     for step in sided.start..=highest + 2 {
@@ -94,11 +94,6 @@ pub(super) fn stream_slab(
         piece.times.geometry += laps.lap();
         (job.layer_done)();
     }
-    (piece.positions, piece.targets) = (vertices.positions, vertices.targets);
-    // As if seen from both ends.
-    piece.crossing_ends = 2 * vertices.crossings;
-    if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, vertices.keys) {
-        trace.keys = keys;
-    }
+    vertices.give_to(piece);
     Ok(())
 }

@@ -18,13 +18,13 @@ use std::ops::Range;
 use self::cells_pass::Chosen;
 use self::labels::{Labels, Snap};
 use self::table::Table;
-use self::vertices::{Record, VertexPass, Vertices};
+use self::vertices::{Record, VertexPass};
 use super::Flat;
 use super::grid::Grid;
 use super::in_slabs;
 use super::records::Records;
 use super::sampling::{Samples, Sampling};
-use super::vertices::Placer;
+use super::vertices::{Placer, Vertices};
 use crate::clock::Laps;
 use crate::control::Control;
 use crate::extraction::{ExtractError, Extraction};
@@ -109,7 +109,7 @@ fn stream_slab(
     let filled = lowest.saturating_sub(3)..layers.min(highest + 4);
     let sided = lowest.saturating_sub(4)..layers.min(highest + 5);
     let sampling = Sampling { grid, source, isovalue: snap.isovalue, all_corners: true };
-    let mut vertices = Vertices { keys: job.traced.then(Vec::new), ..Vertices::default() };
+    let mut vertices = Vertices::new(job.traced);
     piece.clear(job.traced);
     chosen.clear_used(chosen_cells.start);
     let mut laps = Laps::new();
@@ -150,11 +150,6 @@ fn stream_slab(
         piece.times.geometry += laps.lap();
         (job.layer_done)();
     }
-    piece.positions = vertices.positions;
-    // As if seen from both ends.
-    piece.crossing_ends = 2 * vertices.crossings;
-    if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, vertices.keys) {
-        trace.keys = keys;
-    }
+    vertices.give_to(piece);
     Ok(())
 }

@@ -17,6 +17,7 @@ use crate::level::Level;
 use crate::memory::push;
 use crate::placement::crossing_ratio;
 use crate::settings::{ExtractSettings, Placement, Topology};
+use crate::slabs::Piece;
 use crate::spot::{Apart, Company, linear_ratio};
 use crate::trace::VertexKey;
 
@@ -70,8 +71,38 @@ pub(super) struct Vertices {
     pub(super) targets: Vec<Vec3>,
     /// Where they are asked for.
     pub(super) keys: Option<Vec<VertexKey>>,
-    /// Crossed edges of the slab's own layers.
+    /// Crossed edges of the slab's own layers, but for those that were snapped.
     pub(super) crossings: u64,
+}
+
+impl Vertices {
+    /// None yet.
+    pub(super) fn new(traced: bool) -> Self {
+        Self { keys: traced.then(Vec::new), ..Self::default() }
+    }
+
+    /// Names the vertex that was placed last, where keys are asked for.
+    pub(super) fn name(
+        &mut self,
+        lattice: &Lattice,
+        place: [usize; 3],
+        number: usize,
+    ) -> Result<(), TryReserveError> {
+        if let Some(keys) = &mut self.keys {
+            push(keys, VertexKey::new(lattice.arrangement(), lattice.stored(place), number))?;
+        }
+        Ok(())
+    }
+
+    /// Makes them those of a slab's piece.
+    pub(super) fn give_to(self, piece: &mut Piece) {
+        (piece.positions, piece.targets) = (self.positions, self.targets);
+        // As if seen from both ends.
+        piece.crossing_ends = 2 * self.crossings;
+        if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, self.keys) {
+            trace.keys = keys;
+        }
+    }
 }
 
 impl VertexPass<'_> {
@@ -155,7 +186,7 @@ impl VertexPass<'_> {
             if let Some(target) = self.placer.target(self.grid, place, axis, values) {
                 push(&mut vertices.targets, target)?;
             }
-            self.name(place, axis, vertices)?;
+            vertices.name(self.grid.lattice, place, axis)?;
         }
         Ok(())
     }
@@ -186,15 +217,7 @@ impl VertexPass<'_> {
             if self.placer.refines {
                 push(&mut vertices.targets, target / count)?;
             }
-            self.name(place, 3 + v, vertices)?;
-        }
-        Ok(())
-    }
-
-    fn name(&self, place: [usize; 3], number: usize, vertices: &mut Vertices) -> Result<(), TryReserveError> {
-        if let Some(keys) = &mut vertices.keys {
-            let lattice = self.grid.lattice;
-            push(keys, VertexKey::new(lattice.arrangement(), lattice.stored(place), number))?;
+            vertices.name(self.grid.lattice, place, 3 + v)?;
         }
         Ok(())
     }

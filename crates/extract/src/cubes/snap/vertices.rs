@@ -7,12 +7,11 @@ use glam::Vec3;
 use super::super::grid::Grid;
 use super::super::records::Records;
 use super::super::rows::{Rows, next};
-use super::super::vertices::{Placer, RANK};
+use super::super::vertices::{Placer, RANK, Vertices};
 use super::labels::Labels;
 use crate::bits::between;
 use crate::in_sight::Values;
 use crate::memory::push;
-use crate::trace::VertexKey;
 
 /// The number in a key of a vertex that stands for a point. Those on edges have the edge's axis.
 const AT_POINT: usize = 3;
@@ -31,18 +30,6 @@ impl Record {
     pub(super) fn vertex(self, axis: u8) -> u32 {
         self.first.wrapping_add(u32::from(RANK[usize::from(self.crossed & ((1 << axis) - 1))]))
     }
-}
-
-/// The vertices of a slab.
-#[derive(Default)]
-pub(super) struct Vertices {
-    /// How many were numbered, those beyond the slab's own layers too.
-    pub(super) numbered: u64,
-    pub(super) positions: Vec<Vec3>,
-    /// Where they are asked for.
-    pub(super) keys: Option<Vec<VertexKey>>,
-    /// Crossings that were not snapped, in the slab's own layers.
-    pub(super) crossings: u64,
 }
 
 /// What the pass reads.
@@ -114,21 +101,13 @@ impl VertexPass<'_> {
         if is_on {
             let snapped = self.labels.edge(place).map(|(from, axis)| self.crossing(from, axis));
             push(&mut vertices.positions, snapped.unwrap_or_else(|| self.grid.position(place)))?;
-            self.name(place, AT_POINT, vertices)?;
+            vertices.name(self.grid.lattice, place, AT_POINT)?;
         }
         for axis in (0..3).filter(|axis| crossed >> axis & 1 != 0) {
             push(&mut vertices.positions, self.crossing(place, axis))?;
-            self.name(place, axis, vertices)?;
+            vertices.name(self.grid.lattice, place, axis)?;
         }
         vertices.crossings += u64::from(crossed.count_ones());
-        Ok(())
-    }
-
-    fn name(&self, place: [usize; 3], number: usize, vertices: &mut Vertices) -> Result<(), TryReserveError> {
-        if let Some(keys) = &mut vertices.keys {
-            let lattice = self.grid.lattice;
-            push(keys, VertexKey::new(lattice.arrangement(), lattice.stored(place), number))?;
-        }
         Ok(())
     }
 
