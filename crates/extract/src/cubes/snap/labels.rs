@@ -86,7 +86,9 @@ impl Labels {
                         let way = if around.here[x] == snap.isovalue {
                             (!is_wall(grid, samples, [x, row, layer])).then_some(HERE)
                         } else {
-                            snap.way(&around, x, crossed.map(|bits| bits >> bit & 1 != 0))
+                            let ways =
+                                (0..WAYS.len()).fold(0, |set, way| set | (crossed[way] >> bit & 1) << way);
+                            snap.way(&around, x, ways)
                         };
                         let Some(way) = way else { continue };
                         on |= 1 << bit;
@@ -163,18 +165,18 @@ pub(super) struct Snap {
 }
 
 impl Snap {
-    /// Along which of its crossed edges the point of a column is drawn, the one with the nearest crossing, if there is one near
+    /// Along which of its crossed edges, a bit each, the point of a column is drawn, the one with the nearest crossing, if there is one near
     /// enough.
     #[inline]
-    fn way(self, around: &Around, x: usize, crossed: [bool; WAYS.len()]) -> Option<u8> {
+    fn way(self, around: &Around, x: usize, mut crossed: u64) -> Option<u8> {
         let (isovalue, gamma) = (f64::from(self.isovalue), f64::from(self.gamma));
         let value = f64::from(around.here[x]);
         let to_level = (isovalue - value).abs();
         let (mut nearest, mut found) = (f64::INFINITY, None);
-        for (way, (_, is_next)) in WAYS.into_iter().enumerate() {
-            if !crossed[way] {
-                continue;
-            }
+        while crossed != 0 {
+            let way = crossed.trailing_zeros() as usize;
+            crossed &= crossed - 1;
+            let is_next = WAYS[way].1;
             let other = around.other(x, way);
             if other == self.isovalue {
                 continue;
