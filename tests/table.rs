@@ -71,13 +71,13 @@ fn a_figure_shows_every_table_that_is_named() {
     let names = ["table", "mc", "mc-quality", "bu", "--groups"];
     let ball =
         ["--field", "sqrt(x^2+y^2+z^2) - 0.983", "--bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2", "--spacing", "0.1"];
-    folder.succeed(&[&names, &ball[..], &["--figure", "groups.svg"]].concat());
+    folder.succeed(&[&names[..], &ball[..], &["--figure", "groups.svg"]].concat());
     let svg = folder.read("groups.svg");
     for (text, count) in [(">mc<", 2), (">mc-quality<", 1), (">bu<", 2), (">share of the worst<", 1)] {
         let flat = svg.replace(char::is_whitespace, "");
         assert_eq!(flat.matches(&text.replace(' ', "")).count(), count, "{text}");
     }
-    folder.succeed(&[&names, &ball[..], &["--figure", "groups.png"]].concat());
+    folder.succeed(&[&names[..], &ball[..], &["--figure", "groups.png"]].concat());
     let refused = Run::of(folder.isostudy().args(names).args(ball).args(["--figure", "groups.jpg"]));
     assert!(refused.code == Some(2) && refused.stderr.contains(".png or .svg"), "{}", refused.stderr);
     let refused = Run::of(folder.isostudy().args(names));

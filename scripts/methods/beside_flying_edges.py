@@ -2,12 +2,13 @@
 
 usage: beside_flying_edges.py WORKER [CELLS] [ROUNDS] [FIELD ...]
 
-WORKER is the example `given_samples` of isostudy-extract. In each round every extractor has its turn, in an order that goes round, and
+WORKER is the example `given_samples` of isostudy-extract. In each round every extractor has its turn, in an order by chance, and
 each ratio is of two times of one round. The table has medians over rounds, of wall-clock time and of CPU time. Neither has normals in
 it, and both have the memory of the mesh. Of two threads there is no CPU time. `isostudy` on the same samples: the body-centred
 lattice has twice as many on the same box.
 """
 
+import random
 import subprocess
 import sys
 import tempfile
@@ -68,10 +69,10 @@ def measure(program, field, n, rounds):
             times = {name: [] for name in turns}
             for name in turns:  # Once to warm up.
                 turns[name]()
-            for turn in range(rounds):
-                order = list(turns)
-                first = turn % len(order)
-                for name in order[first:] + order[:first]:
+            shuffler = random.Random(n)
+            for _ in range(rounds):
+                # By chance, since the first of a process after another's turn is slower.
+                for name in shuffler.sample(list(turns), len(turns)):
                     times[name].append(turns[name]())
             worker.stdin.close()
     return times
