@@ -63,6 +63,12 @@ impl Samples {
         }
     }
 
+    /// Where the points of each row of a layer are.
+    pub(super) fn states(&self, layer: usize) -> &[State] {
+        let rows = self.states.len() / self.slots;
+        &self.states[layer % self.slots * rows..][..rows]
+    }
+
     /// Whether all points of some rows are on one side.
     #[inline]
     pub(super) fn is_uniform(&self, grid: &Grid, rows: &[[usize; 2]]) -> bool {

@@ -67,13 +67,17 @@ impl Labels {
 
     /// Labels a layer. Of the layers next to it, sides and samples are known.
     pub(super) fn find(&mut self, grid: &Grid, samples: &Samples, values: Values, snap: Snap, layer: usize) {
-        let [nx, ny, _] = grid.size;
+        let [nx, ny, nz] = grid.size;
+        let near_layers = [layer.saturating_sub(1), layer, (layer + 1).min(nz - 1)];
+        let states = near_layers.map(|layer| samples.states(layer));
         for row in 0..ny {
             let sides = &samples.sides.row(row, layer)[..grid.words];
             self.inside.row_mut(row, layer).copy_from_slice(sides);
             self.on.row_mut(row, layer).fill(0);
-            let near = Near::new(grid, [row, layer], true);
-            if !samples.is_uniform(grid, near.rows()) {
+            let (here, rows) = (states[1][row], row.saturating_sub(1)..ny.min(row + 2));
+            let is_like_it = |states: &[State]| states[rows.clone()].iter().all(|&state| state == here);
+            if here == State::Mixed || !states.into_iter().all(is_like_it) {
+                let near = Near::new(grid, [row, layer], true);
                 let around = Around::new(grid, samples, values, [row, layer]);
                 let ways = &mut self.ways[(layer % SLOTS * ny + row) * nx..][..nx];
                 near.for_each_word(grid, &samples.sides, |word, wanted| {
