@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Draws docs/six-methods.png and docs/surfaces.png: tiles that isostudy rendered, one label each.
+"""Draws the pictures of docs/: tiles that isostudy rendered, one label each, and the figure of edge groups.
 
-Usage: scripts/docs-pictures.py [ISOSTUDY]     the command; `isostudy` if left out
+Usage: scripts/docs-pictures.py [ISOSTUDY [PICTURE...]]
 
-Run it in the project's folder after `make bunny` and `scripts/fetch-samples.sh`; it needs Pillow.
+ISOSTUDY is the command, `isostudy` if left out; PICTURE one of six-methods, surfaces, cubes-methods and edge-groups, all if left out.
+Run it in the project's folder; it needs Pillow. surfaces needs `scripts/fetch-samples.sh` first.
 """
 
 import subprocess
@@ -31,6 +32,24 @@ SURFACES = [
     ("palm of a hand, 7 holes", ["--mesh", "hand_palm.stl", "--allow-open"]),
 ]
 SAMPLES = Path("cache/samples")
+
+# Of docs/methods.md. A surface with bends and ambiguous cells, so coarse that each triangle is seen.
+TANGLE = ["--field", "x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8", "--bounds=-2.6,-2.6,-2.6,2.6,2.6,2.6", "--cells", "16"]
+CUBES = [
+    ("mc", "fans of triangles"),
+    ("mc-edge-groups", "by a table"),
+    ("mc-quality", "best diagonals"),
+    ("mc33", "trilinear"),
+    ("snapmc", "drawn to points"),
+    ("macet", "edges turned"),
+]
+# Of the figure of edge groups in docs/cubes.md.
+TABLES = ["mc", "mc-edge-groups", "hull", "mc-quality", "su", "bu"]
+# Two drops whose neck runs through the middle cell from corner to corner: there it is decided by more than signs.
+DROPS = [
+    *("--field", "((x-0.5)^2+(y+0.5)^2+(z-0.5)^2)*((x+0.5)^2+(y-0.5)^2+(z+0.5)^2) - 0.61"),
+    *("--bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2", "--cells", "9"),
+]
 
 FONT = "assets/fonts/DejaVuSans.ttf"
 RENDERED = 1120  # pixels of the whole picture of an asteroid, of which a crop is shown
@@ -72,6 +91,25 @@ def surfaces(isostudy, folder):
         yield Image.open(picture).convert("RGB"), label, triangles(mesh)
 
 
+def cubes_methods(isostudy, folder):
+    """What each change to marching cubes does to one surface; and two drops, in which two methods differ."""
+
+    def tile(method, label, source, crop):
+        mesh, turn = folder / f"{method}.ply", folder / f"{method}.gif"
+        run(isostudy, "extract", *source, "--method", method, "-o", mesh)
+        look = ["--look", "smooth-wireframe", "--frames", "1", "--size", "1000"]
+        run(isostudy, "turntable", mesh, "-o", turn, *look)
+        found = Image.open(turn).convert("RGB").crop(crop), f"{method}: {label}", triangles(mesh)
+        mesh.unlink()
+        turn.unlink()
+        return found
+
+    for method, label in CUBES:
+        yield tile(method, label, TANGLE, (100, 100, 600, 600))
+    for method, label in [("mc", "two drops"), ("mc33", "the same drops")]:
+        yield tile(method, label, DROPS, (110, 160, 840, 890))
+
+
 def montage(tiles, columns, size, picture):
     tiles = list(tiles)
     width, height = size[0] + GAP, size[1] + LABEL + GAP
@@ -93,8 +131,14 @@ def main():
     isostudy = sys.argv[1] if len(sys.argv) > 1 else "isostudy"
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        montage(six_methods(isostudy, folder), 3, (320, 260), "docs/six-methods.png")
-        montage(surfaces(isostudy, folder), 4, (280, 280), "docs/surfaces.png")
+        pictures = {
+            "six-methods": lambda to: montage(six_methods(isostudy, folder), 3, (320, 260), to),
+            "surfaces": lambda to: montage(surfaces(isostudy, folder), 4, (280, 280), to),
+            "cubes-methods": lambda to: montage(cubes_methods(isostudy, folder), 4, (280, 280), to),
+            "edge-groups": lambda to: run(isostudy, "table", *TABLES, "--groups", "--figure", to),
+        }
+        for name in sys.argv[2:] or pictures:
+            pictures[name](f"docs/{name}.png")
 
 
 if __name__ == "__main__":

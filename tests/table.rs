@@ -64,6 +64,26 @@ fn the_worst_triangles_of_a_field_are_of_the_bad_group() {
     assert!(shares[0] > 2 * shares[1], "{shares:?}");
 }
 
+/// A box for each table, and one for each kind of those that have kinds; both file formats.
+#[test]
+fn a_figure_shows_every_table_that_is_named() {
+    let folder = Folder::new();
+    let names = ["table", "mc", "mc-quality", "bu", "--groups"];
+    let ball =
+        ["--field", "sqrt(x^2+y^2+z^2) - 0.983", "--bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2", "--spacing", "0.1"];
+    folder.succeed(&[&names[..], &ball[..], &["--figure", "groups.svg"]].concat());
+    let svg = folder.read("groups.svg");
+    for (text, count) in [(">mc<", 2), (">mc-quality<", 1), (">bu<", 2), (">share of the worst<", 1)] {
+        let flat = svg.replace(char::is_whitespace, "");
+        assert_eq!(flat.matches(&text.replace(' ', "")).count(), count, "{text}");
+    }
+    folder.succeed(&[&names[..], &ball[..], &["--figure", "groups.png"]].concat());
+    let refused = Run::of(folder.isostudy().args(names).args(ball).args(["--figure", "groups.jpg"]));
+    assert!(refused.code == Some(2) && refused.stderr.contains(".png or .svg"), "{}", refused.stderr);
+    let refused = Run::of(folder.isostudy().args(names));
+    assert!(refused.code == Some(2) && refused.stderr.contains("--figure"), "{}", refused.stderr);
+}
+
 #[test]
 fn a_table_in_a_file_is_checked() {
     let folder = Folder::new();

@@ -51,7 +51,10 @@ pub use ballots::{BallotGroup, ballot_groups, ballots, declared};
 
 pub use data::frames;
 pub use figure::Figure;
-pub use figures::{figures, figures_of_groups, history_figure, power_figure, sweep_figures};
+pub use figures::{
+    KindShare, TableQuality, edge_groups_figure, figures, figures_of_groups, history_figure, power_figure,
+    sweep_figures,
+};
 pub use fraction::Fraction;
 pub use frames::{FrameError, LongFrame, answers_frame};
 pub use inputs::{AnalysisError, Inputs};

@@ -85,12 +85,12 @@ impl Options {
             let shown = error.excerpt(formula);
             anyhow::Error::new(error).context(format!("{key} '{shown}'"))
         })?;
-        let source = self.source(Box::new(field), Inside::Below, bounds, formula);
+        let source = self.of_field(Box::new(field), Inside::Below, bounds, formula);
         Ok(if self.close { source.closed() } else { source })
     }
 
-    /// A source with the defaults that hold for all.
-    fn source(
+    /// A field with its custom of which side is solid, its box and its name, where nothing else is asked for.
+    pub(crate) fn of_field(
         &self,
         field: Box<dyn StudyField + Send>,
         inside: Inside,
@@ -134,7 +134,7 @@ impl Options {
         let values = values_of(&field);
         let (step, samples) = (field.spacing(), counts.iter().product::<usize>());
         let held = field.memory_bytes();
-        let mut source = self.source(Box::new(field), Inside::Above, bounds, &path.display().to_string());
+        let mut source = self.of_field(Box::new(field), Inside::Above, bounds, &path.display().to_string());
         source.held = held;
         if self.close || is_turned && self.bounds.is_none() {
             source = source.closed();
@@ -165,7 +165,7 @@ impl Options {
             .with_context(|| name.to_string())?;
         let (bounds, is_turned) = (field.bounds(), !field.is_axis_aligned());
         let (values, held) = (values_of(&field), field.memory_bytes());
-        let source = self.source(Box::new(field), Inside::Above, bounds, &name.to_string());
+        let source = self.of_field(Box::new(field), Inside::Above, bounds, &name.to_string());
         // The edge of a cube as large as a cell.
         let spacing = glam::DMat3::from_cols_array_2d(&steps).determinant().abs().cbrt() as f32;
         let cells = counts.map(|n| n as u32 - 1);
@@ -181,7 +181,7 @@ impl Options {
         // Room for a few cubes, and for what is thickened.
         let room = 0.05 * tight.size().max_element() - self.isovalue.min(0.0);
         let mut source =
-            self.source(Box::new(field), Inside::Above, tight.grown(room), &path.display().to_string());
+            self.of_field(Box::new(field), Inside::Above, tight.grown(room), &path.display().to_string());
         source.values = format!("; the mesh reaches from {} to {}", place(tight.min), place(tight.max));
         Ok(if self.close { source.closed() } else { source })
     }

@@ -28,6 +28,24 @@ impl Moment {
     }
 }
 
+/// Stages that follow each other without a gap.
+pub(crate) struct Laps {
+    last: Moment,
+}
+
+impl Laps {
+    /// The first begins now.
+    pub(crate) fn new() -> Self {
+        Self { last: Moment::now() }
+    }
+
+    /// Ends a stage and begins the next: how long it took.
+    pub(crate) fn lap(&mut self) -> Duration {
+        let now = Moment::now();
+        now - std::mem::replace(&mut self.last, now)
+    }
+}
+
 impl Sub for Moment {
     type Output = Duration;
 

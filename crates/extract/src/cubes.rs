@@ -11,6 +11,7 @@ mod grid;
 mod moved;
 mod nets;
 mod patches;
+mod records;
 mod rows;
 mod rule;
 mod sampling;
@@ -109,7 +110,7 @@ pub(crate) enum Way {
     Nets(Nets),
 }
 
-/// Extracts the cubes of a simple cubic lattice one way or the other. Of snapped ones there is no trace.
+/// Extracts the cubes of a simple cubic lattice one way or the other.
 pub(crate) fn extract(
     request: &Request,
     way: Way,
@@ -123,7 +124,7 @@ pub(crate) fn extract(
             extract_patches(request, rule, moves.pull, progress, trace, extraction)?;
             moves.apply(request, extraction)
         }
-        Way::Snapped { gamma, flat } => snap::extract(request, gamma, flat, progress, extraction),
+        Way::Snapped { gamma, flat } => snap::extract(request, gamma, flat, progress, trace, extraction),
         Way::Nets(nets) => nets::extract(request, nets, progress, trace, extraction),
     }
 }

@@ -202,6 +202,7 @@ mod extractor;
 mod finish;
 mod grid;
 mod guard;
+mod in_sight;
 mod isosurface;
 mod lattice;
 mod level;

@@ -163,7 +163,7 @@ pub(crate) fn assemble(
     times.allocation = allocating;
 
     let joining = Moment::now();
-    let seams = join(pieces, request.most_vertices)?;
+    let seams = join(pieces, request.most_vertices, request.control.threads)?;
     let crossing_ends: u64 = pieces.iter().map(|piece| piece.crossing_ends).sum();
     let first = pieces.first_mut().expect("there is a slab");
     let surface = &mut first.surface;
@@ -214,7 +214,7 @@ struct Seam {
 }
 
 /// Appends all pieces to the first one, with vertex numbers of the whole.
-fn join(pieces: &mut [Piece], most_vertices: u32) -> Result<Vec<Seam>, ExtractError> {
+fn join(pieces: &mut [Piece], most_vertices: u32, on: Threads) -> Result<Vec<Seam>, ExtractError> {
     let (first, rest) = pieces.split_first_mut().expect("there is a slab");
     let mut seams = Vec::new();
     if rest.is_empty() {
@@ -230,17 +230,11 @@ fn join(pieces: &mut [Piece], most_vertices: u32) -> Result<Vec<Seam>, ExtractEr
     let targets: usize = rest.iter().map(|piece| piece.targets.len()).sum();
     first.targets.try_reserve(targets).map_err(|_| ExtractError::NoMemoryForMesh)?;
     seams.push(Seam { vertices: 0, head: first.head, tail: first.tail });
-    for piece in rest {
-        let base = first.surface.triangles.len();
-        seams.push(Seam {
-            vertices: first.positions.len(),
-            head: base + piece.head,
-            tail: base + piece.tail,
-        });
-        let shift = (first.positions.len() as u32).wrapping_sub(piece.below as u32);
-        let global = |triangle: &[u32; 3]| triangle.map(|vertex| vertex.wrapping_add(shift));
-        first.surface.triangles.extend(piece.surface.triangles.iter().map(global));
-        first.positions.extend_from_slice(&piece.positions);
+    let (mut vertices, mut base) = (first.positions.len(), first.surface.triangles.len());
+    for piece in &mut *rest {
+        seams.push(Seam { vertices, head: base + piece.head, tail: base + piece.tail });
+        vertices += piece.positions.len();
+        base += piece.surface.triangles.len();
         first.targets.append(&mut piece.targets);
         if let (Some(whole), Some(trace)) = (&mut first.surface.trace, &mut piece.surface.trace) {
             whole.keys.append(&mut trace.keys);
@@ -251,7 +245,29 @@ fn join(pieces: &mut [Piece], most_vertices: u32) -> Result<Vec<Seam>, ExtractEr
         first.surface.discarded += piece.surface.discarded;
         first.surface.discarded_as_published += piece.surface.discarded_as_published;
     }
+    // One thread each: much of it is waiting for new pages.
+    let mut parts = [Part::Triangles(&mut first.surface.triangles), Part::Positions(&mut first.positions)];
+    let (rest, after_first) = (&*rest, &seams[1..]);
+    on_each(on, &mut parts, |_, part| {
+        match part {
+            Part::Positions(whole) => rest.iter().for_each(|piece| whole.extend_from_slice(&piece.positions)),
+            Part::Triangles(whole) => {
+                for (piece, seam) in rest.iter().zip(after_first) {
+                    let shift = (seam.vertices as u32).wrapping_sub(piece.below as u32);
+                    let global = |triangle: &[u32; 3]| triangle.map(|vertex| vertex.wrapping_add(shift));
+                    whole.extend(piece.surface.triangles.iter().map(global));
+                }
+            }
+        }
+        Ok(())
+    })?;
     Ok(seams)
+}
+
+/// What of a mesh is appended to.
+enum Part<'a> {
+    Positions(&'a mut Vec<Vec3>),
+    Triangles(&'a mut Vec<[u32; 3]>),
 }
 
 /// Area-weighted mean normals, as [`vertex_normals`](crate::normals::vertex_normals), to the bit: each vertex adds up

@@ -158,7 +158,7 @@ fn presets_keep_the_promise_of_a_manifold_whatever_the_samples() {
             }
         }
     }
-    assert_eq!(promised, 22, "all but those as published");
+    assert_eq!(promised, 23, "all but those as published");
 }
 
 #[test]

@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, HashMap};
 
 use cells::{Cell, Label, Point};
 use extract::{
-    BoxGrid, Cubes, Execution, Extraction, Extractor, Flat, Method, MethodError, SnapCubes, Source,
+    BoxGrid, ChunkExtractor, ChunkSettings, Cubes, Execution, Extraction, Extractor, Flat, Grid, Method,
+    MethodError, SnapCubes, Source, from_fn, weld_chunks,
 };
 use field::{Asteroid, Gyroid, StudyField};
 use glam::{DVec3, Vec3};
@@ -243,6 +244,61 @@ fn pruning_and_threads_do_not_show() {
         assert!(one.triangles.len() > 2000);
         assert!([2, 5].iter().all(|&threads| run(field, threads) == one));
         assert_eq!(run(&Plain(field), 1), one);
+    }
+}
+
+/// Boxes of cells weld to the mesh of the whole, to the bit, and so do those of a grid without an end, of whatever size. Many samples
+/// equal the isovalue.
+#[test]
+fn chunks_weld_to_the_whole() {
+    let bits = |mesh: &TriangleMesh| {
+        let of =
+            |points: &[Vec3]| -> Vec<_> { points.iter().map(|p| p.to_array().map(f32::to_bits)).collect() };
+        (of(&mesh.positions), of(&mesh.normals), mesh.triangles.clone())
+    };
+    let mut random = Pcg64Mcg::seed_from_u64(19);
+    let counts = [9, 8, 10];
+    for (round, gamma) in (0..64).zip([0.0, 0.1, 0.3, 0.5].into_iter().cycle()) {
+        let (levels, flat) = ([1, 2, 5, 100][round / 4 % 4], BOTH[round / 16 % 2]);
+        let values: Vec<f32> =
+            (0..counts.iter().product()).map(|_| random.random_range(-levels..=levels) as f32).collect();
+        let method = snapped(gamma, flat);
+        let whole = of_samples(&method, counts, &values, 0.0);
+        let called = Given { counts, values: values.clone() };
+        let settings = ChunkSettings::default();
+        let mut extractor = ChunkExtractor::in_box(&grid(counts), &method, &settings).unwrap();
+        for (size, source) in [
+            (1 + round as u32 % 4, Source::Samples(&values)),
+            (1 + round as u32 % 3, Source::Study(&called)),
+            (5, Source::Samples(&values)),
+        ] {
+            let boxes: Vec<_> = extractor.grid(size).collect();
+            let parts: Vec<_> =
+                boxes.into_iter().map(|cells| extractor.extract(source, cells, &ONE).unwrap()).collect();
+            for part in &parts {
+                assert!(part.keys.is_sorted() && part.triangle_cells.is_sorted());
+            }
+            let welded = weld_chunks(&parts).unwrap();
+            assert!(bits(&welded) == bits(&whole), "{round} {gamma} {flat:?} {size}");
+        }
+    }
+    let endless = Grid::try_new([16e3, -1e4, 3.1], 0.25).unwrap();
+    let ball = from_fn(|p: [f32; 3]| {
+        let from = Vec3::from(p) - Vec3::new(16e3, -1e4, 3.1);
+        1.8 - from.length() + 0.3 * (5.0 * from.x).sin() * (4.0 * from.y).cos() * (6.0 * from.z).sin()
+    });
+    for flat in BOTH {
+        let settings = ChunkSettings::default();
+        let mut extractor = ChunkExtractor::try_new(&endless, &snapped(0.3, flat), &settings).unwrap();
+        let mut welded = |size: u32, reach: i32| {
+            let n = 2 * reach;
+            let ids = (0..n.pow(3)).map(|i| [i % n, i / n % n, i / n / n].map(|at| at - reach));
+            let parts: Vec<_> =
+                ids.map(|id| extractor.extract(&ball, endless.chunk(id, size), &ONE).unwrap()).collect();
+            weld_chunks(&parts).unwrap()
+        };
+        let (large, small) = (welded(12, 1), welded(3, 4));
+        assert!(large.triangles.len() > 500 && bits(&large) == bits(&small), "{flat:?}");
     }
 }
 

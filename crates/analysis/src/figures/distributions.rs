@@ -3,6 +3,7 @@
 use super::axis::Axis;
 use super::bars::frame;
 use super::canvas::{Align, BLACK, Canvas, text_width};
+use super::style::Fill;
 use super::{Unfinished, WIDTH, canvas_with_legend, style};
 use crate::inputs::Inputs;
 use crate::mesh_set::MeshSet;
@@ -76,15 +77,21 @@ fn panel(
         let label = &study.method(*method).label;
         canvas.text_upwards(label, (x + 4.0, bottom + 8.0 + text_width(label, 11.0) / 2.0), 11.0);
         let Some(d) = distribution else { continue };
-        let y = |value: f64| axis.place(value, bottom, top);
-        for (inner, outer) in [(d.q25, d.q05), (d.q75, d.q95)] {
-            canvas.line(vec![(x, y(inner)), (x, y(outer))], BLACK, 1.0);
-            canvas.line(vec![(x - half / 2.0, y(outer)), (x + half / 2.0, y(outer))], BLACK, 1.0);
-        }
-        let fill = style::method(study, *method);
-        fill.paint(canvas, (x - half, y(d.q25)), (x + half, y(d.q75)));
-        canvas.line(vec![(x - half, y(d.median)), (x + half, y(d.median))], fill.ink(), 2.0);
+        let heights = [d.q05, d.q25, d.median, d.q75, d.q95].map(|value| axis.place(value, bottom, top));
+        draw_box(canvas, (x, half), heights, style::method(study, *method));
     }
     canvas.line(vec![(left, bottom), (right, bottom)], BLACK, 1.0);
     canvas.text(name, ((left + right) / 2.0, bottom + labels + 22.0), 12.0, Align::Middle);
+}
+
+/// A box with its whiskers: heights of the lower whisker's end, the lower quartile, the median, the upper quartile and the upper
+/// whisker's end.
+pub(super) fn draw_box(canvas: &mut Canvas, (x, half): (f64, f64), heights: [f64; 5], fill: Fill) {
+    let [low, lower, median, upper, high] = heights;
+    for (inner, outer) in [(lower, low), (upper, high)] {
+        canvas.line(vec![(x, inner), (x, outer)], BLACK, 1.0);
+        canvas.line(vec![(x - half / 2.0, outer), (x + half / 2.0, outer)], BLACK, 1.0);
+    }
+    fill.paint(canvas, (x - half, lower), (x + half, upper));
+    canvas.line(vec![(x - half, median), (x + half, median)], fill.ink(), 2.0);
 }

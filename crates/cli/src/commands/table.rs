@@ -1,5 +1,6 @@
 //! `isostudy table`: a table of triangles by signs, checked, and how good its triangles can be.
 
+mod figure;
 mod file;
 mod places;
 
@@ -13,7 +14,7 @@ use extract::presets;
 use places::Part;
 use serde::Serialize;
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The version of the JSON.
 const SCHEMA: u32 = 1;
@@ -31,11 +32,13 @@ triangles, a triangle three edges, an edge two corners. Without corners it is th
 Examples:
   isostudy table mc --groups
   isostudy table bu --groups --field 'sqrt(x^2+y^2+z^2) - 1' --bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2 --spacing 0.05
-  isostudy table mc-edge-groups --json > table.json")]
+  isostudy table mc-edge-groups --json > table.json
+  isostudy table mc mc-edge-groups mc-quality hull su bu --groups --figure groups.png")]
 pub(crate) struct Arguments {
     /// A method by its name (`isostudy methods`); hull, the table by convex hulls; or a file that ends in .json
-    #[arg(value_name = "NAME")]
-    table: String,
+    /// With --figure several, and methods without a table too
+    #[arg(value_name = "NAME", required = true, num_args = 1..)]
+    tables: Vec<String>,
     /// Print the kinds of triangles by which edges their corners lie on, and how well shaped each is; of a surface, how many of its
     /// worst 1,000 triangles are of each
     #[arg(long)]
@@ -43,6 +46,10 @@ pub(crate) struct Arguments {
     /// Print JSON: the table, or with --groups that
     #[arg(long)]
     json: bool,
+    /// Draw box plots, .png or .svg, of how good the triangles of each table are, and of which kinds the worst 1,000 are; over eight
+    /// surfaces of our own, or of the one that is given
+    #[arg(long, value_name = "FILE", requires = "groups", conflicts_with = "json")]
+    figure: Option<PathBuf>,
     #[command(flatten)]
     source: SourceArguments,
 }
@@ -52,15 +59,22 @@ pub(crate) struct Arguments {
 /// # Errors
 /// If there is no such table, or it is none; if the surface cannot be read.
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    let tables = named(&arguments.table)?;
     if arguments.source.is_given() && !arguments.groups {
         bail!("--field, --volume and --mesh are for --groups");
     }
+    if let Some(path) = &arguments.figure {
+        figure::write(&arguments.tables, arguments.source.read()?, arguments.source.limit(), path)?;
+        say(&path.display().to_string())?;
+        return Ok(Outcome::Done);
+    }
+    let [name] = &arguments.tables[..] else { bail!("several names are for --figure") };
+    let tables =
+        tables_of(name)?.with_context(|| format!("{name}: samples decide its triangles, not signs alone"))?;
     let text = match (arguments.groups, arguments.json) {
         (false, true) => file::write(&tables)?,
-        (false, false) => summary(&arguments.table, &tables),
+        (false, false) => summary(name, &tables),
         (true, is_json) => {
-            let report = Report::new(arguments, &tables)?;
+            let report = Report::new(name, arguments, &tables)?;
             if is_json { serde_json::to_string_pretty(&report)? } else { report.to_text(&tables) }
         }
     };
@@ -68,20 +82,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// The tables of a name: one, or those of a lattice's tetrahedra.
-fn named(name: &str) -> Result<Vec<Table>> {
+/// The tables of a name: one, or those of a lattice's tetrahedra; `None` of a method that decides by samples.
+fn tables_of(name: &str) -> Result<Option<Vec<Table>>> {
     if name.ends_with(".json") {
-        return Ok(vec![file::read(Path::new(name))?]);
+        return Ok(Some(vec![file::read(Path::new(name))?]));
     }
     if name == "hull" {
-        return Ok(vec![Table::by_hull(Cell::cube())]);
+        return Ok(Some(vec![Table::by_hull(Cell::cube())]));
     }
     let with_tables = || presets().iter().filter(|preset| !preset.method.tables().is_empty());
     match presets().iter().find(|preset| preset.id == name) {
-        Some(preset) if preset.method.tables().is_empty() => {
-            bail!("{name}: samples decide its triangles, not signs alone")
-        }
-        Some(preset) => Ok(preset.method.tables()),
+        Some(preset) => Ok(Some(preset.method.tables()).filter(|tables| !tables.is_empty())),
         None => {
             let known: Vec<&str> = with_tables().map(|preset| preset.id).collect();
             bail!("{name}: allowed: hull, a file that ends in .json, {}", known.join(", "))
@@ -148,14 +159,10 @@ struct Worst {
 }
 
 impl Report {
-    fn new(arguments: &Arguments, tables: &[Table]) -> Result<Self> {
+    fn new(name: &str, arguments: &Arguments, tables: &[Table]) -> Result<Self> {
         let [first, ..] = tables else { unreachable!("a name has a table") };
         let groups = EdgeGroups::new(first.cell());
-        let parts = tables
-            .iter()
-            .map(|table| Part::new(table, first.cell(), &groups))
-            .collect::<Option<Vec<Part>>>()
-            .context("its cells are not of one shape")?;
+        let parts = parts(tables, &groups)?;
         let edge = |e: u8| first.cell().edges()[usize::from(e)];
         let row = |(number, group): (usize, &cells::EdgeGroup)| {
             let of_entries = parts.iter().flat_map(|part| {
@@ -178,7 +185,7 @@ impl Report {
         };
         Ok(Self {
             schema: SCHEMA,
-            table: arguments.table.clone(),
+            table: name.to_owned(),
             cells: tables.len(),
             triangles: triangles(tables).count(),
             groups: groups.all().iter().enumerate().map(row).collect(),
@@ -214,6 +221,12 @@ impl Report {
         }
         text
     }
+}
+
+/// Tables with the groups of the first one's cell.
+fn parts<'a>(tables: &'a [Table], groups: &'a EdgeGroups) -> Result<Vec<Part<'a>>> {
+    let parts = tables.iter().map(|table| Part::new(table, tables[0].cell(), groups));
+    parts.collect::<Option<_>>().context("its cells are not of one shape")
 }
 
 /// The worst triangles of a surface, if one is given.

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use super::cut::{Cut, Directions};
 use super::grid::{Grid, LINES};
 use super::rows::{BitRows, is_set};
-use super::sampling::Values;
+use crate::in_sight::Values;
 use crate::lattice::Lattice;
 use crate::level::Level;
 use crate::memory::{push, refill};

@@ -8,21 +8,13 @@ use std::collections::TryReserveError;
 
 use super::grid::{Grid, LINES};
 use super::rows::{BitRows, shifted};
-use crate::bits::{between, set_range};
+use crate::bits::{between, set_above, set_range};
+use crate::in_sight::{State, Values};
 use crate::line::{Columns, Every, Gaps, Line};
 use crate::memory::refill;
 use crate::source::Sampler;
 use crate::tiles::{Points, Span, Tile, Tiles};
 use field::StudyField;
-
-/// Where all points of a row are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum State {
-    #[default]
-    Outside,
-    Inside,
-    Mixed,
-}
 
 /// A few layers of samples and sides.
 #[derive(Debug, Default)]
@@ -54,21 +46,6 @@ pub(super) struct Sampling<'a> {
     pub(super) isovalue: f32,
 }
 
-/// Samples by row: given ones, or those in sight.
-#[derive(Clone, Copy)]
-pub(super) struct Values<'a> {
-    values: &'a [f32],
-    size: [usize; 3],
-    slots: usize,
-}
-
-impl Values<'_> {
-    /// The sample of a point that has a crossing.
-    pub(super) fn at(&self, [x, y, z]: [usize; 3]) -> f32 {
-        self.values[(z % self.slots * self.size[1] + y) * self.size[0] + x]
-    }
-}
-
 impl Samples {
     /// Makes room; keeps what is large enough.
     pub(super) fn fit(&mut self, grid: &Grid, source: Sampler) -> Result<(), TryReserveError> {
@@ -84,8 +61,8 @@ impl Samples {
     pub(super) fn values<'a>(&'a self, grid: &Grid, source: Sampler<'a>) -> Values<'a> {
         let size = grid.size;
         match (source, &self.called) {
-            (Sampler::Given(values), _) => Values { values, size, slots: size[2] },
-            (Sampler::Field(_), Some(called)) => Values { values: &called.values, size, slots: self.slots },
+            (Sampler::Given(values), _) => Values::new(values, size, size[2]),
+            (Sampler::Field(_), Some(called)) => Values::new(&called.values, size, self.slots),
             (Sampler::Field(_), None) => unreachable!("made for a field"),
         }
     }
@@ -104,10 +81,7 @@ impl Samples {
             match (source, &mut self.called) {
                 (Sampler::Given(values), _) => {
                     let values = &values[(layer * ny + row) * nx..][..nx];
-                    for (word, values) in sides.iter_mut().zip(values.chunks(64)) {
-                        let bits = values.iter().enumerate();
-                        *word = bits.fold(0, |word, (i, &value)| word | u64::from(value > isovalue) << i);
-                    }
+                    set_above(values, isovalue, sides);
                 }
                 (Sampler::Field(field), Some(called)) => {
                     called.taken.row_mut(row, layer).fill(0);
@@ -124,7 +98,7 @@ impl Samples {
                 (Sampler::Field(_), None) => unreachable!("made for a field"),
             }
             if state == State::Mixed {
-                state = state_of(sides, grid.kind(row, layer).used, nx);
+                state = State::of(sides, grid.kind(row, layer).used, nx);
             }
             self.states[layer % self.slots * ny + row] = state;
         }
@@ -248,20 +222,5 @@ fn take_all(line: &mut Line<Every>, first: usize, end: usize, x: &[f32], found: 
     line.field.sample_row(&x[start..start + count], line.y, line.z, found);
     for (i, &value) in line.columns.points(first, end).zip(&*found) {
         line.keep(i, value);
-    }
-}
-
-/// Where the points of a row of `nx` columns are.
-fn state_of(sides: &[u64], used: u64, nx: usize) -> State {
-    let (mut any, mut all) = (0, !0);
-    for (word, &sides) in sides.iter().enumerate() {
-        let used = used & between(word, 0, nx);
-        any |= sides & used;
-        all &= sides | !used;
-    }
-    match (any, all) {
-        (0, _) => State::Outside,
-        (_, u64::MAX) => State::Inside,
-        _ => State::Mixed,
     }
 }

@@ -9,7 +9,7 @@ use super::grid::Grid;
 use super::points::{Placer, PointPass, Records, Vertices};
 use super::sampling::{Samples, Sampling};
 use crate::ExtractError;
-use crate::clock::Moment;
+use crate::clock::Laps;
 use crate::control::Control;
 use crate::slabs::Piece;
 use crate::source::Sampler;
@@ -67,11 +67,7 @@ pub(super) fn stream_slab(
         keys: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys)),
         ..Vertices::default()
     };
-    let mut last = Moment::now();
-    let mut lap = || {
-        let now = Moment::now();
-        now - std::mem::replace(&mut last, now)
-    };
+    let mut laps = Laps::new();
     for step in sided.start..=highest + 2 * reach {
         if sided.contains(&step) {
             job.control.check()?;
@@ -80,7 +76,7 @@ pub(super) fn stream_slab(
         if let Some(layer) = step.checked_sub(reach).filter(|layer| sampled.contains(layer)) {
             samples.find_crossings(sampling, layer);
         }
-        piece.times.sampling += lap();
+        piece.times.sampling += laps.lap();
 
         let Some(layer) = step.checked_sub(2 * reach).filter(|layer| placed.contains(layer)) else {
             continue;
@@ -92,7 +88,7 @@ pub(super) fn stream_slab(
         if vertices.numbered > u64::from(job.most_vertices) {
             return Err(ExtractError::TooManyVertices { limit: job.most_vertices });
         }
-        piece.times.vertex += lap();
+        piece.times.vertex += laps.lap();
 
         let Some(cells) = (layer / steps).checked_sub(1).filter(|&z| layer % steps == 0 && own.contains(&z))
         else {
@@ -104,7 +100,7 @@ pub(super) fn stream_slab(
         }
         triangulate_layer(grid, sides, active, records, cells, &mut piece.surface)?;
         (job.progress)();
-        piece.times.geometry += lap();
+        piece.times.geometry += laps.lap();
     }
     (piece.positions, piece.targets) = (vertices.positions, vertices.targets);
     piece.crossing_ends = vertices.crossing_ends;

@@ -5,11 +5,12 @@ use std::collections::TryReserveError;
 use cells::radius_ratio;
 
 use super::patches::{MOST_TRIANGLES, Patch, Patches};
+use super::records::Records;
 use super::rows::next;
-use super::sampling::Values;
 use super::slab::Job;
 use super::tubes::INNER;
-use super::vertices::{Record, Records, corner_of};
+use super::vertices::{Record, corner_of};
+use crate::in_sight::Values;
 use crate::triangles::Triangulation;
 
 /// Adds the triangles of layer `z` of the cells. Of the layers of points below and above it, sides and records are known.
@@ -17,7 +18,7 @@ pub(super) fn triangulate_layer(
     job: &Job,
     samples: &super::sampling::Samples,
     values: Values,
-    records: &Records,
+    records: &Records<Record>,
     z: usize,
     result: &mut Triangulation,
 ) -> Result<(), TryReserveError> {

@@ -27,12 +27,13 @@ use std::ops::Range;
 use self::plan::{Plans, Table};
 use self::quads::QuadPass;
 use self::tangents::Tangents;
-use self::vertices::{Records, VertexPass, Vertices};
+use self::vertices::{Record, VertexPass, Vertices};
 use super::grid::{Grid, SLOTS};
 use super::in_slabs;
+use super::records::Records;
 use super::sampling::{Samples, Sampling};
 use super::vertices::Placer;
-use crate::clock::Moment;
+use crate::clock::Laps;
 use crate::extraction::{ExtractError, Extraction};
 use crate::slabs::Piece;
 use crate::source::{Request, Sampler};
@@ -108,7 +109,7 @@ struct Job<'a> {
 /// Buffers of one thread, a few layers each.
 struct Workspace {
     samples: Samples,
-    records: Records,
+    records: Records<Record>,
     plans: Plans,
 }
 
@@ -141,11 +142,7 @@ fn stream_slab(
     let level = sharp.and(request.level());
     let mut tangents = level.map(Tangents::new);
     piece.clear(job.traced);
-    let mut last = Moment::now();
-    let mut lap = || {
-        let now = Moment::now();
-        now - std::mem::replace(&mut last, now)
-    };
+    let mut laps = Laps::new();
     for step in sided.start..own.end + 2 {
         if sided.contains(&step) {
             request.control.check()?;
@@ -154,7 +151,7 @@ fn stream_slab(
         if let Some(layer) = step.checked_sub(1).filter(|layer| filled.contains(layer)) {
             samples.fill(sampling, layer);
         }
-        piece.times.sampling += lap();
+        piece.times.sampling += laps.lap();
 
         let Some(layer) = step.checked_sub(2).filter(|layer| numbered.contains(layer)) else { continue };
         let samples = &*samples;
@@ -164,7 +161,7 @@ fn stream_slab(
         if vertices.numbered() > u64::from(most_vertices) {
             return Err(ExtractError::TooManyVertices { limit: most_vertices });
         }
-        piece.times.vertex += lap();
+        piece.times.vertex += laps.lap();
 
         if !own.contains(&layer) {
             piece.below = vertices.numbered();
@@ -182,7 +179,7 @@ fn stream_slab(
         }
         // As if seen from both ends.
         piece.crossing_ends += 2 * crossings;
-        piece.times.geometry += lap();
+        piece.times.geometry += laps.lap();
         (job.layer_done)();
     }
     piece.tail = piece.surface.triangles.len();

@@ -41,6 +41,12 @@ pub(super) struct Patches {
     entries: Vec<Entry>,
     /// By signs, then by set of joined faces.
     index: Vec<[u16; 64]>,
+    /// By signs, the patch without a tunnel where no ambiguous face is joined, and where all are.
+    by_signs: [[u16; 256]; 2],
+    /// Of each patch, how many vertices it has in the cell.
+    inner: Vec<u8>,
+    /// By signs, whether there is nothing to decide.
+    is_plain: Vec<bool>,
     /// By signs, the ambiguous faces, numbered as [`SQUARES`] are.
     ambiguous: Vec<u8>,
     edges: [(u8, u8); 12],
@@ -74,6 +80,9 @@ impl Patches {
             patches: Vec::new(),
             entries: Vec::new(),
             index: vec![[0; 64]; 256],
+            by_signs: [[0; 256]; 2],
+            inner: Vec::new(),
+            is_plain: Vec::new(),
             ambiguous: Vec::new(),
             edges: std::array::from_fn(|e| {
                 let [low, high] = cube.edges()[e];
@@ -111,11 +120,17 @@ impl Patches {
                 made.index[inside as usize][usize::from(joined)] = made.entries.len() as u16;
                 made.entries.push(entry);
             }
+            let all = usize::from(ambiguous);
+            let index = made.index[inside as usize];
+            made.is_plain.push(all == 0 && made.entries[usize::from(index[0])].tunnels.is_empty());
+            let plain = [0, all].map(|joined| made.entries[usize::from(index[joined])].plain);
+            (made.by_signs[0][inside as usize], made.by_signs[1][inside as usize]) = (plain[0], plain[1]);
         }
         made
     }
 
     fn add(&mut self, patch: Patch) -> u16 {
+        self.inner.push(patch.inner.len() as u8);
         self.patches.push(patch);
         (self.patches.len() - 1) as u16
     }
@@ -131,6 +146,12 @@ impl Patches {
 
     pub(super) fn at(&self, number: u16) -> &Patch {
         &self.patches[usize::from(number)]
+    }
+
+    /// How many vertices a patch has in the cell.
+    #[inline]
+    pub(super) fn inner(&self, number: u16) -> u8 {
+        self.inner[usize::from(number)]
     }
 
     /// The corner that an edge begins at, and its axis.
@@ -152,18 +173,13 @@ impl Patches {
         isovalue: f32,
         values: impl FnOnce() -> [f32; 8],
     ) -> u16 {
-        let index = &self.index[usize::from(inside)];
-        let ambiguous = self.ambiguous[usize::from(inside)];
+        let [apart, joined] = [0, 1].map(|all| self.by_signs[all][usize::from(inside)]);
         match faces {
-            Faces::SeparateInside => self.entries[usize::from(index[0])].plain,
-            Faces::JoinInside => self.entries[usize::from(index[usize::from(ambiguous)])].plain,
-            Faces::Decider | Faces::Trilinear => {
-                let entry = &self.entries[usize::from(index[0])];
-                if ambiguous == 0 && (faces == Faces::Decider || entry.tunnels.is_empty()) {
-                    return entry.plain;
-                }
-                self.decide(faces, inside, isovalue, values())
-            }
+            Faces::SeparateInside => apart,
+            Faces::JoinInside => joined,
+            Faces::Decider if self.ambiguous[usize::from(inside)] == 0 => apart,
+            Faces::Trilinear if self.is_plain[usize::from(inside)] => apart,
+            Faces::Decider | Faces::Trilinear => self.decide(faces, inside, isovalue, values()),
         }
     }
 

@@ -4,21 +4,13 @@ use std::collections::TryReserveError;
 
 use super::grid::Grid;
 use super::rows::{Rows, before, next};
-use crate::bits::{between, set_range};
+use crate::bits::{between, set_above, set_range};
+use crate::in_sight::{State, Values};
 use crate::line::{All, Gaps, Line};
 use crate::memory::filled;
 use crate::source::Sampler;
 use crate::tiles::{Span, Tile, Tiles};
 use field::StudyField;
-
-/// Where all points of a row are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) enum State {
-    #[default]
-    Outside,
-    Inside,
-    Mixed,
-}
 
 /// What is sampled, and where.
 #[derive(Clone, Copy)]
@@ -51,33 +43,6 @@ struct Called {
     slots: usize,
 }
 
-/// Samples by place: given ones, or those in sight.
-#[derive(Clone, Copy)]
-pub(super) struct Values<'a> {
-    values: &'a [f32],
-    size: [usize; 3],
-    slots: usize,
-}
-
-impl Values<'_> {
-    #[inline]
-    pub(super) fn at(&self, [x, y, z]: [usize; 3]) -> f32 {
-        self.values[(z % self.slots * self.size[1] + y) * self.size[0] + x]
-    }
-
-    /// Those of a row, as far as they are there.
-    #[inline]
-    pub(super) fn row(&self, y: usize, z: usize) -> &[f32] {
-        let start = (z % self.slots * self.size[1] + y) * self.size[0];
-        &self.values[start..start + self.size[0]]
-    }
-
-    /// At the corners of a cell.
-    pub(super) fn corners(&self, [x, y, z]: [usize; 3]) -> [f32; 8] {
-        std::array::from_fn(|c| self.at([x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)]))
-    }
-}
-
 impl Samples {
     /// For so many layers in sight.
     pub(super) fn new(grid: &Grid, source: Sampler, slots: usize) -> Result<Self, TryReserveError> {
@@ -92,10 +57,16 @@ impl Samples {
     pub(super) fn values<'a>(&'a self, grid: &Grid, source: Sampler<'a>) -> Values<'a> {
         let size = grid.size;
         match (source, &self.called) {
-            (Sampler::Given(values), _) => Values { values, size, slots: size[2] },
-            (Sampler::Field(_), Some(called)) => Values { values: &called.values, size, slots: self.slots },
+            (Sampler::Given(values), _) => Values::new(values, size, size[2]),
+            (Sampler::Field(_), Some(called)) => Values::new(&called.values, size, self.slots),
             (Sampler::Field(_), None) => unreachable!("made for a field"),
         }
+    }
+
+    /// Where the points of each row of a layer are.
+    pub(super) fn states(&self, layer: usize) -> &[State] {
+        let rows = self.states.len() / self.slots;
+        &self.states[layer % self.slots * rows..][..rows]
     }
 
     /// Whether all points of some rows are on one side.
@@ -120,10 +91,7 @@ impl Samples {
             match (source, &mut self.called) {
                 (Sampler::Given(values), _) => {
                     let values = &values[(layer * ny + row) * nx..][..nx];
-                    for (word, values) in sides.iter_mut().zip(values.chunks(64)) {
-                        let bits = values.iter().enumerate();
-                        *word = bits.fold(0, |word, (i, &value)| word | u64::from(value > isovalue) << i);
-                    }
+                    set_above(values, isovalue, sides);
                 }
                 (Sampler::Field(field), Some(called)) => {
                     called.taken.row_mut(row, layer).fill(0);
@@ -139,7 +107,7 @@ impl Samples {
                 (Sampler::Field(_), None) => unreachable!("made for a field"),
             }
             if state == State::Mixed {
-                state = state_of(sides, nx);
+                state = State::of(sides, !0, nx);
             }
             self.states[layer % self.slots * ny + row] = state;
         }
@@ -262,20 +230,5 @@ impl Called {
             self.gaps.note(word, wanted, taken);
         }
         self.gaps.fill(field, &grid.at[0], y, z, values);
-    }
-}
-
-/// Where the points of a row of `nx` columns are.
-pub(super) fn state_of(sides: &[u64], nx: usize) -> State {
-    let (mut any, mut all) = (0, !0);
-    for (word, &sides) in sides.iter().enumerate() {
-        let used = between(word, 0, nx);
-        any |= sides & used;
-        all &= sides | !used;
-    }
-    match (any, all) {
-        (0, _) => State::Outside,
-        (_, u64::MAX) => State::Inside,
-        _ => State::Mixed,
     }
 }

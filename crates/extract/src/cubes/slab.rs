@@ -8,10 +8,11 @@ use super::Rule;
 use super::cells_pass::triangulate_layer;
 use super::grid::{Grid, SLOTS};
 use super::patches::Patches;
+use super::records::Records;
 use super::sampling::{Samples, Sampling};
-use super::vertices::{Placer, Records, VertexPass, Vertices};
+use super::vertices::{Placer, Record, VertexPass, Vertices};
 use crate::ExtractError;
-use crate::clock::Moment;
+use crate::clock::Laps;
 use crate::control::Control;
 use crate::slabs::Piece;
 use crate::source::Sampler;
@@ -35,7 +36,7 @@ pub(super) struct Job<'a> {
 /// Buffers of one thread, a few layers each.
 pub(super) struct Workspace {
     samples: Samples,
-    records: Records,
+    records: Records<Record>,
 }
 
 impl Workspace {
@@ -61,13 +62,9 @@ pub(super) fn stream_slab(
     let filled = lowest..layers.min(highest + 2);
     let sided = lowest.saturating_sub(1)..layers.min(highest + 3);
     let sampling = Sampling { grid, source, isovalue, all_corners: rule.faces.reads_all_corners() };
-    let mut vertices = Vertices { keys: job.traced.then(Vec::new), ..Vertices::default() };
+    let mut vertices = Vertices::new(job.traced);
     piece.clear(job.traced);
-    let mut last = Moment::now();
-    let mut lap = || {
-        let now = Moment::now();
-        now - std::mem::replace(&mut last, now)
-    };
+    let mut laps = Laps::new();
     for step in sided.start..=highest + 2 {
         if sided.contains(&step) {
             job.control.check()?;
@@ -76,7 +73,7 @@ pub(super) fn stream_slab(
         if let Some(layer) = step.checked_sub(1).filter(|layer| filled.contains(layer)) {
             samples.fill(sampling, layer);
         }
-        piece.times.sampling += lap();
+        piece.times.sampling += laps.lap();
 
         let Some(layer) = step.checked_sub(2).filter(|layer| numbered.contains(layer)) else { continue };
         let samples = &*samples;
@@ -86,7 +83,7 @@ pub(super) fn stream_slab(
         if vertices.numbered > u64::from(job.most_vertices) {
             return Err(ExtractError::TooManyVertices { limit: job.most_vertices });
         }
-        piece.times.vertex += lap();
+        piece.times.vertex += laps.lap();
 
         let Some(z) = layer.checked_sub(1).filter(|z| own.contains(z)) else { continue };
         if z + 1 == own.end {
@@ -94,14 +91,9 @@ pub(super) fn stream_slab(
             piece.tail = piece.surface.triangles.len();
         }
         triangulate_layer(job, samples, values, records, z, &mut piece.surface)?;
-        piece.times.geometry += lap();
+        piece.times.geometry += laps.lap();
         (job.layer_done)();
     }
-    (piece.positions, piece.targets) = (vertices.positions, vertices.targets);
-    // As if seen from both ends.
-    piece.crossing_ends = 2 * vertices.crossings;
-    if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, vertices.keys) {
-        trace.keys = keys;
-    }
+    vertices.give_to(piece);
     Ok(())
 }

@@ -18,18 +18,20 @@ use std::ops::Range;
 use self::cells_pass::Chosen;
 use self::labels::{Labels, Snap};
 use self::table::Table;
-use self::vertices::{Records, VertexPass, Vertices};
+use self::vertices::{Record, VertexPass};
 use super::Flat;
 use super::grid::Grid;
 use super::in_slabs;
+use super::records::Records;
 use super::sampling::{Samples, Sampling};
-use super::vertices::Placer;
-use crate::clock::Moment;
+use super::vertices::{Placer, Vertices};
+use crate::clock::Laps;
 use crate::control::Control;
 use crate::extraction::{ExtractError, Extraction};
 use crate::slabs::Piece;
 use crate::source::{Request, Sampler};
 use crate::streaming::Progress;
+use crate::trace::Trace;
 
 /// Layers of sides and samples in sight.
 const SLOTS: usize = 6;
@@ -40,15 +42,17 @@ pub(crate) fn extract(
     gamma: f32,
     flat: Flat,
     progress: Option<&Progress>,
+    trace: Option<&mut Trace>,
     extraction: &mut Extraction,
 ) -> Result<(), ExtractError> {
     let Request { source, settings, control, most_vertices, .. } = *request;
     let table = Table::get();
     let placer = &Placer::new(request.lattice, settings, None);
     let snap = Snap { isovalue: settings.isovalue, gamma };
+    let traced = trace.is_some();
     let new = |grid: &Grid| Workspace::new(grid, source);
-    in_slabs(request, progress, None, extraction, 3, new, |grid, layer_done, own, workspace, piece| {
-        let job = Job { grid, source, snap, flat, table, placer, most_vertices, control, layer_done };
+    in_slabs(request, progress, trace, extraction, 3, new, |grid, layer_done, own, workspace, piece| {
+        let job = Job { grid, source, snap, flat, table, placer, most_vertices, traced, control, layer_done };
         stream_slab(&job, own, workspace, piece)
     })
 }
@@ -62,6 +66,8 @@ struct Job<'a> {
     table: &'a Table,
     placer: &'a Placer<'a>,
     most_vertices: u32,
+    /// Whether vertices get keys and triangles the numbers of their cells.
+    traced: bool,
     control: Control<'a>,
     layer_done: &'a (dyn Fn() + Sync),
 }
@@ -71,7 +77,7 @@ struct Workspace {
     samples: Samples,
     labels: Labels,
     chosen: Chosen,
-    records: Records,
+    records: Records<Record>,
 }
 
 impl Workspace {
@@ -103,14 +109,10 @@ fn stream_slab(
     let filled = lowest.saturating_sub(3)..layers.min(highest + 4);
     let sided = lowest.saturating_sub(4)..layers.min(highest + 5);
     let sampling = Sampling { grid, source, isovalue: snap.isovalue, all_corners: true };
-    let mut vertices = Vertices::default();
-    piece.clear(false);
+    let mut vertices = Vertices::new(job.traced);
+    piece.clear(job.traced);
     chosen.clear_used(chosen_cells.start);
-    let mut last = Moment::now();
-    let mut lap = || {
-        let now = Moment::now();
-        now - std::mem::replace(&mut last, now)
-    };
+    let mut laps = Laps::new();
     for step in sided.start..=highest + 4 {
         if sided.contains(&step) {
             job.control.check()?;
@@ -119,7 +121,7 @@ fn stream_slab(
         if let Some(layer) = step.checked_sub(1).filter(|layer| filled.contains(layer)) {
             samples.fill(sampling, layer);
         }
-        piece.times.sampling += lap();
+        piece.times.sampling += laps.lap();
 
         let values = samples.values(grid, source);
         if let Some(layer) = step.checked_sub(2).filter(|layer| labelled.contains(layer)) {
@@ -137,7 +139,7 @@ fn stream_slab(
         if vertices.numbered > u64::from(job.most_vertices) {
             return Err(ExtractError::TooManyVertices { limit: job.most_vertices });
         }
-        piece.times.vertex += lap();
+        piece.times.vertex += laps.lap();
 
         let Some(z) = layer.checked_sub(1).filter(|z| own.contains(z)) else { continue };
         if z + 1 == own.end {
@@ -145,11 +147,9 @@ fn stream_slab(
             piece.tail = piece.surface.triangles.len();
         }
         chosen.triangulate(grid, table, records, z, &mut piece.surface)?;
-        piece.times.geometry += lap();
+        piece.times.geometry += laps.lap();
         (job.layer_done)();
     }
-    piece.positions = vertices.positions;
-    // As if seen from both ends.
-    piece.crossing_ends = 2 * vertices.crossings;
+    vertices.give_to(piece);
     Ok(())
 }

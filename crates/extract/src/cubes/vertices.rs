@@ -7,14 +7,17 @@ use glam::{Vec3, Vec4};
 use super::Rule;
 use super::grid::Grid;
 use super::patches::{Patch, Patches};
+use super::records::Records;
 use super::rows::next;
-use super::sampling::{Samples, Values};
+use super::sampling::Samples;
 use crate::bits::between;
+use crate::in_sight::Values;
 use crate::lattice::Lattice;
 use crate::level::Level;
-use crate::memory::{filled, push};
+use crate::memory::push;
 use crate::placement::crossing_ratio;
 use crate::settings::{ExtractSettings, Placement, Topology};
+use crate::slabs::Piece;
 use crate::spot::{Apart, Company, linear_ratio};
 use crate::trace::VertexKey;
 
@@ -47,30 +50,6 @@ impl Record {
 /// Bits of a number below eight.
 pub(super) static RANK: [u8; 8] = [0, 1, 1, 2, 1, 2, 2, 3];
 
-/// The records of the two layers of a cell, written and read only where there is something to know.
-pub(super) struct Records {
-    records: Vec<Record>,
-    size: [usize; 2],
-}
-
-impl Records {
-    pub(super) fn new(grid: &Grid) -> Result<Self, TryReserveError> {
-        let [nx, ny, _] = grid.size;
-        Ok(Self { records: filled(2 * nx * ny, Record::default())?, size: [nx, ny] })
-    }
-
-    /// Where the records of a row start.
-    #[inline]
-    pub(super) fn start(&self, row: usize, layer: usize) -> usize {
-        (layer % 2 * self.size[1] + row) * self.size[0]
-    }
-
-    #[inline]
-    pub(super) fn at(&self, place: usize) -> Record {
-        self.records[place]
-    }
-}
-
 /// What the pass reads.
 pub(super) struct VertexPass<'a> {
     pub(super) grid: &'a Grid<'a>,
@@ -92,8 +71,38 @@ pub(super) struct Vertices {
     pub(super) targets: Vec<Vec3>,
     /// Where they are asked for.
     pub(super) keys: Option<Vec<VertexKey>>,
-    /// Crossed edges of the slab's own layers.
+    /// Crossed edges of the slab's own layers, but for those that were snapped.
     pub(super) crossings: u64,
+}
+
+impl Vertices {
+    /// None yet.
+    pub(super) fn new(traced: bool) -> Self {
+        Self { keys: traced.then(Vec::new), ..Self::default() }
+    }
+
+    /// Names the vertex that was placed last, where keys are asked for.
+    pub(super) fn name(
+        &mut self,
+        lattice: &Lattice,
+        place: [usize; 3],
+        number: usize,
+    ) -> Result<(), TryReserveError> {
+        if let Some(keys) = &mut self.keys {
+            push(keys, VertexKey::new(lattice.arrangement(), lattice.stored(place), number))?;
+        }
+        Ok(())
+    }
+
+    /// Makes them those of a slab's piece.
+    pub(super) fn give_to(self, piece: &mut Piece) {
+        (piece.positions, piece.targets) = (self.positions, self.targets);
+        // As if seen from both ends.
+        piece.crossing_ends = 2 * self.crossings;
+        if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, self.keys) {
+            trace.keys = keys;
+        }
+    }
 }
 
 impl VertexPass<'_> {
@@ -102,7 +111,7 @@ impl VertexPass<'_> {
         &self,
         layer: usize,
         is_own: bool,
-        records: &mut Records,
+        records: &mut Records<Record>,
         vertices: &mut Vertices,
     ) -> Result<(), TryReserveError> {
         let grid = self.grid;
@@ -141,22 +150,23 @@ impl VertexPass<'_> {
                         patch: 0,
                         crossed: of(crossed[0]) | of(crossed[1]) << 1 | of(crossed[2]) << 2,
                     };
-                    let mut inner = None;
+                    let mut inner = 0;
                     if of(cells) != 0 {
                         let inside = (0..4)
                             .fold(0, |set, i| set | of(here[i]) << (2 * i) | of(after[i]) << (2 * i + 1));
                         let values = || self.values.corners(place);
                         record.patch = self.patches.choose(self.rule.faces, inside, self.isovalue, values);
-                        let patch = self.patches.at(record.patch);
-                        inner = (!patch.inner.is_empty()).then_some(patch);
+                        inner = self.patches.inner(record.patch);
                     }
                     let crossings = record.crossed.count_ones();
-                    vertices.numbered += u64::from(crossings);
-                    vertices.numbered += inner.map_or(0, |patch| patch.inner.len() as u64);
-                    records.records[start + place[0]] = record;
+                    vertices.numbered += u64::from(crossings) + u64::from(inner);
+                    records.set(start + place[0], record);
                     if is_own {
                         vertices.crossings += u64::from(crossings);
-                        self.place(place, record.crossed, inner, vertices)?;
+                        self.place(place, record.crossed, vertices)?;
+                        if inner != 0 {
+                            self.place_inner(place, self.patches.at(record.patch), vertices)?;
+                        }
                     }
                 }
             }
@@ -164,14 +174,9 @@ impl VertexPass<'_> {
         Ok(())
     }
 
-    /// Places the vertices of a point.
-    fn place(
-        &self,
-        place: [usize; 3],
-        crossed: u8,
-        inner: Option<&Patch>,
-        vertices: &mut Vertices,
-    ) -> Result<(), TryReserveError> {
+    /// Places the vertices on the edges that begin at a point.
+    #[inline]
+    fn place(&self, place: [usize; 3], crossed: u8, vertices: &mut Vertices) -> Result<(), TryReserveError> {
         let value = self.values.at(place);
         for axis in (0..3).filter(|axis| crossed >> axis & 1 != 0) {
             let mut there = place;
@@ -181,9 +186,20 @@ impl VertexPass<'_> {
             if let Some(target) = self.placer.target(self.grid, place, axis, values) {
                 push(&mut vertices.targets, target)?;
             }
-            self.name(place, axis, vertices)?;
+            vertices.name(self.grid.lattice, place, axis)?;
         }
-        for (v, edges) in inner.iter().flat_map(|patch| patch.inner.iter().enumerate()) {
+        Ok(())
+    }
+
+    /// Places the vertices in the cell that begins at a point.
+    #[inline(never)]
+    fn place_inner(
+        &self,
+        place: [usize; 3],
+        patch: &Patch,
+        vertices: &mut Vertices,
+    ) -> Result<(), TryReserveError> {
+        for (v, edges) in patch.inner.iter().enumerate() {
             let mut sum = Vec3::ZERO;
             let mut target = Vec3::ZERO;
             for &edge in edges {
@@ -201,15 +217,7 @@ impl VertexPass<'_> {
             if self.placer.refines {
                 push(&mut vertices.targets, target / count)?;
             }
-            self.name(place, 3 + v, vertices)?;
-        }
-        Ok(())
-    }
-
-    fn name(&self, place: [usize; 3], number: usize, vertices: &mut Vertices) -> Result<(), TryReserveError> {
-        if let Some(keys) = &mut vertices.keys {
-            let lattice = self.grid.lattice;
-            push(keys, VertexKey::new(lattice.arrangement(), lattice.stored(place), number))?;
+            vertices.name(self.grid.lattice, place, 3 + v)?;
         }
         Ok(())
     }

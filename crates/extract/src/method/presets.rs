@@ -16,6 +16,7 @@ const OWN: &str = "not in the paper; see extract::Arrangement and extract::Clust
 const CUBES: &str = "Lorensen & Cline 1987, with faces that agree";
 const TRILINEAR: &str = "Chernyaev 1995, with every case decided by the interpolant's saddles";
 const EDGE_GROUPS: &str = "Lorensen & Cline 1987; Dietrich et al. 2008";
+const BEST: &str = "Lorensen & Cline 1987; diagonals by radius ratios, see extract::Diagonals";
 const SNAPPED: &str = "Raman & Wenger 2008; table by hulls, Bhaniramka et al. 2004";
 const TURNED: &str = "our reading of Macet, Dietrich et al. 2009; table of Dietrich et al. 2008";
 const NETS: &str = "Gibson 1998, by values and without relaxation";
@@ -44,7 +45,7 @@ pub fn presets() -> &'static [Preset] {
     &PRESETS
 }
 
-static PRESETS: [Preset; 31] = [
+static PRESETS: [Preset; 32] = [
     plain("bu", "body-centred, none", BodyCentred, None, COSTEN),
     plain("bi", "body-centred, integrated", BodyCentred, Integrated, TREECE),
     plain("bp", "body-centred, edge collapse", BodyCentred, EdgeCollapse, COLLAPSED),
@@ -70,6 +71,7 @@ static PRESETS: [Preset; 31] = [
         Diagonals::EdgeGroups,
         EDGE_GROUPS,
     ),
+    cubes("mc-quality", "marching cubes, best diagonals", Faces::SeparateInside, Diagonals::Quality, BEST),
     Preset {
         id: "snapmc",
         label: "marching cubes, snapped",

@@ -42,7 +42,7 @@ impl OfCubes for SnapCubes {
             manifold: false,
             closed_off_the_box: true,
             same_triangles_for_all_placements: false,
-            chunks: false,
+            chunks: true,
             samples_suffice: true,
         }
     }
@@ -54,5 +54,11 @@ impl OfCubes for SnapCubes {
 
     fn layers(&self) -> u64 {
         2
+    }
+
+    /// The normal of a vertex is that of the cells round it. Which patches these have is for their corners' labels to say, left out
+    /// ones included, and labels are for samples one step beyond.
+    fn unmoved_halo(&self) -> Option<u32> {
+        Some(2)
     }
 }

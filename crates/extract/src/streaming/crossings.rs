@@ -1,7 +1,8 @@
 //! Where signs differ from those of neighbours, 64 points at a time.
 
 use super::grid::{Grid, LINES, Neighbourhood};
-use super::signs::{MIXED, Signs, used_bits};
+use super::signs::{MIXED, Signs};
+use crate::bits::between;
 use crate::lattice::DIRECTIONS;
 
 /// The sign bits of a row and of the rows that its points' neighbours lie in.
@@ -66,7 +67,7 @@ impl<'a> Lines<'a> {
                 *differ = sides ^ (line[word + low] >> right | line[word + low + 1] << 1 << (63 - right));
                 active |= *differ;
             }
-            each(Crossings { word, sides, active: active & used_bits(word, self.used), differ })?;
+            each(Crossings { word, sides, active: active & between(word, 0, self.used), differ })?;
         }
         Ok(())
     }

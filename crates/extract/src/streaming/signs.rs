@@ -1,8 +1,7 @@
 //! Rows of sign bits, 64 points a word, for the few layers in sight.
 
-use glam::Vec4;
-
 use super::grid::Grid;
+use crate::bits::{between, set_above};
 use crate::memory::refill;
 
 /// What the points of a row have in common.
@@ -42,22 +41,9 @@ impl Signs {
     /// Inside is a value above the isovalue; equal is outside, and so is `NaN`.
     pub(super) fn fill(&mut self, row: usize, layer: usize, values: &[f32], isovalue: f32) {
         let place = self.place(row, layer);
-        let words = &mut self.words[place * self.stride + 1..(place + 1) * self.stride];
-        let (mut any, mut all) = (0, !0);
-        let whole = values.len() / 64;
-        let (chunks, rest) = values.as_chunks::<64>();
-        for (word, chunk) in words.iter_mut().zip(chunks) {
-            *word = above(chunk, isovalue);
-            any |= *word;
-            all &= *word;
-        }
-        if !rest.is_empty() {
-            let last = above_short(rest, isovalue);
-            words[whole] = last;
-            any |= last;
-            all &= last | !0 << rest.len();
-        }
-        self.states[place] = state(any, all);
+        let words = &mut self.words[place * self.stride + 1..][..values.len().div_ceil(64)];
+        set_above(values, isovalue, words);
+        self.close(row, layer, values.len());
     }
 
     /// The words of a row, all outside, to be set; [`close`](Self::close) must follow.
@@ -71,11 +57,11 @@ impl Signs {
     /// Takes note of what an opened row of `used` points has become.
     pub(super) fn close(&mut self, row: usize, layer: usize, used: usize) {
         let place = self.place(row, layer);
-        let words = &self.words[place * self.stride + 1..(place + 1) * self.stride - 1];
+        let words = &self.words[place * self.stride + 1..][..used.div_ceil(64)];
         let (mut any, mut all) = (0, !0);
         for (i, &word) in words.iter().enumerate() {
             any |= word;
-            all &= word | !used_bits(i, used);
+            all &= word | !between(i, 0, used);
         }
         self.states[place] = state(any, all);
     }
@@ -85,19 +71,9 @@ impl Signs {
         let place = self.place(row, layer);
         let words = &mut self.words[place * self.stride + 1..(place + 1) * self.stride - 1];
         for (i, word) in words.iter_mut().enumerate() {
-            *word = if inside { used_bits(i, used) } else { 0 };
+            *word = if inside { between(i, 0, used) } else { 0 };
         }
         self.states[place] = u8::from(inside);
-    }
-}
-
-/// The bits of word `i` of a row of `used` points.
-#[inline]
-pub(super) fn used_bits(i: usize, used: usize) -> u64 {
-    match used.saturating_sub(64 * i) {
-        0 => 0,
-        n if n < 64 => !(!0 << n),
-        _ => !0,
     }
 }
 
@@ -109,21 +85,4 @@ fn state(any: u64, all: u64) -> u8 {
     } else {
         MIXED
     }
-}
-
-#[inline]
-fn above(values: &[f32; 64], isovalue: f32) -> u64 {
-    let limit = Vec4::splat(isovalue);
-    let (fours, _) = values.as_chunks::<4>();
-    let mut word = 0;
-    for (i, &four) in fours.iter().enumerate() {
-        word |= u64::from(Vec4::from_array(four).cmpgt(limit).bitmask()) << (4 * i);
-    }
-    word
-}
-
-/// Bits of up to 64 values.
-#[inline]
-pub(super) fn above_short(values: &[f32], isovalue: f32) -> u64 {
-    values.iter().enumerate().fold(0, |word, (i, &value)| word | u64::from(value > isovalue) << i)
 }

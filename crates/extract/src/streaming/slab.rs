@@ -11,7 +11,7 @@ use super::rule::ClusterRule;
 use super::sampling::{FieldPass, FieldSamples, signs_of};
 use super::signs::Signs;
 use crate::ExtractError;
-use crate::clock::Moment;
+use crate::clock::Laps;
 use crate::control::Control;
 use crate::placement::CrossingPlacer;
 use crate::slabs::Piece;
@@ -91,11 +91,7 @@ pub(super) fn stream_slab<R: ClusterRule>(
         keys: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys)),
         ..Placed::default()
     };
-    let mut last = Moment::now();
-    let mut lap = || {
-        let now = Moment::now();
-        now - std::mem::replace(&mut last, now)
-    };
+    let mut laps = Laps::new();
     for step in signed.start..own.end + 2 * reach + lead {
         if signed.contains(&step) {
             job.control.check()?;
@@ -115,7 +111,7 @@ pub(super) fn stream_slab<R: ClusterRule>(
         {
             workspace.samples.fill(field_pass(field), step, &workspace.signs);
         }
-        piece.times.sampling += lap();
+        piece.times.sampling += laps.lap();
 
         if let Some(layer) = step.checked_sub(reach).filter(|layer| recorded.contains(layer)) {
             let samples = match job.source {
@@ -141,7 +137,7 @@ pub(super) fn stream_slab<R: ClusterRule>(
                 return Err(ExtractError::TooManyVertices { limit: job.most_vertices });
             }
         }
-        piece.times.vertex += lap();
+        piece.times.vertex += laps.lap();
 
         if let Some(layer) = step.checked_sub(2 * reach).filter(|layer| own.contains(layer)) {
             if layer + 2 * reach <= own.end {
@@ -153,7 +149,7 @@ pub(super) fn stream_slab<R: ClusterRule>(
                 piece.head = piece.surface.triangles.len();
             }
         }
-        piece.times.geometry += lap();
+        piece.times.geometry += laps.lap();
     }
     piece.targets = placed.targets;
     if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, placed.keys) {

@@ -6,10 +6,11 @@ use std::collections::TryReserveError;
 use glam::Vec3;
 
 use super::super::grid::Grid;
+use super::super::records::Records;
 use super::super::rows::next;
 use super::super::sampling::Samples;
 use super::plan::Plans;
-use super::vertices::Records;
+use super::vertices::Record;
 use crate::bits::between;
 use crate::level::Level;
 use crate::triangles::Triangulation;
@@ -121,7 +122,7 @@ pub(super) struct QuadPass<'a> {
     pub(super) grid: &'a Grid<'a>,
     pub(super) samples: &'a Samples,
     pub(super) plans: &'a Plans,
-    pub(super) records: &'a Records,
+    pub(super) records: &'a Records<Record>,
     /// By the numbers in the records.
     pub(super) positions: &'a [Vec3],
     /// Of a field that decides on diagonals.

@@ -5,13 +5,15 @@ use std::collections::TryReserveError;
 use glam::{DVec3, Vec3, Vec4};
 
 use super::super::grid::Grid;
+use super::super::records::Records;
 use super::super::rows::next;
-use super::super::sampling::{Samples, Values};
+use super::super::sampling::Samples;
 use super::super::vertices::{Placer, corner_of};
 use super::plan::{EDGE_STARTS, EDGES, Mean, Plans};
 use super::sharp::Sharp;
 use super::tangents::{Tangent, Tangents};
-use crate::memory::{filled, push};
+use crate::in_sight::Values;
+use crate::memory::push;
 use crate::trace::VertexKey;
 
 /// What is known of a crossed cell: its vertices are numbered from `first` on.
@@ -19,30 +21,6 @@ use crate::trace::VertexKey;
 pub(super) struct Record {
     pub(super) first: u32,
     pub(super) plan: u32,
-}
-
-/// The records of two layers of cells, read only where they were written.
-pub(super) struct Records {
-    records: Vec<Record>,
-    size: [usize; 2],
-}
-
-impl Records {
-    pub(super) fn new(grid: &Grid) -> Result<Self, TryReserveError> {
-        let [nx, ny, _] = grid.size;
-        Ok(Self { records: filled(2 * nx * ny, Record::default())?, size: [nx, ny] })
-    }
-
-    /// Where the records of a row start.
-    #[inline]
-    pub(super) fn start(&self, y: usize, z: usize) -> usize {
-        (z % 2 * self.size[1] + y) * self.size[0]
-    }
-
-    #[inline]
-    pub(super) fn at(&self, place: usize) -> Record {
-        self.records[place]
-    }
 }
 
 /// The vertices of a slab, and of the layer of cells below it.
@@ -75,7 +53,7 @@ impl VertexPass<'_> {
         z: usize,
         mut by_planes: Option<(Sharp, &mut Tangents)>,
         plans: &mut Plans,
-        records: &mut Records,
+        records: &mut Records<Record>,
         vertices: &mut Vertices,
     ) -> Result<u64, TryReserveError> {
         let grid = self.grid;
@@ -107,7 +85,8 @@ impl VertexPass<'_> {
                     let cell = [64 * word + bit as usize, y, z];
                     let inside = (0..8).fold(0, |set, c| set | ((corners[c] >> bit & 1) as u8) << c);
                     let plan = plans.number(inside, self.joined(plans, cell, inside), self.at_box(cell));
-                    records.records[start + cell[0]] = Record { first: vertices.numbered() as u32, plan };
+                    let place = start + cell[0];
+                    records.set(place, Record { first: vertices.numbered() as u32, plan });
                     for (number, mean) in plans.at(plan).means.iter().enumerate() {
                         let position = match &mut by_planes {
                             None => {

@@ -4,11 +4,12 @@ use std::collections::TryReserveError;
 
 use super::super::Flat;
 use super::super::grid::Grid;
+use super::super::records::Records;
 use super::super::rows::{Rows, next};
 use super::super::vertices::corner_of;
 use super::labels::Labels;
 use super::table::{CORNER, MOST_TRIANGLES, Table};
-use super::vertices::Records;
+use super::vertices::Record;
 use crate::memory::filled;
 use crate::triangles::Triangulation;
 
@@ -93,7 +94,7 @@ impl Chosen {
         &self,
         grid: &Grid,
         table: &Table,
-        records: &Records,
+        records: &Records<Record>,
         z: usize,
         result: &mut Triangulation,
     ) -> Result<(), TryReserveError> {
@@ -122,6 +123,9 @@ impl Chosen {
                     }
                     let numbered = |triangle: &[u8; 3]| triangle.map(|code| vertices[usize::from(code)]);
                     result.triangles.extend(patch.triangles.iter().map(numbered));
+                    if let Some(trace) = &mut result.trace {
+                        trace.close_cell(grid.lattice, [x, y, z], result.triangles.len())?;
+                    }
                 }
             }
         }

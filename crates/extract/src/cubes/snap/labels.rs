@@ -3,8 +3,9 @@
 use std::collections::TryReserveError;
 
 use super::super::grid::Grid;
-use super::super::rows::Rows;
-use super::super::sampling::{Near, Samples, State, Values, state_of};
+use super::super::rows::{Rows, before, next};
+use super::super::sampling::{Near, Samples};
+use crate::in_sight::{State, Values};
 use crate::memory::filled;
 
 /// Layers in sight: of a cell, the two of its corners, and one more on either side.
@@ -66,33 +67,95 @@ impl Labels {
 
     /// Labels a layer. Of the layers next to it, sides and samples are known.
     pub(super) fn find(&mut self, grid: &Grid, samples: &Samples, values: Values, snap: Snap, layer: usize) {
-        let [nx, ny, _] = grid.size;
+        let [nx, ny, nz] = grid.size;
+        let near_layers = [layer.saturating_sub(1), layer, (layer + 1).min(nz - 1)];
+        let states = near_layers.map(|layer| samples.states(layer));
         for row in 0..ny {
             let sides = &samples.sides.row(row, layer)[..grid.words];
             self.inside.row_mut(row, layer).copy_from_slice(sides);
             self.on.row_mut(row, layer).fill(0);
-            let near = Near::new(grid, [row, layer], true);
-            if !samples.is_uniform(grid, near.rows()) {
+            let (here, rows) = (states[1][row], row.saturating_sub(1)..ny.min(row + 2));
+            let is_like_it = |states: &[State]| states[rows.clone()].iter().all(|&state| state == here);
+            if here == State::Mixed || !states.into_iter().all(is_like_it) {
+                let near = Near::new(grid, [row, layer], true);
+                let around = Around::new(grid, samples, values, [row, layer]);
+                let ways = &mut self.ways[(layer % SLOTS * ny + row) * nx..][..nx];
                 near.for_each_word(grid, &samples.sides, |word, wanted| {
+                    let crossed = around.crossed(grid, word);
                     let (mut left, mut on) = (wanted, 0);
                     while left != 0 {
                         let bit = left.trailing_zeros();
                         left &= left - 1;
                         let x = 64 * word + bit as usize;
-                        let is_inside = sides[word] >> bit & 1 != 0;
-                        let Some(way) = snap.way(grid, samples, values, [x, row, layer], is_inside) else {
-                            continue;
+                        let way = if around.here[x] == snap.isovalue {
+                            (!is_wall(grid, samples, [x, row, layer])).then_some(HERE)
+                        } else {
+                            let ways =
+                                (0..WAYS.len()).fold(0, |set, way| set | (crossed[way] >> bit & 1) << way);
+                            snap.way(&around, x, ways)
                         };
+                        let Some(way) = way else { continue };
                         on |= 1 << bit;
-                        self.ways[(layer % SLOTS * ny + row) * nx + x] = way;
+                        ways[x] = way;
                     }
                     self.on.row_mut(row, layer)[word] = on;
                     self.inside.row_mut(row, layer)[word] &= !on;
                 });
             }
             let is_on = self.on.row(row, layer).iter().any(|&on| on != 0);
-            let state = if is_on { State::Mixed } else { state_of(sides, nx) };
+            let state = if is_on { State::Mixed } else { State::of(sides, !0, nx) };
             self.states[layer % SLOTS * ny + row] = state;
+        }
+    }
+}
+
+/// A row of points, and those that edges lead to from it, by [`WAYS`]. Beyond the grid there is the row itself, to which none leads.
+struct Around<'a> {
+    sides: &'a [u64],
+    here: &'a [f32],
+    others: [(&'a [u64], &'a [f32]); WAYS.len()],
+}
+
+impl<'a> Around<'a> {
+    fn new(grid: &Grid, samples: &'a Samples, values: Values<'a>, [row, layer]: [usize; 2]) -> Self {
+        let at = |y, z| (samples.sides.row(y, z), values.row(y, z));
+        let (sides, here) = at(row, layer);
+        let others = WAYS.map(|(axis, is_next)| {
+            let moved = |from: usize, size: usize| match is_next {
+                true => (from + 1).min(size - 1),
+                false => from.saturating_sub(1),
+            };
+            match axis {
+                0 => (sides, here),
+                1 => at(moved(row, grid.size[1]), layer),
+                _ => at(row, moved(layer, grid.size[2])),
+            }
+        });
+        Self { sides, here, others }
+    }
+
+    /// The points of a word from which an edge leads to the other side, by way.
+    fn crossed(&self, grid: &Grid, word: usize) -> [u64; WAYS.len()] {
+        let mut way = 0;
+        self.others.map(|(sides, _)| {
+            let there = match WAYS[way] {
+                (0, true) => next(sides, word) & grid.with_next(word) | sides[word] & !grid.with_next(word),
+                (0, false) => before(sides, word),
+                _ => sides[word],
+            };
+            way += 1;
+            self.sides[word] ^ there
+        })
+    }
+
+    /// The sample that a way leads to from a column.
+    #[inline]
+    fn other(&self, x: usize, way: usize) -> f32 {
+        let values = self.others[way].1;
+        match WAYS[way] {
+            (0, true) => values[x + 1],
+            (0, false) => values[x - 1],
+            _ => values[x],
         }
     }
 }
@@ -106,44 +169,35 @@ pub(super) struct Snap {
 }
 
 impl Snap {
-    /// Along which edge a point is drawn, the one with the nearest crossing, if there is one near enough.
-    fn way(
-        self,
-        grid: &Grid,
-        samples: &Samples,
-        values: Values,
-        place: [usize; 3],
-        is_inside: bool,
-    ) -> Option<u8> {
-        let (value, isovalue) = (values.at(place), self.isovalue);
-        if value == isovalue {
-            return (!is_wall(grid, samples, place)).then_some(HERE);
-        }
-        let gamma = f64::from(self.gamma);
-        let to_level = |value: f32| (f64::from(isovalue) - f64::from(value)).abs();
+    /// Along which of its crossed edges, a bit each, the point of a column is drawn, the one with the nearest crossing, if there is one near
+    /// enough.
+    #[inline]
+    fn way(self, around: &Around, x: usize, mut crossed: u64) -> Option<u8> {
+        let (isovalue, gamma) = (f64::from(self.isovalue), f64::from(self.gamma));
+        let value = f64::from(around.here[x]);
+        let to_level = (isovalue - value).abs();
         let (mut nearest, mut found) = (f64::INFINITY, None);
-        for (way, (axis, is_next)) in (0..).zip(WAYS) {
-            let mut there = place;
-            match is_next {
-                true if place[axis] + 1 < grid.size[axis] => there[axis] += 1,
-                false if place[axis] > 0 => there[axis] -= 1,
-                _ => continue,
-            }
-            let [x, y, z] = there;
-            let is_crossed = (samples.sides.row(y, z)[x / 64] >> (x % 64) & 1 != 0) != is_inside;
-            if !is_crossed {
+        while crossed != 0 {
+            let way = crossed.trailing_zeros() as usize;
+            crossed &= crossed - 1;
+            let is_next = WAYS[way].1;
+            let other = around.other(x, way);
+            if other == self.isovalue {
                 continue;
             }
-            let other = values.at(there);
-            if other == isovalue {
+            let length = (f64::from(other) - value).abs();
+            // Most are too far by more than a division can err.
+            if to_level > gamma * length * (1.0 + 1e-12) {
                 continue;
             }
-            let length = (f64::from(other) - f64::from(value)).abs();
-            let [own, others] = [value, other].map(|value| to_level(value) / length);
+            let own = to_level / length;
             // The lower end is asked first.
-            let is_asked = own <= gamma && (is_next || others > gamma || others.is_nan());
-            if is_asked && own < nearest {
-                (nearest, found) = (own, Some(way));
+            let is_free = is_next || {
+                let others = (isovalue - f64::from(other)).abs() / length;
+                others > gamma || others.is_nan()
+            };
+            if own <= gamma && is_free && own < nearest {
+                (nearest, found) = (own, Some(way as u8));
             }
         }
         found

@@ -5,12 +5,16 @@ use std::collections::TryReserveError;
 use glam::Vec3;
 
 use super::super::grid::Grid;
+use super::super::records::Records;
 use super::super::rows::{Rows, next};
-use super::super::sampling::Values;
-use super::super::vertices::{Placer, RANK};
+use super::super::vertices::{Placer, RANK, Vertices};
 use super::labels::Labels;
 use crate::bits::between;
-use crate::memory::{filled, push};
+use crate::in_sight::Values;
+use crate::memory::push;
+
+/// The number in a key of a vertex that stands for a point. Those on edges have the edge's axis.
+const AT_POINT: usize = 3;
 
 /// What is known of a point: its vertices are numbered from `first` on, by axis. A point on the surface has one, and no edges.
 #[derive(Debug, Clone, Copy, Default)]
@@ -28,39 +32,6 @@ impl Record {
     }
 }
 
-/// The records of the two layers of a cell.
-pub(super) struct Records {
-    records: Vec<Record>,
-    size: [usize; 2],
-}
-
-impl Records {
-    pub(super) fn new(grid: &Grid) -> Result<Self, TryReserveError> {
-        let [nx, ny, _] = grid.size;
-        Ok(Self { records: filled(2 * nx * ny, Record::default())?, size: [nx, ny] })
-    }
-
-    #[inline]
-    pub(super) fn start(&self, row: usize, layer: usize) -> usize {
-        (layer % 2 * self.size[1] + row) * self.size[0]
-    }
-
-    #[inline]
-    pub(super) fn at(&self, place: usize) -> Record {
-        self.records[place]
-    }
-}
-
-/// The vertices of a slab.
-#[derive(Default)]
-pub(super) struct Vertices {
-    /// How many were numbered, those beyond the slab's own layers too.
-    pub(super) numbered: u64,
-    pub(super) positions: Vec<Vec3>,
-    /// Crossings that were not snapped, in the slab's own layers.
-    pub(super) crossings: u64,
-}
-
 /// What the pass reads.
 pub(super) struct VertexPass<'a> {
     pub(super) grid: &'a Grid<'a>,
@@ -76,7 +47,7 @@ impl VertexPass<'_> {
         &self,
         layer: usize,
         is_own: bool,
-        records: &mut Records,
+        records: &mut Records<Record>,
         vertices: &mut Vertices,
     ) -> Result<(), TryReserveError> {
         let Self { grid, labels, .. } = *self;
@@ -109,7 +80,7 @@ impl VertexPass<'_> {
                     let place = [64 * word + bit as usize, row, layer];
                     let of = |bits: u64| (bits >> bit & 1) as u8;
                     let crossed = of(crossed[0]) | of(crossed[1]) << 1 | of(crossed[2]) << 2;
-                    records.records[start + place[0]] = Record { first: vertices.numbered as u32, crossed };
+                    records.set(start + place[0], Record { first: vertices.numbered as u32, crossed });
                     vertices.numbered += u64::from(crossed.count_ones()) + u64::from(of(points));
                     if is_own {
                         self.place(place, crossed, of(points) != 0, vertices)?;
@@ -130,9 +101,11 @@ impl VertexPass<'_> {
         if is_on {
             let snapped = self.labels.edge(place).map(|(from, axis)| self.crossing(from, axis));
             push(&mut vertices.positions, snapped.unwrap_or_else(|| self.grid.position(place)))?;
+            vertices.name(self.grid.lattice, place, AT_POINT)?;
         }
         for axis in (0..3).filter(|axis| crossed >> axis & 1 != 0) {
             push(&mut vertices.positions, self.crossing(place, axis))?;
+            vertices.name(self.grid.lattice, place, axis)?;
         }
         vertices.crossings += u64::from(crossed.count_ones());
         Ok(())

@@ -1,0 +1,35 @@
+//! What is remembered of points or cells, two layers at a time.
+
+use std::collections::TryReserveError;
+
+use super::grid::Grid;
+use crate::memory::filled;
+
+/// The records of two layers, written and read only where there is something to know.
+pub(super) struct Records<R> {
+    records: Vec<R>,
+    size: [usize; 2],
+}
+
+impl<R: Copy + Default> Records<R> {
+    pub(super) fn new(grid: &Grid) -> Result<Self, TryReserveError> {
+        let [nx, ny, _] = grid.size;
+        Ok(Self { records: filled(2 * nx * ny, R::default())?, size: [nx, ny] })
+    }
+
+    /// Where the records of a row start.
+    #[inline]
+    pub(super) fn start(&self, row: usize, layer: usize) -> usize {
+        (layer % 2 * self.size[1] + row) * self.size[0]
+    }
+
+    #[inline]
+    pub(super) fn at(&self, place: usize) -> R {
+        self.records[place]
+    }
+
+    #[inline]
+    pub(super) fn set(&mut self, place: usize, record: R) {
+        self.records[place] = record;
+    }
+}
