@@ -7,6 +7,7 @@ mod part;
 mod piece;
 mod settings;
 mod settled;
+mod touched;
 mod weld;
 mod world;
 

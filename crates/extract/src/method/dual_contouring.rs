@@ -22,7 +22,8 @@ pub struct DualContouring {
     /// nearly parallel planes do not send a vertex away: 0 to 1.
     pub truncation: f32,
     /// Whether a vertex stays in its cube, at the best point there. A corner or an edge that pokes into a cube without a crossing is
-    /// then cut off, by up to half a cube; without, as published, triangles may turn over.
+    /// then cut off, by up to half a cube. Otherwise it may leave the cube by the length of an edge, and triangles may turn over; as
+    /// published there is no bound, which gives spikes on rough surfaces.
     pub in_cell: bool,
     /// How far a vertex may be from the tangent plane at any crossing of its cell, in lengths of a lattice edge, where eight cells become
     /// one and theirs again, as far as the topology stays what it is. Triangles then are within a few times that of the surface, and few

@@ -2,13 +2,17 @@
 
 use glam::{DMat3, DVec3};
 
+/// How far a point may lie beyond its cell, in edges of the cell, where it need not be in it. Corners of an object lie nearer to a cell
+/// that all their planes cross. Farther away planes of a rough surface meet, which say nothing of its corners.
+const REACH: f64 = 1.0;
+
 /// What is done where the planes leave a choice, or lead out of the cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Sharp {
     /// Eigenvalues of the sum of the normals' outer products that are smaller than this share of the largest count as none: along their
     /// directions the point is that of the mean of the crossings.
     pub(crate) truncation: f32,
-    /// Whether the point is the best one in the cell rather than the best anywhere.
+    /// Whether the point is the best one in the cell, rather than the best anywhere up to [`REACH`] beyond it.
     pub(crate) in_cell: bool,
 }
 
@@ -32,9 +36,10 @@ impl Sharp {
             sum.b += n * n.dot(*p - mean);
         }
         let step = self.solve(&sum, [true; 3]);
-        let is_in = |p: DVec3| p.cmpge(low).all() && p.cmple(high).all();
-        if !self.in_cell || is_in(mean + step) {
-            return mean + step;
+        let reach = if self.in_cell { DVec3::ZERO } else { REACH * (high - low) };
+        let point = mean + step;
+        if point.cmpge(low - reach).all() && point.cmple(high + reach).all() {
+            return point;
         }
         self.best_in(&sum, low - mean, high - mean).map_or(mean, |step| mean + step).clamp(low, high)
     }
