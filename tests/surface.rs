@@ -3,7 +3,6 @@
 mod command;
 
 use command::{Folder, Run};
-use glam::{DMat3, DVec3, EulerRot};
 use mesh::topology::topology;
 use mesh::{MeshFormat, TriangleMesh};
 use std::path::Path;
@@ -541,103 +540,4 @@ fn what_cannot_be_said_ends_nothing() {
     let ended = folder.isostudy().args(words).stderr(full).status().unwrap();
     assert!(ended.success(), "{ended}");
     assert!(folder.path("a.ply").is_file());
-}
-
-/// The spacing of the grids on which turned boxes are extracted.
-const TURNED_SPACING: f64 = 2.2 / 40.0;
-
-/// A box about the origin that no axis is parallel to.
-struct TurnedBox {
-    turned: DMat3,
-    half: DVec3,
-}
-
-impl TurnedBox {
-    fn numbered(turn: i32) -> Self {
-        let angle = 0.37 + 0.71 * f64::from(turn);
-        let turned = DMat3::from_euler(EulerRot::ZYX, angle, 0.6 * angle, 1.3 * angle);
-        Self { turned, half: DVec3::new(0.43, 0.52 + 0.01 * f64::from(turn), 0.58) }
-    }
-
-    /// Negative inside.
-    fn formula(&self) -> String {
-        let side = |axis: usize| {
-            let n = self.turned.col(axis);
-            format!("abs(({:.9})*x + ({:.9})*y + ({:.9})*z) - {:.9}", n.x, n.y, n.z, self.half[axis])
-        };
-        format!("max({}, {}, {})", side(0), side(1), side(2))
-    }
-
-    /// By the signs of its place along the sides, one bit each.
-    fn corner(&self, c: usize) -> DVec3 {
-        let sign = |axis: usize| if c >> axis & 1 != 0 { 1.0 } else { -1.0 };
-        self.turned * (self.half * DVec3::new(sign(0), sign(1), sign(2)))
-    }
-
-    fn as_mesh(&self) -> TriangleMesh {
-        let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        TriangleMesh {
-            positions: (0..8).map(|c| self.corner(c).as_vec3()).collect(),
-            normals: Vec::new(),
-            triangles: sides.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
-        }
-    }
-
-    /// The farthest point of a mesh from the box, of a grid of points in each triangle; in cells.
-    fn farthest(&self, mesh: &TriangleMesh) -> f64 {
-        let distance = |p: DVec3| {
-            let q = (self.turned.transpose() * p).abs() - self.half;
-            (q.max(DVec3::ZERO).length() + q.max_element().min(0.0)).abs() / TURNED_SPACING
-        };
-        let points = mesh.triangles.iter().flat_map(|t| {
-            let [a, b, c] = t.map(|v| mesh.positions[v as usize].as_dvec3());
-            let at = move |i: i32, j: i32| a + (b - a) * f64::from(i) / 4.0 + (c - a) * f64::from(j) / 4.0;
-            (0..=4).flat_map(move |i| (0..=4 - i).map(move |j| at(i, j)))
-        });
-        points.map(distance).fold(0.0, f64::max)
-    }
-
-    /// How far the nearest vertex is from the corner that is missed most; in cells.
-    fn missed(&self, mesh: &TriangleMesh) -> f64 {
-        let to = |corner: DVec3| {
-            let each = mesh.positions.iter().map(|p| p.as_dvec3().distance(corner) / TURNED_SPACING);
-            each.fold(f64::INFINITY, f64::min)
-        };
-        (0..8).map(|c| to(self.corner(c))).fold(0.0, f64::max)
-    }
-
-    fn extracted(folder: &Folder, source: [&str; 2], method: &str) -> TriangleMesh {
-        let bounds = "--bounds=-1.1,-1.1,-1.1,1.1,1.1,1.1";
-        let [name, value] = source;
-        folder.succeed(&[name, value, bounds, "--cells", "40", "--method", method, "-o", "made.ply"]);
-        mesh_of(folder, "made.ply")
-    }
-}
-
-/// Turned boxes, as formulas and as meshes: every point of the files that come out is on the box, its corners are there, and a net of the
-/// same cubes cuts them off.
-#[test]
-fn dual_contouring_keeps_the_edges_of_formulas_and_meshes() {
-    let folder = Folder::of("extract");
-    for turn in 0..6 {
-        let wanted = TurnedBox::numbered(turn);
-        let formula = wanted.formula();
-        let mut bytes = Vec::new();
-        mesh::write_ply(&wanted.as_mesh(), &mut bytes).unwrap();
-        folder.write("box.ply", bytes);
-        for source in [["--field", &*formula], ["--mesh", "box.ply"]] {
-            let name = source[0];
-            for method in ["dc", "dc-manifold"] {
-                let edges = TurnedBox::extracted(&folder, source, method);
-                let found = topology(&edges);
-                assert_eq!(found.boundary_edges, 0, "{name} {turn} {method}");
-                assert!(found.is_closed_manifold() || method == "dc", "{name} {turn} {method}: {found:?}");
-                let [farthest, missed] = [wanted.farthest(&edges), wanted.missed(&edges)];
-                assert!(farthest < 0.01, "{name} {turn} {method}: {farthest} cells");
-                assert!(missed < 0.005, "{name} {turn} {method}: {missed} cells");
-            }
-            let net = TurnedBox::extracted(&folder, source, "nets");
-            assert!(wanted.farthest(&net) > 0.2, "{name} {turn}: {} cells", wanted.farthest(&net));
-        }
-    }
 }

@@ -152,6 +152,26 @@ mod tests {
         assert!(ANYWHERE.vertex(&bare, FAR[0], FAR[1]).abs_diff_eq(p(0.4, 0.4, 0.3), 1e-12));
     }
 
+    /// Beyond the cell by less than an edge a meeting of planes counts; farther away the best point of the cell is taken.
+    #[test]
+    fn points_far_away_are_not_taken() {
+        // Planes x = along, y = 0.5 and z = 0.5, crossed in the unit cell's edges and faces.
+        let found = |along: f64| {
+            let slope = DVec3::new(0.1, 1.0, 0.0).normalize();
+            let corner = DVec3::new(along, 0.5, 0.5);
+            let on = |x: f64| corner + (x - along) * DVec3::new(1.0, -0.1, 0.0);
+            let crossings = [
+                (on(0.2), Some(slope)),
+                (DVec3::new(0.3, 0.5, 0.1), Some(DVec3::Y)),
+                (DVec3::new(0.6, 0.4, 0.5), Some(DVec3::Z)),
+            ];
+            Sharp { truncation: 1e-6, in_cell: false }.vertex(&crossings, DVec3::ZERO, DVec3::ONE)
+        };
+        assert!(found(1.9).abs_diff_eq(DVec3::new(1.9, 0.5, 0.5), 1e-9), "{}", found(1.9));
+        let near = found(2.1);
+        assert!(near.cmpge(DVec3::ZERO).all() && near.cmple(DVec3::ONE).all(), "{near}");
+    }
+
     /// Two sets of eigenvalues that a kernel's author met: a cone's tip must keep rank 3, a worn edge must have rank 2.
     #[test]
     fn truncation_keeps_a_cone_and_drops_noise() {
