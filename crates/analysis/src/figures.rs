@@ -7,6 +7,7 @@ mod canvas;
 mod distributions;
 mod edge_groups;
 mod forest;
+mod fronts;
 mod glance;
 mod history;
 mod legend;
@@ -64,6 +65,7 @@ fn drafts(inputs: &Inputs<'_>) -> Vec<Unfinished> {
     drafts.extend(meshes::aspect_ratios(inputs));
     drafts.extend(stages::stage_times(inputs));
     drafts.extend(distributions::aspect_ratios(inputs));
+    drafts.extend(fronts::draft(inputs));
     if let Some(found) = crate::tables::design::budgets(inputs) {
         drafts.iter_mut().for_each(|draft| draft.caption += &format!(" {found}"));
     }

@@ -49,6 +49,7 @@ impl Everything {
             study: &self.study,
             meshes: &self.meshes,
             bench: Some(&self.bench),
+            chunks: &[],
             answers: Some(&self.answers),
             left_out: &[],
         }

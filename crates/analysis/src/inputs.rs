@@ -1,7 +1,7 @@
 //! What tables and figures are made from.
 
 use crate::answered::Answered;
-use design::record::{BenchRun, MeshRecord};
+use design::record::{BenchRun, ChunkTimes, MeshRecord};
 use design::{ConfigurationId, Study};
 
 /// What tables and figures are made from. Absent or empty parts leave out what depends on them.
@@ -13,6 +13,8 @@ pub struct Inputs<'a> {
     pub meshes: &'a [MeshRecord],
     /// The benchmark run.
     pub bench: Option<&'a BenchRun>,
+    /// Times chunk by chunk, of what was timed so.
+    pub chunks: &'a [ChunkTimes],
     /// The answers to this study's comparisons.
     pub answers: Option<&'a Answered>,
     /// What has no mesh or no times because its program failed, and why.

@@ -17,6 +17,7 @@ mod answered;
 pub mod audit;
 mod ballots;
 mod data;
+mod decision;
 mod figure;
 mod figures;
 mod fraction;

@@ -6,6 +6,7 @@
 
 mod asked;
 mod checks;
+mod decision;
 mod declaration;
 mod factors;
 mod finding;
@@ -196,6 +197,7 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure]) -> Repo
     };
     let mut builder = Builder::new(tables, figures);
     let methods = builder.table("methods");
+    builder.decision(inputs);
     let fails = paper::does_not_hold(inputs);
     if inputs.answers.is_some() {
         builder.preferences(&evidence, fails);
@@ -375,6 +377,16 @@ impl Builder {
                 self.sections.last_mut().expect("a section to add to").blocks.push(Block::Folded(table));
             }
         }
+    }
+
+    /// Which method to take; nothing where there are none to choose from.
+    fn decision(&mut self, inputs: &Inputs<'_>) {
+        let tables = ["choices", "decision"].map(|name| self.table(name).map(Block::Table));
+        let mut blocks: Vec<Block> = tables.into_iter().flatten().collect();
+        blocks.extend(self.figures(&["fronts"]));
+        blocks.extend(decision::fronts_in_words(inputs));
+        blocks.extend(self.table("fronts").map(Block::Folded));
+        self.section("decision", "Which method to take", blocks);
     }
 
     /// What answers alone can tell.

@@ -5,7 +5,9 @@ pub(crate) mod agreement;
 mod answers;
 pub(crate) mod audit;
 pub(crate) mod benchmark;
+mod chunks;
 pub(crate) mod contrasts;
+mod decision;
 pub(crate) mod design;
 pub(crate) mod glance;
 mod mesh_quality;
@@ -33,6 +35,7 @@ pub fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
     tables.extend(design::programs(inputs));
     tables.extend(design::left_out(inputs));
     tables.extend(benchmark::benchmark(inputs));
+    tables.extend(chunks::chunks(inputs));
     tables.extend(design::questionnaire(inputs.study));
     if let Some(answers) = inputs.answers {
         tables.extend(answers::answers(inputs.study, &answers.responses, &answers.excluded));
@@ -43,6 +46,7 @@ pub fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
     tables.extend(mesh_quality::quality(inputs));
     tables.extend(mesh_quality::topology(inputs));
     tables.extend(accuracy::accuracy(inputs));
+    tables.extend(decision::tables(inputs));
     paper::add_tables(&mut tables, inputs);
     tables
 }

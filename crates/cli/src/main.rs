@@ -8,6 +8,7 @@
 mod terminal;
 
 mod answer_files;
+mod chunk_times;
 mod commands;
 mod error_colours;
 mod fields;

@@ -4,7 +4,8 @@
 //! objects ─ budgets ─ meshes ─┬─ turntables ─┬─ pairs, key ─┐
 //! comparisons ─ forms, key ───┼──────────────┼──────────────┤
 //!                             └─ stills ─────┼──────────────┤
-//! objects ─ budgets ─ timings ─┐             │              ├─ page ─ manifest
+//! objects ─ budgets ─ timings ─┤             │              ├─ page ─ manifest
+//! objects ────────────  chunks ─┤             │              │
 //!              first frames ───┼─────────────┘              │
 //! answers ─────────────────────┴─ tables, figures, report ──┘
 //! ```
@@ -12,6 +13,7 @@
 mod ab;
 mod budgets;
 mod bundle;
+mod chunks;
 mod formats;
 mod meshes;
 mod pages;
@@ -83,8 +85,10 @@ impl<'a> Pipeline<'a> {
         let stills = self.stills()?;
         let timings = self.timings(&PlanLength::Short)?;
         let pictures = self.pictures(&turntables)?;
-        let tables = self.tables(&meshes, &timings, &pictures)?;
-        self.page(&meshes, &[turntables, pairs, forms, stills, pictures, vec![timings, tables]].concat())?;
+        let chunks = self.chunk_times()?;
+        let tables = self.tables(&meshes, &timings, &chunks, &pictures)?;
+        let made = [turntables, pairs, forms, stills, pictures, chunks, vec![timings, tables]].concat();
+        self.page(&meshes, &made)?;
         self.store.retire_untouched(|stage| ASKED_FOR.iter().any(|start| stage.starts_with(start)))?;
         self.unexplained()
     }

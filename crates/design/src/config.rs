@@ -163,6 +163,9 @@ pub struct BenchmarkSection {
     /// Threads in the sampling stage; 0 takes every core.
     #[serde(deserialize_with = "whole")]
     pub threads: u32,
+    /// Cells along a side of the chunks that are timed one by one; 0 times none.
+    #[serde(default, deserialize_with = "whole")]
+    pub chunks: u32,
     /// TOML file that describes the CPU the numbers are meant for.
     pub target: String,
     /// What `isostudy bench sweep` measures; leave out for a study that sweeps nothing.

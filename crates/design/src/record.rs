@@ -260,6 +260,29 @@ pub struct SweepMesh {
     pub published_aspect_ratio_mean: f64,
 }
 
+/// What a configuration costs chunk by chunk, on one thread, from the field: terrain as a game keeps it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ChunkTimes {
+    /// Which configuration, at the benchmark spacing.
+    pub id: ConfigurationId,
+    /// Cells along a side of a chunk; those at the upper ends of the box may be smaller.
+    pub cells: u32,
+    /// Chunks that fill the box.
+    pub chunks: u64,
+    /// Those of all cells that have triangles: theirs are the times.
+    pub timed: u64,
+    /// Seconds per extraction of such a chunk, round by round.
+    pub chunk_s: Vec<f64>,
+    /// Chunks that each edit touches.
+    pub edit_chunks: Vec<u64>,
+    /// Seconds to extract all of them again, edit by edit.
+    pub edit_s: Vec<f64>,
+    /// Boundary edges of the chunks welded together, less those of the mesh that is made at once.
+    pub open_seam_edges: i64,
+    /// Whether the welded chunks are that mesh, to the bit.
+    pub is_whole: bool,
+}
+
 /// What was asked of the extractor for one configuration: times of different work say nothing of each other.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Workload {

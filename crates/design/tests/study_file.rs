@@ -329,6 +329,7 @@ fn full_study() -> StudyFile {
             aa_iterations: 1,
             pin: true,
             threads: 1,
+            chunks: 1,
             target: text(),
             sweep: Some(SweepSection {
                 objects: vec![text()],

@@ -4,6 +4,7 @@
 //! level of the factor before. Stripes also tell the second stage or half of a bar.
 
 use super::canvas::{BLACK, Canvas, Colour, WHITE};
+use super::marks::{Filling, Mark};
 use design::{MethodId, Study};
 use plotters::style::RGBColor;
 
@@ -127,6 +128,12 @@ pub(super) fn hue_and_filling(study: &Study, method: MethodId) -> [usize; 2] {
     let place = study.place(method);
     let (filling, hue) = crossed.unwrap_or((place / HUES.len(), place));
     [hue % HUES.len(), filling % FILLINGS]
+}
+
+/// The mark of a method: a shape for each hue of [`method`], a filling for each of its fillings.
+pub(super) fn mark(study: &Study, method: MethodId) -> Mark {
+    let [hue, filling] = hue_and_filling(study, method);
+    Mark::of(hue, [Filling::Full, Filling::Hollow, Filling::Dotted, Filling::Holed][filling])
 }
 
 /// The fill of a method.

@@ -2,7 +2,6 @@
 
 use super::axis::Axis;
 use super::legend::Swatch;
-use super::marks::{Filling, Mark};
 use super::scatter::Scatter;
 use super::{Figure, Unfinished, WIDTH, canvas_with_legend, style};
 use crate::inputs::AnalysisError;
@@ -49,14 +48,8 @@ fn fewest(sweep: &Sweep) -> u32 {
     sweep.points.iter().map(|point| point.threads).min().unwrap_or(1)
 }
 
-/// A shape for each hue of [`style::method`], a filling for each of its fillings.
-fn mark(study: &Study, method: MethodId) -> Mark {
-    let [hue, filling] = style::hue_and_filling(study, method);
-    Mark::of(hue, [Filling::Full, Filling::Hollow, Filling::Dotted, Filling::Holed][filling])
-}
-
 fn legend(study: &Study) -> Vec<(Swatch, String)> {
-    study.methods.iter().map(|m| (Swatch::Mark(mark(study, m.id)), m.label.clone())).collect()
+    study.methods.iter().map(|m| (Swatch::Mark(style::mark(study, m.id)), m.label.clone())).collect()
 }
 
 /// The points of one configuration on the fewest threads, by resolution.
@@ -88,7 +81,7 @@ fn lines(
     for method in study.method_ids() {
         let points: Vec<(f64, f64)> =
             line(sweep, object, method).into_iter().filter_map(|p| Some((x(p)?, y(p)?))).collect();
-        marks.extend(points.iter().map(|&at| (at, mark(study, method))));
+        marks.extend(points.iter().map(|&at| (at, style::mark(study, method))));
         lines.push((style::method(study, method).outline, points));
     }
     let of = |pick: fn(&(f64, f64)) -> f64| lines.iter().flat_map(move |(_, line)| line.iter().map(pick));
@@ -192,7 +185,7 @@ fn speed_up(study: &Study, sweep: &Sweep, objects: &[&str]) -> Option<Unfinished
                 points.push((x, found.ratio));
                 lines.extend(found.interval.map(|i| (colour, vec![(x, i.low), (x, i.high)])));
             }
-            marks.extend(points[1..].iter().map(|&at| (at, mark(study, method))));
+            marks.extend(points[1..].iter().map(|&at| (at, style::mark(study, method))));
             lines.push((colour, points));
         }
         Scatter {
@@ -273,7 +266,7 @@ mod tests {
             let mut looks = std::collections::BTreeMap::new();
             for method in &study.methods {
                 let mut canvas = super::super::canvas::Canvas::new(40.0, 20.0);
-                mark(&study, method.id).draw(&mut canvas, (10.0, 10.0));
+                style::mark(&study, method.id).draw(&mut canvas, (10.0, 10.0));
                 let marked = canvas.to_svg("mark").unwrap();
                 let mut canvas = super::super::canvas::Canvas::new(40.0, 20.0);
                 style::method(&study, method.id).paint(&mut canvas, (5.0, 5.0), (35.0, 15.0));

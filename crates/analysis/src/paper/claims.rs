@@ -32,6 +32,9 @@ pub(crate) struct Finding {
     pub(crate) verdict: Verdict,
 }
 
+/// Why numbers differ where nothing is published of the study's objects.
+const OTHER_OBJECTS: &str = "on other objects than the text's";
+
 /// The claims that can be computed and what they come to, in the order they are listed.
 pub(crate) fn all<'a>(inputs: &Inputs<'a>, tally: Option<&Tally>) -> Vec<(&'a Claim, Finding)> {
     let find = |claim| {
@@ -40,7 +43,12 @@ pub(crate) fn all<'a>(inputs: &Inputs<'a>, tally: Option<&Tally>) -> Vec<(&'a Cl
             .or_else(|| shapes::find(inputs, claim))
             .or_else(|| tally.and_then(|tally| preferences::find(inputs.study, tally, claim)))
             .or_else(|| setup::find(inputs.study, claim));
-        Some((claim, found?))
+        let mut found = found?;
+        // The text speaks of its own objects.
+        if found.verdict.is_unexplained() && inputs.study.published.benchmark.is_empty() {
+            found.verdict = Verdict::differs(OTHER_OBJECTS);
+        }
+        Some((claim, found))
     };
     inputs.study.published.claims.iter().filter_map(find).collect()
 }

@@ -85,6 +85,7 @@ fn the_papers_answers() {
     let report = report(&all.inputs(), &tables, &figures);
     let ids: Vec<&str> = report.sections.iter().map(|s| s.id).collect();
     let want = [
+        "decision",
         "contrasts",
         "holds",
         "depends",
@@ -359,7 +360,8 @@ fn no_answers_at_all() {
         ]
     );
     let small = fixture::small_study();
-    let inputs = Inputs { study: &small, meshes: &[], bench: None, answers: None, left_out: &[] };
+    let inputs =
+        Inputs { study: &small, meshes: &[], bench: None, chunks: &[], answers: None, left_out: &[] };
     let tables = crate::tables(&inputs);
     let report = super::report(&inputs, &tables, &[]);
     assert_eq!(report.sections.iter().map(|s| s.id).collect::<Vec<_>>(), ["tables"]);
@@ -461,7 +463,14 @@ fn who_is_left_out_is_left_out_everywhere() {
     let mut study = fixture::study();
     study.file.analysis.exclude = vec![design::config::Exclusion::Outlying];
     let answered = Answered::of(&study, fixture::answers(&study)).unwrap();
-    let inputs = Inputs { study: &study, meshes: &[], bench: None, answers: Some(&answered), left_out: &[] };
+    let inputs = Inputs {
+        study: &study,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        answers: Some(&answered),
+        left_out: &[],
+    };
     let (tables, figures) = (crate::tables(&inputs), crate::figures(&inputs).unwrap());
     let named = |name: &str| tables.iter().find(|table| table.name == name).unwrap();
     let columns: Vec<&str> = named("answers").columns.iter().map(|column| column.name.as_str()).collect();
@@ -479,7 +488,14 @@ fn who_is_left_out_is_left_out_everywhere() {
     let mut hasty = fixture::answers(&study);
     hasty.answers.iter_mut().for_each(|answer| answer.rt_ms = Some(10.0));
     let answered = Answered::of(&study, hasty).unwrap();
-    let inputs = Inputs { study: &study, meshes: &[], bench: None, answers: Some(&answered), left_out: &[] };
+    let inputs = Inputs {
+        study: &study,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        answers: Some(&answered),
+        left_out: &[],
+    };
     let lead = report(&inputs, &crate::tables(&inputs), &[]).lead;
     assert_eq!(
         lead,

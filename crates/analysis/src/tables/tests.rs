@@ -49,6 +49,9 @@ fn every_table_is_there_and_scripts_find_their_columns() {
             "quality",
             "topology",
             "accuracy",
+            "choices",
+            "decision",
+            "fronts",
             "positions",
             "comparison_summary",
             "comparison",
@@ -192,7 +195,8 @@ fn absent_parts_leave_out_their_tables() {
     let all = Everything::of(fixture::study());
     let names =
         |inputs: &Inputs<'_>| -> Vec<String> { tables(inputs).into_iter().map(|table| table.name).collect() };
-    let nothing = Inputs { study: &all.study, meshes: &[], bench: None, answers: None, left_out: &[] };
+    let nothing =
+        Inputs { study: &all.study, meshes: &[], bench: None, chunks: &[], answers: None, left_out: &[] };
     assert_eq!(names(&nothing), ["methods", "configurations", "questionnaire", "claims"]);
     let answers_only = Inputs { answers: Some(&all.answers), ..nothing };
     assert!(names(&answers_only).contains(&"preference_overall".to_owned()));
@@ -213,6 +217,7 @@ fn another_study_works_as_well() {
         study: &study,
         meshes: &meshes,
         bench: Some(&bench),
+        chunks: &[],
         answers: Some(&answers),
         left_out: &[],
     };
@@ -222,5 +227,5 @@ fn another_study_works_as_well() {
     assert!(!tables.iter().any(|table| ["comparison", "claims", "asteroid"].contains(&table.name.as_str())));
     assert_eq!(named(&tables, "benchmark").rows.len(), 4);
     assert!(tables.iter().all(|table| !table.rows.is_empty()));
-    assert_eq!(crate::figures(&inputs).unwrap().len(), 13);
+    assert_eq!(crate::figures(&inputs).unwrap().len(), 14);
 }

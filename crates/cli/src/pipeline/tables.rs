@@ -17,25 +17,31 @@ use table::Table;
 
 impl Pipeline<'_> {
     /// Every table and figure of the study.
-    pub(crate) fn tables(&self, meshes: &Meshes, timings: &Stamp, pictures: &[Stamp]) -> Result<Stamp> {
+    pub(crate) fn tables(
+        &self,
+        meshes: &Meshes,
+        timings: &Stamp,
+        chunks: &[Stamp],
+        pictures: &[Stamp],
+    ) -> Result<Stamp> {
         let step = Step::begin("tables", 1, 1);
         let mut inputs = study_inputs(self.study)?.stamp(timings);
-        for stamp in meshes.stamps().chain(pictures) {
+        for stamp in meshes.stamps().chain(chunks).chain(pictures) {
             inputs = inputs.stamp(stamp);
         }
-        let left_out = self.left_out();
-        let inputs = inputs.value("left out", &left_out);
         let left_out = self.left_out();
         let inputs = inputs.value("left out", &left_out);
         let stamp = self.store.stage("tables", inputs, |writer| {
             let records = self.mesh_records(meshes)?;
             let run = self.bench_run(timings)?;
+            let chunks = self.chunk_records(chunks)?;
             let answers = crate::answer_files::of_study(self.study)?;
             let answers = answers.and_then(|reading| Answered::of(self.study, reading.responses));
             let inputs = analysis::Inputs {
                 study: self.study,
                 meshes: &records,
                 bench: Some(&run),
+                chunks: &chunks,
                 answers: answers.as_ref(),
                 left_out: &left_out,
             };
@@ -61,8 +67,14 @@ impl Pipeline<'_> {
 /// If the files cannot be written.
 pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store) -> Result<Vec<Table>> {
     let answers = Answered::of(study, reading.responses);
-    let inputs =
-        analysis::Inputs { study, meshes: &[], bench: None, answers: answers.as_ref(), left_out: &[] };
+    let inputs = analysis::Inputs {
+        study,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        answers: answers.as_ref(),
+        left_out: &[],
+    };
     let mut made = None;
     store.stage("answers", study_inputs(study)?, |writer| {
         writer.write(READING, reading.report.to_csv().as_bytes())?;

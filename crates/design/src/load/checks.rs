@@ -69,6 +69,7 @@ pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), Co
     c.count("benchmark.short_iterations", b.short_iterations, 1, 100_000)?;
     c.count("benchmark.aa_iterations", b.aa_iterations, 0, 100_000)?;
     c.count("benchmark.threads", b.threads, 0, 1024)?;
+    c.count("benchmark.chunks", b.chunks, 0, 1024)?;
     b.sweep.as_ref().map_or(Ok(()), |sweep| check_sweep(c, file, sweep))
 }
 

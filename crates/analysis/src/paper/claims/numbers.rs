@@ -114,17 +114,6 @@ impl<'a> Numbers<'a> {
         pairs.iter().filter_map(|&[top, bottom]| Some(get(top)? / get(bottom)?)).collect()
     }
 
-    /// `measure` with one clustering over that with another, for every lattice case that has both.
-    pub(crate) fn over_clustering(
-        &self,
-        side: Side,
-        measure: Measure,
-        top: Clustering,
-        bottom: Clustering,
-    ) -> Vec<f64> {
-        self.ratios(side, measure, &self.clustering_pairs(top, bottom))
-    }
-
     /// `measure` of body-centred over that of simple cubic, for every object and some clusterings.
     pub(crate) fn over_arrangement(&self, side: Side, measure: Measure, of: &[Clustering]) -> Vec<f64> {
         self.ratios(side, measure, &self.arrangement_pairs(of))

@@ -141,7 +141,10 @@ fn printed(
 ) -> (Vec<Table>, Vec<BallotGroup>) {
     let read = route.read(study, plan, given).expect("a file that is right");
     let answered = Answered::of(study, read).expect("answers to the study's questions");
-    (tables(&Inputs { study, meshes, bench: None, answers: Some(&answered), left_out: &[] }), answered.groups)
+    (
+        tables(&Inputs { study, meshes, bench: None, chunks: &[], answers: Some(&answered), left_out: &[] }),
+        answered.groups,
+    )
 }
 
 /// A number's place: table, column, and the names at the head of its row.

@@ -95,7 +95,8 @@ impl Made {
     pub(super) fn of(study: &Study, answers: Responses) -> Option<Self> {
         let people = people(&answers);
         let answered = Answered::of(study, answers)?;
-        let inputs = Inputs { study, meshes: &[], bench: None, answers: Some(&answered), left_out: &[] };
+        let inputs =
+            Inputs { study, meshes: &[], bench: None, chunks: &[], answers: Some(&answered), left_out: &[] };
         let tables = tables(&inputs);
         let report = report(&inputs, &tables, &[]);
         Some(Self { people, tables, report })

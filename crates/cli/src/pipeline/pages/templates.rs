@@ -6,7 +6,7 @@ use minijinja::syntax::SyntaxConfig;
 use serde::Serialize;
 
 /// Tables that fit any page, their rows cards on a narrow screen: who reads no other reads these.
-const FITTING: [&str; 3] = ["contrasts", "claims", "methods"];
+const FITTING: [&str; 5] = ["choices", "decision", "contrasts", "claims", "methods"];
 
 /// Both pages by name: `index.html` and `report.html`.
 pub(super) fn environment() -> Result<Environment<'static>> {

@@ -1,0 +1,17 @@
+//! Which method to take: what each costs and gives on each object, who is beaten in both, and who is the best at what is wanted.
+//!
+//! Nothing here weighs time against error. A front leaves out what nobody should take; a want names one quantity and takes the best
+//! in it. Whose intervals meet the best's is named beside it.
+
+mod candidate;
+mod estimate;
+mod fronts;
+mod wants;
+
+pub(crate) use candidate::{Candidate, ObjectCandidates, candidates};
+pub(crate) use estimate::Estimate;
+pub(crate) use fronts::{Axes, Front, FrontPoint, Standing, fronts};
+pub(crate) use wants::{Cost, Pick, Want, picks};
+
+#[cfg(test)]
+mod tests;

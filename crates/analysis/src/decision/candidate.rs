@@ -1,0 +1,144 @@
+//! The methods of each object, with what is known of them.
+
+use super::Estimate;
+use crate::answered::Answered;
+use crate::inputs::Inputs;
+use crate::mesh_set::{MeshSet, known};
+use design::config::ObjectSection;
+use design::record::{BenchRun, ChunkTimes, Distribution, MeshRecord, Purpose};
+use design::{ConfigurationId, Method, MethodId, Study};
+use statistics::interval::{Interval, LEVEL, of_mean_score};
+use statistics::median;
+use std::collections::BTreeMap;
+
+/// How many standard errors a mean may be off at 95 %.
+const NORMAL_QUANTILE: f64 = 1.959_963_984_540_054;
+
+/// An object and the methods that can be taken for it, in the study's order.
+pub(crate) struct ObjectCandidates<'a> {
+    pub(crate) object: &'a ObjectSection,
+    pub(crate) candidates: Vec<Candidate<'a>>,
+}
+
+/// A method on one object, at the benchmark spacing or what its budget made of it.
+pub(crate) struct Candidate<'a> {
+    pub(crate) method: &'a Method,
+    pub(crate) mesh: &'a MeshRecord,
+    /// Median seconds from the field to the mesh, normals left out.
+    pub(crate) time_s: Option<Estimate>,
+    /// Median seconds to extract again the chunks that an edit touches.
+    pub(crate) edit_s: Option<Estimate>,
+    /// Mean distance from the mesh to the isosurface or back, whichever is larger, in edges of the object's benchmark cubes: one
+    /// unit for all methods of the object.
+    pub(crate) error: Option<Estimate>,
+    /// The larger of both largest distances, in the same unit.
+    pub(crate) hausdorff: Option<Estimate>,
+    /// Mean over people of the answers for it less those against it, per answer that showed it on this object: 1 is always chosen.
+    pub(crate) preference: Option<Estimate>,
+}
+
+impl Candidate<'_> {
+    pub(crate) fn id(&self) -> MethodId {
+        self.method.id
+    }
+
+    pub(crate) fn triangles(&self) -> Estimate {
+        Estimate::exact(self.mesh.counts.triangles as f64)
+    }
+
+    /// Whether the mesh has the components and the Euler characteristic of the trilinear interpolant of its samples, as far as that was
+    /// counted.
+    pub(crate) fn has_right_topology(&self) -> bool {
+        let own = &self.mesh.topology;
+        self.mesh.trilinear.as_ref().is_some_and(|truth| {
+            own.components == truth.components && own.euler_characteristic == truth.euler_characteristic
+        })
+    }
+
+    /// What is wrong with the mesh as a surface: edges and vertices at which it is no manifold, folded and doubled triangles, pairs
+    /// that pass through each other. A border is not counted: the object may end at its box.
+    pub(crate) fn faults(&self) -> u64 {
+        let t = &self.mesh.topology;
+        let counts = [t.non_manifold_edges, t.non_manifold_vertices, t.folded_faces, t.duplicate_faces];
+        counts.iter().sum::<u64>() + t.self_intersections.unwrap_or(0)
+    }
+}
+
+/// The candidates of every object that has any. A method that differs from an earlier one in its look alone is none.
+pub(crate) fn candidates<'a>(inputs: &Inputs<'a>) -> Vec<ObjectCandidates<'a>> {
+    let study = inputs.study;
+    let meshes = MeshSet::of(inputs, Purpose::Benchmark);
+    let methods: Vec<&Method> = study.methods.iter().filter(|method| !is_repeated(study, method)).collect();
+    let of_object = |(place, object): (usize, &'a ObjectSection)| {
+        let candidate = |method: &&'a Method| {
+            let mesh = meshes.at(place, method.id)?;
+            let unit = object.benchmark_spacing;
+            let id = ConfigurationId { object: object.id.clone(), method: method.id };
+            Some(Candidate {
+                method,
+                mesh,
+                time_s: inputs.bench.and_then(|run| time(run, &id)),
+                edit_s: inputs.chunks.iter().find(|times| times.id == id).and_then(edit),
+                error: error(mesh, unit),
+                hausdorff: mesh.accuracy.hausdorff().map(|distance| Estimate::exact(distance / unit)),
+                preference: inputs.answers.and_then(|answers| preference(study, answers, place, method.id)),
+            })
+        };
+        ObjectCandidates { object, candidates: methods.iter().filter_map(candidate).collect() }
+    };
+    let all = study.file.objects.iter().enumerate().map(of_object);
+    all.filter(|of| !of.candidates.is_empty()).collect()
+}
+
+fn is_repeated(study: &Study, method: &Method) -> bool {
+    let earlier = study.methods.iter().take_while(|other| other.id != method.id);
+    earlier.into_iter().any(|other| other.recipe == method.recipe && other.budget == method.budget)
+}
+
+fn time(run: &BenchRun, id: &ConfigurationId) -> Option<Estimate> {
+    let own = run.samples.iter().filter(|sample| sample.id == *id);
+    let found = median(own.map(|sample| sample.total_s - sample.normals_s).collect(), LEVEL)?;
+    Some(Estimate::within(found.median, found.interval))
+}
+
+fn edit(times: &ChunkTimes) -> Option<Estimate> {
+    let found = median(times.edit_s.clone(), LEVEL)?;
+    Some(Estimate::within(found.median, found.interval))
+}
+
+fn error(mesh: &MeshRecord, unit: f64) -> Option<Estimate> {
+    let there = mean(&mesh.accuracy.distance)?;
+    let back = mean(mesh.accuracy.distance_to_mesh.as_ref()?)?;
+    let larger = if back.value > there.value { back } else { there };
+    Some(Estimate { value: larger.value / unit, low: larger.low / unit, high: larger.high / unit })
+}
+
+fn mean(of: &Distribution) -> Option<Estimate> {
+    let mean = known(of, |of| of.mean)?;
+    let half = NORMAL_QUANTILE * of.sd / (of.count as f64).sqrt();
+    Some(Estimate { value: mean, low: mean - half, high: mean + half })
+}
+
+fn preference(study: &Study, answers: &Answered, object: usize, method: MethodId) -> Option<Estimate> {
+    let place = study.place(method);
+    let mut people: BTreeMap<usize, (i64, i64)> = BTreeMap::new();
+    for ballot in &answers.declared {
+        if study.comparisons[ballot.question()].object != object {
+            continue;
+        }
+        let sign = match place {
+            place if place == ballot.first() => ballot.preference().sign(),
+            place if place == ballot.second() => -ballot.preference().sign(),
+            _ => continue,
+        };
+        let (sum, shown) = people.entry(ballot.participant()).or_default();
+        (*sum, *shown) = (*sum + sign, *shown + 1);
+    }
+    let mut scores: Vec<f64> = people.values().map(|&(sum, shown)| sum as f64 / shown as f64).collect();
+    // Sums of doubles depend on their order, and people come in any.
+    scores.sort_by(f64::total_cmp);
+    let mean = scores.iter().sum::<f64>() / scores.len() as f64;
+    let interval = of_mean_score(&scores, 1.0)
+        .map(|Interval { low, high }| Interval { low: low.max(-1.0), high: high.min(1.0) });
+    (!scores.is_empty()).then(|| Estimate::within(mean, interval))
+}

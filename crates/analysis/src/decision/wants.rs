@@ -1,0 +1,247 @@
+//! What somebody may want of a mesh, and who is the best at it on each object.
+
+use super::{Candidate, Estimate, ObjectCandidates};
+use crate::mesh_set::known;
+use design::config::{ObjectSection, Quantity};
+use design::{Method, MethodId};
+
+/// One quantity that somebody wants, of the methods that can be compared in it.
+pub(crate) struct Want {
+    /// Name of its column.
+    pub(crate) name: &'static str,
+    pub(crate) heading: &'static str,
+    /// Its number with its unit, `{}` for the number.
+    pub(crate) unit: &'static str,
+    /// In words, after *You want*.
+    pub(crate) phrase: &'static str,
+    /// What the number is, with `{}` for it.
+    pub(crate) says: &'static str,
+    among: Among,
+    quantity: fn(&Candidate<'_>) -> Option<Estimate>,
+    is_larger_better: bool,
+}
+
+/// Who takes part.
+#[derive(Clone, Copy, PartialEq)]
+enum Among {
+    /// Those with the object's own cubes.
+    SameCells,
+    /// The same, without a fault in the mesh.
+    Faultless,
+    /// The same, with as many components and tunnels as the trilinear interpolant of the samples.
+    RightTopology,
+    /// Those with as many triangles as one of them, and that one.
+    SameTriangles,
+    /// Everybody.
+    All,
+}
+
+const WANTS: [Want; 9] = [
+    Want {
+        name: "preferred",
+        heading: "most liked",
+        unit: "{}",
+        phrase: "the look that people chose most",
+        says: "mean score {}, from \u{2212}1 to 1",
+        among: Among::All,
+        quantity: |of| of.preference,
+        is_larger_better: true,
+    },
+    Want {
+        name: "fastest",
+        heading: "shortest time",
+        unit: "{} ms",
+        phrase: "the shortest time",
+        says: "{} ms",
+        among: Among::SameCells,
+        quantity: |of| of.time_s.map(milliseconds),
+        is_larger_better: false,
+    },
+    Want {
+        name: "edit",
+        heading: "shortest edit",
+        unit: "{} ms",
+        phrase: "the shortest time for an edit of terrain in chunks",
+        says: "{} ms",
+        among: Among::SameCells,
+        quantity: |of| of.edit_s.map(milliseconds),
+        is_larger_better: false,
+    },
+    Want {
+        name: "closest",
+        heading: "smallest mean error",
+        unit: "{}",
+        phrase: "the smallest mean error",
+        says: "{} cube edges",
+        among: Among::SameCells,
+        quantity: |of| of.error,
+        is_larger_better: false,
+    },
+    Want {
+        name: "closest_per_triangle",
+        heading: "the same with as many triangles",
+        unit: "{}",
+        phrase: "the smallest mean error with as many triangles",
+        says: "{} cube edges",
+        among: Among::SameTriangles,
+        quantity: |of| of.error,
+        is_larger_better: false,
+    },
+    Want {
+        name: "edges",
+        heading: "smallest largest error",
+        unit: "{}",
+        phrase: "corners and edges kept: the smallest largest error",
+        says: "{} cube edges",
+        among: Among::SameCells,
+        quantity: |of| of.hausdorff,
+        is_larger_better: false,
+    },
+    Want {
+        name: "regular",
+        heading: "most regular triangles",
+        unit: "{}",
+        phrase: "the most regular triangles",
+        says: "mean radius ratio {}",
+        among: Among::SameCells,
+        quantity: |of| known(&of.mesh.quality.radius_ratio, |ratio| ratio.mean).map(Estimate::exact),
+        is_larger_better: true,
+    },
+    Want {
+        name: "faultless",
+        heading: "no fault, soonest",
+        unit: "{} ms",
+        phrase: "a manifold without intersections, soonest",
+        says: "{} ms",
+        among: Among::Faultless,
+        quantity: |of| of.time_s.map(milliseconds),
+        is_larger_better: false,
+    },
+    Want {
+        name: "topology",
+        heading: "no fault and the samples' topology, soonest",
+        unit: "{} ms",
+        phrase: "the topology of the interpolated samples and no fault, soonest",
+        says: "{} ms",
+        among: Among::RightTopology,
+        quantity: |of| of.time_s.map(milliseconds),
+        is_larger_better: false,
+    },
+];
+
+fn milliseconds(seconds: Estimate) -> Estimate {
+    let Estimate { value, low, high } = seconds;
+    Estimate { value: 1e3 * value, low: 1e3 * low, high: 1e3 * high }
+}
+
+/// The best at a want, and the objects on which it is.
+pub(crate) struct Pick<'a> {
+    pub(crate) want: &'static Want,
+    pub(crate) method: &'a Method,
+    pub(crate) on: Vec<Best<'a>>,
+}
+
+/// The best of one object.
+pub(crate) struct Best<'a> {
+    pub(crate) object: &'a ObjectSection,
+    pub(crate) value: Estimate,
+    /// The next best, and its value; `None` where no other qualifies.
+    pub(crate) next: Option<(&'a Method, Estimate)>,
+    /// Whose interval meets that of the best.
+    pub(crate) alike: Vec<MethodId>,
+    pub(crate) cost: Cost,
+}
+
+/// What the best has to be paid with, beside those that it was compared with.
+pub(crate) struct Cost {
+    /// Its time over the shortest; `None` where there are no times.
+    pub(crate) time: Option<f64>,
+    /// Its triangles over the fewest.
+    pub(crate) triangles: f64,
+    /// Its error over the smallest.
+    pub(crate) error: Option<f64>,
+    pub(crate) crossing_triangles: u64,
+    /// Edges and vertices at which the mesh is no manifold.
+    pub(crate) no_manifold: u64,
+}
+
+/// The picks of every want that two methods or more can be compared in, want by want; methods in the study's order.
+pub(crate) fn picks<'a>(objects: &[ObjectCandidates<'a>]) -> Vec<Pick<'a>> {
+    let mut picks: Vec<Pick<'a>> = Vec::new();
+    for want in &WANTS {
+        let from = picks.len();
+        for of in objects {
+            let Some((method, best)) = want.best(of) else { continue };
+            match picks[from..].iter_mut().find(|pick| pick.method.id == method.id) {
+                Some(pick) => pick.on.push(best),
+                None => picks.push(Pick { want, method, on: vec![best] }),
+            }
+        }
+    }
+    picks
+}
+
+impl Want {
+    fn best<'a>(&'static self, of: &ObjectCandidates<'a>) -> Option<(&'a Method, Best<'a>)> {
+        let pool = self.among.pool(&of.candidates);
+        // Of equals the study's first.
+        let mut ranked: Vec<(&Candidate<'a>, Estimate)> =
+            pool.iter().filter_map(|&candidate| Some((candidate, (self.quantity)(candidate)?))).collect();
+        let sign = if self.is_larger_better { -1.0 } else { 1.0 };
+        ranked.sort_by(|a, b| (sign * a.1.value).total_cmp(&(sign * b.1.value)));
+        let &(first, value) = ranked.first()?;
+        if of.candidates.len() < 2 || !self.among.is_strict() && ranked.len() < 2 {
+            return None;
+        }
+        let next = ranked.get(1).map(|(of, value)| (of.method, *value));
+        let alike = ranked[1..].iter().filter(|(_, other)| other.meets(value)).map(|(of, _)| of.id());
+        let least = |quantity: fn(&Candidate<'_>) -> Option<f64>| {
+            let least = pool.iter().filter_map(|&of| quantity(of)).min_by(f64::total_cmp);
+            Some(quantity(first)? / least.filter(|&least| least > 0.0)?)
+        };
+        let topology = &first.mesh.topology;
+        let cost = Cost {
+            time: least(|of| of.time_s.map(|time| time.value)),
+            triangles: least(|of| Some(of.triangles().value)).unwrap_or(1.0),
+            error: least(|of| of.error.map(|error| error.value)),
+            crossing_triangles: topology.self_intersections.unwrap_or(0),
+            no_manifold: topology.non_manifold_edges + topology.non_manifold_vertices,
+        };
+        let best = Best { object: of.object, value, next, alike: alike.collect(), cost };
+        Some((first.method, best))
+    }
+}
+
+impl Among {
+    /// Whether a single one that qualifies is worth naming.
+    fn is_strict(self) -> bool {
+        matches!(self, Self::Faultless | Self::RightTopology)
+    }
+
+    fn pool<'b, 'a>(self, all: &'b [Candidate<'a>]) -> Vec<&'b Candidate<'a>> {
+        let same_cells = |of: &Candidate<'_>| of.method.budget.is_none();
+        let models: Vec<MethodId> = all
+            .iter()
+            .filter_map(|of| of.method.budget.filter(|budget| budget.quantity == Quantity::Triangles))
+            .map(|budget| budget.of)
+            .collect();
+        // A study may match several; the first is taken.
+        let model = models.first().copied();
+        // Where no mesh is closed, the object itself ends at its box.
+        let can_close = all.iter().any(|of| of.mesh.topology.boundary_edges == 0);
+        let is_whole = |of: &Candidate<'_>| of.mesh.topology.boundary_edges == 0 || !can_close;
+        let matched = |of: &Candidate<'_>| match of.method.budget {
+            Some(budget) => budget.quantity == Quantity::Triangles && Some(budget.of) == model,
+            None => Some(of.id()) == model,
+        };
+        let is_faultless = |of: &Candidate<'_>| same_cells(of) && of.faults() == 0 && is_whole(of);
+        let takes = |of: &&Candidate<'_>| match self {
+            Self::SameCells => same_cells(of),
+            Self::Faultless => is_faultless(of),
+            Self::RightTopology => is_faultless(of) && of.has_right_topology(),
+            Self::SameTriangles => matched(of),
+            Self::All => true,
+        };
+        all.iter().filter(takes).collect()
+    }
+}

@@ -1,0 +1,138 @@
+//! The terrain study made small, from its file to its answer: fronts and choices are computed once more from the tables of times,
+//! counts and distances, and chunks must be the whole mesh.
+
+mod command;
+
+use command::{Folder, Run, isostudy};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// A row of a table by its columns.
+type Row = BTreeMap<String, String>;
+
+fn rows(out: &Path, table: &str) -> Vec<Row> {
+    let path = out.join(format!("tables/{table}.csv"));
+    let mut reader =
+        csv::Reader::from_path(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    reader.deserialize().collect::<Result<_, _>>().unwrap()
+}
+
+fn number(row: &Row, column: &str) -> Option<f64> {
+    row.get(column).filter(|text| !text.is_empty()).map(|text| text.parse().unwrap())
+}
+
+/// What is known of a configuration, from tables that know nothing of choices.
+struct Known {
+    object: String,
+    method: String,
+    has_own_cubes: bool,
+    seconds: f64,
+    triangles: f64,
+    error: f64,
+    radius_ratio: f64,
+}
+
+fn known(out: &Path) -> Vec<Known> {
+    let of = |table: &str, id: &str| {
+        let is_own =
+            |row: &Row| row["id"] == id && row.get("purpose").is_none_or(|purpose| purpose == "benchmark");
+        rows(out, table).into_iter().find(is_own).unwrap()
+    };
+    let spacing_of_object = |id: &str| number(&of("benchmark", &format!("{id}_mc")), "spacing").unwrap();
+    let configuration = |row: &Row| {
+        let id = &row["id"];
+        let (object, method) = id.split_once('_').unwrap();
+        let (timed, accurate) = (of("benchmark", id), of("accuracy", id));
+        let spacing = number(&timed, "spacing").unwrap();
+        let of_object = spacing_of_object(object);
+        // In cube edges of the mesh's own; the object's are meant.
+        let distance = |column| number(&accurate, column).unwrap() * spacing / of_object;
+        Known {
+            object: row["object"].clone(),
+            method: method.into(),
+            has_own_cubes: !method.ends_with("-matched"),
+            seconds: number(&timed, "total_without_normals_median_s").unwrap(),
+            triangles: number(&timed, "triangles").unwrap(),
+            error: distance("distance_mean").max(distance("distance_to_mesh_mean")),
+            radius_ratio: number(&of("quality", id), "radius_ratio_mean").unwrap(),
+        }
+    };
+    // A flat look is the same mesh once more.
+    rows(out, "configurations")
+        .iter()
+        .filter(|row| !row["id"].ends_with("-flat"))
+        .map(configuration)
+        .collect()
+}
+
+#[test]
+fn the_small_terrain_study_answers_from_its_own_numbers() {
+    let folder = Folder::new();
+    let out = folder.path("out");
+    let study = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/terrain-quick.toml");
+    let run =
+        Run::succeed(isostudy().args(["study", study.to_str().unwrap(), "--out", out.to_str().unwrap()]));
+    assert!(run.stdout.contains("index.html"), "{}", run.stdout);
+    let known = known(&out);
+    let objects = ["hills", "cliffs", "caves", "building in rock"];
+    assert_eq!(known.len(), 14 * objects.len());
+
+    let fronts = rows(&out, "fronts");
+    for object in objects {
+        for front in ["time and error", "triangles and error"] {
+            let cost =
+                |of: &Known| [if front == "time and error" { of.seconds } else { of.triangles }, of.error];
+            let placed: Vec<&Row> =
+                fronts.iter().filter(|row| row["object"] == object && row["front"] == front).collect();
+            // Who met a budget with the very cells of another has no place of its own.
+            let of_row =
+                |row: &&Row| known.iter().find(|of| of.object == object && of.method == row["method"]);
+            let own: Vec<&Known> = placed.iter().map(|row| of_row(row).unwrap()).collect();
+            assert!((8..=14).contains(&own.len()), "{object}: {} in the front", own.len());
+            for (row, point) in placed.iter().zip(&own) {
+                let at = cost(point);
+                let beats = |by: [f64; 2]| by[0] <= at[0] && by[1] <= at[1] && by != at;
+                let is_beaten = own.iter().any(|other| beats(cost(other)));
+                let said = row["standing"] != "on the front";
+                assert_eq!(said, is_beaten, "{object}, {front}: {}", row["method"]);
+            }
+        }
+    }
+
+    // Which is the best, by hand; equals are the study's first.
+    let columns: [(&str, fn(&Known) -> f64); 3] =
+        [("fastest", |of| of.seconds), ("closest", |of| of.error), ("regular", |of| -of.radius_ratio)];
+    for row in rows(&out, "choices") {
+        for (column, cost) in columns {
+            let own = known.iter().filter(|of| of.object == row["object"] && of.has_own_cubes);
+            let best = own.reduce(|best, of| if cost(of) < cost(best) { of } else { best }).unwrap();
+            let said = row[column].split(',').next().unwrap();
+            assert_eq!(said, best.method, "{}, {column}: {}", row["object"], row[column]);
+        }
+    }
+
+    // Chunks of every method are the whole mesh, to the bit.
+    let chunks = rows(&out, "chunks");
+    let made: Vec<&str> = chunks.iter().map(|row| row["id"].as_str()).collect();
+    for method in ["mc", "mc33", "snapmc", "bi", "bi-relaxed", "si", "nets", "dc"] {
+        for object in ["hi", "cl", "ca", "bu"] {
+            assert!(made.contains(&format!("{object}_{method}").as_str()), "{object}_{method}: {made:?}");
+        }
+    }
+    for row in &chunks {
+        assert_eq!(
+            (row["open_seam_edges"].as_str(), row["is_whole"].as_str()),
+            ("0", "yes"),
+            "{}",
+            row["id"]
+        );
+        assert!(number(row, "chunk_ms").unwrap() > 0.0 && number(row, "edit_ms").unwrap() > 0.0);
+    }
+    for page in ["index.html", "report.html"] {
+        let text = std::fs::read_to_string(out.join(page)).unwrap();
+        assert!(text.contains(r##"href="#decision""##), "{page}");
+        assert!(text.contains("The best method for each object and purpose"), "{page}");
+    }
+    let faults = Run::succeed(isostudy().args(["design", "check", study.to_str().unwrap()]));
+    assert!(faults.stdout.contains("no fault"), "{}", faults.stdout);
+}
