@@ -10,7 +10,7 @@ FIGURES="contrasts preference_overall prediction radius_ratio triangles pass_tim
 TURNTABLE=as_si
 
 [ -f "$FROM/manifest.json" ] || { echo "$FROM: has no manifest; run isostudy study configs/paper.toml" >&2; exit 2; }
-rm -rf "$TO"
+find "$TO" -mindepth 1 -maxdepth 1 ! -name terrain -exec rm -r {} +
 mkdir -p "$TO/tables" "$TO/figures"
 for name in $TABLES; do cp "$FROM/tables/$name.csv" "$TO/tables/"; done
 for name in $FIGURES; do cp "$FROM/figures/$name.svg" "$TO/figures/"; done

@@ -100,7 +100,8 @@ fn the_small_terrain_study_answers_from_its_own_numbers() {
     }
 
     // Which is the best, by hand; equals are the study's first.
-    let columns: [(&str, fn(&Known) -> f64); 3] =
+    type Cost = fn(&Known) -> f64;
+    let columns: [(&str, Cost); 3] =
         [("fastest", |of| of.seconds), ("closest", |of| of.error), ("regular", |of| -of.radius_ratio)];
     for row in rows(&out, "choices") {
         for (column, cost) in columns {

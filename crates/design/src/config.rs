@@ -166,6 +166,9 @@ pub struct BenchmarkSection {
     /// Cells along a side of the chunks that are timed one by one; 0 times none.
     #[serde(default, deserialize_with = "whole")]
     pub chunks: u32,
+    /// Whether the short plan measures peak memory too, as the full one does.
+    #[serde(default)]
+    pub memory: bool,
     /// TOML file that describes the CPU the numbers are meant for.
     pub target: String,
     /// What `isostudy bench sweep` measures; leave out for a study that sweeps nothing.

@@ -441,6 +441,13 @@ pub struct PeakMemory {
     pub peak_bytes: u64,
 }
 
+impl PeakMemory {
+    /// What extraction took beside the field. `None` if making the field had taken more, so that nobody saw it.
+    pub fn of_extraction(&self) -> Option<u64> {
+        (self.peak_bytes > self.peak_before_bytes).then(|| self.peak_bytes - self.before_bytes)
+    }
+}
+
 /// A configuration that a run left out.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Failure {

@@ -330,6 +330,7 @@ fn full_study() -> StudyFile {
             pin: true,
             threads: 1,
             chunks: 1,
+            memory: true,
             target: text(),
             sweep: Some(SweepSection {
                 objects: vec![text()],

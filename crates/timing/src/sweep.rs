@@ -14,7 +14,7 @@
 mod budgets;
 mod tables;
 
-use design::record::{BenchRun, BenchSample, SweepMesh};
+use design::record::{BenchRun, BenchSample, PeakMemory, SweepMesh};
 use design::{ConfigurationId, Stage};
 use serde::Serialize;
 use statistics::interval::{Interval, LEVEL};
@@ -165,7 +165,6 @@ fn points_of(level: &SweepLevel, meshes: &[SweepMesh]) -> Vec<Point> {
         }
         let memory = level.run.memory.iter().find(|memory| memory.id == mesh.id);
         // Below what making the field had taken before, extraction's own peak is not seen.
-        let seen = memory.filter(|memory| memory.peak_bytes > memory.peak_before_bytes);
         Some(Point {
             id: mesh.id.clone(),
             cells: level.cells,
@@ -176,7 +175,7 @@ fn points_of(level: &SweepLevel, meshes: &[SweepMesh]) -> Vec<Point> {
             radius_ratio: (mesh.triangles > 0).then_some(mesh.radius_ratio_mean),
             total_s: of(Stage::Total)?,
             stages_s,
-            memory_bytes: seen.map(|memory| memory.peak_bytes - memory.before_bytes),
+            memory_bytes: memory.and_then(PeakMemory::of_extraction),
         })
     };
     of_level.filter_map(point).collect()

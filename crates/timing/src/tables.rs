@@ -8,7 +8,7 @@ use super::series::{Verdict, by_configuration};
 use super::statements::Statements;
 use crate::stage_times::{circumstances, measured, target};
 use design::Stage;
-use design::record::BenchRun;
+use design::record::{BenchRun, PeakMemory};
 use statistics::interval::Interval;
 use table::digits::MINUS;
 use table::{Cell, Table};
@@ -74,8 +74,7 @@ fn medians(run: &BenchRun, statements: &Statements) -> Table {
         let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
         row.push(Cell::number(memory.map(|m| mib(m.peak_bytes)), 1));
         // Below what making the field had taken before, extraction's own peak is not seen.
-        let seen = memory.filter(|m| m.peak_bytes > m.peak_before_bytes);
-        row.push(Cell::number(seen.map(|m| mib(m.peak_bytes - m.before_bytes)), 1));
+        row.push(Cell::number(memory.and_then(PeakMemory::of_extraction).map(mib), 1));
         table.push(row);
     }
     table.notes.push(format!(

@@ -4,7 +4,7 @@ use crate::inputs::Inputs;
 use crate::mesh_set::{MeshSet, discard_fraction, known};
 use crate::published_ratio;
 use crate::tables::design::{budgets, level, method_columns};
-use design::record::{MeshRecord, Purpose};
+use design::record::{MeshRecord, PeakMemory, Purpose};
 use table::{Cell, Table};
 use timing::stage_times::{StageTimes, conditions};
 
@@ -161,11 +161,15 @@ pub(super) fn benchmark(inputs: &Inputs<'_>) -> Option<Table> {
         let of = |name: &&'static str| if *name == FACTORS { factors.clone() } else { vec![*name] };
         names.iter().flat_map(of).collect()
     };
-    let blocks: Vec<(&str, Vec<&str>)> = BLOCKS
+    let mut blocks: Vec<(&str, Vec<&str>)> = BLOCKS
         .iter()
         .filter(|(name, _)| inputs.bench.is_some() || *name != "Times")
         .map(|(name, columns)| (*name, spelt(columns)))
         .collect();
+    if study.file.benchmark.memory {
+        let of_memory = blocks.iter_mut().find(|(name, _)| *name == "Memory").expect("a block");
+        of_memory.1.push("extraction_memory_bytes");
+    }
     let blocks: Vec<(&str, &[&str])> = blocks.iter().map(|(name, columns)| (*name, &columns[..])).collect();
     table.print_in_blocks(&blocks);
     Some(table)
@@ -188,6 +192,10 @@ pub(crate) fn whole(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Optio
     if inputs.bench.is_some() {
         columns.extend(TIME_COLUMNS.iter().map(|&(name, heading, _)| (name, heading)));
     }
+    let has_memory = study.file.benchmark.memory;
+    if has_memory {
+        columns.push(("extraction_memory_bytes", "Memory beside the field, bytes"));
+    }
     let mut table = Table::new("benchmark", "Benchmark", &columns);
     for (configuration, mesh) in meshes.in_order().filter(|(c, _)| holds(c.object)) {
         let mut row = vec![Cell::text(&mesh.id), (MESH_COLUMNS[0].2)(mesh)];
@@ -198,6 +206,11 @@ pub(crate) fn whole(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Optio
             let times = StageTimes::of(run, &configuration.id);
             let cell = |entry: &TimeEntry| times.as_ref().map_or(Cell::Missing, entry.2);
             row.extend(TIME_COLUMNS.iter().map(cell));
+        }
+        if has_memory {
+            let peak =
+                inputs.bench.and_then(|run| run.memory.iter().find(|peak| peak.id == configuration.id));
+            row.push(maybe(peak.and_then(PeakMemory::of_extraction)));
         }
         table.push(row);
     }

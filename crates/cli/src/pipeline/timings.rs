@@ -128,7 +128,7 @@ impl Pipeline<'_> {
             batches,
             until,
             aa_iterations: if full { section.aa_iterations } else { 0 },
-            memory: full,
+            memory: full || section.memory,
             seed: self.study.file.study.seed,
             threads: section.threads,
             pin: section.pin,
