@@ -39,7 +39,7 @@ pub(super) fn chunks(inputs: &Inputs<'_>) -> Option<Table> {
     }
     let cells = inputs.chunks.first()?.cells;
     table.notes.push(format!(
-        "One thread, from the field, with chunks of {cells} cells a side. Timed: those of all cells that have triangles. An edit is a change within 5 cube \
+        "One thread, from the field, with chunks of {cells} cells per side. Timed: those of all cells that have triangles. An edit is a change within 5 cube \
          edges of a point of the surface: the chunks that it touches are extracted again. Median, its interval at 95 %, and the longest. \
          The whole mesh: whether the chunks, welded, are the mesh that is made at once, to the bit."
     ));
