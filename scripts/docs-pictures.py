@@ -171,7 +171,10 @@ def terrain_study(methods, file):
     study = tomllib.loads(source.read_text(encoding="utf-8"))
     terrain = next(found for found in study["objects"] if found["id"] == TERRAIN["object"])
     study = {key: study[key] for key in ("schema", "study", "limits", "turntable", "shading", "stimuli", "benchmark")}
-    study["benchmark"]["target"] = str((source.parent / study["benchmark"]["target"]).resolve())
+    target = str((source.parent / study["benchmark"]["target"]).resolve())
+    # Nothing is timed: what a study must say, and no more.
+    must = {key: study["benchmark"][key] for key in ("warmup", "iterations", "short_iterations", "threads")}
+    study["benchmark"] = must | {"target": target}
     study["comparisons"] = []
     field = terrain["field"] | {"margin": TERRAIN["margin"]}
     spacings = {key: TERRAIN["spacing"] for key in ("stimulus_spacing", "benchmark_spacing")}
