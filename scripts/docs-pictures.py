@@ -3,16 +3,22 @@
 
 Usage: scripts/docs-pictures.py [ISOSTUDY [PICTURE...]]
 
-ISOSTUDY is the command, `isostudy` if left out; PICTURE one of six-methods, surfaces, cubes-methods and edge-groups, all if left out.
+ISOSTUDY is the command, `isostudy` if left out; PICTURE one of six-methods, surfaces, edge-groups, methods (a folder and a sheet),
+methods-drops and methods-box, all if left out.
 Run it in the project's folder; it needs Pillow. surfaces needs `scripts/fetch-samples.sh` first.
 """
 
+import json
+import math
 import subprocess
 import sys
 import tempfile
+import tomllib
 from pathlib import Path
 
 from PIL import Image, ImageDraw, ImageFont
+
+from posed_mesh import pose
 
 METHODS = [
     ("bu", "no clustering"),
@@ -33,15 +39,25 @@ SURFACES = [
 ]
 SAMPLES = Path("cache/samples")
 
-# Of docs/methods.md. A surface with bends and ambiguous cells, so coarse that each triangle is seen.
-TANGLE = ["--field", "x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8", "--bounds=-2.6,-2.6,-2.6,2.6,2.6,2.6", "--cells", "16"]
-CUBES = [
-    ("mc", "fans of triangles"),
-    ("mc-edge-groups", "by a table"),
-    ("mc-quality", "best diagonals"),
-    ("mc33", "trilinear"),
-    ("snapmc", "drawn to points"),
-    ("macet", "edges turned"),
+# Of docs/methods.md and its pages: one terrain, so coarse that each triangle is seen, before one camera. Its walls are
+# farther from the box than in the study: more than 0.3 of an edge, or snapmc draws them onto the box.
+TERRAIN = {"study": "configs/terrain.toml", "object": "cl", "spacing": 1 / 11, "margin": 0.02}
+POSE = {"middle": (0, 0, -0.1), "turn": math.tau * 0.75, "tilt": 0.2, "half": 1.5}
+WHOLE = (0.21, 0.29, 0.79, 0.725)  # left, upper, right, lower, in shares of the picture
+CLOSE = (0.33, 0.40, 0.53, 0.55)
+TILE = (360, 270)
+# All are as their counterparts look, but for this one.
+PUBLISHED = ["bp-published"]
+# Recipes without a name that the pages show: id, the method they are based on, the key that differs.
+CHANGED = [
+    ("dc-in-cell", "dc-manifold", "in_cell", True),
+    ("nets-smoothed", "nets-manifold", "smoothing", 8),
+]
+SHEET = [
+    *("bu", "bi", "bc", "bi-relaxed"),
+    *("su", "si", "mp", "fp"),
+    *("mc", "mc-quality", "snapmc", "macet"),
+    *("nets", "nets-smoothed", "dc", "dc-in-cell"),
 ]
 # Of the figure of edge groups in docs/cubes.md.
 TABLES = ["mc", "mc-edge-groups", "hull", "mc-quality", "su", "bu"]
@@ -49,6 +65,11 @@ TABLES = ["mc", "mc-edge-groups", "hull", "mc-quality", "su", "bu"]
 DROPS = [
     *("--field", "((x-0.5)^2+(y+0.5)^2+(z-0.5)^2)*((x+0.5)^2+(y-0.5)^2+(z+0.5)^2) - 0.61"),
     *("--bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2", "--cells", "9"),
+]
+# A box that is turned against the axes about two of them.
+BOX = [
+    *("--field", "max(abs(0.8*x+0.6*y)-0.7, abs(0.8*(0.8*y-0.6*x)+0.6*z)-0.6, abs(0.8*z-0.6*(0.8*y-0.6*x))-0.5)"),
+    *("--bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2", "--cells", "12"),
 ]
 
 FONT = "assets/fonts/DejaVuSans.ttf"
@@ -91,40 +112,170 @@ def surfaces(isostudy, folder):
         yield Image.open(picture).convert("RGB"), label, triangles(mesh)
 
 
-def cubes_methods(isostudy, folder):
-    """What each change to marching cubes does to one surface; and two drops, in which two methods differ."""
+def turned(isostudy, folder, mesh, size, *look):
+    """The first frame of the mesh's turntable."""
+    turn = folder / "turned.gif"
+    run(isostudy, "turntable", mesh, "-o", turn, "--frames", "1", "--size", str(size), *look)
+    picture = Image.open(turn).convert("RGB")
+    turn.unlink()
+    return picture
 
-    def tile(method, label, source, crop):
-        mesh, turn = folder / f"{method}.ply", folder / f"{method}.gif"
+
+def of_formula(isostudy, folder, methods, source, crop):
+    """One formula by several methods, each with a label of its own."""
+    for method, label in methods:
+        mesh = folder / "formula.ply"
         run(isostudy, "extract", *source, "--method", method, "-o", mesh)
-        look = ["--look", "smooth-wireframe", "--frames", "1", "--size", "1000"]
-        run(isostudy, "turntable", mesh, "-o", turn, *look)
-        found = Image.open(turn).convert("RGB").crop(crop), f"{method}: {label}", triangles(mesh)
-        mesh.unlink()
-        turn.unlink()
-        return found
-
-    for method, label in CUBES:
-        yield tile(method, label, TANGLE, (100, 100, 600, 600))
-    for method, label in [("mc", "two drops"), ("mc33", "the same drops")]:
-        yield tile(method, label, DROPS, (110, 160, 840, 890))
+        picture = turned(isostudy, folder, mesh, 1000, "--look", "smooth-wireframe").crop(crop)
+        yield picture, f"{method}: {label}", triangles(mesh)
 
 
-def montage(tiles, columns, size, picture):
+def drops(isostudy, folder):
+    """Two drops with a neck, which not all methods find."""
+    methods = [("mc", "apart"), ("mc33", "joined by a tube"), ("nets", "joined in a point"), ("nets-manifold", "apart")]
+    return of_formula(isostudy, folder, methods, DROPS, (110, 160, 840, 890))
+
+
+def boxes(isostudy, folder):
+    """A box whose edges are cut off by all methods but one."""
+    methods = [("mc", "crossings"), ("bi", "means"), ("nets", "means"), ("dc", "planes")]
+    return of_formula(isostudy, folder, methods, BOX, (120, 120, 880, 880))
+
+
+def as_toml(value):
+    """The value as TOML in one line; what JSON writes, but for tables."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {as_toml(of)}" for key, of in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(as_toml, value)) + "]"
+    return json.dumps(value)
+
+
+def methods_shown(isostudy):
+    """The methods that have a name, and those of CHANGED, by id: the name, its label, the key that differs, the recipe."""
+    listed = json.loads(subprocess.run([isostudy, "methods", "--json"], check=True, capture_output=True).stdout)
+    methods = {
+        method["id"]: (method["id"], method["label"].removesuffix(", as published"), "", method["recipe"])
+        for method in listed["methods"]
+        if not method["id"].endswith("-published") or method["id"] in PUBLISHED
+    }
+    for changed, base, key, value in CHANGED:
+        name, label, _, recipe = methods[base]
+        methods[changed] = name, label, f"{key} = {as_toml(value)}", recipe | {key: value}
+    return methods
+
+
+def terrain_study(methods, file):
+    """A study with the terrain alone, by all methods."""
+    source = Path(TERRAIN["study"])
+    study = tomllib.loads(source.read_text(encoding="utf-8"))
+    terrain = next(found for found in study["objects"] if found["id"] == TERRAIN["object"])
+    study = {key: study[key] for key in ("schema", "study", "limits", "turntable", "shading", "stimuli", "benchmark")}
+    target = str((source.parent / study["benchmark"]["target"]).resolve())
+    # Nothing is timed: what a study must say, and no more.
+    must = {key: study["benchmark"][key] for key in ("warmup", "iterations", "short_iterations", "threads")}
+    study["benchmark"] = must | {"target": target}
+    study["comparisons"] = []
+    field = terrain["field"] | {"margin": TERRAIN["margin"]}
+    spacings = {key: TERRAIN["spacing"] for key in ("stimulus_spacing", "benchmark_spacing")}
+    study["objects"] = [terrain | {"field": field} | spacings]
+    study["methods"] = [{"id": of, "label": of, "recipe": recipe} for of, (*_, recipe) in methods.items()]
+    file.write_text("".join(f"{key} = {as_toml(value)}\n" for key, value in study.items()), encoding="utf-8")
+
+
+def part(picture, shares):
+    """A part of a square picture, over a scale of colours or not."""
+    return picture.crop(tuple(round(share * picture.width) for share in shares))
+
+
+def of_methods(isostudy, folder):
+    """One strip per method: the terrain with a frame round a place, and that place coloured by radius ratio over its scale. And
+    a sheet with that place by the methods of SHEET."""
+    methods = methods_shown(isostudy)
+    study, results = folder / "terrain.toml", folder / "terrain"
+    terrain_study(methods, study)
+    run(isostudy, "extract", study, "-o", results)
+    strips = Path("docs/methods")
+    strips.mkdir(exist_ok=True)
+    coloured = ["--colour", "quality", "--look", "smooth-wireframe"]
+    # Pixels of the whole picture whose part is as large as a tile: edges of triangles then stay one pixel wide.
+    close = round(TILE[0] / (CLOSE[2] - CLOSE[0]))
+    scale, places, drawn = None, {}, {}
+    for method, (name, label, key, _) in methods.items():
+        mesh, posed = results / "meshes" / "stimulus" / f"{TERRAIN['object']}_{method}.ply", folder / "posed.obj"
+        pose(mesh, posed, **POSE)
+        whole = part(turned(isostudy, folder, posed, 1400, "--look", "smooth-wireframe"), WHOLE)
+        place = part(turned(isostudy, folder, posed, close, *coloured), CLOSE)
+        if scale is None:
+            small = turned(isostudy, folder, posed, TILE[0], *coloured)
+            scale = small.crop((0, TILE[0], TILE[0], small.height))
+        places[method] = place, name, key or triangles(mesh)
+        drawn[method] = strip(whole, place, scale, name, f"{label}\n{key}{key and ', '}{triangles(mesh)}")
+    palette = common_palette(list(drawn.values()), scale)
+    for method, picture in drawn.items():
+        save(picture, strips / f"{method}.png", palette)
+    save(montage([places[method] for method in SHEET], 4, (200, 150)), "docs/methods.png", palette)
+
+
+def common_palette(pictures, scale):
+    """A palette for pictures that stand on one page: equal colours stay equal. All colours of the scale are in it, since what is rare
+    in the pictures, the dark end, is what they are to show."""
+    width, height = pictures[0].size
+    together = Image.new("RGB", (width, height * len(pictures)))
+    for place, picture in enumerate(pictures):
+        together.paste(picture, (0, place * height))
+    row = next(y for y in range(scale.height) if len(set(scale.crop((0, y, scale.width, y + 1)).getdata())) > 20)
+    of_scale = scale.crop((0, row, scale.width, row + 1)).quantize(40)
+    background = pictures[0].getpixel((GAP + 2, GAP + 2))
+    colours = of_scale.getpalette()[: 3 * 40] + together.quantize(84).getpalette()[: 3 * 84]
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(colours + [*background, 0, 0, 0, 255, 255, 255])
+    return palette
+
+
+def strip(whole, place, scale, label, rest):
+    """Two tiles side by side, the label below the first, the scale of colours below the second."""
+    width, height = TILE
+    picture = Image.new("RGB", (2 * width + 3 * GAP, GAP + height + max(LABEL, scale.height)), "white")
+    draw = ImageDraw.Draw(picture)
+    picture.paste(whole.resize(TILE, Image.Resampling.LANCZOS), (GAP, GAP))
+    left, upper, right, lower = WHOLE
+    across, down = width / (right - left), height / (lower - upper)
+    frame = [
+        *(GAP + (CLOSE[0] - left) * across, GAP + (CLOSE[1] - upper) * down),
+        *(GAP + (CLOSE[2] - left) * across, GAP + (CLOSE[3] - upper) * down),
+    ]
+    draw.rectangle(frame, outline="white", width=2)
+    picture.paste(place.resize(TILE, Image.Resampling.LANCZOS), (2 * GAP + width, GAP))
+    picture.paste(scale, (2 * GAP + width, GAP + height))
+    write(draw, GAP, GAP + height, label, rest)
+    return picture
+
+
+def write(draw, x, y, label, rest):
+    """A label, and a line or two in smaller letters, below a tile that ends at `y`."""
+    draw.text((x + 2, y + 3), label, "black", ImageFont.truetype(FONT, 16))
+    draw.text((x + 2, y + 24), rest, "#444444", ImageFont.truetype(FONT, 13))
+
+
+def save(picture, file, palette=None):
+    """As a PNG with the palette, or its own."""
+    own = {"colors": 128, "method": Image.Quantize.MEDIANCUT} if palette is None else {"palette": palette}
+    picture.quantize(**own, dither=Image.Dither.NONE).save(file, optimize=True)
+    print(file)
+
+
+def montage(tiles, columns, size):
     tiles = list(tiles)
     width, height = size[0] + GAP, size[1] + LABEL + GAP
     rows = -(-len(tiles) // columns)
     sheet = Image.new("RGB", (columns * width + GAP, rows * height + GAP), "white")
     draw = ImageDraw.Draw(sheet)
-    large, small = ImageFont.truetype(FONT, 16), ImageFont.truetype(FONT, 13)
     for place, (tile, label, rest) in enumerate(tiles):
         x, y = GAP + place % columns * width, GAP + place // columns * height
         sheet.paste(tile.resize(size, Image.Resampling.LANCZOS), (x, y))
-        draw.text((x + 2, y + size[1] + 3), label, "black", large)
-        draw.text((x + 2, y + size[1] + 24), rest, "#444444", small)
-    sheet = sheet.quantize(128, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-    sheet.save(picture, optimize=True)
-    print(picture)
+        write(draw, x, y + size[1], label, rest)
+    return sheet
 
 
 def main():
@@ -132,10 +283,12 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         pictures = {
-            "six-methods": lambda to: montage(six_methods(isostudy, folder), 3, (320, 260), to),
-            "surfaces": lambda to: montage(surfaces(isostudy, folder), 4, (280, 280), to),
-            "cubes-methods": lambda to: montage(cubes_methods(isostudy, folder), 4, (280, 280), to),
+            "six-methods": lambda to: save(montage(six_methods(isostudy, folder), 3, (320, 260)), to),
+            "surfaces": lambda to: save(montage(surfaces(isostudy, folder), 4, (280, 280)), to),
             "edge-groups": lambda to: run(isostudy, "table", *TABLES, "--groups", "--figure", to),
+            "methods": lambda _: of_methods(isostudy, folder),
+            "methods-drops": lambda to: save(montage(drops(isostudy, folder), 4, (280, 280)), to),
+            "methods-box": lambda to: save(montage(boxes(isostudy, folder), 4, (280, 280)), to),
         }
         for name in sys.argv[2:] or pictures:
             pictures[name](f"docs/{name}.png")
