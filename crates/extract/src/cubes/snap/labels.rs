@@ -88,13 +88,16 @@ impl Labels {
                         left &= left - 1;
                         let x = 64 * word + bit as usize;
                         let way = if around.here[x] == snap.isovalue {
-                            (!is_wall(grid, samples, [x, row, layer])).then_some(HERE)
+                            Some(HERE)
                         } else {
                             let ways =
                                 (0..WAYS.len()).fold(0, |set, way| set | (crossed[way] >> bit & 1) << way);
                             snap.way(&around, x, ways)
                         };
-                        let Some(way) = way else { continue };
+                        // A wall drawn onto the box would be the box, and the mesh open there.
+                        let Some(way) = way.filter(|_| !is_wall(grid, samples, [x, row, layer])) else {
+                            continue;
+                        };
                         on |= 1 << bit;
                         ways[x] = way;
                     }
