@@ -3,7 +3,7 @@
 
 Usage: scripts/docs-pictures.py [ISOSTUDY [PICTURE...]]
 
-ISOSTUDY is the command, `isostudy` if left out; PICTURE one of six-methods, surfaces, edge-groups, methods (a folder and a sheet),
+ISOSTUDY is the command, `isostudy` if left out; PICTURE one of six-methods, surfaces, edge-groups, terrain, methods (a folder and a sheet),
 methods-drops and methods-box, all if left out.
 Run it in the project's folder; it needs Pillow. surfaces needs `scripts/fetch-samples.sh` first.
 """
@@ -44,6 +44,7 @@ SAMPLES = Path("cache/samples")
 TERRAIN = {"study": "configs/terrain.toml", "object": "cl", "spacing": 1 / 11, "margin": 0.02}
 POSE = {"middle": (0, 0, -0.1), "turn": math.tau * 0.75, "tilt": 0.2, "half": 1.5}
 WHOLE = (0.21, 0.29, 0.79, 0.725)  # left, upper, right, lower, in shares of the picture
+NEAR = (0.30, 0.29, 0.70, 0.59)
 CLOSE = (0.33, 0.40, 0.53, 0.55)
 TILE = (360, 270)
 # All are as their counterparts look, but for this one.
@@ -53,6 +54,8 @@ CHANGED = [
     ("dc-in-cell", "dc-manifold", "in_cell", True),
     ("nets-smoothed", "nets-manifold", "smoothing", 8),
 ]
+# Of the picture in README.md.
+IN_GAMES = ["mc", "mc33", "snapmc", "nets", "dc", "si", "bi", "bi-relaxed"]
 SHEET = [
     *("bu", "bi", "bc", "bi-relaxed"),
     *("su", "si", "mp", "fp"),
@@ -140,6 +143,19 @@ def boxes(isostudy, folder):
     """A box whose edges are cut off by all methods but one."""
     methods = [("mc", "crossings"), ("bi", "means"), ("nets", "means"), ("dc", "planes")]
     return of_formula(isostudy, folder, methods, BOX, (120, 120, 880, 880))
+
+
+def terrain(isostudy, folder):
+    """The terrain at the spacing of the study's animations, by eight of its methods."""
+    study = tomllib.loads(Path(TERRAIN["study"]).read_text(encoding="utf-8"))
+    labels = {method["id"]: method["label"] for method in study["methods"]}
+    only = [word for method in IN_GAMES for word in ("--only", f"{TERRAIN['object']}_{method}")]
+    run(isostudy, "extract", TERRAIN["study"], *only, "--allow-programs", "-o", folder / "games")
+    for method in IN_GAMES:
+        mesh, posed = folder / f"games/meshes/stimulus/{TERRAIN['object']}_{method}.ply", folder / "posed.obj"
+        pose(mesh, posed, **POSE)
+        near = part(turned(isostudy, folder, posed, 1400, "--look", "flat"), NEAR)
+        yield near, f"{method}: {triangles(mesh)}", labels[method]
 
 
 def as_toml(value):
@@ -286,6 +302,7 @@ def main():
             "six-methods": lambda to: save(montage(six_methods(isostudy, folder), 3, (320, 260)), to),
             "surfaces": lambda to: save(montage(surfaces(isostudy, folder), 4, (280, 280)), to),
             "edge-groups": lambda to: run(isostudy, "table", *TABLES, "--groups", "--figure", to),
+            "terrain": lambda to: save(montage(terrain(isostudy, folder), 4, (250, 188)), to),
             "methods": lambda _: of_methods(isostudy, folder),
             "methods-drops": lambda to: save(montage(drops(isostudy, folder), 4, (280, 280)), to),
             "methods-box": lambda to: save(montage(boxes(isostudy, folder), 4, (280, 280)), to),
