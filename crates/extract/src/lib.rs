@@ -235,7 +235,10 @@ pub use chunks::{
     WeldError, World, weld_chunks,
 };
 pub use control::{Control, Jobs, Threads};
-pub use cubes::{Diagonals, Faces, Flat, VolumeCells, VolumeCellsError};
+pub use cubes::{
+    Diagonals, Faces, Flat, LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume, VolumeCells,
+    VolumeCellsError,
+};
 pub use distances::{DistanceError, distances};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, TetrahedraCounts};
 pub use extractor::{Extractor, extract};

@@ -25,7 +25,7 @@ pub struct SurfaceNets {
 }
 
 /// The most steps of [`SurfaceNets::smoothing`]: each needs one more cell round a chunk.
-const MOST_SMOOTHING: u32 = 64;
+pub(crate) const MOST_SMOOTHING: u32 = 64;
 
 impl OfCubes for SurfaceNets {
     fn way(&self) -> Way {
