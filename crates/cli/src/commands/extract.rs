@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 Examples:
   isostudy extract --field 'sqrt(x^2+y^2+z^2) - 1' --bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2 --spacing 0.05 -o ball.ply
   isostudy extract --volume head.nrrd --isovalue 300.5 -o head.glb --quality
-  isostudy extract --labels organs.seg.nrrd --only 2,5 --recipe '{ kind = "surface-nets", smoothing = 8 }' -o organs.glb
+  isostudy extract --labels organs.seg.nrrd --only 2,5 -o organs.glb
   isostudy extract --mesh scan.stl --cells 200 -o even.obj --picture even.png --method bi-relaxed
   isostudy extract configs/paper.toml --only ss_bi")]
 pub(crate) struct Arguments {
