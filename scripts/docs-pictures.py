@@ -3,8 +3,8 @@
 
 Usage: scripts/docs-pictures.py [ISOSTUDY [PICTURE...]]
 
-ISOSTUDY is the command, `isostudy` if left out; PICTURE one of six-methods, surfaces, cubes-methods and edge-groups, all if left out.
-Run it in the project's folder; it needs Pillow. surfaces needs `scripts/fetch-samples.sh` first.
+ISOSTUDY is the command, `isostudy` if left out; PICTURE one of six-methods, surfaces, cubes-methods, edge-groups and labels, all if
+left out. Run it in the project's folder; it needs Pillow. surfaces and labels need `scripts/fetch-samples.sh` first.
 """
 
 import subprocess
@@ -50,6 +50,9 @@ DROPS = [
     *("--field", "((x-0.5)^2+(y+0.5)^2+(z-0.5)^2)*((x+0.5)^2+(y-0.5)^2+(z+0.5)^2) - 0.61"),
     *("--bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2", "--cells", "9"),
 ]
+
+# Of docs/nets.md: three balls that meet, cut through the middle, on so many samples along x, y and z.
+BALLS = {"size": (44, 20, 40), "radius": 11.3, "centres": [(13.7, 0, 14.2), (27.3, 0, 14.2), (20.5, 0, 25.9)]}
 
 FONT = "assets/fonts/DejaVuSans.ttf"
 RENDERED = 1120  # pixels of the whole picture of an asteroid, of which a crop is shown
@@ -110,6 +113,34 @@ def cubes_methods(isostudy, folder):
         yield tile(method, label, DROPS, (110, 160, 840, 890))
 
 
+def labels(isostudy, folder):
+    """Boundaries of labels: balls that meet, open where the volume ends, and organs of a chest."""
+    nx, ny, nz = BALLS["size"]
+
+    def label(x, y, z):
+        away = [sum((a - b) ** 2 for a, b in zip((x, y, z), centre)) for centre in BALLS["centres"]]
+        nearest = min(range(3), key=away.__getitem__)
+        return nearest + 1 if away[nearest] < BALLS["radius"] ** 2 else 0
+
+    samples = bytes(label(x, y, z) for z in range(nz) for y in range(ny) for x in range(nx))
+    (folder / "balls.raw").write_bytes(samples)
+    (folder / "balls.toml").write_text(
+        f'file = "balls.raw"\nsize = [{nx}, {ny}, {nz}]\ntype = "u8"\nspacing = [1, 1, 1]\norigin = [0, 0, 0]\n'
+    )
+    smooth = ["--recipe", '{ kind = "surface-nets", smoothing = 8 }']
+    chest = SAMPLES / "ct_labels.seg.nrrd"
+    for number, (source, title, more) in enumerate(
+        [
+            (folder / "balls.toml", "three labels that meet", []),
+            (folder / "balls.toml", "the same, smoothing = 8", smooth),
+            (chest, "labels of a chest, smoothing = 8", smooth),
+        ]
+    ):
+        mesh, picture = folder / f"{number}.ply", folder / f"{number}.png"
+        run(isostudy, "extract", "--labels", source, *more, "-o", mesh, "--picture", picture)
+        yield Image.open(picture).convert("RGB"), title, triangles(mesh)
+
+
 def montage(tiles, columns, size, picture):
     tiles = list(tiles)
     width, height = size[0] + GAP, size[1] + LABEL + GAP
@@ -135,6 +166,7 @@ def main():
             "six-methods": lambda to: montage(six_methods(isostudy, folder), 3, (320, 260), to),
             "surfaces": lambda to: montage(surfaces(isostudy, folder), 4, (280, 280), to),
             "cubes-methods": lambda to: montage(cubes_methods(isostudy, folder), 4, (280, 280), to),
+            "labels": lambda to: montage(labels(isostudy, folder), 3, (300, 300), to),
             "edge-groups": lambda to: run(isostudy, "table", *TABLES, "--groups", "--figure", to),
         }
         for name in sys.argv[2:] or pictures:

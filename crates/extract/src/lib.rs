@@ -227,6 +227,7 @@ mod trace;
 mod triangle_distances;
 mod triangles;
 mod vertices;
+mod warp;
 
 pub use accuracy::{Accuracy, accuracy};
 pub use box_grid::BoxGrid;

@@ -266,6 +266,7 @@ fn presets_have_names_of_their_own() {
             Some('u') => (Clustering::None, "none"),
             Some('i') => (Clustering::Integrated, "integrated"),
             Some('p') => (Clustering::EdgeCollapse, "edge collapse"),
+            Some('w') => (Clustering::Warp, "warp"),
             _ => (Clustering::IntegratedCollapse, "integrated + collapse"),
         };
         assert_eq!((method.arrangement, method.clustering), (arrangement.0, clustering.0), "{id}");
@@ -287,7 +288,8 @@ fn presets_have_names_of_their_own() {
 
 fn supported(arrangement: Arrangement) -> usize {
     match arrangement {
-        Arrangement::BodyCentred | Arrangement::SimpleCubic => 4,
+        Arrangement::BodyCentred => 5,
+        Arrangement::SimpleCubic => 4,
         Arrangement::FiveTetrahedra | Arrangement::FaceCentred => 2,
     }
 }

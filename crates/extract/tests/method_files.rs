@@ -21,11 +21,12 @@ const ARRANGEMENTS: [(&str, Arrangement); 4] = [
     ("five-tetrahedra", Arrangement::FiveTetrahedra),
     ("face-centred", Arrangement::FaceCentred),
 ];
-const CLUSTERINGS: [(&str, Clustering); 4] = [
+const CLUSTERINGS: [(&str, Clustering); 5] = [
     ("none", Clustering::None),
     ("integrated", Clustering::Integrated),
     ("edge-collapse", Clustering::EdgeCollapse),
     ("integrated-collapse", Clustering::IntegratedCollapse),
+    ("warp", Clustering::Warp),
 ];
 const TOPOLOGIES: [(&str, Topology); 2] =
     [("guarded", Topology::Guarded), ("published", Topology::Published)];

@@ -50,9 +50,16 @@ impl Tetrahedra {
         ExtractSettings { isovalue, clustering, topology, positions, placement, refine_crossings }
     }
 
-    /// Where vertices stay at the mean of their crossings.
+    /// Where vertices stay at the mean of their crossings. A warp looks one lattice edge farther: at the edges of the other ends of a
+    /// point's edges.
     fn unmoved_halo(&self) -> u32 {
-        if self.arrangement.uniform().is_some() { 2 } else { 1 }
+        if self.clustering == Clustering::Warp {
+            3
+        } else if self.arrangement.uniform().is_some() {
+            2
+        } else {
+            1
+        }
     }
 }
 
@@ -92,9 +99,10 @@ impl Family for Tetrahedra {
             Placement::CurvatureWeighted => false,
         };
         Promises {
-            manifold: guarded,
+            manifold: guarded && self.clustering != Clustering::Warp,
             closed_off_the_box: guarded,
-            same_triangles_for_all_placements: !collapses,
+            // A warp has not all placements.
+            same_triangles_for_all_placements: !collapses && self.clustering != Clustering::Warp,
             chunks: indexed && !self.refine_crossings && moved_in_chunks,
             samples_suffice: indexed && !self.refine_crossings && !self.placement.calls_the_field(),
         }

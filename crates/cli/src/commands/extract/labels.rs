@@ -157,7 +157,8 @@ impl Report {
         };
         let mut pairs: BTreeMap<[u32; 2], usize> = BTreeMap::new();
         labelled.sides.iter().for_each(|&pair| *pairs.entry(pair).or_default() += 1);
-        let boundary = |([inside, outside], triangles)| Boundary { inside, outside, triangles };
+        let boundary =
+            |([inside, outside], triangles): ([u32; 2], usize)| Boundary { inside, outside, triangles };
         Self {
             schema: SCHEMA,
             source,
