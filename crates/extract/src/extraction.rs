@@ -166,9 +166,15 @@ pub enum ExtractError {
         /// What was given.
         arrangement: Arrangement,
     },
+    /// [`ExtractSettings::edge_clamp`] out of its range.
+    #[error("edge_clamp = {edge_clamp:?}: must be 0 or more and below 0.5, in lengths of a lattice edge")]
+    EdgeClamp {
+        /// What was given.
+        edge_clamp: f32,
+    },
     /// [`Clustering::Warp`] with a setting that says what it does not know.
     #[error(
-        "warp clustering does not go with {with}: it has guarded topology, indexed positions, crossings as interpolated, and any placement \
+        "warp clustering does not go with {with}: it has guarded topology, indexed positions, crossings where they are interpolated, and any placement \
          but curvature-weighted"
     )]
     Warp {
@@ -216,6 +222,10 @@ pub(crate) fn check(settings: &ExtractSettings, arrangement: Arrangement) -> Res
     if !settings.isovalue.is_finite() {
         return Err(ExtractError::Isovalue { value: settings.isovalue });
     }
+    let edge_clamp = settings.edge_clamp;
+    if !(0.0..0.5).contains(&edge_clamp) {
+        return Err(ExtractError::EdgeClamp { edge_clamp });
+    }
     match settings.positions {
         Positions::Accumulated { chunks: 0 } => return Err(ExtractError::NoChunks),
         Positions::Accumulated { .. } if arrangement.uniform().is_none() => {
@@ -232,6 +242,7 @@ pub(crate) fn check(settings: &ExtractSettings, arrangement: Arrangement) -> Res
             (settings.positions != Positions::Indexed, "accumulated positions"),
             (settings.placement == Placement::CurvatureWeighted, "curvature-weighted placement"),
             (settings.refine_crossings, "refined crossings"),
+            (settings.edge_clamp > 0.0, "an edge_clamp"),
         ];
         if let Some(&(_, with)) = refused.iter().find(|(is_given, _)| *is_given) {
             return Err(ExtractError::Warp { with });

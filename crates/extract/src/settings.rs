@@ -19,10 +19,14 @@ pub struct ExtractSettings {
     /// interpolating linearly between the samples at its ends. Which edges cross, and which end a crossing belongs to,
     /// is still the samples' affair: the triangles are the same. Needs [`Source::Field`](crate::Source).
     pub refine_crossings: bool,
+    /// How far crossings are kept from sample points, as a share of their lattice edges: 0, which keeps none away, to below 0.5. One that is
+    /// nearer is moved along its edge, so that unclustered triangles have an area worth the name, and the surface is off by as much. Vertices
+    /// that are placed otherwise start from there.
+    pub edge_clamp: f32,
 }
 
 impl Default for ExtractSettings {
-    /// Isovalue 0, integrated clustering, guarded topology, indexed positions, means of interpolated crossings.
+    /// Isovalue 0, integrated clustering, guarded topology, indexed positions, means of interpolated crossings, none of them kept away.
     fn default() -> Self {
         Self {
             isovalue: 0.0,
@@ -31,6 +35,7 @@ impl Default for ExtractSettings {
             positions: Positions::Indexed,
             placement: Placement::MeanOfCrossings,
             refine_crossings: false,
+            edge_clamp: 0.0,
         }
     }
 }

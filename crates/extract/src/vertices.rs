@@ -56,7 +56,7 @@ impl<'a> VertexStage<'a> {
             samples,
             settings,
             ties: Ties::of(settings.topology),
-            apart: Apart::new(lattice, settings.topology),
+            apart: Apart::new(lattice, settings.topology).clamped(settings.edge_clamp),
             sides,
             edges,
             positions: Vec::new(),

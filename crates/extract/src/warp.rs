@@ -5,10 +5,10 @@
 //! vertex, since the surface passes through the point now. Whether a point is warped depends on its own edges alone, not on what became
 //! of its neighbours: so the order of points does not matter, and chunks agree.
 //!
-//! A crossing between two warped points is the inside end's. Then triangles are exactly those of the tetrahedra with a point inside that
-//! was not warped, as published, where what has four warped corners counts as outside. Two such tetrahedra may share a face of three
-//! warped points: its triangle would be there twice, back to back, and both are dropped, as the face is inside the solid. So the
-//! triangles are the boundary of a set of tetrahedra: every side is used as often one way as the other.
+//! A crossing between two warped points is the inside end's. Then triangles are the boundary of the tetrahedra with a point inside that was
+//! not warped, as published, and of those whose four points all were inside, which as published are left out where all four are warped.
+//! Two such tetrahedra may share a face of three warped points: its triangle would be there twice, back to back, and both are dropped, as
+//! the face is inside the solid. So every side is used as often one way as the other.
 
 use std::collections::TryReserveError;
 

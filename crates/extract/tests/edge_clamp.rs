@@ -3,8 +3,8 @@
 mod fields;
 
 use extract::{
-    Arrangement, BoxGrid, CellBox, ChunkExtractor, ChunkSettings, Clustering, Cubes, Execution, ExtractError, Extractor,
-    Method, MethodError, Placement, Source, SurfaceNets, Tetrahedra, weld_chunks,
+    Arrangement, BoxGrid, CellBox, ChunkExtractor, ChunkSettings, Clustering, Cubes, Execution, ExtractError,
+    Extractor, Method, MethodError, Placement, Source, SurfaceNets, Tetrahedra, weld_chunks,
 };
 use fields::{Family, Volume};
 use glam::Vec3;
@@ -43,7 +43,13 @@ fn share_of_body_centred_edge(p: Vec3) -> f32 {
         let largest = way.abs().max_element();
         let along_axis = sizes.iter().filter(|&&c| c > 1e-5).count() <= 1;
         let diagonal = sizes.iter().all(|&c| (c - largest).abs() < 1e-5);
-        if along_axis { Some(largest) } else if diagonal { Some(2.0 * largest) } else { None }
+        if along_axis {
+            Some(largest)
+        } else if diagonal {
+            Some(2.0 * largest)
+        } else {
+            None
+        }
     };
     let shares = [0.0, 0.5].into_iter().filter_map(|shift| is_on(ends(shift)));
     shares.fold(f32::INFINITY, f32::min)
@@ -54,7 +60,8 @@ fn no_crossing_is_nearer_to_a_sample_point() {
     for clamp in [0.1, 0.25, 0.49] {
         for family in FAMILIES {
             let simple = volume(Arrangement::SimpleCubic, family);
-            let cubes = |edge_clamp| mesh_of(&simple, &Method::Cubes(Cubes { edge_clamp, ..Cubes::default() }));
+            let cubes =
+                |edge_clamp| mesh_of(&simple, &Method::Cubes(Cubes { edge_clamp, ..Cubes::default() }));
             let (mesh, plain) = (cubes(clamp), cubes(0.0));
             assert_eq!(mesh.triangles, plain.triangles, "{family:?}");
             for (p, before) in mesh.positions.iter().zip(&plain.positions) {
@@ -64,7 +71,9 @@ fn no_crossing_is_nearer_to_a_sample_point() {
                 assert!(before_share < clamp + 1e-5 || p == before, "{p} {before}");
             }
             let body = volume(Arrangement::BodyCentred, family);
-            let of = |edge_clamp| mesh_of(&body, &tetrahedra(Arrangement::BodyCentred, Clustering::None, edge_clamp));
+            let of = |edge_clamp| {
+                mesh_of(&body, &tetrahedra(Arrangement::BodyCentred, Clustering::None, edge_clamp))
+            };
             let (mesh, plain) = (of(clamp), of(0.0));
             assert_eq!(mesh.triangles, plain.triangles, "{family:?}");
             for (p, before) in mesh.positions.iter().zip(&plain.positions) {
@@ -89,8 +98,11 @@ fn nets_have_means_of_crossings_that_were_kept_away() {
         for p in &mesh_of(&simple, &nets).positions {
             let low = p.floor();
             let (mut sum, mut count) = (glam::DVec3::ZERO, 0.0);
-            for (corner, axis) in (0..8).flat_map(|c| (0..3).map(move |axis| (c, axis))).filter(|(c, axis)| c >> axis & 1 == 0) {
-                let from = low + Vec3::new((corner & 1) as f32, (corner >> 1 & 1) as f32, (corner >> 2) as f32);
+            for (corner, axis) in
+                (0..8).flat_map(|c| (0..3).map(move |axis| (c, axis))).filter(|(c, axis)| c >> axis & 1 == 0)
+            {
+                let from =
+                    low + Vec3::new((corner & 1) as f32, (corner >> 1 & 1) as f32, (corner >> 2) as f32);
                 let to = from + Vec3::AXES[axis];
                 let [here, there] = [value(from), value(to)];
                 if (here > 0.0) != (there > 0.0) {
@@ -108,8 +120,14 @@ fn nets_have_means_of_crossings_that_were_kept_away() {
 #[test]
 fn chunks_weld_to_the_whole() {
     let methods = [
-        (Arrangement::SimpleCubic, Method::Cubes(Cubes { edge_clamp: 0.2, placement: Placement::Projected, ..Cubes::default() })),
-        (Arrangement::SimpleCubic, Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 1, edge_clamp: 0.2 })),
+        (
+            Arrangement::SimpleCubic,
+            Method::Cubes(Cubes { edge_clamp: 0.2, placement: Placement::Projected, ..Cubes::default() }),
+        ),
+        (
+            Arrangement::SimpleCubic,
+            Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 1, edge_clamp: 0.2 }),
+        ),
         (Arrangement::BodyCentred, tetrahedra(Arrangement::BodyCentred, Clustering::Integrated, 0.2)),
         (Arrangement::FaceCentred, tetrahedra(Arrangement::FaceCentred, Clustering::None, 0.2)),
     ];
@@ -119,11 +137,14 @@ fn chunks_weld_to_the_whole() {
         let grid = BoxGrid::from(&volume.lattice());
         let mut chunks = ChunkExtractor::in_box(&grid, &method, &ChunkSettings::default()).unwrap();
         let boxes: Vec<CellBox> = chunks.grid(4).collect();
-        let parts: Vec<_> =
-            boxes.into_iter().map(|cells| chunks.extract(Source::Study(&volume), cells, &ONE).unwrap()).collect();
+        let parts: Vec<_> = boxes
+            .into_iter()
+            .map(|cells| chunks.extract(Source::Study(&volume), cells, &ONE).unwrap())
+            .collect();
         assert!(weld_chunks(&parts).unwrap() == whole, "{method:?}");
         let execution = Execution { threads: 3 };
-        let again = method.extract(&mut Extractor::new(), Source::Study(&volume), &grid, 0.0, &execution).unwrap();
+        let again =
+            method.extract(&mut Extractor::new(), Source::Study(&volume), &grid, 0.0, &execution).unwrap();
         assert!(again.mesh == whole, "{method:?}");
     }
 }
@@ -136,7 +157,8 @@ fn triangles_are_better_and_distances_worse() {
     let ball = field::Sphere { radius: 0.8 };
     let of = |edge_clamp| {
         let method = Method::Cubes(Cubes { edge_clamp, ..Cubes::default() });
-        let mesh = method.extract(&mut Extractor::new(), Source::Study(&ball), &grid, 0.0, &ONE).unwrap().mesh;
+        let mesh =
+            method.extract(&mut Extractor::new(), Source::Study(&ball), &grid, 0.0, &ONE).unwrap().mesh;
         let away = mesh.positions.iter().map(|p| (p.length() - 0.8).abs() / 0.05).fold(0.0, f32::max);
         (mesh::quality::quality(&mesh).min_angle_deg.min, away)
     };

@@ -65,7 +65,7 @@ impl Labels {
     fn of_one(&self, label: u32, smoothing: u32, steps: [[f64; 3]; 3]) -> TriangleMesh {
         let values: Vec<f32> = self.labels.iter().map(|&of| f32::from(u8::from(of == label))).collect();
         let cells = VolumeCells { counts: self.counts, values: &values, origin: [1.0, -2.0, 3.0], steps };
-        let nets = Method::SurfaceNets(SurfaceNets { patches: false, smoothing });
+        let nets = Method::SurfaceNets(SurfaceNets { patches: false, smoothing, edge_clamp: 0.0 });
         cells.extract(&nets, &mut Extractor::new(), 0.5, &ONE).unwrap().mesh
     }
 

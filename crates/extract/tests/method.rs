@@ -44,6 +44,7 @@ fn all() -> Vec<Tetrahedra> {
                                 positions,
                                 placement,
                                 refine_crossings,
+                                edge_clamp: 0.0,
                             });
                         }
                     }
@@ -78,6 +79,7 @@ fn a_method_is_the_function_with_its_settings_or_refuses_as_it_does() {
             positions: tetrahedra.positions,
             placement: tetrahedra.placement,
             refine_crossings: tetrahedra.refine_crossings,
+            edge_clamp: tetrahedra.edge_clamp,
         };
         let lattice = Lattice::try_new(tetrahedra.arrangement, BOX, GRID.spacing).unwrap();
         let source = Source::Study(&sphere);

@@ -44,8 +44,8 @@ pub(crate) struct Arguments {
     /// How sample points fill space: body-centred, simple-cubic, five-tetrahedra, face-centred
     #[arg(long, value_name = "NAME", default_value = "body-centred", value_parser = named::<Arrangement>, conflicts_with = "study")]
     arrangement: Arrangement,
-    /// How vertices are merged: none, integrated, edge-collapse, integrated-collapse; the last two arrangements have no
-    /// integrated clustering [default: integrated; edge-collapse where there is none]
+    /// How vertices are merged: none, integrated, edge-collapse, integrated-collapse, warp; the last two arrangements have no
+    /// integrated clustering, and warp is for the first [default: integrated; edge-collapse where there is none]
     #[arg(long, value_name = "NAME", value_parser = named::<Clustering>, conflicts_with = "study")]
     clustering: Option<Clustering>,
     /// A method by its name instead, such as bi-relaxed; `isostudy methods` lists them

@@ -95,13 +95,13 @@ static PRESETS: [Preset; 33] = [
     Preset {
         id: "nets",
         label: "surface nets",
-        method: Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0 }),
+        method: Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0, edge_clamp: 0.0 }),
         source: NETS,
     },
     Preset {
         id: "nets-manifold",
         label: "surface nets, manifold",
-        method: Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 0 }),
+        method: Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 0, edge_clamp: 0.0 }),
         source: PATCHES,
     },
     Preset {
@@ -143,6 +143,7 @@ const fn settings(arrangement: Arrangement, clustering: Clustering) -> Tetrahedr
         positions: Positions::Indexed,
         placement: Placement::MeanOfCrossings,
         refine_crossings: false,
+        edge_clamp: 0.0,
     }
 }
 
@@ -174,7 +175,7 @@ const fn cubes(
     source: &'static str,
 ) -> Preset {
     let placement = Placement::MeanOfCrossings;
-    let method = Cubes { faces, diagonals, placement, refine_crossings: false };
+    let method = Cubes { faces, diagonals, placement, refine_crossings: false, edge_clamp: 0.0 };
     Preset { id, label, method: Method::Cubes(method), source }
 }
 

@@ -164,7 +164,7 @@ impl Run<'_> {
             rule,
             source,
             isovalue: settings.isovalue,
-            apart: Apart::new(&grid.lattice, settings.topology),
+            apart: Apart::new(&grid.lattice, settings.topology).clamped(settings.edge_clamp),
             most_vertices,
             placer: placer.as_ref(),
             traced: self.trace.is_some(),

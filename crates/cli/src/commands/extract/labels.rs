@@ -62,7 +62,10 @@ pub(super) fn extract(arguments: &Arguments, path: &Path) -> Result<Outcome> {
 fn smoothing(method: Option<Method>) -> Result<u32> {
     match method {
         None => Ok(0),
-        Some(Method::SurfaceNets(SurfaceNets { patches: false, smoothing })) => Ok(smoothing),
+        // Crossings of labels are in the middles of edges.
+        Some(Method::SurfaceNets(SurfaceNets { patches: false, smoothing, edge_clamp: 0.0 })) => {
+            Ok(smoothing)
+        }
         Some(_) => bail!(
             "--labels: boundaries of labels are surface nets with a vertex per cell: --method nets, \
              or --recipe '{{ kind = \"surface-nets\", smoothing = 8 }}'"
