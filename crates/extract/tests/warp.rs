@@ -223,6 +223,16 @@ fn the_mesh_is_the_boundary_of_the_tetrahedra() {
             }
             cut += 1;
         }
+        if found != triangles {
+            let show = |name: &Name| format!("{:?} {:?} {:?}", name, name.map(|p| stuffing.value(p)), name.map(|p| stuffing.warped.get(&p)));
+            for (what, of) in [("extra", found.difference(&triangles)), ("missing", triangles.difference(&found))] {
+                println!("{what} {}", of.clone().count());
+                for t in of.take(4) {
+                    println!("  {}", t.iter().map(show).collect::<Vec<_>>().join("\n  "));
+                    println!("--");
+                }
+            }
+        }
         assert!(found == triangles, "{family:?} {seed}");
     }
     assert!(warped > 1000 && cut > 20, "{warped} {cut}");
@@ -395,12 +405,12 @@ fn worst_plane_angles(samples: u64, seed: u64) -> [f64; 2] {
     worst
 }
 
-/// Found by sampling: the ends of what sixteen million samples gave. Labelle and Shewchuk (2007) state 10.7 and 164.8 degrees for this
+/// Found by sampling: just beyond what millions of samples gave. Labelle and Shewchuk (2007) state 10.7 and 164.8 degrees for this
 /// pair of shares, of tetrahedra whose quadrilaterals are cut by a rule of their own, and of points that are moved one after the other.
 /// Those with quadrilaterals are left out here, and points may move as if none of the others had.
 const DIHEDRAL: [f64; 2] = [9.31, 161.7];
 /// The same of the triangles.
-const PLANE: [f64; 2] = [8.24, 156.9];
+const PLANE: [f64; 2] = [7.5, 159.0];
 
 #[test]
 fn dihedral_angles_are_bounded() {
@@ -414,13 +424,13 @@ fn dihedral_angles_are_bounded() {
 fn plane_angles_are_bounded() {
     let [least, most] = worst_plane_angles(20_000, 3);
     assert!(least > PLANE[0] && most < PLANE[1], "{least} {most}");
-    assert!(least < PLANE[0] + 1.0 && most > PLANE[1] - 3.0, "{least} {most}");
+    assert!(least < PLANE[0] + 1.5 && most > PLANE[1] - 4.0, "{least} {most}");
 }
 
 #[test]
-#[ignore = "a minute"]
+#[ignore = "half a minute"]
 fn angles_are_bounded_in_many_samples() {
-    let (dihedral, plane) = (worst_dihedral_angles(1_000_000, 2), worst_plane_angles(1_000_000, 4));
+    let (dihedral, plane) = (worst_dihedral_angles(400_000, 2), worst_plane_angles(400_000, 4));
     println!("dihedral angles {dihedral:?}, plane angles {plane:?}");
     assert!(dihedral[0] > DIHEDRAL[0] && dihedral[1] < DIHEDRAL[1]);
     assert!(plane[0] > PLANE[0] && plane[1] < PLANE[1]);
