@@ -133,11 +133,8 @@ impl<'a> Points<'a> {
         Ok(inside)
     }
 
-    /// The vertex that one becomes.
+    /// The vertex that a crossing becomes. The one that a point is warped to may itself become another's, as the crossing that it is.
     fn becomes(&self, v: usize, inside: bool) -> u32 {
-        if self.is_warp[v] {
-            return v as u32;
-        }
         let key = self.keys[v];
         let there = self.warped_at(self.neighbour(key.stored(), key.direction()));
         match (self.warped[v], there) {
