@@ -51,7 +51,7 @@ fn mesh_of(volume: &Volume, settings: &ExtractSettings) -> TriangleMesh {
     extract(volume, &volume.lattice(), settings, &ONE).unwrap().mesh
 }
 
-/// The rules by brute force, on a volume that is outside at its box: names of what the boundary of the tetrahedra has.
+/// The rules by brute force, on a volume that is outside at its box, with no two samples alike there: names of what the boundary of the tetrahedra has.
 struct Stuffing {
     volume: Volume,
     last: i32,
@@ -80,12 +80,7 @@ impl Stuffing {
     }
 
     fn value(&self, place: Place) -> f64 {
-        let is_inner = place.iter().all(|&c| 0 < c && c < self.last);
-        if is_inner {
-            f64::from(self.volume.sample(Vec3::from_array(place.map(|c| c as f32 / 2.0))))
-        } else {
-            -1.0
-        }
+        f64::from(self.volume.sample(self.position(place).as_vec3()))
     }
 
     /// Outermost centres lie on the box.
@@ -197,7 +192,12 @@ fn the_mesh_is_the_boundary_of_the_tetrahedra() {
     ];
     let (mut warped, mut cut) = (0, 0);
     for (family, seed) in families.into_iter().flat_map(|family| [(family, 1), (family, 2), (family, 3)]) {
-        let volume = Volume::random(Arrangement::BodyCentred, 5, family, seed).closed();
+        let mut volume = Volume::random(Arrangement::BodyCentred, 5, family, seed).closed();
+        // No two alike: of crossings that are equally near to a point, rounding would choose.
+        let (last, mut numbers) = (2 * volume.cells as i32, Numbers::new(seed));
+        for place in volume.places().into_iter().filter(|p| p.iter().any(|&c| c <= 0 || c >= last)) {
+            volume.set(place, -0.3 - numbers.below(1 << 20) as f32 / (1 << 20) as f32);
+        }
         let mesh = mesh_of(&volume, &WARP);
         let stuffing = Stuffing::of(volume);
         warped += stuffing.warped.len();
@@ -479,7 +479,7 @@ fn smooth_surfaces_keep_their_topology_and_lose_no_more_than_a_net() {
     }
 }
 
-/// Boxes of cells weld to the whole, to the byte; with a window one cell smaller they do not.
+/// Boxes of cells weld to the whole, to the byte.
 #[test]
 fn chunks_weld_to_the_whole() {
     for (family, seed) in FAMILIES.into_iter().flat_map(|family| [(family, 0), (family, 1)]) {

@@ -60,16 +60,9 @@ impl Tetrahedra {
         ExtractSettings { isovalue, clustering, topology, positions, placement, refine_crossings, edge_clamp }
     }
 
-    /// Where vertices stay at the mean of their crossings. A warp looks one lattice edge farther: at the edges of the other ends of a
-    /// point's edges.
+    /// Where vertices stay at the mean of their crossings.
     fn unmoved_halo(&self) -> u32 {
-        if self.clustering == Clustering::Warp {
-            3
-        } else if self.arrangement.uniform().is_some() {
-            2
-        } else {
-            1
-        }
+        if self.arrangement.uniform().is_some() { 2 } else { 1 }
     }
 }
 
