@@ -133,7 +133,7 @@ def labels(isostudy, folder):
         [
             (folder / "balls.toml", "three labels that meet", []),
             (folder / "balls.toml", "the same, smoothing = 8", smooth),
-            (chest, "bones and lungs of a chest, smoothing = 8", [*smooth, "--only", "1,2,3,4,5,6"]),
+            (chest, "bones and lungs of a chest", [*smooth, "--only", "1,2,3,4,5,6"]),
         ]
     ):
         mesh, picture = folder / f"{number}.ply", folder / f"{number}.png"
