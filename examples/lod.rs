@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (frames, speed) = (number(0, 900)?, number(1, 24)?);
     let method = match arguments.get(2).map_or("cubes", String::as_str) {
         "cubes" => Method::Cubes(Cubes::default()),
-        "nets" => Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0 }),
+        "nets" => Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0, edge_clamp: 0.0 }),
         "dc" => Method::DualContouring(DualContouring { in_cell: true, ..DualContouring::default() }),
         other => return Err(format!("{other}: must be cubes, nets or dc").into()),
     };

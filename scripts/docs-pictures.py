@@ -4,8 +4,8 @@
 Usage: scripts/docs-pictures.py [ISOSTUDY [PICTURE...]]
 
 ISOSTUDY is the command, `isostudy` if left out; PICTURE one of six-methods, surfaces, edge-groups, terrain, methods (a folder and a sheet),
-methods-drops and methods-box, all if left out.
-Run it in the project's folder; it needs Pillow. surfaces needs `scripts/fetch-samples.sh` first.
+methods-drops, methods-box and labels, all if left out.
+Run it in the project's folder; it needs Pillow. surfaces and labels need `scripts/fetch-samples.sh` first.
 """
 
 import json
@@ -75,6 +75,9 @@ BOX = [
     *("--bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2", "--cells", "12"),
 ]
 
+# Of docs/nets.md: three balls that meet, cut through the middle, on so many samples along x, y and z.
+BALLS = {"size": (44, 20, 40), "radius": 11.3, "centres": [(13.7, 0, 14.2), (27.3, 0, 14.2), (20.5, 0, 25.9)]}
+
 FONT = "assets/fonts/DejaVuSans.ttf"
 RENDERED = 1120  # pixels of the whole picture of an asteroid, of which a crop is shown
 CROP = (250, 290, 890, 810)  # left, upper, right, lower
@@ -131,6 +134,34 @@ def of_formula(isostudy, folder, methods, source, crop):
         run(isostudy, "extract", *source, "--method", method, "-o", mesh)
         picture = turned(isostudy, folder, mesh, 1000, "--look", "smooth-wireframe").crop(crop)
         yield picture, f"{method}: {label}", triangles(mesh)
+
+
+def labels(isostudy, folder):
+    """Boundaries of labels: balls that meet, open where the volume ends, and organs of a chest."""
+    nx, ny, nz = BALLS["size"]
+
+    def label(x, y, z):
+        away = [sum((a - b) ** 2 for a, b in zip((x, y, z), centre)) for centre in BALLS["centres"]]
+        nearest = min(range(3), key=away.__getitem__)
+        return nearest + 1 if away[nearest] < BALLS["radius"] ** 2 else 0
+
+    samples = bytes(label(x, y, z) for z in range(nz) for y in range(ny) for x in range(nx))
+    (folder / "balls.raw").write_bytes(samples)
+    (folder / "balls.toml").write_text(
+        f'file = "balls.raw"\nsize = [{nx}, {ny}, {nz}]\ntype = "u8"\nspacing = [1, 1, 1]\norigin = [0, 0, 0]\n'
+    )
+    smooth = ["--recipe", '{ kind = "surface-nets", smoothing = 8 }']
+    chest = SAMPLES / "ct_labels.seg.nrrd"
+    for number, (source, title, more) in enumerate(
+        [
+            (folder / "balls.toml", "three labels that meet", []),
+            (folder / "balls.toml", "the same, smoothing = 8", smooth),
+            (chest, "bones and lungs of a chest", [*smooth, "--only", "1,2,3,4,5,6"]),
+        ]
+    ):
+        mesh, picture = folder / f"{number}.ply", folder / f"{number}.png"
+        run(isostudy, "extract", "--labels", source, *more, "-o", mesh, "--picture", picture)
+        yield Image.open(picture).convert("RGB"), title, triangles(mesh)
 
 
 def drops(isostudy, folder):
@@ -301,6 +332,7 @@ def main():
         pictures = {
             "six-methods": lambda to: save(montage(six_methods(isostudy, folder), 3, (320, 260)), to),
             "surfaces": lambda to: save(montage(surfaces(isostudy, folder), 4, (280, 280)), to),
+            "labels": lambda to: save(montage(labels(isostudy, folder), 3, (300, 300)), to),
             "edge-groups": lambda to: run(isostudy, "table", *TABLES, "--groups", "--figure", to),
             "terrain": lambda to: save(montage(terrain(isostudy, folder), 4, (250, 188)), to),
             "methods": lambda _: of_methods(isostudy, folder),

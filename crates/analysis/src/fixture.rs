@@ -143,6 +143,7 @@ fn mesh(study: &Study, row: &BenchmarkRow, purpose: Purpose) -> MeshRecord {
                 max: row.area_max,
                 ..spread(row.area_mean, row.area_sd, 0.0, row.triangles, (0.0, row.area_max, 50))
             },
+            shortest_edge: Some(0.001),
         },
         topology: Topology {
             vertices,

@@ -90,6 +90,7 @@ pub(crate) fn quality(q: &mesh::quality::QualityReport) -> Quality {
         min_angle_deg: distribution(&q.min_angle_deg),
         max_angle_deg: distribution(&q.max_angle_deg),
         area: distribution(&q.area),
+        shortest_edge: Some(q.shortest_edge),
     }
 }
 

@@ -156,6 +156,9 @@ pub struct Quality {
     pub max_angle_deg: Distribution,
     /// Area.
     pub area: Distribution,
+    /// Length of the shortest edge, in scene units. Records of before this was measured have none.
+    #[serde(default)]
+    pub shortest_edge: Option<f64>,
 }
 
 /// A mesh against its isosurface. Names as in `extract::Accuracy`, whose docs define them.

@@ -19,7 +19,7 @@ pub(crate) fn collapse(
     surface: &mut Triangulation,
 ) -> Result<bool, TryReserveError> {
     match settings.clustering {
-        Clustering::None | Clustering::Integrated => return Ok(false),
+        Clustering::None | Clustering::Integrated | Clustering::Warp => return Ok(false),
         Clustering::EdgeCollapse | Clustering::IntegratedCollapse => {}
     }
     let rule = match settings.topology {

@@ -23,6 +23,7 @@ mod vertices;
 mod volume_cells;
 
 pub(crate) use moved::EdgeMoves;
+pub use nets::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
 pub(crate) use nets::{Nets, ROUND, Sharp, is_other_better};
 pub use rule::{Diagonals, Faces, Flat};
 pub use volume_cells::{VolumeCells, VolumeCellsError};

@@ -6,7 +6,7 @@ use std::time::Duration;
 use mesh::TriangleMesh;
 
 use crate::lattice::{Arrangement, CellBox, Lattice};
-use crate::settings::{Clustering, ExtractSettings, Placement, Positions};
+use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topology};
 use crate::triangles::Triangulation;
 
 /// A surface, what it took and what was seen on the way.
@@ -146,10 +146,11 @@ pub enum ExtractError {
         /// All cells of the lattice.
         wanted: CellBox,
     },
-    /// Integrated clustering where points differ in their lattice edges ([`Arrangement::supports`]).
+    /// Integrated clustering where points differ in their lattice edges, or a warp elsewhere than on the body-centred lattice
+    /// ([`Arrangement::supports`]).
     #[error(
-        "{clustering} clustering does not go with {arrangement}: none and edge-collapse do, and all four go with body-centred \
-         and simple-cubic"
+        "{clustering} clustering does not go with {arrangement}: none and edge-collapse do, integrated and integrated-collapse go \
+         with body-centred and simple-cubic, and warp with body-centred"
     )]
     ArrangementClustering {
         /// What was given.
@@ -164,6 +165,21 @@ pub enum ExtractError {
     ArrangementAccumulated {
         /// What was given.
         arrangement: Arrangement,
+    },
+    /// [`ExtractSettings::edge_clamp`] out of its range.
+    #[error("edge_clamp = {edge_clamp:?}: must be 0 or more and below 0.5, in lengths of a lattice edge")]
+    EdgeClamp {
+        /// What was given.
+        edge_clamp: f32,
+    },
+    /// [`Clustering::Warp`] with a setting that says what it does not know.
+    #[error(
+        "warp clustering does not go with {with}: it has guarded topology, indexed positions, crossings where they are interpolated, and any placement \
+         but curvature-weighted"
+    )]
+    Warp {
+        /// What it does not go with.
+        with: &'static str,
     },
     /// Given samples and [`Positions::Accumulated`], which says where a field is sampled.
     #[error("given samples have no accumulated positions")]
@@ -206,6 +222,10 @@ pub(crate) fn check(settings: &ExtractSettings, arrangement: Arrangement) -> Res
     if !settings.isovalue.is_finite() {
         return Err(ExtractError::Isovalue { value: settings.isovalue });
     }
+    let edge_clamp = settings.edge_clamp;
+    if !(0.0..0.5).contains(&edge_clamp) {
+        return Err(ExtractError::EdgeClamp { edge_clamp });
+    }
     match settings.positions {
         Positions::Accumulated { chunks: 0 } => return Err(ExtractError::NoChunks),
         Positions::Accumulated { .. } if arrangement.uniform().is_none() => {
@@ -215,6 +235,18 @@ pub(crate) fn check(settings: &ExtractSettings, arrangement: Arrangement) -> Res
     }
     if !arrangement.supports(settings.clustering) {
         return Err(ExtractError::ArrangementClustering { arrangement, clustering: settings.clustering });
+    }
+    if settings.clustering == Clustering::Warp {
+        let refused = [
+            (settings.topology != Topology::Guarded, "published topology"),
+            (settings.positions != Positions::Indexed, "accumulated positions"),
+            (settings.placement == Placement::CurvatureWeighted, "curvature-weighted placement"),
+            (settings.refine_crossings, "refined crossings"),
+            (settings.edge_clamp > 0.0, "an edge_clamp"),
+        ];
+        if let Some(&(_, with)) = refused.iter().find(|(is_given, _)| *is_given) {
+            return Err(ExtractError::Warp { with });
+        }
     }
     Ok(())
 }

@@ -57,6 +57,23 @@ pub(crate) fn finish(
     Ok(collapsing)
 }
 
+/// Moves the vertices of a mesh to where a placement that calls the field wants them.
+///
+/// # Errors
+/// As [`finish`].
+pub(crate) fn move_vertices(
+    level: &Level,
+    lattice: &Lattice,
+    placement: Placement,
+    threads: Threads,
+    positions: &mut [Vec3],
+    triangles: &[[u32; 3]],
+) -> Result<(), ExtractError> {
+    let bounds = lattice.bounds();
+    let targets = field_targets(level, &bounds, placement, threads, positions, triangles)?;
+    Ok(Moves::start(positions)?.advance(positions, &targets, triangles, &bounds)?)
+}
+
 /// Collapses edges if the settings say so, and says how long that took.
 fn timed_collapse(
     settings: &ExtractSettings,

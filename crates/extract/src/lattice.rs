@@ -66,11 +66,12 @@ impl Arrangement {
         [Self::BodyCentred, Self::SimpleCubic, Self::FiveTetrahedra, Self::FaceCentred];
 
     /// Whether the clustering's rules say something about the points of this arrangement: integrated clustering is for
-    /// body-centred and simple cubic only.
+    /// body-centred and simple cubic only, and the warp for body-centred.
     pub fn supports(self, clustering: Clustering) -> bool {
         match clustering {
             Clustering::None | Clustering::EdgeCollapse => true,
             Clustering::Integrated | Clustering::IntegratedCollapse => self.uniform().is_some(),
+            Clustering::Warp => self == Self::BodyCentred,
         }
     }
 

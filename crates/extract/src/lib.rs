@@ -227,6 +227,7 @@ mod trace;
 mod triangle_distances;
 mod triangles;
 mod vertices;
+mod warp;
 
 pub use accuracy::{Accuracy, accuracy};
 pub use box_grid::BoxGrid;
@@ -235,7 +236,10 @@ pub use chunks::{
     WeldError, World, weld_chunks,
 };
 pub use control::{Control, Jobs, Threads};
-pub use cubes::{Diagonals, Faces, Flat, VolumeCells, VolumeCellsError};
+pub use cubes::{
+    Diagonals, Faces, Flat, LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume, VolumeCells,
+    VolumeCellsError,
+};
 pub use distances::{DistanceError, distances};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, TetrahedraCounts};
 pub use extractor::{Extractor, extract};

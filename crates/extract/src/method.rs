@@ -14,6 +14,7 @@ pub use dual_contouring::DualContouring;
 pub use macet::Macet;
 pub use presets::{Preset, presets};
 pub use snap_cubes::SnapCubes;
+pub(crate) use surface_nets::MOST_SMOOTHING;
 pub use surface_nets::SurfaceNets;
 pub use tetrahedra::Tetrahedra;
 

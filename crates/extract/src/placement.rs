@@ -9,7 +9,7 @@ mod moves;
 mod relaxation;
 mod surroundings;
 
-pub(crate) use self::crossings::{CrossingPlacer, crossing_ratio};
+pub(crate) use self::crossings::{CrossingPlacer, clamped, crossing_ratio};
 pub(crate) use self::moves::{MOST_PASSES, Moves, on_box};
 pub(crate) use self::relaxation::relaxed;
 pub(crate) use self::surroundings::Surroundings;

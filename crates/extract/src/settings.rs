@@ -19,10 +19,14 @@ pub struct ExtractSettings {
     /// interpolating linearly between the samples at its ends. Which edges cross, and which end a crossing belongs to,
     /// is still the samples' affair: the triangles are the same. Needs [`Source::Field`](crate::Source).
     pub refine_crossings: bool,
+    /// How far crossings are kept from sample points, as a share of their lattice edges: 0, which keeps none away, to below 0.5. One that is
+    /// nearer is moved along its edge, so that unclustered triangles have an area worth the name, and the surface is off by as much. Vertices
+    /// that are placed otherwise start from there.
+    pub edge_clamp: f32,
 }
 
 impl Default for ExtractSettings {
-    /// Isovalue 0, integrated clustering, guarded topology, indexed positions, means of interpolated crossings.
+    /// Isovalue 0, integrated clustering, guarded topology, indexed positions, means of interpolated crossings, none of them kept away.
     fn default() -> Self {
         Self {
             isovalue: 0.0,
@@ -31,6 +35,7 @@ impl Default for ExtractSettings {
             positions: Positions::Indexed,
             placement: Placement::MeanOfCrossings,
             refine_crossings: false,
+            edge_clamp: 0.0,
         }
     }
 }
@@ -51,13 +56,18 @@ pub enum Clustering {
     EdgeCollapse,
     /// Integrated clustering, then an edge collapse of what it leaves.
     IntegratedCollapse,
+    /// The warp of isosurface stuffing (Labelle & Shewchuk 2007), for the body-centred lattice: a lattice point with a crossing nearer to
+    /// it than a share of its edge, 0.24999 or 0.41189, is moved to the nearest such crossing, and all crossings on its edges become one
+    /// vertex there. No triangle is thin; parts thinner than a cell vanish, and sheets of surface may touch: the mesh is closed, and no
+    /// manifold where they do.
+    Warp,
 }
 
 impl Clustering {
     /// Whether edges are collapsed.
     pub(crate) fn collapses(self) -> bool {
         match self {
-            Self::None | Self::Integrated => false,
+            Self::None | Self::Integrated | Self::Warp => false,
             Self::EdgeCollapse | Self::IntegratedCollapse => true,
         }
     }
@@ -67,6 +77,7 @@ impl Clustering {
         match self {
             Self::None | Self::EdgeCollapse => Self::None,
             Self::Integrated | Self::IntegratedCollapse => Self::Integrated,
+            Self::Warp => Self::Warp,
         }
     }
 }
@@ -78,6 +89,7 @@ impl fmt::Display for Clustering {
             Self::Integrated => "integrated",
             Self::EdgeCollapse => "edge-collapse",
             Self::IntegratedCollapse => "integrated-collapse",
+            Self::Warp => "warp",
         })
     }
 }

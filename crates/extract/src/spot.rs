@@ -48,6 +48,8 @@ impl Company {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Apart {
     least: f32,
+    /// The same for all, as the settings want it.
+    clamp: f32,
     /// Of a lattice without a box.
     spacing: Option<f32>,
 }
@@ -55,16 +57,24 @@ pub(crate) struct Apart {
 impl Apart {
     /// The published topology has no such rule.
     pub(crate) fn new(lattice: &Lattice, topology: Topology) -> Self {
+        let clamp = f32::NEG_INFINITY;
         let spacing = lattice.spacing();
         match topology {
-            Topology::Guarded if lattice.is_endless() => Self { least: MOST_SHARE, spacing: Some(spacing) },
+            Topology::Guarded if lattice.is_endless() => {
+                Self { least: MOST_SHARE, clamp, spacing: Some(spacing) }
+            }
             Topology::Guarded => {
                 let bounds = lattice.bounds();
                 let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
-                Self { least: share(farthest, spacing), spacing: None }
+                Self { least: share(farthest, spacing), clamp, spacing: None }
             }
-            Topology::Published => Self { least: f32::NEG_INFINITY, spacing: None },
+            Topology::Published => Self { least: f32::NEG_INFINITY, clamp, spacing: None },
         }
+    }
+
+    /// The same with no crossing nearer than a share of its edge, if that is above 0.
+    pub(crate) fn clamped(self, share: f32) -> Self {
+        if share > 0.0 { Self { clamp: share, ..self } } else { self }
     }
 
     /// For a sample point: where there is no box with a farthest coordinate, it is the point's own that counts.
@@ -72,7 +82,8 @@ impl Apart {
     pub(crate) fn at(self, point: Vec3) -> Self {
         match self.spacing {
             Some(spacing) => {
-                Self { least: share(point.abs().max_element() + spacing, spacing), spacing: None }
+                let least = share(point.abs().max_element() + spacing, spacing);
+                Self { least, spacing: None, ..self }
             }
             None => self,
         }
@@ -87,11 +98,12 @@ impl Apart {
     /// The share of the edge in `direction` at which a crossing lies that linear interpolation puts at `ratio`.
     #[inline(always)]
     pub(crate) fn ratio(self, company: Company, direction: usize, ratio: f32) -> f32 {
-        match company {
+        let ratio = match company {
             Company::Alone => ratio,
             Company::Singles => ratio.max(self.least),
             Company::Merged => ratio.max(self.least * SPREAD[direction % DIRECTIONS]),
-        }
+        };
+        ratio.max(self.clamp).min(1.0 - self.clamp)
     }
 }
 

@@ -56,7 +56,7 @@ impl<'a> VertexStage<'a> {
             samples,
             settings,
             ties: Ties::of(settings.topology),
-            apart: Apart::new(lattice, settings.topology),
+            apart: Apart::new(lattice, settings.topology).clamped(settings.edge_clamp),
             sides,
             edges,
             positions: Vec::new(),
@@ -160,7 +160,7 @@ impl<'a> VertexStage<'a> {
 
     fn clusters(&self, crossing: DirectionSet, near: DirectionSet, incident: DirectionSet) -> Clusters {
         match (self.settings.clustering, self.settings.topology) {
-            (Clustering::None | Clustering::EdgeCollapse, _) => Clusters::single(near),
+            (Clustering::None | Clustering::EdgeCollapse | Clustering::Warp, _) => Clusters::single(near),
             (Clustering::Integrated | Clustering::IntegratedCollapse, Topology::Published) => {
                 Clusters::integrated(near, self.directions)
             }

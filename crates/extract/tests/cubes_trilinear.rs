@@ -16,6 +16,7 @@ const TRILINEAR: Cubes = Cubes {
     diagonals: Diagonals::Fan,
     placement: extract::Placement::MeanOfCrossings,
     refine_crossings: false,
+    edge_clamp: 0.0,
 };
 
 /// Whether the mesh of some samples is what the oracle says.

@@ -176,7 +176,8 @@ fn connections_are_those_of_surface_nets() {
             + (9.0 * p.z).sin() * (9.0 * p.x).cos()
     });
     for patches in [false, true] {
-        let nets = mesh(Method::SurfaceNets(SurfaceNets { patches, smoothing: 0 }), &field, 40);
+        let nets =
+            mesh(Method::SurfaceNets(SurfaceNets { patches, smoothing: 0, edge_clamp: 0.0 }), &field, 40);
         let method = Method::DualContouring(DualContouring { patches, ..DualContouring::default() });
         let planes = mesh(method, &field, 40);
         assert_eq!(planes.positions.len(), nets.positions.len());

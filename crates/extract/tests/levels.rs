@@ -98,7 +98,7 @@ fn noise(seed: u32, levels: f32, reach: f32) -> impl ScalarField {
 }
 
 const DUALS: [Method; 2] = [
-    Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0 }),
+    Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0, edge_clamp: 0.0 }),
     Method::DualContouring(DualContouring { patches: false, truncation: 0.1, in_cell: true, tolerance: 0.0 }),
 ];
 
@@ -505,7 +505,7 @@ fn what_cannot_be_done_is_an_error() {
         nets.extract(&field, 1, odd, &coarser, Control::default()),
         Err(LevelError::Odd { cells: odd })
     );
-    let patches = Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 0 });
+    let patches = Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 0, edge_clamp: 0.0 });
     assert_eq!(of(&patches, 0.0), Err(LevelError::Method));
     let wrong = Method::DualContouring(DualContouring { truncation: f32::NAN, ..DualContouring::default() });
     assert!(matches!(of(&wrong, 0.0), Err(LevelError::Chunk(ChunkError::Settings(_)))));

@@ -44,6 +44,7 @@ fn all() -> Vec<Tetrahedra> {
                                 positions,
                                 placement,
                                 refine_crossings,
+                                edge_clamp: 0.0,
                             });
                         }
                     }
@@ -78,6 +79,7 @@ fn a_method_is_the_function_with_its_settings_or_refuses_as_it_does() {
             positions: tetrahedra.positions,
             placement: tetrahedra.placement,
             refine_crossings: tetrahedra.refine_crossings,
+            edge_clamp: tetrahedra.edge_clamp,
         };
         let lattice = Lattice::try_new(tetrahedra.arrangement, BOX, GRID.spacing).unwrap();
         let source = Source::Study(&sphere);
@@ -266,6 +268,7 @@ fn presets_have_names_of_their_own() {
             Some('u') => (Clustering::None, "none"),
             Some('i') => (Clustering::Integrated, "integrated"),
             Some('p') => (Clustering::EdgeCollapse, "edge collapse"),
+            Some('w') => (Clustering::Warp, "warp"),
             _ => (Clustering::IntegratedCollapse, "integrated + collapse"),
         };
         assert_eq!((method.arrangement, method.clustering), (arrangement.0, clustering.0), "{id}");
@@ -287,7 +290,8 @@ fn presets_have_names_of_their_own() {
 
 fn supported(arrangement: Arrangement) -> usize {
     match arrangement {
-        Arrangement::BodyCentred | Arrangement::SimpleCubic => 4,
+        Arrangement::BodyCentred => 5,
+        Arrangement::SimpleCubic => 4,
         Arrangement::FiveTetrahedra | Arrangement::FaceCentred => 2,
     }
 }

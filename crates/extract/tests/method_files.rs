@@ -21,11 +21,12 @@ const ARRANGEMENTS: [(&str, Arrangement); 4] = [
     ("five-tetrahedra", Arrangement::FiveTetrahedra),
     ("face-centred", Arrangement::FaceCentred),
 ];
-const CLUSTERINGS: [(&str, Clustering); 4] = [
+const CLUSTERINGS: [(&str, Clustering); 5] = [
     ("none", Clustering::None),
     ("integrated", Clustering::Integrated),
     ("edge-collapse", Clustering::EdgeCollapse),
     ("integrated-collapse", Clustering::IntegratedCollapse),
+    ("warp", Clustering::Warp),
 ];
 const TOPOLOGIES: [(&str, Topology); 2] =
     [("guarded", Topology::Guarded), ("published", Topology::Published)];
@@ -62,6 +63,7 @@ fn every_combination_is_read_and_comes_back() {
                                 positions,
                                 placement,
                                 refine_crossings,
+                                edge_clamp: 0.0,
                             });
                             assert_eq!(read(&text), Ok(expected), "{text}");
                             let written = Table::try_from(expected).unwrap();
@@ -143,7 +145,7 @@ fn macet_is_read_and_written() {
 
 #[test]
 fn surface_nets_are_read_and_written() {
-    let wanted = Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 8 });
+    let wanted = Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 8, edge_clamp: 0.0 });
     assert_eq!(read(r#"recipe = { kind = "surface-nets", patches = true, smoothing = 8 }"#), Ok(wanted));
     assert_eq!(toml::from_str::<Method>(&toml::to_string(&wanted).unwrap()).unwrap(), wanted);
     assert_eq!(
@@ -181,6 +183,7 @@ fn cubes_are_read_and_written() {
                 diagonals,
                 placement: Placement::Projected,
                 refine_crossings: true,
+                edge_clamp: 0.0,
             });
             let keys = format!(
                 r#"kind = "cubes", faces = "{word}", diagonals = "{diagonal}", placement = "projected", refine_crossings = true"#

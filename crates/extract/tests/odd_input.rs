@@ -18,6 +18,7 @@ const UNCLUSTERED: ExtractSettings = ExtractSettings {
     topology: Topology::Guarded,
     placement: Placement::MeanOfCrossings,
     refine_crossings: false,
+    edge_clamp: 0.0,
     positions: Positions::Indexed,
 };
 

@@ -1,5 +1,9 @@
 //! Binary glTF 2.0 (Khronos 2021), out only.
 
+mod labelled;
+
+pub(crate) use labelled::write_labelled_glb;
+
 use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write};
 
@@ -21,34 +25,11 @@ const UNIT: f32 = 1e-3;
 /// What the output reports, and [`io::ErrorKind::InvalidInput`] where glTF has no words: a position that is not finite,
 /// an index out of range, or more than 4 GiB.
 pub fn write_glb(mesh: &TriangleMesh, output: impl Write) -> io::Result<()> {
-    let refuse = |what: String| io::Error::new(io::ErrorKind::InvalidInput, what);
-    if let Some(v) = mesh.positions.iter().position(|p| !p.is_finite()) {
-        return Err(refuse(format!("vertex {v} is at {}, which glTF cannot say", mesh.positions[v])));
-    }
-    let vertices = mesh.positions.len();
-    if let Some(t) = mesh.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= vertices)) {
-        return Err(refuse(format!("triangle {t} refers to a vertex beyond the last of {vertices}")));
-    }
+    check(mesh)?;
     let layout = Layout::of(mesh);
-    let mut json = document(mesh, &layout);
-    // Both chunks are padded to four bytes: text with spaces.
-    while !json.len().is_multiple_of(4) {
-        json.push(' ');
-    }
-    let chunk = if layout.bytes == 0 { 0 } else { 8 + layout.bytes };
-    let total = 12 + 8 + json.len() as u64 + chunk;
-    let total = u32::try_from(total)
-        .map_err(|_| refuse(format!("{total} bytes, glTF's length has 32 bits, and so has a chunk's")))?;
     let mut out = BufWriter::new(output);
-    out.write_all(b"glTF")?;
-    out.write_all(&2u32.to_le_bytes())?;
-    out.write_all(&total.to_le_bytes())?;
-    out.write_all(&(json.len() as u32).to_le_bytes())?;
-    out.write_all(b"JSON")?;
-    out.write_all(json.as_bytes())?;
+    begin(&mut out, document(mesh, &layout), layout.bytes)?;
     if layout.bytes > 0 {
-        out.write_all(&(layout.bytes as u32).to_le_bytes())?;
-        out.write_all(b"BIN\0")?;
         for index in mesh.triangles.iter().flatten() {
             out.write_all(&index.to_le_bytes())?;
         }
@@ -56,13 +37,59 @@ pub fn write_glb(mesh: &TriangleMesh, output: impl Write) -> io::Result<()> {
             out.write_all(&value.to_le_bytes())?;
         }
         for &normal in mesh.normals.iter().filter(|_| layout.with_normals) {
-            let is_unit = (normal.length() - 1.0).abs() <= UNIT;
-            for value in if is_unit { normal } else { normal.normalize_or(Vec3::Z) }.to_array() {
-                out.write_all(&value.to_le_bytes())?;
-            }
+            write_normal(normal, &mut out)?;
         }
     }
     out.flush()
+}
+
+/// Writes a normal, of unit length.
+fn write_normal(normal: Vec3, out: &mut impl Write) -> io::Result<()> {
+    let is_unit = (normal.length() - 1.0).abs() <= UNIT;
+    for value in if is_unit { normal } else { normal.normalize_or(Vec3::Z) }.to_array() {
+        out.write_all(&value.to_le_bytes())?;
+    }
+    Ok(())
+}
+
+/// # Errors
+/// Where glTF has no words for a mesh.
+fn check(mesh: &TriangleMesh) -> io::Result<()> {
+    if let Some(v) = mesh.positions.iter().position(|p| !p.is_finite()) {
+        return Err(refused(format!("vertex {v} is at {}, which glTF cannot say", mesh.positions[v])));
+    }
+    let vertices = mesh.positions.len();
+    if let Some(t) = mesh.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= vertices)) {
+        return Err(refused(format!("triangle {t} refers to a vertex beyond the last of {vertices}")));
+    }
+    Ok(())
+}
+
+fn refused(what: String) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, what)
+}
+
+/// Writes all before the first byte of the binary chunk, which will have so many bytes, in fours; none if there are none.
+fn begin(out: &mut impl Write, mut json: String, bytes: u64) -> io::Result<()> {
+    // Both chunks are padded to four bytes: text with spaces.
+    while !json.len().is_multiple_of(4) {
+        json.push(' ');
+    }
+    let chunk = if bytes == 0 { 0 } else { 8 + bytes };
+    let total = 12 + 8 + json.len() as u64 + chunk;
+    let total = u32::try_from(total)
+        .map_err(|_| refused(format!("{total} bytes, glTF's length has 32 bits, and so has a chunk's")))?;
+    out.write_all(b"glTF")?;
+    out.write_all(&2u32.to_le_bytes())?;
+    out.write_all(&total.to_le_bytes())?;
+    out.write_all(&(json.len() as u32).to_le_bytes())?;
+    out.write_all(b"JSON")?;
+    out.write_all(json.as_bytes())?;
+    if bytes > 0 {
+        out.write_all(&(bytes as u32).to_le_bytes())?;
+        out.write_all(b"BIN\0")?;
+    }
+    Ok(())
 }
 
 /// Indices, then positions, then normals. All are made of four bytes, so nothing needs padding.

@@ -54,6 +54,8 @@ pub struct QualityReport {
     pub max_angle_deg: Distribution,
     /// Areas; the histogram runs from 0 to the largest.
     pub area: Distribution,
+    /// Length of the shortest edge of all triangles whose corners are finite; 0 if there are none.
+    pub shortest_edge: f64,
 }
 
 /// Histogram ranges are the same for every mesh, so that two meshes can be laid over each other; only the area,
@@ -86,7 +88,18 @@ pub fn quality(mesh: &TriangleMesh) -> QualityReport {
         min_angle_deg: over_shapes(|s| s.min_angle_deg, MIN_ANGLE_BINS),
         max_angle_deg: over_shapes(|s| s.max_angle_deg, MAX_ANGLE_BINS),
         area: Distribution::of(areas, Bins { low: 0.0, high: largest, count: AREA_BINS }),
+        shortest_edge: shortest_edge(mesh),
     }
+}
+
+fn shortest_edge(mesh: &TriangleMesh) -> f64 {
+    let corners = (0..mesh.triangles.len()).map(|t| mesh.corners(t));
+    let finite = corners.filter(|corners| corners.iter().all(|p| p.is_finite()));
+    let edges = finite.flat_map(|corners| {
+        let [a, b, c] = corners.map(|p| p.as_dvec3());
+        [a.distance(b), b.distance(c), c.distance(a)]
+    });
+    edges.reduce(f64::min).unwrap_or(0.0)
 }
 
 impl TriangleQuality {
@@ -200,6 +213,7 @@ mod tests {
         assert_eq!((report.edge_ratio.count, report.area.count), (1, 4));
         near(report.edge_ratio.max, 2f64.sqrt());
         near(report.area.mean, 0.125);
+        near(report.shortest_edge, 0.0);
         assert_eq!(report.area.histogram.counts.iter().sum::<u64>(), 4);
         assert_eq!(
             quality(&TriangleMesh::default()),
@@ -213,6 +227,20 @@ mod tests {
                 ..QualityReport::default()
             }
         );
+    }
+
+    #[test]
+    fn the_shortest_edge_is_of_all_triangles() {
+        let positions =
+            [[0., 0., 0.], [3., 0., 0.], [0., 4., 0.], [0., 0., 0.25], [f32::NAN; 3]].map(Vec3::from);
+        let mut mesh = TriangleMesh {
+            positions: positions.to_vec(),
+            triangles: vec![[0, 1, 2], [1, 2, 4]],
+            ..TriangleMesh::default()
+        };
+        near(quality(&mesh).shortest_edge, 3.0);
+        mesh.triangles.push([3, 1, 0]);
+        near(quality(&mesh).shortest_edge, 0.25);
     }
 
     proptest! {

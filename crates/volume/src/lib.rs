@@ -47,6 +47,7 @@
 mod data;
 mod error;
 mod header;
+mod labels;
 mod metaimage;
 mod nrrd;
 mod raw;
@@ -55,6 +56,7 @@ use std::path::Path;
 
 pub use data::SampleKind;
 pub use error::{Problem, VolumeError};
+pub use labels::{LABELS_END, NotALabel};
 pub use raw::RawHeader;
 
 /// For [`read`], where memory need not be watched.

@@ -44,7 +44,13 @@ pub(super) fn quality(inputs: &Inputs<'_>) -> Option<Table> {
     let mut table = Table::new(
         "quality",
         "Quality of the triangles",
-        &[("id", "Id"), ("purpose", "Mesh"), ("triangles", "Triangles"), ("degenerate", "Degenerate")],
+        &[
+            ("id", "Id"),
+            ("purpose", "Mesh"),
+            ("triangles", "Triangles"),
+            ("degenerate", "Degenerate"),
+            ("shortest_edge", "Shortest edge"),
+        ],
     );
     for (measure, heading, ..) in MEASURES {
         for (statistic, short, _) in STATISTICS {
@@ -59,6 +65,7 @@ pub(super) fn quality(inputs: &Inputs<'_>) -> Option<Table> {
                 Cell::text(purpose_label(purpose)),
                 Cell::count(mesh.quality.triangles),
                 Cell::count(mesh.quality.degenerate),
+                Cell::number(mesh.quality.shortest_edge, 6),
             ];
             for (_, _, decimals, of) in MEASURES {
                 let distribution = of(mesh);
@@ -70,7 +77,7 @@ pub(super) fn quality(inputs: &Inputs<'_>) -> Option<Table> {
     let blocks: Vec<(&str, Vec<String>)> = MEASURES
         .iter()
         .map(|(measure, heading, ..)| {
-            let fixed = ["id", "purpose", "degenerate"].map(String::from);
+            let fixed = ["id", "purpose", "degenerate", "shortest_edge"].map(String::from);
             let all = STATISTICS.iter().map(|(statistic, ..)| format!("{measure}_{statistic}"));
             (*heading, fixed.into_iter().chain(all).collect())
         })
@@ -78,7 +85,7 @@ pub(super) fn quality(inputs: &Inputs<'_>) -> Option<Table> {
     for (heading, columns) in &blocks {
         let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
         let mut part = table.block(heading, &columns);
-        for (column, (_, short, _)) in part.columns[3..].iter_mut().zip(STATISTICS) {
+        for (column, (_, short, _)) in part.columns[4..].iter_mut().zip(STATISTICS) {
             column.heading = (*short).into();
         }
         table.parts.push(part);
@@ -86,7 +93,8 @@ pub(super) fn quality(inputs: &Inputs<'_>) -> Option<Table> {
     table.notes.push(
         "Edge ratio: longest over shortest edge. Published ratio: longer over shorter of the two edges at the first \
          corner. Radius ratio: twice the inscribed over the circumscribed radius, 1 for an equilateral triangle. \
-         SD: population standard deviation. Degenerate triangles are left out of everything but the area."
+         SD: population standard deviation. Degenerate triangles are left out of everything but the area and \
+         the shortest edge, which is in scene units."
             .into(),
     );
     (!table.rows.is_empty()).then_some(table)

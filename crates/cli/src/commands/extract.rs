@@ -1,6 +1,7 @@
 //! `isostudy extract`: the meshes of a study, or the surface of a formula, a volume or a mesh in a file.
 
 mod chosen_method;
+mod labels;
 mod own_cells;
 mod quality_report;
 
@@ -23,11 +24,12 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
-#[command(group(ArgGroup::new("source").args(["study", "field", "volume", "mesh"]).required(true)))]
+#[command(group(ArgGroup::new("source").args(["study", "field", "volume", "mesh", "labels"]).required(true)))]
 #[command(after_help = "\
 Examples:
   isostudy extract --field 'sqrt(x^2+y^2+z^2) - 1' --bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2 --spacing 0.05 -o ball.ply
   isostudy extract --volume head.nrrd --isovalue 300.5 -o head.glb --quality
+  isostudy extract --labels organs.seg.nrrd --only 2,5 -o organs.glb
   isostudy extract --mesh scan.stl --cells 200 -o even.obj --picture even.png --method bi-relaxed
   isostudy extract configs/paper.toml --only ss_bi")]
 pub(crate) struct Arguments {
@@ -36,11 +38,14 @@ pub(crate) struct Arguments {
     study: Option<PathBuf>,
     #[command(flatten)]
     source: SourceArguments,
+    /// Volume of labels, whole numbers of which 0 is the background: the boundaries between every two of them, by surface nets
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["study", "bounds", "spacing", "cells", "isovalue", "inside", "allow_open", "arrangement", "clustering"])]
+    labels: Option<PathBuf>,
     /// How sample points fill space: body-centred, simple-cubic, five-tetrahedra, face-centred
     #[arg(long, value_name = "NAME", default_value = "body-centred", value_parser = named::<Arrangement>, conflicts_with = "study")]
     arrangement: Arrangement,
-    /// How vertices are merged: none, integrated, edge-collapse, integrated-collapse; the last two arrangements have no
-    /// integrated clustering [default: integrated; edge-collapse where there is none]
+    /// How vertices are merged: none, integrated, edge-collapse, integrated-collapse, warp; the last two arrangements have no
+    /// integrated clustering, and warp is for the first [default: integrated; edge-collapse where there is none]
     #[arg(long, value_name = "NAME", value_parser = named::<Clustering>, conflicts_with = "study")]
     clustering: Option<Clustering>,
     /// A method by its name instead, such as bi-relaxed; `isostudy methods` lists them
@@ -65,12 +70,12 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1024))]
     threads: u32,
     /// Of a study, redo what is up to date as well
-    #[arg(long, conflicts_with_all = ["field", "volume", "mesh"])]
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "labels"])]
     force: bool,
     /// Of a study, run the programs that it names as methods; they may do whatever you may do
-    #[arg(long, conflicts_with_all = ["field", "volume", "mesh"])]
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "labels"])]
     allow_programs: bool,
-    /// Of a study, only these configurations, such as ss_bi [default: all]
+    /// Of a study, only these configurations, such as ss_bi; of labels, only these, such as 2,5 [default: all]
     #[arg(long, value_name = "ID", value_delimiter = ',', conflicts_with_all = ["field", "volume", "mesh"])]
     only: Vec<String>,
 }
@@ -119,6 +124,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
 /// # Errors
 /// If the input cannot be read, has no inside, or has no surface there; if a file cannot be written.
 fn extract(arguments: &Arguments) -> Result<Outcome> {
+    if let Some(path) = &arguments.labels {
+        return labels::extract(arguments, path);
+    }
     let out = arguments.out.as_deref().context("-o is needed")?;
     let format = mesh_file::format_to_write(out).with_context(|| out.display().to_string())?;
     check_outputs(arguments, out)?;
@@ -190,8 +198,9 @@ fn open_edges(mesh: &TriangleMesh) -> Option<String> {
 /// Nothing that was given is written over; and no output over another, since no mesh ends as pictures do.
 fn check_outputs(arguments: &Arguments, out: &Path) -> Result<()> {
     let outputs = [Some(out), arguments.picture.as_deref()];
+    let given = arguments.labels.as_deref().or(arguments.source.file());
     for output in outputs.into_iter().flatten() {
-        if arguments.source.file().is_some_and(|file| input::is_same(file, output)) {
+        if given.is_some_and(|file| input::is_same(file, output)) {
             bail!("{}: is the input; it would be written over", output.display());
         }
     }

@@ -11,7 +11,7 @@ use crate::in_sight::Values;
 use crate::lattice::Lattice;
 use crate::level::Level;
 use crate::memory::{push, refill};
-use crate::placement::crossing_ratio;
+use crate::placement::{clamped, crossing_ratio};
 use crate::settings::{ExtractSettings, Placement};
 use crate::spot::{Apart, Company, linear_ratio};
 use crate::trace::VertexKey;
@@ -208,6 +208,8 @@ pub(super) struct Placer<'a> {
     lattice: &'a Lattice,
     isovalue: f32,
     apart: Apart,
+    /// How near to the ends a root may be.
+    clamp: f32,
     pub(super) edges: [Vec3; Directions::BITS as usize],
     /// Whether the settings want vertices elsewhere, and to find roots with.
     refines: bool,
@@ -229,7 +231,8 @@ impl<'a> Placer<'a> {
         Self {
             lattice,
             isovalue: settings.isovalue,
-            apart: Apart::new(lattice, settings.topology),
+            apart: Apart::new(lattice, settings.topology).clamped(settings.edge_clamp),
+            clamp: settings.edge_clamp,
             edges,
             // The weighted mean of one crossing is that crossing.
             refines: settings.refine_crossings || settings.placement == Placement::CurvatureWeighted,
@@ -258,6 +261,7 @@ impl<'a> Placer<'a> {
         if self.refines {
             let edge = way.as_dvec3();
             let ratio = crossing_ratio(self.level, from, edge, [here - isovalue, there - isovalue]);
+            let ratio = clamped(ratio, self.clamp);
             let target: DVec3 = from.as_dvec3() + edge * ratio;
             vertices.targets.try_reserve(1)?;
             vertices.targets.push(target.as_vec3().clamp(bounds.min, bounds.max));

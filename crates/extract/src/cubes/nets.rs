@@ -10,6 +10,7 @@
 //! It streams: sides; a layer behind, samples; another behind, the vertices of a layer of cells; then the quadrilaterals of the edges
 //! that begin at the points below it.
 
+mod labels;
 mod octree;
 mod plan;
 mod quads;
@@ -18,6 +19,7 @@ mod sharp;
 mod tangents;
 mod vertices;
 
+pub use labels::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
 pub(crate) use quads::{ROUND, is_other_better};
 pub(crate) use sharp::Sharp;
 

@@ -15,7 +15,7 @@ use crate::in_sight::Values;
 use crate::lattice::Lattice;
 use crate::level::Level;
 use crate::memory::push;
-use crate::placement::crossing_ratio;
+use crate::placement::{clamped, crossing_ratio};
 use crate::settings::{ExtractSettings, Placement, Topology};
 use crate::slabs::Piece;
 use crate::spot::{Apart, Company, linear_ratio};
@@ -233,6 +233,8 @@ pub(super) struct Placer<'a> {
     isovalue: f32,
     /// How near to either end it may lie.
     apart: Apart,
+    /// The same where it is a root.
+    clamp: f32,
     /// How far a vertex is drawn from its crossing to the middle of its edge: 0 to 1.
     pull: f32,
     /// Whether the settings want vertices elsewhere, and to find roots with.
@@ -245,7 +247,8 @@ impl<'a> Placer<'a> {
         Self {
             pull: 0.0,
             isovalue: settings.isovalue,
-            apart: Apart::new(lattice, Topology::Guarded),
+            apart: Apart::new(lattice, Topology::Guarded).clamped(settings.edge_clamp),
+            clamp: settings.edge_clamp,
             // The weighted mean of one crossing is that crossing.
             refines: settings.refine_crossings || settings.placement == Placement::CurvatureWeighted,
             level: level.filter(|_| settings.refine_crossings),
@@ -311,7 +314,7 @@ impl<'a> Placer<'a> {
         let mut edge = glam::DVec3::ZERO;
         edge[axis] = f64::from(to) - f64::from(from);
         let ends = [here - self.isovalue, there - self.isovalue];
-        let ratio = crossing_ratio(self.level, target, edge, ends);
+        let ratio = clamped(crossing_ratio(self.level, target, edge, ends), self.clamp);
         target[axis] = ((f64::from(from) + edge[axis] * ratio) as f32).clamp(from, to);
         Some(target)
     }

@@ -1,7 +1,7 @@
 //! A volume's own cells: the surface between its samples, in the space its steps are in.
 
 use glam::{DMat3, DVec3, Vec3};
-use mesh::Bounds;
+use mesh::{Bounds, TriangleMesh};
 use thiserror::Error;
 
 use crate::ExtractError;
@@ -53,6 +53,34 @@ pub enum VolumeCellsError {
     Extract(#[from] MethodError),
 }
 
+/// Where the steps of a grid lead.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Space {
+    start: DVec3,
+    matrix: DMat3,
+}
+
+impl Space {
+    /// `None` if the steps span no space, or are not finite.
+    pub(super) fn try_new(origin: [f64; 3], steps: [[f64; 3]; 3]) -> Option<Self> {
+        let (matrix, start) = (DMat3::from_cols_array_2d(&steps), DVec3::from_array(origin));
+        let lengths = matrix.x_axis.length() * matrix.y_axis.length() * matrix.z_axis.length();
+        let is_space =
+            start.is_finite() && lengths.is_finite() && matrix.determinant().abs() > 1e-6 * lengths;
+        is_space.then_some(Self { start, matrix })
+    }
+
+    /// Takes a mesh in steps of the grid to space. Triangles face the same way there as here, mirrored or not.
+    pub(super) fn place(self, mesh: &mut TriangleMesh) {
+        for position in &mut mesh.positions {
+            *position = (self.start + self.matrix * position.as_dvec3()).as_vec3();
+        }
+        if self.matrix.determinant() < 0.0 {
+            mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        }
+    }
+}
+
 impl VolumeCells<'_> {
     /// The grid in steps, a cube for each cell: what a method is asked about.
     pub fn grid(&self) -> BoxGrid {
@@ -82,22 +110,12 @@ impl VolumeCells<'_> {
         if counts.iter().any(|&n| n < 2) {
             return Err(VolumeCellsError::Flat { counts });
         }
-        let (matrix, start) = (DMat3::from_cols_array_2d(&steps), DVec3::from_array(origin));
-        let lengths = matrix.x_axis.length() * matrix.y_axis.length() * matrix.z_axis.length();
-        let determinant = matrix.determinant();
-        if !(start.is_finite() && lengths.is_finite() && determinant.abs() > 1e-6 * lengths) {
-            return Err(VolumeCellsError::Steps { steps, origin });
-        }
+        let space = Space::try_new(origin, steps).ok_or(VolumeCellsError::Steps { steps, origin })?;
         let grid = self.grid();
         let mut extraction =
             method.extract(extractor, Source::Samples(values), &grid, isovalue, execution)?;
         let mesh = &mut extraction.mesh;
-        for position in &mut mesh.positions {
-            *position = (start + matrix * position.as_dvec3()).as_vec3();
-        }
-        if determinant < 0.0 {
-            mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
-        }
+        space.place(mesh);
         let normals = vertex_normals(&mesh.positions, &mesh.triangles);
         mesh.normals = normals.map_err(|_| MethodError::from(ExtractError::NoMemoryForMesh))?;
         Ok(extraction)

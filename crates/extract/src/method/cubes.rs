@@ -9,7 +9,7 @@ use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topolog
 /// what others made of them.
 ///
 /// With the feature `serde` the keys are those of the fields, all with defaults.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Cubes {
@@ -21,6 +21,8 @@ pub struct Cubes {
     pub placement: Placement,
     /// Whether crossings are roots of the field rather than interpolated between samples.
     pub refine_crossings: bool,
+    /// How far crossings are kept from sample points, in lengths of a lattice edge: see [`ExtractSettings::edge_clamp`].
+    pub edge_clamp: f32,
 }
 
 impl Cubes {
@@ -52,6 +54,7 @@ impl OfCubes for Cubes {
             positions: Positions::Indexed,
             placement: self.placement,
             refine_crossings: self.refine_crossings,
+            edge_clamp: self.edge_clamp,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Methods that have a name.
 //!
 //! The first letter is the arrangement: body-centred, simple cubic, mirrored five tetrahedra, face-centred. The second is
-//! the clustering: unclustered, integrated, post-processed by an edge collapse, integrated and then collapsed.
+//! the clustering: unclustered, integrated, post-processed by an edge collapse, integrated and then collapsed, warped.
 
 use super::{Cubes, DualContouring, Macet, Method, SnapCubes, SurfaceNets, Tetrahedra};
 use crate::cubes::{Diagonals, Faces, Flat};
@@ -19,6 +19,7 @@ const EDGE_GROUPS: &str = "Lorensen & Cline 1987; Dietrich et al. 2008";
 const BEST: &str = "Lorensen & Cline 1987; diagonals by radius ratios, see extract::Diagonals";
 const SNAPPED: &str = "Raman & Wenger 2008; table by hulls, Bhaniramka et al. 2004";
 const TURNED: &str = "our reading of Macet, Dietrich et al. 2009; table of Dietrich et al. 2008";
+const WARPED: &str = "Labelle & Shewchuk 2007, the warp and the boundary";
 const NETS: &str = "Gibson 1998, by values and without relaxation";
 const PATCHES: &str = "Nielson 2004; Wenger 2013";
 const PLANES: &str = "Ju, Losasso, Schaefer & Warren 2002, on a uniform grid";
@@ -45,7 +46,7 @@ pub fn presets() -> &'static [Preset] {
     &PRESETS
 }
 
-static PRESETS: [Preset; 32] = [
+static PRESETS: [Preset; 33] = [
     plain("bu", "body-centred, none", BodyCentred, None, COSTEN),
     plain("bi", "body-centred, integrated", BodyCentred, Integrated, TREECE),
     plain("bp", "body-centred, edge collapse", BodyCentred, EdgeCollapse, COLLAPSED),
@@ -62,6 +63,7 @@ static PRESETS: [Preset; 32] = [
     placed("bi-relaxed", "body-centred, integrated, relaxed", BodyCentred, Placement::Relaxed),
     placed("si-projected", "simple cubic, integrated, projected", SimpleCubic, Placement::Projected),
     placed("si-relaxed", "simple cubic, integrated, relaxed", SimpleCubic, Placement::Relaxed),
+    Preset { source: WARPED, ..plain("bw", "body-centred, warp", BodyCentred, Clustering::Warp, OWN) },
     cubes("mc", "marching cubes", Faces::SeparateInside, Diagonals::Fan, CUBES),
     cubes("mc33", "marching cubes, trilinear", Faces::Trilinear, Diagonals::Fan, TRILINEAR),
     cubes(
@@ -93,13 +95,13 @@ static PRESETS: [Preset; 32] = [
     Preset {
         id: "nets",
         label: "surface nets",
-        method: Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0 }),
+        method: Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0, edge_clamp: 0.0 }),
         source: NETS,
     },
     Preset {
         id: "nets-manifold",
         label: "surface nets, manifold",
-        method: Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 0 }),
+        method: Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 0, edge_clamp: 0.0 }),
         source: PATCHES,
     },
     Preset {
@@ -141,6 +143,7 @@ const fn settings(arrangement: Arrangement, clustering: Clustering) -> Tetrahedr
         positions: Positions::Indexed,
         placement: Placement::MeanOfCrossings,
         refine_crossings: false,
+        edge_clamp: 0.0,
     }
 }
 
@@ -172,7 +175,7 @@ const fn cubes(
     source: &'static str,
 ) -> Preset {
     let placement = Placement::MeanOfCrossings;
-    let method = Cubes { faces, diagonals, placement, refine_crossings: false };
+    let method = Cubes { faces, diagonals, placement, refine_crossings: false, edge_clamp: 0.0 };
     Preset { id, label, method: Method::Cubes(method), source }
 }
 

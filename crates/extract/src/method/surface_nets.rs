@@ -3,6 +3,7 @@
 use super::of_cubes::OfCubes;
 use super::{MethodError, Promises};
 use crate::cubes::{Nets, Way};
+use crate::settings::{Clustering, ExtractSettings, Topology};
 
 /// Surface nets, the dual of marching cubes: a vertex in each cube that the surface crosses, at the mean of the crossings of its edges,
 /// and a quadrilateral round each crossed edge (Gibson 1998). Each is two triangles, on either side of its
@@ -11,7 +12,7 @@ use crate::cubes::{Nets, Way};
 /// Where the surface leaves the box the mesh ends half a cell before it, since a vertex lies in a cell.
 ///
 /// With the feature `serde` the keys are those of the fields, all with defaults.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct SurfaceNets {
@@ -22,10 +23,12 @@ pub struct SurfaceNets {
     /// How many times all vertices go half the way to the mean of those that they share a side of a quadrilateral with; at most 64. None
     /// leaves its cube (Gibson 1998). It takes the steps out of samples that only say in or out; of others it wears off what they know.
     pub smoothing: u32,
+    /// How far crossings are kept from sample points, in lengths of a lattice edge: see [`ExtractSettings::edge_clamp`].
+    pub edge_clamp: f32,
 }
 
 /// The most steps of [`SurfaceNets::smoothing`]: each needs one more cell round a chunk.
-const MOST_SMOOTHING: u32 = 64;
+pub(crate) const MOST_SMOOTHING: u32 = 64;
 
 impl OfCubes for SurfaceNets {
     fn way(&self) -> Way {
@@ -39,6 +42,16 @@ impl OfCubes for SurfaceNets {
             same_triangles_for_all_placements: false,
             chunks: true,
             samples_suffice: true,
+        }
+    }
+
+    fn settings(&self, isovalue: f32) -> ExtractSettings {
+        ExtractSettings {
+            isovalue,
+            clustering: Clustering::None,
+            topology: Topology::Guarded,
+            edge_clamp: self.edge_clamp,
+            ..ExtractSettings::default()
         }
     }
 

@@ -13,7 +13,7 @@ use crate::source::Source;
 /// With the feature `serde` the keys are those of the fields, and `arrangement` must be given. `positions` is `"indexed"`
 /// or `"accumulated"`; to the latter belongs a number `accumulation_chunks`, 1 if it is left out, without effect beside the
 /// former.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "keys::Keys", into = "keys::Keys"))]
 pub struct Tetrahedra {
@@ -29,6 +29,8 @@ pub struct Tetrahedra {
     pub placement: Placement,
     /// Whether crossings are roots of the field rather than interpolated between samples.
     pub refine_crossings: bool,
+    /// How far crossings are kept from sample points, in lengths of a lattice edge: see [`ExtractSettings::edge_clamp`].
+    pub edge_clamp: f32,
 }
 
 impl Tetrahedra {
@@ -39,15 +41,23 @@ impl Tetrahedra {
 
     /// An arrangement with settings, whose isovalue is left out.
     pub fn with(arrangement: Arrangement, settings: &ExtractSettings) -> Self {
-        let ExtractSettings { isovalue: _, clustering, topology, positions, placement, refine_crossings } =
-            *settings;
-        Self { arrangement, clustering, topology, positions, placement, refine_crossings }
+        let ExtractSettings {
+            isovalue: _,
+            clustering,
+            topology,
+            positions,
+            placement,
+            refine_crossings,
+            edge_clamp,
+        } = *settings;
+        Self { arrangement, clustering, topology, positions, placement, refine_crossings, edge_clamp }
     }
 
     /// The settings of an extraction.
     pub fn settings(&self, isovalue: f32) -> ExtractSettings {
-        let Self { arrangement: _, clustering, topology, positions, placement, refine_crossings } = *self;
-        ExtractSettings { isovalue, clustering, topology, positions, placement, refine_crossings }
+        let Self { arrangement: _, clustering, topology, positions, placement, refine_crossings, edge_clamp } =
+            *self;
+        ExtractSettings { isovalue, clustering, topology, positions, placement, refine_crossings, edge_clamp }
     }
 
     /// Where vertices stay at the mean of their crossings.
@@ -92,9 +102,10 @@ impl Family for Tetrahedra {
             Placement::CurvatureWeighted => false,
         };
         Promises {
-            manifold: guarded,
+            manifold: guarded && self.clustering != Clustering::Warp,
             closed_off_the_box: guarded,
-            same_triangles_for_all_placements: !collapses,
+            // A warp has not all placements.
+            same_triangles_for_all_placements: !collapses && self.clustering != Clustering::Warp,
             chunks: indexed && !self.refine_crossings && moved_in_chunks,
             samples_suffice: indexed && !self.refine_crossings && !self.placement.calls_the_field(),
         }
@@ -179,6 +190,8 @@ mod keys {
         placement: Placement,
         #[serde(default)]
         refine_crossings: bool,
+        #[serde(default)]
+        edge_clamp: f32,
     }
 
     #[derive(Default, Serialize, Deserialize)]
@@ -191,8 +204,15 @@ mod keys {
 
     impl From<Tetrahedra> for Keys {
         fn from(method: Tetrahedra) -> Self {
-            let Tetrahedra { arrangement, clustering, topology, positions, placement, refine_crossings } =
-                method;
+            let Tetrahedra {
+                arrangement,
+                clustering,
+                topology,
+                positions,
+                placement,
+                refine_crossings,
+                edge_clamp,
+            } = method;
             let (positions, accumulation_chunks) = match positions {
                 super::Positions::Indexed => (Positions::Indexed, None),
                 super::Positions::Accumulated { chunks } => (Positions::Accumulated, Some(chunks)),
@@ -205,6 +225,7 @@ mod keys {
                 accumulation_chunks,
                 placement,
                 refine_crossings,
+                edge_clamp,
             }
         }
     }
@@ -217,8 +238,9 @@ mod keys {
                 Positions::Indexed => super::Positions::Indexed,
                 Positions::Accumulated => super::Positions::Accumulated { chunks },
             };
-            let Keys { arrangement, clustering, topology, placement, refine_crossings, .. } = keys;
-            Self { arrangement, clustering, topology, positions, placement, refine_crossings }
+            let Keys { arrangement, clustering, topology, placement, refine_crossings, edge_clamp, .. } =
+                keys;
+            Self { arrangement, clustering, topology, positions, placement, refine_crossings, edge_clamp }
         }
     }
 }

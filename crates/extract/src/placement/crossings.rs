@@ -24,6 +24,7 @@ pub(crate) struct CrossingPlacer<'a> {
     planes: Option<&'static Planes>,
     edges: [DVec3; DIRECTIONS],
     bounds: Bounds,
+    clamp: f32,
 }
 
 impl<'a> CrossingPlacer<'a> {
@@ -42,7 +43,7 @@ impl<'a> CrossingPlacer<'a> {
         let half = f64::from(lattice.spacing()) / 2.0;
         let offsets = &lattice.arrangement().directions().offsets;
         let edges = offsets.map(|offset| DVec3::from_array(offset.map(f64::from)) * half);
-        Some(Self { level, planes, edges, bounds: lattice.bounds() })
+        Some(Self { level, planes, edges, bounds: lattice.bounds(), clamp: settings.edge_clamp })
     }
 
     /// Whether neighbours on the same side are looked at, or crossings alone.
@@ -71,12 +72,18 @@ impl<'a> CrossingPlacer<'a> {
     /// How far along its edge a crossing is.
     fn ratio(&self, around: &Surroundings, direction: usize) -> f64 {
         let ends = [around.difference, around.neighbours[direction]];
-        crossing_ratio(self.level, around.position, self.edge(around, direction), ends)
+        clamped(crossing_ratio(self.level, around.position, self.edge(around, direction), ends), self.clamp)
     }
 
     fn edge(&self, around: &Surroundings, direction: usize) -> DVec3 {
         around.ways.map_or(self.edges[direction], |ways| ways[direction].as_dvec3())
     }
+}
+
+/// The same, kept away from the ends as the settings want it.
+pub(crate) fn clamped(ratio: f64, clamp: f32) -> f64 {
+    let least = f64::from(clamp);
+    if least > 0.0 { ratio.clamp(least, 1.0 - least) } else { ratio }
 }
 
 /// How far along its lattice edge a crossing is: by linear interpolation, and with a `level` then by regula falsi.

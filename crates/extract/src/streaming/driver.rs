@@ -9,13 +9,17 @@ use super::rule::{ClusterRule, Guarded, Published, Unclustered};
 use super::slab::{Job, Workspace, stream_slab};
 use crate::clock::Moment;
 use crate::extraction::{ExtractError, Extraction};
+use crate::finish::move_vertices;
 use crate::lattice::{Border, Lattice};
+use crate::normals::vertex_normals;
 use crate::placement::CrossingPlacer;
-use crate::settings::{Clustering, Topology};
+use crate::settings::{Clustering, ExtractSettings, Placement, Topology};
 use crate::slabs::{Piece, assemble, on_slabs, threads_and_slabs};
 use crate::source::Request;
 use crate::spot::Apart;
 use crate::trace::Trace;
+use crate::warp::warp;
+use mesh::TriangleMesh;
 
 /// Told how many layers of how many are done.
 pub(crate) type Progress = dyn Fn(usize, usize) + Send + Sync;
@@ -62,12 +66,44 @@ impl Streamer {
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
         let Request { lattice, settings, control, .. } = *request;
+        if settings.clustering != Clustering::Warp {
+            return self.extract_by_points(request, progress, trace, extraction);
+        }
+        // The trace says which lattice edge a vertex is on; vertices move once all is warped.
+        let mut own = Trace::default();
+        let trace = trace.unwrap_or(&mut own);
+        let unmoved = ExtractSettings { placement: Placement::MeanOfCrossings, ..*settings };
+        let request = Request { settings: &unmoved, ..*request };
+        self.extract_by_points(&request, progress, Some(trace), extraction)?;
+        let start = Moment::now();
+        warp(lattice, trace, extraction)?;
+        extraction.times.clustering += start.elapsed();
+        let Some(level) = request.level().filter(|_| settings.placement.calls_the_field()) else {
+            return Ok(());
+        };
+        let start = Moment::now();
+        let TriangleMesh { positions, normals, triangles } = &mut extraction.mesh;
+        move_vertices(&level, lattice, settings.placement, control.threads, positions, triangles)?;
+        *normals = vertex_normals(positions, triangles)?;
+        extraction.times.geometry += start.elapsed();
+        Ok(())
+    }
+
+    /// The same where each point merges its own crossings.
+    fn extract_by_points(
+        &mut self,
+        request: &Request,
+        progress: Option<&Progress>,
+        trace: Option<&mut Trace>,
+        extraction: &mut Extraction,
+    ) -> Result<(), ExtractError> {
+        let Request { lattice, settings, control, .. } = *request;
         let plan = Plan::new(lattice, Border::of(settings), self.plan.take()).map_err(|_| {
             ExtractError::OutOfMemory { bytes: lattice.memory_bytes_on(settings, control.threads.count()) }
         })?;
         let arrangement = lattice.arrangement();
         let merges = match settings.clustering {
-            Clustering::None | Clustering::EdgeCollapse => false,
+            Clustering::None | Clustering::EdgeCollapse | Clustering::Warp => false,
             Clustering::Integrated | Clustering::IntegratedCollapse => true,
         };
         let mut run = Run { plan: &plan, request, progress, trace, streamer: self };
@@ -128,7 +164,7 @@ impl Run<'_> {
             rule,
             source,
             isovalue: settings.isovalue,
-            apart: Apart::new(&grid.lattice, settings.topology),
+            apart: Apart::new(&grid.lattice, settings.topology).clamped(settings.edge_clamp),
             most_vertices,
             placer: placer.as_ref(),
             traced: self.trace.is_some(),

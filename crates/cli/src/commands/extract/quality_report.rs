@@ -155,6 +155,7 @@ impl QualityReport {
                 "smallest angle",
                 format!("mean {:.1} deg, smallest {:.2} deg", q.min_angle_deg.mean, q.min_angle_deg.min),
             ),
+            ("shortest edge", significant(q.shortest_edge.unwrap_or_default())),
             ("without area", format!("{} triangles", q.degenerate)),
             ("to the surface", way(&self.accuracy.distance) + &lost(self.accuracy.lost_points)),
             (

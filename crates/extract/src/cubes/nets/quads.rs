@@ -20,7 +20,7 @@ use crate::triangles::Triangulation;
 pub(crate) const ROUND: [[usize; 2]; 4] = [[1, 1], [0, 1], [0, 0], [1, 0]];
 
 /// Of each axis and cell, the corner of the cell that the edge begins at.
-const CORNERS: [[u8; 4]; 3] = {
+pub(super) const CORNERS: [[u8; 4]; 3] = {
     let mut corners = [[0; 4]; 3];
     let mut axis = 0;
     while axis < 3 {

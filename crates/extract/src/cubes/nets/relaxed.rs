@@ -12,6 +12,7 @@ use mesh::TriangleMesh;
 use super::super::grid::Grid;
 use super::quads::Quadrilateral;
 use crate::clock::Moment;
+use crate::control::Control;
 use crate::extraction::{ExtractError, Extraction};
 use crate::memory::{copied, filled};
 use crate::normals::vertex_normals;
@@ -33,30 +34,47 @@ pub(super) fn relax(
     extraction: &mut Extraction,
 ) -> Result<(), ExtractError> {
     let start = Moment::now();
-    let threads = request.control.threads;
     let grid = &Grid::new(request.lattice)?;
     let origin = request.lattice.origin();
-    let TriangleMesh { positions, normals, triangles } = &mut extraction.mesh;
+    let mesh = &mut extraction.mesh;
+    relax_positions(&request.control, steps, mesh, |v| {
+        let cell = trace.keys[v].cell();
+        let low = [0, 1, 2].map(|axis| cell[axis].wrapping_sub(origin[axis]) as usize);
+        [low, low.map(|i| i + 1)].map(|corner| grid.position(corner))
+    })?;
+    mesh.normals =
+        vertex_normals(&mesh.positions, &mesh.triangles).map_err(|_| ExtractError::NoMemoryForMesh)?;
+    extraction.times.vertex += start.elapsed();
+    Ok(())
+}
+
+/// The same of a net whose triangles are two for each quadrilateral. `cell` says between which corners a vertex stays. Normals are left.
+///
+/// # Errors
+/// As [`relax`].
+pub(super) fn relax_positions(
+    control: &Control,
+    steps: u32,
+    mesh: &mut TriangleMesh,
+    cell: impl Fn(usize) -> [Vec3; 2] + Sync,
+) -> Result<(), ExtractError> {
+    let TriangleMesh { positions, triangles, .. } = mesh;
     let links = &Links::of(positions.len(), triangles)?;
     let mut before = copied(positions)?;
     for _ in 0..steps {
-        request.control.check()?;
+        control.check()?;
         before.copy_from_slice(positions);
         let before = &before;
-        for_each_on_threads(threads, positions, |v, position| {
+        for_each_on_threads(control.threads, positions, |v, position| {
             let ways = links.at(v).iter().map(|&other| before[other as usize] - *position);
             let step = ways.sum::<Vec3>() * (STEP / links.at(v).len().max(1) as f32);
-            let cell = trace.keys[v].cell();
-            let low = [0, 1, 2].map(|axis| cell[axis].wrapping_sub(origin[axis]) as usize);
-            let [low, high] = [low, low.map(|i| i + 1)].map(|corner| grid.position(corner));
+            let [low, high] = cell(v);
             *position = (*position + step).clamp(low, high);
         })?;
     }
     for pair in triangles.as_chunks_mut::<2>().0 {
         *pair = Quadrilateral::of(*pair).by_shorter_diagonal(positions);
     }
-    *normals = vertex_normals(positions, triangles).map_err(|_| ExtractError::NoMemoryForMesh)?;
-    extraction.times.vertex += start.elapsed();
     Ok(())
 }
 

@@ -1,0 +1,24 @@
+#!/bin/sh
+# Prints what a collider costs: how long parry3d takes to build a triangle mesh of each method's terrain, with its smallest edge and worst
+# angles. The meshes are those of configs/terrain.toml, at the benchmark's spacing. What is fetched stays under target/peers.
+#
+# usage: scripts/colliders.sh [ROUNDS]
+set -eu
+cd "$(dirname "$0")/.."
+
+methods="si bi mc snapmc nets dc"
+only=""
+files=""
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+for object in hi cl ca bu; do
+    for method in $methods; do
+        only="$only${only:+,}${object}_$method"
+        files="$files $folder/meshes/benchmark/${object}_$method.ply"
+    done
+done
+cargo run --release --locked --quiet --package isostudy --bin isostudy -- \
+    extract configs/terrain.toml --only "$only" -o "$folder" >&2
+cargo build --release --quiet --manifest-path scripts/peers/Cargo.toml --target-dir target/peers --bin colliders
+# shellcheck disable=SC2086 # names without spaces
+exec target/peers/release/colliders "${1:-31}" 0.02 $files
