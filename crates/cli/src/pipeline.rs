@@ -3,7 +3,8 @@
 //! ```text
 //! objects ─ budgets ─ meshes ─┬─ turntables ─┬─ pairs, key ─┐
 //! comparisons ─ forms, key ───┼──────────────┼──────────────┤
-//!                             └─ stills ─────┼──────────────┤
+//!                             ├─ stills ─────┼──────────────┤
+//!                             └─ viewer ─────┼──────────────┤
 //! objects ─ budgets ─ timings ─┐             │              ├─ page ─ manifest
 //!              first frames ───┼─────────────┘              │
 //! answers ─────────────────────┴─ tables, figures, report ──┘
@@ -20,6 +21,7 @@ mod stimuli;
 mod sweep;
 mod tables;
 mod timings;
+mod viewer;
 mod web;
 mod worker;
 
@@ -84,7 +86,9 @@ impl<'a> Pipeline<'a> {
         let timings = self.timings(&PlanLength::Short)?;
         let pictures = self.pictures(&turntables)?;
         let tables = self.tables(&meshes, &timings, &pictures)?;
-        self.page(&meshes, &[turntables, pairs, forms, stills, pictures, vec![timings, tables]].concat())?;
+        let viewer = self.viewer(&meshes)?;
+        let made = [turntables, pairs, forms, stills, pictures, vec![timings, tables]].concat();
+        self.page(&meshes, &made, viewer)?;
         self.store.retire_untouched(|stage| ASKED_FOR.iter().any(|start| stage.starts_with(start)))?;
         self.unexplained()
     }

@@ -7,6 +7,11 @@ use glam::Vec3;
 
 use crate::TriangleMesh;
 
+mod compact;
+mod container;
+
+pub use compact::{CompactNumbers, Per, write_compact_glb};
+
 /// How far from one a normal's length may be.
 const UNIT: f32 = 1e-3;
 
@@ -21,34 +26,11 @@ const UNIT: f32 = 1e-3;
 /// What the output reports, and [`io::ErrorKind::InvalidInput`] where glTF has no words: a position that is not finite,
 /// an index out of range, or more than 4 GiB.
 pub fn write_glb(mesh: &TriangleMesh, output: impl Write) -> io::Result<()> {
-    let refuse = |what: String| io::Error::new(io::ErrorKind::InvalidInput, what);
-    if let Some(v) = mesh.positions.iter().position(|p| !p.is_finite()) {
-        return Err(refuse(format!("vertex {v} is at {}, which glTF cannot say", mesh.positions[v])));
-    }
-    let vertices = mesh.positions.len();
-    if let Some(t) = mesh.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= vertices)) {
-        return Err(refuse(format!("triangle {t} refers to a vertex beyond the last of {vertices}")));
-    }
+    container::check(mesh)?;
     let layout = Layout::of(mesh);
-    let mut json = document(mesh, &layout);
-    // Both chunks are padded to four bytes: text with spaces.
-    while !json.len().is_multiple_of(4) {
-        json.push(' ');
-    }
-    let chunk = if layout.bytes == 0 { 0 } else { 8 + layout.bytes };
-    let total = 12 + 8 + json.len() as u64 + chunk;
-    let total = u32::try_from(total)
-        .map_err(|_| refuse(format!("{total} bytes, glTF's length has 32 bits, and so has a chunk's")))?;
     let mut out = BufWriter::new(output);
-    out.write_all(b"glTF")?;
-    out.write_all(&2u32.to_le_bytes())?;
-    out.write_all(&total.to_le_bytes())?;
-    out.write_all(&(json.len() as u32).to_le_bytes())?;
-    out.write_all(b"JSON")?;
-    out.write_all(json.as_bytes())?;
+    container::begin(&mut out, document(mesh, &layout), layout.bytes)?;
     if layout.bytes > 0 {
-        out.write_all(&(layout.bytes as u32).to_le_bytes())?;
-        out.write_all(b"BIN\0")?;
         for index in mesh.triangles.iter().flatten() {
             out.write_all(&index.to_le_bytes())?;
         }
@@ -86,6 +68,9 @@ impl Layout {
     }
 }
 
+const BYTE: u32 = 5120;
+const UNSIGNED_BYTE: u32 = 5121;
+const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 const ARRAY_BUFFER: u32 = 34962;
