@@ -41,7 +41,7 @@ pub struct CompactNumbers<'a> {
     pub values: &'a [Option<f64>],
 }
 
-/// Writes a mesh as a binary glTF file of about a third of the bytes that [`write_glb`](crate::write_glb) takes, and better to
+/// Writes a mesh as a binary glTF file of about half the bytes that [`write_glb`](crate::write_glb) takes, and better to
 /// compress.
 ///
 /// Positions are whole numbers from 0 to 65,535 along the longest side of the mesh's box, and the node's `translation` and
@@ -205,7 +205,8 @@ fn document(mesh: &TriangleMesh, numbers: &[CompactNumbers<'_>], steps: &Steps, 
         format!("[{x},{y},{z}]")
     };
     let (low, high) = (ends(u16::min), ends(u16::max));
-    let (Vec3 { x, y, z }, s) = (steps.origin, steps.length);
+    // In double precision, whose decimals are those of the single-precision number exactly.
+    let (DVec3 { x, y, z }, s) = (steps.origin.as_dvec3(), steps.length);
     let index_type = if layout.short_indices { UNSIGNED_SHORT } else { UNSIGNED_INT };
     let normal = if *with_normals { r#","NORMAL":2"# } else { "" };
     let first = 2 + u32::from(*with_normals);

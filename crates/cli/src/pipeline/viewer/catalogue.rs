@@ -1,6 +1,7 @@
 //! What the viewer knows of a study: its objects, methods and meshes, and the numbers of each mesh.
 
 use super::levels::{Entry, Level};
+use crate::pipeline::pictures;
 use design::config::{CameraSection, ShadingSection};
 use design::record::MeshRecord;
 use design::{ConfigurationId, Study};
@@ -11,6 +12,8 @@ use serde::Serialize;
 pub(super) struct Catalogue<'a> {
     title: &'a str,
     objects: Vec<Object<'a>>,
+    /// The object that is shown first, as on the other pages.
+    first: &'a str,
     /// How high the eye stands at first.
     elevation_rad: f64,
     shading: &'a ShadingSection,
@@ -105,6 +108,7 @@ impl<'a> Catalogue<'a> {
         Self {
             title: &study.file.study.title,
             objects: study.file.objects.iter().map(object).collect(),
+            first: &study.file.objects[pictures::object(study)].id,
             elevation_rad: study.file.turntable.elevation_rad,
             shading: &study.file.shading,
             factors,

@@ -53,7 +53,7 @@ export function showLegend(legend, of, most) {
   const stops = Array.from({ length: 17 }, (_, i) => `rgb(${mapColour(i / 16).map((v) => Math.round(255 * v)).join(' ')})`);
   const unit = of.unit ?? '';
   const end = of.good === 'large' ? `${short(most)}${unit} (good)` : `${short(most)}${unit} or more`;
-  const start = of.good === 'large' ? `0${unit} (bad)` : `0${unit} (good)`;
+  const start = `0${unit} (${of.nought ?? (of.good === 'large' ? 'bad' : 'good')})`;
   legend.querySelector('.title').textContent = of.says[0].toUpperCase() + of.says.slice(1);
   // From 0 on the left, whichever end is bright.
   legend.querySelector('.scale').style.background = `linear-gradient(to right, ${(dark === 0 ? stops : stops.reverse()).join(', ')})`;

@@ -32,6 +32,8 @@ const level = (id, factor) => meshes.get(id).levels.find((of) => of.factor === f
 const shown = initial();
 /** Counts what was asked for, so that what comes late is dropped. */
 let turn = 0;
+/** The object that the camera was last put in front of. */
+let lookedAt = null;
 
 let views = null;
 try {
@@ -43,10 +45,10 @@ try {
 
 /** The first two meshes of an object, at the resolution of the animations. */
 function initial() {
-  const [first] = catalogue.meshes;
+  const first = catalogue.meshes.find((of) => of.object === catalogue.first) ?? catalogue.meshes[0];
   const second = catalogue.meshes.find((of) => of.object === first.object && of.id !== first.id) ?? first;
   const nearest = factors.reduce((a, b) => (Math.abs(Math.log(b)) < Math.abs(Math.log(a)) ? b : a));
-  return { left: first.id, right: second.id, mode: 'smooth', factor: nearest };
+  return { left: first.id, right: second.id, mode: 'wires', factor: nearest };
 }
 
 /** Takes what the address says, as far as it is known. */
@@ -102,6 +104,7 @@ async function show() {
     views.put(i, of);
     views.colour(i, chosen, lists[i], most);
   });
+  if (lookedAt !== object(shown.left)) reset();
   views.draw();
   const compared = chosen.values === 'difference' && !surfaces.every(Boolean);
   finish(compared ? 'There is no difference to show, since one mesh is missing.' : '');
@@ -133,15 +136,14 @@ function controlsShow() {
   SIDES.forEach((side, i) => { selects[i].value = shown[side]; });
   document.querySelector(`.modes input[value="${shown.mode}"]`).checked = true;
   slider.value = factors.indexOf(shown.factor);
-  const what = shown.factor === 1 ? 'as in the animations' : `${shown.factor} times the animations’ spacing`;
-  sliderSaid.textContent = what;
+  const what = shown.factor === 1 ? 'spacing of the animations' : `${shown.factor} times the spacing of the animations`;
+  sliderSaid.title = what;
+  sliderSaid.textContent = shown.factor === 1 ? 'as animated' : `${shown.factor} × spacing`;
   slider.setAttribute('aria-valuetext', what);
 }
 
 function choose(changes) {
-  const before = object(shown.left);
   Object.assign(shown, changes);
-  if (object(shown.left) !== before) reset();
   show().catch(report);
 }
 
@@ -151,7 +153,8 @@ function report(error) {
 }
 
 function reset() {
-  views?.look(object(shown.left));
+  lookedAt = object(shown.left);
+  views?.look(lookedAt);
 }
 
 function toggleHelp() {
@@ -218,5 +221,4 @@ for (const [id, why] of catalogue.left_out) {
 }
 
 follow();
-reset();
 show().catch(report);

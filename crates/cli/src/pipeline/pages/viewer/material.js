@@ -40,7 +40,7 @@ void main() {
   }
   if (hasWires) {
     vec3 near = smoothstep(vec3(0.0), 1.1 * fwidth(vCorner), vCorner);
-    shown = mix(wire, shown, min(near.x, min(near.y, near.z)));
+    shown = mix(mix(shown, wire, 0.85), shown, min(near.x, min(near.y, near.z)));
   }
   colour = vec4(shown, 1.0);
 }`;
@@ -66,7 +66,7 @@ export function material(shading) {
       shade: colour(shading.shade),
       highlight: colour(shading.highlight),
       wire: colour([0.03, 0.02, 0.05]),
-      ambient: { value: Math.max(shading.ambient, LEAST_AMBIENT) },
+      ambient: { value: Math.max(shading.ambient ?? 0, LEAST_AMBIENT) },
       most: { value: 1 },
       isFlat: { value: false },
       hasWires: { value: false },

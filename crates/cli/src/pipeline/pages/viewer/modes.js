@@ -8,7 +8,7 @@ export const MODES = [
   { id: 'quality', label: 'Quality', says: 'radius ratio of triangles', flat: true, values: 'quality', good: 'large', most: 1 },
   { id: 'distance', label: 'Distance', says: 'distance of triangles to the isosurface', flat: true, values: 'distance', good: 'small' },
   { id: 'normals', label: 'Normals', says: 'angle between normals of mesh and field', unit: '°', values: 'angle', good: 'small' },
-  { id: 'difference', label: 'Difference', says: 'distance of triangles to the other mesh', flat: true, values: 'difference', good: 'small' },
+  { id: 'difference', label: 'Difference', says: 'distance of triangles to the other mesh', flat: true, values: 'difference', good: 'small', nought: 'the same' },
 ];
 
 export const mode = (id) => MODES.find((of) => of.id === id);

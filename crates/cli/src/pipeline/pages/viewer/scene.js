@@ -1,7 +1,7 @@
 // Two views of two surfaces on one canvas, from one camera.
 
 import {
-  BufferAttribute, BufferGeometry, Color, ColorManagement, Mesh, PerspectiveCamera, Scene, Spherical, Vector3, WebGLRenderer,
+  Box3, BufferAttribute, BufferGeometry, Color, ColorManagement, Mesh, PerspectiveCamera, Scene, Sphere, Spherical, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { material } from 'viewer/material.js';
@@ -30,7 +30,7 @@ export class Views {
       mesh.frustumCulled = false;
       mesh.visible = false;
       scene.add(mesh);
-      return { scene, mesh, radius: 0 };
+      return { scene, mesh, box: new Box3() };
     });
     this.camera = new PerspectiveCamera();
     this.camera.up.set(0, 0, 1);
@@ -40,19 +40,24 @@ export class Views {
     canvas.addEventListener('webglcontextrestored', () => this.later());
   }
 
-  /** Puts the camera where a study's animations of an object begin. */
+  /** Looks from where a study's animations of an object begin, as near as shows all of both surfaces. */
   look(object) {
-    const { distance, vertical_fov_rad: fov } = object.camera;
+    this.fov = object.camera.vertical_fov_rad;
+    const { camera, controls, sides } = this;
+    const shown = sides.filter((side) => side.mesh.visible);
+    const box = new Box3();
+    shown.forEach((side) => box.union(side.box));
+    const { center, radius } = box.isEmpty() ? { center: new Vector3(), radius: 1 } : box.getBoundingSphere(new Sphere());
     const up = this.catalogue.elevation_rad;
-    this.fov = fov;
-    this.camera.position.set(Math.cos(up), Math.cos(up), Math.sin(up)).multiplyScalar(distance);
-    this.controls.target.set(0, 0, 0);
-    this.camera.lookAt(0, 0, 0);
+    const direction = new Vector3(Math.cos(up), Math.cos(up), Math.sin(up)).normalize();
+    controls.target.copy(center);
+    camera.position.copy(center).addScaledVector(direction, radius / Math.sin(this.fov / 2));
+    camera.lookAt(center);
     // The light stands to the camera as it does to that of the first frame.
-    this.camera.updateMatrixWorld();
+    camera.updateMatrixWorld();
     const light = new Vector3(...this.catalogue.shading.light);
-    this.light = light.applyQuaternion(this.camera.quaternion.clone().invert());
-    this.controls.update();
+    this.light = light.applyQuaternion(camera.quaternion.clone().invert());
+    controls.update();
     this.later();
   }
 
@@ -79,7 +84,7 @@ export class Views {
     corners.setAttribute('value', new BufferAttribute(new Float32Array(triangles.length), 1));
     at.mesh.geometry.dispose();
     at.mesh.geometry = corners;
-    at.radius = positions.reduce((most, value) => Math.max(most, Math.abs(value)), 0) * Math.sqrt(3);
+    at.box = new Box3().setFromBufferAttribute(corners.attributes.position);
   }
 
   /** Colours a pane by numbers of triangles or vertices, on a scale from 0 to `most`; by its material without numbers. */
@@ -136,6 +141,7 @@ export class Views {
   }
 
   draw() {
+    if (!this.light) return;
     const { renderer, canvas, camera } = this;
     const [width, height] = [canvas.clientWidth, canvas.clientHeight];
     if (width === 0 || height === 0) return;
@@ -144,19 +150,21 @@ export class Views {
     renderer.setScissor(0, 0, width, height);
     renderer.setViewport(0, 0, width, height);
     renderer.clear();
-    const away = camera.position.length();
-    const radius = Math.max(...this.sides.map((side) => side.radius), 1e-6);
-    camera.near = Math.max((away - radius) * 0.5, radius * 1e-3);
-    camera.far = away + 2 * radius;
+    const box = new Box3();
+    this.sides.forEach((side) => box.union(side.box));
+    const { center, radius } = box.getBoundingSphere(new Sphere());
+    const [away, size] = [camera.position.distanceTo(center), Math.max(radius, 1e-6)];
+    camera.near = Math.max((away - size) * 0.5, size * 1e-3);
+    camera.far = away + 2 * size;
     camera.updateMatrixWorld();
     const light = this.light.clone().applyQuaternion(camera.quaternion);
     const corner = canvas.getBoundingClientRect();
     this.panes.forEach((pane, i) => {
-      const box = pane.getBoundingClientRect();
-      const place = [box.left - corner.left, corner.bottom - box.bottom, box.width, box.height];
+      const at = pane.getBoundingClientRect();
+      const place = [at.left - corner.left, corner.bottom - at.bottom, at.width, at.height];
       renderer.setScissor(...place);
       renderer.setViewport(...place);
-      camera.aspect = box.width / box.height;
+      camera.aspect = at.width / at.height;
       // In a pane that is higher than wide the field of view is that of the width.
       const tangent = Math.tan(this.fov / 2) / Math.min(camera.aspect, 1);
       camera.fov = (2 * Math.atan(tangent) * 180) / Math.PI;
