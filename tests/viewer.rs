@@ -13,7 +13,10 @@ use std::path::PathBuf;
 const STANDS_FOR_THREE: [(&str, &str); 7] = [
     ("LICENSE", "The licence <of> the library\n"),
     ("three.core.min.js", "export const core = 1;\n"),
-    ("three.module.min.js", "export{core as a}from\"./three.core.min.js\";import{core}from\"./three.core.min.js\";\n"),
+    (
+        "three.module.min.js",
+        "export{core as a}from\"./three.core.min.js\";import{core}from\"./three.core.min.js\";\n",
+    ),
     ("OrbitControls.js", "import { a } from 'three';\n"),
     (
         "GLTFLoader.js",
@@ -76,7 +79,8 @@ fn the_page_holds_every_mesh_at_every_resolution() {
     for mesh in meshes {
         let id = mesh["id"].as_str().unwrap();
         let levels = mesh["levels"].as_array().unwrap();
-        let triangles: Vec<u64> = levels.iter().map(|l| l["numbers"]["triangles"].as_u64().unwrap()).collect();
+        let triangles: Vec<u64> =
+            levels.iter().map(|l| l["numbers"]["triangles"].as_u64().unwrap()).collect();
         assert!(triangles[0] > triangles[1] && triangles[1] > triangles[2], "{id}: {triangles:?}");
         for (level, factor) in levels.iter().zip(["0.5", "1", "2"]) {
             // What the page holds is the file beside it.

@@ -57,7 +57,8 @@ export function showLegend(legend, of, most) {
   legend.querySelector('.title').textContent = of.says[0].toUpperCase() + of.says.slice(1);
   // From 0 on the left, whichever end is bright.
   legend.querySelector('.scale').style.background = `linear-gradient(to right, ${(dark === 0 ? stops : stops.reverse()).join(', ')})`;
-  legend.querySelector('.marks').replaceChildren(...[start, `${short(most / 2)}${unit}`, end].map((text) => {
+  const marks = most > 0 ? [start, `${short(most / 2)}${unit}`, end] : [`0${unit} everywhere`];
+  legend.querySelector('.marks').replaceChildren(...marks.map((text) => {
     const mark = document.createElement('span');
     mark.textContent = text;
     return mark;

@@ -5,6 +5,9 @@ import { Nearest } from 'viewer/nearest.js';
 /** Milliseconds of work before the page may do something else. */
 const SLICE_MS = 40;
 
+/** In edges of a grid's cell. */
+const NOUGHT = 1e-6;
+
 const grids = new Map();
 const found = new Map();
 
@@ -38,7 +41,8 @@ export async function difference(from, to, goOn) {
       const at = (axis) => i * p[3 * a + axis] + j * p[3 * b + axis] + k * p[3 * c + axis];
       most = Math.max(most, grid.distance(at(0), at(1), at(2)));
     }
-    farthest[t] = most;
+    // What is less is rounding.
+    farthest[t] = most < NOUGHT * grid.edge ? 0 : most;
     if (t % 64 === 0 && !(await pause())) return undefined;
   }
   found.set(key, farthest);

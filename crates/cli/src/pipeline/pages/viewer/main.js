@@ -88,13 +88,14 @@ async function show() {
   let lists;
   if (chosen.values === 'difference') {
     said.textContent = 'Computing the difference.';
-    lists = surfaces.every(Boolean) ? [] : [null, null];
-    for (const i of lists.length ? [] : [0, 1]) lists.push(await difference(surfaces[i], surfaces[1 - i], current));
-    if (!current()) return;
-    lists.forEach((list, i) => {
-      if (list) numbers[i].difference_max = list.reduce((a, b) => Math.max(a, b), 0);
-    });
-    showNumbers(document.querySelector('.numbers tbody'), numbers);
+    const [left, right] = surfaces;
+    lists = [null, null];
+    if (left && right) {
+      lists = [await difference(left, right, current), await difference(right, left, current)];
+      if (!current()) return;
+      lists.forEach((list, i) => { numbers[i].difference_max = list.reduce((a, b) => Math.max(a, b), 0); });
+      showNumbers(document.querySelector('.numbers tbody'), numbers);
+    }
   } else {
     lists = surfaces.map((of) => of && valuesOf(of, chosen.values));
   }

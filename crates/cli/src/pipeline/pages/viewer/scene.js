@@ -1,7 +1,7 @@
 // Two views of two surfaces on one canvas, from one camera.
 
 import {
-  Box3, BufferAttribute, BufferGeometry, Color, ColorManagement, Mesh, PerspectiveCamera, Scene, Sphere, Spherical, Vector3, WebGLRenderer,
+  BufferAttribute, BufferGeometry, Color, ColorManagement, Mesh, PerspectiveCamera, Scene, Sphere, Spherical, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { material } from 'viewer/material.js';
@@ -30,7 +30,7 @@ export class Views {
       mesh.frustumCulled = false;
       mesh.visible = false;
       scene.add(mesh);
-      return { scene, mesh, box: new Box3() };
+      return { scene, mesh };
     });
     this.camera = new PerspectiveCamera();
     this.camera.up.set(0, 0, 1);
@@ -43,11 +43,8 @@ export class Views {
   /** Looks from where a study's animations of an object begin, as near as shows all of both surfaces. */
   look(object) {
     this.fov = object.camera.vertical_fov_rad;
-    const { camera, controls, sides } = this;
-    const shown = sides.filter((side) => side.mesh.visible);
-    const box = new Box3();
-    shown.forEach((side) => box.union(side.box));
-    const { center, radius } = box.isEmpty() ? { center: new Vector3(), radius: 1 } : box.getBoundingSphere(new Sphere());
+    const { camera, controls } = this;
+    const { center, radius } = this.around();
     const up = this.catalogue.elevation_rad;
     const direction = new Vector3(Math.cos(up), Math.cos(up), Math.sin(up)).normalize();
     controls.target.copy(center);
@@ -59,6 +56,13 @@ export class Views {
     this.light = light.applyQuaternion(camera.quaternion.clone().invert());
     controls.update();
     this.later();
+  }
+
+  /** A ball that holds both surfaces. */
+  around() {
+    const ball = new Sphere();
+    for (const { mesh } of this.sides.filter((side) => side.mesh.visible)) ball.union(mesh.geometry.boundingSphere);
+    return { center: ball.center, radius: ball.isEmpty() ? 1 : ball.radius };
   }
 
   /** Shows a surface in a pane, or nothing. */
@@ -84,7 +88,7 @@ export class Views {
     corners.setAttribute('value', new BufferAttribute(new Float32Array(triangles.length), 1));
     at.mesh.geometry.dispose();
     at.mesh.geometry = corners;
-    at.box = new Box3().setFromBufferAttribute(corners.attributes.position);
+    corners.computeBoundingSphere();
   }
 
   /** Colours a pane by numbers of triangles or vertices, on a scale from 0 to `most`; by its material without numbers. */
@@ -145,17 +149,20 @@ export class Views {
     const { renderer, canvas, camera } = this;
     const [width, height] = [canvas.clientWidth, canvas.clientHeight];
     if (width === 0 || height === 0) return;
-    renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    renderer.setSize(width, height, false);
+    const size = [width, height, Math.min(devicePixelRatio, 2)].join(' ');
+    // A new size clears the canvas and takes new memory.
+    if (size !== this.size) {
+      renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+      renderer.setSize(width, height, false);
+      this.size = size;
+    }
     renderer.setScissor(0, 0, width, height);
     renderer.setViewport(0, 0, width, height);
     renderer.clear();
-    const box = new Box3();
-    this.sides.forEach((side) => box.union(side.box));
-    const { center, radius } = box.getBoundingSphere(new Sphere());
-    const [away, size] = [camera.position.distanceTo(center), Math.max(radius, 1e-6)];
-    camera.near = Math.max((away - size) * 0.5, size * 1e-3);
-    camera.far = away + 2 * size;
+    const { center, radius } = this.around();
+    const away = camera.position.distanceTo(center);
+    camera.near = Math.max((away - radius) * 0.5, radius * 1e-3);
+    camera.far = away + 2 * radius;
     camera.updateMatrixWorld();
     const light = this.light.clone().applyQuaternion(camera.quaternion);
     const corner = canvas.getBoundingClientRect();
