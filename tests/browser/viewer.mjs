@@ -139,11 +139,10 @@ for (const [name, viewport] of [['laptop', LAPTOP], ['phone', PHONE]]) {
     test(`it fits, and everything has a name (${name}, ${colorScheme})`, { skip }, async () => {
       const page = await open(viewport, '#mode=distance', { colorScheme });
       assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'too wide');
-      const inView = await page.locator('.stage').evaluate((stage) => {
-        const { top, bottom } = stage.getBoundingClientRect();
-        return top >= 0 && bottom <= innerHeight;
-      });
-      assert.ok(inView, 'both meshes are on the first screen');
+      for (const of of ['.stage', '.legend']) {
+        const { top, bottom } = await page.locator(of).evaluate((box) => box.getBoundingClientRect().toJSON());
+        assert.ok(top >= 0 && bottom <= viewport.height, `${of} is on the first screen: ${top} to ${bottom}`);
+      }
       await page.locator('footer details').evaluateAll((all) => all.forEach((section) => { section.open = true; }));
       assert.match(await page.locator('.licence').textContent(), /MIT License[\s\S]*three\.js authors/);
       assert.match(await page.locator('.revision').textContent(), /release \d+/);
@@ -178,7 +177,9 @@ test('numbers are those of the tables', { skip }, async () => {
       non_manifold_edges: ['topology', 'non_manifold_edges'],
     })) {
       for (const [side, id] of [left, right].entries()) {
-        const wanted = Number(tables[from][id][column]);
+        const spacing = Number(tables.accuracy[id].spacing);
+        // The table has distances in spacings, the page lengths.
+        const wanted = Number(tables[from][id][column]) * (column.startsWith('distance') ? spacing : 1);
         assert.ok(Math.abs(found[row][side] - wanted) <= 1e-12 * Math.abs(wanted), `${id}: ${row} is ${found[row][side]}, not ${wanted}`);
         compared += 1;
       }
