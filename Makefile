@@ -2,26 +2,27 @@
 
 ISOSTUDY = cargo run --release --locked --quiet --package isostudy --bin isostudy --
 BUNNY ?=
+THREE ?=
 
-.PHONY: help study test test-long quick terrain bench bench-sweep figures check bunny clean
+.PHONY: help study test test-long quick terrain bench bench-sweep figures check bunny three viewer-library clean
 
 help: ## list these entries
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 11
 
-study: bunny ## regenerate every mesh, animation, table and figure of the paper into results/paper/
+study: bunny viewer-library ## regenerate every mesh, animation, table and figure of the paper into results/paper/
 	$(ISOSTUDY) study configs/paper.toml
 
-test: bunny ## run every test; those in a browser need Node and chromium and say so where there is none
+test: bunny viewer-library ## run every test; those in a browser need Node and chromium and say so where there is none
 	cargo test --release --locked --workspace
 	scripts/test-browser.sh
 
 test-long: bunny ## run the tests that take minutes: 74,640 volumes against the manifold guarantee, and more
 	cargo test --release --locked --workspace -- --ignored
 
-quick: bunny ## the same study made small, into results/quick/
+quick: bunny viewer-library ## the same study made small, into results/quick/
 	$(ISOSTUDY) study configs/quick.toml
 
-terrain: cache/methods/installed ## methods for terrain in games, with cells and with triangles alike, into results/terrain/
+terrain: cache/methods/installed viewer-library ## methods for terrain in games, with cells and with triangles alike, into results/terrain/
 	PATH="$(CURDIR)/cache/methods/bin:$$PATH" $(ISOSTUDY) study configs/terrain.toml --allow-programs
 
 cache/methods/installed: scripts/methods/requirements.txt
@@ -48,6 +49,13 @@ check: ## formatting, lints, licences, and the English of README and docs
 bunny: ## fetch and verify the Stanford bunny into cache/ (BUNNY=path takes a file of yours)
 	@scripts/fetch-bunny.sh $(BUNNY) >/dev/null
 
-clean: ## remove what was built and made; the bunny stays
+three: ## fetch and verify three.js into cache/, for the viewer of meshes (THREE=path takes a package of yours)
+	@scripts/fetch-three.sh $(THREE) >/dev/null
+
+# A study goes on without it: its pages then say what is missing.
+viewer-library:
+	@scripts/fetch-three.sh $(THREE) >/dev/null || true
+
+clean: ## remove what was built and made; the bunny and three.js stay
 	cargo clean
 	find results -mindepth 1 -maxdepth 1 ! -name README.md ! -name published -exec rm -r {} +

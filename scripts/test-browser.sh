@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The questionnaire and the pages of results in headless Chromium. Needs Node with npm, and a chromium on the PATH (or CHROMIUM=path).
+# The questionnaire, the pages of results and the viewer in headless Chromium. Needs Node with npm, and a chromium on the PATH (or CHROMIUM=path).
 # Without them nothing is tested, which is said loudly; BROWSER_REQUIRED=1 makes that an error.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -18,4 +18,6 @@ npm install --prefix "$MODULES" --silent --no-audit --no-fund --no-save playwrig
   skip "NPM COULD NOT INSTALL playwright-core AND axe-core"
 cargo build --release --locked --quiet --package isostudy
 export ISOSTUDY=${CARGO_TARGET_DIR:-$PWD/target}/release/isostudy CHROMIUM MODULES
-node --test tests/browser/questionnaire.mjs tests/browser/pages.mjs
+# The viewer is tested where three.js can be had.
+scripts/fetch-three.sh >/dev/null || true
+node --test tests/browser/questionnaire.mjs tests/browser/pages.mjs tests/browser/viewer.mjs

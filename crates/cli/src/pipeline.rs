@@ -3,9 +3,10 @@
 //! ```text
 //! objects ─ budgets ─ meshes ─┬─ turntables ─┬─ pairs, key ─┐
 //! comparisons ─ forms, key ───┼──────────────┼──────────────┤
-//!                             └─ stills ─────┼──────────────┤
+//!                             ├─ stills ─────┼──────────────┤
+//!                             └─ viewer ─────┼──────────────┤
 //! objects ─ budgets ─ timings ─┤             │              ├─ page ─ manifest
-//! objects ────────────  chunks ─┤             │              │
+//! objects ─────────── chunks ──┤             │              │
 //!              first frames ───┼─────────────┘              │
 //! answers ─────────────────────┴─ tables, figures, report ──┘
 //! ```
@@ -22,6 +23,7 @@ mod stimuli;
 mod sweep;
 mod tables;
 mod timings;
+mod viewer;
 mod web;
 mod worker;
 
@@ -87,8 +89,9 @@ impl<'a> Pipeline<'a> {
         let pictures = self.pictures(&turntables)?;
         let chunks = self.chunk_times()?;
         let tables = self.tables(&meshes, &timings, &chunks, &pictures)?;
+        let viewer = self.viewer(&meshes)?;
         let made = [turntables, pairs, forms, stills, pictures, chunks, vec![timings, tables]].concat();
-        self.page(&meshes, &made)?;
+        self.page(&meshes, &made, viewer)?;
         self.store.retire_untouched(|stage| ASKED_FOR.iter().any(|start| stage.starts_with(start)))?;
         self.unexplained()
     }

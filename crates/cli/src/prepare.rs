@@ -163,6 +163,17 @@ pub(crate) fn check(study: &Study, machine_bytes: Option<u64>) -> Result<()> {
         let wanted = Wanted::Spacing(still.spacing, Purpose::Stimulus);
         check(format!("stills[{i}].spacing"), object, still.configuration.method, wanted)?;
     }
+    // What is coarser than an animation's mesh needs less; where a method has no such grid the viewer says so.
+    let factors = study.file.viewer.iter().flat_map(|viewer| viewer.resolutions.iter().enumerate());
+    for (r, &factor) in factors.filter(|(_, factor)| **factor < 1.0) {
+        for (i, object) in study.file.objects.iter().enumerate() {
+            for method in &study.methods {
+                let wanted = Wanted::Spacing(factor * object.stimulus_spacing, Purpose::Stimulus);
+                let key = format!("viewer.resolutions[{r}] = {factor:?}: spacing of objects[{i}]");
+                check(key, object, method.id, wanted)?;
+            }
+        }
+    }
     Ok(())
 }
 

@@ -9,6 +9,7 @@ mod forms;
 mod methods;
 mod pictures;
 mod responses;
+mod viewer;
 
 pub use crate::method::{BudgetSection, Quantity, StimulusLook};
 pub use analysis::{AnalysisSection, Declaration, Exclusion, FamilyRule};
@@ -17,6 +18,7 @@ pub use forms::{FormsSection, OrderRule, ShownNames, SideRule, TrainingSection};
 pub use methods::{FactorSection, LevelSection, MethodSection, SpeltLevel};
 pub use pictures::{LightFollows, Look, ShadingSection, StillSection, TurntableSection};
 pub use responses::{PairSection, ResponsesSection, SynonymsSection};
+pub use viewer::ViewerSection;
 
 use crate::method::{Arrangement, Clustering, ConfigurationId, MethodId};
 use serde::{Deserialize, Serialize};
@@ -58,6 +60,9 @@ pub struct StudyFile {
     /// Still pictures of single configurations.
     #[serde(default)]
     pub stills: Vec<StillSection>,
+    /// The page that shows any two meshes side by side; leave out for a study without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub viewer: Option<ViewerSection>,
     /// What is timed, and how often.
     pub benchmark: BenchmarkSection,
     /// The questions: what is shown on which side; none for a study of meshes and times alone.

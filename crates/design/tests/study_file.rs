@@ -322,6 +322,7 @@ fn full_study() -> StudyFile {
             looks: vec![Look::Smooth],
             turntable: true,
         }],
+        viewer: Some(ViewerSection { three: text(), resolutions: vec![1.0] }),
         benchmark: BenchmarkSection {
             warmup: 1,
             iterations: 1,

@@ -120,7 +120,7 @@ fn points_on(triangles: &[[Vec3; 3]]) -> Vec<DVec3> {
 }
 
 /// The angle between `normal` and the outward direction at the foot of `p`.
-fn normal_error_deg(level: &Level, p: Vec3, normal: Vec3) -> Option<f64> {
+pub(crate) fn normal_error_deg(level: &Level, p: Vec3, normal: Vec3) -> Option<f64> {
     let normal = normal.as_dvec3().try_normalize()?;
     let outward = level.outward(level.foot(p, REACH * level.spacing)?.position)?;
     // Accurate near 0 and 180 degrees.

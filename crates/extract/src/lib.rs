@@ -212,6 +212,7 @@ mod limits;
 mod line;
 mod memory;
 mod method;
+mod normal_errors;
 mod normals;
 mod placement;
 mod sampling;
@@ -251,6 +252,7 @@ pub use method::{
     CornerSamples, Cubes, DualContouring, Macet, Method, MethodError, Preset, Promises, SnapCubes,
     SurfaceNets, Tetrahedra, presets,
 };
+pub use normal_errors::normal_errors_deg;
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use source::Source;
 pub use trace::VertexKey;

@@ -1,15 +1,18 @@
 //! Binary glTF 2.0 (Khronos 2021), out only.
 
-mod labelled;
-
-pub(crate) use labelled::write_labelled_glb;
-
 use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write};
 
 use glam::Vec3;
 
 use crate::TriangleMesh;
+
+mod compact;
+mod container;
+mod labelled;
+
+pub use compact::{CompactNumbers, Per, write_compact_glb};
+pub(crate) use labelled::write_labelled_glb;
 
 /// How far from one a normal's length may be.
 const UNIT: f32 = 1e-3;
@@ -25,10 +28,10 @@ const UNIT: f32 = 1e-3;
 /// What the output reports, and [`io::ErrorKind::InvalidInput`] where glTF has no words: a position that is not finite,
 /// an index out of range, or more than 4 GiB.
 pub fn write_glb(mesh: &TriangleMesh, output: impl Write) -> io::Result<()> {
-    check(mesh)?;
+    container::check(mesh)?;
     let layout = Layout::of(mesh);
     let mut out = BufWriter::new(output);
-    begin(&mut out, document(mesh, &layout), layout.bytes)?;
+    container::begin(&mut out, document(mesh, &layout), layout.bytes)?;
     if layout.bytes > 0 {
         for index in mesh.triangles.iter().flatten() {
             out.write_all(&index.to_le_bytes())?;
@@ -48,46 +51,6 @@ fn write_normal(normal: Vec3, out: &mut impl Write) -> io::Result<()> {
     let is_unit = (normal.length() - 1.0).abs() <= UNIT;
     for value in if is_unit { normal } else { normal.normalize_or(Vec3::Z) }.to_array() {
         out.write_all(&value.to_le_bytes())?;
-    }
-    Ok(())
-}
-
-/// # Errors
-/// Where glTF has no words for a mesh.
-fn check(mesh: &TriangleMesh) -> io::Result<()> {
-    if let Some(v) = mesh.positions.iter().position(|p| !p.is_finite()) {
-        return Err(refused(format!("vertex {v} is at {}, which glTF cannot say", mesh.positions[v])));
-    }
-    let vertices = mesh.positions.len();
-    if let Some(t) = mesh.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= vertices)) {
-        return Err(refused(format!("triangle {t} refers to a vertex beyond the last of {vertices}")));
-    }
-    Ok(())
-}
-
-fn refused(what: String) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidInput, what)
-}
-
-/// Writes all before the first byte of the binary chunk, which will have so many bytes, in fours; none if there are none.
-fn begin(out: &mut impl Write, mut json: String, bytes: u64) -> io::Result<()> {
-    // Both chunks are padded to four bytes: text with spaces.
-    while !json.len().is_multiple_of(4) {
-        json.push(' ');
-    }
-    let chunk = if bytes == 0 { 0 } else { 8 + bytes };
-    let total = 12 + 8 + json.len() as u64 + chunk;
-    let total = u32::try_from(total)
-        .map_err(|_| refused(format!("{total} bytes, glTF's length has 32 bits, and so has a chunk's")))?;
-    out.write_all(b"glTF")?;
-    out.write_all(&2u32.to_le_bytes())?;
-    out.write_all(&total.to_le_bytes())?;
-    out.write_all(&(json.len() as u32).to_le_bytes())?;
-    out.write_all(b"JSON")?;
-    out.write_all(json.as_bytes())?;
-    if bytes > 0 {
-        out.write_all(&(bytes as u32).to_le_bytes())?;
-        out.write_all(b"BIN\0")?;
     }
     Ok(())
 }
@@ -113,6 +76,9 @@ impl Layout {
     }
 }
 
+const BYTE: u32 = 5120;
+const UNSIGNED_BYTE: u32 = 5121;
+const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 const ARRAY_BUFFER: u32 = 34962;

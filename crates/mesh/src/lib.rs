@@ -2,7 +2,7 @@
 //!
 //! A [`TriangleMesh`] is plain data. [`quality`] measures its triangles, [`topology`] its connections, [`repair`]
 //! closes holes, [`self_intersections`] counts triangles that pass through each other, [`normals`] gives it vertex normals, [`metro`] says how far it is from another, and a [`MeshFormat`]
-//! moves it in and out of files: OBJ, PLY and STL both ways, binary glTF out. A [`LabelledMesh`] lies between labels. [`NearestTriangles`] finds the nearest
+//! moves it in and out of files: OBJ, PLY and STL both ways, binary glTF out, plainly or in few bytes. A [`LabelledMesh`] lies between labels. [`NearestTriangles`] finds the nearest
 //! triangle to a point. Everything is deterministic; only [`metro`] uses threads.
 //!
 //! ```
@@ -62,7 +62,7 @@ mod triangle_mesh;
 
 pub use format::{MeshFormat, ReadError};
 pub use glam;
-pub use glb::write_glb;
+pub use glb::{CompactNumbers, Per, write_compact_glb, write_glb};
 pub use labelled::LabelledMesh;
 pub use nearest::{NearestPoint, NearestTriangles};
 pub use numbers::{COORDINATE_LIMIT, MeshError, is_sound, used_vertices};

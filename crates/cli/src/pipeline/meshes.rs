@@ -145,7 +145,7 @@ impl Pipeline<'_> {
     }
 
     /// How well a configuration's mesh stands for its isosurface.
-    fn accuracy(&self, prepared: &Prepared<'_>, mesh: &TriangleMesh) -> Result<extract::Accuracy> {
+    pub(super) fn accuracy(&self, prepared: &Prepared<'_>, mesh: &TriangleMesh) -> Result<extract::Accuracy> {
         let Prepared { field, grid, isovalue, .. } = prepared;
         Ok(extract::accuracy(mesh, *field, *isovalue, grid, &Execution { threads: self.threads })?)
     }

@@ -4,6 +4,8 @@ mod glossary;
 mod index;
 mod report;
 mod templates;
+mod viewer;
 
 pub(super) use report::{Abstract, PictureData, write as write_report};
 pub(super) use templates::fits;
+pub(super) use viewer::{Embedded, viewer_page};

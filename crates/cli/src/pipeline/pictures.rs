@@ -13,7 +13,7 @@ use raster::{pixmap_from_png, pixmap_to_png};
 const MOST: usize = 12;
 
 /// The object that is shown: the first that is no sphere, on which methods look too much alike.
-fn object(study: &Study) -> usize {
+pub(super) fn object(study: &Study) -> usize {
     let round = |field: &FieldSection| matches!(field, FieldSection::Sphere { .. });
     study.file.objects.iter().position(|object| !round(&object.field)).unwrap_or(0)
 }

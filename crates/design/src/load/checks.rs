@@ -62,6 +62,7 @@ pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), Co
     c.number("shading.ambient", s.ambient, 0.0, 1.0)?;
     c.positive("shading.error_scale", s.error_scale, 10.0)?;
     c.count("stimuli.pair_scale", file.stimuli.pair_scale, 1, 4)?;
+    file.viewer.as_ref().map_or(Ok(()), |viewer| viewer.check(c))?;
 
     let b = &file.benchmark;
     c.count("benchmark.warmup", b.warmup, 0, 10_000)?;

@@ -5,7 +5,8 @@ use std::io::{self, BufWriter, Write};
 
 use glam::Vec3;
 
-use super::{ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, FLOAT, UNSIGNED_INT, begin, check, write_normal};
+use super::container::{begin, check};
+use super::{ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, FLOAT, UNSIGNED_INT, write_normal};
 use crate::{LabelledMesh, TriangleMesh};
 
 /// What of a turn the hue of a label is from that of the label before: neighbours differ, and none comes back soon.

@@ -5,6 +5,7 @@ use super::report::{Abstract, PictureData};
 use super::templates::{Picture, caption, environment};
 use crate::pipeline::pictures;
 use crate::pipeline::tables::{ABSTRACT, FIGURE_CONTENTS, FigureEntry, TABLE_CONTENTS, TableEntry};
+use crate::pipeline::viewer::Viewer;
 use crate::pipeline::{Meshes, Pipeline};
 use crate::source_digests;
 use crate::store::{Inputs, Stamp};
@@ -35,22 +36,23 @@ struct StillCard<'a> {
 }
 
 impl Pipeline<'_> {
-    /// Writes `index.html`. `made` are the stamps of all stages but the meshes'.
-    pub(in crate::pipeline) fn page(&self, meshes: &Meshes, made: &[Stamp]) -> Result<()> {
+    /// Writes `index.html`. `made` are the stamps of all stages but the meshes' and the viewer's.
+    pub(in crate::pipeline) fn page(&self, meshes: &Meshes, made: &[Stamp], viewer: Viewer) -> Result<()> {
         let step = Step::begin("page", 1, 1);
         let mut inputs = Inputs::of_sources(source_digests::PAGES).value("study", &self.study.file);
+        inputs = inputs.text("viewer", viewer.name());
         for stamp in meshes.stamps().chain(made) {
             inputs = inputs.stamp(stamp);
         }
-        let stamp = self
-            .store
-            .stage("page", inputs, |writer| writer.write("index.html", self.render_page()?.as_bytes()))?;
+        let stamp = self.store.stage("page", inputs, |writer| {
+            writer.write("index.html", self.render_page(viewer)?.as_bytes())
+        })?;
         step.count(stamp.redone);
         step.end();
         Ok(())
     }
 
-    fn render_page(&self) -> Result<String> {
+    fn render_page(&self, viewer: Viewer) -> Result<String> {
         let said: Abstract = self.read_json(ABSTRACT)?;
         let pictures = self.page_pictures()?;
         let stills = self.still_cards()?;
@@ -70,6 +72,7 @@ impl Pipeline<'_> {
             turntables => Serde(&self.turntable_cards()),
             pairs => Serde(&self.pair_cards()),
             sides_differ => sides_differ,
+            viewer => viewer.name(),
             objects => Serde(&self.study.file.objects),
             turntable => Serde(&self.study.file.turntable),
             version => env!("CARGO_PKG_VERSION"),

@@ -8,7 +8,7 @@ use serde::Serialize;
 /// Tables that fit any page, their rows cards on a narrow screen: who reads no other reads these.
 const FITTING: [&str; 5] = ["choices", "decision", "contrasts", "claims", "methods"];
 
-/// Both pages by name: `index.html` and `report.html`.
+/// The pages by name: `index.html`, `report.html` and `viewer.html`.
 pub(super) fn environment() -> Result<Environment<'static>> {
     let mut environment = Environment::new();
     environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build()?);
@@ -18,6 +18,9 @@ pub(super) fn environment() -> Result<Environment<'static>> {
         ("shared.html", include_str!("shared.html")),
         ("index.html", include_str!("index.html")),
         ("report.html", include_str!("report.html")),
+        ("viewer.html", include_str!("viewer/viewer.html")),
+        ("viewer.css", include_str!("viewer/viewer.css")),
+        ("viewer_start.js", include_str!("viewer/start.js")),
     ] {
         environment.add_template(name, text)?;
     }

@@ -1,0 +1,91 @@
+//! The library that draws: files of three.js, as modules that find each other inside one page.
+
+use crate::store::{Inputs, sha256};
+use anyhow::{Context, Result, bail};
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// A file, the name by which others import it, and the names that it imports by a path, with those that they have here.
+type Source = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
+
+const CORE: &str = "three/core";
+const BUFFERS: &str = "three/addons/utils/BufferGeometryUtils.js";
+const SKELETONS: &str = "three/addons/utils/SkeletonUtils.js";
+
+/// A page has no folders, so paths become names.
+const SOURCES: [Source; 6] = [
+    ("three.core.min.js", CORE, &[]),
+    ("three.module.min.js", "three", &[("\"./three.core.min.js\"", "\"three/core\"")]),
+    ("OrbitControls.js", "three/addons/controls/OrbitControls.js", &[]),
+    (
+        "GLTFLoader.js",
+        "three/addons/loaders/GLTFLoader.js",
+        &[
+            ("'../utils/BufferGeometryUtils.js'", "'three/addons/utils/BufferGeometryUtils.js'"),
+            ("'../utils/SkeletonUtils.js'", "'three/addons/utils/SkeletonUtils.js'"),
+        ],
+    ),
+    ("BufferGeometryUtils.js", BUFFERS, &[]),
+    ("SkeletonUtils.js", SKELETONS, &[]),
+];
+
+const LICENCE: &str = "LICENSE";
+
+/// One module.
+pub(super) struct Module {
+    /// What others import it by.
+    pub(super) name: &'static str,
+    /// Its text, with names in place of paths.
+    pub(super) text: String,
+}
+
+/// All of it.
+pub(super) struct Library {
+    /// Those that others import come first.
+    pub(super) modules: Vec<Module>,
+    /// Its licence.
+    pub(super) licence: String,
+}
+
+impl Library {
+    /// Reads it; `None` if a file is missing.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or does not import what it should: it is then of another version.
+    pub(super) fn read(folder: &Path) -> Result<Option<Self>> {
+        let mut modules = Vec::new();
+        for (file, name, imports) in SOURCES {
+            let Some(mut text) = read(&folder.join(file))? else { return Ok(None) };
+            for (path, by_name) in imports {
+                if !text.contains(path) {
+                    bail!(
+                        "{} does not import {path}: it is no file of the version that `make three` fetches",
+                        folder.join(file).display()
+                    );
+                }
+                text = text.replace(path, by_name);
+            }
+            modules.push(Module { name, text });
+        }
+        let Some(licence) = read(&folder.join(LICENCE))? else { return Ok(None) };
+        Ok(Some(Self { modules, licence }))
+    }
+
+    /// Digest of all files.
+    pub(super) fn digest(&self) -> String {
+        let inputs = Inputs::default().text(LICENCE, &self.licence);
+        self.modules
+            .iter()
+            .fold(inputs, |inputs, module| inputs.text(module.name, &sha256(module.text.as_bytes())))
+            .finish()
+    }
+}
+
+/// A text; `None` if there is no such file.
+fn read(path: &Path) -> Result<Option<String>> {
+    match std::fs::read_to_string(path) {
+        Ok(text) => Ok(Some(text)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error).with_context(|| path.display().to_string()),
+    }
+}
