@@ -3,14 +3,16 @@
 use super::scan::add_active;
 use super::spans::{NONE, Span, holds, union, with};
 use super::{ActiveCells, ActiveError, GridSamples};
-use crate::bits::set_range;
+use crate::bits::{set_above, set_range};
 use crate::in_sight::State;
 use crate::memory::filled;
 
 /// Cells along the edge of a brick.
 const BRICK: usize = 8;
+/// Samples of a row whose sides are found together.
+const WORD: usize = 64;
 
-/// The range of the samples of each brick of 8 x 8 x 8 cells: 8 bytes for 512 cells.
+/// The range of the samples of each brick of 8 x 8 x 8 cells: little more than 8 bytes for 512 cells.
 ///
 /// An extraction from these samples ([`Source::Bricks`](crate::Source::Bricks)) does not read bricks on one side of the isovalue. The
 /// mesh is the same, to the byte.
@@ -20,7 +22,9 @@ pub struct Bricks<'a> {
     /// Along each axis.
     counts: [usize; 3],
     spans: Vec<Span>,
-    /// Of each row of bricks, all of them.
+    /// Of each row of bricks, those of the samples of each word.
+    words: Vec<Span>,
+    /// All of them.
     rows: Vec<Span>,
 }
 
@@ -51,11 +55,18 @@ impl<'a> Bricks<'a> {
                 }
             }
         }
-        let mut rows = filled(by * bz, NONE)?;
-        for (row, bricks) in rows.iter_mut().zip(spans.chunks_exact(bx)) {
-            *row = bricks.iter().fold(NONE, |all, &span| union(all, span));
+        let whole = |spans: &[Span]| spans.iter().fold(NONE, |all, &span| union(all, span));
+        let words_of_row = samples.counts()[0].div_ceil(WORD);
+        let (mut words, mut rows) = (filled(words_of_row * by * bz, NONE)?, filled(by * bz, NONE)?);
+        for (row, bricks) in spans.chunks_exact(bx).enumerate() {
+            rows[row] = whole(bricks);
+            for (word, span) in words[row * words_of_row..][..words_of_row].iter_mut().enumerate() {
+                // The last word may have nothing but the last sample, which is in the last brick.
+                let first = (word * WORD / BRICK).min(bx - 1);
+                *span = whole(&bricks[first..bx.min(first + WORD / BRICK)]);
+            }
         }
-        Ok(Self { samples, counts, spans, rows })
+        Ok(Self { samples, counts, spans, words, rows })
     }
 
     /// The samples that they are of.
@@ -66,7 +77,7 @@ impl<'a> Bricks<'a> {
     /// Sets the bits of the samples of a row that are above the isovalue, all of which are zero; says where they are, but for rows in
     /// bricks on both sides.
     pub(crate) fn set_above(&self, [y, z]: [usize; 2], isovalue: f32, words: &mut [u64]) -> State {
-        let [bx, by, bz] = self.counts;
+        let [_, by, bz] = self.counts;
         let at = (z / BRICK).min(bz - 1) * by + (y / BRICK).min(by - 1);
         let row = self.samples.row(y, z);
         let [least, greatest] = self.rows[at];
@@ -77,17 +88,17 @@ impl<'a> Bricks<'a> {
             set_range(words, 0, row.len());
             return State::Inside;
         }
-        let (eights, rest) = row.as_chunks::<BRICK>();
-        for ((x, eight), &[least, greatest]) in eights.iter().enumerate().zip(&self.spans[at * bx..][..bx]) {
+        // By words, since a branch for each brick takes longer than to compare its eight samples.
+        let spans = &self.words[at * words.len()..][..words.len()];
+        for ((values, word), &[least, greatest]) in row.chunks(WORD).zip(words).zip(spans) {
             if isovalue >= greatest {
                 continue;
             }
-            let bits = if isovalue < least { 0xff } else { bits_above(eight, isovalue) };
-            words[BRICK * x / 64] |= bits << (BRICK * x % 64);
-        }
-        if !rest.is_empty() {
-            let x = BRICK * eights.len();
-            words[x / 64] |= bits_above(rest, isovalue) << (x % 64);
+            if isovalue < least {
+                set_range(std::slice::from_mut(word), 0, values.len());
+            } else {
+                set_above(values, isovalue, std::slice::from_mut(word));
+            }
         }
         State::Mixed
     }
@@ -96,10 +107,6 @@ impl<'a> Bricks<'a> {
 /// The bricks along an axis that a sample is in.
 fn bricks_of(sample: usize, bricks: usize) -> std::ops::Range<usize> {
     sample.saturating_sub(1) / BRICK..(sample / BRICK + 1).min(bricks)
-}
-
-fn bits_above(values: &[f32], isovalue: f32) -> u64 {
-    values.iter().enumerate().fold(0, |bits, (i, &value)| bits | u64::from(value > isovalue) << i)
 }
 
 impl ActiveCells for Bricks<'_> {
@@ -118,6 +125,6 @@ impl ActiveCells for Bricks<'_> {
     }
 
     fn bytes(&self) -> usize {
-        size_of::<Span>() * (self.spans.capacity() + self.rows.capacity())
+        size_of::<Span>() * (self.spans.capacity() + self.words.capacity() + self.rows.capacity())
     }
 }

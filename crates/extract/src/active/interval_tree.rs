@@ -2,7 +2,7 @@
 
 use super::spans::{Spanned, spanned_cells};
 use super::{ActiveCells, ActiveError, GridSamples};
-use crate::memory::{collected, filled, with_room};
+use crate::memory::{collected, copied, filled};
 
 /// A balanced tree over the least samples of cells (Cignoni, Marino, Montani, Puppo & Scopigno 1997). A cell is with the first node from the
 /// root on whose value it is active at. Each node has its cells in two lists, by rising least and by falling greatest sample: of
@@ -35,26 +35,29 @@ impl IntervalTree {
 
     /// Of intervals that are not empty.
     pub(super) fn of(intervals: &[Spanned]) -> Result<Self, ActiveError> {
-        let mut values = collected(intervals.iter().map(|interval| interval.span[0]))?;
-        values.sort_unstable_by(f32::total_cmp);
+        let mut sorted = copied(intervals)?;
+        sorted.sort_unstable_by(|a, b| a.span[0].total_cmp(&b.span[0]).then(a.cell.cmp(&b.cell)));
+        let mut values = collected(sorted.iter().map(|interval| interval.span[0]))?;
         values.dedup();
         values.shrink_to_fit();
-        let mut order = with_room(intervals.len())?;
-        order.extend(intervals.iter().map(|interval| (node_of(&values, interval.span), interval)));
         let mut starts = filled(values.len() + 1, 0u32)?;
-        order.iter().for_each(|(node, _)| starts[node + 1] += 1);
+        sorted.iter().for_each(|interval| starts[node_of(&values, interval.span) + 1] += 1);
         for node in 0..values.len() {
             starts[node + 1] += starts[node];
         }
-        let mut list = |end: usize| -> Result<Vec<End>, ActiveError> {
-            order.sort_unstable_by(|(node, a), (other, b)| {
-                let rising = a.span[end].total_cmp(&b.span[end]);
-                let order = if end == 0 { rising } else { rising.reverse() };
-                node.cmp(other).then(order).then(a.cell.cmp(&b.cell))
-            });
-            Ok(collected(order.iter().map(|(_, of)| End { value: of.span[end], cell: of.cell }))?)
+        let by_node = |sorted: &[Spanned], end: usize| -> Result<Vec<End>, ActiveError> {
+            let mut next = copied(&starts)?;
+            let mut ends = filled(sorted.len(), End { value: 0.0, cell: 0 })?;
+            for interval in sorted {
+                let place = &mut next[node_of(&values, interval.span)];
+                ends[*place as usize] = End { value: interval.span[end], cell: interval.cell };
+                *place += 1;
+            }
+            Ok(ends)
         };
-        let (by_least, by_greatest) = (list(0)?, list(1)?);
+        let by_least = by_node(&sorted, 0)?;
+        sorted.sort_unstable_by(|a, b| b.span[1].total_cmp(&a.span[1]).then(a.cell.cmp(&b.cell)));
+        let by_greatest = by_node(&sorted, 1)?;
         Ok(Self { values, starts, by_least, by_greatest })
     }
 
