@@ -88,17 +88,19 @@ impl<'a> Bricks<'a> {
             set_range(words, 0, row.len());
             return State::Inside;
         }
-        // By words, since a branch for each brick takes longer than to compare its eight samples.
+        // From the first word in a brick on both sides to the last, samples are read one after another: to leave some out among them
+        // takes longer, since memory is read ahead.
         let spans = &self.words[at * words.len()..][..words.len()];
-        for ((values, word), &[least, greatest]) in row.chunks(WORD).zip(words).zip(spans) {
-            if isovalue >= greatest {
-                continue;
+        let is_mixed = |span: &Span| holds(*span, isovalue);
+        let first = spans.iter().position(is_mixed).unwrap_or(words.len());
+        let end = spans.iter().rposition(is_mixed).map_or(first, |last| last + 1);
+        for (at, [least, _]) in spans.iter().enumerate().filter(|(at, _)| !(first..end).contains(at)) {
+            if isovalue < *least {
+                set_range(words, WORD * at, row.len().min(WORD * (at + 1)));
             }
-            if isovalue < least {
-                set_range(std::slice::from_mut(word), 0, values.len());
-            } else {
-                set_above(values, isovalue, std::slice::from_mut(word));
-            }
+        }
+        if first < end {
+            set_above(&row[WORD * first..row.len().min(WORD * end)], isovalue, &mut words[first..end]);
         }
         State::Mixed
     }

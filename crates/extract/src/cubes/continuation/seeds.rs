@@ -15,7 +15,8 @@ pub enum ContinuedCells {
     #[default]
     Cubes,
     /// Six tetrahedra, as in Bloomenthal's program: two cut off opposite corners, four stand round the diagonal between two others. Faces
-    /// that meet are cut along one diagonal.
+    /// that meet are cut along one diagonal. Where a sample equals the isovalue, triangles as small as rounding may be turned over, since not
+    /// every corner's faces stand as those of the other arrangements do.
     Tetrahedra,
 }
 

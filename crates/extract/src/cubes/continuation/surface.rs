@@ -212,7 +212,6 @@ mod tests {
     use std::collections::BTreeMap;
 
     use super::*;
-    use crate::spot::tests::normal_lies_between;
     use glam::DVec3;
 
     fn point(corner: u8) -> DVec3 {
@@ -253,18 +252,6 @@ mod tests {
                 // As corners of the least box round the edge.
                 let ends = [a, b].map(|c| c & (a ^ b));
                 assert!(ends.contains(&BEGIN[usize::from(a ^ b)]), "{a} {b}");
-            }
-        }
-    }
-
-    /// So that vertices which samples on the surface push along their edges turn no triangle over.
-    #[test]
-    fn a_small_face_at_a_sample_faces_where_the_tetrahedron_does() {
-        for corners in TETRAHEDRA {
-            let corners = corners.map(point);
-            for from in 0..4 {
-                let edges = [1, 2, 3].map(|k| corners[(from + k) % 4] - corners[from]);
-                assert!(normal_lies_between(edges), "{corners:?}");
             }
         }
     }
