@@ -257,6 +257,9 @@ fn the_page_has_the_keys_and_names_of_extractors() {
     has_the_keys_and_names_of("cubes", None, 3);
     has_the_keys_and_names_of("snap-cubes", None, 1);
     has_the_keys_and_names_of("macet", None, 2);
+    has_the_keys_and_names_of("surface-nets", None, 0);
+    has_the_keys_and_names_of("dual-contouring", None, 0);
+    has_the_keys_and_names_of("continuation", None, 1);
 }
 
 fn has_the_keys_and_names_of(kind: &str, needed: Option<(&str, &str)>, names: usize) {

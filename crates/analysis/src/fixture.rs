@@ -111,6 +111,8 @@ fn mesh(study: &Study, row: &BenchmarkRow, purpose: Purpose) -> MeshRecord {
             vertices,
             triangles: row.triangles,
             discarded_triangles: Some(discarded),
+            evaluations: Some(3 * vertices),
+            gradients: Some(0),
             vertex_bytes: row.vertex_bytes,
             index_bytes: row.index_bytes,
             tetrahedra: Some(TetrahedraCounts {

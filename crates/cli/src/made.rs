@@ -6,6 +6,7 @@ use crate::{mesh_file, records};
 use anyhow::{Context, Result, bail};
 use design::record::{Counts, MadeBy};
 use extract::{Execution, Extractor};
+use field::{Counted, FieldCache};
 use glam::Vec3;
 use mesh::TriangleMesh;
 use program::{Program, ProgramError, Ready, Request, Samples, Worker};
@@ -44,9 +45,13 @@ impl Prepared<'_> {
     pub(crate) fn make_any(&self, extractor: &mut Extractor, execution: &Execution) -> Result<Made> {
         Ok(match &self.recipe {
             Recipe::Extractor(_) => {
+                let mut kept = FieldCache::default();
+                let field = Counted::new(self.field, &mut kept);
+                let prepared = Prepared { field: &field, ..self.clone() };
                 let extraction =
-                    self.extractor().context("an extractor")?.extract_with(extractor, execution)?;
-                Made { counts: records::counts(&extraction.counts), mesh: extraction.mesh, program: None }
+                    prepared.extractor().context("an extractor")?.extract_with(extractor, execution)?;
+                let counts = records::with_calls(records::counts(&extraction.counts), &field);
+                Made { counts, mesh: extraction.mesh, program: None }
             }
             Recipe::Program(program) => self.by_program(program)?,
             Recipe::Meshes(files) => {
@@ -67,7 +72,9 @@ impl Prepared<'_> {
         let made_by = MadeBy { name, version, note };
         worker.finish()?;
         let mesh = with_normals(answer.mesh.context("a mesh was asked for")?);
-        Ok(Made { counts: records::counts_of_mesh(&mesh, Some(cells)), mesh, program: Some(made_by) })
+        let counts =
+            Counts { evaluations: Some(samples.len() as u64), ..records::counts_of_mesh(&mesh, Some(cells)) };
+        Ok(Made { counts, mesh, program: Some(made_by) })
     }
 
     /// What a program is asked.

@@ -5,6 +5,7 @@ use design::ConfigurationId;
 use design::record::{
     Accuracy, Counts, Distribution, Histogram, MeshRecord, Purpose, Quality, TetrahedraCounts, Topology,
 };
+use field::Counted;
 use mesh::TriangleMesh;
 
 pub(crate) fn mesh_record(
@@ -50,6 +51,9 @@ pub(crate) fn counts(c: &extract::Counts) -> Counts {
         vertices: c.vertices,
         triangles: c.triangles,
         discarded_triangles: Some(c.discarded_triangles),
+        // Whoever calls the extractor knows.
+        evaluations: None,
+        gradients: None,
         vertex_bytes: c.vertex_bytes,
         index_bytes: c.index_bytes,
         tetrahedra: c.tetrahedra.as_ref().map(|t| TetrahedraCounts {
@@ -63,6 +67,11 @@ pub(crate) fn counts(c: &extract::Counts) -> Counts {
             edge_bytes: t.edge_bytes,
         }),
     }
+}
+
+/// With how often the field was called.
+pub(crate) fn with_calls(counts: Counts, field: &Counted<'_>) -> Counts {
+    Counts { evaluations: Some(field.evaluations()), gradients: Some(field.gradients()), ..counts }
 }
 
 /// Of a mesh that came from elsewhere, made on a grid of so many cells if that is known.

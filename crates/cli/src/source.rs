@@ -56,6 +56,23 @@ pub(crate) struct OwnCells {
     pub(crate) is_turned: bool,
 }
 
+/// A volume as it was read.
+pub(crate) struct VolumeInFile {
+    field: VolumeField,
+    samples: usize,
+    name: String,
+}
+
+impl VolumeInFile {
+    /// As asked for; the samples are shared.
+    ///
+    /// # Errors
+    /// If it would have far more cubes than samples.
+    pub(crate) fn at(&self, options: &Options) -> Result<Source> {
+        options.of_volume_read(self)
+    }
+}
+
 /// What is asked of a source, whoever asks.
 pub(crate) struct Options {
     /// The box to look at; the source's own unless given.
@@ -113,10 +130,27 @@ impl Options {
     /// # Errors
     /// If it cannot be read, is too large, or is none.
     pub(crate) fn of_volume(&self, path: &Path) -> Result<Source> {
+        self.read_volume(path)?.at(self)
+    }
+
+    /// A volume in a file, to be looked at with several isovalues.
+    ///
+    /// # Errors
+    /// If it cannot be read, is too large, or is none.
+    pub(crate) fn read_volume(&self, path: &Path) -> Result<VolumeInFile> {
         let volume::Volume { counts, values, origin, steps } = self.limit.read(path)?;
-        let name = path.display();
-        let mut field = VolumeField::try_new(counts, values, origin, steps, Beyond::Continued)
-            .with_context(|| name.to_string())?;
+        let field = VolumeField::try_new(counts, values, origin, steps, Beyond::Continued)
+            .with_context(|| path.display().to_string())?;
+        if !field.is_axis_aligned() && !self.close {
+            let name = path.display();
+            tell!("{name}: the grid is turned against the axes; the surface is closed where it leaves it");
+        }
+        Ok(VolumeInFile { field, samples: counts.iter().product(), name: path.display().to_string() })
+    }
+
+    fn of_volume_read(&self, volume: &VolumeInFile) -> Result<Source> {
+        let VolumeInFile { field, samples, name } = volume;
+        let (mut field, samples) = (field.clone(), *samples);
         let beyond = match self.inside {
             Some(Inside::Below) => Beyond::Rising,
             _ => Beyond::Falling,
@@ -128,13 +162,10 @@ impl Options {
             field = field.with_beyond(beyond).closing_at(self.isovalue);
             bounds = field.closing_bounds();
         }
-        if is_turned && !self.close {
-            tell!("{name}: the grid is turned against the axes; the surface is closed where it leaves it");
-        }
         let values = values_of(&field);
-        let (step, samples) = (field.spacing(), counts.iter().product::<usize>());
+        let step = field.spacing();
         let held = field.memory_bytes();
-        let mut source = self.of_field(Box::new(field), Inside::Above, bounds, &path.display().to_string());
+        let mut source = self.of_field(Box::new(field), Inside::Above, bounds, name);
         source.held = held;
         if self.close || is_turned && self.bounds.is_none() {
             source = source.closed();
@@ -190,6 +221,17 @@ impl Options {
 /// What is known of a volume's values, for a surface that is not there.
 fn values_of(field: &VolumeField) -> String {
     let (low, high) = field.value_range();
+    run_from(low, high)
+}
+
+/// The same of samples that are no field; those that are not finite aside.
+pub(crate) fn values_of_samples(values: &[f32]) -> String {
+    let finite = values.iter().copied().filter(|v| v.is_finite());
+    let (low, high) = finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    run_from(low, high)
+}
+
+fn run_from(low: f32, high: f32) -> String {
     format!("; the volume's samples run from {low} to {high}")
 }
 
@@ -254,6 +296,11 @@ impl Source {
     pub(crate) fn place(&self) -> String {
         let Self { bounds, spacing, .. } = self;
         format!("from {} to {} with spacing {spacing:?}", place(bounds.min), place(bounds.max))
+    }
+
+    /// What is known of its values, as the end of a sentence.
+    pub(crate) fn values(&self) -> &str {
+        &self.values
     }
 
     /// The isovalue as asked for.

@@ -107,6 +107,12 @@ pub struct Counts {
     pub triangles: u64,
     /// Triangles that merging took away.
     pub discarded_triangles: Option<u64>,
+    /// Values of the field that were asked for: how often it was called.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub evaluations: Option<u64>,
+    /// Gradients that the field gave.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gradients: Option<u64>,
     /// Bytes of the mesh's vertices, normals included.
     pub vertex_bytes: u64,
     /// Bytes of the mesh's indices.
@@ -130,6 +136,11 @@ pub struct TetrahedraCounts {
 }
 
 impl Counts {
+    /// Calls of the field for each vertex of the mesh.
+    pub fn evaluations_per_vertex(&self) -> Option<f64> {
+        self.evaluations.filter(|_| self.vertices > 0).map(|calls| calls as f64 / self.vertices as f64)
+    }
+
     /// What only tetrahedra have, by name of the function's field; `None` of another method.
     pub fn of_tetrahedra(&self, count: fn(&TetrahedraCounts) -> u64) -> Option<u64> {
         self.tetrahedra.as_ref().map(count)

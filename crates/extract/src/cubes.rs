@@ -6,6 +6,7 @@
 //! [`patches::Patch`], made by rule from [`cells`] at first use.
 
 mod cells_pass;
+mod continuation;
 mod exact;
 mod grid;
 mod moved;
@@ -22,6 +23,8 @@ mod tunnel;
 mod vertices;
 mod volume_cells;
 
+pub(crate) use continuation::Continued;
+pub use continuation::{ContinuedCells, Seeds, SeedsError};
 pub(crate) use moved::EdgeMoves;
 pub use nets::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
 pub(crate) use nets::{Nets, ROUND, Sharp, is_other_better};
@@ -109,6 +112,8 @@ pub(crate) enum Way {
     },
     /// The dual of patches: vertices in cells.
     Nets(Nets),
+    /// Patches of crossings, in those cubes that are reached from seeds.
+    Continued(Continued),
 }
 
 /// Extracts the cubes of a simple cubic lattice one way or the other.
@@ -127,6 +132,10 @@ pub(crate) fn extract(
         }
         Way::Snapped { gamma, flat } => snap::extract(request, gamma, flat, progress, trace, extraction),
         Way::Nets(nets) => nets::extract(request, nets, progress, trace, extraction),
+        Way::Continued(continued) => {
+            let rule = Rule { faces: Faces::SeparateInside, diagonals: Diagonals::Fan };
+            continuation::extract(request, continued, rule, progress, extraction)
+        }
     }
 }
 

@@ -138,6 +138,14 @@ pub enum ExtractError {
         /// [`Lattice::stored_samples`].
         wanted: u64,
     },
+    /// Bricks of samples that are not those of the lattice's points.
+    #[error("bricks of {given:?} samples for a lattice of {wanted:?}")]
+    BrickCounts {
+        /// Samples along each axis.
+        given: [usize; 3],
+        /// Stored points along each axis.
+        wanted: [usize; 3],
+    },
     /// The samples of a box that is not the lattice.
     #[error("samples of the cells {given:?} for a lattice of {wanted:?}")]
     Window {

@@ -140,7 +140,7 @@ impl Extractor {
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
         check(settings, lattice.arrangement())?;
-        let samples = match source {
+        let (values, bricks) = match source {
             Source::Field(field) => {
                 placement::check(settings, true)?;
                 // In debug builds somebody looks whether it keeps its promises.
@@ -154,17 +154,24 @@ impl Extractor {
                 placement::check(settings, true)?;
                 return self.of_field(field, lattice, settings, cubes, control, extraction);
             }
-            Source::Samples(samples) => samples,
+            Source::Samples(samples) => (samples, None),
+            Source::Bricks(bricks) => {
+                let (given, wanted) = (bricks.samples().counts(), lattice.stored_grid().map(|n| n as usize));
+                if given != wanted {
+                    return Err(ExtractError::BrickCounts { given, wanted });
+                }
+                (bricks.samples().values(), Some(bricks))
+            }
             Source::Window { cells, samples } => {
                 let wanted = lattice.cell_box();
                 if cells != wanted {
                     return Err(ExtractError::Window { given: cells, wanted });
                 }
-                samples
+                (samples, None)
             }
         };
         placement::check(settings, false)?;
-        let (given, wanted) = (samples.len() as u64, lattice.stored_samples());
+        let (given, wanted) = (values.len() as u64, lattice.stored_samples());
         if given != wanted {
             return Err(ExtractError::SampleCount { given, wanted });
         }
@@ -172,7 +179,7 @@ impl Extractor {
             return Err(ExtractError::SamplesAccumulated);
         }
         let start = Moment::now();
-        self.stream((Sampler::Given(samples), start), lattice, settings, cubes, control, extraction)
+        self.stream((Sampler::Given { values, bricks }, start), lattice, settings, cubes, control, extraction)
     }
 
     fn of_field(

@@ -71,6 +71,8 @@
 //! | meshes, one after the other | an [`Extractor`], which keeps its buffers |
 //! | the samples' own topology | [`Cubes`] with [`Faces::Trilinear`], preset `mc33` |
 //! | counts to compare with other programs | [`VolumeCells`], preset `mc` |
+//! | as few calls of a slow field as can be, of a surface whose parts are known | [`Continuation`] |
+//! | the cells of one isovalue after another | [`active`] |
 //! | no thin triangles, bounded angles | [`SnapCubes`], preset `snapmc` |
 //! | terrain, for a game | a [`Grid`], a [`ChunkExtractor`] and [`Grid::touched`]: see [`engine`]; `examples/endless.rs` walks through one |
 //! | the same with coarse chunks far away | a [`LevelExtractor`]; `examples/lod.rs` |
@@ -184,6 +186,7 @@ mod survey;
 pub mod engine {}
 
 mod accuracy;
+pub mod active;
 mod bits;
 mod box_grid;
 mod bracket;
@@ -238,8 +241,8 @@ pub use chunks::{
 };
 pub use control::{Control, Jobs, Threads};
 pub use cubes::{
-    Diagonals, Faces, Flat, LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume, VolumeCells,
-    VolumeCellsError,
+    ContinuedCells, Diagonals, Faces, Flat, LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume,
+    Seeds, SeedsError, VolumeCells, VolumeCellsError,
 };
 pub use distances::{DistanceError, distances};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, TetrahedraCounts};
@@ -249,8 +252,8 @@ pub use grid::{Grid, GridError};
 pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
 pub use levels::{LevelError, LevelExtractor, LevelSettings, Neighbours};
 pub use method::{
-    CornerSamples, Cubes, DualContouring, Macet, Method, MethodError, Preset, Promises, SnapCubes,
-    SurfaceNets, Tetrahedra, presets,
+    Continuation, CornerSamples, Cubes, DualContouring, Macet, Method, MethodError, Preset, Promises,
+    SnapCubes, SurfaceNets, Tetrahedra, presets,
 };
 pub use normal_errors::normal_errors_deg;
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};

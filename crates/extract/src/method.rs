@@ -1,5 +1,6 @@
 //! A method as plain data: everything that decides a mesh, but for the field, the grid and the isovalue.
 
+mod continuation;
 mod cubes;
 mod dual_contouring;
 mod macet;
@@ -9,6 +10,7 @@ mod snap_cubes;
 mod surface_nets;
 mod tetrahedra;
 
+pub use continuation::Continuation;
 pub use cubes::Cubes;
 pub use dual_contouring::DualContouring;
 pub use macet::Macet;
@@ -67,6 +69,8 @@ pub enum Method {
     SurfaceNets(SurfaceNets),
     /// Dual contouring: surface nets with vertices where tangent planes meet.
     DualContouring(DualContouring),
+    /// Marching cubes, or tetrahedra, from cube to cube beginning at seeds.
+    Continuation(Continuation),
 }
 
 /// What a method promises of every mesh, whatever the field. A promise that is not made may still hold for a field.
@@ -125,6 +129,12 @@ pub enum MethodError {
     Smoothing {
         /// As given.
         smoothing: u32,
+    },
+    /// Lines to search for seeds on that are no cells apart.
+    #[error("search = {search}: must be 1 or more, cells")]
+    Search {
+        /// As given.
+        search: u32,
     },
     /// Moves that are none.
     #[error(
@@ -275,6 +285,7 @@ impl Method {
             Self::Macet(macet) => macet,
             Self::SurfaceNets(nets) => nets,
             Self::DualContouring(nets) => nets,
+            Self::Continuation(continuation) => continuation,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use field::{ScalarField, StudyField};
 
+use crate::active::Bricks;
 use crate::clock::Moment;
 use crate::control::Control;
 use crate::lattice::{CellBox, Lattice};
@@ -23,6 +24,9 @@ pub enum Source<'a> {
     /// the spacing puts them, centres half a cube beyond. Face-centred lattices are a grid of half cells, `2x + 1` points a row, of which the middles of cube edges are
     /// unused; the others a grid of corners.
     Samples(&'a [f32]),
+    /// The same with the ranges of their bricks, which need not be read where they lie on one side of the isovalue: for one isovalue
+    /// after another. The mesh is the same.
+    Bricks(&'a Bricks<'a>),
     /// The samples of a box of cells, in the order of [`SampleLayout`](crate::SampleLayout): for a
     /// [`ChunkExtractor`](crate::ChunkExtractor), of a box that contains its
     /// [`window`](crate::ChunkExtractor::window), and fastest of that box itself.
@@ -62,8 +66,11 @@ impl<'a> From<&'a [f32]> for Source<'a> {
 #[derive(Clone, Copy)]
 pub(crate) enum Sampler<'a> {
     Field(&'a dyn StudyField),
-    /// All samples of the lattice.
-    Given(&'a [f32]),
+    /// All samples of the lattice, and what is known of them.
+    Given {
+        values: &'a [f32],
+        bricks: Option<&'a Bricks<'a>>,
+    },
 }
 
 /// One extraction: valid settings, a field made ready or as many samples as the lattice has.
@@ -85,7 +92,7 @@ impl<'a> Request<'a> {
             Sampler::Field(field) => {
                 Some(Level { field, isovalue: self.settings.isovalue, spacing: self.lattice.spacing() })
             }
-            Sampler::Given(_) => None,
+            Sampler::Given { .. } => None,
         }
     }
 }

@@ -4,9 +4,9 @@ mod fields;
 mod survey;
 
 use extract::{
-    Arrangement, BoxGrid, ChunkExtractor, ChunkSettings, Clustering, Cubes, Execution, ExtractError,
-    ExtractSettings, Extraction, Extractor, Lattice, LatticeError, Method, MethodError, Placement, Positions,
-    Source, Tetrahedra, Topology, extract, presets, weld_chunks,
+    Arrangement, BoxGrid, ChunkExtractor, ChunkSettings, Clustering, ContinuedCells, Cubes, Execution,
+    ExtractError, ExtractSettings, Extraction, Extractor, Lattice, LatticeError, Method, MethodError,
+    Placement, Positions, Source, Tetrahedra, Topology, extract, presets, weld_chunks,
 };
 use field::{Sphere, StudyField};
 use fields::{FAMILIES, Volume};
@@ -142,7 +142,8 @@ fn presets_keep_the_promise_of_a_manifold_whatever_the_samples() {
             | Method::SnapCubes(_)
             | Method::Macet(_)
             | Method::SurfaceNets(_)
-            | Method::DualContouring(_) => Arrangement::SimpleCubic,
+            | Method::DualContouring(_)
+            | Method::Continuation(_) => Arrangement::SimpleCubic,
             _ => panic!("a new family"),
         };
         let mut extractor = Extractor::new();
@@ -160,7 +161,7 @@ fn presets_keep_the_promise_of_a_manifold_whatever_the_samples() {
             }
         }
     }
-    assert_eq!(promised, 23, "all but those as published");
+    assert_eq!(promised, 25, "all but those as published");
 }
 
 #[test]
@@ -176,7 +177,11 @@ fn presets_keep_their_other_promises() {
         let placed = |placement| match preset.method {
             Method::Tetrahedra(tetrahedra) => Method::Tetrahedra(Tetrahedra { placement, ..tetrahedra }),
             Method::Cubes(cubes) => Method::Cubes(Cubes { placement, ..cubes }),
-            Method::SnapCubes(_) | Method::Macet(_) | Method::SurfaceNets(_) | Method::DualContouring(_) => {
+            Method::SnapCubes(_)
+            | Method::Macet(_)
+            | Method::SurfaceNets(_)
+            | Method::DualContouring(_)
+            | Method::Continuation(_) => {
                 panic!("it has no placements")
             }
             _ => panic!("a new family"),
@@ -187,7 +192,8 @@ fn presets_keep_their_other_promises() {
             | Method::SnapCubes(_)
             | Method::Macet(_)
             | Method::SurfaceNets(_)
-            | Method::DualContouring(_) => Arrangement::SimpleCubic,
+            | Method::DualContouring(_)
+            | Method::Continuation(_) => Arrangement::SimpleCubic,
             _ => panic!("a new family"),
         };
         let lattice = GRID.lattice(arrangement).unwrap();
@@ -249,6 +255,14 @@ fn presets_have_names_of_their_own() {
             Method::DualContouring(nets) => {
                 assert!(preset.label.starts_with("dual contouring"), "{id}");
                 assert_eq!(id, if nets.patches { "dc-manifold" } else { "dc" });
+                continue;
+            }
+            Method::Continuation(continuation) => {
+                let [name, label] = match continuation.cells {
+                    ContinuedCells::Cubes => ["continued", "continuation, cubes"],
+                    ContinuedCells::Tetrahedra => ["continued-tetra", "continuation, tetrahedra"],
+                };
+                assert_eq!((id, preset.label), (name, label));
                 continue;
             }
             Method::Macet(_) => {

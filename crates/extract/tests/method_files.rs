@@ -1,8 +1,8 @@
 //! Methods as tables of a file: what is written is read back, and what is not known is refused by name.
 
 use extract::{
-    Arrangement, Clustering, Cubes, Diagonals, DualContouring, Faces, Flat, Macet, Method, Placement,
-    Positions, SnapCubes, SurfaceNets, Tetrahedra, Topology,
+    Arrangement, Clustering, Continuation, ContinuedCells, Cubes, Diagonals, DualContouring, Faces, Flat,
+    Macet, Method, Placement, Positions, Seeds, SnapCubes, SurfaceNets, Tetrahedra, Topology,
 };
 use toml::Table;
 
@@ -168,6 +168,27 @@ fn dual_contouring_is_read_and_written() {
     assert_eq!(DualContouring::default().tolerance, 0.0);
     let error = read(r#"recipe = { kind = "dual-contouring", smoothing = 1 }"#).unwrap_err();
     assert!(error.contains("smoothing") && error.contains("tolerance"), "{error}");
+}
+
+#[test]
+fn continuation_is_read_and_written() {
+    let seeds = Seeds::try_new(&[[0.0, 0.5, -1.0], [2.0, 0.0, 0.0]]).unwrap();
+    let wanted = Method::Continuation(Continuation { cells: ContinuedCells::Tetrahedra, seeds, search: 4 });
+    let keys = r#"recipe = { kind = "continuation", cells = "tetrahedra", seeds = [[0, 0.5, -1], [2, 0, 0]], search = 4 }"#;
+    assert_eq!(read(keys), Ok(wanted));
+    assert_eq!(toml::from_str::<Method>(&toml::to_string(&wanted).unwrap()).unwrap(), wanted);
+    let plain = Method::Continuation(Continuation::default());
+    assert_eq!(read(r#"recipe = { kind = "continuation" }"#), Ok(plain));
+    assert_eq!(toml::from_str::<Method>(&toml::to_string(&plain).unwrap()).unwrap(), plain);
+    for (text, names) in [
+        (r#"seeds = [[0, 0]]"#, ["3", "seeds"]),
+        (r#"seeds = [[inf, 0, 0]]"#, ["finite", "at most 8"]),
+        (r#"cells = "spheres""#, ["spheres", "tetrahedra"]),
+        (r#"faces = "decider""#, ["faces", "search"]),
+    ] {
+        let error = read(&format!(r#"recipe = {{ kind = "continuation", {text} }}"#)).unwrap_err();
+        assert!(names.iter().all(|name| error.contains(name)), "{text}: {error}");
+    }
 }
 
 #[test]

@@ -11,6 +11,7 @@
 //! | [`MeshDistance`] | the distance to a triangle mesh, positive inside |
 //! | [`VolumeField`] | samples of a regular grid, interpolated |
 //! | [`Negated`], [`Walled`] | another field, turned round or ended at walls |
+//! | [`Counted`] | another field, and how often it was called |
 //!
 //! No field uses the platform's mathematics: values are the same on every machine.
 
@@ -20,6 +21,7 @@ mod asteroid;
 #[cfg(feature = "shapes")]
 mod asteroid_table;
 mod check;
+mod counted;
 mod fractal;
 #[cfg(feature = "shapes")]
 mod gyroid;
@@ -39,6 +41,7 @@ pub use aabb::Aabb;
 #[cfg(feature = "shapes")]
 pub use asteroid::Asteroid;
 pub use check::{FieldFault, Watched, check_field};
+pub use counted::Counted;
 pub use fractal::{Fractal, MOST_OCTAVES, NoiseShape};
 #[cfg(feature = "shapes")]
 pub use gyroid::Gyroid;

@@ -3,6 +3,7 @@
 mod ranges;
 
 use std::collections::TryReserveError;
+use std::sync::Arc;
 
 use glam::{DMat3, DVec3, Vec3};
 use mesh::Bounds;
@@ -75,11 +76,12 @@ pub enum VolumeFieldError {
 /// its neighbours the value is `NaN`, which counts as outside; at the neighbours it is theirs, on all sides alike, as far
 /// as single-precision coordinates can tell that they are met.
 ///
-/// Blocks whose samples are all on one side are never sampled: a tree keeps the range of the samples.
+/// Blocks whose samples are all on one side are never sampled: a tree keeps the range of the samples. Copies share samples and tree.
 #[derive(Debug, Clone)]
 pub struct VolumeField {
     counts: [usize; 3],
-    values: Vec<f32>,
+    /// Shared by copies, as the ranges are.
+    values: Arc<Vec<f32>>,
     origin: DVec3,
     steps: DMat3,
     to_index: DMat3,
@@ -88,7 +90,7 @@ pub struct VolumeField {
     value_range: (f32, f32),
     /// How the value changes beyond the volume.
     fall: Fall,
-    ranges: Ranges,
+    ranges: Arc<Ranges>,
 }
 
 impl VolumeField {
@@ -128,6 +130,7 @@ impl VolumeField {
             Ranges::new(counts, &values).map_err(|_: TryReserveError| VolumeFieldError::OutOfMemory)?;
         let fall = Fall::Step(if high > low { (high - low).min(f32::MAX) } else { 1.0 });
         let value_range = (low, high);
+        let (values, ranges) = (Arc::new(values), Arc::new(ranges));
         Ok(Self { counts, values, origin: start, steps: matrix, to_index, beyond, value_range, fall, ranges })
     }
 

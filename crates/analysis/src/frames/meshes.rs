@@ -57,7 +57,7 @@ fn purpose(purpose: Purpose) -> &'static str {
 
 type Named<T, V> = (&'static str, fn(&T) -> V);
 
-const COUNTS: [Named<Counts, Option<u64>>; 9] = [
+const COUNTS: [Named<Counts, Option<u64>>; 11] = [
     ("samples", |c| c.samples),
     ("cells", |c| c.cells),
     ("cells_visited", |c| c.cells_visited),
@@ -65,6 +65,8 @@ const COUNTS: [Named<Counts, Option<u64>>; 9] = [
     ("vertices", |c| Some(c.vertices)),
     ("triangles", |c| Some(c.triangles)),
     ("discarded_triangles", |c| c.discarded_triangles),
+    ("evaluations", |c| c.evaluations),
+    ("gradients", |c| c.gradients),
     ("vertex_bytes", |c| Some(c.vertex_bytes)),
     ("index_bytes", |c| Some(c.index_bytes)),
 ];

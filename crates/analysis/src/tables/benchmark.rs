@@ -39,6 +39,11 @@ const MESH_COLUMNS: &[Entry] = &[
     }),
     ("stored_samples", "Samples stored", |m| maybe(m.counts.of_tetrahedra(|t| t.stored_samples))),
     ("needed_samples", "Samples needed", |m| maybe(m.counts.samples)),
+    ("evaluations", "Samples taken", |m| maybe(m.counts.evaluations)),
+    ("evaluations_per_vertex", "Samples taken per vertex", |m| {
+        Cell::number(m.counts.evaluations_per_vertex(), 2)
+    }),
+    ("gradients", "Gradients taken", |m| maybe(m.counts.gradients)),
     ("stored_edges", "Edges stored", |m| maybe(m.counts.of_tetrahedra(|t| t.stored_edges))),
     ("needed_edges", "Edges needed", |m| maybe(m.counts.of_tetrahedra(|t| t.needed_edges))),
     ("sample_bytes", "Lattice bytes", |m| maybe(m.counts.of_tetrahedra(|t| t.sample_bytes))),
@@ -126,6 +131,7 @@ const BLOCKS: &[(&str, &[&str])] = &[
             "id",
             "tetrahedra_evaluated",
             "evaluated_fraction",
+            "evaluations_per_vertex",
             "discard_fraction",
             "discard_fraction_as_published",
             "aspect_ratio_mean",
@@ -228,6 +234,11 @@ pub(crate) fn whole(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Optio
         "Discarded, as published, counts some triangles twice; discarded is the true number. The aspect ratio is \
          the published one, longer over shorter of the two edges at a triangle's first corner; degenerate triangles \
          (zero area or a zero-length edge) are left out of it, and counted as 0 in the columns as published."
+            .into(),
+    );
+    table.notes.push(
+        "Samples taken: how often the field was called for a value, whatever for; what it said of whole boxes is not counted, nor are \
+         gradients."
             .into(),
     );
     table.notes.extend(budgets(inputs));

@@ -1,6 +1,7 @@
 //! `isostudy extract`: the meshes of a study, or the surface of a formula, a volume or a mesh in a file.
 
 mod chosen_method;
+mod isovalues;
 mod labels;
 mod own_cells;
 mod quality_report;
@@ -12,11 +13,13 @@ use crate::outcome::Outcome;
 use crate::source::{Source, place};
 use crate::store::{write_whole, write_whole_by};
 use crate::terminal::{counted, say};
-use crate::{input, mesh_file, prepare};
+use crate::{input, mesh_file, prepare, records};
 use anyhow::{Context, Result, bail};
 use clap::{ArgGroup, Args};
+use design::record::Counts;
 use extract::{Arrangement, Clustering, Execution, Extraction, Extractor, Method, Tetrahedra};
-use field::StudyField;
+use field::{Counted, FieldCache, StudyField};
+use isovalues::Isovalues;
 use mesh::TriangleMesh;
 use quality_report::{Cells, QualityReport};
 use raster::{Camera, Look, Shading, Viewport};
@@ -30,17 +33,23 @@ Examples:
   isostudy extract --field 'sqrt(x^2+y^2+z^2) - 1' --bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2 --spacing 0.05 -o ball.ply
   isostudy extract --volume head.nrrd --isovalue 300.5 -o head.glb --quality
   isostudy extract --labels organs.seg.nrrd --only 2,5 -o organs.glb
+  isostudy extract --volume head.nrrd --isovalues 100:1500:15 -o 'head-{isovalue}.ply' --method mc
   isostudy extract --mesh scan.stl --cells 200 -o even.obj --picture even.png --method bi-relaxed
   isostudy extract configs/paper.toml --only ss_bi")]
 pub(crate) struct Arguments {
     /// Study file, such as configs/paper.toml: extract its meshes and measure them
-    #[arg(conflicts_with_all = ["bounds", "spacing", "cells", "isovalue", "inside", "close", "allow_open", "memory"])]
+    #[arg(conflicts_with_all = ["bounds", "spacing", "cells", "isovalue", "isovalues", "inside", "close", "allow_open", "memory"])]
     study: Option<PathBuf>,
     #[command(flatten)]
     source: SourceArguments,
     /// Volume of labels, whole numbers of which 0 is the background: the boundaries between every two of them, by surface nets
     #[arg(long, value_name = "FILE", conflicts_with_all = ["study", "bounds", "spacing", "cells", "isovalue", "inside", "allow_open", "arrangement", "clustering"])]
     labels: Option<PathBuf>,
+    /// Values of several surfaces of a volume, which is read once: numbers, and ranges FROM:TO:COUNT, with commas between them. -o must
+    /// have {isovalue} in it
+    #[arg(long, value_name = "LIST", value_parser = Isovalues::parse, allow_hyphen_values = true, group = "level", requires = "volume",
+        conflicts_with_all = ["study", "quality", "picture"])]
+    isovalues: Option<Isovalues>,
     /// How sample points fill space: body-centred, simple-cubic, five-tetrahedra, face-centred
     #[arg(long, value_name = "NAME", default_value = "body-centred", value_parser = named::<Arrangement>, conflicts_with = "study")]
     arrangement: Arrangement,
@@ -128,15 +137,19 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
         return labels::extract(arguments, path);
     }
     let out = arguments.out.as_deref().context("-o is needed")?;
+    if let Some(isovalues) = &arguments.isovalues {
+        return isovalues.extract(arguments, out);
+    }
     let format = mesh_file::format_to_write(out).with_context(|| out.display().to_string())?;
     check_outputs(arguments, out)?;
     let method = arguments.method();
     let execution = Execution { threads: arguments.threads as usize };
     let volume = arguments.source.volume_alone().filter(|_| method.is_of_cubes());
-    let (extraction, source, cells) = match volume {
+    let (extraction, source, cells, counts) = match volume {
         Some(path) => {
             let (extraction, own) = own_cells::extract(&arguments.source, path, &method, &execution)?;
-            (extraction, own.source, Cells::Own { counts: own.cells, is_turned: own.is_turned })
+            let counts = records::counts(&extraction.counts);
+            (extraction, own.source, Cells::Own { counts: own.cells, is_turned: own.is_turned }, counts)
         }
         None => on_a_grid(arguments, &method, &execution)?,
     };
@@ -155,7 +168,7 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     if arguments.quality || arguments.json {
         let accuracy =
             extract::accuracy(&extraction.mesh, &*source.field, source.isovalue, &grid, &execution)?;
-        let report = QualityReport::new(method, &source, cells, &extraction, &accuracy);
+        let report = QualityReport::new(method, &source, cells, &extraction, counts, &accuracy);
         say(&if arguments.json { serde_json::to_string_pretty(&report)? } else { report.to_text()? })?;
     }
     // With --json standard output is JSON and nothing else.
@@ -176,16 +189,19 @@ fn on_a_grid(
     arguments: &Arguments,
     method: &Method,
     execution: &Execution,
-) -> Result<(Extraction, Source, Cells)> {
+) -> Result<(Extraction, Source, Cells, Counts)> {
     let source =
         arguments.source.read()?.context("one of a study, --field, --volume and --mesh is needed")?;
     let grid = source.grid();
     prepare::check_limit(method, &grid, execution, source.held, arguments.source.limit())
         .with_context(|| source.place())?;
-    let field: &dyn StudyField = &*source.field;
+    let mut kept = FieldCache::default();
+    let field = Counted::new(&*source.field, &mut kept);
+    let study: &dyn StudyField = &field;
     let extraction =
-        method.extract(&mut Extractor::new(), field.into(), &grid, source.isovalue, execution)?;
-    Ok((extraction, source, Cells::Cubes(method.cells(&grid)?)))
+        method.extract(&mut Extractor::new(), study.into(), &grid, source.isovalue, execution)?;
+    let counts = records::with_calls(records::counts(&extraction.counts), &field);
+    Ok((extraction, source, Cells::Cubes(method.cells(&grid)?), counts))
 }
 
 /// How many boundary edges a mesh has, and where one of them is; `None` if it has none.

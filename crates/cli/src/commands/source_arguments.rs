@@ -14,7 +14,7 @@ pub(crate) struct SourceArguments {
     #[arg(long, value_name = "FORMULA", requires = "bounds", allow_hyphen_values = true)]
     field: Option<String>,
     /// Volume: .nrrd, .nhdr, .mha, .mhd, or the .toml that describes raw data; needs --isovalue
-    #[arg(long, value_name = "FILE", requires = "isovalue")]
+    #[arg(long, value_name = "FILE", requires = "level")]
     volume: Option<PathBuf>,
     /// Triangle mesh, of which the signed distance is taken: .obj, .ply or .stl
     #[arg(long, value_name = "FILE")]
@@ -30,7 +30,7 @@ pub(crate) struct SourceArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16384))]
     cells: Option<u32>,
     /// Value of the surface
-    #[arg(long, default_value_t = 0.0, value_parser = finite, allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 0.0, value_parser = finite, allow_hyphen_values = true, group = "level")]
     isovalue: f32,
     /// Side of the isovalue that is inside [default: below for a formula, above for a volume; a mesh's distance is
     /// positive inside]
@@ -103,7 +103,7 @@ fn number(text: &str) -> Result<f32, String> {
     text.trim().parse().map_err(|_| format!("`{text}` is not a number"))
 }
 
-fn finite(text: &str) -> Result<f32, String> {
+pub(super) fn finite(text: &str) -> Result<f32, String> {
     let value = number(text)?;
     if value.is_finite() { Ok(value) } else { Err(format!("isovalue must be finite, not {value}")) }
 }

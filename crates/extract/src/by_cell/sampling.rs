@@ -61,7 +61,7 @@ impl Samples {
     pub(super) fn values<'a>(&'a self, grid: &Grid, source: Sampler<'a>) -> Values<'a> {
         let size = grid.size;
         match (source, &self.called) {
-            (Sampler::Given(values), _) => Values::new(values, size, size[2]),
+            (Sampler::Given { values, .. }, _) => Values::new(values, size, size[2]),
             (Sampler::Field(_), Some(called)) => Values::new(&called.values, size, self.slots),
             (Sampler::Field(_), None) => unreachable!("made for a field"),
         }
@@ -79,7 +79,7 @@ impl Samples {
             sides.fill(0);
             let mut state = State::Mixed;
             match (source, &mut self.called) {
-                (Sampler::Given(values), _) => {
+                (Sampler::Given { values, .. }, _) => {
                     let values = &values[(layer * ny + row) * nx..][..nx];
                     set_above(values, isovalue, sides);
                 }

@@ -168,7 +168,7 @@ fn check(
         let samples = dense::samples(field, &coordinates);
         let (expected, trace) = dense::extract(field, lattice, &settings);
         let calls = settings.refine_crossings || settings.placement.calls_the_field();
-        let given = (!calls).then_some(Sampler::Given(&samples));
+        let given = (!calls).then_some(Sampler::Given { values: &samples, bricks: None });
         for source in [Some(Sampler::Field(field)), given].into_iter().flatten() {
             for threads in [1, 3] {
                 let (mut found, mut found_trace) = (Extraction::default(), Trace::default());

@@ -333,6 +333,10 @@ impl ChunkExtractor {
                 }
                 None => Err(ChunkError::EndlessSamples),
             },
+            // A chunk reads its own window alone.
+            Source::Bricks(bricks) => {
+                return self.extract_into(Source::Samples(bricks.samples().values()), cells, control, chunk);
+            }
             Source::Window { cells: given, samples } => {
                 self.of_samples((given, samples), cells, control, chunk)
             }

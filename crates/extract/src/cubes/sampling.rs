@@ -48,7 +48,7 @@ impl Samples {
     pub(super) fn new(grid: &Grid, source: Sampler, slots: usize) -> Result<Self, TryReserveError> {
         let called = match source {
             Sampler::Field(_) => Some(Called::new(grid, slots)?),
-            Sampler::Given(_) => None,
+            Sampler::Given { .. } => None,
         };
         let states = filled(grid.size[1] * slots, State::Outside)?;
         Ok(Self { called, sides: Rows::new(grid, slots)?, states, slots })
@@ -57,7 +57,7 @@ impl Samples {
     pub(super) fn values<'a>(&'a self, grid: &Grid, source: Sampler<'a>) -> Values<'a> {
         let size = grid.size;
         match (source, &self.called) {
-            (Sampler::Given(values), _) => Values::new(values, size, size[2]),
+            (Sampler::Given { values, .. }, _) => Values::new(values, size, size[2]),
             (Sampler::Field(_), Some(called)) => Values::new(&called.values, size, self.slots),
             (Sampler::Field(_), None) => unreachable!("made for a field"),
         }
@@ -89,7 +89,10 @@ impl Samples {
             sides.fill(0);
             let mut state = State::Mixed;
             match (source, &mut self.called) {
-                (Sampler::Given(values), _) => {
+                (Sampler::Given { bricks: Some(bricks), .. }, _) => {
+                    state = bricks.set_above([row, layer], isovalue, sides);
+                }
+                (Sampler::Given { values, bricks: None }, _) => {
                     let values = &values[(layer * ny + row) * nx..][..nx];
                     set_above(values, isovalue, sides);
                 }

@@ -279,6 +279,13 @@ impl<'a> Placer<'a> {
         position
     }
 
+    /// The crossing on an edge that goes along several axes, the same way.
+    pub(super) fn position_between(&self, from: Vec3, to: Vec3, [here, there]: [f32; 2]) -> Vec3 {
+        let least = self.apart.at(from).ratio(Company::Singles, 0, 0.0);
+        let ratio = linear_ratio(self.isovalue - here, here, there).clamp(least, 1.0 - least);
+        (from + (to - from) * ratio).clamp(from.min(to), from.max(to))
+    }
+
     /// The shares of four edges at which their crossings are, by linear interpolation, where no vertex is drawn away. `from` says where
     /// each begins.
     #[inline(always)]

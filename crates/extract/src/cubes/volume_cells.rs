@@ -5,6 +5,7 @@ use mesh::{Bounds, TriangleMesh};
 use thiserror::Error;
 
 use crate::ExtractError;
+use crate::active::{ActiveError, Bricks, GridSamples};
 use crate::box_grid::BoxGrid;
 use crate::extraction::Extraction;
 use crate::extractor::Extractor;
@@ -81,7 +82,7 @@ impl Space {
     }
 }
 
-impl VolumeCells<'_> {
+impl<'a> VolumeCells<'a> {
     /// The grid in steps, a cube for each cell: what a method is asked about.
     pub fn grid(&self) -> BoxGrid {
         let max = Vec3::from_array(self.counts.map(|n| n.saturating_sub(1) as f32));
@@ -103,7 +104,42 @@ impl VolumeCells<'_> {
         isovalue: f32,
         execution: &Execution,
     ) -> Result<Extraction, VolumeCellsError> {
-        let Self { counts, values, origin, steps } = *self;
+        self.extract_from(Source::Samples(self.values), method, extractor, isovalue, execution)
+    }
+
+    /// The ranges of bricks of the samples, for [`extract_by_bricks`](Self::extract_by_bricks).
+    ///
+    /// # Errors
+    /// [`ActiveError`].
+    pub fn bricks(&self) -> Result<Bricks<'a>, ActiveError> {
+        Bricks::try_new(GridSamples::try_new(self.counts, self.values)?)
+    }
+
+    /// Extracts the same mesh, to the byte, without reading [`bricks`](Self::bricks) that lie on one side of the isovalue: for one isovalue
+    /// after another.
+    ///
+    /// # Errors
+    /// [`VolumeCellsError`], [`ExtractError::BrickCounts`] among them if the bricks are those of a volume of another size.
+    pub fn extract_by_bricks(
+        &self,
+        bricks: &Bricks,
+        method: &Method,
+        extractor: &mut Extractor,
+        isovalue: f32,
+        execution: &Execution,
+    ) -> Result<Extraction, VolumeCellsError> {
+        self.extract_from(Source::Bricks(bricks), method, extractor, isovalue, execution)
+    }
+
+    fn extract_from(
+        &self,
+        source: Source,
+        method: &Method,
+        extractor: &mut Extractor,
+        isovalue: f32,
+        execution: &Execution,
+    ) -> Result<Extraction, VolumeCellsError> {
+        let Self { counts, origin, steps, .. } = *self;
         if !method.is_of_cubes() {
             return Err(VolumeCellsError::Method);
         }
@@ -112,8 +148,7 @@ impl VolumeCells<'_> {
         }
         let space = Space::try_new(origin, steps).ok_or(VolumeCellsError::Steps { steps, origin })?;
         let grid = self.grid();
-        let mut extraction =
-            method.extract(extractor, Source::Samples(values), &grid, isovalue, execution)?;
+        let mut extraction = method.extract(extractor, source, &grid, isovalue, execution)?;
         let mesh = &mut extraction.mesh;
         space.place(mesh);
         let normals = vertex_normals(&mesh.positions, &mesh.triangles);

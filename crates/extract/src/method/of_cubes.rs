@@ -110,7 +110,9 @@ impl<T: OfCubes> Family for T {
         extraction: &mut Extraction,
     ) -> Result<(), MethodError> {
         self.check_settings()?;
-        if self.calls_the_field() && matches!(source, Source::Samples(_) | Source::Window { .. }) {
+        if self.calls_the_field()
+            && matches!(source, Source::Samples(_) | Source::Bricks(_) | Source::Window { .. })
+        {
             return Err(MethodError::NeedsField);
         }
         let settings = self.settings(isovalue);

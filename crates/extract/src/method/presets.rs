@@ -3,8 +3,8 @@
 //! The first letter is the arrangement: body-centred, simple cubic, mirrored five tetrahedra, face-centred. The second is
 //! the clustering: unclustered, integrated, post-processed by an edge collapse, integrated and then collapsed, warped.
 
-use super::{Cubes, DualContouring, Macet, Method, SnapCubes, SurfaceNets, Tetrahedra};
-use crate::cubes::{Diagonals, Faces, Flat};
+use super::{Continuation, Cubes, DualContouring, Macet, Method, SnapCubes, SurfaceNets, Tetrahedra};
+use crate::cubes::{ContinuedCells, Diagonals, Faces, Flat, Seeds};
 use crate::lattice::Arrangement::{self, BodyCentred, FaceCentred, FiveTetrahedra, SimpleCubic};
 use crate::settings::Clustering::{self, EdgeCollapse, Integrated, IntegratedCollapse, None};
 use crate::settings::{Placement, Positions, Topology};
@@ -24,6 +24,7 @@ const NETS: &str = "Gibson 1998, by values and without relaxation";
 const PATCHES: &str = "Nielson 2004; Wenger 2013";
 const PLANES: &str = "Ju, Losasso, Schaefer & Warren 2002, on a uniform grid";
 const PLANES_OF_PATCHES: &str = "Schaefer, Ju & Warren 2007, on a uniform grid; Wenger 2013";
+const CONTINUED: &str = "Wyvill, McPheeters & Wyvill 1986; Bloomenthal 1994";
 const PLACED: &str = "Treece, Prager & Gee 1999; for the placement see extract::Placement";
 
 /// A method with a name.
@@ -46,7 +47,7 @@ pub fn presets() -> &'static [Preset] {
     &PRESETS
 }
 
-static PRESETS: [Preset; 33] = [
+static PRESETS: [Preset; 35] = [
     plain("bu", "body-centred, none", BodyCentred, None, COSTEN),
     plain("bi", "body-centred, integrated", BodyCentred, Integrated, TREECE),
     plain("bp", "body-centred, edge collapse", BodyCentred, EdgeCollapse, COLLAPSED),
@@ -126,6 +127,8 @@ static PRESETS: [Preset; 33] = [
         }),
         source: PLANES_OF_PATCHES,
     },
+    continued("continued", "continuation, cubes", ContinuedCells::Cubes),
+    continued("continued-tetra", "continuation, tetrahedra", ContinuedCells::Tetrahedra),
     published("bu-published", "body-centred, none, as published", BodyCentred, None),
     published("bi-published", "body-centred, integrated, as published", BodyCentred, Integrated),
     published("bp-published", "body-centred, edge collapse, as published", BodyCentred, EdgeCollapse),
@@ -177,6 +180,11 @@ const fn cubes(
     let placement = Placement::MeanOfCrossings;
     let method = Cubes { faces, diagonals, placement, refine_crossings: false, edge_clamp: 0.0 };
     Preset { id, label, method: Method::Cubes(method), source }
+}
+
+const fn continued(id: &'static str, label: &'static str, cells: ContinuedCells) -> Preset {
+    let method = Continuation { cells, seeds: Seeds::FOUND, search: 8 };
+    Preset { id, label, method: Method::Continuation(method), source: CONTINUED }
 }
 
 /// The original's rules, and its sums as its benchmark makes them.

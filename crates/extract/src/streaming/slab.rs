@@ -64,7 +64,7 @@ impl Workspace {
 fn lead(grid: &Grid, source: Sampler) -> usize {
     match source {
         Sampler::Field(_) => grid.reach,
-        Sampler::Given(_) => 0,
+        Sampler::Given { .. } => 0,
     }
 }
 
@@ -96,7 +96,7 @@ pub(super) fn stream_slab<R: ClusterRule>(
         if signed.contains(&step) {
             job.control.check()?;
             match job.source {
-                Sampler::Given(values) => signs_of(grid, values, isovalue, step, &mut workspace.signs),
+                Sampler::Given { values, .. } => signs_of(grid, values, isovalue, step, &mut workspace.signs),
                 Sampler::Field(field) => {
                     workspace.samples.find_signs(field_pass(field), step, &mut workspace.signs);
                 }
@@ -115,7 +115,7 @@ pub(super) fn stream_slab<R: ClusterRule>(
 
         if let Some(layer) = step.checked_sub(reach).filter(|layer| recorded.contains(layer)) {
             let samples = match job.source {
-                Sampler::Given(values) => Samples { values, slots: layers },
+                Sampler::Given { values, .. } => Samples { values, slots: layers },
                 Sampler::Field(_) => workspace.samples.samples(),
             };
             let (signs, placer) = (&workspace.signs, job.placer);

@@ -6,8 +6,7 @@ use serde::{Deserialize, Serialize};
 use toml::de::ValueDeserializer;
 
 /// The kinds that go without one.
-const KINDS: &str =
-    "\"tetrahedra\", \"cubes\", \"snap-cubes\", \"macet\", \"surface-nets\", \"dual-contouring\"";
+const KINDS: &str = "\"tetrahedra\", \"cubes\", \"snap-cubes\", \"macet\", \"surface-nets\", \"dual-contouring\", \"continuation\"";
 
 /// A method as reports name it.
 #[derive(Debug, Serialize)]

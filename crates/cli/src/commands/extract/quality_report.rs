@@ -63,6 +63,7 @@ impl QualityReport {
         source: &Source,
         cells: Cells,
         extraction: &Extraction,
+        counts: Counts,
         accuracy: &extract::Accuracy,
     ) -> Self {
         let topology = mesh::topology::topology(&extraction.mesh);
@@ -71,7 +72,7 @@ impl QualityReport {
             Method::Tetrahedra(of) => Some(of),
             _ => None,
         };
-        let (counts, own_cells, is_turned) = match cells {
+        let (along, own_cells, is_turned) = match cells {
             Cells::Cubes(counts) => (counts, false, false),
             Cells::Own { counts, is_turned } => (counts, true, is_turned),
         };
@@ -90,12 +91,12 @@ impl QualityReport {
             isovalue: source.asked_isovalue(),
             inside: source.inside,
             spacing: source.spacing,
-            cells: counts,
+            cells: along,
             own_cells,
             extraction_s: extraction.times.total().as_secs_f64(),
             area: extraction.mesh.area(),
             volume: is_closed.then(|| extraction.mesh.volume()),
-            counts: records::counts(&extraction.counts),
+            counts,
             quality: records::quality(&mesh::quality::quality(&extraction.mesh)),
             boundary_loops: topology.boundary_loops,
             topology: records::topology(&topology, &extraction.mesh),
@@ -130,6 +131,7 @@ impl QualityReport {
             ("lattice", format!("{arrangement}{x} x {y} x {z}{spacing}")),
             ("clustering", self.clustering.map_or_else(|| "none".into(), |of| of.to_string())),
             ("time", format!("{:.3} s", self.extraction_s)),
+            ("samples taken", taken(&self.counts)),
             ("vertices", t.vertices.to_string()),
             ("triangles", q.triangles.to_string()),
             (
@@ -167,6 +169,14 @@ impl QualityReport {
             ),
         ];
         Ok(rows.map(|(name, value)| format!("{name:<15} {value}")).join("\n"))
+    }
+}
+
+/// How often the field was called.
+fn taken(counts: &Counts) -> String {
+    match (counts.evaluations, counts.evaluations_per_vertex()) {
+        (Some(calls), Some(each)) => format!("{calls}, {each:.2} per vertex"),
+        _ => "none: they are the volume's".into(),
     }
 }
 

@@ -1,0 +1,55 @@
+//! Continuation as a method.
+
+use super::of_cubes::OfCubes;
+use super::{MethodError, Promises};
+use crate::cubes::{Continued, ContinuedCells, Seeds, Way};
+
+/// Marching cubes from cube to cube: from seeds on, across faces with corners on both sides (Wyvill, McPheeters & Wyvill 1986; Bloomenthal
+/// 1994). It takes about two samples for each vertex, however large the box is, and none between the surface and the box.
+///
+/// The mesh is the part of marching cubes' that is reached: cubes hang together by crossed faces. A part of the surface that has no seed is
+/// missing, and nothing says so. Faces are decided by signs, inside corners apart, so that neighbours agree.
+///
+/// With the feature `serde` the keys are those of the fields, all with defaults.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+pub struct Continuation {
+    /// What is made of a visited cube.
+    pub cells: ContinuedCells,
+    /// Points to begin near: in their cells, or else at the nearest edge that is crossed along the six directions from there. Without
+    /// any, seeds are searched for.
+    pub seeds: Seeds,
+    /// How far apart the lines are on which seeds are searched for, in cells; 1 takes all samples, and misses nothing. A line has a sample as
+    /// often, and finds the surface between two of them that lie on different sides. Where no line finds any, lines half as far apart
+    /// are looked at: a mesh is empty only if all samples lie on one side.
+    pub search: u32,
+}
+
+impl Default for Continuation {
+    fn default() -> Self {
+        Self { cells: ContinuedCells::Cubes, seeds: Seeds::FOUND, search: 8 }
+    }
+}
+
+impl OfCubes for Continuation {
+    fn way(&self) -> Way {
+        let Self { cells, seeds, search } = *self;
+        Way::Continued(Continued { cells, seeds, search })
+    }
+
+    fn promises(&self) -> Promises {
+        Promises {
+            manifold: true,
+            closed_off_the_box: true,
+            same_triangles_for_all_placements: false,
+            chunks: false,
+            samples_suffice: true,
+        }
+    }
+
+    fn check_settings(&self) -> Result<(), MethodError> {
+        let search = self.search;
+        if search > 0 { Ok(()) } else { Err(MethodError::Search { search }) }
+    }
+}
