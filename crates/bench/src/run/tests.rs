@@ -20,6 +20,13 @@ pub(crate) struct Mock {
     without_memory: bool,
 }
 
+impl Mock {
+    /// One that fails at this call, counted from 0; the run then goes on without what failed, or ends.
+    pub(crate) fn failing_at(call: usize, leaves_out: bool) -> Self {
+        Self { fail_at_call: Some(call), leaves_out, ..Self::default() }
+    }
+}
+
 impl Executor for Mock {
     fn begin(&mut self) -> Result<Option<Vec<u32>>, BenchError> {
         self.invocations.push(self.calls.len());
