@@ -17,7 +17,7 @@ use crate::box_grid::BoxGrid;
 use crate::control::Control;
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::extractor::Extractor;
-use crate::finish::field_targets;
+use crate::finish::FieldTargets;
 use crate::grid::Grid;
 use crate::lattice::{Border, CellBox, Lattice, LatticeError};
 use crate::level::Level;
@@ -48,8 +48,9 @@ const MOST_EXTRA: u32 = 64;
 ///
 /// Its buffers are used again, wherever the next chunk is: from the second one of a size on,
 /// [`extract_into`](Self::extract_into) allocates nothing on the calling thread alone, as long as the surface does not outgrow
-/// those before it, vertices stay at the mean of their crossings and no edge is collapsed. Marching cubes take new buffers for
-/// each chunk.
+/// those before it and no edge is collapsed. There are three exceptions, all small: steps of
+/// [`SurfaceNets::smoothing`](crate::SurfaceNets::smoothing); nets in a cell at the window's side whose signs no chunk before had; and
+/// faces and cells that [`Faces::Decider`](crate::Faces) or [`Faces::Trilinear`](crate::Faces) can only decide without rounding.
 ///
 /// ```
 /// use extract::{Arrangement, Chunk, ChunkExtractor, ChunkSettings, Control, Grid, Method, Tetrahedra, from_fn};
@@ -97,6 +98,7 @@ pub struct ChunkExtractor {
     extraction: Extraction,
     samples: Vec<f32>,
     numbers: Vec<u32>,
+    targets: FieldTargets,
     settled: Settled,
 }
 
@@ -231,6 +233,7 @@ impl ChunkExtractor {
             extraction: Extraction::default(),
             samples: Vec::new(),
             numbers: Vec::new(),
+            targets: FieldTargets::default(),
             settled: Settled::default(),
         })
     }
@@ -559,8 +562,8 @@ impl ChunkExtractor {
         let (placement, isovalue) = (self.how.settings.placement, self.how.settings.isovalue);
         let level = Level { field, isovalue, spacing: window.spacing() };
         let (positions, triangles) = (&mut mesh.positions, &mesh.triangles);
-        let targets =
-            field_targets(&level, &window.bounds(), placement, control.threads, positions, triangles)?;
+        let (bounds, threads) = (window.bounds(), control.threads);
+        let targets = self.targets.find(&level, &bounds, placement, threads, positions, triangles)?;
         // A target among its neighbours needs them all.
         let ring = self.halo.map_or(0, |halo| halo - 1);
         let known = window.cell_box().shrunk(ring, whole);
@@ -568,7 +571,7 @@ impl ChunkExtractor {
         let wanted = cells.grown(1, whole);
         let is_settled = self.settled.advance(
             (positions, triangles, &self.extractor.trace),
-            &targets,
+            targets,
             window,
             [known, wanted],
         )?;
