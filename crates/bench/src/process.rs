@@ -1,5 +1,6 @@
 //! The executor that measures in processes of its own.
 
+use crate::allocations::AllocationCounts;
 use crate::error::BenchError;
 use crate::linux;
 use crate::load::CpuTimes;
@@ -69,7 +70,18 @@ impl Executor for ProcessExecutor<'_> {
     fn peak_memory(&mut self, subject: usize) -> Result<Option<PeakBytes>, BenchError> {
         self.worker = None;
         let (mut worker, _) = self.start()?;
-        worker.ask(Request::Memory(subject))?.memory()
+        let peak = worker.ask(Request::Memory(subject))?.memory();
+        self.worker = Some(worker);
+        peak
+    }
+
+    /// In the process that measured memory last, if there is one.
+    fn allocations(&mut self, subject: usize) -> Result<Option<AllocationCounts>, BenchError> {
+        let mut worker = match self.worker.take() {
+            Some(worker) => worker,
+            None => self.start()?.0,
+        };
+        worker.ask(Request::Allocations(subject))?.allocations()
     }
 
     fn leave_out(&mut self, subject: usize, error: BenchError) -> Result<String, BenchError> {

@@ -109,6 +109,7 @@ impl Pipeline<'_> {
             until: None,
             aa_iterations: 0,
             memory: true,
+            allocations: false,
             seed: self.study.file.study.seed,
             threads,
             pin: benchmark.pin,

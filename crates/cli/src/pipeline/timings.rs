@@ -129,6 +129,7 @@ impl Pipeline<'_> {
             until,
             aa_iterations: if full { section.aa_iterations } else { 0 },
             memory: full,
+            allocations: full,
             seed: self.study.file.study.seed,
             threads: section.threads,
             pin: section.pin,

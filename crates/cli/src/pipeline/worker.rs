@@ -3,7 +3,7 @@
 use super::Pipeline;
 use crate::fields::Fields;
 use crate::input;
-use crate::measured::Clock;
+use crate::measured::{Clock, asked};
 use crate::prepare::{Prepared, Spacings, Wanted, prepare};
 use crate::recipe::{Recipe, recipe};
 use crate::store::{sha256, write_whole};
@@ -199,6 +199,7 @@ pub(super) fn swept<'s>(study: &'s Study, section: &SweepSection) -> Result<Vec<
 /// # Errors
 /// If the study was changed meanwhile, or a request cannot be read or answered.
 pub(crate) fn measure(invocation: &Invocation) -> Result<()> {
+    bench::count_allocations(asked);
     let pinned = if invocation.pin { bench::pin(invocation.threads) } else { None };
     let study = input::study(&invocation.study)?;
     if sha256(&std::fs::read(&study.path)?) != invocation.sha256 {
