@@ -19,12 +19,13 @@ use crate::extraction::{ExtractError, Extraction, check};
 use crate::extractor::Extractor;
 use crate::finish::FieldTargets;
 use crate::grid::Grid;
+use crate::guard::Guard;
 use crate::lattice::{Border, CellBox, Lattice, LatticeError};
 use crate::level::Level;
 use crate::memory::refill;
 use crate::method::{ByWindow, Method, MethodError};
 use crate::normals::accumulate;
-use crate::settings::{ExtractSettings, Placement, Positions};
+use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topology};
 use crate::source::Source;
 
 /// Of what decides about a surface component, this much is tried at first beyond the chunk.
@@ -48,7 +49,8 @@ const MOST_EXTRA: u32 = 64;
 ///
 /// Its buffers are used again, wherever the next chunk is: from the second one of a size on,
 /// [`extract_into`](Self::extract_into) allocates nothing on the calling thread alone, as long as the surface does not outgrow
-/// those before it and no edge is collapsed. There are three exceptions, all small: steps of
+/// those before it and no edge is collapsed. The exceptions are small: tables of integrated clustering that a point is the first to
+/// need, but after [`reserve`](Self::reserve); steps of
 /// [`SurfaceNets::smoothing`](crate::SurfaceNets::smoothing); nets in a cell at the window's side whose signs no chunk before had; and
 /// faces and cells that [`Faces::Decider`](crate::Faces) or [`Faces::Trilinear`](crate::Faces) can only decide without rounding.
 ///
@@ -239,7 +241,7 @@ impl ChunkExtractor {
     }
 
     /// Makes room for windows with so many vertices and twice as many triangles, so that not even a surface larger than all
-    /// before allocates. A window is larger than its chunk: 36³ cells for 32³, body-centred.
+    /// before allocates; and makes the tables that are made otherwise when a point first needs them. A window is larger than its chunk: 36³ cells for 32³, body-centred.
     ///
     /// # Errors
     /// [`ChunkError::Extract`] if there is no memory.
@@ -251,6 +253,11 @@ impl ChunkExtractor {
         trace.keys.try_reserve(vertices)?;
         trace.cells.try_reserve(2 * vertices)?;
         self.numbers.try_reserve(vertices)?;
+        let ByWindow { arrangement, settings, cubes, .. } = &self.how;
+        let merges = settings.clustering == Clustering::Integrated && settings.topology == Topology::Guarded;
+        if cubes.is_none() && merges {
+            Guard::get(*arrangement).complete();
+        }
         Ok(())
     }
 
