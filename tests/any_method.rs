@@ -533,3 +533,67 @@ fn a_program_that_fails_while_it_is_timed_is_left_out_of_the_times() {
     let artist = folder.succeed(&["inspect", "vo_artist", "--study", "study.toml"]).stdout;
     assert!(artist.contains("timing: none, the mesh was read from a file"), "{artist}");
 }
+
+/// A mesh with a hole is told of once, by whichever process reads it first; and a program that fails at its third call is left out of a
+/// benchmark by name, while the others' rounds go on to the end.
+#[test]
+fn a_program_that_fails_at_its_third_call_is_left_out_of_a_benchmark() {
+    let folder = Study::new();
+    folder.edit(
+        "{ kind = \"formula\", text = \"sqrt((sqrt(x^2 + y^2) - 0.6)^2 + z^2) - 0.25\" }",
+        "{ kind = \"mesh\", file = \"open.obj\" }",
+    );
+    // An octahedron without one of its sides.
+    folder.write(
+        "open.obj",
+        "v 0.6 0 0\nv -0.6 0 0\nv 0 0.3 0\nv 0 -0.3 0\nv 0 0 0.4\nv 0 0 -0.4\n\
+         f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\n",
+    );
+    let example = fs::read_to_string(folder.path("example.py")).unwrap();
+    let from = "    request = json.loads(line)\n";
+    let words = "no third time";
+    let crash =
+        format!("{from}    if request[\"id\"] == 3 and request[\"size\"][2] < 13: sys.exit(\"{words}\")\n");
+    folder.write("example.py", example.replacen(from, &crash, 1));
+    folder.edit("iterations = 2", "iterations = 4");
+    let only = ["fo_bi", "fo_fp", "fo_program", "vo_bi", "vo_program"];
+    let only: Vec<&str> = only.iter().flat_map(|id| ["--only", id]).collect();
+    let times = |text: &str, hole: &str| text.matches(hole).count();
+    let closed = "open.obj: 1 hole was closed";
+
+    let this = env!("CARGO_BIN_EXE_isostudy");
+    let short = ["--seconds", "1", "--processes", "3", "--allow-programs"];
+    let ab = [&["bench", "ab", this, this, "study.toml", "--out", "out"][..], &only, &short].concat();
+    for time in 0..2 {
+        let ran = folder.run(&ab);
+        assert_eq!(ran.code, Some(1), "{}{}", ran.stdout, ran.stderr);
+        assert!(ran.stderr.contains(words), "{time}: what it said: {}", ran.stderr);
+        assert!(ran.stderr.contains("failed and left out: fo_program\n"), "{time}: {}", ran.stderr);
+        assert!(ran.stdout.contains("Failed and left out: fo_program."), "{time}: {}", ran.stdout);
+        assert!(ran.stdout.contains("4 configurations in 3 pairs of processes"), "{time}: {}", ran.stdout);
+        // The second run finds everything up to date and reads no mesh.
+        assert!(times(&ran.stderr, closed) <= 1, "{}", ran.stderr);
+        assert!(time == 1 || times(&ran.stderr, closed) == 1, "{}", ran.stderr);
+    }
+    let run: serde_json::Value = serde_json::from_str(&folder.read("out/bench/ab/ab.json")).unwrap();
+    let pairs = run["pairs"].as_array().unwrap();
+    let of = |id: &str| pairs.iter().filter(|pair| pair["old"]["id"] == id).count();
+    assert!(of("fo_program") == 0 && of("vo_program") >= 3 * 3, "{run}");
+    assert_eq!(of("fo_bi"), of("vo_program"));
+    assert_eq!(run["failed"][0]["id"], "fo_program");
+    assert!(run["failed"][0]["reason"].as_str().unwrap().contains(words));
+    let table = folder.read("out/bench/ab/bench_ab.md");
+    assert!(table.contains("failed and is left out: asked by ") && table.contains(words), "{table}");
+    let json = folder.run(&[&ab[..], &["--format", "json"]].concat());
+    let json: serde_json::Value = serde_json::from_str(&json.stdout).unwrap();
+    assert_eq!((&json["exit_status"], &json["failed"][0]["id"]), (&1.into(), &"fo_program".into()));
+
+    let ran = folder.run(&[&["bench", "study.toml", "--out", "out", "--allow-programs"][..], &only].concat());
+    assert_eq!(ran.code, Some(1), "{}{}", ran.stdout, ran.stderr);
+    assert_eq!(times(&ran.stderr, closed), 1, "{}", ran.stderr);
+    assert!(ran.stderr.contains("failed and left out: fo_program\n"), "{}", ran.stderr);
+    let run: serde_json::Value = serde_json::from_str(&folder.read("out/bench/selected/run.json")).unwrap();
+    let of = |id: &str| run["samples"].as_array().unwrap().iter().filter(|sample| sample["id"] == id).count();
+    assert_eq!((of("fo_program"), of("vo_program"), of("fo_bi")), (0, 4, 4), "{}", run["failed"]);
+    assert!(ran.stdout.contains("vo_program") && !ran.stdout.contains("fo_program"), "{}", ran.stdout);
+}

@@ -73,13 +73,26 @@ fn every_statement_is_there_in_every_format() {
     let fixture = Fixture::new();
     let run = fixture.succeed("bench", &[]);
     assert!(run.stdout.contains("**Median times**") && run.stdout.contains("Noise floor"), "{}", run.stdout);
-    for name in ["bench_medians", "bench_ratios"] {
+    for name in ["bench_medians", "bench_ratios", "bench_counters", "bench_allocations"] {
         for extension in ["csv", "md", "tex"] {
             assert!(
                 fixture.out().join(format!("bench/full/{name}.{extension}")).is_file(),
                 "{name}.{extension}"
             );
         }
+    }
+    let counters = std::fs::read_to_string(fixture.out().join("bench/full/bench_counters.csv")).unwrap();
+    let mut lines = counters.lines().filter(|line| !line.starts_with('#'));
+    assert!(lines.next().unwrap().contains(",allocations,allocated_mib,"), "{counters}");
+    assert_eq!(lines.count(), 18);
+    let run = run_of(fixture.out());
+    let counted = run["allocations"].as_array().unwrap();
+    assert_eq!(counted.len(), 18);
+    for of in counted {
+        let [calls, bytes] = ["calls", "bytes"].map(|what| of[what]["total"].as_u64().unwrap());
+        assert!(calls > 10 && bytes > 10_000, "{of}");
+        let collapses = of["id"].as_str().unwrap().ends_with('p');
+        assert_eq!(of["calls"]["clustering"].as_u64().unwrap() > 0, collapses, "{of}");
     }
     let path = fixture.out().join("bench/full/statements.json");
     let statements: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();

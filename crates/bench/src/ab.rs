@@ -9,7 +9,7 @@ use crate::load::CpuTimes;
 use crate::plan::{Round, order};
 use crate::run::{Executor, Measurement};
 use design::ConfigurationId;
-use design::record::{AbPair, BenchSample, LoadWindow};
+use design::record::{AbPair, BenchSample, Failure, LoadWindow};
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::time::{Duration, Instant};
@@ -39,6 +39,8 @@ pub struct AbMeasured {
     pub load: Vec<LoadWindow>,
     /// The CPUs that the processes were pinned to.
     pub pinned: Option<Vec<u32>>,
+    /// Configurations that were left out, and what was said of each.
+    pub failed: Vec<Failure>,
 }
 
 /// One line of the journal of such a run.
@@ -54,6 +56,8 @@ pub enum AbEntry {
     Pair(Box<AbPair>),
     /// What the machine did meanwhile.
     Load(LoadWindow),
+    /// A configuration failed; from here on it is left out.
+    Failed(Failure),
     /// A pair of processes has measured all it should.
     Ended {
         /// Which, from 0.
@@ -97,40 +101,38 @@ pub fn read_ab_journal(text: &str, key: &str) -> Result<Vec<AbEntry>, JournalErr
 /// Runs the plan with the old program's executor and the new one's, from where `done` ended.
 ///
 /// Which of both is first changes from round to round and from configuration to configuration, so that each is as often first.
-/// `record` is given every entry as soon as it is there; `on_pair` how many pairs of processes are done, and of how many.
+/// `record` is given every entry as soon as it is there; `on_pair` how many pairs of processes are done, and of how many. A
+/// configuration that fails in either, and that its executor [leaves out](Executor::leave_out), is measured by neither from then on,
+/// and nothing of it is returned.
 ///
 /// # Errors
-/// [`BenchError`] if there is nothing to run, an entry cannot be recorded, or a configuration fails.
-pub fn run_ab(
-    plan: &AbPlan,
-    ids: &[ConfigurationId],
-    [old, new]: [&mut dyn Executor; 2],
+/// [`BenchError`] if there is nothing to run, an entry cannot be recorded, a configuration fails that is not left out, or all have
+/// failed.
+pub fn run_ab<'a>(
+    plan: &'a AbPlan,
+    ids: &'a [ConfigurationId],
+    programs: [&'a mut (dyn Executor + 'a); 2],
     done: Vec<AbEntry>,
-    record: &mut dyn FnMut(&AbEntry) -> io::Result<()>,
+    record: &'a mut (dyn FnMut(&AbEntry) -> io::Result<()> + 'a),
     on_pair: &mut dyn FnMut(u64, u64),
 ) -> Result<AbMeasured, BenchError> {
     if ids.is_empty() {
         return Err(BenchError::NoConfigurations);
     }
-    let mut measured = AbMeasured::default();
+    let mut running = Running { plan, ids, programs, record, measured: AbMeasured::default() };
     let mut ended = 0;
     for entry in done {
         if let AbEntry::Ended { invocation, .. } = &entry {
             ended = invocation + 1;
         }
-        measured.keep(entry);
+        running.measured.keep(entry);
     }
     for invocation in ended..plan.processes.max(1) {
         on_pair(u64::from(invocation), u64::from(plan.processes));
-        let mut note = |entry: AbEntry| {
-            record(&entry).map_err(BenchError::Record)?;
-            measured.keep(entry);
-            Ok(())
-        };
-        Block { plan, ids, invocation }.run([&mut *old, &mut *new], &mut note)?;
+        running.invoke(invocation)?;
     }
     on_pair(u64::from(plan.processes), u64::from(plan.processes));
-    Ok(measured)
+    Ok(running.measured.finished())
 }
 
 impl AbMeasured {
@@ -139,67 +141,90 @@ impl AbMeasured {
             AbEntry::Begun { .. } => {}
             AbEntry::Pair(pair) => self.pairs.push(*pair),
             AbEntry::Load(window) => self.load.push(window),
+            AbEntry::Failed(failure) => self.failed.push(failure),
             AbEntry::Ended { pinned, .. } => self.pinned = pinned,
         }
     }
+
+    fn has_failed(&self, id: &ConfigurationId) -> bool {
+        self.failed.iter().any(|failure| failure.id == *id)
+    }
+
+    /// Without anything of configurations that failed: some processes would have them and others not.
+    fn finished(self) -> Self {
+        let failed = self.failed.clone();
+        let mut measured = self;
+        measured.pairs.retain(|pair| failed.iter().all(|failure| failure.id != pair.old.id));
+        measured
+    }
 }
 
-/// What a pair of processes measures.
-struct Block<'a> {
+/// The run: what a pair of processes measures, one after the other.
+struct Running<'a> {
     plan: &'a AbPlan,
     ids: &'a [ConfigurationId],
-    invocation: u32,
+    /// The old one and the new one.
+    programs: [&'a mut (dyn Executor + 'a); 2],
+    record: &'a mut (dyn FnMut(&AbEntry) -> io::Result<()> + 'a),
+    measured: AbMeasured,
 }
 
-impl Block<'_> {
-    fn run(
-        &self,
-        mut programs: [&mut dyn Executor; 2],
-        note: &mut dyn FnMut(AbEntry) -> Result<(), BenchError>,
-    ) -> Result<(), BenchError> {
+impl Running<'_> {
+    fn note(&mut self, entry: AbEntry) -> Result<(), BenchError> {
+        (self.record)(&entry).map_err(BenchError::Record)?;
+        self.measured.keep(entry);
+        Ok(())
+    }
+
+    fn invoke(&mut self, invocation: u32) -> Result<(), BenchError> {
         // Who starts first may get other memory.
-        let first = (self.invocation % 2) as usize;
+        let first = (invocation % 2) as usize;
         let began = Instant::now();
-        programs[first].begin()?;
-        let pinned = programs[1 - first].begin()?;
+        self.programs[first].begin()?;
+        let pinned = self.programs[1 - first].begin()?;
         for round in 0..self.plan.warmup {
-            self.round(&mut programs, Round::WarmUp(round))?;
+            self.round(invocation, Round::WarmUp(round))?;
         }
         let budget = Duration::from_secs_f64(self.plan.seconds / f64::from(self.plan.processes.max(1)));
-        let before = busy(&mut programs);
+        let before = busy(&mut self.programs);
         let mut round = 0;
         while round < LEAST_ROUNDS || began.elapsed() < budget {
-            for pair in self.round(&mut programs, Round::Measured(round))? {
-                note(AbEntry::Pair(Box::new(pair)))?;
+            for pair in self.round(invocation, Round::Measured(round))? {
+                self.note(AbEntry::Pair(Box::new(pair)))?;
             }
             round += 1;
         }
-        if let Some(window) = self.load(before, &mut programs, round) {
-            note(AbEntry::Load(window))?;
+        if let Some(window) = self.load(before, invocation, round) {
+            self.note(AbEntry::Load(window))?;
         }
-        note(AbEntry::Ended { invocation: self.invocation, pinned })
+        self.note(AbEntry::Ended { invocation, pinned })
     }
 
-    fn round(&self, programs: &mut [&mut dyn Executor; 2], round: Round) -> Result<Vec<AbPair>, BenchError> {
+    fn round(&mut self, invocation: u32, round: Round) -> Result<Vec<AbPair>, BenchError> {
         let (Round::WarmUp(number) | Round::Measured(number) | Round::Again(number)) = round;
         // No order twice, as far as 65,536 rounds go.
-        let stream = (self.invocation << 16) + number;
+        let stream = (invocation << 16) + number;
         let places = order(self.plan.seed, stream, self.ids.len()).into_iter().zip(0_u32..);
         let mut pairs = Vec::new();
         for (subject, place) in places {
-            let new_first = (number as usize + subject + self.invocation as usize) % 2 == 1;
+            let id = &self.ids[subject];
+            if self.measured.has_failed(id) {
+                continue;
+            }
+            let new_first = (number as usize + subject + invocation as usize) % 2 == 1;
             let mut sides = [None; 2];
             for side in if new_first { [1, 0] } else { [0, 1] } {
-                let failed = |error| BenchError::Configuration {
-                    id: self.ids[subject].clone(),
-                    round,
-                    source: Box::new(error),
-                };
-                sides[side] = Some(programs[side].execute(subject).map_err(failed)?);
+                match self.programs[side].execute(subject) {
+                    Ok(measurement) => sides[side] = Some(measurement),
+                    Err(error) => {
+                        self.leave_out((side, subject), round, error)?;
+                        break;
+                    }
+                }
             }
-            let at = [self.invocation, number, place];
-            let [old, new] = sides.map(|side| side.map(|side| sample(&side, &self.ids[subject], at)));
-            // Both were measured above.
+            let at = [invocation, number, place];
+            let [old, new] = sides.map(|side| side.map(|side| sample(&side, id, at)));
+            // One that failed has no pair.
             if let (Some(old), Some(new)) = (old, new) {
                 old.check(u32::MAX)?;
                 new.check(u32::MAX)?;
@@ -209,19 +234,33 @@ impl Block<'_> {
         Ok(pairs)
     }
 
-    fn load(
-        &self,
-        before: Option<CpuTimes>,
-        programs: &mut [&mut dyn Executor; 2],
-        rounds: u32,
-    ) -> Option<LoadWindow> {
-        let shares = busy(programs)?.shares_since(&before?)?;
+    /// Goes on without a configuration, if its executor lets it.
+    fn leave_out(
+        &mut self,
+        (side, subject): (usize, usize),
+        round: Round,
+        error: BenchError,
+    ) -> Result<(), BenchError> {
+        let id = self.ids[subject].clone();
+        let failed = |source| BenchError::Configuration { id: id.clone(), round, source: Box::new(source) };
+        let reason = self.programs[side].leave_out(subject, error).map_err(failed)?;
+        let reason = format!("asked by {}: {reason}", ["OLD", "NEW"][side]);
+        self.note(AbEntry::Failed(Failure { id: id.clone(), reason: reason.clone() }))?;
+        if self.ids.iter().all(|id| self.measured.has_failed(id)) {
+            let source = Box::new(BenchError::Execution(reason.into()));
+            return Err(BenchError::AllFailed { id, source });
+        }
+        Ok(())
+    }
+
+    fn load(&mut self, before: Option<CpuTimes>, invocation: u32, rounds: u32) -> Option<LoadWindow> {
+        let shares = busy(&mut self.programs)?.shares_since(&before?)?;
         Some(LoadWindow {
-            invocation: Some(self.invocation),
+            invocation: Some(invocation),
             rounds: Some((0, rounds - 1)),
             others: shares.others,
             steal: shares.steal,
-            load_average: programs[0].load_average(),
+            load_average: self.programs[0].load_average(),
         })
     }
 }
@@ -232,7 +271,7 @@ fn sample(measurement: &Measurement, id: &ConfigurationId, at: [u32; 3]) -> Benc
 }
 
 /// What the CPUs did: neither program is another one to us. Each reading has this process in it, which is counted once.
-fn busy(programs: &mut [&mut dyn Executor; 2]) -> Option<CpuTimes> {
+fn busy(programs: &mut [&mut (dyn Executor + '_); 2]) -> Option<CpuTimes> {
     let this = CpuTimes::read(&[std::process::id()], None).map_or(0, |times| times.own);
     let (old, new) = (programs[0].cpu_times()?, programs[1].cpu_times()?);
     Some(CpuTimes { own: (old.own + new.own).saturating_sub(this), ..new })
@@ -297,5 +336,40 @@ mod tests {
             run.pairs.iter().map(of).collect()
         };
         assert_eq!(at(&again), at(&whole), "and nothing is there twice");
+    }
+
+    /// A process pair of four rounds has 16 calls of each program. Call 22 is in the second, so three configurations are left for the
+    /// rest of its run, and what was measured of the fourth is not returned.
+    #[test]
+    fn what_fails_in_one_program_is_measured_by_neither() {
+        let (mut old, mut new) = (Mock::default(), Mock::failing_at(22, true));
+        let (measured, entries) = run(&plan(3), Vec::new(), [&mut old, &mut new]);
+        let [failure] = &measured.failed[..] else { panic!("{:?}", measured.failed) };
+        let (failed, reason) = (new.calls[22], "asked by NEW: the mock was told to fail");
+        assert_eq!((&failure.id, failure.reason.as_str()), (&ids()[failed], reason));
+        assert_eq!(measured.pairs.len(), 3 * 3 * 3);
+        assert!(measured.pairs.iter().all(|pair| pair.old.id != failure.id));
+        for mock in [&old, &new] {
+            assert_eq!(mock.calls[23..].iter().filter(|&&call| call == failed).count(), 0, "not asked again");
+        }
+        // What ended before it was killed knows who failed.
+        let begun = AbEntry::Begun { key: "k".into() };
+        let text: String = [&begun].into_iter().chain(&entries).map(AbEntry::line).collect();
+        let last = text.trim_end().rfind('\n').unwrap();
+        let done = read_ab_journal(&text[..last], "k").unwrap();
+        let mut again = Mock::default();
+        let (resumed, _) = run(&plan(3), done, [&mut again, &mut Mock::default()]);
+        assert_eq!(resumed.failed, measured.failed);
+        assert!(!again.calls.contains(&failed));
+    }
+
+    #[test]
+    fn a_failure_that_is_not_left_out_ends_the_run_by_name() {
+        let mut failing = Mock::failing_at(5, false);
+        let mut nothing = |_: &AbEntry| Ok(());
+        let programs: [&mut dyn Executor; 2] = [&mut failing, &mut Mock::default()];
+        let error = run_ab(&plan(2), &ids(), programs, Vec::new(), &mut nothing, &mut |_, _| ()).unwrap_err();
+        let BenchError::Configuration { id, round, .. } = error else { panic!("{error}") };
+        assert_eq!((id, round), (ids()[failing.calls[5]].clone(), Round::Measured(0)));
     }
 }

@@ -54,6 +54,7 @@ pub fn import(
         memory: Vec::new(),
         resumed: Vec::new(),
         failed: Vec::new(),
+        allocations: Vec::new(),
     })
 }
 

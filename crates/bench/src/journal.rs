@@ -1,7 +1,7 @@
 //! What a run has done so far, line by line, so that a killed run goes on in the middle of a round.
 
 use design::ConfigurationId;
-use design::record::{BenchSample, Failure, InvalidSample, LoadWindow, PeakMemory, Resumption};
+use design::record::{Allocations, BenchSample, Failure, InvalidSample, LoadWindow, PeakMemory, Resumption};
 use serde::{Deserialize, Serialize};
 
 /// One line of a journal: something that happened, written when it happened.
@@ -21,6 +21,8 @@ pub enum Entry {
     Load(LoadWindow),
     /// Peak memory of a configuration.
     Memory(PeakMemory),
+    /// What a configuration asks of the allocator; its memory comes after it.
+    Allocations(Allocations),
     /// The run was taken up again.
     Resumed(Resumption),
     /// A configuration failed; from here on it is left out.
@@ -96,6 +98,7 @@ mod tests {
         entries.extend(run.samples.into_iter().map(Entry::Sample));
         entries.extend(run.aa_samples.into_iter().map(Entry::AaSample));
         entries.extend(run.memory.into_iter().map(Entry::Memory));
+        entries.extend(run.allocations.into_iter().map(Entry::Allocations));
         entries.push(Entry::Resumed(Resumption { invocation: 1, iteration: 2, place: 3 }));
         entries.push(Entry::Failed(Failure { id: "ss_bu".parse().unwrap(), reason: "no answer".into() }));
         entries

@@ -30,11 +30,13 @@
 //! - Caches, cores, memory, governor, load, containers and peak memory are read on Linux only; the CPU's model name on any
 //!   x86 and on Linux; pinning is for Linux.
 //! - Counters beside time ([`Counters`](design::record::Counters)) are those that the system tells: on Linux CPU time and page faults,
-//!   and the CPU's own where machine and kernel permit it. Allocations are not counted.
+//!   and the CPU's own where machine and kernel permit it. Allocations are counted where the program's allocator tells them
+//!   ([`count_allocations`]), in extractions that are not timed.
 //! - Times are wall-clock times, and a total is the sum of the stages, not the time round the call: dropping the
 //!   mesh is not in it.
 
 mod ab;
+mod allocations;
 mod csv_files;
 mod error;
 mod import;
@@ -55,6 +57,7 @@ mod stages;
 mod worker;
 
 pub use ab::{AbEntry, AbMeasured, AbPlan, read_ab_journal, run_ab};
+pub use allocations::{AllocationCounts, Asked, count_allocations};
 pub use csv_files::{machine_csv, samples_csv};
 pub use error::BenchError;
 pub use import::import;

@@ -38,6 +38,8 @@ pub struct Plan {
     pub aa_iterations: u32,
     /// Whether peak memory is measured, in a process of its own for every configuration.
     pub memory: bool,
+    /// Whether allocations are counted with it.
+    pub allocations: bool,
     /// Seed of the order within each round.
     pub seed: u64,
     /// Threads in the sampling stage; 0 takes every core.

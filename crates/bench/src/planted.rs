@@ -1,5 +1,6 @@
 //! A slowdown that is planted, to see whether it is found: for the tests of this benchmark, and for nothing else.
 
+use crate::allocations::AllocationCounts;
 use crate::meter::thread_cpu_s;
 use crate::run::PeakBytes;
 use crate::stages::Timed;
@@ -39,6 +40,10 @@ impl Measured for Planted<'_> {
 
     fn memory(&mut self, number: usize, threads: u32) -> Result<Option<PeakBytes>, String> {
         self.measured.memory(number, threads)
+    }
+
+    fn allocations(&mut self, number: usize) -> Result<Option<AllocationCounts>, String> {
+        self.measured.allocations(number)
     }
 }
 

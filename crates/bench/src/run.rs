@@ -1,5 +1,6 @@
 //! The run itself: invocation by invocation, turn by turn, every sample kept.
 
+use crate::allocations::AllocationCounts;
 use crate::error::BenchError;
 use crate::journal::{Entry, JournalError};
 use crate::load::{CpuTimes, LEAST_TICKS};
@@ -8,7 +9,9 @@ use crate::profile::differences;
 use crate::stages::StageSeconds;
 use design::ConfigurationId;
 use design::machine::Machine;
-use design::record::{BenchRun, BenchSample, Counters, Failure, LoadWindow, PeakMemory, Resumption};
+use design::record::{
+    Allocations, BenchRun, BenchSample, Counters, Failure, LoadWindow, PeakMemory, Resumption,
+};
 use std::collections::HashSet;
 use std::io;
 
@@ -34,6 +37,16 @@ pub trait Executor {
     /// # Errors
     /// Whatever stopped it.
     fn peak_memory(&mut self, subject: usize) -> Result<Option<PeakBytes>, BenchError>;
+
+    /// What one extraction of the configuration with this index, whose memory was measured just before, asks of the allocator; `None`
+    /// where nobody counts, which is so unless an executor says otherwise.
+    ///
+    /// # Errors
+    /// Whatever stopped it.
+    fn allocations(&mut self, subject: usize) -> Result<Option<AllocationCounts>, BenchError> {
+        let _ = subject;
+        Ok(None)
+    }
 
     /// Why the configuration with this index may be left out, if it may be after such an error: the others go on without it.
     ///
@@ -196,7 +209,7 @@ pub fn check_journal(plan: &Plan, ids: &[ConfigurationId], done: &[Entry]) -> Re
             Entry::AaSample(sample) => is(again.find(goes_on), sample),
             Entry::Memory(peak) => memory.find(|id| !failed.contains(id)) == Some(&peak.id),
             Entry::Failed(failure) => ids.contains(&failure.id) && failed.insert(&failure.id),
-            Entry::Begun { .. } | Entry::Load(_) | Entry::Resumed(_) => true,
+            Entry::Begun { .. } | Entry::Load(_) | Entry::Allocations(_) | Entry::Resumed(_) => true,
         };
     }
     if !follows {
@@ -237,6 +250,7 @@ fn empty(plan: &Plan, machine: Machine) -> BenchRun {
         memory: Vec::new(),
         resumed: Vec::new(),
         failed: Vec::new(),
+        allocations: Vec::new(),
     }
 }
 
@@ -261,6 +275,11 @@ impl Running<'_> {
             Entry::AaSample(sample) => self.run.aa_samples.push(sample),
             Entry::Load(window) => self.run.load.push(window),
             Entry::Memory(memory) => self.run.memory.push(memory),
+            Entry::Allocations(counts) => {
+                // A run that was killed between them and the memory counted them once more.
+                self.run.allocations.retain(|before| before.id != counts.id);
+                self.run.allocations.push(counts);
+            }
             Entry::Resumed(resumption) => self.run.resumed.push(resumption),
             Entry::Failed(failure) => {
                 if let Some(subject) = self.ids.iter().position(|id| *id == failure.id) {
@@ -418,17 +437,23 @@ impl Running<'_> {
         self.tick(done as u64);
         for (subject, id) in ids.iter().enumerate().skip(done) {
             if !self.failed[subject] {
-                match self.executor.peak_memory(subject) {
+                match self.peak_and_allocations(subject) {
                     // Told for none or for all: a system does not change its mind.
-                    Ok(None) => break,
-                    Ok(Some(PeakBytes { before_bytes, peak_before_bytes, peak_bytes })) => {
-                        let id = id.clone();
-                        self.note(Entry::Memory(PeakMemory {
-                            id,
-                            before_bytes,
-                            peak_before_bytes,
-                            peak_bytes,
-                        }))?;
+                    Ok((None, None)) => break,
+                    Ok((peak, counts)) => {
+                        if let Some(AllocationCounts { calls, bytes }) = counts {
+                            let id = id.clone();
+                            self.note(Entry::Allocations(Allocations { id, calls, bytes }))?;
+                        }
+                        if let Some(PeakBytes { before_bytes, peak_before_bytes, peak_bytes }) = peak {
+                            let id = id.clone();
+                            self.note(Entry::Memory(PeakMemory {
+                                id,
+                                before_bytes,
+                                peak_before_bytes,
+                                peak_bytes,
+                            }))?;
+                        }
                     }
                     Err(error) => {
                         let reason = self.executor.leave_out(subject, error)?;
@@ -441,6 +466,16 @@ impl Running<'_> {
         Ok(())
     }
 
+    /// Both of one configuration; of a sweep, memory alone.
+    fn peak_and_allocations(
+        &mut self,
+        subject: usize,
+    ) -> Result<(Option<PeakBytes>, Option<AllocationCounts>), BenchError> {
+        let peak = self.executor.peak_memory(subject)?;
+        let counts = if self.plan.allocations { self.executor.allocations(subject)? } else { None };
+        Ok((peak, counts))
+    }
+
     /// The run, without anything of configurations that failed: part of the rounds would be compared with all of others'.
     fn finished(self) -> BenchRun {
         let mut run = self.run;
@@ -449,6 +484,7 @@ impl Running<'_> {
         run.samples.retain(|sample| !failed.contains(&sample.id));
         run.aa_samples.retain(|sample| !failed.contains(&sample.id));
         run.memory.retain(|peak| !failed.contains(&peak.id));
+        run.allocations.retain(|counts| !failed.contains(&counts.id));
         run
     }
 }

@@ -1,5 +1,6 @@
 //! What the measuring process does: it reads requests, a line each, and answers each with a line, in JSON.
 
+use crate::allocations::AllocationCounts;
 use crate::error::BenchError;
 use crate::load::resident_bytes;
 use crate::meter::Meter;
@@ -88,6 +89,15 @@ pub trait Measured {
     /// # Errors
     /// As [`time`](Self::time).
     fn memory(&mut self, number: usize, threads: u32) -> Result<Option<PeakBytes>, String>;
+
+    /// Extracts and says what was asked of the allocator; `None` where nobody counts, which is so unless said otherwise.
+    ///
+    /// # Errors
+    /// As [`time`](Self::time).
+    fn allocations(&mut self, number: usize) -> Result<Option<AllocationCounts>, String> {
+        let _ = number;
+        Ok(None)
+    }
 }
 
 impl<'a, F: FnMut(usize) -> Result<Prepared<'a>, String>> Measured for F {
@@ -97,6 +107,10 @@ impl<'a, F: FnMut(usize) -> Result<Prepared<'a>, String>> Measured for F {
 
     fn memory(&mut self, number: usize, threads: u32) -> Result<Option<PeakBytes>, String> {
         self(number)?.memory(threads)
+    }
+
+    fn allocations(&mut self, number: usize) -> Result<Option<AllocationCounts>, String> {
+        self(number)?.allocations()
     }
 }
 
@@ -108,6 +122,8 @@ pub enum Request {
     Time(usize),
     /// Extract once and say how much memory that took.
     Memory(usize),
+    /// Extract and say what was asked of the allocator.
+    Allocations(usize),
 }
 
 /// What it answers.
@@ -120,7 +136,9 @@ pub enum Reply {
     Measurement(Measurement),
     /// To [`Request::Memory`]; `None` where it is not told.
     Memory(Option<PeakBytes>),
-    /// To either: why not.
+    /// To [`Request::Allocations`]; `None` where nobody counts.
+    Allocations(Option<AllocationCounts>),
+    /// To any: why not.
     Failed(String),
 }
 
@@ -151,6 +169,7 @@ pub fn serve(
                 measured.time(number, threads).map(measurement)
             }
             Request::Memory(number) => measured.memory(number, threads).map(Reply::Memory),
+            Request::Allocations(number) => measured.allocations(number).map(Reply::Allocations),
         };
         say(&reply.unwrap_or_else(Reply::Failed))?;
     }
@@ -170,6 +189,14 @@ impl Reply {
     pub(crate) fn memory(self) -> Result<Option<PeakBytes>, BenchError> {
         match self {
             Self::Memory(memory) => Ok(memory),
+            other => Err(other.unexpected()),
+        }
+    }
+
+    /// The answer to [`Request::Allocations`].
+    pub(crate) fn allocations(self) -> Result<Option<AllocationCounts>, BenchError> {
+        match self {
+            Self::Allocations(counts) => Ok(counts),
             other => Err(other.unexpected()),
         }
     }

@@ -59,4 +59,4 @@ pub use edge_groups::{EdgeGroup, EdgeGroups, radius_ratio};
 pub use hull_rule::{Label, Point};
 pub use symmetry::{Symmetry, classes, classes_with_complement, symmetries};
 pub use table::{Table, TableError};
-pub use triangulation::Triangulator;
+pub use triangulation::{PolygonTriangles, Triangulator};

@@ -35,44 +35,74 @@ impl Triangulator {
 
     /// The triangles with the least sum of costs; of several such, the one whose diagonals come first. `None` where a diagonal
     /// in a face cannot be avoided.
-    pub fn cheapest(&self, polygon: &[u8], mut cost: impl FnMut([u8; 3]) -> f64) -> Option<Vec<[u8; 3]>> {
+    pub fn cheapest(&self, polygon: &[u8], cost: impl FnMut([u8; 3]) -> f64) -> Option<Vec<[u8; 3]>> {
+        let mut found = PolygonTriangles::default();
+        self.find_cheapest(polygon, cost, &mut found).then_some(found.triangles)
+    }
+
+    /// The same into `found`, which is used again; `false` where there is none, and then `found` is empty.
+    pub fn find_cheapest(
+        &self,
+        polygon: &[u8],
+        mut cost: impl FnMut([u8; 3]) -> f64,
+        found: &mut PolygonTriangles,
+    ) -> bool {
         let n = polygon.len();
         let may = |i: usize, j: usize| {
             j - i == 1 || (i == 0 && j == n - 1) || self.may_join(polygon[i], polygon[j])
         };
-        // Of the part from corner i to corner j: its cost, and the third corner of the triangle on that side.
-        let mut best = vec![vec![(0.0, 0); n]; n];
+        let PolygonTriangles { triangles, best, parts } = found;
+        triangles.clear();
+        best.clear();
+        best.resize(n * n, (0.0, 0));
         for width in 2..n {
             for i in 0..n - width {
                 let j = i + width;
-                best[i][j] = (f64::INFINITY, 0);
-                if !may(i, j) {
-                    continue;
-                }
-                for k in i + 1..j {
-                    let sum = best[i][k].0 + best[k][j].0;
-                    if sum < best[i][j].0 {
-                        let sum = sum + cost([polygon[i], polygon[k], polygon[j]]);
-                        if sum < best[i][j].0 {
-                            best[i][j] = (sum, k);
+                let mut least = (f64::INFINITY, 0);
+                if may(i, j) {
+                    for k in i + 1..j {
+                        let sum = best[i * n + k].0 + best[k * n + j].0;
+                        if sum < least.0 {
+                            let sum = sum + cost([polygon[i], polygon[k], polygon[j]]);
+                            if sum < least.0 {
+                                least = (sum, k);
+                            }
                         }
                     }
                 }
+                best[i * n + j] = least;
             }
         }
-        if best[0][n - 1].0 == f64::INFINITY {
-            return None;
+        if best[n - 1].0 == f64::INFINITY {
+            return false;
         }
-        let mut triangles = Vec::with_capacity(n - 2);
-        let mut parts = vec![[0, n - 1]];
+        parts.clear();
+        parts.push([0, n - 1]);
         while let Some([i, j]) = parts.pop() {
             if j - i >= 2 {
-                let k = best[i][j].1;
+                let k = best[i * n + j].1;
                 triangles.push([polygon[i], polygon[k], polygon[j]]);
                 parts.extend([[k, j], [i, k]]);
             }
         }
-        Some(triangles)
+        true
+    }
+}
+
+/// The triangles that a polygon was cut into, and the room that it took to find them.
+#[derive(Debug, Clone, Default)]
+pub struct PolygonTriangles {
+    triangles: Vec<[u8; 3]>,
+    /// Of the part from one corner to another: its cost, and the third corner of the triangle on that side.
+    best: Vec<(f64, usize)>,
+    /// Parts that are not cut yet.
+    parts: Vec<[usize; 2]>,
+}
+
+impl PolygonTriangles {
+    /// They face where the polygon faces.
+    pub fn triangles(&self) -> &[[u8; 3]] {
+        &self.triangles
     }
 }
 

@@ -4,6 +4,7 @@ use crate::memory::Limit;
 use crate::mesh_file;
 use crate::source::{self, Options};
 use crate::store::sha256;
+use crate::terminal::tell_once;
 use anyhow::{Context, Result, bail};
 use design::Study;
 use design::config::{FieldSection, MeshSourceSection, ObjectSection};
@@ -348,7 +349,7 @@ fn read_placed(source: &MeshSourceSection, path: &Path) -> Result<TriangleMesh> 
     if holes > 0 {
         let closed =
             if holes == 1 { "1 hole was closed".into() } else { format!("{holes} holes were closed") };
-        tell!("{}: {closed}; allow_open = true takes a mesh with its holes", path.display());
+        tell_once(&format!("{}: {closed}; allow_open = true takes a mesh with its holes", path.display()));
     }
     let axes = source.axes.each_ref().map(|axis| axis_vector(axis));
     let offset = DVec3::from_array(source.offset);

@@ -35,7 +35,13 @@ mod video;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use outcome::Outcome;
+use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
+use std::alloc::System;
 use std::process::ExitCode;
+
+/// The system's, and a count of what it is asked for.
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// Wrong usage or input; clap uses the same.
 const INPUT_ERROR: u8 = 2;

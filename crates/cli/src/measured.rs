@@ -2,7 +2,7 @@
 
 use crate::prepare::Prepared;
 use crate::recipe::Recipe;
-use bench::{Measured, PeakBytes, StageSeconds, Timed};
+use bench::{AllocationCounts, Asked, Measured, PeakBytes, StageSeconds, Timed};
 use program::{Answer, Program, Samples, Worker, write_samples};
 use std::collections::HashMap;
 use std::hint::black_box;
@@ -88,6 +88,22 @@ impl Measured for Clock<'_> {
             _ => extractor(&prepared)?.memory(threads),
         }
     }
+
+    /// Of a program it is not known.
+    fn allocations(&mut self, number: usize) -> Result<Option<AllocationCounts>, String> {
+        let prepared = (self.prepare)(number)?;
+        match &prepared.recipe {
+            Recipe::Program(_) => Ok(None),
+            _ => extractor(&prepared)?.allocations(),
+        }
+    }
+}
+
+/// What this process's allocator was asked for until now.
+pub(crate) fn asked() -> Asked {
+    let stats = crate::ALLOCATOR.stats();
+    let calls = (stats.allocations + stats.reallocations) as u64;
+    Asked { calls, bytes: stats.bytes_allocated as u64 }
 }
 
 /// Seconds to compute all the samples that a program is given, so that its total, too, is from field to mesh.

@@ -2,6 +2,7 @@
 
 use crate::memory::Limit;
 use crate::mesh_file;
+use crate::terminal::tell_once;
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use expression::{Expression, ExpressionError};
@@ -143,7 +144,9 @@ impl Options {
             .with_context(|| path.display().to_string())?;
         if !field.is_axis_aligned() && !self.close {
             let name = path.display();
-            tell!("{name}: the grid is turned against the axes; the surface is closed where it leaves it");
+            tell_once(&format!(
+                "{name}: the grid is turned against the axes; the surface is closed where it leaves it"
+            ));
         }
         Ok(VolumeInFile { field, samples: counts.iter().product(), name: path.display().to_string() })
     }
@@ -246,11 +249,11 @@ fn mesh_field(path: &Path, allow_open: bool) -> Result<(MeshDistance, Bounds)> {
             Ok(field) => {
                 for part in field.inward_parts(&mesh) {
                     let (min, max) = (place(part.bounds.min), place(part.bounds.max));
-                    tell!(
+                    tell_once(&format!(
                         "{name}: part {} of {}, from {min} to {max}, faces inward and lies in no other: it is left out",
                         part.part + 1,
                         part.parts
-                    );
+                    ));
                 }
                 let bounds = mesh.surface_bounds().context("the mesh has no triangles")?;
                 return Ok((field, bounds));
@@ -263,16 +266,17 @@ fn mesh_field(path: &Path, allow_open: bool) -> Result<(MeshDistance, Bounds)> {
                 mesh = mesh::weld(&mesh);
                 is_welded = true;
                 if mesh.positions.len() < before {
-                    tell!("{name}: {before} vertices at {} places joined", mesh.positions.len());
+                    let places = mesh.positions.len();
+                    tell_once(&format!("{name}: {before} vertices at {places} places joined"));
                 }
             }
             MeshFieldError::Open { .. } if allow_open => {
-                tell!("{name}: {error}");
+                tell_once(&format!("{name}: {error}"));
                 holes = Holes::Span;
             }
             MeshFieldError::Open { .. } => bail!("{name}: {error}; --allow-open takes it nevertheless"),
             MeshFieldError::InsideOut { volume } if volume < 0.0 => {
-                tell!("{name}: its triangles face inward: turned round");
+                tell_once(&format!("{name}: its triangles face inward: turned round"));
                 mesh = repair::flip(&mesh);
             }
             error => return Err(error).with_context(|| name.to_string()),

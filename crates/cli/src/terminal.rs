@@ -1,7 +1,9 @@
 //! What is said on standard output and standard error.
 
 use anyhow::Result;
+use std::collections::HashSet;
 use std::io::{ErrorKind, Write};
+use std::sync::{Mutex, PoisonError};
 
 /// As `eprintln!`, which panics where a line cannot be written: on a full disk, or to a reader that has gone.
 macro_rules! tell {
@@ -12,6 +14,15 @@ macro_rules! tell {
 
 // After the macro, which it uses.
 pub(crate) mod progress;
+
+/// Says a line as `tell!` does, unless this process or one that it measures with has said it before.
+pub(crate) fn tell_once(line: &str) {
+    static SAID: Mutex<Option<HashSet<String>>> = Mutex::new(None);
+    let mut said = SAID.lock().unwrap_or_else(PoisonError::into_inner);
+    if said.get_or_insert_default().insert(line.to_owned()) {
+        tell!("{line}");
+    }
+}
 
 /// Prints a line on standard output. A reader that has gone away is no error.
 ///

@@ -346,6 +346,9 @@ pub struct BenchRun {
     pub load: Vec<LoadWindow>,
     /// What one extraction of each configuration needs.
     pub memory: Vec<PeakMemory>,
+    /// What one extraction of each asks of the allocator.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub allocations: Vec<Allocations>,
     /// Where the run was broken off and taken up again.
     pub resumed: Vec<Resumption>,
     /// Configurations that were left out because they could not be made every time; the lists above have nothing of them.
@@ -460,6 +463,31 @@ impl PeakMemory {
     pub fn of_extraction(&self) -> Option<u64> {
         (self.peak_bytes > self.peak_before_bytes).then(|| self.peak_bytes - self.before_bytes)
     }
+}
+
+/// What one extraction of a configuration asks of the allocator: counted in extractions of their own, on one thread and not timed.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Allocations {
+    /// What was extracted.
+    pub id: ConfigurationId,
+    /// How often memory was asked for, or a piece of it to become larger or smaller.
+    pub calls: StageCounts,
+    /// Bytes asked for, those that were given back meanwhile too; of a piece that became larger, by how much.
+    pub bytes: StageCounts,
+}
+
+/// A count for each stage ([`Stage::count`](crate::Stage::count)), and for the extraction as a whole, which may have some outside of the
+/// stages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "defined in `Stage`")]
+pub struct StageCounts {
+    pub allocation: u64,
+    pub sampling: u64,
+    pub vertex: u64,
+    pub geometry: u64,
+    pub clustering: u64,
+    pub normals: u64,
+    pub total: u64,
 }
 
 /// A configuration that a run left out.

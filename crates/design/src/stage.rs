@@ -1,6 +1,6 @@
 //! The six stages of an extraction.
 
-use crate::record::BenchSample;
+use crate::record::{BenchSample, StageCounts};
 use serde::{Deserialize, Serialize};
 
 /// A stage of an extraction, or all six together.
@@ -62,6 +62,20 @@ impl Stage {
             Self::Normals => sample.normals_s,
             Self::Total => sample.total_s,
             Self::GeometryAsPublished => sample.geometry_s + sample.clustering_s,
+        }
+    }
+
+    /// What is counted for this stage.
+    pub fn count(self, counts: &StageCounts) -> u64 {
+        match self {
+            Self::Allocation => counts.allocation,
+            Self::Sampling => counts.sampling,
+            Self::Vertex => counts.vertex,
+            Self::Geometry => counts.geometry,
+            Self::Clustering => counts.clustering,
+            Self::Normals => counts.normals,
+            Self::Total => counts.total,
+            Self::GeometryAsPublished => counts.geometry + counts.clustering,
         }
     }
 }

@@ -116,31 +116,57 @@ pub(crate) enum Way {
     Continued(Continued),
 }
 
-/// Extracts the cubes of a simple cubic lattice one way or the other.
-pub(crate) fn extract(
-    request: &Request,
-    way: Way,
-    progress: Option<&Progress>,
-    trace: Option<&mut Trace>,
-    extraction: &mut Extraction,
-) -> Result<(), ExtractError> {
-    match way {
-        Way::Patches(rule) => extract_patches(request, rule, 0.0, progress, trace, extraction),
-        Way::Moved { rule, moves } => {
-            extract_patches(request, rule, moves.pull, progress, trace, extraction)?;
-            moves.apply(request, extraction)
-        }
-        Way::Snapped { gamma, flat } => snap::extract(request, gamma, flat, progress, trace, extraction),
-        Way::Nets(nets) => nets::extract(request, nets, progress, trace, extraction),
-        Way::Continued(continued) => {
-            let rule = Rule { faces: Faces::SeparateInside, diagonals: Diagonals::Fan };
-            continuation::extract(request, continued, rule, progress, extraction)
+/// An extractor's buffers, kept from one surface to the next.
+#[derive(Default)]
+pub(crate) struct CubeStreamer {
+    kept: Kept,
+    patches: Vec<Workspace>,
+    snapped: Vec<snap::Workspace>,
+    nets: Vec<nets::Workspace>,
+}
+
+/// What every way has.
+#[derive(Default)]
+struct Kept {
+    /// The coordinates of the grid's points along each axis.
+    at: [Vec<f32>; 3],
+    pieces: Vec<Piece>,
+}
+
+impl CubeStreamer {
+    /// Extracts the cubes of a simple cubic lattice one way or the other.
+    pub(crate) fn extract(
+        &mut self,
+        request: &Request,
+        way: Way,
+        progress: Option<&Progress>,
+        trace: Option<&mut Trace>,
+        extraction: &mut Extraction,
+    ) -> Result<(), ExtractError> {
+        let Self { kept, patches, snapped, nets } = self;
+        match way {
+            Way::Patches(rule) => {
+                extract_patches((kept, patches), request, rule, 0.0, progress, trace, extraction)
+            }
+            Way::Moved { rule, moves } => {
+                extract_patches((kept, patches), request, rule, moves.pull, progress, trace, extraction)?;
+                moves.apply(request, extraction)
+            }
+            Way::Snapped { gamma, flat } => {
+                snap::extract((kept, snapped), request, gamma, flat, progress, trace, extraction)
+            }
+            Way::Nets(of) => nets::extract((kept, nets), request, of, progress, trace, extraction),
+            Way::Continued(continued) => {
+                let rule = Rule { faces: Faces::SeparateInside, diagonals: Diagonals::Fan };
+                continuation::extract(request, continued, rule, progress, extraction)
+            }
         }
     }
 }
 
 /// The stages in order, timed and counted. The lattice is simple cubic: its points are the corners of the cubes.
 fn extract_patches(
+    (kept, workspaces): (&mut Kept, &mut Vec<Workspace>),
     request: &Request,
     rule: Rule,
     pull: f32,
@@ -152,33 +178,47 @@ fn extract_patches(
     let patches = Patches::get(rule);
     let placer = &Placer::new(request.lattice, settings, request.level()).pulled(pull);
     let (isovalue, traced) = (settings.isovalue, trace.is_some());
-    let new = |grid: &Grid| Workspace::new(grid, source);
-    in_slabs(request, progress, trace, extraction, 1, new, |grid, layer_done, own, workspace, piece| {
+    let fit = |workspace: &mut Workspace, grid: &Grid| workspace.fit(grid, source);
+    let work = |grid: &Grid, layer_done: &LayerDone, own, workspace: &mut Workspace, piece: &mut Piece| {
         let job =
             Job { grid, source, isovalue, rule, patches, placer, most_vertices, traced, control, layer_done };
         stream_slab(&job, own, workspace, piece)
-    })
+    };
+    let buffers = (kept, workspaces, Workspace::default);
+    in_slabs(buffers, request, progress, trace, extraction, 1, fit, work)
 }
 
+/// Told when a layer of cells is done.
+type LayerDone<'a> = dyn Fn() + Sync + 'a;
+
 /// Streams the slabs of a simple cubic lattice, and makes one mesh of them, timed and counted. `work` does the layers of cells it is
-/// given, with a workspace of `new`, and says when it has done one. Workspaces hold so many `times` what a lattice's layers do.
+/// given, with a workspace that `fit` made room in, and says when it has done one. Workspaces hold so many `times` what a lattice's
+/// layers do; the function among the buffers makes one without room.
 fn in_slabs<W: Send>(
+    (kept, workspaces, new): (&mut Kept, &mut Vec<W>, impl Fn() -> W),
     request: &Request,
     progress: Option<&Progress>,
-    trace: Option<&mut Trace>,
+    mut trace: Option<&mut Trace>,
     extraction: &mut Extraction,
     times: u64,
-    new: impl Fn(&Grid) -> Result<W, TryReserveError>,
-    work: impl Fn(&Grid, &(dyn Fn() + Sync), Range<usize>, &mut W, &mut Piece) -> Result<(), ExtractError> + Sync,
+    fit: impl Fn(&mut W, &Grid) -> Result<(), TryReserveError>,
+    work: impl Fn(&Grid, &LayerDone, Range<usize>, &mut W, &mut Piece) -> Result<(), ExtractError> + Sync,
 ) -> Result<(), ExtractError> {
     let Request { lattice, control, start, .. } = *request;
     let (threads, slabs) = threads_and_slabs(control.threads.count(), lattice.stored_grid()[2] as usize);
     let out_of_memory =
         |_| ExtractError::OutOfMemory { bytes: times * lattice.streaming_bytes(threads as u64) };
-    let grid = &Grid::new(lattice).map_err(out_of_memory)?;
-    let workspaces: Result<Vec<W>, _> = (0..threads).map(|_| new(grid)).collect();
-    let mut workspaces = workspaces.map_err(out_of_memory)?;
-    let mut pieces: Vec<Piece> = (0..slabs).map(|_| Piece::default()).collect();
+    let Kept { at, pieces } = kept;
+    let grid = Grid::within(lattice, std::mem::take(at)).map_err(out_of_memory)?;
+    workspaces.resize_with(threads, new);
+    pieces.resize_with(slabs, Piece::default);
+    for workspace in &mut *workspaces {
+        fit(workspace, &grid).map_err(out_of_memory)?;
+    }
+    // The first piece is written where the whole mesh will be.
+    pieces[0].positions = std::mem::take(&mut extraction.mesh.positions);
+    pieces[0].surface.triangles = std::mem::take(&mut extraction.mesh.triangles);
+    pieces[0].surface.trace = trace.as_deref_mut().map(std::mem::take);
     let allocation = start.elapsed();
 
     let streaming = Moment::now();
@@ -193,12 +233,12 @@ fn in_slabs<W: Send>(
             progress(done, cells);
         }
     };
-    on_slabs(cells, control.threads, &mut workspaces, &mut pieces, |own, workspace, piece| {
-        work(grid, &layer_done, own, workspace, piece)
+    on_slabs(cells, control.threads, workspaces, pieces, |own, workspace, piece| {
+        work(&grid, &layer_done, own, workspace, piece)
     })?;
-    drop(workspaces);
+    *at = grid.at;
     let times = [allocation, streaming.elapsed()];
-    assemble(request, &mut pieces, threads, times, trace, extraction)?;
+    assemble(request, pieces, threads, times, trace, extraction)?;
     extraction.counts.tetrahedra = None;
     Ok(())
 }

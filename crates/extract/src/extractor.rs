@@ -44,6 +44,7 @@ use crate::trace::Trace;
 pub struct Extractor {
     streamer: Streamer,
     cell_streamer: CellStreamer,
+    cube_streamer: cubes::CubeStreamer,
     kept: FieldCache,
     progress: Option<Box<Progress>>,
     /// Where the last mesh came from, if `traced`.
@@ -216,7 +217,7 @@ impl Extractor {
         let request = Request { source, lattice, settings, control, most_vertices, start };
         let trace = self.traced.then_some(&mut self.trace);
         if let Some(way) = cubes {
-            cubes::extract(&request, way, self.progress.as_deref(), trace, extraction)
+            self.cube_streamer.extract(&request, way, self.progress.as_deref(), trace, extraction)
         } else if lattice.arrangement().uniform().is_some() {
             self.streamer.extract(&request, self.progress.as_deref(), trace, extraction)
         } else {

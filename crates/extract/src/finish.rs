@@ -12,8 +12,8 @@ use crate::collapse::collapse;
 use crate::control::Threads;
 use crate::lattice::Lattice;
 use crate::level::Level;
-use crate::memory::copied;
-use crate::placement::{Moves, relaxed};
+use crate::memory::refilled;
+use crate::placement::{Around, Moves, relax};
 use crate::sampling::for_each_on_threads;
 use crate::settings::{ExtractSettings, Placement};
 use crate::triangles::Triangulation;
@@ -50,9 +50,10 @@ pub(crate) fn finish(
         moves = Moves::start(positions)?;
     }
     if let Some(level) = level {
-        let targets =
-            field_targets(&level, &bounds, settings.placement, threads, positions, &surface.triangles)?;
-        moves.advance(positions, &targets, &surface.triangles, &bounds)?;
+        let mut found = FieldTargets::default();
+        let (placement, triangles) = (settings.placement, &surface.triangles);
+        let targets = found.find(&level, &bounds, placement, threads, positions, triangles)?;
+        moves.advance(positions, targets, &surface.triangles, &bounds)?;
     }
     Ok(collapsing)
 }
@@ -70,8 +71,9 @@ pub(crate) fn move_vertices(
     triangles: &[[u32; 3]],
 ) -> Result<(), ExtractError> {
     let bounds = lattice.bounds();
-    let targets = field_targets(level, &bounds, placement, threads, positions, triangles)?;
-    Ok(Moves::start(positions)?.advance(positions, &targets, triangles, &bounds)?)
+    let mut found = FieldTargets::default();
+    let targets = found.find(level, &bounds, placement, threads, positions, triangles)?;
+    Ok(Moves::start(positions)?.advance(positions, targets, triangles, &bounds)?)
 }
 
 /// Collapses edges if the settings say so, and says how long that took.
@@ -85,21 +87,35 @@ fn timed_collapse(
     Ok(collapse(settings, spacing, positions, surface)?.then(|| start.elapsed()))
 }
 
-/// Where a placement that calls the field wants the vertices.
-pub(crate) fn field_targets(
-    level: &Level,
-    bounds: &Bounds,
-    placement: Placement,
-    threads: Threads,
-    positions: &[Vec3],
-    triangles: &[[u32; 3]],
-) -> Result<Vec<Vec3>, ExtractError> {
-    let mut targets = match placement {
-        Placement::Relaxed => relaxed(positions, triangles)?,
-        _ => copied(positions)?,
-    };
-    project(level, bounds, threads, positions, &mut targets)?;
-    Ok(targets)
+/// Where a placement that calls the field wants the vertices; the room is used again.
+#[derive(Debug, Default)]
+pub(crate) struct FieldTargets {
+    targets: Vec<Vec3>,
+    around: Vec<Around>,
+}
+
+impl FieldTargets {
+    /// Finds a target for each vertex.
+    ///
+    /// # Errors
+    /// [`ExtractError::Threads`], [`ExtractError::NoMemoryForMesh`].
+    pub(crate) fn find(
+        &mut self,
+        level: &Level,
+        bounds: &Bounds,
+        placement: Placement,
+        threads: Threads,
+        positions: &[Vec3],
+        triangles: &[[u32; 3]],
+    ) -> Result<&[Vec3], ExtractError> {
+        let Self { targets, around } = self;
+        match placement {
+            Placement::Relaxed => relax(positions, triangles, around, targets)?,
+            _ => refilled(targets, positions.iter().copied())?,
+        }
+        project(level, bounds, threads, positions, targets)?;
+        Ok(targets)
+    }
 }
 
 /// Takes each target to the isosurface; where there is no way, the vertex's position becomes the target.

@@ -104,6 +104,11 @@ impl Guard {
         guard
     }
 
+    /// Makes the tables that are made otherwise when a point first needs them.
+    pub(crate) fn complete(&self) {
+        self.links.iter().for_each(|link| link.complete(|set| self.rank(set)));
+    }
+
     /// What becomes of the near crossings of a point that has all fourteen lattice edges: two loads.
     #[inline]
     pub(crate) fn class(&self, crossing: DirectionSet, near: DirectionSet) -> Class {

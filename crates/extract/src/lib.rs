@@ -239,6 +239,8 @@ pub use chunks::{
     Chunk, ChunkError, ChunkExtractor, ChunkSettings, Mismatch, Normals, SampleLayout, TooManyVertices,
     WeldError, World, weld_chunks,
 };
+#[cfg(feature = "stage-clock")]
+pub use clock::set_stage_clock;
 pub use control::{Control, Jobs, Threads};
 pub use cubes::{
     ContinuedCells, Diagonals, Faces, Flat, LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume,

@@ -47,6 +47,14 @@ pub(crate) fn refilled<T>(
     Ok(())
 }
 
+/// Makes a vector hold as many of `value` as `len` says and nothing else, in the room that it has if that is enough.
+pub(crate) fn reset<T: Clone>(vector: &mut Vec<T>, len: usize, value: T) -> Result<(), TryReserveError> {
+    vector.clear();
+    vector.try_reserve_exact(len)?;
+    vector.resize(len, value);
+    Ok(())
+}
+
 /// Makes a vector `len` long. What it held stays if it is long enough; new room is asked for, not taken.
 pub(crate) fn refill<T: Copy>(vector: &mut Vec<T>, len: usize, value: T) -> Result<(), TryReserveError> {
     vector.try_reserve_exact(len.saturating_sub(vector.len()))?;

@@ -11,7 +11,7 @@ mod surroundings;
 
 pub(crate) use self::crossings::{CrossingPlacer, clamped, crossing_ratio};
 pub(crate) use self::moves::{MOST_PASSES, Moves, on_box};
-pub(crate) use self::relaxation::relaxed;
+pub(crate) use self::relaxation::{Around, relax};
 pub(crate) use self::surroundings::Surroundings;
 use crate::ExtractError;
 use crate::settings::ExtractSettings;

@@ -3,7 +3,7 @@
 use extract::{
     Aabb, Arrangement, Bound, Chunk, ChunkExtractor, ChunkSettings, Clustering, Control, Execution,
     ExtractSettings, Extraction, Extractor, Grid, Lattice, Method, Normals, ScalarField, Source, Tetrahedra,
-    Topology,
+    Topology, presets,
 };
 use field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 use glam::Vec3;
@@ -25,6 +25,7 @@ fn allocations() {
     an_extractor_holds_what_the_lattice_says();
     a_lattice_cut_by_cubes_takes_what_it_says();
     a_moving_window_allocates_nothing_from_the_second_chunk_on();
+    so_does_that_of_every_preset();
 }
 
 fn cube() -> Bounds {
@@ -148,6 +149,32 @@ impl ScalarField for Hills {
     fn bound(&self, _: Aabb) -> Bound {
         self.slope.map_or(Bound::UNKNOWN, Bound::slope)
     }
+}
+
+/// Of every preset that has chunks.
+fn so_does_that_of_every_preset() {
+    let grid = Grid::try_new([0.0; 3], 1.0).unwrap();
+    let mut tried = 0;
+    for preset in presets() {
+        let settings = ChunkSettings::default();
+        let Ok(mut extractor) = ChunkExtractor::try_new(&grid, &preset.method, &settings) else { continue };
+        let mut chunk = Chunk::default();
+        let mut seen = |id: [i32; 3]| {
+            let cells = grid.chunk(id, 16);
+            let region = Region::new(ALLOCATOR);
+            let hills = Hills { slope: Some(3.0) };
+            extractor.extract_into(&hills, cells, Control::default(), &mut chunk).unwrap();
+            let change = region.change();
+            assert!(chunk.triangles.len() > 300, "{}", preset.id);
+            (change.allocations, change.reallocations, change.deallocations)
+        };
+        seen([0; 3]);
+        for id in [[1, 0, 0], [0, 1, 0], [-1, -7, 0], [1000, 20, 0], [0; 3]] {
+            assert_eq!(seen(id), (0, 0, 0), "{} {id:?}", preset.id);
+        }
+        tried += 1;
+    }
+    assert_eq!(tried, 19, "all that collapse no edge, do not turn edges and have one resolution");
 }
 
 fn a_moving_window_allocates_nothing_from_the_second_chunk_on() {

@@ -7,7 +7,7 @@
 
 use super::series::{Verdict, middle};
 use design::ConfigurationId;
-use design::record::{AbPair, AbRun, BenchSample};
+use design::record::{AbPair, AbRun, BenchSample, Failure};
 use serde::Serialize;
 use statistics::interval::Interval;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -64,6 +64,8 @@ pub struct AbComparison {
     pub same_program: bool,
     /// Time first, and first of each quantity that of all configurations together.
     pub rows: Vec<AbRow>,
+    /// Configurations that were left out, and what was said of each.
+    pub failed: Vec<Failure>,
 }
 
 /// One quantity of one configuration, or of all together.
@@ -91,6 +93,7 @@ pub fn ab(run: &AbRun) -> AbComparison {
         schema: AB_SCHEMA,
         same_program: run.old.sha256 == run.new.sha256,
         rows: Quantity::ALL.into_iter().flat_map(|quantity| rows(run, quantity)).collect(),
+        failed: run.failed.clone(),
     }
 }
 
@@ -213,6 +216,12 @@ impl AbComparison {
                 "Of one configuration, from {least:.1} to {most:.1} % on would have been told."
             ));
         }
+        if !self.failed.is_empty() {
+            let ids: Vec<String> = self.failed.iter().map(|failure| failure.id.to_string()).collect();
+            let more = ids.len().saturating_sub(LISTED);
+            let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
+            lines.push(format!("Failed and left out: {}{rest}.", ids[..ids.len() - more].join(", ")));
+        }
         lines
     }
 
@@ -242,6 +251,8 @@ impl AbComparison {
                 Cell::text(row.verdict.label()),
             ]);
         }
+        let said = |failure: &Failure| format!("{} failed and is left out: {}", failure.id, failure.reason);
+        table.notes.extend(self.failed.iter().map(said));
         table
     }
 }
@@ -300,7 +311,30 @@ mod tests {
             machine: template.machine,
             pairs,
             load: Vec::new(),
+            failed: Vec::new(),
         }
+    }
+
+    #[test]
+    fn what_was_left_out_is_named_within_ten_lines() {
+        let ids = ["ss_bi", "ss_su"];
+        let mut made = run(&ids, 4, 3, |place, _, _| if place == 0 { 0.1 } else { -0.1 });
+        for (id, why) in
+            [("as_bi", "asked by OLD: no"), ("as_su", "x"), ("bs_bi", "x"), ("bs_su", "x"), ("bs_bu", "x")]
+        {
+            made.failed.push(Failure { id: id.parse().unwrap(), reason: why.into() });
+        }
+        for pair in &mut made.pairs {
+            for sample in [&mut pair.old, &mut pair.new] {
+                (sample.counters.cpu_s, sample.counters.instructions) = (Some(0.01), Some(1_000_000));
+            }
+        }
+        made.new.sha256 = made.old.sha256.clone();
+        let found = ab(&made);
+        let lines = found.brief(&made);
+        assert!(lines.len() <= 10, "{lines:?}");
+        assert_eq!(lines.last().unwrap(), "Failed and left out: as_bi, as_su, bs_bi, bs_su and 1 more.");
+        assert_eq!(found.table().notes[0], "as_bi failed and is left out: asked by OLD: no");
     }
 
     /// By hand: medians of three processes are .01, .02 and .06, their mean .03, their standard deviation sqrt(.0007), and R's

@@ -1,5 +1,6 @@
 //! What was counted beside time: medians within a run, and instructions as a verdict of their own between two.
 
+use super::allocated::{self, allocations_of};
 use super::series::{Verdict, by_configuration, middle, of};
 use design::ConfigurationId;
 use design::record::{BenchRun, BenchSample, Counters};
@@ -36,25 +37,53 @@ pub(super) fn counted_table(run: &BenchRun) -> Table {
     let (there, missing): (Vec<&Column>, Vec<&Column>) = COLUMNS.iter().partition(told);
     let mut columns = vec![("id", "Id")];
     columns.extend(there.iter().map(|column| (column.0, column.1)));
+    let has_allocations = !run.allocations.is_empty();
+    if has_allocations {
+        columns.extend([
+            ("allocations", "Allocations"),
+            ("allocated_mib", "Allocated, MiB"),
+            ("peak_mib", "Peak of extraction, MiB"),
+        ]);
+    }
     let mut table = Table::new("bench_counters", "What was counted beside time", &columns);
-    if there.is_empty() {
+    if there.is_empty() && !has_allocations {
         return table;
     }
     for (id, samples) in &series {
         let cell = |column: &&Column| Cell::number(median(samples, column.4).map(|m| column.2 * m), column.3);
-        table.push([Cell::text(id)].into_iter().chain(there.iter().map(cell)).collect());
+        let mut row: Vec<Cell> = [Cell::text(id)].into_iter().chain(there.iter().map(cell)).collect();
+        if has_allocations {
+            let of = allocations_of(run, id);
+            let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+            row.push(Cell::number(of.map(|of| of.calls.total as f64), 0));
+            row.push(Cell::number(of.map(|of| mib(of.bytes.total)), 3));
+            row.push(Cell::number(peak_of_extraction(run, id).map(mib), 1));
+        }
+        table.push(row);
     }
-    table.notes.push(
-        "Medians over the samples. CPU time, page faults and the CPU's counters are of all threads of the measuring process; context \
-         switches of the one that extracts; energy of the whole package."
-            .into(),
-    );
+    if !there.is_empty() {
+        table.notes.push(
+            "Medians over the samples. CPU time, page faults and the CPU's counters are of all threads of the measuring process; context \
+             switches of the one that extracts; energy of the whole package."
+                .into(),
+        );
+    }
+    if has_allocations {
+        table.notes.push(allocated::NOTE.into());
+    }
     if !missing.is_empty() {
         let names: Vec<&str> =
             missing.iter().map(|column| column.1.split(',').next().unwrap_or_default()).collect();
         table.notes.push(format!("Not told by this system: {}.", names.join(", ").to_lowercase()));
     }
     table
+}
+
+/// The most that was resident in a process that extracts a configuration once, without what was resident before; `None` where making
+/// the field had taken more than that.
+fn peak_of_extraction(run: &BenchRun, id: &ConfigurationId) -> Option<u64> {
+    let memory = run.memory.iter().find(|memory| memory.id == *id)?;
+    (memory.peak_bytes > memory.peak_before_bytes).then(|| memory.peak_bytes - memory.before_bytes)
 }
 
 /// Instructions of one configuration in both runs.

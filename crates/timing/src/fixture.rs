@@ -95,6 +95,7 @@ pub(crate) fn bench_of(study: &Study, rounds: u32) -> BenchRun {
         memory: Vec::new(),
         resumed: Vec::new(),
         failed: Vec::new(),
+        allocations: Vec::new(),
     }
 }
 

@@ -24,6 +24,7 @@
 //! - What changes only from one hour to the next, and spares the reference work, is seen by no run.
 
 mod ab;
+mod allocated;
 mod brief;
 mod compare;
 mod counted;

@@ -1,5 +1,6 @@
 //! Statements and comparisons as tables.
 
+use super::allocated::allocations_table;
 use super::compare::{Comparison, Row};
 use super::counted::counted_table;
 use super::differences::{commit, sources};
@@ -17,10 +18,13 @@ const MS: f64 = 1e3;
 
 /// A run's statements: medians, ratios within the run, outliers, and what to know of machine and noise.
 pub fn statement_tables(run: &BenchRun, statements: &Statements) -> Vec<Table> {
-    tables(run, statements, |_| true)
+    let mut tables = tables(run, statements, |_| true);
+    tables.push(allocations_table(run));
+    tables.retain(|table| !table.rows.is_empty());
+    tables
 }
 
-/// Those of them that a terminal has room for: ratios of totals alone.
+/// Those of them that a terminal has room for: ratios of totals alone, and allocations without their stages.
 pub fn statement_tables_in_short(run: &BenchRun, statements: &Statements) -> Vec<Table> {
     tables(run, statements, |stage| stage == Stage::Total)
 }

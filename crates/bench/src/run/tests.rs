@@ -1,6 +1,7 @@
 use super::*;
 use design::Stage;
 use design::machine::{Build, IsaLevel};
+use design::record::StageCounts;
 use std::collections::HashMap;
 use std::error::Error;
 
@@ -18,6 +19,13 @@ pub(crate) struct Mock {
     waited: u64,
     memory_asked: Vec<usize>,
     without_memory: bool,
+}
+
+impl Mock {
+    /// One that fails at this call, counted from 0; the run then goes on without what failed, or ends.
+    pub(crate) fn failing_at(call: usize, leaves_out: bool) -> Self {
+        Self { fail_at_call: Some(call), leaves_out, ..Self::default() }
+    }
 }
 
 impl Executor for Mock {
@@ -54,6 +62,12 @@ impl Executor for Mock {
         self.memory_asked.push(subject);
         let bytes = PeakBytes { before_bytes: 1, peak_before_bytes: 2, peak_bytes: 3 + subject as u64 };
         Ok((!self.without_memory).then_some(bytes))
+    }
+
+    fn allocations(&mut self, subject: usize) -> Result<Option<AllocationCounts>, BenchError> {
+        assert_eq!(self.memory_asked.last(), Some(&subject), "in the process that measured its memory");
+        let of = |count| StageCounts { total: count, ..StageCounts::default() };
+        Ok((!self.without_memory).then(|| AllocationCounts { calls: of(7), bytes: of(subject as u64) }))
     }
 
     fn cpu_times(&mut self) -> Option<CpuTimes> {
@@ -100,6 +114,7 @@ pub(crate) fn plan() -> Plan {
         until: None,
         aa_iterations: 2,
         memory: true,
+        allocations: true,
         seed: 2026,
         threads: 0,
         pin: true,
@@ -280,6 +295,11 @@ fn memory_is_asked_once_for_each_configuration_if_at_all() {
     assert_eq!(mock.memory_asked, [0, 1, 2, 3]);
     assert_eq!(memory.iter().map(|m| m.id.clone()).collect::<Vec<_>>(), ids());
     assert_eq!(memory[2].peak_bytes, 5);
+    let allocations = run_with(&plan(), &mut Mock::default()).unwrap().allocations;
+    let counts: Vec<_> = allocations.iter().map(|of| (of.id.clone(), of.bytes.total)).collect();
+    assert_eq!(counts, ids().into_iter().zip(0..).collect::<Vec<_>>());
+    let without = Plan { allocations: false, ..plan() };
+    assert!(run_with(&without, &mut Mock::default()).unwrap().allocations.is_empty());
     let mut silent = Mock { without_memory: true, ..Default::default() };
     assert!(run_with(&plan(), &mut silent).unwrap().memory.is_empty());
     assert_eq!(silent.memory_asked, [0]);
@@ -303,7 +323,7 @@ fn a_run_broken_off_anywhere_is_completed() {
         let mut mock = Mock::default();
         let run = resumed(done.clone(), &mut mock).unwrap();
         assert_eq!(keys(&run), keys(&whole), "broken off at call {calls}");
-        assert_eq!(run.memory, whole.memory);
+        assert_eq!((&run.memory, &run.allocations), (&whole.memory, &whole.allocations));
         // What had been measured stays as it was, and is not measured again.
         for entry in &done {
             match entry {

@@ -2,9 +2,11 @@
 
 use super::Pipeline;
 use super::formats::write_table;
+use super::worker::is_program;
 use crate::machine;
 use crate::store::{Inputs, remove_if_there, sha256, write_whole};
 use crate::terminal::progress::Step;
+use crate::terminal::tell_once;
 use anyhow::{Context, Result};
 use bench::{AbEntry, AbPlan, BenchError, ProcessExecutor, run_ab};
 use design::ConfigurationId;
@@ -71,13 +73,17 @@ impl Pipeline<'_> {
             let told = self.invocation([section.threads, u32::from(section.pin)], &ids, spacings.path())?;
             let command = |program: &Path| -> Command { told.command(program) };
             let (of_old, of_new) = (|| command(&choice.old), || command(&choice.new));
-            let (mut of_old, mut of_new) = (ProcessExecutor::new(&of_old), ProcessExecutor::new(&of_new));
+            let may_fail = |number: usize| is_program(self.study, configurations[number]);
+            let [mut of_old, mut of_new] = [&of_old as &dyn Fn() -> Command, &of_new]
+                .map(|command| ProcessExecutor::new(command).leaving_out(&may_fail).telling(tell_once));
             let on_pair = &mut |done, all| step.set(done, all);
             let measured = run_ab(&plan, &ids, [&mut of_old, &mut of_new], done, &mut record, on_pair)?;
+            let mut workloads = workloads.clone();
+            workloads.retain(|workload| measured.failed.iter().all(|failure| failure.id != workload.id));
             let run = AbRun {
                 schema: AbRun::SCHEMA,
                 study: self.study.file.study.id.clone(),
-                workloads: workloads.clone(),
+                workloads,
                 old: old.clone(),
                 new: new.clone(),
                 warmup: plan.warmup,
@@ -88,6 +94,7 @@ impl Pipeline<'_> {
                 machine: machine.clone(),
                 pairs: measured.pairs,
                 load: measured.load,
+                failed: measured.failed,
             };
             writer.write_json(&format!("{STAGE}/ab.json"), &run)?;
             write_table(writer, STAGE, &timing::ab(&run).table())
@@ -103,6 +110,8 @@ impl Pipeline<'_> {
         for (pair, place) in run.pairs.iter().zip(0..) {
             pair.check().with_context(|| format!("{}: pairs[{place}]", path.display()))?;
         }
+        // Said again by every run that goes on from these times.
+        self.leave_out_failed(&run.failed);
         Ok(run)
     }
 

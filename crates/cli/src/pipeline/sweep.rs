@@ -42,7 +42,7 @@ impl Pipeline<'_> {
             for &threads in &section.threads {
                 let stamp = self.sweep_level(section, cells, threads, &machine)?;
                 let run = self.bench_run(&stamp)?;
-                self.leave_out_failed(&run);
+                self.leave_out_failed(&run.failed);
                 levels.push(SweepLevel { cells, threads, run });
                 stamps.push(stamp);
             }
@@ -109,6 +109,7 @@ impl Pipeline<'_> {
             until: None,
             aa_iterations: 0,
             memory: true,
+            allocations: false,
             seed: self.study.file.study.seed,
             threads,
             pin: benchmark.pin,

@@ -77,7 +77,7 @@ impl Pipeline<'_> {
         })?;
         remove_if_there(&journal)?;
         // Said again by every run that goes on from these times.
-        self.leave_out_failed(&self.bench_run(&stamp)?);
+        self.leave_out_failed(&self.bench_run(&stamp)?.failed);
         step.count_all(stamp.redone);
         step.end();
         Ok(stamp)
@@ -129,6 +129,7 @@ impl Pipeline<'_> {
             until,
             aa_iterations: if full { section.aa_iterations } else { 0 },
             memory: full || section.memory,
+            allocations: full,
             seed: self.study.file.study.seed,
             threads: section.threads,
             pin: section.pin,

@@ -3,17 +3,18 @@
 use super::Pipeline;
 use crate::fields::Fields;
 use crate::input;
-use crate::measured::Clock;
+use crate::measured::{Clock, asked};
 use crate::prepare::{Prepared, Spacings, Wanted, prepare};
 use crate::recipe::{Recipe, recipe};
 use crate::store::{sha256, write_whole};
 use crate::terminal::progress::Step;
+use crate::terminal::tell_once;
 use anyhow::{Context, Result, bail};
 use bench::{BenchError, Entry, PLANTED, Plan, Planted, ProcessExecutor};
 use clap::Args;
 use design::config::SweepSection;
 use design::machine::Machine;
-use design::record::{BenchRun, Purpose};
+use design::record::{BenchRun, Failure, Purpose};
 use design::{Configuration, ConfigurationId, Study};
 use std::fs::File;
 use std::io::Write;
@@ -105,7 +106,7 @@ impl Pipeline<'_> {
         let worker = || invocation.command(&program);
         let mut record = |entry: &Entry| file.write_all(entry.line().as_bytes());
         let may_fail = |number: usize| is_program(self.study, job.configurations[number]);
-        let mut executor = ProcessExecutor::new(&worker).leaving_out(&may_fail);
+        let mut executor = ProcessExecutor::new(&worker).leaving_out(&may_fail).telling(tell_once);
         let on_turn = &mut |done, all| step.set(done, all);
         let ids = job.ids();
         Ok(bench::run_until(plan, &ids, &mut executor, machine, done, &mut record, on_turn, enough)?)
@@ -138,8 +139,8 @@ impl Pipeline<'_> {
     }
 
     /// Goes on without what a run left out.
-    pub(super) fn leave_out_failed(&self, run: &BenchRun) {
-        for failure in run.failed.iter().filter(|failure| !self.has_failed(&failure.id)) {
+    pub(super) fn leave_out_failed(&self, failed: &[Failure]) {
+        for failure in failed.iter().filter(|failure| !self.has_failed(&failure.id)) {
             self.leave_out(&failure.id, format!("timings: {}", failure.reason));
         }
     }
@@ -181,7 +182,7 @@ pub(super) fn timed(study: &Study) -> Result<Vec<&Configuration>> {
 }
 
 /// Whether somebody else's program makes it. That may crash at any time, and is no reason to lose what the others did.
-fn is_program(study: &Study, configuration: &Configuration) -> bool {
+pub(super) fn is_program(study: &Study, configuration: &Configuration) -> bool {
     let recipe = recipe(study, configuration.id.method, Purpose::Benchmark);
     matches!(recipe, Ok(Recipe::Program(_)))
 }
@@ -198,6 +199,7 @@ pub(super) fn swept<'s>(study: &'s Study, section: &SweepSection) -> Result<Vec<
 /// # Errors
 /// If the study was changed meanwhile, or a request cannot be read or answered.
 pub(crate) fn measure(invocation: &Invocation) -> Result<()> {
+    bench::count_allocations(asked);
     let pinned = if invocation.pin { bench::pin(invocation.threads) } else { None };
     let study = input::study(&invocation.study)?;
     if sha256(&std::fs::read(&study.path)?) != invocation.sha256 {

@@ -1,6 +1,6 @@
 //! Two programs timed in turn.
 
-use super::{BenchSample, InvalidSample, LoadWindow, Workload};
+use super::{BenchSample, Failure, InvalidSample, LoadWindow, Workload};
 use crate::machine::Machine;
 use crate::method::ConfigurationId;
 use serde::{Deserialize, Serialize};
@@ -35,6 +35,9 @@ pub struct AbRun {
     pub pairs: Vec<AbPair>,
     /// What else the machine did meanwhile, a window for each pair of processes.
     pub load: Vec<LoadWindow>,
+    /// Configurations that were left out because one of both could not make them every time; the lists above have nothing of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub failed: Vec<Failure>,
 }
 
 /// A program that was timed.

@@ -275,6 +275,7 @@ mod tests {
             memory: vec![memory],
             resumed: Vec::new(),
             failed: Vec::new(),
+            allocations: Vec::new(),
         }
     }
 

@@ -17,14 +17,15 @@ use crate::box_grid::BoxGrid;
 use crate::control::Control;
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::extractor::Extractor;
-use crate::finish::field_targets;
+use crate::finish::FieldTargets;
 use crate::grid::Grid;
+use crate::guard::Guard;
 use crate::lattice::{Border, CellBox, Lattice, LatticeError};
 use crate::level::Level;
 use crate::memory::refill;
 use crate::method::{ByWindow, Method, MethodError};
 use crate::normals::accumulate;
-use crate::settings::{ExtractSettings, Placement, Positions};
+use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topology};
 use crate::source::Source;
 
 /// Of what decides about a surface component, this much is tried at first beyond the chunk.
@@ -48,8 +49,10 @@ const MOST_EXTRA: u32 = 64;
 ///
 /// Its buffers are used again, wherever the next chunk is: from the second one of a size on,
 /// [`extract_into`](Self::extract_into) allocates nothing on the calling thread alone, as long as the surface does not outgrow
-/// those before it, vertices stay at the mean of their crossings and no edge is collapsed. Marching cubes take new buffers for
-/// each chunk.
+/// those before it and no edge is collapsed. The exceptions are small: tables of integrated clustering that a point is the first to
+/// need, but after [`reserve`](Self::reserve); steps of
+/// [`SurfaceNets::smoothing`](crate::SurfaceNets::smoothing); nets in a cell at the window's side whose signs no chunk before had; and
+/// faces and cells that [`Faces::Decider`](crate::Faces) or [`Faces::Trilinear`](crate::Faces) can only decide without rounding.
 ///
 /// ```
 /// use extract::{Arrangement, Chunk, ChunkExtractor, ChunkSettings, Control, Grid, Method, Tetrahedra, from_fn};
@@ -97,6 +100,7 @@ pub struct ChunkExtractor {
     extraction: Extraction,
     samples: Vec<f32>,
     numbers: Vec<u32>,
+    targets: FieldTargets,
     settled: Settled,
 }
 
@@ -231,12 +235,13 @@ impl ChunkExtractor {
             extraction: Extraction::default(),
             samples: Vec::new(),
             numbers: Vec::new(),
+            targets: FieldTargets::default(),
             settled: Settled::default(),
         })
     }
 
     /// Makes room for windows with so many vertices and twice as many triangles, so that not even a surface larger than all
-    /// before allocates. A window is larger than its chunk: 36³ cells for 32³, body-centred.
+    /// before allocates; and makes the tables that are made otherwise when a point first needs them. A window is larger than its chunk: 36³ cells for 32³, body-centred.
     ///
     /// # Errors
     /// [`ChunkError::Extract`] if there is no memory.
@@ -248,6 +253,11 @@ impl ChunkExtractor {
         trace.keys.try_reserve(vertices)?;
         trace.cells.try_reserve(2 * vertices)?;
         self.numbers.try_reserve(vertices)?;
+        let ByWindow { arrangement, settings, cubes, .. } = &self.how;
+        let merges = settings.clustering == Clustering::Integrated && settings.topology == Topology::Guarded;
+        if cubes.is_none() && merges {
+            Guard::get(*arrangement).complete();
+        }
         Ok(())
     }
 
@@ -563,8 +573,8 @@ impl ChunkExtractor {
         let (placement, isovalue) = (self.how.settings.placement, self.how.settings.isovalue);
         let level = Level { field, isovalue, spacing: window.spacing() };
         let (positions, triangles) = (&mut mesh.positions, &mesh.triangles);
-        let targets =
-            field_targets(&level, &window.bounds(), placement, control.threads, positions, triangles)?;
+        let (bounds, threads) = (window.bounds(), control.threads);
+        let targets = self.targets.find(&level, &bounds, placement, threads, positions, triangles)?;
         // A target among its neighbours needs them all.
         let ring = self.halo.map_or(0, |halo| halo - 1);
         let known = window.cell_box().shrunk(ring, whole);
@@ -572,7 +582,7 @@ impl ChunkExtractor {
         let wanted = cells.grown(1, whole);
         let is_settled = self.settled.advance(
             (positions, triangles, &self.extractor.trace),
-            &targets,
+            targets,
             window,
             [known, wanted],
         )?;

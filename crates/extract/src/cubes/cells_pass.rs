@@ -2,7 +2,7 @@
 
 use std::collections::TryReserveError;
 
-use cells::radius_ratio;
+use cells::{PolygonTriangles, radius_ratio};
 
 use super::patches::{MOST_TRIANGLES, Patch, Patches};
 use super::records::Records;
@@ -13,6 +13,13 @@ use super::vertices::{Record, corner_of};
 use crate::in_sight::Values;
 use crate::triangles::Triangulation;
 
+/// The triangulation of a cell's polygons that was chosen last.
+#[derive(Default)]
+pub(super) struct BestTriangles {
+    of_polygon: PolygonTriangles,
+    triangles: Vec<[u8; 3]>,
+}
+
 /// Adds the triangles of layer `z` of the cells. Of the layers of points below and above it, sides and records are known.
 pub(super) fn triangulate_layer(
     job: &Job,
@@ -20,6 +27,7 @@ pub(super) fn triangulate_layer(
     values: Values,
     records: &Records<Record>,
     z: usize,
+    best: &mut BestTriangles,
     result: &mut Triangulation,
 ) -> Result<(), TryReserveError> {
     let grid = job.grid;
@@ -58,8 +66,8 @@ pub(super) fn triangulate_layer(
                 let numbered = |triangle: &[u8; 3]| triangle.map(|corner| vertices[usize::from(corner)]);
                 result.triangles.extend(patch.triangles.iter().map(numbered));
                 if !patch.polygons.is_empty() {
-                    let best = best_triangles(job, values, patch, [x, y, z]);
-                    result.triangles.extend(best.iter().map(numbered));
+                    best.find(job, values, patch, [x, y, z]);
+                    result.triangles.extend(best.triangles.iter().map(numbered));
                 }
                 if let Some(trace) = &mut result.trace {
                     trace.close_cell(grid.lattice, [x, y, z], result.triangles.len())?;
@@ -70,21 +78,27 @@ pub(super) fn triangulate_layer(
     Ok(())
 }
 
-/// The triangulations of a patch's polygons with the largest sum of radius ratios.
-#[inline(never)]
-fn best_triangles(job: &Job, values: Values, patch: &Patch, cell: [usize; 3]) -> Vec<[u8; 3]> {
-    let patches: &Patches = job.patches;
-    let mut places = [[0.0; 3]; INNER as usize];
-    for &edge in &patch.crossed {
-        let (corner, axis) = patches.edge(edge);
-        let (from, axis) = (corner_of(cell, corner), usize::from(axis));
-        let mut to = from;
-        to[axis] += 1;
-        let ends = [values.at(from), values.at(to)];
-        let position = job.placer.position(job.grid, from, axis, ends);
-        places[usize::from(edge)] = position.to_array().map(f64::from);
+impl BestTriangles {
+    /// Finds the triangulations of a patch's polygons with the largest sum of radius ratios.
+    #[inline(never)]
+    fn find(&mut self, job: &Job, values: Values, patch: &Patch, cell: [usize; 3]) {
+        let patches: &Patches = job.patches;
+        let mut places = [[0.0; 3]; INNER as usize];
+        for &edge in &patch.crossed {
+            let (corner, axis) = patches.edge(edge);
+            let (from, axis) = (corner_of(cell, corner), usize::from(axis));
+            let mut to = from;
+            to[axis] += 1;
+            let ends = [values.at(from), values.at(to)];
+            let position = job.placer.position(job.grid, from, axis, ends);
+            places[usize::from(edge)] = position.to_array().map(f64::from);
+        }
+        let cost = |triangle: [u8; 3]| 1.0 - radius_ratio(triangle.map(|edge| places[usize::from(edge)]));
+        self.triangles.clear();
+        for polygon in &patch.polygons {
+            let is_found = patches.triangulator().find_cheapest(polygon, cost, &mut self.of_polygon);
+            assert!(is_found, "there is a triangulation");
+            self.triangles.extend_from_slice(self.of_polygon.triangles());
+        }
     }
-    let cost = |triangle: [u8; 3]| 1.0 - radius_ratio(triangle.map(|edge| places[usize::from(edge)]));
-    let best = |polygon: &Vec<u8>| patches.triangulator().cheapest(polygon, cost);
-    patch.polygons.iter().flat_map(|polygon| best(polygon).expect("there is a triangulation")).collect()
 }

@@ -7,7 +7,7 @@ use mesh::Bounds;
 
 use crate::bits::between;
 use crate::lattice::{Border, Lattice};
-use crate::memory::collected;
+use crate::memory::refilled;
 use crate::tiles::Points;
 
 /// Columns, rows and layers of a tile.
@@ -28,14 +28,19 @@ pub(super) struct Grid<'a> {
 
 impl<'a> Grid<'a> {
     pub(super) fn new(lattice: &'a Lattice) -> Result<Self, TryReserveError> {
+        Self::within(lattice, Default::default())
+    }
+
+    /// The same, with coordinates in vectors that are there.
+    pub(super) fn within(lattice: &'a Lattice, mut at: [Vec<f32>; 3]) -> Result<Self, TryReserveError> {
         let size = lattice.stored_grid().map(|n| n as usize);
         let first = lattice.origin();
-        let axis = |axis: usize| {
-            let at =
+        for (axis, at) in at.iter_mut().enumerate() {
+            let coordinate =
                 |i: usize| lattice.coordinate(axis, 2 * (i64::from(first[axis]) + i as i64), Border::OnBox);
-            collected((0..size[axis]).map(at))
-        };
-        Ok(Self { lattice, size, words: size[0].div_ceil(64), at: [axis(0)?, axis(1)?, axis(2)?] })
+            refilled(at, (0..size[axis]).map(coordinate))?;
+        }
+        Ok(Self { lattice, size, words: size[0].div_ceil(64), at })
     }
 
     pub(super) fn position(&self, place: [usize; 3]) -> Vec3 {

@@ -5,7 +5,7 @@ use mesh::TriangleMesh;
 
 use crate::clock::Moment;
 use crate::extraction::{ExtractError, Extraction};
-use crate::finish::field_targets;
+use crate::finish::FieldTargets;
 use crate::memory::copied;
 use crate::normals::vertex_normals;
 use crate::placement::Moves;
@@ -37,10 +37,10 @@ impl EdgeMoves {
         let TriangleMesh { positions, normals, triangles } = &mut extraction.mesh;
         let origins = copied(positions)?;
         let mut moves = Moves::start(positions)?;
-        let project = |moves: &mut Moves, positions: &mut Vec<Vec3>| -> Result<(), ExtractError> {
-            let targets =
-                field_targets(&level, &bounds, Placement::Projected, threads, positions, triangles)?;
-            Ok(moves.advance(positions, &targets, triangles, &bounds)?)
+        let mut found = FieldTargets::default();
+        let mut project = |moves: &mut Moves, positions: &mut Vec<Vec3>| -> Result<(), ExtractError> {
+            let targets = found.find(&level, &bounds, Placement::Projected, threads, positions, triangles)?;
+            Ok(moves.advance(positions, targets, triangles, &bounds)?)
         };
         for _ in 0..self.steps {
             project(&mut moves, positions)?;

@@ -28,13 +28,13 @@ use std::ops::Range;
 
 use self::plan::{Plans, Table};
 use self::quads::QuadPass;
-use self::tangents::Tangents;
+use self::tangents::{Known, Tangents};
 use self::vertices::{Record, VertexPass, Vertices};
 use super::grid::{Grid, SLOTS};
-use super::in_slabs;
 use super::records::Records;
 use super::sampling::{Samples, Sampling};
 use super::vertices::Placer;
+use super::{Kept, LayerDone, in_slabs};
 use crate::clock::Laps;
 use crate::extraction::{ExtractError, Extraction};
 use crate::slabs::Piece;
@@ -57,6 +57,7 @@ pub(crate) struct Nets {
 
 /// The stages in order, timed and counted. The lattice is simple cubic.
 pub(super) fn extract(
+    buffers: (&mut Kept, &mut Vec<Workspace>),
     request: &Request,
     Nets { patches, sharp, smoothing, tolerance }: Nets,
     progress: Option<&Progress>,
@@ -65,12 +66,12 @@ pub(super) fn extract(
 ) -> Result<(), ExtractError> {
     let sharp_and_merged = sharp.filter(|_| tolerance > 0.0);
     if smoothing == 0 && sharp_and_merged.is_none() {
-        return extract_unmoved(request, patches, sharp, progress, trace, extraction);
+        return extract_unmoved(buffers, request, patches, sharp, progress, trace, extraction);
     }
     // The trace says which cell a vertex is of.
     let mut own = Trace::default();
     let trace = trace.unwrap_or(&mut own);
-    extract_unmoved(request, patches, sharp, progress, Some(trace), extraction)?;
+    extract_unmoved(buffers, request, patches, sharp, progress, Some(trace), extraction)?;
     match sharp_and_merged {
         Some(sharp) => octree::simplify(request, sharp, tolerance, trace, extraction),
         None => relaxed::relax(request, smoothing, trace, extraction),
@@ -78,6 +79,7 @@ pub(super) fn extract(
 }
 
 fn extract_unmoved(
+    (kept, workspaces): (&mut Kept, &mut Vec<Workspace>),
     request: &Request,
     patches: bool,
     sharp: Option<Sharp>,
@@ -88,11 +90,13 @@ fn extract_unmoved(
     let table = Table::get(patches);
     let placer = &Placer::new(request.lattice, request.settings, None);
     let traced = trace.is_some();
-    let new = |grid: &Grid| Workspace::new(grid, request.source, table);
-    in_slabs(request, progress, trace, extraction, 1, new, |grid, layer_done, own, workspace, piece| {
+    let fit = |workspace: &mut Workspace, grid: &Grid| workspace.fit(grid, request.source, table);
+    let work = |grid: &Grid, layer_done: &LayerDone, own, workspace: &mut Workspace, piece: &mut Piece| {
         let job = Job { grid, request, sharp, placer, traced, layer_done };
         stream_slab(&job, own, workspace, piece)
-    })
+    };
+    let buffers = (kept, workspaces, || Workspace::new(table));
+    in_slabs(buffers, request, progress, trace, extraction, 1, fit, work)
 }
 
 /// What all slabs of an extraction share.
@@ -108,20 +112,27 @@ struct Job<'a> {
     layer_done: &'a (dyn Fn() + Sync),
 }
 
-/// Buffers of one thread, a few layers each.
-struct Workspace {
+/// Buffers of one thread, a few layers each, kept between slabs and between extractions.
+pub(super) struct Workspace {
     samples: Samples,
     records: Records<Record>,
     plans: Plans,
+    tangents: Known,
 }
 
 impl Workspace {
-    fn new(grid: &Grid, source: Sampler, table: &'static Table) -> Result<Self, TryReserveError> {
-        Ok(Self {
-            samples: Samples::new(grid, source, SLOTS)?,
-            records: Records::new(grid)?,
-            plans: Plans::new(table),
-        })
+    /// Without room yet.
+    fn new(table: &'static Table) -> Self {
+        let (samples, records, tangents) = Default::default();
+        Self { samples, records, plans: Plans::new(table), tangents }
+    }
+
+    fn fit(&mut self, grid: &Grid, source: Sampler, table: &'static Table) -> Result<(), TryReserveError> {
+        if !std::ptr::eq(self.plans.table, table) {
+            self.plans = Plans::new(table);
+        }
+        self.samples.fit(grid, source, SLOTS)?;
+        self.records.fit(grid)
     }
 }
 
@@ -130,7 +141,7 @@ impl Workspace {
 fn stream_slab(
     job: &Job,
     own: Range<usize>,
-    Workspace { samples, records, plans }: &mut Workspace,
+    Workspace { samples, records, plans, tangents }: &mut Workspace,
     piece: &mut Piece,
 ) -> Result<(), ExtractError> {
     let Job { grid, request, sharp, placer, .. } = *job;
@@ -140,10 +151,11 @@ fn stream_slab(
     let filled = numbered.start..own.end + 1;
     let sided = numbered.start.saturating_sub(1)..layers.min(own.end + 2);
     let sampling = Sampling { grid, source, isovalue: settings.isovalue, all_corners: false };
-    let mut vertices = Vertices { keys: job.traced.then(Vec::new), ..Vertices::default() };
     let level = sharp.and(request.level());
-    let mut tangents = level.map(Tangents::new);
+    let mut tangents = level.map(|level| Tangents::new(level, tangents));
     piece.clear(job.traced);
+    let keys = piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys));
+    let mut vertices = Vertices { positions: std::mem::take(&mut piece.positions), keys };
     let mut laps = Laps::new();
     for step in sided.start..own.end + 2 {
         if sided.contains(&step) {

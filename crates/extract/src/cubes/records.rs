@@ -3,18 +3,21 @@
 use std::collections::TryReserveError;
 
 use super::grid::Grid;
-use crate::memory::filled;
+use crate::memory::reset;
 
 /// The records of two layers, written and read only where there is something to know.
+#[derive(Default)]
 pub(super) struct Records<R> {
     records: Vec<R>,
     size: [usize; 2],
 }
 
 impl<R: Copy + Default> Records<R> {
-    pub(super) fn new(grid: &Grid) -> Result<Self, TryReserveError> {
+    /// Makes room, with nothing in it.
+    pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), TryReserveError> {
         let [nx, ny, _] = grid.size;
-        Ok(Self { records: filled(2 * nx * ny, R::default())?, size: [nx, ny] })
+        self.size = [nx, ny];
+        reset(&mut self.records, 2 * nx * ny, R::default())
     }
 
     /// Where the records of a row start.

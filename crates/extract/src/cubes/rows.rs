@@ -3,9 +3,10 @@
 use std::collections::TryReserveError;
 
 use super::grid::Grid;
-use crate::memory::filled;
+use crate::memory::reset;
 
 /// A ring of layers of rows. Each row has a word of zeros at its end, so that the bit after each can be asked for.
+#[derive(Default)]
 pub(super) struct Rows {
     words: Vec<u64>,
     stride: usize,
@@ -15,10 +16,11 @@ pub(super) struct Rows {
 }
 
 impl Rows {
-    /// For so many layers at a time.
-    pub(super) fn new(grid: &Grid, slots: usize) -> Result<Self, TryReserveError> {
-        let (stride, rows, slots) = (grid.words + 1, grid.size[1], slots.next_power_of_two());
-        Ok(Self { words: filled(stride * rows * slots, 0)?, stride, rows, ring: slots - 1 })
+    /// Makes room for so many layers at a time, all zeros.
+    pub(super) fn fit(&mut self, grid: &Grid, slots: usize) -> Result<(), TryReserveError> {
+        let slots = slots.next_power_of_two();
+        (self.stride, self.rows, self.ring) = (grid.words + 1, grid.size[1], slots - 1);
+        reset(&mut self.words, self.stride * self.rows * slots, 0)
     }
 
     fn start(&self, row: usize, layer: usize) -> usize {

@@ -7,7 +7,7 @@ use super::rows::{Rows, before, next};
 use crate::bits::{between, set_above, set_range};
 use crate::in_sight::{State, Values};
 use crate::line::{All, Gaps, Line};
-use crate::memory::filled;
+use crate::memory::reset;
 use crate::source::Sampler;
 use crate::tiles::{Span, Tile, Tiles};
 use field::StudyField;
@@ -23,9 +23,10 @@ pub(super) struct Sampling<'a> {
 }
 
 /// A few layers of samples and sides.
+#[derive(Default)]
 pub(super) struct Samples {
-    /// Of a field that is called.
-    called: Option<Called>,
+    /// Of a field that is called; without room where samples are given.
+    called: Called,
     /// 1 inside.
     pub(super) sides: Rows,
     states: Vec<State>,
@@ -34,6 +35,7 @@ pub(super) struct Samples {
 }
 
 /// A ring of layers of samples, and a bit for each that was taken.
+#[derive(Default)]
 struct Called {
     values: Vec<f32>,
     taken: Rows,
@@ -44,22 +46,21 @@ struct Called {
 }
 
 impl Samples {
-    /// For so many layers in sight.
-    pub(super) fn new(grid: &Grid, source: Sampler, slots: usize) -> Result<Self, TryReserveError> {
-        let called = match source {
-            Sampler::Field(_) => Some(Called::new(grid, slots)?),
-            Sampler::Given { .. } => None,
-        };
-        let states = filled(grid.size[1] * slots, State::Outside)?;
-        Ok(Self { called, sides: Rows::new(grid, slots)?, states, slots })
+    /// Makes room for so many layers in sight.
+    pub(super) fn fit(&mut self, grid: &Grid, source: Sampler, slots: usize) -> Result<(), TryReserveError> {
+        self.slots = slots;
+        if matches!(source, Sampler::Field(_)) {
+            self.called.fit(grid, slots)?;
+        }
+        reset(&mut self.states, grid.size[1] * slots, State::Outside)?;
+        self.sides.fit(grid, slots)
     }
 
     pub(super) fn values<'a>(&'a self, grid: &Grid, source: Sampler<'a>) -> Values<'a> {
         let size = grid.size;
-        match (source, &self.called) {
-            (Sampler::Given { values, .. }, _) => Values::new(values, size, size[2]),
-            (Sampler::Field(_), Some(called)) => Values::new(&called.values, size, self.slots),
-            (Sampler::Field(_), None) => unreachable!("made for a field"),
+        match source {
+            Sampler::Given { values, .. } => Values::new(values, size, size[2]),
+            Sampler::Field(_) => Values::new(&self.called.values, size, self.slots),
         }
     }
 
@@ -81,22 +82,23 @@ impl Samples {
     pub(super) fn find_sides(&mut self, sampling: Sampling, layer: usize) {
         let Sampling { grid, source, isovalue, .. } = sampling;
         let [nx, ny, _] = grid.size;
-        if let (Sampler::Field(field), Some(called)) = (source, &mut self.called) {
+        let called = &mut self.called;
+        if let Sampler::Field(field) = source {
             called.tiles.turn_to(layer, grid, field, isovalue);
         }
         for row in 0..ny {
             let sides = self.sides.row_mut(row, layer);
             sides.fill(0);
             let mut state = State::Mixed;
-            match (source, &mut self.called) {
-                (Sampler::Given { bricks: Some(bricks), .. }, _) => {
+            match source {
+                Sampler::Given { bricks: Some(bricks), .. } => {
                     state = bricks.set_above([row, layer], isovalue, sides);
                 }
-                (Sampler::Given { values, bricks: None }, _) => {
+                Sampler::Given { values, bricks: None } => {
                     let values = &values[(layer * ny + row) * nx..][..nx];
                     set_above(values, isovalue, sides);
                 }
-                (Sampler::Field(field), Some(called)) => {
+                Sampler::Field(field) => {
                     called.taken.row_mut(row, layer).fill(0);
                     match called.tiles.row(row).0 {
                         [Span { tile: Tile::Outside, .. }] => state = State::Outside,
@@ -107,7 +109,6 @@ impl Samples {
                         _ => called.sample(sampling, field, [row, layer], sides),
                     }
                 }
-                (Sampler::Field(_), None) => unreachable!("made for a field"),
             }
             if state == State::Mixed {
                 state = State::of(sides, !0, nx);
@@ -125,7 +126,7 @@ impl Samples {
             if self.is_uniform(grid, near.rows()) {
                 continue;
             }
-            let called = self.called.as_mut().expect("made for a field");
+            let called = &mut self.called;
             near.for_each_word(grid, &self.sides, |word, wanted| called.wanted[word] = wanted);
             called.fill(grid, field, [row, layer]);
         }
@@ -180,13 +181,14 @@ impl Near {
 }
 
 impl Called {
-    fn new(grid: &Grid, slots: usize) -> Result<Self, TryReserveError> {
+    fn fit(&mut self, grid: &Grid, slots: usize) -> Result<(), TryReserveError> {
         let [nx, ny, _] = grid.size;
-        let (mut tiles, mut gaps) = (Tiles::default(), Gaps::default());
-        tiles.fit(grid)?;
-        gaps.fit(nx)?;
-        let (values, taken) = (filled(nx * ny * slots, 0.0)?, Rows::new(grid, slots)?);
-        Ok(Self { values, taken, tiles, gaps, wanted: filled(grid.words, 0)?, slots })
+        self.slots = slots;
+        self.tiles.fit(grid)?;
+        self.gaps.fit(nx)?;
+        reset(&mut self.values, nx * ny * slots, 0.0)?;
+        self.taken.fit(grid, slots)?;
+        reset(&mut self.wanted, grid.words, 0)
     }
 
     /// Finds the sides of a row that is not known to lie on one.

@@ -5,7 +5,7 @@ use std::collections::TryReserveError;
 use std::ops::Range;
 
 use super::Rule;
-use super::cells_pass::triangulate_layer;
+use super::cells_pass::{BestTriangles, triangulate_layer};
 use super::grid::{Grid, SLOTS};
 use super::patches::Patches;
 use super::records::Records;
@@ -33,15 +33,19 @@ pub(super) struct Job<'a> {
     pub(super) layer_done: &'a (dyn Fn() + Sync),
 }
 
-/// Buffers of one thread, a few layers each.
+/// Buffers of one thread, a few layers each, kept between slabs and between extractions.
+#[derive(Default)]
 pub(super) struct Workspace {
     samples: Samples,
     records: Records<Record>,
+    best: BestTriangles,
 }
 
 impl Workspace {
-    pub(super) fn new(grid: &Grid, source: Sampler) -> Result<Self, TryReserveError> {
-        Ok(Self { samples: Samples::new(grid, source, SLOTS)?, records: Records::new(grid)? })
+    /// Makes room.
+    pub(super) fn fit(&mut self, grid: &Grid, source: Sampler) -> Result<(), TryReserveError> {
+        self.samples.fit(grid, source, SLOTS)?;
+        self.records.fit(grid)
     }
 }
 
@@ -51,7 +55,7 @@ impl Workspace {
 pub(super) fn stream_slab(
     job: &Job,
     own: Range<usize>,
-    Workspace { samples, records }: &mut Workspace,
+    Workspace { samples, records, best }: &mut Workspace,
     piece: &mut Piece,
 ) -> Result<(), ExtractError> {
     let Job { grid, source, isovalue, rule, patches, placer, .. } = *job;
@@ -62,8 +66,8 @@ pub(super) fn stream_slab(
     let filled = lowest..layers.min(highest + 2);
     let sided = lowest.saturating_sub(1)..layers.min(highest + 3);
     let sampling = Sampling { grid, source, isovalue, all_corners: rule.faces.reads_all_corners() };
-    let mut vertices = Vertices::new(job.traced);
     piece.clear(job.traced);
+    let mut vertices = Vertices::within(piece);
     let mut laps = Laps::new();
     for step in sided.start..=highest + 2 {
         if sided.contains(&step) {
@@ -90,7 +94,7 @@ pub(super) fn stream_slab(
             // Only the highest cells have vertices of the slab above.
             piece.tail = piece.surface.triangles.len();
         }
-        triangulate_layer(job, samples, values, records, z, &mut piece.surface)?;
+        triangulate_layer(job, samples, values, records, z, best, &mut piece.surface)?;
         piece.times.geometry += laps.lap();
         (job.layer_done)();
     }

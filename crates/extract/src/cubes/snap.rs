@@ -21,10 +21,10 @@ use self::table::Table;
 use self::vertices::{Record, VertexPass};
 use super::Flat;
 use super::grid::Grid;
-use super::in_slabs;
 use super::records::Records;
 use super::sampling::{Samples, Sampling};
 use super::vertices::{Placer, Vertices};
+use super::{Kept, LayerDone, in_slabs};
 use crate::clock::Laps;
 use crate::control::Control;
 use crate::extraction::{ExtractError, Extraction};
@@ -37,7 +37,8 @@ use crate::trace::Trace;
 const SLOTS: usize = 6;
 
 /// The stages in order, timed and counted. The lattice is simple cubic.
-pub(crate) fn extract(
+pub(super) fn extract(
+    (kept, workspaces): (&mut Kept, &mut Vec<Workspace>),
     request: &Request,
     gamma: f32,
     flat: Flat,
@@ -50,11 +51,13 @@ pub(crate) fn extract(
     let placer = &Placer::new(request.lattice, settings, None);
     let snap = Snap { isovalue: settings.isovalue, gamma };
     let traced = trace.is_some();
-    let new = |grid: &Grid| Workspace::new(grid, source);
-    in_slabs(request, progress, trace, extraction, 3, new, |grid, layer_done, own, workspace, piece| {
+    let fit = |workspace: &mut Workspace, grid: &Grid| workspace.fit(grid, source);
+    let work = |grid: &Grid, layer_done: &LayerDone, own, workspace: &mut Workspace, piece: &mut Piece| {
         let job = Job { grid, source, snap, flat, table, placer, most_vertices, traced, control, layer_done };
         stream_slab(&job, own, workspace, piece)
-    })
+    };
+    let buffers = (kept, workspaces, Workspace::default);
+    in_slabs(buffers, request, progress, trace, extraction, 3, fit, work)
 }
 
 /// What all slabs of an extraction share.
@@ -72,8 +75,9 @@ struct Job<'a> {
     layer_done: &'a (dyn Fn() + Sync),
 }
 
-/// Buffers of one thread, a few layers each.
-struct Workspace {
+/// Buffers of one thread, a few layers each, kept between slabs and between extractions.
+#[derive(Default)]
+pub(super) struct Workspace {
     samples: Samples,
     labels: Labels,
     chosen: Chosen,
@@ -81,13 +85,11 @@ struct Workspace {
 }
 
 impl Workspace {
-    fn new(grid: &Grid, source: Sampler) -> Result<Self, TryReserveError> {
-        Ok(Self {
-            samples: Samples::new(grid, source, SLOTS)?,
-            labels: Labels::new(grid)?,
-            chosen: Chosen::new(grid)?,
-            records: Records::new(grid)?,
-        })
+    fn fit(&mut self, grid: &Grid, source: Sampler) -> Result<(), TryReserveError> {
+        self.samples.fit(grid, source, SLOTS)?;
+        self.labels.fit(grid)?;
+        self.chosen.fit(grid)?;
+        self.records.fit(grid)
     }
 }
 
@@ -109,8 +111,8 @@ fn stream_slab(
     let filled = lowest.saturating_sub(3)..layers.min(highest + 4);
     let sided = lowest.saturating_sub(4)..layers.min(highest + 5);
     let sampling = Sampling { grid, source, isovalue: snap.isovalue, all_corners: true };
-    let mut vertices = Vertices::new(job.traced);
     piece.clear(job.traced);
+    let mut vertices = Vertices::within(piece);
     chosen.clear_used(chosen_cells.start);
     let mut laps = Laps::new();
     for step in sided.start..=highest + 4 {

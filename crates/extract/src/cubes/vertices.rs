@@ -76,9 +76,14 @@ pub(super) struct Vertices {
 }
 
 impl Vertices {
-    /// None yet.
-    pub(super) fn new(traced: bool) -> Self {
-        Self { keys: traced.then(Vec::new), ..Self::default() }
+    /// None yet, in the room of an empty piece.
+    pub(super) fn within(piece: &mut Piece) -> Self {
+        Self {
+            positions: std::mem::take(&mut piece.positions),
+            targets: std::mem::take(&mut piece.targets),
+            keys: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys)),
+            ..Self::default()
+        }
     }
 
     /// Names the vertex that was placed last, where keys are asked for.

@@ -150,6 +150,11 @@ impl Link {
         self.strict(rank).in_order.iter().copied().find(|&core| core & !free == 0 && not_walled_in(core))
     }
 
+    /// Makes the table that is made otherwise at first use.
+    pub(super) fn complete(&self, rank: impl Fn(DirectionSet) -> u16) {
+        self.strict(rank);
+    }
+
     /// `rank` breaks ties between sets of one size.
     fn strict(&self, rank: impl Fn(DirectionSet) -> u16) -> &StrictSets {
         self.strict.get_or_init(|| {

@@ -4,16 +4,21 @@ use std::collections::TryReserveError;
 
 use glam::Vec3;
 
-use crate::memory::{collected, filled};
+use crate::memory::{refilled, reset};
 
 /// How much of the way is gone.
 const SHARE: f32 = 0.5;
 
 /// Each vertex half the way to the mean of its neighbours, in the plane through it across its area-weighted normal.
 /// Neighbours are the vertices of its triangles, each counted once a triangle. A vertex on the boundary, or without a
-/// normal, stays.
-pub(crate) fn relaxed(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<Vec3>, TryReserveError> {
-    let mut around = filled(positions.len(), Around::default())?;
+/// normal, stays. `around` is room to work in.
+pub(crate) fn relax(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    around: &mut Vec<Around>,
+    targets: &mut Vec<Vec3>,
+) -> Result<(), TryReserveError> {
+    reset(around, positions.len(), Around::default())?;
     for triangle in triangles {
         let [a, b, c] = triangle.map(|v| positions[v as usize]);
         let doubled_area = (b - a).cross(c - a);
@@ -34,12 +39,12 @@ pub(crate) fn relaxed(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<
         }
         _ => p,
     };
-    collected(positions.iter().zip(&around).map(relax))
+    refilled(targets, positions.iter().zip(&*around).map(relax))
 }
 
 /// What surrounds a vertex.
 #[derive(Debug, Clone, Copy, Default)]
-struct Around {
+pub(crate) struct Around {
     sum: Vec3,
     normal: Vec3,
     neighbours: u32,
@@ -52,6 +57,14 @@ struct Around {
 mod tests {
     use super::*;
 
+    fn relaxed(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+        // What was in there does not matter.
+        let (mut around, mut targets) =
+            (vec![Around { neighbours: 7, ..Around::default() }], vec![Vec3::ONE]);
+        relax(positions, triangles, &mut around, &mut targets).unwrap();
+        targets
+    }
+
     /// A fan round vertex 0, closed with all six triangles.
     fn fan(triangles: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
         let around = |k: usize| Vec3::new((k as f32).cos(), (k as f32).sin(), 0.0);
@@ -62,7 +75,7 @@ mod tests {
     #[test]
     fn the_middle_of_a_fan_goes_half_the_way_within_its_plane() {
         let (positions, triangles) = fan(6);
-        let moved = relaxed(&positions, &triangles).unwrap();
+        let moved = relaxed(&positions, &triangles);
         let normal = mesh::normals::area_weighted_normals(&positions, &triangles)[0];
         let mean = positions[1..].iter().sum::<Vec3>() / 6.0;
         let way = (mean - positions[0]) * 0.5;
@@ -77,6 +90,6 @@ mod tests {
     #[test]
     fn an_open_fan_has_no_middle() {
         let (positions, triangles) = fan(4);
-        assert_eq!(relaxed(&positions, &triangles).unwrap(), positions);
+        assert_eq!(relaxed(&positions, &triangles), positions);
     }
 }

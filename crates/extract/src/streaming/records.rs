@@ -13,6 +13,9 @@ const CROSSING: u32 = NEAR + DIRECTIONS as u32;
 const INSIDE: u32 = CROSSING + DIRECTIONS as u32;
 const NUMBERING: u32 = INSIDE + 1;
 
+/// Lists of a layer for which there is room from the start.
+const MOST_LISTS: usize = 1024;
+
 /// How the near crossings of a point are numbered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u64)]
@@ -112,7 +115,9 @@ impl Records {
         refill(&mut self.records, grid.layer_len() * self.slots, Record::default())?;
         refill(&mut self.active, self.words * self.size[1] * self.slots, 0)?;
         self.lists.resize_with(self.slots, Vec::new);
-        Ok(())
+        // Few points of a layer have one: room for more than they take, so that a window that moves need not ask for it.
+        let room = (grid.layer_len() / 4).min(MOST_LISTS);
+        self.lists.iter_mut().try_for_each(|lists| lists.try_reserve_exact(room.saturating_sub(lists.len())))
     }
 
     /// Forgets what was in the slot of a layer.

@@ -115,7 +115,7 @@ fn answer(arguments: &Arguments, run: &AbRun) -> Result<Outcome> {
     let regressions = comparison.regressions(by, arguments.relative);
     let blind = arguments.must_tell.is_some_and(|share| !comparison.would_tell(by, share));
     let outcome = match () {
-        () if !regressions.is_empty() => Outcome::CheckFailed,
+        () if !(regressions.is_empty() && run.failed.is_empty()) => Outcome::CheckFailed,
         () if blind => Outcome::Blind,
         () => Outcome::Done,
     };

@@ -16,15 +16,20 @@ const TOLERANCE: f64 = 1e-6;
 /// A crossing, and the outward unit normal of the field there, if it has one.
 pub(super) type Tangent = (DVec3, Option<DVec3>);
 
+/// By layer, even or odd: by column, row and axis.
+pub(super) type Known = [HashMap<[usize; 3], Tangent>; 2];
+
 /// The crossings of two layers of points.
 pub(super) struct Tangents<'a> {
     level: Level<'a>,
-    known: [HashMap<[usize; 3], Tangent>; 2],
+    known: &'a mut Known,
 }
 
 impl<'a> Tangents<'a> {
-    pub(super) fn new(level: Level<'a>) -> Self {
-        Self { level, known: Default::default() }
+    /// None yet, in room that is there.
+    pub(super) fn new(level: Level<'a>, known: &'a mut Known) -> Self {
+        known.iter_mut().for_each(HashMap::clear);
+        Self { level, known }
     }
 
     /// Before the cells of layer `z`: the points above them are new.

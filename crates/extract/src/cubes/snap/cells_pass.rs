@@ -10,10 +10,11 @@ use super::super::vertices::corner_of;
 use super::labels::Labels;
 use super::table::{CORNER, MOST_TRIANGLES, Table};
 use super::vertices::Record;
-use crate::memory::filled;
+use crate::memory::reset;
 use crate::triangles::Triangulation;
 
 /// The patches of two layers of cells, and the points on the surface that they use.
+#[derive(Default)]
 pub(super) struct Chosen {
     /// Cells with a patch.
     live: Rows,
@@ -23,14 +24,13 @@ pub(super) struct Chosen {
 }
 
 impl Chosen {
-    pub(super) fn new(grid: &Grid) -> Result<Self, TryReserveError> {
+    /// Makes room, with none chosen.
+    pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), TryReserveError> {
         let [nx, ny, _] = grid.size;
-        Ok(Self {
-            live: Rows::new(grid, 2)?,
-            numbers: filled(2 * nx * ny, 0)?,
-            used: Rows::new(grid, 2)?,
-            size: [nx, ny],
-        })
+        self.size = [nx, ny];
+        self.live.fit(grid, 2)?;
+        reset(&mut self.numbers, 2 * nx * ny, 0)?;
+        self.used.fit(grid, 2)
     }
 
     fn start(&self, row: usize, layer: usize) -> usize {

@@ -6,7 +6,7 @@ use super::super::grid::Grid;
 use super::super::rows::{Rows, before, next};
 use super::super::sampling::{Near, Samples};
 use crate::in_sight::{State, Values};
-use crate::memory::filled;
+use crate::memory::reset;
 
 /// Layers in sight: of a cell, the two of its corners, and one more on either side.
 const SLOTS: usize = 4;
@@ -16,6 +16,7 @@ const HERE: u8 = 6;
 const WAYS: [(usize, bool); 6] = [(2, false), (1, false), (0, false), (0, true), (1, true), (2, true)];
 
 /// A few layers of labels. What is neither inside nor on the surface is outside.
+#[derive(Default)]
 pub(super) struct Labels {
     pub(super) inside: Rows,
     pub(super) on: Rows,
@@ -26,15 +27,14 @@ pub(super) struct Labels {
 }
 
 impl Labels {
-    pub(super) fn new(grid: &Grid) -> Result<Self, TryReserveError> {
+    /// Makes room, with all points outside.
+    pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), TryReserveError> {
         let [nx, ny, _] = grid.size;
-        Ok(Self {
-            inside: Rows::new(grid, SLOTS)?,
-            on: Rows::new(grid, SLOTS)?,
-            ways: filled(nx * ny * SLOTS, HERE)?,
-            states: filled(ny * SLOTS, State::Outside)?,
-            size: grid.size,
-        })
+        self.size = grid.size;
+        self.inside.fit(grid, SLOTS)?;
+        self.on.fit(grid, SLOTS)?;
+        reset(&mut self.ways, nx * ny * SLOTS, HERE)?;
+        reset(&mut self.states, ny * SLOTS, State::Outside)
     }
 
     /// Whether all points of some rows are inside, or all outside.
