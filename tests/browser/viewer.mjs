@@ -139,7 +139,7 @@ for (const [name, viewport] of [['laptop', LAPTOP], ['phone', PHONE]]) {
     test(`it fits, and everything has a name (${name}, ${colorScheme})`, { skip }, async () => {
       const page = await open(viewport, '#mode=distance', { colorScheme });
       assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'too wide');
-      for (const of of ['.stage', '.legend']) {
+      for (const of of ['.stage', '.legend .marks']) {
         const { top, bottom } = await page.locator(of).evaluate((box) => box.getBoundingClientRect().toJSON());
         assert.ok(top >= 0 && bottom <= viewport.height, `${of} is on the first screen: ${top} to ${bottom}`);
       }
