@@ -22,7 +22,7 @@ pub(crate) struct Made {
 }
 
 impl Prepared<'_> {
-    /// The mesh.
+    /// The mesh. On one thread it is also counted how often the field was called.
     ///
     /// # Errors
     /// If there is no surface; what an extractor refuses; [`ProgramError`] of a program, which names it; if a file is no mesh.
@@ -50,7 +50,10 @@ impl Prepared<'_> {
                 let prepared = Prepared { field: &field, ..self.clone() };
                 let extraction =
                     prepared.extractor().context("an extractor")?.extract_with(extractor, execution)?;
-                let counts = records::with_calls(records::counts(&extraction.counts), &field);
+                let counts = records::counts(&extraction.counts);
+                // Slabs of several threads sample some layers twice, and no record may depend on threads.
+                let is_exact = execution.threads == 1;
+                let counts = if is_exact { records::with_calls(counts, &field) } else { counts };
                 Made { counts, mesh: extraction.mesh, program: None }
             }
             Recipe::Program(program) => self.by_program(program)?,

@@ -24,8 +24,8 @@ pub enum Source<'a> {
     /// the spacing puts them, centres half a cube beyond. Face-centred lattices are a grid of half cells, `2x + 1` points a row, of which the middles of cube edges are
     /// unused; the others a grid of corners.
     Samples(&'a [f32]),
-    /// The same with the ranges of their bricks, which need not be read where they lie on one side of the isovalue: for one isovalue
-    /// after another. The mesh is the same.
+    /// The same with the ranges of their bricks, which need not be read where they lie on one side of the isovalue: for one
+    /// isovalue after another. The mesh is the same.
     Bricks(&'a Bricks<'a>),
     /// The samples of a box of cells, in the order of [`SampleLayout`](crate::SampleLayout): for a
     /// [`ChunkExtractor`](crate::ChunkExtractor), of a box that contains its

@@ -93,7 +93,9 @@ impl Pipeline<'_> {
         let inputs = self.extraction_inputs(configuration, purpose)?.value("spacing", &spacing);
         self.stage(&format!("mesh/{name}/{}", configuration.id), inputs, |writer| {
             let prepared = self.prepare(configuration, Wanted::For(purpose))?;
-            let Made { mesh, counts, program } = self.make(configuration, &prepared, step)?;
+            // On one thread, so that calls of the field are counted.
+            let execution = Execution { threads: 1 };
+            let Made { mesh, counts, program } = self.make(configuration, &prepared, &execution, step)?;
             let accuracy = self.accuracy(&prepared, &mesh)?;
             let cells = prepared.cells()?;
             let mut record =
@@ -132,16 +134,16 @@ impl Pipeline<'_> {
         &self,
         configuration: &Configuration,
         prepared: &Prepared<'_>,
+        execution: &Execution,
         step: &Step,
     ) -> Result<Made> {
-        let execution = Execution { threads: self.threads };
         let mut extractor = Extractor::new().with_progress(step.within(TICKS_A_MESH));
         let place = || {
             let isovalue = self.study.object(configuration).isovalue;
             let file = self.study.path.display();
             format!("{file}: objects[{}] with isovalue {isovalue:?}", configuration.object)
         };
-        prepared.make(&mut extractor, &execution).with_context(place)
+        prepared.make(&mut extractor, execution).with_context(place)
     }
 
     /// How well a configuration's mesh stands for its isosurface.

@@ -12,6 +12,7 @@ use design::config::{Look, StillSection};
 use design::forms::Stimulus;
 use design::record::Purpose;
 use design::{Comparison, Configuration, ConfigurationId, Study};
+use extract::Execution;
 use raster::Animation;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -229,7 +230,8 @@ impl Pipeline<'_> {
         self.stage(&format!("still/{}", still.id), inputs, |writer| {
             let wanted = Wanted::Spacing(still.spacing, Purpose::Stimulus);
             let prepared = self.prepare(configuration, wanted)?;
-            let mesh = self.make(configuration, &prepared, step)?.mesh;
+            let execution = Execution { threads: self.threads };
+            let mesh = self.make(configuration, &prepared, &execution, step)?.mesh;
             let settings = picture::turntable(&self.study.file.turntable, &object.camera);
             let shading = picture::shading(&self.study.file.shading);
             let error = || {

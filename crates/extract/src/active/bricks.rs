@@ -9,22 +9,18 @@ use crate::memory::filled;
 
 /// Cells along the edge of a brick.
 const BRICK: usize = 8;
-/// Samples of a row whose sides are found together.
-const WORD: usize = 64;
 
 /// The range of the samples of each brick of 8 x 8 x 8 cells: little more than 8 bytes for 512 cells.
 ///
-/// An extraction from these samples ([`Source::Bricks`](crate::Source::Bricks)) does not read bricks on one side of the isovalue. The
-/// mesh is the same, to the byte.
+/// An extraction from these samples ([`Source::Bricks`](crate::Source::Bricks)) does not read rows whose bricks are all on one side of
+/// the isovalue, to find out where its samples are. The mesh is the same, to the byte.
 #[derive(Debug, Clone)]
 pub struct Bricks<'a> {
     samples: GridSamples<'a>,
     /// Along each axis.
     counts: [usize; 3],
     spans: Vec<Span>,
-    /// Of each row of bricks, those of the samples of each word.
-    words: Vec<Span>,
-    /// All of them.
+    /// Of each row of bricks, all of them.
     rows: Vec<Span>,
 }
 
@@ -55,18 +51,11 @@ impl<'a> Bricks<'a> {
                 }
             }
         }
-        let whole = |spans: &[Span]| spans.iter().fold(NONE, |all, &span| union(all, span));
-        let words_of_row = samples.counts()[0].div_ceil(WORD);
-        let (mut words, mut rows) = (filled(words_of_row * by * bz, NONE)?, filled(by * bz, NONE)?);
-        for (row, bricks) in spans.chunks_exact(bx).enumerate() {
-            rows[row] = whole(bricks);
-            for (word, span) in words[row * words_of_row..][..words_of_row].iter_mut().enumerate() {
-                // The last word may have nothing but the last sample, which is in the last brick.
-                let first = (word * WORD / BRICK).min(bx - 1);
-                *span = whole(&bricks[first..bx.min(first + WORD / BRICK)]);
-            }
+        let mut rows = filled(by * bz, NONE)?;
+        for (row, bricks) in rows.iter_mut().zip(spans.chunks_exact(bx)) {
+            *row = bricks.iter().fold(NONE, |all, &span| union(all, span));
         }
-        Ok(Self { samples, counts, spans, words, rows })
+        Ok(Self { samples, counts, spans, rows })
     }
 
     /// The samples that they are of.
@@ -76,6 +65,9 @@ impl<'a> Bricks<'a> {
 
     /// Sets the bits of the samples of a row that are above the isovalue, all of which are zero; says where they are, but for rows in
     /// bricks on both sides.
+    ///
+    /// Of those rows all samples are read. Leaving out bricks in a row, or words of 64 samples, took twice as long as reading them:
+    /// memory is read ahead.
     pub(crate) fn set_above(&self, [y, z]: [usize; 2], isovalue: f32, words: &mut [u64]) -> State {
         let [_, by, bz] = self.counts;
         let at = (z / BRICK).min(bz - 1) * by + (y / BRICK).min(by - 1);
@@ -88,20 +80,7 @@ impl<'a> Bricks<'a> {
             set_range(words, 0, row.len());
             return State::Inside;
         }
-        // From the first word in a brick on both sides to the last, samples are read one after another: to leave some out among them
-        // takes longer, since memory is read ahead.
-        let spans = &self.words[at * words.len()..][..words.len()];
-        let is_mixed = |span: &Span| holds(*span, isovalue);
-        let first = spans.iter().position(is_mixed).unwrap_or(words.len());
-        let end = spans.iter().rposition(is_mixed).map_or(first, |last| last + 1);
-        for (at, [least, _]) in spans.iter().enumerate().filter(|(at, _)| !(first..end).contains(at)) {
-            if isovalue < *least {
-                set_range(words, WORD * at, row.len().min(WORD * (at + 1)));
-            }
-        }
-        if first < end {
-            set_above(&row[WORD * first..row.len().min(WORD * end)], isovalue, &mut words[first..end]);
-        }
+        set_above(row, isovalue, words);
         State::Mixed
     }
 }
@@ -127,6 +106,6 @@ impl ActiveCells for Bricks<'_> {
     }
 
     fn bytes(&self) -> usize {
-        size_of::<Span>() * (self.spans.capacity() + self.words.capacity() + self.rows.capacity())
+        size_of::<Span>() * (self.spans.capacity() + self.rows.capacity())
     }
 }

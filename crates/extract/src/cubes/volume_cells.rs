@@ -115,8 +115,8 @@ impl<'a> VolumeCells<'a> {
         Bricks::try_new(GridSamples::try_new(self.counts, self.values)?)
     }
 
-    /// Extracts the same mesh, to the byte, without reading [`bricks`](Self::bricks) that lie on one side of the isovalue: for one isovalue
-    /// after another.
+    /// Extracts the same mesh, to the byte, without reading rows of [`bricks`](Self::bricks) that lie on one side of the isovalue: for one
+    /// isovalue after another.
     ///
     /// # Errors
     /// [`VolumeCellsError`], [`ExtractError::BrickCounts`] among them if the bricks are those of a volume of another size.
