@@ -344,7 +344,7 @@ fn bad_input_is_refused_before_any_work() {
                 "study.toml: methods[0].recipe",
                 "cones",
                 "tetrahedra",
-                "`dual-contouring`, `program`, `meshes`",
+                "`dual-contouring`, `continuation`, `program`, `meshes`",
             ],
         ),
         (

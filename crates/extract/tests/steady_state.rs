@@ -151,11 +151,13 @@ impl ScalarField for Hills {
     }
 }
 
-/// Of every preset that has chunks.
+/// Of every preset that has chunks, but the warp, which is a pass over a whole mesh.
 fn so_does_that_of_every_preset() {
     let grid = Grid::try_new([0.0; 3], 1.0).unwrap();
     let mut tried = 0;
-    for preset in presets() {
+    let is_warped =
+        |method: &Method| matches!(method, Method::Tetrahedra(of) if of.clustering == Clustering::Warp);
+    for preset in presets().iter().filter(|preset| !is_warped(&preset.method)) {
         let settings = ChunkSettings::default();
         let Ok(mut extractor) = ChunkExtractor::try_new(&grid, &preset.method, &settings) else { continue };
         let mut chunk = Chunk::default();

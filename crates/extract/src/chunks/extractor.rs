@@ -50,7 +50,7 @@ const MOST_EXTRA: u32 = 64;
 /// Its buffers are used again, wherever the next chunk is: from the second one of a size on,
 /// [`extract_into`](Self::extract_into) allocates nothing on the calling thread alone, as long as the surface does not outgrow
 /// those before it and no edge is collapsed. The exceptions are small: tables of integrated clustering that a point is the first to
-/// need, but after [`reserve`](Self::reserve); steps of
+/// need, but after [`reserve`](Self::reserve); what [`Clustering::Warp`](crate::Clustering::Warp) keeps of a chunk's edges; steps of
 /// [`SurfaceNets::smoothing`](crate::SurfaceNets::smoothing); nets in a cell at the window's side whose signs no chunk before had; and
 /// faces and cells that [`Faces::Decider`](crate::Faces) or [`Faces::Trilinear`](crate::Faces) can only decide without rounding.
 ///
