@@ -29,8 +29,8 @@ def rows(path):
 def replace(path, name, text):
     """Puts a text between the marks of a page."""
     page = path.read_text()
-    found = re.compile(rf"(<!-- {name} -->\n).*?(\n<!-- end of {name} -->)", re.S)
-    new, times = found.subn(lambda m: m[1] + text + m[2], page)
+    found = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end of {name} -->)", re.S)
+    new, times = found.subn(lambda m: f"{m[1]}\n{text}\n\n{m[2]}", page)
     if times != 1:
         sys.exit(f"{path.name}: {times} places for {name}, not 1")
     path.write_text(new)
@@ -61,6 +61,11 @@ def main():
     replace(page, "claims", rows(PAPER / "tables/claims.md"))
 
 
+def short(milliseconds):
+    value = float(milliseconds)
+    return f"{value:.0f}" if value >= 10 else f"{value:.1f}"
+
+
 def chunks():
     """Milliseconds per chunk and per edit, a row a method, a column an object."""
     import csv
@@ -73,7 +78,7 @@ def chunks():
     lines = ["| method | " + " | ".join(names[o] for o in objects) + " |", "|---|" + "---:|" * len(objects)]
     for method in methods:
         cells = [of.get(f"{o}_{method}") for o in objects]
-        text = [f"{float(c['chunk_ms']):.2g}, {float(c['edit_ms']):.2g}" if c else "" for c in cells]
+        text = [f"{short(c['chunk_ms'])}, {short(c['edit_ms'])}" if c else "" for c in cells]
         lines.append(f"| `{method}` | " + " | ".join(text) + " |")
     return "\n".join(lines)
 

@@ -174,3 +174,22 @@ fn liked(folder: &Folder, text: &str) {
     let report = fs::read_to_string(folder.path("out/report.md")).unwrap();
     assert!(report.contains("the look that people chose most"), "{report}");
 }
+
+/// README and docs/terrain.md have the rows that were published, and no others.
+#[test]
+fn pages_say_what_was_published() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let read = |path: &str| fs::read_to_string(root.join(path)).unwrap();
+    let published = read("results/published/terrain/choices.md");
+    let rows: Vec<&str> = published.lines().filter(|line| line.starts_with('|')).collect();
+    assert_eq!(rows.len(), 2 + 4);
+    let made = read("results/published/terrain/made.txt");
+    for page in ["README.md", "docs/terrain.md"] {
+        let text = read(page);
+        let (_, block) = text.split_once("<!-- choices -->").unwrap();
+        let (block, _) = block.split_once("<!-- end of choices -->").unwrap();
+        let said: Vec<&str> = block.lines().filter(|line| line.starts_with('|')).collect();
+        assert_eq!(said, rows, "{page}");
+        assert!(block.contains(&format!("Measured {}.", made.lines().last().unwrap())), "{page}");
+    }
+}

@@ -209,13 +209,22 @@ impl Snap {
 
 /// Whether a point lies on a side of the box with nothing inside next to it on that side. A patch through it would lie in the side,
 /// where no cell has one, and a solid that ends there would be open.
-#[cold]
+#[inline]
 fn is_wall(grid: &Grid, samples: &Samples, place: [usize; 3]) -> bool {
-    let sides: Vec<usize> =
-        (0..3).filter(|&axis| place[axis] == 0 || place[axis] + 1 == grid.size[axis]).collect();
+    let is_side = |axis: usize| place[axis] == 0 || place[axis] + 1 == grid.size[axis];
+    (0..3).any(is_side) && !has_inside_beside(grid, samples, place, is_side)
+}
+
+/// Whether a point next to it, on one of the same sides, is inside.
+#[cold]
+fn has_inside_beside(
+    grid: &Grid,
+    samples: &Samples,
+    place: [usize; 3],
+    is_side: impl Fn(usize) -> bool,
+) -> bool {
     let near = |axis: usize| place[axis].saturating_sub(1)..grid.size[axis].min(place[axis] + 2);
     let is_inside = |[x, y, z]: [usize; 3]| samples.sides.row(y, z)[x / 64] >> (x % 64) & 1 != 0;
-    let around = near(2).flat_map(|z| near(1).flat_map(move |y| near(0).map(move |x| [x, y, z])));
-    let mut beside = around.filter(|there| sides.iter().any(|&axis| there[axis] == place[axis]));
-    !sides.is_empty() && !beside.any(is_inside)
+    let mut around = near(2).flat_map(|z| near(1).flat_map(move |y| near(0).map(move |x| [x, y, z])));
+    around.any(|there| (0..3).any(|axis| is_side(axis) && there[axis] == place[axis]) && is_inside(there))
 }
