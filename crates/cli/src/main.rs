@@ -64,7 +64,7 @@ enum Command {
     /// Do everything: meshes, animations, short benchmark, tables, figures, index.html
     Study(commands::study::Arguments),
     /// Extract a surface from a formula, a volume or a mesh; or, given a study, the study's meshes, and measure them
-    Extract(commands::extract::Arguments),
+    Extract(Box<commands::extract::Arguments>),
     /// List the methods that have a name, what each promises, and its source
     Methods(commands::methods::Arguments),
     /// Render a study's turntable animations; or, given a mesh, its own, in any look
