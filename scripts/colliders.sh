@@ -18,7 +18,7 @@ for object in hi cl ca bu; do
     done
 done
 cargo run --release --locked --quiet --package isostudy --bin isostudy -- \
-    extract configs/terrain.toml --only "$only" -o "$folder" >&2
+    extract configs/terrain.toml --allow-programs --only "$only" -o "$folder" >&2
 cargo build --release --quiet --manifest-path scripts/peers/Cargo.toml --target-dir target/peers --bin colliders
 # shellcheck disable=SC2086 # names without spaces
 exec target/peers/release/colliders "${1:-31}" 0.02 $files
