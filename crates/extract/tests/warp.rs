@@ -418,7 +418,7 @@ fn plane_angles_are_bounded() {
 }
 
 #[test]
-#[ignore = "half a minute"]
+#[ignore = "half a minute: run by make test-long"]
 fn angles_are_bounded_in_many_samples() {
     let (dihedral, plane) = (worst_dihedral_angles(400_000, 2), worst_plane_angles(400_000, 4));
     println!("dihedral angles {dihedral:?}, plane angles {plane:?}");

@@ -31,8 +31,8 @@ pub(crate) struct Candidate<'a> {
     /// Mean distance from the mesh to the isosurface or back, whichever is larger, in edges of the object's benchmark cubes: one
     /// unit for all methods of the object.
     pub(crate) error: Option<Estimate>,
-    /// The larger of both largest distances, in the same unit.
-    pub(crate) hausdorff: Option<Estimate>,
+    /// Mean distance from the isosurface's sharp edges to the mesh, in the same unit; `None` if it has none.
+    pub(crate) sharp_edges: Option<Estimate>,
     /// Mean over people of the answers for it less those against it, per answer that showed it on this object: 1 is always chosen.
     pub(crate) preference: Option<Estimate>,
 }
@@ -55,12 +55,13 @@ impl Candidate<'_> {
         })
     }
 
-    /// What is wrong with the mesh as a surface: edges and vertices at which it is no manifold, folded and doubled triangles, pairs
-    /// that pass through each other. A border is not counted: the object may end at its box.
-    pub(crate) fn faults(&self) -> u64 {
+    /// Whether nothing is wrong with the mesh as a surface: no edge or vertex at which it is no manifold, no folded or doubled
+    /// triangle, no two that pass through each other, as far as all of that was counted. A border is no fault here: the object may
+    /// end at its box.
+    pub(crate) fn is_faultless(&self) -> bool {
         let t = &self.mesh.topology;
         let counts = [t.non_manifold_edges, t.non_manifold_vertices, t.folded_faces, t.duplicate_faces];
-        counts.iter().sum::<u64>() + t.self_intersections.unwrap_or(0)
+        counts == [0; 4] && t.self_intersections == Some(0)
     }
 }
 
@@ -80,7 +81,7 @@ pub(crate) fn candidates<'a>(inputs: &Inputs<'a>) -> Vec<ObjectCandidates<'a>> {
                 time_s: inputs.bench.and_then(|run| time(run, &id)),
                 edit_s: inputs.chunks.iter().find(|times| times.id == id).and_then(edit),
                 error: error(mesh, unit),
-                hausdorff: mesh.accuracy.hausdorff().map(|distance| Estimate::exact(distance / unit)),
+                sharp_edges: mesh.accuracy.sharp_edges.as_ref().and_then(mean).map(|mean| mean.per(unit)),
                 preference: inputs.answers.and_then(|answers| preference(study, answers, place, method.id)),
             })
         };
@@ -110,7 +111,7 @@ fn error(mesh: &MeshRecord, unit: f64) -> Option<Estimate> {
     let there = mean(&mesh.accuracy.distance)?;
     let back = mean(mesh.accuracy.distance_to_mesh.as_ref()?)?;
     let larger = if back.value > there.value { back } else { there };
-    Some(Estimate { value: larger.value / unit, low: larger.low / unit, high: larger.high / unit })
+    Some(larger.per(unit))
 }
 
 fn mean(of: &Distribution) -> Option<Estimate> {

@@ -24,6 +24,11 @@ impl Estimate {
         }
     }
 
+    /// In another unit, which is above 0.
+    pub(crate) fn per(self, unit: f64) -> Self {
+        Self { value: self.value / unit, low: self.low / unit, high: self.high / unit }
+    }
+
     /// Whether both ends are the value.
     pub(crate) fn is_exact(self) -> bool {
         self.low == self.value && self.high == self.value

@@ -7,8 +7,9 @@ use design::{Method, MethodId};
 
 /// One quantity that somebody wants, of the methods that can be compared in it.
 pub(crate) struct Want {
-    /// Name of its column.
+    /// Names its column.
     pub(crate) name: &'static str,
+    /// The column's heading.
     pub(crate) heading: &'static str,
     /// Its number with its unit, `{}` for the number.
     pub(crate) unit: &'static str,
@@ -89,12 +90,12 @@ const WANTS: [Want; 9] = [
     },
     Want {
         name: "edges",
-        heading: "smallest largest error",
+        heading: "sharp edges kept",
         unit: "{}",
-        phrase: "corners and edges kept: the smallest largest error",
+        phrase: "sharp edges kept: the smallest mean error at them",
         says: "{} cube edges",
         among: Among::SameCells,
-        quantity: |of| of.hausdorff,
+        quantity: |of| of.sharp_edges,
         is_larger_better: false,
     },
     Want {
@@ -160,6 +161,7 @@ pub(crate) struct Cost {
     pub(crate) triangles: f64,
     /// Its error over the smallest.
     pub(crate) error: Option<f64>,
+    /// Pairs of triangles that pass through each other.
     pub(crate) crossing_triangles: u64,
     /// Edges and vertices at which the mesh is no manifold.
     pub(crate) no_manifold: u64,
@@ -234,7 +236,7 @@ impl Among {
             Some(budget) => budget.quantity == Quantity::Triangles && Some(budget.of) == model,
             None => Some(of.id()) == model,
         };
-        let is_faultless = |of: &Candidate<'_>| same_cells(of) && of.faults() == 0 && is_whole(of);
+        let is_faultless = |of: &Candidate<'_>| same_cells(of) && of.is_faultless() && is_whole(of);
         let takes = |of: &&Candidate<'_>| match self {
             Self::SameCells => same_cells(of),
             Self::Faultless => is_faultless(of),

@@ -114,7 +114,7 @@ impl Scatter {
                 !taken.iter().any(|other| of.overlaps(*other)) && !lines.iter().any(crossed)
             };
             // Below on the right, above on the left, then the same farther off.
-            let places = [1.1, 2.3].into_iter().flat_map(|down| {
+            let places = [1.1, 2.3, 3.5, 4.7].into_iter().flat_map(|down| {
                 [
                     ((x + 8.0, y + down * EM), Align::Start),
                     ((x - 8.0 - width, y + (0.7 - down) * EM), Align::End),

@@ -26,7 +26,9 @@ pub(super) fn chunks(inputs: &Inputs<'_>) -> Option<Table> {
         ("is_whole", "The whole mesh"),
     ];
     let mut table = Table::new("chunks", "Chunk by chunk", &columns);
-    let in_order = inputs.study.configurations.iter().filter_map(|c| find(inputs, &c.id));
+    let of =
+        |id: &::design::ConfigurationId| inputs.chunks.iter().find(|times: &&ChunkTimes| times.id == *id);
+    let in_order = inputs.study.configurations.iter().filter_map(|configuration| of(&configuration.id));
     for times in in_order {
         let mut row = vec![Cell::text(&times.id), Cell::count(times.chunks), Cell::count(times.timed)];
         row.extend(milliseconds(&times.chunk_s));
@@ -39,7 +41,7 @@ pub(super) fn chunks(inputs: &Inputs<'_>) -> Option<Table> {
     }
     let cells = inputs.chunks.first()?.cells;
     table.notes.push(format!(
-        "One thread, from the field, with chunks of {cells} cells per side. Timed: those of all cells that have triangles. An edit is a change within 5 cube \
+        "One thread, from the field, with chunks of {cells} cells per side. Timed: chunks of full size that have triangles. An edit is a change within 5 cube \
          edges of a point of the surface: the chunks that it touches are extracted again. Median, its interval at 95 %, and the longest. \
          The whole mesh: whether the chunks, welded, are the mesh that is made at once, to the bit."
     ));
@@ -53,10 +55,6 @@ pub(super) fn chunks(inputs: &Inputs<'_>) -> Option<Table> {
         table.notes.push(format!("No chunks are made by {}.", list(&none)));
     }
     (!table.rows.is_empty()).then_some(table)
-}
-
-fn find<'a>(inputs: &Inputs<'a>, id: &::design::ConfigurationId) -> Option<&'a ChunkTimes> {
-    inputs.chunks.iter().find(|times| times.id == *id)
 }
 
 /// Median, both ends and the longest.

@@ -16,15 +16,15 @@ const MORE: f64 = 1.05;
 /// The picks and the fronts, where there is anything to choose from.
 pub(super) fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
     let objects = candidates(inputs);
-    let tables = [choices(inputs, &objects), decision(&objects), standings(&objects)];
+    let picks = picks(&objects);
+    let tables = [choices(inputs, &objects, &picks), decision(&objects, &picks), standings(&objects)];
     tables.into_iter().filter(|table| !table.rows.is_empty()).collect()
 }
 
 /// A row an object, a column a want: the best and its number.
-fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> Table {
-    let picks = picks(objects);
+fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[Pick<'_>]) -> Table {
     let mut wants: Vec<&'static Want> = Vec::new();
-    for pick in &picks {
+    for pick in picks {
         if wants.iter().all(|want| want.name != pick.want.name) {
             wants.push(pick.want);
         }
@@ -50,7 +50,8 @@ fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> Table {
         table.push(row);
     }
     table.notes.push(
-        "*: others are not told apart from it; the next table names them, and says what each choice costs."
+        "*: others are not told apart from it; the next table names them, and says what each choice costs. Empty: no method \
+         qualifies."
             .into(),
     );
     table.notes.push(conditions(inputs, objects));
@@ -58,7 +59,7 @@ fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> Table {
 }
 
 /// What one wants, what to take, why, and what it costs.
-fn decision(objects: &[ObjectCandidates<'_>]) -> Table {
+fn decision(objects: &[ObjectCandidates<'_>], picks: &[Pick<'_>]) -> Table {
     let columns = [
         ("want", "You want"),
         ("objects", "On"),
@@ -67,7 +68,7 @@ fn decision(objects: &[ObjectCandidates<'_>]) -> Table {
         ("cost", "What it costs"),
     ];
     let mut table = Table::new("decision", "Which method to take", &columns);
-    for pick in picks(objects) {
+    for pick in picks {
         let on: Vec<&str> = pick.on.iter().map(|best| best.object.name.as_str()).collect();
         let on = if on.len() == objects.len() && on.len() > 1 { "every object".into() } else { list(&on) };
         let take = format!("{}: {}", pick.method.id, pick.method.label);
@@ -75,8 +76,8 @@ fn decision(objects: &[ObjectCandidates<'_>]) -> Table {
             Cell::text(pick.want.phrase),
             Cell::text(on),
             Cell::text(take),
-            Cell::text(why(&pick)),
-            Cell::text(cost(&pick)),
+            Cell::text(why(pick)),
+            Cell::text(cost(pick)),
         ]);
     }
     table
@@ -164,13 +165,24 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
         }
     }
     text.push_str(
-        "Mean error: mean distance from mesh to isosurface or back, whichever is larger, in edges of the object's benchmark cubes. Largest \
-         error: the Hausdorff distance in that unit. Each column takes the best in its quantity, whatever else it costs. Those with the \
-         object's own cubes are compared, but for \u{201c}as many triangles\u{201d}. Not told apart: the intervals at 95 % meet. Not \
-         compared: ",
+        "Mean error: mean distance from mesh to isosurface or back, whichever is larger, in edges of the object's benchmark cubes. Sharp \
+         edges kept: mean distance from points of the object's sharp edges to the mesh, in that unit; where the object ends at walls, their \
+         edges are among them. Each column takes the best in its quantity, whatever else it costs. Those with the \
+         object's own cubes are compared, but for \u{201c}as many triangles\u{201d}. Not told apart: the intervals at 95 % meet; \
+         those of fewer than six times reach from the shortest to the longest. ",
     );
+    if inputs.chunks.iter().any(|times| !times.edit_s.is_empty()) {
+        text.push_str("Edits differ by their places, and their interval is over places. ");
+    }
+    let is_liked = objects.iter().flat_map(|of| &of.candidates).any(|of| of.preference.is_some());
+    if is_liked {
+        text.push_str(
+            "Most liked: a person's score is answers for a method less answers against it, per answer that showed it, whatever was beside it. ",
+        );
+    }
+    text.push_str("Not compared: ");
     let mut not = vec!["other objects, resolutions and machines"];
-    if objects.iter().flat_map(|of| &of.candidates).all(|of| of.preference.is_none()) {
+    if !is_liked {
         not.push("what people like, since nobody's answers are here");
     }
     not.extend(["memory", "ease of use"]);
