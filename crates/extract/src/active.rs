@@ -40,6 +40,8 @@ mod span_space;
 mod spans;
 
 use std::collections::TryReserveError;
+use std::error::Error;
+use std::fmt;
 
 pub use bricks::Bricks;
 pub use interval_tree::IntervalTree;
@@ -67,13 +69,10 @@ pub struct GridSamples<'a> {
 }
 
 /// Why there is no structure for some samples.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ActiveError {
     /// An axis with fewer than two samples, or counts that do not make the number of samples.
-    #[error(
-        "{samples} samples, and {counts:?} along the axes; there must be two or more along each, and as many as they make"
-    )]
     Counts {
         /// As given.
         counts: [usize; 3],
@@ -81,15 +80,28 @@ pub enum ActiveError {
         samples: usize,
     },
     /// More cells than a 32-bit number can name.
-    #[error("{cells} cells; at most {} can be numbered", u32::MAX)]
     TooManyCells {
         /// How many there are.
         cells: usize,
     },
     /// Memory that is not to be had.
-    #[error("no memory for the ranges of the cells")]
     OutOfMemory,
 }
+
+impl fmt::Display for ActiveError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Counts { counts, samples } => write!(
+                f,
+                "{samples} samples, and {counts:?} along the axes; there must be two or more along each, and as many as they make"
+            ),
+            Self::TooManyCells { cells } => write!(f, "{cells} cells; at most {} can be numbered", u32::MAX),
+            Self::OutOfMemory => f.write_str("no memory for the ranges of the cells"),
+        }
+    }
+}
+
+impl Error for ActiveError {}
 
 impl From<TryReserveError> for ActiveError {
     fn from(_: TryReserveError) -> Self {

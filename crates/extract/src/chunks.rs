@@ -1,6 +1,7 @@
 //! Boxes of a larger lattice, extracted one by one and welded to the mesh of the whole.
 
 mod chunk;
+mod error;
 mod extractor;
 mod layout;
 mod part;
@@ -12,7 +13,8 @@ mod weld;
 mod world;
 
 pub use chunk::{Chunk, TooManyVertices};
-pub use extractor::{ChunkError, ChunkExtractor};
+pub use error::ChunkError;
+pub use extractor::ChunkExtractor;
 pub use layout::SampleLayout;
 pub use settings::{ChunkSettings, Normals};
 pub use weld::{Mismatch, WeldError, weld_chunks};

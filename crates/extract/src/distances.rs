@@ -1,9 +1,11 @@
 //! Metro distances between a mesh and the isosurface of a field.
 
+use std::error::Error;
+use std::fmt;
+
 use glam::DVec3;
 use mesh::TriangleMesh;
 use mesh::metro::{Foot, Metro, MetroError, Sampling, Surface};
-use thiserror::Error;
 
 use crate::box_grid::BoxGrid;
 use crate::extraction::ExtractError;
@@ -14,17 +16,38 @@ use crate::settings::Execution;
 use field::{FieldCache, StudyField};
 
 /// Why a mesh and an isosurface cannot be measured against each other.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum DistanceError {
     /// The isosurface cannot be extracted.
-    #[error(transparent)]
-    Extract(#[from] ExtractError),
+    Extract(ExtractError),
     /// There is no isosurface in the box, or it cannot be sampled so.
-    #[error("the isosurface: {0}")]
     Isosurface(MetroError),
     /// The mesh cannot be sampled so.
-    #[error(transparent)]
-    Mesh(#[from] MetroError),
+    Mesh(MetroError),
+}
+
+impl fmt::Display for DistanceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Extract(error) => error.fmt(f),
+            Self::Isosurface(error) => write!(f, "the isosurface: {error}"),
+            Self::Mesh(error) => error.fmt(f),
+        }
+    }
+}
+
+impl Error for DistanceError {}
+
+impl From<ExtractError> for DistanceError {
+    fn from(error: ExtractError) -> Self {
+        Self::Extract(error)
+    }
+}
+
+impl From<MetroError> for DistanceError {
+    fn from(error: MetroError) -> Self {
+        Self::Mesh(error)
+    }
 }
 
 /// The distances from `mesh` to the isosurface of `field` in the box of `grid`, and back; `diagonal` is that of the

@@ -1,6 +1,8 @@
 //! What an extraction gives: the surface, counts, times, errors.
 
 use std::collections::TryReserveError;
+use std::error::Error;
+use std::fmt;
 use std::time::Duration;
 
 use mesh::TriangleMesh;
@@ -106,32 +108,26 @@ pub struct TetrahedraCounts {
 }
 
 /// Why a surface cannot be extracted.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ExtractError {
     /// The isovalue is infinite or not a number.
-    #[error("isovalue must be finite, not {value}")]
     Isovalue {
         /// What was given.
         value: f32,
     },
     /// No lattice over the grid.
-    #[error(transparent)]
-    Grid(#[from] crate::lattice::LatticeError),
+    Grid(crate::lattice::LatticeError),
     /// [`Positions::Accumulated`] with no chunk at all.
-    #[error("accumulated positions need at least one chunk of layers")]
     NoChunks,
     /// The lattice does not fit into memory.
-    #[error("no memory for the {bytes} bytes of the lattice")]
     OutOfMemory {
         /// [`Lattice::memory_bytes_for`] the settings.
         bytes: u64,
     },
     /// The mesh outgrew the memory that is left.
-    #[error("no memory for a mesh this large")]
     NoMemoryForMesh,
     /// Samples that are not as many as the lattice stores.
-    #[error("{given} samples for a lattice of {wanted}")]
     SampleCount {
         /// What was given.
         given: u64,
@@ -139,7 +135,6 @@ pub enum ExtractError {
         wanted: u64,
     },
     /// Bricks of samples that are not those of the lattice's points.
-    #[error("bricks of {given:?} samples for a lattice of {wanted:?}")]
     BrickCounts {
         /// Samples along each axis.
         given: [usize; 3],
@@ -147,7 +142,6 @@ pub enum ExtractError {
         wanted: [usize; 3],
     },
     /// The samples of a box that is not the lattice.
-    #[error("samples of the cells {given:?} for a lattice of {wanted:?}")]
     Window {
         /// What was given.
         given: CellBox,
@@ -156,10 +150,6 @@ pub enum ExtractError {
     },
     /// Integrated clustering where points differ in their lattice edges, or a warp elsewhere than on the body-centred lattice
     /// ([`Arrangement::supports`]).
-    #[error(
-        "{clustering} clustering does not go with {arrangement}: none and edge-collapse do, integrated and integrated-collapse go \
-         with body-centred and simple-cubic, and warp with body-centred"
-    )]
     ArrangementClustering {
         /// What was given.
         arrangement: Arrangement,
@@ -167,33 +157,23 @@ pub enum ExtractError {
         clustering: Clustering,
     },
     /// [`Positions::Accumulated`] where no original program is repeated.
-    #[error(
-        "{arrangement} has indexed positions only: accumulated ones go with body-centred and simple-cubic"
-    )]
     ArrangementAccumulated {
         /// What was given.
         arrangement: Arrangement,
     },
     /// [`ExtractSettings::edge_clamp`] out of its range.
-    #[error("edge_clamp = {edge_clamp:?}: must be 0 or more and below 0.5, in lengths of a lattice edge")]
     EdgeClamp {
         /// What was given.
         edge_clamp: f32,
     },
     /// [`Clustering::Warp`] with a setting that says what it does not know.
-    #[error(
-        "warp clustering does not go with {with}: it has guarded topology, indexed positions, crossings where they are interpolated, and any placement \
-         but curvature-weighted"
-    )]
     Warp {
         /// What it does not go with.
         with: &'static str,
     },
     /// Given samples and [`Positions::Accumulated`], which says where a field is sampled.
-    #[error("given samples have no accumulated positions")]
     SamplesAccumulated,
     /// Given samples, and settings that call the field.
-    #[error("given samples say nothing between them: {placement:?}{} needs the field", if *refine_crossings { " with refined crossings" } else { "" })]
     PlacementNeedsField {
         /// What was asked for.
         placement: Placement,
@@ -201,10 +181,8 @@ pub enum ExtractError {
         refine_crossings: bool,
     },
     /// [`Control::cancel`](crate::Control) was set. What extracts can be used again.
-    #[error("the extraction was cancelled")]
     Cancelled,
     /// The sampling threads could not be started.
-    #[error("cannot start {threads} sampling threads: {reason}")]
     Threads {
         /// How many.
         threads: usize,
@@ -212,11 +190,66 @@ pub enum ExtractError {
         reason: String,
     },
     /// More vertices than a 32-bit index can name.
-    #[error("the surface has more than {limit} vertices")]
     TooManyVertices {
         /// The most there may be.
         limit: u32,
     },
+}
+
+impl fmt::Display for ExtractError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Isovalue { value } => write!(f, "isovalue must be finite, not {value}"),
+            Self::Grid(error) => error.fmt(f),
+            Self::NoChunks => f.write_str("accumulated positions need at least one chunk of layers"),
+            Self::OutOfMemory { bytes } => write!(f, "no memory for the {bytes} bytes of the lattice"),
+            Self::NoMemoryForMesh => f.write_str("no memory for a mesh this large"),
+            Self::SampleCount { given, wanted } => write!(f, "{given} samples for a lattice of {wanted}"),
+            Self::BrickCounts { given, wanted } => {
+                write!(f, "bricks of {given:?} samples for a lattice of {wanted:?}")
+            }
+            Self::Window { given, wanted } => {
+                write!(f, "samples of the cells {given:?} for a lattice of {wanted:?}")
+            }
+            Self::ArrangementClustering { arrangement, clustering } => write!(
+                f,
+                "{clustering} clustering does not go with {arrangement}: none and edge-collapse do, integrated and integrated-collapse go \
+                 with body-centred and simple-cubic, and warp with body-centred"
+            ),
+            Self::ArrangementAccumulated { arrangement } => write!(
+                f,
+                "{arrangement} has indexed positions only: accumulated ones go with body-centred and simple-cubic"
+            ),
+            Self::EdgeClamp { edge_clamp } => write!(
+                f,
+                "edge_clamp = {edge_clamp:?}: must be 0 or more and below 0.5, in lengths of a lattice edge"
+            ),
+            Self::Warp { with } => write!(
+                f,
+                "warp clustering does not go with {with}: it has guarded topology, indexed positions, crossings where they are interpolated, and any placement \
+                 but curvature-weighted"
+            ),
+            Self::SamplesAccumulated => f.write_str("given samples have no accumulated positions"),
+            Self::PlacementNeedsField { placement, refine_crossings } => write!(
+                f,
+                "given samples say nothing between them: {placement:?}{} needs the field",
+                if *refine_crossings { " with refined crossings" } else { "" }
+            ),
+            Self::Cancelled => f.write_str("the extraction was cancelled"),
+            Self::Threads { threads, reason } => {
+                write!(f, "cannot start {threads} sampling threads: {reason}")
+            }
+            Self::TooManyVertices { limit } => write!(f, "the surface has more than {limit} vertices"),
+        }
+    }
+}
+
+impl Error for ExtractError {}
+
+impl From<crate::lattice::LatticeError> for ExtractError {
+    fn from(error: crate::lattice::LatticeError) -> Self {
+        Self::Grid(error)
+    }
 }
 
 /// What memory is asked for beyond that of the lattice is the mesh's.

@@ -1,5 +1,8 @@
 //! A grid of cubes without an end, for worlds that have none.
 
+use std::error::Error;
+use std::fmt;
+
 use field::Aabb;
 
 use crate::lattice::{CellBox, short};
@@ -25,17 +28,15 @@ pub struct Grid {
 }
 
 /// What a grid cannot be or tell.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum GridError {
     /// The cubes' edge is not a positive finite number, in `f32` too.
-    #[error("spacing must be positive and finite in f32, not {value:?}")]
     Spacing {
         /// What was given.
         value: f64,
     },
     /// The origin is not finite.
-    #[error("the origin must be finite along {axis}, not {value:?}")]
     Origin {
         /// `'x'`, `'y'` or `'z'`.
         axis: char,
@@ -43,7 +44,6 @@ pub enum GridError {
         value: f64,
     },
     /// A box that is inverted or not finite.
-    #[error("bounds along {axis} must be finite with min at most max, not {} to {}", short(*min), short(*max))]
     Bounds {
         /// `'x'`, `'y'` or `'z'`.
         axis: char,
@@ -53,15 +53,34 @@ pub enum GridError {
         max: f32,
     },
     /// A box that needs cells beyond `i32`.
-    #[error("cells along {axis} beyond the numbers of i32")]
     OutOfRange {
         /// `'x'`, `'y'` or `'z'`.
         axis: char,
     },
     /// A method whose chunks may depend on samples anywhere: with edge collapse, the whole piece of surface.
-    #[error("chunks by this method may look at samples anywhere")]
     NoWindow,
 }
+
+impl fmt::Display for GridError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Spacing { value } => write!(f, "spacing must be positive and finite in f32, not {value:?}"),
+            Self::Origin { axis, value } => {
+                write!(f, "the origin must be finite along {axis}, not {value:?}")
+            }
+            Self::Bounds { axis, min, max } => write!(
+                f,
+                "bounds along {axis} must be finite with min at most max, not {} to {}",
+                short(*min),
+                short(*max)
+            ),
+            Self::OutOfRange { axis } => write!(f, "cells along {axis} beyond the numbers of i32"),
+            Self::NoWindow => f.write_str("chunks by this method may look at samples anywhere"),
+        }
+    }
+}
+
+impl Error for GridError {}
 
 const AXES: [char; 3] = ['x', 'y', 'z'];
 

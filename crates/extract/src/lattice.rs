@@ -11,6 +11,7 @@ pub(crate) use coordinates::{Border, Coordinates};
 pub(crate) use directions::{ALL_DIRECTIONS, DIRECTIONS, DirectionSet, Directions, Offset, members};
 pub(crate) use layout::{Layout, PADDING_LAYERS, PointKind};
 
+use std::error::Error;
 use std::fmt;
 
 use glam::Vec3;
@@ -124,17 +125,15 @@ enum Whole {
 }
 
 /// Why a lattice cannot be built.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum LatticeError {
     /// The cube edge is not a positive finite number.
-    #[error("spacing must be positive and finite, not {}", short(*value))]
     Spacing {
         /// What was given.
         value: f32,
     },
     /// The box has no extent along an axis, or a bound is not a finite number.
-    #[error("bounds along {axis} must be finite with min below max, not {} to {}", short(*min), short(*max))]
     Bounds {
         /// `'x'`, `'y'` or `'z'`.
         axis: char,
@@ -144,7 +143,6 @@ pub enum LatticeError {
         max: f32,
     },
     /// More cells along an axis than `f32` can count one by one.
-    #[error("{} cells along {axis} exceed the limit of {limit}", short(*cells))]
     TooManyCells {
         /// `'x'`, `'y'` or `'z'`.
         axis: char,
@@ -154,7 +152,6 @@ pub enum LatticeError {
         limit: u32,
     },
     /// More sample points than a 32-bit index can name.
-    #[error("{samples} sample points exceed the limit of {limit}")]
     TooManySamples {
         /// What the lattice would store.
         samples: u128,
@@ -162,7 +159,6 @@ pub enum LatticeError {
         limit: u64,
     },
     /// The outermost lattice points lie beyond the range of `f32`.
-    #[error("spacing {} puts lattice points along {axis} beyond the range of f32", short(*spacing))]
     OutOfRange {
         /// `'x'`, `'y'` or `'z'`.
         axis: char,
@@ -170,6 +166,35 @@ pub enum LatticeError {
         spacing: f32,
     },
 }
+
+impl fmt::Display for LatticeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Spacing { value } => {
+                write!(f, "spacing must be positive and finite, not {}", short(*value))
+            }
+            Self::Bounds { axis, min, max } => write!(
+                f,
+                "bounds along {axis} must be finite with min below max, not {} to {}",
+                short(*min),
+                short(*max)
+            ),
+            Self::TooManyCells { axis, cells, limit } => {
+                write!(f, "{} cells along {axis} exceed the limit of {limit}", short(*cells))
+            }
+            Self::TooManySamples { samples, limit } => {
+                write!(f, "{samples} sample points exceed the limit of {limit}")
+            }
+            Self::OutOfRange { axis, spacing } => write!(
+                f,
+                "spacing {} puts lattice points along {axis} beyond the range of f32",
+                short(*spacing)
+            ),
+        }
+    }
+}
+
+impl Error for LatticeError {}
 
 /// A number in few letters: `0.04`, `-2`, `1e-40`.
 pub(crate) fn short(value: f32) -> String {

@@ -20,6 +20,9 @@ pub(crate) use surface_nets::MOST_SMOOTHING;
 pub use surface_nets::SurfaceNets;
 pub use tetrahedra::Tetrahedra;
 
+use std::error::Error;
+use std::fmt;
+
 use crate::box_grid::BoxGrid;
 use crate::cubes::Way;
 use crate::extraction::{ExtractError, Extraction};
@@ -100,46 +103,37 @@ pub struct CornerSamples {
 }
 
 /// Why a method makes no mesh.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum MethodError {
     /// The grid is not one for this method.
-    #[error(transparent)]
-    Grid(#[from] LatticeError),
+    Grid(LatticeError),
     /// A distance to snap from that is none.
-    #[error("gamma = {gamma:?}: must be from 0 to 0.5, in lengths of a lattice edge")]
     Gamma {
         /// As given.
         gamma: f32,
     },
     /// A share of the largest eigenvalue that is none.
-    #[error("truncation = {truncation:?}: must be from 0 to 1, a share of the largest eigenvalue")]
     Truncation {
         /// As given.
         truncation: f32,
     },
     /// A tolerance that is none.
-    #[error("tolerance = {tolerance:?}: must be 0 or more, in lengths of a lattice edge")]
     Tolerance {
         /// As given.
         tolerance: f32,
     },
     /// More steps than there may be.
-    #[error("smoothing = {smoothing}: must be from 0 to 64, steps")]
     Smoothing {
         /// As given.
         smoothing: u32,
     },
     /// Lines to search for seeds on that are no cells apart.
-    #[error("search = {search}: must be 1 or more, cells")]
     Search {
         /// As given.
         search: u32,
     },
     /// Moves that are none.
-    #[error(
-        "pull = {pull:?}, steps = {steps}, share = {share:?}: pull and share must be from 0 to 1, steps at most 64"
-    )]
     Macet {
         /// As given.
         pull: f32,
@@ -149,11 +143,51 @@ pub enum MethodError {
         share: f32,
     },
     /// There are samples, and the method calls the field between them.
-    #[error("the method calls the field; samples alone do not suffice")]
     NeedsField,
     /// The method's settings do not go together, or the extraction fails.
-    #[error(transparent)]
-    Extract(#[from] ExtractError),
+    Extract(ExtractError),
+}
+
+impl fmt::Display for MethodError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Grid(error) => error.fmt(f),
+            Self::Gamma { gamma } => {
+                write!(f, "gamma = {gamma:?}: must be from 0 to 0.5, in lengths of a lattice edge")
+            }
+            Self::Truncation { truncation } => write!(
+                f,
+                "truncation = {truncation:?}: must be from 0 to 1, a share of the largest eigenvalue"
+            ),
+            Self::Tolerance { tolerance } => {
+                write!(f, "tolerance = {tolerance:?}: must be 0 or more, in lengths of a lattice edge")
+            }
+            Self::Smoothing { smoothing } => {
+                write!(f, "smoothing = {smoothing}: must be from 0 to 64, steps")
+            }
+            Self::Search { search } => write!(f, "search = {search}: must be 1 or more, cells"),
+            Self::Macet { pull, steps, share } => write!(
+                f,
+                "pull = {pull:?}, steps = {steps}, share = {share:?}: pull and share must be from 0 to 1, steps at most 64"
+            ),
+            Self::NeedsField => f.write_str("the method calls the field; samples alone do not suffice"),
+            Self::Extract(error) => error.fmt(f),
+        }
+    }
+}
+
+impl Error for MethodError {}
+
+impl From<LatticeError> for MethodError {
+    fn from(error: LatticeError) -> Self {
+        Self::Grid(error)
+    }
+}
+
+impl From<ExtractError> for MethodError {
+    fn from(error: ExtractError) -> Self {
+        Self::Extract(error)
+    }
 }
 
 impl Method {

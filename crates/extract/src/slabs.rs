@@ -111,33 +111,39 @@ pub(crate) fn on_each<T: Send>(
     work: impl Fn(usize, &mut T) -> Result<(), ExtractError> + Sync,
 ) -> Result<(), ExtractError> {
     let threads = items.len();
+    let left = Mutex::new(items.iter_mut().enumerate());
+    run(on, threads, &|| {
+        let next = left.lock().expect("no thread panics with it").next();
+        next.map(|(i, item)| work(i, item))
+    })
+}
+
+/// Calls `next` on all threads until nothing is left. It is not generic: what starts threads is long, and compiled once.
+fn run(
+    on: Threads,
+    threads: usize,
+    next: &(dyn Fn() -> Option<Result<(), ExtractError>> + Sync),
+) -> Result<(), ExtractError> {
+    let all = || -> Result<(), ExtractError> { std::iter::from_fn(next).collect() };
     if let Threads::Jobs(jobs) = on {
-        // Fewer jobs than items where somebody changes their number on the way: each does what is left.
-        let left = Mutex::new(items.iter_mut().enumerate());
         let result = Mutex::new(Ok(()));
         jobs.run(&|_| {
-            loop {
-                let next = left.lock().expect("no job panics with it").next();
-                let Some((i, item)) = next else { return };
-                if let Err(error) = work(i, item) {
-                    *result.lock().expect("no job panics with it") = Err(error);
-                }
+            if let Err(error) = all() {
+                *result.lock().expect("no job panics with it") = Err(error);
             }
         });
         return result.into_inner().expect("no job panics with it");
     }
     std::thread::scope(|scope| {
-        let mut items = items.iter_mut().enumerate();
-        let (own, item) = items.next().expect("there is a thread");
-        let work = &work;
-        let handles = items
-            .map(|(i, item)| {
+        // The calling thread is one of them.
+        let handles = (1..threads)
+            .map(|_| {
                 std::thread::Builder::new()
-                    .spawn_scoped(scope, move || work(i, item))
+                    .spawn_scoped(scope, all)
                     .map_err(|error| ExtractError::Threads { threads, reason: error.to_string() })
             })
             .collect::<Result<Vec<_>, _>>()?;
-        work(own, item)?;
+        all()?;
         handles
             .into_iter()
             .try_for_each(|handle| handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))

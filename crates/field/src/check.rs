@@ -1,5 +1,7 @@
 //! Whether a field keeps what it promises.
 
+use std::error::Error;
+use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::Vec3;
@@ -8,11 +10,10 @@ use mesh::Bounds;
 use crate::{Aabb, Bound, Plain, ScalarField, StudyField};
 
 /// A promise that a field has broken, with the place.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum FieldFault {
     /// Two values for one point.
-    #[error("at {p:?} the field is {first} and then {second}")]
     NotRepeatable {
         /// The point.
         p: [f32; 3],
@@ -22,7 +23,6 @@ pub enum FieldFault {
         second: f32,
     },
     /// A row that is not the samples of its points.
-    #[error("at {p:?} sample_row says {row} and sample {sample}")]
     Row {
         /// The point.
         p: [f32; 3],
@@ -32,7 +32,6 @@ pub enum FieldFault {
         sample: f32,
     },
     /// A value beyond the range, or none, where a bound says that there is one.
-    #[error("at {p:?} the field is {value}, in the box {:?} to {:?}, where it says {} to {}", bounds.min, bounds.max, range.0, range.1)]
     Range {
         /// The point.
         p: [f32; 3],
@@ -44,9 +43,6 @@ pub enum FieldFault {
         range: (f32, f32),
     },
     /// Two values that are farther apart than the slope allows.
-    #[error(
-        "from {value} at {p:?} to {other} at {q:?} the field changes by {steepness} per unit, where it says at most {slope}"
-    )]
     Slope {
         /// One point.
         p: [f32; 3],
@@ -62,7 +58,6 @@ pub enum FieldFault {
         slope: f32,
     },
     /// A range with its ends exchanged, or a slope below zero or not a number.
-    #[error("in the box {:?} to {:?} the field says {bound:?}, which nothing can be", bounds.min, bounds.max)]
     Bound {
         /// The box.
         bounds: Aabb,
@@ -70,6 +65,33 @@ pub enum FieldFault {
         bound: Bound,
     },
 }
+
+impl fmt::Display for FieldFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotRepeatable { p, first, second } => {
+                write!(f, "at {p:?} the field is {first} and then {second}")
+            }
+            Self::Row { p, row, sample } => write!(f, "at {p:?} sample_row says {row} and sample {sample}"),
+            Self::Range { p, value, bounds, range } => write!(
+                f,
+                "at {p:?} the field is {value}, in the box {:?} to {:?}, where it says {} to {}",
+                bounds.min, bounds.max, range.0, range.1
+            ),
+            Self::Slope { p, q, value, other, steepness, slope } => write!(
+                f,
+                "from {value} at {p:?} to {other} at {q:?} the field changes by {steepness} per unit, where it says at most {slope}"
+            ),
+            Self::Bound { bounds, bound } => write!(
+                f,
+                "in the box {:?} to {:?} the field says {bound:?}, which nothing can be",
+                bounds.min, bounds.max
+            ),
+        }
+    }
+}
+
+impl Error for FieldFault {}
 
 /// Looks for a broken promise of a field in a box: `probes` times, in boxes of all sizes at places that depend on nothing
 /// but the number, whether values come again, whether rows agree with single samples, and whether the bound holds.

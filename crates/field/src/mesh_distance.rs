@@ -5,11 +5,13 @@ mod parts;
 mod solid_angles;
 mod winding;
 
+use std::error::Error;
+use std::fmt;
+
 use glam::{DVec3, Vec3};
 use mesh::metro::Foot;
 use mesh::topology::topology;
 use mesh::{Bounds, MeshError, NearestTriangles, TriangleMesh, is_sound, used_vertices};
-use thiserror::Error;
 
 pub use self::parts::InwardPart;
 
@@ -25,17 +27,11 @@ const ON_SURFACE: f64 = 1e-6;
 const THINNEST: f64 = 1e-5;
 
 /// Why a mesh has no inside to measure from.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum MeshFieldError {
     /// The mesh cannot be computed with.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Mesh(MeshError),
     /// The surface is open, branches, or changes its orientation.
-    #[error(
-        "the mesh is not a closed manifold: {boundary_edges} boundary, {non_manifold_edges} non-manifold and \
-         {misoriented_edges} mis-oriented edges, {non_manifold_vertices} non-manifold vertices, \
-         {duplicate_faces} duplicate and {collapsed_triangles} collapsed triangles"
-    )]
     NotClosedManifold {
         /// Edges with one triangle.
         boundary_edges: u64,
@@ -51,10 +47,6 @@ pub enum MeshFieldError {
         collapsed_triangles: u64,
     },
     /// The surface has holes, edges that triangles run more often one way than the other.
-    #[error(
-        "the mesh is open: {edges} edges at holes, or between triangles that face opposite ways; in rings of them: {rings}; \
-         the longest has {longest} round {centre} (within {radius})"
-    )]
     Open {
         /// Edges that are not run as often one way as the other.
         edges: usize,
@@ -68,9 +60,6 @@ pub enum MeshFieldError {
         radius: f32,
     },
     /// The surface is as good as flat, so that neither side is inside.
-    #[error(
-        "the mesh encloses a volume of {volume} with an area of {area}: as good as nothing, so that no side is inside"
-    )]
     Flat {
         /// The signed volume.
         volume: f64,
@@ -78,11 +67,52 @@ pub enum MeshFieldError {
         area: f64,
     },
     /// The triangles face inward, so that inside and outside would be swapped.
-    #[error("the mesh encloses a volume of {volume}; it must be positive, with triangles that face outward")]
     InsideOut {
         /// The signed volume.
         volume: f64,
     },
+}
+
+impl fmt::Display for MeshFieldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Mesh(error) => error.fmt(f),
+            Self::NotClosedManifold {
+                boundary_edges,
+                non_manifold_edges,
+                misoriented_edges,
+                non_manifold_vertices,
+                duplicate_faces,
+                collapsed_triangles,
+            } => write!(
+                f,
+                "the mesh is not a closed manifold: {boundary_edges} boundary, {non_manifold_edges} non-manifold and \
+                 {misoriented_edges} mis-oriented edges, {non_manifold_vertices} non-manifold vertices, \
+                 {duplicate_faces} duplicate and {collapsed_triangles} collapsed triangles"
+            ),
+            Self::Open { edges, rings, longest, centre, radius } => write!(
+                f,
+                "the mesh is open: {edges} edges at holes, or between triangles that face opposite ways; in rings of them: {rings}; \
+                 the longest has {longest} round {centre} (within {radius})"
+            ),
+            Self::Flat { volume, area } => write!(
+                f,
+                "the mesh encloses a volume of {volume} with an area of {area}: as good as nothing, so that no side is inside"
+            ),
+            Self::InsideOut { volume } => write!(
+                f,
+                "the mesh encloses a volume of {volume}; it must be positive, with triangles that face outward"
+            ),
+        }
+    }
+}
+
+impl Error for MeshFieldError {}
+
+impl From<MeshError> for MeshFieldError {
+    fn from(error: MeshError) -> Self {
+        Self::Mesh(error)
+    }
 }
 
 /// The Euclidean distance to the surface of a solid: positive inside, negative outside, zero on it. Above an isovalue

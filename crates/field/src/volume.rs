@@ -3,11 +3,12 @@
 mod ranges;
 
 use std::collections::TryReserveError;
+use std::error::Error;
+use std::fmt;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3, Vec3};
 use mesh::Bounds;
-use thiserror::Error;
 
 use self::ranges::Ranges;
 use super::{SAFE, StudyField};
@@ -36,10 +37,9 @@ enum Fall {
 }
 
 /// Why samples make no field.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum VolumeFieldError {
     /// An axis has no samples, or the counts do not make the number of samples.
-    #[error("{samples} samples, and {counts:?} along the axes")]
     Counts {
         /// As given.
         counts: [usize; 3],
@@ -47,13 +47,11 @@ pub enum VolumeFieldError {
         samples: usize,
     },
     /// An axis has one sample, so that there is nothing between samples and the volume is flat.
-    #[error("{counts:?} samples along the axes; there must be two or more along each, or the volume is flat")]
     Flat {
         /// As given.
         counts: [usize; 3],
     },
     /// The steps from sample to sample are not finite or span no space.
-    #[error("the steps {steps:?} from sample to sample, from {origin:?}, span no space")]
     Steps {
         /// As given.
         steps: [[f64; 3]; 3],
@@ -61,12 +59,29 @@ pub enum VolumeFieldError {
         origin: [f64; 3],
     },
     /// No sample is a finite number.
-    #[error("none of the samples is a finite number")]
     NoNumbers,
     /// Memory that is not to be had.
-    #[error("no memory for the bounds of the samples")]
     OutOfMemory,
 }
+
+impl fmt::Display for VolumeFieldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Counts { counts, samples } => write!(f, "{samples} samples, and {counts:?} along the axes"),
+            Self::Flat { counts } => write!(
+                f,
+                "{counts:?} samples along the axes; there must be two or more along each, or the volume is flat"
+            ),
+            Self::Steps { steps, origin } => {
+                write!(f, "the steps {steps:?} from sample to sample, from {origin:?}, span no space")
+            }
+            Self::NoNumbers => f.write_str("none of the samples is a finite number"),
+            Self::OutOfMemory => f.write_str("no memory for the bounds of the samples"),
+        }
+    }
+}
+
+impl Error for VolumeFieldError {}
 
 /// Samples on a regular grid with an interpolated value between them: trilinear, in single precision, continuous, and
 /// at a sample the sample. Inside is what is brighter than the isovalue.

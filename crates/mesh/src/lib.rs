@@ -44,30 +44,29 @@ mod closest_point;
 mod connectivity;
 mod corner_fans;
 pub mod distribution;
-mod format;
-mod glb;
+#[cfg(feature = "files")]
+mod files;
 mod labelled;
 pub mod metro;
 mod nearest;
 pub mod normals;
 mod numbers;
-mod obj;
-mod ply;
 pub mod quality;
 pub mod repair;
 mod self_intersections;
-mod stl;
 pub mod topology;
 mod triangle_mesh;
+mod weld;
 
-pub use format::{MeshFormat, ReadError};
+#[cfg(feature = "files")]
+pub use files::{
+    CompactNumbers, MeshFormat, ObjError, Per, PlyError, ReadError, StlError, read_obj, read_ply, read_stl,
+    write_compact_glb, write_glb, write_obj, write_ply, write_stl,
+};
 pub use glam;
-pub use glb::{CompactNumbers, Per, write_compact_glb, write_glb};
 pub use labelled::LabelledMesh;
 pub use nearest::{NearestPoint, NearestTriangles};
 pub use numbers::{COORDINATE_LIMIT, MeshError, is_sound, used_vertices};
-pub use obj::{ObjError, read_obj, write_obj};
-pub use ply::{PlyError, read_ply, write_ply};
 pub use self_intersections::self_intersections;
-pub use stl::{StlError, read_stl, weld, write_stl};
 pub use triangle_mesh::{Bounds, TriangleMesh};
+pub use weld::weld;

@@ -50,12 +50,13 @@
 
 mod samples;
 
+use std::error::Error;
+use std::fmt;
 use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
-use thiserror::Error;
 
 pub use self::samples::AreaSamples;
 use crate::nearest::NearestTriangles;
@@ -68,31 +69,52 @@ pub const MOST_SAMPLES: u64 = 1_000_000_000;
 const SHARE: u64 = 4096;
 
 /// Why a surface cannot be measured.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum MetroError {
     /// The mesh cannot be computed with.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Mesh(MeshError),
     /// All triangles are degenerate: there is nothing to take a mean over.
-    #[error("the mesh has {triangles} triangles, and none has an area")]
     NoArea {
         /// How many there are.
         triangles: usize,
     },
     /// A density that is no positive number.
-    #[error("a density of {density} samples per unit of area; it must be a number above 0")]
     Density {
         /// The density.
         density: f64,
     },
     /// No samples, or more than [`MOST_SAMPLES`].
-    #[error("{samples:.0} samples on an area of {area}; allowed are 1 to {MOST_SAMPLES}")]
     SampleCount {
         /// How many were asked for.
         samples: f64,
         /// The area they are for.
         area: f64,
     },
+}
+
+impl fmt::Display for MetroError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Mesh(error) => error.fmt(f),
+            Self::NoArea { triangles } => {
+                write!(f, "the mesh has {triangles} triangles, and none has an area")
+            }
+            Self::Density { density } => {
+                write!(f, "a density of {density} samples per unit of area; it must be a number above 0")
+            }
+            Self::SampleCount { samples, area } => {
+                write!(f, "{samples:.0} samples on an area of {area}; allowed are 1 to {MOST_SAMPLES}")
+            }
+        }
+    }
+}
+
+impl Error for MetroError {}
+
+impl From<MeshError> for MetroError {
+    fn from(error: MeshError) -> Self {
+        Self::Mesh(error)
+    }
 }
 
 /// How many points of a surface are measured, and which.

@@ -1,7 +1,9 @@
 //! Whether a mesh can be computed with at all.
 
+use std::error::Error;
+use std::fmt;
+
 use glam::Vec3;
-use thiserror::Error;
 
 use crate::TriangleMesh;
 
@@ -9,13 +11,11 @@ use crate::TriangleMesh;
 pub const COORDINATE_LIMIT: f32 = 1e18;
 
 /// Why a mesh cannot be computed with.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum MeshError {
     /// There are no triangles.
-    #[error("the mesh has no triangles")]
     Empty,
     /// A triangle refers to a vertex that does not exist.
-    #[error("triangle {triangle} refers to vertex {index} of {vertices}")]
     IndexOutOfRange {
         /// The triangle.
         triangle: usize,
@@ -25,7 +25,6 @@ pub enum MeshError {
         vertices: usize,
     },
     /// A vertex of a triangle is NaN, infinite or beyond the limit.
-    #[error("vertex {vertex} is at {position}; coordinates must be numbers up to {COORDINATE_LIMIT:e}")]
     Coordinate {
         /// The vertex.
         vertex: usize,
@@ -33,6 +32,23 @@ pub enum MeshError {
         position: Vec3,
     },
 }
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => f.write_str("the mesh has no triangles"),
+            Self::IndexOutOfRange { triangle, index, vertices } => {
+                write!(f, "triangle {triangle} refers to vertex {index} of {vertices}")
+            }
+            Self::Coordinate { vertex, position } => write!(
+                f,
+                "vertex {vertex} is at {position}; coordinates must be numbers up to {COORDINATE_LIMIT:e}"
+            ),
+        }
+    }
+}
+
+impl Error for MeshError {}
 
 /// Whether all coordinates are numbers up to [`COORDINATE_LIMIT`].
 pub fn is_sound(p: Vec3) -> bool {

@@ -1,17 +1,18 @@
 //! What makes a scanned mesh a closed solid: unused vertices dropped, holes closed, outside facing out.
 
+use std::error::Error;
+use std::fmt;
+
 use glam::DVec3;
-use thiserror::Error;
 
 use crate::TriangleMesh;
 use crate::connectivity::{Connectivity, HalfEdge, is_proper};
 use crate::corner_fans::{DisjointSets, corner_fans};
 
 /// Why a hole cannot be closed.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RepairError {
     /// An edge with three or more triangles has no inside to close.
-    #[error("edge {}-{} has {triangles} triangles; holes can be closed where edges have one or two", .edge[0], .edge[1])]
     NonManifoldEdge {
         /// The vertices of the edge, the lower first.
         edge: [u32; 2],
@@ -19,18 +20,34 @@ pub enum RepairError {
         triangles: usize,
     },
     /// Two triangles run an edge in the same direction, so that a loop along them has no direction.
-    #[error("the two triangles at edge {}-{} face opposite ways", .edge[0], .edge[1])]
     MisorientedEdge {
         /// The vertices of the edge, the lower first.
         edge: [u32; 2],
     },
     /// A triangle repeats a vertex.
-    #[error("triangle {triangle} repeats a vertex")]
     CollapsedTriangle {
         /// Its number.
         triangle: usize,
     },
 }
+
+impl fmt::Display for RepairError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NonManifoldEdge { edge, triangles } => write!(
+                f,
+                "edge {}-{} has {triangles} triangles; holes can be closed where edges have one or two",
+                edge[0], edge[1]
+            ),
+            Self::MisorientedEdge { edge } => {
+                write!(f, "the two triangles at edge {}-{} face opposite ways", edge[0], edge[1])
+            }
+            Self::CollapsedTriangle { triangle } => write!(f, "triangle {triangle} repeats a vertex"),
+        }
+    }
+}
+
+impl Error for RepairError {}
 
 /// The mesh without the vertices that no triangle refers to; order is kept, normals move along.
 ///

@@ -1,6 +1,8 @@
 //! What is extracted of a box of cells.
 
 use std::collections::TryReserveError;
+use std::error::Error;
+use std::fmt;
 
 use field::Aabb;
 use glam::Vec3;
@@ -74,12 +76,20 @@ impl Default for Chunk {
 }
 
 /// More vertices than 16 bits can name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("{vertices} vertices are more than 16-bit indices can name, which is {}", 1 << 16)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TooManyVertices {
     /// How many there are.
     pub vertices: usize,
 }
+
+impl fmt::Display for TooManyVertices {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { vertices } = self;
+        write!(f, "{vertices} vertices are more than 16-bit indices can name, which is {}", 1 << 16)
+    }
+}
+
+impl Error for TooManyVertices {}
 
 impl Chunk {
     /// Makes room for so many vertices, and for the triangles that as many have: twice as many. For chunks whose room is

@@ -1,17 +1,17 @@
 //! Extraction of one chunk after the other.
 
-use std::collections::TryReserveError;
 use std::fmt;
 
 use field::{Aabb, Plain, StudyField, Watched};
 use glam::Vec3;
 
 use super::chunk::Chunk;
+use super::error::ChunkError;
 use super::layout::SampleLayout;
 use super::part::cut_out;
 use super::piece::collapsed;
 use super::settings::{ChunkSettings, Normals};
-use super::settled::Settled;
+use super::settled::{MOST_EXTRA, Settled};
 use super::world::{Place, World};
 use crate::box_grid::BoxGrid;
 use crate::control::Control;
@@ -20,7 +20,7 @@ use crate::extractor::Extractor;
 use crate::finish::FieldTargets;
 use crate::grid::Grid;
 use crate::guard::Guard;
-use crate::lattice::{Border, CellBox, Lattice, LatticeError};
+use crate::lattice::{Border, CellBox, Lattice};
 use crate::level::Level;
 use crate::memory::refill;
 use crate::method::{ByWindow, Method, MethodError};
@@ -32,17 +32,15 @@ use crate::source::Source;
 const FIRST_MARGIN: u32 = 8;
 /// Cells at either end of `i32` that no chunk of a grid without an end has, so that there is room for windows.
 const MARGIN: i32 = 1 << 10;
-/// A vertex that is moved is followed so many cells from the chunk, where its neighbours decide whether it may be.
-const MOST_EXTRA: u32 = 64;
 
 /// Extracts boxes of cells of a grid, such that neighbours fit to the bit, and all of a box [weld](crate::weld_chunks) to
 /// the mesh that [`extract`](crate::extract) makes of the whole, byte for byte.
 ///
 /// To decide as the whole would, more is sampled than the chunk's own cells ([`window`](Self::window)): two cells on every
 /// side, or one where cubes are cut each by itself ([`Arrangement`](crate::Arrangement)) or not at all
-/// ([`Cubes`](crate::Cubes)); one more with [`Placement::Projected`],
-/// two with [`Placement::Relaxed`], and one for each step of [`SurfaceNets::smoothing`](crate::SurfaceNets::smoothing). Edges collapse in an order that runs through a whole connected piece of surface, and
-/// an early collapse can decide a late one anywhere on it: with edge collapse the window therefore grows until it holds
+/// ([`Cubes`](crate::Cubes)), or three for duals with patches; one more with [`Placement::Projected`],
+/// two with [`Placement::Relaxed`], and one for each step of [`SurfaceNets::smoothing`](crate::SurfaceNets::smoothing). Edges
+/// collapse in an order that runs through a whole connected piece of surface, and an early collapse can decide a late one anywhere on it: with edge collapse the window therefore grows until it holds
 /// every piece of surface that enters the chunk, if need be to the whole box, and there must be one. For terrain that
 /// is edited all the time take [`Clustering::Integrated`](crate::Clustering), which regularises triangles without
 /// looking farther than a neighbour.
@@ -102,76 +100,6 @@ pub struct ChunkExtractor {
     numbers: Vec<u32>,
     targets: FieldTargets,
     settled: Settled,
-}
-
-/// Why a chunk cannot be extracted.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ChunkError {
-    /// The settings or the samples are not valid, there is no memory, or somebody cancelled it.
-    #[error(transparent)]
-    Extract(#[from] ExtractError),
-    /// A box without a cell, or with cells that there are not.
-    #[error("cells {:?} to {:?} are not a box of the cells {:?} to {:?}", given.start, given.end, whole.start, whole.end)]
-    Cells {
-        /// What was given.
-        given: CellBox,
-        /// All cells.
-        whole: CellBox,
-    },
-    /// The samples of a box that does not contain the window.
-    #[error("samples of the cells {:?} to {:?}, where those of {:?} to {:?} are looked at", given.start, given.end, wanted.start, wanted.end)]
-    Window {
-        /// What was given.
-        given: CellBox,
-        /// What is looked at.
-        wanted: CellBox,
-    },
-    /// [`Source::Samples`], all of them, of a grid without an end.
-    #[error("a grid without an end has no last sample: give a Source::Window")]
-    EndlessSamples,
-    /// Edge collapse in a grid without an end: a piece of surface may have none either.
-    #[error("edge collapse needs a box")]
-    EndlessCollapse,
-    /// [`Normals::Field`] of samples.
-    #[error("samples have no gradient between them: Normals::Field needs a field")]
-    NormalsNeedField,
-    /// A setting of the method is out of its range.
-    #[error(transparent)]
-    Settings(#[from] MethodError),
-    /// A method without chunks.
-    #[error("this method makes no chunks")]
-    Method,
-    /// [`Positions::Accumulated`]: a position depends on all before it.
-    #[error("chunks need indexed positions")]
-    Accumulated,
-    /// Vertices where chunks have none: refined crossings, weights by curvature, or moves after edges were collapsed.
-    #[error(
-        "chunks have vertices at the mean of interpolated crossings, projected or relaxed, without edge collapse; not \
-         {placement:?}{}",
-        if *refine_crossings { " with refined crossings" } else { "" }
-    )]
-    Placement {
-        /// What was given.
-        placement: Placement,
-        /// What was given.
-        refine_crossings: bool,
-    },
-    /// Whether a vertex may move depends on others more than 64 cells away.
-    #[error("whether vertices may move depends on others more than {MOST_EXTRA} cells away")]
-    Unsettled,
-}
-
-impl From<TryReserveError> for ChunkError {
-    fn from(error: TryReserveError) -> Self {
-        Self::Extract(error.into())
-    }
-}
-
-impl From<LatticeError> for ChunkError {
-    fn from(error: LatticeError) -> Self {
-        Self::Extract(error.into())
-    }
 }
 
 impl fmt::Debug for ChunkExtractor {

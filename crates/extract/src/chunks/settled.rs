@@ -14,6 +14,9 @@ use crate::placement::{MOST_PASSES, Moves, on_box};
 use crate::trace::Trace;
 use glam::Vec3;
 
+/// A vertex that is moved is followed so many cells from the chunk, where its neighbours decide whether it may be.
+pub(super) const MOST_EXTRA: u32 = 64;
+
 /// Room to work in.
 #[derive(Debug, Default)]
 pub(super) struct Settled {

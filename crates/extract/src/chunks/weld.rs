@@ -1,6 +1,8 @@
 //! Chunks to one mesh.
 
 use std::collections::{HashMap, TryReserveError};
+use std::error::Error;
+use std::fmt;
 
 use glam::Vec3;
 use mesh::TriangleMesh;
@@ -12,39 +14,44 @@ use crate::memory::{push, with_room};
 use crate::trace::VertexKey;
 
 /// Why chunks do not weld.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum WeldError {
     /// Two chunks are not of one grid, method and settings.
-    #[error("chunks of two worlds: {}; and {}", worlds[0], worlds[1])]
     Worlds {
         /// What they are chunks of.
         worlds: Box<[World; 2]>,
     },
     /// Two chunks of one level have triangles of one cell.
-    #[error("cell {cell:?} is in two of the chunks")]
     Overlap {
         /// The cell.
         cell: [i32; 3],
     },
     /// Two chunks have one vertex in two places, or with two normals: they are not of the same field, or one of them has
     /// not been extracted again since it changed.
-    #[error(transparent)]
     Mismatch(Box<Mismatch>),
     /// More vertices than a 32-bit index can name.
-    #[error("the chunks have more than {} vertices", u32::MAX)]
     TooManyVertices,
     /// The mesh outgrew the memory that is left.
-    #[error("no memory for a mesh this large")]
     NoMemory,
 }
 
+impl fmt::Display for WeldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Worlds { worlds } => write!(f, "chunks of two worlds: {}; and {}", worlds[0], worlds[1]),
+            Self::Overlap { cell } => write!(f, "cell {cell:?} is in two of the chunks"),
+            Self::Mismatch(error) => error.fmt(f),
+            Self::TooManyVertices => write!(f, "the chunks have more than {} vertices", u32::MAX),
+            Self::NoMemory => f.write_str("no memory for a mesh this large"),
+        }
+    }
+}
+
+impl Error for WeldError {}
+
 /// One vertex, as two chunks have it.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error(
-    "the chunks do not fit at vertex {:#x}: that of cells {:?} has it at {:?} with normal {:?}, that of cells {:?} at {:?} with normal {:?}",
-    key.number(), chunks[0].start, positions[0], normals[0], chunks[1].start, positions[1], normals[1]
-)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Mismatch {
     /// Which vertex.
     pub key: VertexKey,
@@ -55,6 +62,25 @@ pub struct Mismatch {
     /// Its normal in each; zero where there are none.
     pub normals: [[f32; 3]; 2],
 }
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { key, chunks, positions, normals } = self;
+        write!(
+            f,
+            "the chunks do not fit at vertex {:#x}: that of cells {:?} has it at {:?} with normal {:?}, that of cells {:?} at {:?} with normal {:?}",
+            key.number(),
+            chunks[0].start,
+            positions[0],
+            normals[0],
+            chunks[1].start,
+            positions[1],
+            normals[1]
+        )
+    }
+}
+
+impl Error for Mismatch {}
 
 impl From<TryReserveError> for WeldError {
     fn from(_: TryReserveError) -> Self {

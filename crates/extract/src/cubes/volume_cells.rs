@@ -1,8 +1,10 @@
 //! A volume's own cells: the surface between its samples, in the space its steps are in.
 
+use std::error::Error;
+use std::fmt;
+
 use glam::{DMat3, DVec3, Vec3};
 use mesh::{Bounds, TriangleMesh};
-use thiserror::Error;
 
 use crate::ExtractError;
 use crate::active::{ActiveError, Bricks, GridSamples};
@@ -29,17 +31,15 @@ pub struct VolumeCells<'a> {
 }
 
 /// Why a volume has no mesh on its own cells.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum VolumeCellsError {
     /// An axis with fewer than two samples.
-    #[error("{counts:?} samples along the axes; there must be two or more along each")]
     Flat {
         /// As given.
         counts: [usize; 3],
     },
     /// The steps span no space, or are not finite.
-    #[error("the steps {steps:?} from sample to sample, from {origin:?}, span no space")]
     Steps {
         /// As given.
         steps: [[f64; 3]; 3],
@@ -47,11 +47,34 @@ pub enum VolumeCellsError {
         origin: [f64; 3],
     },
     /// A method whose sample points are not the corners of cubes.
-    #[error("a volume's own cells are for methods of cubes: other methods have sample points between")]
     Method,
     /// The extraction fails.
-    #[error(transparent)]
-    Extract(#[from] MethodError),
+    Extract(MethodError),
+}
+
+impl fmt::Display for VolumeCellsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flat { counts } => {
+                write!(f, "{counts:?} samples along the axes; there must be two or more along each")
+            }
+            Self::Steps { steps, origin } => {
+                write!(f, "the steps {steps:?} from sample to sample, from {origin:?}, span no space")
+            }
+            Self::Method => f.write_str(
+                "a volume's own cells are for methods of cubes: other methods have sample points between",
+            ),
+            Self::Extract(error) => error.fmt(f),
+        }
+    }
+}
+
+impl Error for VolumeCellsError {}
+
+impl From<MethodError> for VolumeCellsError {
+    fn from(error: MethodError) -> Self {
+        Self::Extract(error)
+    }
 }
 
 /// Where the steps of a grid lead.

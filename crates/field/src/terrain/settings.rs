@@ -1,9 +1,8 @@
 //! What a terrain is like.
 
+use std::error::Error;
 use std::fmt;
 use std::str::FromStr;
-
-use thiserror::Error;
 
 use crate::fractal::MOST_OCTAVES;
 
@@ -150,17 +149,15 @@ impl Default for TerrainSettings {
 }
 
 /// Why there is no such terrain.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum TerrainError {
     /// A name that no character has.
-    #[error("no terrain is called `{name}`; hills, cliffs and caves are")]
     Character {
         /// What was asked for, cut after 40 characters.
         name: String,
     },
     /// A setting out of its range.
-    #[error("`{key}` = {value}: it has to be {allowed}")]
     Setting {
         /// The field of [`TerrainSettings`].
         key: &'static str,
@@ -170,9 +167,24 @@ pub enum TerrainError {
         allowed: &'static str,
     },
     /// Bounds without a size, or not finite.
-    #[error("the bounds of a terrain have to be finite, each side longer than 0 and no longer than 1e18")]
     Bounds,
 }
+
+impl fmt::Display for TerrainError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Character { name } => {
+                write!(f, "no terrain is called `{name}`; hills, cliffs and caves are")
+            }
+            Self::Setting { key, value, allowed } => write!(f, "`{key}` = {value}: it has to be {allowed}"),
+            Self::Bounds => f.write_str(
+                "the bounds of a terrain have to be finite, each side longer than 0 and no longer than 1e18",
+            ),
+        }
+    }
+}
+
+impl Error for TerrainError {}
 
 impl TerrainSettings {
     /// Whether all settings are in their ranges.

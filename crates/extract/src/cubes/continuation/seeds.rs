@@ -1,6 +1,8 @@
 //! Where continuation begins: near points that are given, or where a search finds that the surface crosses a line.
 
 use std::collections::TryReserveError;
+use std::error::Error;
+use std::fmt;
 
 use super::Continued;
 use super::corners::Corners;
@@ -32,18 +34,27 @@ pub struct Seeds {
 }
 
 /// Why there are no such seeds.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error(
-    "seeds: {count} points{}; there must be at most {} of finite coordinates",
-    if *is_finite { "" } else { ", not all finite" },
-    Seeds::MOST
-)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SeedsError {
     /// How many were given.
     pub count: usize,
     /// Whether all coordinates are finite.
     pub is_finite: bool,
 }
+
+impl fmt::Display for SeedsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { count, is_finite } = self;
+        write!(
+            f,
+            "seeds: {count} points{}; there must be at most {} of finite coordinates",
+            if *is_finite { "" } else { ", not all finite" },
+            Seeds::MOST
+        )
+    }
+}
+
+impl Error for SeedsError {}
 
 impl Seeds {
     /// The most points.

@@ -7,10 +7,11 @@
 //! Two layers of labels and the vertex numbers of two layers of cells are held at a time.
 
 use std::collections::{BTreeMap, TryReserveError};
+use std::error::Error;
+use std::fmt;
 
 use glam::Vec3;
 use mesh::{LabelledMesh, TriangleMesh};
-use thiserror::Error;
 
 use super::super::volume_cells::Space;
 use super::quads::{CORNERS, Quadrilateral};
@@ -73,17 +74,15 @@ pub struct LabelSurface {
 }
 
 /// Why labels have no boundaries.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum LabelError {
     /// An axis with fewer than two labels.
-    #[error("{counts:?} samples along the axes; there must be two or more along each")]
     Flat {
         /// As given.
         counts: [usize; 3],
     },
     /// Not as many labels as the counts say.
-    #[error("{given} labels for {counts:?} samples along the axes")]
     Count {
         /// How many there are.
         given: usize,
@@ -91,7 +90,6 @@ pub enum LabelError {
         counts: [usize; 3],
     },
     /// The steps span no space, or are not finite.
-    #[error("the steps {steps:?} from sample to sample, from {origin:?}, span no space")]
     Steps {
         /// As given.
         steps: [[f64; 3]; 3],
@@ -99,16 +97,13 @@ pub enum LabelError {
         origin: [f64; 3],
     },
     /// Nothing to have a boundary with.
-    #[error("every sample has the label {label}: there is no boundary")]
     Alone {
         /// The one label.
         label: u32,
     },
     /// A volume of something else.
-    #[error("more than {MOST_LABELS} different labels: are these densities?")]
     TooMany,
     /// A label was chosen that no sample has.
-    #[error("no sample has the label {label}; labels are {}", few(.known))]
     Absent {
         /// As chosen.
         label: u32,
@@ -116,17 +111,50 @@ pub enum LabelError {
         known: Vec<u32>,
     },
     /// The background was chosen.
-    #[error("label {BACKGROUND} is the background, which is there always; choose others")]
     Background,
     /// More steps than there may be.
-    #[error("smoothing = {smoothing}: must be from 0 to {MOST_SMOOTHING}, steps")]
     Smoothing {
         /// As given.
         smoothing: u32,
     },
     /// The extraction fails.
-    #[error(transparent)]
-    Extract(#[from] ExtractError),
+    Extract(ExtractError),
+}
+
+impl fmt::Display for LabelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flat { counts } => {
+                write!(f, "{counts:?} samples along the axes; there must be two or more along each")
+            }
+            Self::Count { given, counts } => {
+                write!(f, "{given} labels for {counts:?} samples along the axes")
+            }
+            Self::Steps { steps, origin } => {
+                write!(f, "the steps {steps:?} from sample to sample, from {origin:?}, span no space")
+            }
+            Self::Alone { label } => write!(f, "every sample has the label {label}: there is no boundary"),
+            Self::TooMany => write!(f, "more than {MOST_LABELS} different labels: are these densities?"),
+            Self::Absent { label, known } => {
+                write!(f, "no sample has the label {label}; labels are {}", few(known))
+            }
+            Self::Background => {
+                write!(f, "label {BACKGROUND} is the background, which is there always; choose others")
+            }
+            Self::Smoothing { smoothing } => {
+                write!(f, "smoothing = {smoothing}: must be from 0 to {MOST_SMOOTHING}, steps")
+            }
+            Self::Extract(error) => error.fmt(f),
+        }
+    }
+}
+
+impl Error for LabelError {}
+
+impl From<ExtractError> for LabelError {
+    fn from(error: ExtractError) -> Self {
+        Self::Extract(error)
+    }
 }
 
 /// The first of a list, for messages.

@@ -2,13 +2,13 @@
 
 mod text;
 
-use std::collections::HashMap;
+use std::error::Error;
+use std::fmt;
 use std::io::{self, BufWriter, Read, Write};
 
 use glam::Vec3;
-use thiserror::Error;
 
-use crate::TriangleMesh;
+use crate::{TriangleMesh, weld};
 
 /// What stands before the number of triangles: anything.
 const TITLE_BYTES: usize = 80;
@@ -18,15 +18,11 @@ const HEADER_BYTES: usize = TITLE_BYTES + 4;
 const TRIANGLE_BYTES: usize = 50;
 
 /// What is wrong with an STL file. Lines count from 1, triangles from 0.
-#[derive(Debug, Error)]
+#[derive(Debug)]
 pub enum StlError {
     /// The input cannot be read.
-    #[error(transparent)]
-    Io(#[from] io::Error),
+    Io(io::Error),
     /// The file is neither text nor as long as its number of triangles says.
-    #[error(
-        "{bytes} bytes, but a binary STL file of {triangles} triangles has {wanted}; and as text it lacks `solid` or `facet`"
-    )]
     Length {
         /// The length of the file.
         bytes: usize,
@@ -36,13 +32,11 @@ pub enum StlError {
         wanted: u64,
     },
     /// The file is shorter than the shortest.
-    #[error("{bytes} bytes; the shortest binary STL file has 84, and as text it lacks `solid` or `facet`")]
     TooShort {
         /// The length of the file.
         bytes: usize,
     },
     /// A binary coordinate is NaN or infinite.
-    #[error("triangle {triangle}, corner {corner}: `{axis}` is {value}, not a finite number")]
     NotFinite {
         /// The triangle.
         triangle: usize,
@@ -54,7 +48,6 @@ pub enum StlError {
         value: f32,
     },
     /// Text that does not follow the format.
-    #[error("line {line}: `{token}` where {wanted} belongs")]
     Unexpected {
         /// Where.
         line: usize,
@@ -64,8 +57,45 @@ pub enum StlError {
         wanted: &'static str,
     },
     /// More corners than a 32-bit index can name.
-    #[error("more than {} different corners", u32::MAX)]
     TooManyVertices,
+}
+
+impl fmt::Display for StlError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Io(error) => error.fmt(f),
+            Self::Length { bytes, triangles, wanted } => write!(
+                f,
+                "{bytes} bytes, but a binary STL file of {triangles} triangles has {wanted}; and as text it lacks `solid` or `facet`"
+            ),
+            Self::TooShort { bytes } => write!(
+                f,
+                "{bytes} bytes; the shortest binary STL file has 84, and as text it lacks `solid` or `facet`"
+            ),
+            Self::NotFinite { triangle, corner, axis, value } => {
+                write!(f, "triangle {triangle}, corner {corner}: `{axis}` is {value}, not a finite number")
+            }
+            Self::Unexpected { line, token, wanted } => {
+                write!(f, "line {line}: `{token}` where {wanted} belongs")
+            }
+            Self::TooManyVertices => write!(f, "more than {} different corners", u32::MAX),
+        }
+    }
+}
+
+impl Error for StlError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Io(error) => error.source(),
+            _ => None,
+        }
+    }
+}
+
+impl From<io::Error> for StlError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
 }
 
 /// Reads an STL file, text or binary.
@@ -116,29 +146,6 @@ fn binary(body: &[u8]) -> Result<Vec<Vec3>, StlError> {
         }
     }
     Ok(corners)
-}
-
-/// The mesh with all vertices at the same coordinates made one, which keeps the number order of the first of each;
-/// 0 and -0 are the same. Normals are dropped. Triangles keep their order; one whose corners have met is kept.
-///
-/// # Panics
-/// If a triangle's index is out of range.
-pub fn weld(mesh: &TriangleMesh) -> TriangleMesh {
-    let mut numbers: HashMap<[u32; 3], u32> = HashMap::with_capacity(mesh.positions.len() / 2);
-    let mut positions = Vec::new();
-    let moved_to: Vec<u32> = mesh
-        .positions
-        .iter()
-        .map(|&p| {
-            // The sum is 0 for -0 as well.
-            *numbers.entry((p + Vec3::ZERO).to_array().map(f32::to_bits)).or_insert_with(|| {
-                positions.push(p);
-                positions.len() as u32 - 1
-            })
-        })
-        .collect();
-    let triangles = mesh.triangles.iter().map(|t| t.map(|v| moved_to[v as usize])).collect();
-    TriangleMesh { positions, normals: Vec::new(), triangles }
 }
 
 /// Writes binary STL: for every triangle its unit normal (zero where it has no area) and its corners. Vertex numbers

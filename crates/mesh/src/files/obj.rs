@@ -1,21 +1,20 @@
 //! Wavefront OBJ: vertices, vertex normals and faces.
 
+use std::error::Error;
+use std::fmt;
 use std::io::{self, BufWriter, Read, Write};
 use std::str::SplitAsciiWhitespace;
 
 use glam::Vec3;
-use thiserror::Error;
 
 use crate::TriangleMesh;
 
 /// What is wrong with an OBJ file; lines count from 1.
-#[derive(Debug, Error)]
+#[derive(Debug)]
 pub enum ObjError {
     /// The input cannot be read.
-    #[error(transparent)]
-    Io(#[from] io::Error),
+    Io(io::Error),
     /// A statement has too few values.
-    #[error("line {line}: `{keyword}` has {got} values, needs at least {need}")]
     TooFewValues {
         /// Where.
         line: usize,
@@ -27,7 +26,6 @@ pub enum ObjError {
         need: usize,
     },
     /// Something that is not a finite number stands where a coordinate belongs.
-    #[error("line {line}: `{token}` is not a finite single-precision number")]
     NotANumber {
         /// Where.
         line: usize,
@@ -35,7 +33,6 @@ pub enum ObjError {
         token: String,
     },
     /// A face corner is not `v`, `v/vt`, `v//vn` or `v/vt/vn` in whole numbers.
-    #[error("line {line}: `{token}` is not a face corner")]
     NotACorner {
         /// Where.
         line: usize,
@@ -43,7 +40,6 @@ pub enum ObjError {
         token: String,
     },
     /// An index is 0 or points before the first or after the last element.
-    #[error("line {line}: index {index} is out of range, there are {count} {element}")]
     IndexOutOfRange {
         /// Where.
         line: usize,
@@ -54,6 +50,39 @@ pub enum ObjError {
         /// `vertices` or `normals`.
         element: &'static str,
     },
+}
+
+impl fmt::Display for ObjError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Io(error) => error.fmt(f),
+            Self::TooFewValues { line, keyword, got, need } => {
+                write!(f, "line {line}: `{keyword}` has {got} values, needs at least {need}")
+            }
+            Self::NotANumber { line, token } => {
+                write!(f, "line {line}: `{token}` is not a finite single-precision number")
+            }
+            Self::NotACorner { line, token } => write!(f, "line {line}: `{token}` is not a face corner"),
+            Self::IndexOutOfRange { line, index, count, element } => {
+                write!(f, "line {line}: index {index} is out of range, there are {count} {element}")
+            }
+        }
+    }
+}
+
+impl Error for ObjError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Io(error) => error.source(),
+            _ => None,
+        }
+    }
+}
+
+impl From<io::Error> for ObjError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
 }
 
 /// Reads the `v`, `vn` and `f` statements of an OBJ file; everything else is skipped.

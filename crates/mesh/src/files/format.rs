@@ -1,13 +1,14 @@
 //! Which file format a mesh is in.
 
+use std::error::Error;
+use std::fmt;
 use std::io::{self, Read, Write};
 
-use thiserror::Error;
-
-use crate::{
-    ObjError, PlyError, StlError, TriangleMesh, read_obj, read_ply, read_stl, write_glb, write_obj,
-    write_ply, write_stl,
-};
+use super::glb::write_glb;
+use super::obj::{ObjError, read_obj, write_obj};
+use super::ply::{PlyError, read_ply, write_ply};
+use super::stl::{StlError, read_stl, write_stl};
+use crate::TriangleMesh;
 
 /// A mesh file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -23,20 +24,56 @@ pub enum MeshFormat {
 }
 
 /// Why a mesh cannot be read.
-#[derive(Debug, Error)]
+#[derive(Debug)]
 pub enum ReadError {
     /// See [`ObjError`].
-    #[error(transparent)]
-    Obj(#[from] ObjError),
+    Obj(ObjError),
     /// See [`PlyError`].
-    #[error(transparent)]
-    Ply(#[from] PlyError),
+    Ply(PlyError),
     /// See [`StlError`].
-    #[error(transparent)]
-    Stl(#[from] StlError),
+    Stl(StlError),
     /// Binary glTF, which is written and not read.
-    #[error("glTF is written, not read; .obj, .ply and .stl are")]
     GlbIsWritten,
+}
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Obj(error) => error.fmt(f),
+            Self::Ply(error) => error.fmt(f),
+            Self::Stl(error) => error.fmt(f),
+            Self::GlbIsWritten => f.write_str("glTF is written, not read; .obj, .ply and .stl are"),
+        }
+    }
+}
+
+impl Error for ReadError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Obj(error) => error.source(),
+            Self::Ply(error) => error.source(),
+            Self::Stl(error) => error.source(),
+            _ => None,
+        }
+    }
+}
+
+impl From<ObjError> for ReadError {
+    fn from(error: ObjError) -> Self {
+        Self::Obj(error)
+    }
+}
+
+impl From<PlyError> for ReadError {
+    fn from(error: PlyError) -> Self {
+        Self::Ply(error)
+    }
+}
+
+impl From<StlError> for ReadError {
+    fn from(error: StlError) -> Self {
+        Self::Stl(error)
+    }
 }
 
 impl MeshFormat {

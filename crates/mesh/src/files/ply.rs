@@ -3,20 +3,18 @@
 mod body;
 mod header;
 
+use std::error::Error;
+use std::fmt;
 use std::io::{self, BufWriter, Read, Write};
-
-use thiserror::Error;
 
 use crate::TriangleMesh;
 
 /// What is wrong with a PLY file. Lines count from 1, rows from 0, offsets in bytes from the start of the file.
-#[derive(Debug, Error)]
+#[derive(Debug)]
 pub enum PlyError {
     /// The input cannot be read.
-    #[error(transparent)]
-    Io(#[from] io::Error),
+    Io(io::Error),
     /// The header breaks the format, or asks for something that is not supported.
-    #[error("header line {line}: {reason}")]
     Header {
         /// Where.
         line: usize,
@@ -24,7 +22,6 @@ pub enum PlyError {
         reason: String,
     },
     /// An element lacks what its name promises.
-    #[error("element `{element}` lacks {what}")]
     Lacks {
         /// `vertex` or `face`.
         element: &'static str,
@@ -32,7 +29,6 @@ pub enum PlyError {
         what: &'static str,
     },
     /// The file ends before the header's counts are met.
-    #[error("{element} {row} of {count}: the file ends at byte {offset}")]
     Truncated {
         /// The element that is cut off.
         element: String,
@@ -44,7 +40,6 @@ pub enum PlyError {
         offset: usize,
     },
     /// An ASCII value is not a number, or not one of its type.
-    #[error("{element} {row}, byte {offset}: `{token}` is not a {kind}")]
     NotANumber {
         /// The element it belongs to.
         element: String,
@@ -58,9 +53,6 @@ pub enum PlyError {
         kind: &'static str,
     },
     /// A coordinate is NaN or infinite, or too large for single precision.
-    #[error(
-        "vertex {row}, before byte {offset}: `{property}` is {value}, not a finite single-precision number"
-    )]
     NotFinite {
         /// The vertex.
         row: u64,
@@ -72,7 +64,6 @@ pub enum PlyError {
         value: f64,
     },
     /// A list length is negative.
-    #[error("{element} {row}, before byte {offset}: a list of {length} values")]
     ListLength {
         /// The element.
         element: String,
@@ -84,7 +75,6 @@ pub enum PlyError {
         length: f64,
     },
     /// A face has fewer than three corners.
-    #[error("face {row}, before byte {offset}: {corners} corners")]
     FewCorners {
         /// The face.
         row: u64,
@@ -94,7 +84,6 @@ pub enum PlyError {
         corners: usize,
     },
     /// A face refers to a vertex that does not exist.
-    #[error("face {row}: vertex {index} of {vertices}")]
     IndexOutOfRange {
         /// The face.
         row: u64,
@@ -103,6 +92,50 @@ pub enum PlyError {
         /// How many vertices there are.
         vertices: usize,
     },
+}
+
+impl fmt::Display for PlyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Io(error) => error.fmt(f),
+            Self::Header { line, reason } => write!(f, "header line {line}: {reason}"),
+            Self::Lacks { element, what } => write!(f, "element `{element}` lacks {what}"),
+            Self::Truncated { element, row, count, offset } => {
+                write!(f, "{element} {row} of {count}: the file ends at byte {offset}")
+            }
+            Self::NotANumber { element, row, offset, token, kind } => {
+                write!(f, "{element} {row}, byte {offset}: `{token}` is not a {kind}")
+            }
+            Self::NotFinite { row, offset, property, value } => write!(
+                f,
+                "vertex {row}, before byte {offset}: `{property}` is {value}, not a finite single-precision number"
+            ),
+            Self::ListLength { element, row, offset, length } => {
+                write!(f, "{element} {row}, before byte {offset}: a list of {length} values")
+            }
+            Self::FewCorners { row, offset, corners } => {
+                write!(f, "face {row}, before byte {offset}: {corners} corners")
+            }
+            Self::IndexOutOfRange { row, index, vertices } => {
+                write!(f, "face {row}: vertex {index} of {vertices}")
+            }
+        }
+    }
+}
+
+impl Error for PlyError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Io(error) => error.source(),
+            _ => None,
+        }
+    }
+}
+
+impl From<io::Error> for PlyError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
 }
 
 /// Reads the `vertex` and `face` elements of a PLY file; other elements and properties are skipped.

@@ -1,0 +1,117 @@
+//! Why a chunk cannot be extracted.
+
+use std::collections::TryReserveError;
+use std::error::Error;
+use std::fmt;
+
+use super::settled::MOST_EXTRA;
+use crate::extraction::ExtractError;
+use crate::lattice::{CellBox, LatticeError};
+use crate::method::MethodError;
+use crate::settings::Placement;
+
+/// Why a chunk cannot be extracted.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum ChunkError {
+    /// The settings or the samples are not valid, there is no memory, or somebody cancelled it.
+    Extract(ExtractError),
+    /// A box without a cell, or with cells that there are not.
+    Cells {
+        /// What was given.
+        given: CellBox,
+        /// All cells.
+        whole: CellBox,
+    },
+    /// The samples of a box that does not contain the window.
+    Window {
+        /// What was given.
+        given: CellBox,
+        /// What is looked at.
+        wanted: CellBox,
+    },
+    /// [`Source::Samples`], all of them, of a grid without an end.
+    EndlessSamples,
+    /// Edge collapse in a grid without an end: a piece of surface may have none either.
+    EndlessCollapse,
+    /// [`Normals::Field`] of samples.
+    NormalsNeedField,
+    /// A setting of the method is out of its range.
+    Settings(MethodError),
+    /// A method without chunks.
+    Method,
+    /// [`Positions::Accumulated`]: a position depends on all before it.
+    Accumulated,
+    /// Vertices where chunks have none: refined crossings, weights by curvature, or moves after edges were collapsed.
+    Placement {
+        /// What was given.
+        placement: Placement,
+        /// What was given.
+        refine_crossings: bool,
+    },
+    /// Whether a vertex may move depends on others more than 64 cells away.
+    Unsettled,
+}
+
+impl fmt::Display for ChunkError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Extract(error) => error.fmt(f),
+            Self::Cells { given, whole } => write!(
+                f,
+                "cells {:?} to {:?} are not a box of the cells {:?} to {:?}",
+                given.start, given.end, whole.start, whole.end
+            ),
+            Self::Window { given, wanted } => write!(
+                f,
+                "samples of the cells {:?} to {:?}, where those of {:?} to {:?} are looked at",
+                given.start, given.end, wanted.start, wanted.end
+            ),
+            Self::EndlessSamples => {
+                f.write_str("a grid without an end has no last sample: give a Source::Window")
+            }
+            Self::EndlessCollapse => f.write_str("edge collapse needs a box"),
+            Self::NormalsNeedField => {
+                f.write_str("samples have no gradient between them: Normals::Field needs a field")
+            }
+            Self::Settings(error) => error.fmt(f),
+            Self::Method => f.write_str("this method makes no chunks"),
+            Self::Accumulated => f.write_str("chunks need indexed positions"),
+            Self::Placement { placement, refine_crossings } => write!(
+                f,
+                "chunks have vertices at the mean of interpolated crossings, projected or relaxed, without edge collapse; not \
+                 {placement:?}{}",
+                if *refine_crossings { " with refined crossings" } else { "" }
+            ),
+            Self::Unsettled => {
+                write!(f, "whether vertices may move depends on others more than {MOST_EXTRA} cells away")
+            }
+        }
+    }
+}
+
+impl Error for ChunkError {}
+
+impl From<ExtractError> for ChunkError {
+    fn from(error: ExtractError) -> Self {
+        Self::Extract(error)
+    }
+}
+
+impl From<MethodError> for ChunkError {
+    fn from(error: MethodError) -> Self {
+        Self::Settings(error)
+    }
+}
+
+impl From<TryReserveError> for ChunkError {
+    fn from(error: TryReserveError) -> Self {
+        Self::Extract(error.into())
+    }
+}
+
+impl From<LatticeError> for ChunkError {
+    fn from(error: LatticeError) -> Self {
+        Self::Extract(error.into())
+    }
+}
