@@ -163,6 +163,7 @@ fn mesh(study: &Study, row: &BenchmarkRow, purpose: Purpose) -> MeshRecord {
         },
         accuracy: Accuracy {
             distance: spread(2e-4, 1e-4, 0.0, 8_192, (0.0, 0.1 * object.benchmark_spacing, 50)),
+            sharp_edges: None,
             distance_to_mesh: Some(spread(3e-4, 2e-4, 0.0, 8_192, (0.0, 0.1 * object.benchmark_spacing, 50))),
             normal_error_deg: spread(2.0, 1.0, 0.0, vertices, (0.0, 30.0, 60)),
             lost_points: 0,

@@ -36,6 +36,7 @@ pub(crate) fn accuracy(accuracy: &extract::Accuracy) -> Accuracy {
     Accuracy {
         distance: distribution(&accuracy.distance),
         distance_to_mesh: Some(distribution(&accuracy.distance_to_mesh)),
+        sharp_edges: Some(distribution(&accuracy.sharp_edges)),
         normal_error_deg: distribution(&accuracy.normal_error_deg),
         lost_points: accuracy.lost_points,
         lost_vertices: accuracy.lost_vertices,

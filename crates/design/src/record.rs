@@ -180,6 +180,10 @@ pub struct Accuracy {
     /// Distance from points of the isosurface to the mesh. Records of before this was measured have none.
     #[serde(default)]
     pub distance_to_mesh: Option<Distribution>,
+    /// Distance from points of the isosurface's sharp edges to the mesh; empty if it has none. Records of before this was measured
+    /// have none.
+    #[serde(default)]
+    pub sharp_edges: Option<Distribution>,
     /// Angle between a vertex's normal and the field's, degrees; over vertices.
     pub normal_error_deg: Distribution,
     /// Points without a distance.

@@ -30,6 +30,9 @@ pub struct Accuracy {
     pub distance: Distribution,
     /// Distance from the isosurface to the mesh: what the mesh leaves out is far from it. Over the isosurface's area.
     pub distance_to_mesh: Distribution,
+    /// Distance from points of the isosurface's sharp edges to the mesh: small where a mesh keeps them, and a good part of a spacing
+    /// where it rounds them. Empty where the isosurface has none.
+    pub sharp_edges: Distribution,
     /// Angle between a vertex's normal and the field's outward direction at the vertex's foot on the isosurface, in
     /// degrees, 0..=180. Over vertices.
     pub normal_error_deg: Distribution,
@@ -63,6 +66,11 @@ impl Accuracy {
 /// mesh are moved to the isosurface; what is too small for both lattices is not seen. Points outside the box are left
 /// out. The distance is that to the nearest triangle of `mesh`.
 ///
+/// A sharp edge is one where the isosurface's normal, of the field's own gradient if it has one, turns by more than 30
+/// degrees within a sixteenth of a spacing; convex and concave ones count. It is found where an edge of that extraction passes from one
+/// of its sides to the other, and its point is where the two tangent planes meet. Of a mesh, sharp edges are those of its triangles. Of
+/// more than 8,192 points, every second, third and so on is taken.
+///
 /// Vertices are taken as they come, or evenly from more than 8,192 of them.
 ///
 /// The result does not depend on `execution`.
@@ -91,15 +99,17 @@ pub fn accuracy(
     let beyond = points_on(&isosurface.triangles);
     let every = mesh.normals.len().div_ceil(VERTICES).max(1);
     let vertices: Vec<usize> = (0..mesh.normals.len()).step_by(every).collect();
+    let to_surface = |p: DVec3| Some(surface.as_ref()?.nearest(p, f64::INFINITY).distance);
     let most = (POINTS as usize).max(VERTICES) / SHARE;
-    let (there, back, angles): (Vec<_>, Vec<_>, Vec<_>) = on_threads(execution, most, || {
+    let (there, back, sharp, angles): (Vec<_>, Vec<_>, Vec<_>, Vec<_>) = on_threads(execution, most, || {
         let distance = |&p: &DVec3| isosurface.foot(p).map(|foot| foot.distance);
-        let to_mesh = |&p: &DVec3| {
-            let (surface, p) = (surface.as_ref()?, isosurface.point(p)?);
-            Some(surface.nearest(p, f64::INFINITY).distance)
-        };
+        let to_mesh = |&p: &DVec3| to_surface(isosurface.point(p)?);
+        let sharp = isosurface.sharp_edges();
+        let sharp: Vec<DVec3> =
+            sharp.iter().copied().step_by(sharp.len().div_ceil(POINTS as usize).max(1)).collect();
         let angle = |&v: &usize| normal_error_deg(&level, mesh.positions[v], mesh.normals[v]);
-        (mapped(&points, distance), mapped(&beyond, to_mesh), mapped(&vertices, angle))
+        let sharp = mapped(&sharp, |&p| to_surface(p));
+        (mapped(&points, distance), mapped(&beyond, to_mesh), sharp, mapped(&vertices, angle))
     })?;
     let lost = |of: &[Option<f64>]| of.iter().filter(|value| value.is_none()).count() as u64;
     let (lost_points, lost_vertices) = (lost(&there), lost(&angles));
@@ -108,6 +118,7 @@ pub fn accuracy(
     Ok(Accuracy {
         distance: known(there, near),
         distance_to_mesh: known(back, near),
+        sharp_edges: known(sharp, Bins { high: f64::from(spacing), ..near }),
         normal_error_deg: known(angles, Bins { low: 0.0, high: 30.0, count: 60 }),
         lost_points,
         lost_vertices,

@@ -9,7 +9,9 @@ use crate::extraction::ExtractError;
 use crate::extractor::extract;
 use crate::lattice::Arrangement;
 use crate::level::Level;
+use crate::sampling::mapped;
 use crate::settings::{Clustering, Execution, ExtractSettings};
+use crate::sharp_edges;
 use field::StudyField;
 
 /// How far a surface is looked for, in spacings.
@@ -25,6 +27,8 @@ pub(crate) struct Isosurface<'a> {
     level: Level<'a>,
     bounds: Bounds,
     pub(crate) triangles: Vec<[Vec3; 3]>,
+    /// Where sharp edges are looked for, if the triangles are not the isosurface itself.
+    suspects: Vec<[Vec3; 2]>,
     is_exact: bool,
 }
 
@@ -39,7 +43,8 @@ impl<'a> Isosurface<'a> {
     ) -> Result<Self, ExtractError> {
         let (bounds, isovalue) = (grid.bounds, level.isovalue);
         if let Some(triangles) = field.isosurface_triangles(isovalue) {
-            return Ok(Self { field, level, bounds, triangles: triangles.to_vec(), is_exact: true });
+            let (triangles, suspects) = (triangles.to_vec(), Vec::new());
+            return Ok(Self { field, level, bounds, triangles, suspects, is_exact: true });
         }
         // Where there are too many points for the finer lattice, that of the grid has to do.
         let finer = BoxGrid { bounds, spacing: FINER * grid.spacing }.lattice(Arrangement::BodyCentred);
@@ -48,7 +53,8 @@ impl<'a> Isosurface<'a> {
         let settings = ExtractSettings { isovalue, clustering, ..ExtractSettings::default() };
         let found = extract(field, &finer, &settings, execution)?.mesh;
         let triangles = (0..found.triangles.len()).map(|t| found.corners(t)).collect();
-        Ok(Self { field, level, bounds, triangles, is_exact: false })
+        let suspects = sharp_edges::suspects(&found);
+        Ok(Self { field, level, bounds, triangles, suspects, is_exact: false })
     }
 
     /// The nearest point of the isosurface, if the field knows it, or where the gradient leads within [`REACH`].
@@ -59,11 +65,28 @@ impl<'a> Isosurface<'a> {
     /// The point of the isosurface that a point of the triangles stands for; `None` if it is outside the box.
     pub(crate) fn point(&self, p: DVec3) -> Option<DVec3> {
         let on_surface = if self.is_exact { p } else { self.foot(p)?.position };
+        self.has_in_box(&on_surface).then_some(on_surface)
+    }
+
+    /// Points of the sharp edges within the box: of triangles that are the isosurface, half a spacing of their length apart; else
+    /// one where an edge of the extraction passes from one side of the sharp edge to the other.
+    pub(crate) fn sharp_edges(&self) -> Vec<DVec3> {
+        let (level, reach) = (&self.level, REACH * self.level.spacing);
+        let mut points = if self.is_exact {
+            sharp_edges::of_triangles(&self.triangles, 0.5 * f64::from(level.spacing))
+        } else {
+            let found = mapped(&self.suspects, |&ends| sharp_edges::between(level, ends, reach));
+            found.into_iter().flatten().collect()
+        };
+        points.retain(|p| self.has_in_box(p));
+        points
+    }
+
+    /// Up to rounding.
+    fn has_in_box(&self, p: &DVec3) -> bool {
         let (min, max) = (self.bounds.min.as_dvec3(), self.bounds.max.as_dvec3());
-        // Up to rounding.
         let slack = 1e-6 * (max - min);
-        let is_inside = on_surface.cmpge(min - slack).all() && on_surface.cmple(max + slack).all();
-        is_inside.then_some(on_surface)
+        p.cmpge(min - slack).all() && p.cmple(max + slack).all()
     }
 }
 

@@ -86,7 +86,7 @@
 //! A cell belongs to one [`Chunk`], and with it the triangles in its tetrahedra. Every vertex has a [`VertexKey`], the
 //! same in all chunks that have it, so that seams weld without comparing coordinates; its position and its normal are
 //! those of the whole, so that a seam does not show even where chunks are drawn side by side. A chunk looks at samples up
-//! to two cells beyond its own, or four where vertices are moved; what they decide is all that can change its triangles, and
+//! to three cells beyond its own, and farther where vertices are moved or smoothed ([`ChunkExtractor::window`]); what they decide is all that can change its triangles, and
 //! [`Chunk::is_touched_by`] says of an edit whether it reaches them. With edge collapse the way is farther: see [`ChunkExtractor`].
 //!
 //! # Levels of detail
@@ -115,7 +115,7 @@
 //!   Vertices stand in storage order of the lower ends of their edges, then of the axes.
 //! - [`SnapCubes`] draws crossings to nearby samples, so that angles are bounded; its mesh is closed off the box, and a manifold only
 //!   where sheets of the surface keep a cell apart. [`Macet`] keeps the table's triangles and moves their vertices, and calls the
-//!   field to do so. Neither makes chunks.
+//!   field to do so. It makes no chunks.
 //! - [`VolumeCells`] takes a volume's own cells, turned, mirrored, sheared and of unequal steps as they may be. At
 //!   `isovalue.next_down()` vertices and triangles are as many as VTK's Flying Edges makes at `isovalue`, which has equal samples
 //!   inside (`tests/cubes_vtk.rs`).
@@ -220,6 +220,7 @@ mod normals;
 mod placement;
 mod sampling;
 mod settings;
+mod sharp_edges;
 mod sides;
 mod slabs;
 mod source;

@@ -85,7 +85,7 @@ const TETRAHEDRA: [Named<TetrahedraCounts, u64>; 8] = [
 /// What is distributed: its name in columns, and where it stands.
 type Described = (&'static str, fn(&MeshRecord) -> Option<&Distribution>);
 
-const DISTRIBUTIONS: [Described; 9] = [
+const DISTRIBUTIONS: [Described; 10] = [
     ("published_aspect_ratio", |m| Some(&m.quality.published_aspect_ratio)),
     ("edge_ratio", |m| Some(&m.quality.edge_ratio)),
     ("radius_ratio", |m| Some(&m.quality.radius_ratio)),
@@ -94,6 +94,7 @@ const DISTRIBUTIONS: [Described; 9] = [
     ("area", |m| Some(&m.quality.area)),
     ("distance", |m| Some(&m.accuracy.distance)),
     ("distance_to_mesh", |m| m.accuracy.distance_to_mesh.as_ref()),
+    ("sharp_edges", |m| m.accuracy.sharp_edges.as_ref()),
     ("normal_error_deg", |m| Some(&m.accuracy.normal_error_deg)),
 ];
 

@@ -57,6 +57,9 @@ pub(super) struct QualityReport {
     accuracy: Accuracy,
 }
 
+/// In place of what was looked for in another box.
+const TURNED: &str = "not measured: the volume is turned";
+
 impl QualityReport {
     pub(super) fn new(
         method: Method,
@@ -79,7 +82,7 @@ impl QualityReport {
         let mut accuracy = records::accuracy(accuracy);
         if is_turned {
             // The isosurface was looked for in the box of the turned volume, so beyond it too.
-            accuracy.distance_to_mesh = None;
+            (accuracy.distance_to_mesh, accuracy.sharp_edges) = (None, None);
         }
         Self {
             schema: SCHEMA,
@@ -160,12 +163,14 @@ impl QualityReport {
             ("shortest edge", significant(q.shortest_edge.unwrap_or_default())),
             ("without area", format!("{} triangles", q.degenerate)),
             ("to the surface", way(&self.accuracy.distance) + &lost(self.accuracy.lost_points)),
+            ("from it", self.accuracy.distance_to_mesh.as_ref().map_or_else(|| TURNED.into(), way)),
             (
-                "from it",
-                self.accuracy
-                    .distance_to_mesh
-                    .as_ref()
-                    .map_or_else(|| "not measured: the volume is turned".into(), way),
+                "sharp edges",
+                match &self.accuracy.sharp_edges {
+                    Some(none) if none.count == 0 => "none found".into(),
+                    Some(edges) => way(edges),
+                    None => TURNED.into(),
+                },
             ),
         ];
         Ok(rows.map(|(name, value)| format!("{name:<15} {value}")).join("\n"))
