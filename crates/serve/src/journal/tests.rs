@@ -27,9 +27,12 @@ fn nobody() -> Identifiers {
     Identifiers::default()
 }
 
+/// As long as a panel's identifiers are, so that no token has it by chance.
+const PANELS_STUDY: &str = "61a0c5d2e8f4b7a9c3d1e6f2";
+
 fn of_panel(session: &str) -> Identifiers {
     let of = |text: &str| Some(text.to_owned());
-    Identifiers { prolific_pid: of("5f9"), study_id: of("61a"), session_id: of(session) }
+    Identifiers { prolific_pid: of("5f9"), study_id: of(PANELS_STUDY), session_id: of(session) }
 }
 
 /// A first answer, after which somebody is on disk.
@@ -165,7 +168,7 @@ fn a_panels_people_come_back_and_are_kept_apart() {
     assert_eq!(journal.identities().unwrap().len(), 2);
     drop(journal);
     let bytes = std::fs::read(folder.path().join("answers.sqlite")).unwrap();
-    assert!(!bytes.windows(3).any(|window| window == b"61a"), "identifiers are in a file of their own");
+    assert!(!bytes.windows(PANELS_STUDY.len()).any(|window| window == PANELS_STUDY.as_bytes()), "identifiers are in a file of their own");
 }
 
 #[test]
@@ -387,7 +390,7 @@ fn identifiers_without_an_answer_are_removed() {
     let folder = killed(4);
     let add = || {
         let database = Connection::open(folder.path().join("identities.sqlite")).unwrap();
-        database.execute("INSERT INTO identities VALUES ('f00', '5f9', '61a', 's9')", []).unwrap();
+        database.execute("INSERT INTO identities VALUES ('f00', '5f9', ?1, 's9')", [PANELS_STUDY]).unwrap();
     };
     let known = |loss| {
         let journal = Journal::open(folder.path(), &file(1), "d", loss).unwrap();
