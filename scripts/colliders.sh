@@ -6,7 +6,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 
-methods="si bi mc snapmc nets dc"
+methods="si bi mc snapmc nets-manifold dc-in-cell"
 only=""
 files=""
 folder=$(mktemp -d)

@@ -51,11 +51,10 @@ TILE = (360, 270)
 PUBLISHED = ["bp-published"]
 # Recipes without a name that the pages show: id, the method they are based on, the key that differs.
 CHANGED = [
-    ("dc-in-cell", "dc-manifold", "in_cell", True),
     ("nets-smoothed", "nets-manifold", "smoothing", 8),
 ]
 # Of the picture in README.md.
-IN_GAMES = ["mc", "mc33", "snapmc", "nets", "dc", "si", "bi", "bi-relaxed"]
+IN_GAMES = ["mc", "mc33", "snapmc", "nets-manifold", "dc-in-cell", "si", "bi", "bi-relaxed"]
 SHEET = [
     *("bu", "bi", "bc", "bi-relaxed"),
     *("su", "si", "mp", "fp"),

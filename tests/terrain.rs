@@ -30,6 +30,7 @@ struct Known {
     seconds: f64,
     triangles: f64,
     error: f64,
+    sharp_edges: f64,
     radius_ratio: f64,
 }
 
@@ -55,6 +56,7 @@ fn known(out: &Path) -> Vec<Known> {
             seconds: number(&timed, "total_without_normals_median_s").unwrap(),
             triangles: number(&timed, "triangles").unwrap(),
             error: distance("distance_mean").max(distance("distance_to_mesh_mean")),
+            sharp_edges: distance("sharp_edges_mean"),
             radius_ratio: number(&of("quality", id), "radius_ratio_mean").unwrap(),
         }
     };
@@ -105,8 +107,12 @@ fn the_small_terrain_study_answers_from_its_own_numbers() {
 
     // Which is the best, by hand; equals are the study's first.
     type Cost = fn(&Known) -> f64;
-    let columns: [(&str, Cost); 3] =
-        [("fastest", |of| of.seconds), ("closest", |of| of.error), ("regular", |of| -of.radius_ratio)];
+    let columns: [(&str, Cost); 4] = [
+        ("fastest", |of| of.seconds),
+        ("closest", |of| of.error),
+        ("edges", |of| of.sharp_edges),
+        ("regular", |of| -of.radius_ratio),
+    ];
     for row in rows(&out, "choices") {
         for (column, cost) in columns {
             let own = known.iter().filter(|of| of.object == row["object"] && of.has_own_cubes);
@@ -119,7 +125,7 @@ fn the_small_terrain_study_answers_from_its_own_numbers() {
     // Chunks of every method are the whole mesh, to the bit.
     let chunks = rows(&out, "chunks");
     let made: Vec<&str> = chunks.iter().map(|row| row["id"].as_str()).collect();
-    for method in ["mc", "mc33", "snapmc", "bi", "bi-relaxed", "si", "nets", "dc"] {
+    for method in ["mc", "mc33", "snapmc", "bi", "bi-relaxed", "si", "nets-manifold", "dc-in-cell"] {
         for object in ["hi", "cl", "ca", "bu"] {
             assert!(made.contains(&format!("{object}_{method}").as_str()), "{object}_{method}: {made:?}");
         }
@@ -154,7 +160,9 @@ fn liked(folder: &Folder, text: &str) {
             if person % 2 == 1 {
                 (left, right) = (right, left);
             }
-            let is_liked = |id: &str| id == "bu_dc" || id.ends_with("_nets") && id != "bu_nets";
+            let is_liked = |id: &str| {
+                id == "bu_dc-in-cell" || id.ends_with("_nets-manifold") && id != "bu_nets-manifold"
+            };
             let choice = match (is_liked(left), is_liked(right)) {
                 (true, _) => "left",
                 (_, true) => "right",
@@ -170,7 +178,7 @@ fn liked(folder: &Folder, text: &str) {
     let rows = rows(&folder.path("out"), "choices");
     let said: Vec<&str> = rows.iter().map(|row| row["preferred"].as_str()).collect();
     // Seen in three questions, chosen in each.
-    assert_eq!(said, ["nets, 1.0", "nets, 1.0", "nets, 1.0", "dc, 1.0"]);
+    assert_eq!(said, ["nets-manifold, 1.0", "nets-manifold, 1.0", "nets-manifold, 1.0", "dc-in-cell, 1.0"]);
     let report = fs::read_to_string(folder.path("out/report.md")).unwrap();
     assert!(report.contains("the look that people chose most"), "{report}");
 }

@@ -161,7 +161,7 @@ fn presets_keep_the_promise_of_a_manifold_whatever_the_samples() {
             }
         }
     }
-    assert_eq!(promised, 25, "all but those as published");
+    assert_eq!(promised, 26, "all but those as published");
 }
 
 #[test]
@@ -254,7 +254,12 @@ fn presets_have_names_of_their_own() {
             }
             Method::DualContouring(nets) => {
                 assert!(preset.label.starts_with("dual contouring"), "{id}");
-                assert_eq!(id, if nets.patches { "dc-manifold" } else { "dc" });
+                let name = match (nets.patches, nets.in_cell) {
+                    (true, true) => "dc-in-cell",
+                    (true, false) => "dc-manifold",
+                    _ => "dc",
+                };
+                assert_eq!(id, name);
                 continue;
             }
             Method::Continuation(continuation) => {

@@ -47,7 +47,7 @@ pub fn presets() -> &'static [Preset] {
     &PRESETS
 }
 
-static PRESETS: [Preset; 35] = [
+static PRESETS: [Preset; 36] = [
     plain("bu", "body-centred, none", BodyCentred, None, COSTEN),
     plain("bi", "body-centred, integrated", BodyCentred, Integrated, TREECE),
     plain("bp", "body-centred, edge collapse", BodyCentred, EdgeCollapse, COLLAPSED),
@@ -123,6 +123,17 @@ static PRESETS: [Preset; 35] = [
             patches: true,
             truncation: 1e-3,
             in_cell: false,
+            tolerance: 0.0,
+        }),
+        source: PLANES_OF_PATCHES,
+    },
+    Preset {
+        id: "dc-in-cell",
+        label: "dual contouring in cells",
+        method: Method::DualContouring(DualContouring {
+            patches: true,
+            truncation: 1e-3,
+            in_cell: true,
             tolerance: 0.0,
         }),
         source: PLANES_OF_PATCHES,
