@@ -60,7 +60,7 @@ pub(super) struct Scatter {
     /// A dashed line at this height.
     pub(super) dashed: Option<f64>,
     pub(super) marks: Vec<((f64, f64), Mark)>,
-    /// Names of points, each where it is clear of lines, marks and the names before it.
+    /// Names of points, each where it is clear of lines, marks and the names before it, and nowhere if there is no such place.
     pub(super) names: Vec<((f64, f64), String)>,
 }
 
@@ -92,10 +92,15 @@ impl Scatter {
         for (at, mark) in &self.marks {
             mark.draw(canvas, place(*at));
         }
-        self.write_names(canvas, &place);
+        self.write_names(canvas, &place, left..right);
     }
 
-    fn write_names(&self, canvas: &mut Canvas, place: &dyn Fn((f64, f64)) -> (f64, f64)) {
+    fn write_names(
+        &self,
+        canvas: &mut Canvas,
+        place: &dyn Fn((f64, f64)) -> (f64, f64),
+        within: std::ops::Range<f64>,
+    ) {
         let lines: Vec<Vec<(f64, f64)>> =
             self.lines.iter().map(|(_, line)| line.iter().map(|&at| place(at)).collect()).collect();
         let mut taken: Vec<Room> =
@@ -111,19 +116,31 @@ impl Scatter {
             };
             let clear = |of: &Room| {
                 let crossed = |line: &Vec<(f64, f64)>| line.windows(2).any(|s| of.is_crossed(s[0], s[1]));
-                !taken.iter().any(|other| of.overlaps(*other)) && !lines.iter().any(crossed)
+                let is_within = within.start <= of.left && of.right <= within.end;
+                is_within && !taken.iter().any(|other| of.overlaps(*other)) && !lines.iter().any(crossed)
             };
-            // Below on the right, above on the left, then the same farther off.
-            let places = [1.1, 2.3, 3.5, 4.7].into_iter().flat_map(|down| {
-                [
-                    ((x + 8.0, y + down * EM), Align::Start),
-                    ((x - 8.0 - width, y + (0.7 - down) * EM), Align::End),
-                ]
+            // Corners first, below on the right before all; then the sides; then the same farther off.
+            let places = [1.1, 2.3].into_iter().flat_map(|down| {
+                let (below, above) = (y + down * EM, y + (0.7 - down) * EM);
+                let (right, left, middle) = (x + 8.0, x - 8.0 - width, x - 0.5 * width);
+                let corners = [(right, below), (left, above), (right, above), (left, below)];
+                let level = y + 0.35 * EM;
+                corners.into_iter().chain([
+                    (right + 4.0, level),
+                    (left - 4.0, level),
+                    (middle, below + 4.0),
+                    (middle, above - 4.0),
+                ])
             });
-            let places: Vec<((f64, f64), Align)> = places.collect();
-            let (start, align) = *places.iter().find(|(at, _)| clear(&room(*at))).unwrap_or(&places[0]);
+            // Where all is taken, the mark itself has to do: the legend says whose it is.
+            let Some(start) = places.into_iter().find(|at| clear(&room(*at))) else { continue };
             taken.push(room(start));
-            let x = if align == Align::End { start.0 + width } else { start.0 };
+            // The room is wider than most names are drawn: towards the mark, so that it is near.
+            let (x, align) = match start.0 {
+                from if from > x => (from, Align::Start),
+                from if from + width < x => (from + width, Align::End),
+                from => (from + 0.5 * width, Align::Middle),
+            };
             canvas.text(name, (x, start.1), EM, align);
         }
     }

@@ -168,7 +168,10 @@ fn a_panels_people_come_back_and_are_kept_apart() {
     assert_eq!(journal.identities().unwrap().len(), 2);
     drop(journal);
     let bytes = std::fs::read(folder.path().join("answers.sqlite")).unwrap();
-    assert!(!bytes.windows(PANELS_STUDY.len()).any(|window| window == PANELS_STUDY.as_bytes()), "identifiers are in a file of their own");
+    assert!(
+        !bytes.windows(PANELS_STUDY.len()).any(|window| window == PANELS_STUDY.as_bytes()),
+        "identifiers are in a file of their own"
+    );
 }
 
 #[test]
