@@ -68,7 +68,8 @@ impl Accuracy {
 ///
 /// A sharp edge is one where the isosurface's normal, of the field's own gradient if it has one, turns by more than 30
 /// degrees within a sixteenth of a spacing; convex and concave ones count. It is found where an edge of that extraction passes from one
-/// of its sides to the other, and its point is where the two tangent planes meet. Of a mesh, sharp edges are those of its triangles. Of
+/// of its sides to the other, in at most 32,768 places; its point is where the two tangent planes meet. Of a volume, which is
+/// interpolated, kinks between cells count if they are as sharp. Of a mesh, sharp edges are those of its triangles. Of
 /// more than 8,192 points, every second, third and so on is taken.
 ///
 /// Vertices are taken as they come, or evenly from more than 8,192 of them.

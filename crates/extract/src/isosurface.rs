@@ -16,6 +16,8 @@ use field::StudyField;
 
 /// How far a surface is looked for, in spacings.
 pub(crate) const REACH: f32 = 3.0;
+/// Most places where a sharp edge is looked for; of more, every second, third and so on.
+const MOST_SUSPECTS: usize = 32_768;
 /// The spacing, in spacings, of the lattice on which the isosurface is looked for: finer, and with other points.
 const FINER: f32 = 0.75;
 
@@ -69,13 +71,15 @@ impl<'a> Isosurface<'a> {
     }
 
     /// Points of the sharp edges within the box: of triangles that are the isosurface, half a spacing of their length apart; else
-    /// one where an edge of the extraction passes from one side of the sharp edge to the other.
+    /// one where an edge of the extraction passes from one side of the sharp edge to the other, of at most [`MOST_SUSPECTS`].
     pub(crate) fn sharp_edges(&self) -> Vec<DVec3> {
         let (level, reach) = (&self.level, REACH * self.level.spacing);
         let mut points = if self.is_exact {
-            sharp_edges::of_triangles(&self.triangles, 0.5 * f64::from(level.spacing))
+            sharp_edges::of_triangles(&self.triangles, &self.bounds, 0.5 * f64::from(level.spacing))
         } else {
-            let found = mapped(&self.suspects, |&ends| sharp_edges::between(level, ends, reach));
+            let every = self.suspects.len().div_ceil(MOST_SUSPECTS).max(1);
+            let suspects: Vec<[Vec3; 2]> = self.suspects.iter().copied().step_by(every).collect();
+            let found = mapped(&suspects, |&ends| sharp_edges::between(level, ends, reach));
             found.into_iter().flatten().collect()
         };
         points.retain(|p| self.has_in_box(p));

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
-use mesh::TriangleMesh;
+use mesh::{Bounds, TriangleMesh};
 
 use crate::level::Level;
 
@@ -37,13 +37,15 @@ pub(crate) fn suspects(found: &TriangleMesh) -> Vec<[Vec3; 2]> {
 ///
 /// The two are moved to the isosurface, and the way between them is halved where the normal changes more, until they are a
 /// sixteenth of a spacing apart. If their normals still differ by 30 degrees, the edge is where their tangent planes meet: exactly,
-/// if both faces are flat.
+/// if both faces are flat. In a thin wedge that is farther away, by a spacing at most, and the isosurface must be there. Two sides
+/// of a sheet have no edge between them.
 pub(crate) fn between(level: &Level, [a, b]: [Vec3; 2], reach: f32) -> Option<DVec3> {
     let place = |p: Vec3| {
         let position = level.foot(p, reach)?.position;
         Some(Place { position: position.as_dvec3(), normal: level.normal(position)?.as_dvec3() })
     };
-    let near = NEAR * f64::from(level.spacing);
+    let spacing = f64::from(level.spacing);
+    let near = NEAR * spacing;
     let [mut a, mut b] = [place(a)?, place(b)?];
     for _ in 0..MOST_STEPS {
         if a.normal.dot(b.normal) > SHARP {
@@ -51,7 +53,12 @@ pub(crate) fn between(level: &Level, [a, b]: [Vec3; 2], reach: f32) -> Option<DV
         }
         let middle = 0.5 * (a.position + b.position);
         if a.position.distance(b.position) <= near {
-            return Some(meeting(&a, &b).filter(|p| p.distance(middle) <= near).unwrap_or(middle));
+            let edge = meeting(&a, &b)?;
+            let is_there = || {
+                let foot = level.foot(edge.as_vec3(), level.spacing);
+                edge.distance(middle) <= spacing && foot.is_some_and(|foot| foot.distance <= near)
+            };
+            return (edge.distance(middle) <= near || is_there()).then_some(edge);
         }
         let middle = place(middle.as_vec3())?;
         if a.normal.dot(middle.normal) < middle.normal.dot(b.normal) {
@@ -73,8 +80,9 @@ fn meeting(a: &Place, b: &Place) -> Option<DVec3> {
     meeting.is_finite().then_some(meeting)
 }
 
-/// Points of the sharp edges between triangles, a `step` of their length apart.
-pub(crate) fn of_triangles(triangles: &[[Vec3; 3]], step: f64) -> Vec<DVec3> {
+/// Points of the sharp edges between triangles within a box, a `step` of their length apart. An edge of two triangles is found, next
+/// to one without an area it is not.
+pub(crate) fn of_triangles(triangles: &[[Vec3; 3]], bounds: &Bounds, step: f64) -> Vec<DVec3> {
     let mut points = Vec::new();
     // How far it is to the next point.
     let mut next = 0.5 * step;
@@ -84,15 +92,19 @@ pub(crate) fn of_triangles(triangles: &[[Vec3; 3]], step: f64) -> Vec<DVec3> {
         let Some(normal) = (b - a).cross(c - a).try_normalize() else { continue };
         for (from, to) in [(0, 1), (1, 2), (2, 0)] {
             let mut ends = [corners[from], corners[to]];
-            let bits = |p: Vec3| p.to_array().map(|x| (x + 0.0).to_bits());
+            // The sum is 0 for -0 as well.
+            let bits = |p: Vec3| (p + Vec3::ZERO).to_array().map(f32::to_bits);
             if bits(ends[0]) > bits(ends[1]) {
                 ends.reverse();
             }
-            let Some(other) = normals.insert(ends.map(bits), normal) else { continue };
-            if normal.dot(other) > SHARP {
+            let Some(other) = normals.remove(&ends.map(bits)) else {
+                normals.insert(ends.map(bits), normal);
                 continue;
-            }
-            let [from, to] = ends.map(Vec3::as_dvec3);
+            };
+            let Some([from, to]) = (normal.dot(other) <= SHARP).then(|| clipped(ends, bounds)).flatten()
+            else {
+                continue;
+            };
             let length = from.distance(to);
             while next < length {
                 points.push(from.lerp(to, next / length));
@@ -102,4 +114,24 @@ pub(crate) fn of_triangles(triangles: &[[Vec3; 3]], step: f64) -> Vec<DVec3> {
         }
     }
     points
+}
+
+/// The part of a straight line that is in a box; `None` if it has no length.
+fn clipped(ends: [Vec3; 2], bounds: &Bounds) -> Option<[DVec3; 2]> {
+    let [from, to] = ends.map(Vec3::as_dvec3);
+    let way = to - from;
+    let [to_min, to_max] = [bounds.min, bounds.max].map(|side| side.as_dvec3() - from);
+    let (mut enters, mut leaves) = (0f64, 1f64);
+    for axis in 0..3 {
+        let sides = [to_min[axis], to_max[axis]];
+        if way[axis] == 0.0 {
+            if sides[0] > 0.0 || sides[1] < 0.0 {
+                return None;
+            }
+            continue;
+        }
+        let [first, second] = sides.map(|side| side / way[axis]);
+        (enters, leaves) = (enters.max(first.min(second)), leaves.min(first.max(second)));
+    }
+    (enters < leaves).then(|| [enters, leaves].map(|share| from + share * way))
 }

@@ -101,10 +101,10 @@ pub(crate) fn on_slabs<W: Send>(
     on_each(on, workspaces, |_, workspace| work(workspace))
 }
 
-/// Does `work` with each item, all at a time: on threads that are started for it, or as jobs.
+/// Does `work` with each item, on as many threads, which are started for it, or as jobs. Each thread takes the next item that is left.
 ///
 /// # Errors
-/// [`ExtractError::Threads`], and the first error of `work`.
+/// [`ExtractError::Threads`], and an error of `work`; items that nobody had begun are left out then.
 pub(crate) fn on_each<T: Send>(
     on: Threads,
     items: &mut [T],

@@ -126,6 +126,75 @@ fn smooth_surfaces_have_none() {
     }
 }
 
+/// The edge of a wedge with so many degrees between its faces, along the y axis of a turned box.
+#[test]
+fn edges_of_thin_wedges_are_at_their_tips() {
+    let turn = Mat3::from_rotation_z(0.4) * Mat3::from_rotation_x(0.3);
+    // Two triangles that meet in the edge: nothing else of them is near it.
+    let edge = TriangleMesh {
+        positions: [[0.0, -3.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0], [0.0, 0.1, 3.0]]
+            .map(|p| turn.transpose() * Vec3::from_array(p))
+            .to_vec(),
+        normals: Vec::new(),
+        triangles: vec![[0, 1, 2], [1, 0, 3]],
+    };
+    for (degrees, has_gradient) in
+        [90f32, 60.0, 40.0, 30.0, 20.0, 10.0].into_iter().flat_map(|of| [(of, true), (of, false)])
+    {
+        let wedge = Wedge { turn, half: (0.5 * degrees).to_radians(), has_gradient };
+        let found = measure(&edge, &wedge, 0.05).sharp_edges;
+        assert!(found.count > 40, "{degrees}: {} points", found.count);
+        // Differences see both faces nearer to the edge than they are wide.
+        let most = if has_gradient { 1e-3 } else { 0.1 };
+        assert!(found.max < most * 0.05, "{degrees}: {} of {} points", found.max, found.count);
+    }
+}
+
+/// The space between two planes that meet.
+struct Wedge {
+    turn: Mat3,
+    /// Half the angle between them.
+    half: f32,
+    has_gradient: bool,
+}
+
+impl StudyField for Wedge {
+    fn sample(&self, p: Vec3) -> f32 {
+        let q = self.turn * p;
+        q.z * self.half.sin() - q.x.abs() * self.half.cos()
+    }
+
+    fn gradient(&self, p: Vec3) -> Option<Vec3> {
+        let q = self.turn * p;
+        let outward = Vec3::new(-q.x.signum() * self.half.cos(), 0.0, self.half.sin());
+        self.has_gradient.then(|| self.turn.transpose() * outward)
+    }
+}
+
+/// A sheet has two sides and no edge, however thin it is.
+#[test]
+fn a_sheet_has_no_sharp_edge() {
+    let any = box_mesh(HALF, Mat3::IDENTITY);
+    for thickness in [0.01f32, 0.04, 0.1] {
+        let sheet = Formula(move |p: Vec3| thickness - (0.6 * p.x + 0.8 * p.z + 0.01).abs());
+        let found = measure(&any, &sheet, 0.05).sharp_edges;
+        assert_eq!(found.count, 0, "{thickness}");
+    }
+}
+
+/// Edges of a mesh far larger than the box are cut off at the box before points are made.
+#[test]
+fn edges_beyond_the_box_cost_nothing() {
+    let huge =
+        box_mesh(Vec3::new(1e6, 1e6, 0.5), Mat3::IDENTITY).transformed(|p| p + Vec3::new(1e6, 1e6, 0.0));
+    let field = MeshDistance::try_new(&huge).unwrap();
+    let found = measure(&huge, &field, 0.05).sharp_edges;
+    // Two edges along x and y each, from 0 to 1, and one along z.
+    let want = (4.0 * 1.0 + 1.0) / 0.025;
+    assert!((found.count as f64 - want).abs() <= 2.0, "{} points", found.count);
+    assert!(found.max < 1e-6, "{}", found.max);
+}
+
 /// A roof is sharp if its sides differ by more than 30 degrees.
 #[test]
 fn thirty_degrees_are_sharp() {
