@@ -1,5 +1,5 @@
 #!/bin/sh
-# Times isostudy's extraction beside VTK, scikit-image, PyMCubes, manifold3d (Python wheels) and fast-surface-nets, isosurface,
+# Times isostudy's extraction beside VTK, scikit-image, PyMCubes (Python wheels) and fast-surface-nets, isosurface,
 # transvoxel (Rust crates): sets up the programs that configs/peers.toml names, then runs that study's benchmark. What is fetched stays
 # under cache/ and target/.
 #
