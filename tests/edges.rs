@@ -75,11 +75,75 @@ impl TurnedBox {
         (0..8).map(|c| to(self.corner(c))).fold(0.0, f64::max)
     }
 
+    /// The mean distance from points of the twelve edges, evenly by length, to a mesh; in cells. Every triangle is tried.
+    fn edges_to(&self, mesh: &TriangleMesh) -> f64 {
+        let (mut sum, mut count) = (0.0, 0);
+        for (c, axis) in
+            (0..8).flat_map(|c| (0..3).map(move |axis| (c, axis))).filter(|(c, axis)| c >> axis & 1 == 0)
+        {
+            let (from, to) = (self.corner(c), self.corner(c | 1 << axis));
+            let points = (from.distance(to) / (0.1 * TURNED_SPACING)) as usize;
+            for i in 0..points {
+                let p = from.lerp(to, (i as f64 + 0.5) / points as f64);
+                let corners = mesh.triangles.iter().map(|t| t.map(|v| mesh.positions[v as usize].as_dvec3()));
+                sum += corners.map(|of| to_triangle(p, of)).fold(f64::INFINITY, f64::min);
+            }
+            count += points;
+        }
+        sum / count as f64 / TURNED_SPACING
+    }
+
     fn extracted(folder: &Folder, source: [&str; 2], method: &str) -> TriangleMesh {
         let bounds = "--bounds=-1.1,-1.1,-1.1,1.1,1.1,1.1";
         let [name, value] = source;
         folder.succeed(&[name, value, bounds, "--cells", "40", "--method", method, "-o", "made.ply"]);
         made(folder)
+    }
+}
+
+/// The distance from a point to a triangle: to its plane if it is over it, else to the nearest of its sides.
+fn to_triangle(p: DVec3, corners: [DVec3; 3]) -> f64 {
+    let [a, b, c] = corners;
+    let normal = (b - a).cross(c - a);
+    let sides = [(a, b), (b, c), (c, a)];
+    if sides.iter().all(|(from, to)| normal.cross(*to - *from).dot(p - *from) >= 0.0) && normal.length() > 0.0
+    {
+        return (normal.dot(p - a) / normal.length()).abs();
+    }
+    let to_side = |(from, to): (DVec3, DVec3)| {
+        let way = to - from;
+        let share = ((p - from).dot(way) / way.length_squared()).clamp(0.0, 1.0);
+        p.distance(from + way * if share.is_nan() { 0.0 } else { share })
+    };
+    sides.into_iter().map(to_side).fold(f64::INFINITY, f64::min)
+}
+
+/// A box is planted as a formula and as a mesh; what `--json` says of its sharp edges is what brute force says of the file that was
+/// written.
+#[test]
+fn distances_from_sharp_edges_are_those_of_the_box() {
+    let folder = Folder::of("extract");
+    for turn in 0..2 {
+        let wanted = TurnedBox::numbered(turn);
+        let mut bytes = Vec::new();
+        mesh::write_ply(&wanted.as_mesh(), &mut bytes).unwrap();
+        folder.write("box.ply", bytes);
+        for source in [["--field", &*wanted.formula()], ["--mesh", "box.ply"]] {
+            for method in ["mc", "dc", "bi"] {
+                let [name, value] = source;
+                let bounds = "--bounds=-1.1,-1.1,-1.1,1.1,1.1,1.1";
+                let asked =
+                    [name, value, bounds, "--cells", "40", "--method", method, "--json", "-o", "made.ply"];
+                let said: serde_json::Value = serde_json::from_str(&folder.succeed(&asked).stdout).unwrap();
+                let said = said["accuracy"]["sharp_edges"]["mean"].as_f64().unwrap() / TURNED_SPACING;
+                let want = wanted.edges_to(&made(&folder));
+                assert_eq!(method == "dc", want < 0.005, "{name} {turn} {method}: {want}");
+                assert!(
+                    (said - want).abs() < 0.05 * want + 0.002,
+                    "{name} {turn} {method}: {said} is not {want}"
+                );
+            }
+        }
     }
 }
 

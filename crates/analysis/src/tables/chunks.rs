@@ -2,7 +2,7 @@
 
 use crate::inputs::Inputs;
 use crate::words::list;
-use design::record::ChunkTimes;
+use design::Configuration;
 use statistics::interval::LEVEL;
 use statistics::median;
 use table::{Cell, Table};
@@ -26,9 +26,8 @@ pub(super) fn chunks(inputs: &Inputs<'_>) -> Option<Table> {
         ("is_whole", "The whole mesh"),
     ];
     let mut table = Table::new("chunks", "Chunk by chunk", &columns);
-    let of =
-        |id: &::design::ConfigurationId| inputs.chunks.iter().find(|times: &&ChunkTimes| times.id == *id);
-    let in_order = inputs.study.configurations.iter().filter_map(|configuration| of(&configuration.id));
+    let times = |of: &Configuration| inputs.chunks.iter().find(|times| times.id == of.id);
+    let in_order = inputs.study.configurations.iter().filter_map(times);
     for times in in_order {
         let mut row = vec![Cell::text(&times.id), Cell::count(times.chunks), Cell::count(times.timed)];
         row.extend(milliseconds(&times.chunk_s));
