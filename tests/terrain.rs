@@ -68,6 +68,49 @@ fn known(out: &Path) -> Vec<Known> {
         .collect()
 }
 
+/// What the page says before anybody scrolls: who is the best at what, once more by hand, and a picture of every method.
+fn first_screen(out: &Path, known: &[Known], objects: &[&str]) {
+    let labels: BTreeMap<String, String> =
+        rows(out, "methods").into_iter().map(|row| (row["id"].clone(), row["method"].clone())).collect();
+    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    let wants: [(&str, fn(&Known) -> f64); 4] = [
+        ("Shortest time", |of| of.seconds),
+        ("Smallest mean error", |of| of.error),
+        ("Sharp edges kept", |of| of.sharp_edges),
+        ("Most regular triangles", |of| -of.radius_ratio),
+    ];
+    for (want, cost) in wants {
+        let mut places: Vec<(&str, Vec<&str>)> = Vec::new();
+        for object in objects {
+            let own = known.iter().filter(|of| of.object == *object && of.has_own_cubes);
+            let best = own.reduce(|best, of| if cost(of) < cost(best) { of } else { best }).unwrap();
+            match places.iter_mut().find(|(method, _)| *method == best.method) {
+                Some((_, on)) => on.push(object),
+                None => places.push((&best.method, vec![object])),
+            }
+        }
+        let each = places.iter().map(|(method, on)| {
+            let on = match on[..] {
+                [one] => one.to_owned(),
+                _ if on.len() == objects.len() => "every object".to_owned(),
+                _ => format!("{} and {}", on[..on.len() - 1].join(", "), on[on.len() - 1]),
+            };
+            format!("{} on {on}", labels[*method])
+        });
+        let sentence = format!("{want}: {}.", each.collect::<Vec<_>>().join("; "));
+        assert!(page.contains(&sentence), "{sentence}");
+    }
+    let pictured = |method: &str| page.contains(&format!(r#"<img src="figures/method_{method}.png""#));
+    for method in labels.keys() {
+        assert_eq!(pictured(method), !method.ends_with("-matched"), "{method}");
+    }
+    // Names of fifteen methods leave no room for their bars.
+    let svg = fs::read_to_string(out.join("figures/triangles.svg")).unwrap();
+    assert!(svg.contains(">\nbir-matched\n<") && !svg.contains("relaxed and matched"), "{svg}");
+    let matched = "Spacings were chosen for snapmc-matched, bi-matched, bir-matched, si-matched, nets-matched and dc-matched to have as many";
+    assert!(page.contains(matched));
+}
+
 #[test]
 fn the_small_terrain_study_answers_from_its_own_numbers() {
     let folder = Folder::new();
@@ -121,6 +164,8 @@ fn the_small_terrain_study_answers_from_its_own_numbers() {
             assert_eq!(said, best.method, "{}, {column}: {}", row["object"], row[column]);
         }
     }
+
+    first_screen(&out, &known, &objects);
 
     // Chunks of every method are the whole mesh, to the bit.
     let chunks = rows(&out, "chunks");

@@ -66,6 +66,10 @@ fn drafts(inputs: &Inputs<'_>) -> Vec<Unfinished> {
     drafts.extend(stages::stage_times(inputs));
     drafts.extend(distributions::aspect_ratios(inputs));
     drafts.extend(fronts::draft(inputs));
+    if style::has_codes(inputs.study) {
+        let found = " The table of methods says what the codes stand for.";
+        drafts.iter_mut().for_each(|draft| draft.caption += found);
+    }
     if let Some(found) = crate::tables::design::budgets(inputs) {
         drafts.iter_mut().for_each(|draft| draft.caption += &format!(" {found}"));
     }
@@ -84,6 +88,13 @@ fn drafts(inputs: &Inputs<'_>) -> Vec<Unfinished> {
 
 /// Width of every figure in units.
 const WIDTH: f64 = 1000.0;
+
+/// Objects in rows of three panels at most, as evenly as they go.
+fn in_rows(objects: &[usize]) -> Vec<&[usize]> {
+    const MOST: usize = 3;
+    let rows = objects.len().div_ceil(MOST).max(1);
+    objects.chunks(objects.len().div_ceil(rows).max(1)).collect()
+}
 
 /// A figure before it is painted.
 struct Unfinished {

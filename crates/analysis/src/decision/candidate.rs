@@ -14,6 +14,10 @@ use std::collections::BTreeMap;
 /// How many standard errors a mean may be off at 95 %.
 const NORMAL_QUANTILE: f64 = 1.959_963_984_540_054;
 
+/// The least error that is told apart, in cube edges. A method that is exact but for rounding would be a million times as good as the
+/// next, and an error of 0 has no place on a logarithmic axis.
+pub(crate) const LEAST_ERROR: f64 = 1e-4;
+
 /// An object and the methods that can be taken for it, in the study's order.
 pub(crate) struct ObjectCandidates<'a> {
     pub(crate) object: &'a ObjectSection,
@@ -29,12 +33,19 @@ pub(crate) struct Candidate<'a> {
     /// Median seconds to extract again the chunks that an edit touches.
     pub(crate) edit_s: Option<Estimate>,
     /// Mean distance from the mesh to the isosurface or back, whichever is larger, in edges of the object's benchmark cubes: one
-    /// unit for all methods of the object.
+    /// unit for all methods of the object. At least [`LEAST_ERROR`].
     pub(crate) error: Option<Estimate>,
     /// Mean distance from the isosurface's sharp edges to the mesh, in the same unit; `None` if it has none.
     pub(crate) sharp_edges: Option<Estimate>,
     /// Mean over people of the answers for it less those against it, per answer that showed it on this object: 1 is always chosen.
     pub(crate) preference: Option<Estimate>,
+}
+
+impl ObjectCandidates<'_> {
+    /// Whether the error of a method is the least that is told apart.
+    pub(crate) fn has_least_error(&self) -> bool {
+        self.candidates.iter().any(|of| of.error.is_some_and(|error| error.value <= LEAST_ERROR))
+    }
 }
 
 impl Candidate<'_> {
@@ -111,7 +122,7 @@ fn error(mesh: &MeshRecord, unit: f64) -> Option<Estimate> {
     let there = mean(&mesh.accuracy.distance)?;
     let back = mean(mesh.accuracy.distance_to_mesh.as_ref()?)?;
     let larger = if back.value > there.value { back } else { there };
-    Some(larger.per(unit))
+    Some(larger.per(unit).at_least(LEAST_ERROR))
 }
 
 fn mean(of: &Distribution) -> Option<Estimate> {

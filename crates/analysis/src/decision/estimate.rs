@@ -29,6 +29,11 @@ impl Estimate {
         Self { value: self.value / unit, low: self.low / unit, high: self.high / unit }
     }
 
+    /// What is less than `least` becomes it.
+    pub(crate) fn at_least(self, least: f64) -> Self {
+        Self { value: self.value.max(least), low: self.low.max(least), high: self.high.max(least) }
+    }
+
     /// Whether both ends are the value.
     pub(crate) fn is_exact(self) -> bool {
         self.low == self.value && self.high == self.value

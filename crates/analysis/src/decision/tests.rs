@@ -94,10 +94,30 @@ fn the_best_of_each_want_is_picked_with_its_price() {
     assert_eq!(fastest.on[0].cost.crossing_triangles, 7);
     assert!((fastest.on[0].cost.error.unwrap() - 6.0).abs() < 1e-9);
     assert_eq!(of("faultless")[0].method.id, ids[3]);
+    let time = of("faultless")[0].on[0].cost.time.unwrap();
+    assert!((time - 1.002).abs() < 1e-6, "beside the fastest of all, faults or none: {time}");
     let [closest] = of("closest")[..] else { panic!("one is the closest on all") };
     assert_eq!(closest.method.id, ids[5]);
     assert!((closest.on[0].cost.time.unwrap() - 6.0).abs() < 0.05);
     assert!(of("closest_per_triangle").is_empty(), "nothing is matched in the paper's study");
+}
+
+/// A method that is exact but for rounding is not a million times as good as the next.
+#[test]
+fn an_error_below_the_least_that_is_told_apart_counts_as_that() {
+    let mut all = planted(&[[10.0, 0.5], [5.0, 0.6], [20.0, 0.02], [5.1, 0.6], [10.0, 0.5], [30.0, 3e-9]]);
+    let ids = all.study.method_ids();
+    for mesh in all.meshes.iter_mut().filter(|mesh| mesh.id.method == ids[4]) {
+        plant_error(mesh, 0.0);
+    }
+    let objects = candidates(&all.inputs());
+    assert!(objects.iter().all(ObjectCandidates::has_least_error));
+    let picks = picks(&objects);
+    let closest: Vec<&Pick<'_>> = picks.iter().filter(|pick| pick.want.name == "closest").collect();
+    assert_eq!(closest[0].method.id, ids[4], "of two that are exact, the study's first");
+    assert_eq!(closest[0].on[0].alike, [ids[5]]);
+    let fastest = picks.iter().find(|pick| pick.want.name == "fastest").unwrap();
+    assert!((fastest.on[0].cost.error.unwrap() - 0.6 / LEAST_ERROR).abs() < 1e-6);
 }
 
 /// bi on the sphere: 54 people's answers to the questions with it, counted from the file once more by hand.

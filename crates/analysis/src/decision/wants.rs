@@ -153,7 +153,7 @@ pub(crate) struct Best<'a> {
     pub(crate) cost: Cost,
 }
 
-/// What the best has to be paid with, beside those that it was compared with.
+/// What the best has to be paid with, beside all with the object's own cubes; among those with as many triangles, beside them.
 pub(crate) struct Cost {
     /// Its time over the shortest; `None` where there are no times.
     pub(crate) time: Option<f64>,
@@ -197,8 +197,12 @@ impl Want {
         }
         let next = ranked.get(1).map(|(of, value)| (of.method, *value));
         let alike = ranked[1..].iter().filter(|(_, other)| other.meets(value)).map(|(of, _)| of.id());
+        let beside = match self.among {
+            Among::SameTriangles => pool.clone(),
+            _ => Among::SameCells.pool(&of.candidates),
+        };
         let least = |quantity: fn(&Candidate<'_>) -> Option<f64>| {
-            let least = pool.iter().filter_map(|&of| quantity(of)).min_by(f64::total_cmp);
+            let least = beside.iter().filter_map(|&of| quantity(of)).min_by(f64::total_cmp);
             Some(quantity(first)? / least.filter(|&least| least > 0.0)?)
         };
         let topology = &first.mesh.topology;

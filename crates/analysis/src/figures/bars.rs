@@ -143,7 +143,14 @@ impl BarPanel {
         let mut over = self.axis.place(reached, bottom, top);
         if self.broken && reached > self.axis.high {
             tear(canvas, (x0, x1), top + 14.0);
-            canvas.text(super::axis::short(reached), (middle, top - 5.0), EM - 1.0, Align::Middle);
+            let value = super::axis::short(reached);
+            let wide = text_width(&value, EM - 1.0);
+            // Beside each other they would be one number.
+            if wide > x1 - x0 + 2.0 {
+                canvas.text_upwards(value, (middle + 0.36 * EM, top - 5.0 - wide / 2.0), EM - 1.0);
+            } else {
+                canvas.text(value, (middle, top - 5.0), EM - 1.0, Align::Middle);
+            }
         }
         if let Some(Interval { low, high }) = bar.interval {
             let (y0, y1) = (self.axis.place(low, bottom, top), self.axis.place(high, bottom, top));

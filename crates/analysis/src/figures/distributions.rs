@@ -4,14 +4,13 @@ use super::axis::Axis;
 use super::bars::frame;
 use super::canvas::{Align, BLACK, Canvas, text_width};
 use super::style::Fill;
-use super::{Unfinished, WIDTH, canvas_with_legend, style};
+use super::{Unfinished, WIDTH, canvas_with_legend, in_rows, style};
 use crate::inputs::Inputs;
 use crate::mesh_set::MeshSet;
 use design::record::{Distribution, MeshRecord, Purpose};
 use design::{MethodId, Study};
 
 const ROW: f64 = 400.0;
-const PER_ROW: usize = 3;
 
 type Measure = (&'static str, fn(&MeshRecord) -> &Distribution);
 
@@ -26,7 +25,7 @@ pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Unfinished> {
         return None;
     }
     let objects: Vec<usize> = (0..inputs.study.file.objects.len()).collect();
-    let blocks: Vec<&[usize]> = objects.chunks(PER_ROW).collect();
+    let blocks = in_rows(&objects);
     let (mut canvas, top) = canvas_with_legend(&[], 2.0 * ROW * blocks.len() as f64);
     let mut y = top;
     for block in blocks {
@@ -61,27 +60,29 @@ fn panel(
     study: &Study,
     axis: &Axis,
     label: &str,
-    name: &str,
+    object: &str,
     boxes: &[(MethodId, Option<&Distribution>)],
     from: (f64, f64),
     to: (f64, f64),
 ) {
     let (left, right) = (from.0 + 80.0, to.0 - 10.0);
-    let labels = study.methods.iter().map(|method| text_width(&method.label, 11.0)).fold(0.0, f64::max);
+    let name = |method: MethodId| style::name(study, method);
+    let labels = boxes.iter().map(|(method, _)| text_width(&name(*method), 11.0)).fold(0.0, f64::max);
     let (top, bottom) = (from.1 + 16.0, to.1 - 34.0 - labels);
     frame(canvas, axis, label, (left, right), (bottom, top));
     let pitch = (right - left) / boxes.len() as f64;
     let half = (0.32 * pitch).min(24.0);
     for (i, (method, distribution)) in boxes.iter().enumerate() {
         let x = left + pitch * (i as f64 + 0.5);
-        let label = &study.method(*method).label;
-        canvas.text_upwards(label, (x + 4.0, bottom + 8.0 + text_width(label, 11.0) / 2.0), 11.0);
+        let label = name(*method);
+        let down = bottom + 8.0 + text_width(&label, 11.0) / 2.0;
+        canvas.text_upwards(label, (x + 4.0, down), 11.0);
         let Some(d) = distribution else { continue };
         let heights = [d.q05, d.q25, d.median, d.q75, d.q95].map(|value| axis.place(value, bottom, top));
         draw_box(canvas, (x, half), heights, style::method(study, *method));
     }
     canvas.line(vec![(left, bottom), (right, bottom)], BLACK, 1.0);
-    canvas.text(name, ((left + right) / 2.0, bottom + labels + 22.0), 12.0, Align::Middle);
+    canvas.text(object, ((left + right) / 2.0, bottom + labels + 22.0), 12.0, Align::Middle);
 }
 
 /// A box with its whiskers: heights of the lower whisker's end, the lower quartile, the median, the upper quartile and the upper

@@ -6,7 +6,7 @@ use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
 use super::{Unfinished, WIDTH, canvas_with_legend, style};
-use crate::decision::{Axes, Front, FrontPoint, ObjectCandidates, Standing, candidates, fronts};
+use crate::decision::{Axes, Front, FrontPoint, LEAST_ERROR, ObjectCandidates, Standing, candidates, fronts};
 use crate::inputs::Inputs;
 use design::{Method, MethodId, Study};
 
@@ -33,10 +33,13 @@ pub(super) fn draft(inputs: &Inputs<'_>) -> Option<Unfinished> {
             panel(inputs.study, object, front).draw(&mut canvas, (x, y), (x + width, y + ROW));
         }
     }
-    let caption = "Each method on each object, two quantities at a time; better is to the left, and down for error, up for preference. Nobody is \
+    let mut caption: String = "Each method on each object, two quantities at a time; better is to the left, and down for error, up for preference. Nobody is \
                    better in both than the methods on the line, whose codes stand beside them. Thin lines are intervals at 95 %. The \
                    table of fronts has every value, and says who beats whom."
         .into();
+    if objects.iter().any(ObjectCandidates::has_least_error) {
+        caption.push_str(&format!(" A mean error below {LEAST_ERROR} is drawn there."));
+    }
     Some(Unfinished { name: "fronts", caption, canvas })
 }
 

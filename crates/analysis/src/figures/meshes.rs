@@ -35,7 +35,7 @@ fn clusters(
             .map(|method| {
                 let id = ConfigurationId { object: object.id.clone(), method };
                 let row = study.published.benchmark.iter().find(|row| row.id == id);
-                Slot { label: study.method(method).label.clone(), bars: bars(&id, row) }
+                Slot { label: style::name(study, method), bars: bars(&id, row) }
             })
             .collect(),
     };

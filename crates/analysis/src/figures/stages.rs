@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
 use super::legend::Swatch;
 use super::meshes::median_of;
-use super::{Unfinished, WIDTH, canvas_with_legend, style};
+use super::{Unfinished, WIDTH, canvas_with_legend, in_rows, style};
 use crate::inputs::Inputs;
 use design::ConfigurationId;
 use design::record::BenchSample;
@@ -14,7 +14,6 @@ use timing::stage_times::conditions;
 const ROW: f64 = 400.0;
 /// The place of sampling among the stages.
 const SAMPLING: usize = 1;
-const PER_ROW: usize = 3;
 
 pub(super) fn stage_times(inputs: &Inputs<'_>) -> Option<Unfinished> {
     let run = inputs.bench?;
@@ -27,7 +26,7 @@ pub(super) fn stage_times(inputs: &Inputs<'_>) -> Option<Unfinished> {
     let mut legend: Vec<_> =
         style::stages().into_iter().map(|(name, fill)| (Swatch::Area(fill), name.to_owned())).collect();
     legend.push((Swatch::Whisker, "95 % interval of the median".into()));
-    let blocks: Vec<&[usize]> = with_samples.chunks(PER_ROW).collect();
+    let blocks = in_rows(&with_samples);
     let (mut canvas, top) = canvas_with_legend(&legend, 2.0 * ROW * blocks.len() as f64);
     let mut y = top;
     for block in blocks {
@@ -79,7 +78,7 @@ fn panel(inputs: &Inputs<'_>, object: usize, sampling: bool) -> BarPanel {
     };
     let methods = inputs.study.method_ids().into_iter();
     let slots: Vec<Slot> =
-        methods.map(|m| Slot { label: inputs.study.method(m).label.clone(), bars: vec![bar(m)] }).collect();
+        methods.map(|m| Slot { label: style::name(inputs.study, m), bars: vec![bar(m)] }).collect();
     let label = if sampling { object.name.clone() } else { format!("{}, without sampling", object.name) };
     let mut clusters = vec![Cluster { label, slots }];
     // A costly field takes seconds; milliseconds would only add zeros.

@@ -23,6 +23,19 @@ pub(super) const LEFT: Colour = RGBColor(0x00, 0x72, 0xb2);
 pub(super) const NONE: Colour = RGBColor(0xdc, 0xdc, 0xdc);
 pub(super) const RIGHT: Colour = RGBColor(0xe6, 0x9f, 0x00);
 
+/// With more methods than this, their names would take more room than what is drawn.
+const MOST_NAMED: usize = 8;
+
+/// Whether figures name methods by their codes.
+pub(super) fn has_codes(study: &Study) -> bool {
+    study.methods.len() > MOST_NAMED
+}
+
+/// What stands under a method's bar or box: its name, or its code where there are many.
+pub(super) fn name(study: &Study, method: MethodId) -> String {
+    if has_codes(study) { method.to_string() } else { study.method(method).label.clone() }
+}
+
 impl Fill {
     pub(super) fn plain(colour: Colour) -> Self {
         Self { colour, outline: colour, stripes: false }

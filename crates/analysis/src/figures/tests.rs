@@ -135,3 +135,13 @@ fn captions_say_what_is_left_out() {
     let caption = meshes::pass_times(&all.inputs()).unwrap().caption;
     assert!(caption.contains("Published times are from another machine"), "{caption}");
 }
+
+#[test]
+fn objects_stand_in_rows_of_three_at_most_as_evenly_as_they_go() {
+    let lengths = |objects: usize| -> Vec<usize> {
+        in_rows(&(0..objects).collect::<Vec<_>>()).iter().map(|row| row.len()).collect()
+    };
+    assert_eq!([1, 2, 3].map(lengths), [vec![1], vec![2], vec![3]]);
+    assert_eq!([4, 5, 6].map(lengths), [vec![2, 2], vec![3, 2], vec![3, 3]]);
+    assert_eq!(in_rows(&[4, 7, 1, 0]).concat(), [4, 7, 1, 0]);
+}

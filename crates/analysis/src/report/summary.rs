@@ -2,6 +2,7 @@
 //! to do next.
 
 use super::{Evidence, SummaryLine, asked, limits, preference};
+use crate::decision::{candidates, picks};
 use crate::glance::{self, Row};
 use crate::hypotheses;
 use crate::inputs::Inputs;
@@ -19,8 +20,11 @@ const NAMED: usize = 6;
 /// `inputs` are those of a study.
 pub(super) fn lines(evidence: &Evidence<'_>, inputs: Option<&Inputs<'_>>) -> Vec<SummaryLine> {
     let rows = glance::rows(evidence.study, evidence.hypotheses);
-    let found = [found(evidence, &rows, inputs), inputs.and_then(regular)];
-    let found: Vec<String> = found.into_iter().flatten().collect();
+    let of_meshes = match inputs.map(best) {
+        Some(best) if evidence.shown.is_empty() && !best.is_empty() => best,
+        _ => inputs.and_then(regular).into_iter().collect(),
+    };
+    let found: Vec<String> = found(evidence, &rows, inputs).into_iter().chain(of_meshes).collect();
     let lines = [
         ("Compared", Some(compared(evidence))),
         ("By whom", Some(people(evidence))),
@@ -144,6 +148,25 @@ fn favourite(inputs: &Inputs<'_>) -> Option<String> {
     (first > second).then(|| {
         format!(" {} was chosen most: in {} of its showings.", capital(&method.label), percent(first))
     })
+}
+
+/// Who is the best at what most want of a mesh, a sentence a want.
+fn best(inputs: &Inputs<'_>) -> Vec<String> {
+    const WANTS: [&str; 4] = ["fastest", "closest", "edges", "regular"];
+    let objects = candidates(inputs);
+    let picks = picks(&objects);
+    let sentence = |name: &&str| {
+        let own: Vec<_> = picks.iter().filter(|pick| pick.want.name == *name).collect();
+        let want = own.first()?.want;
+        let is_everywhere = own[0].on.len() == objects.len() && objects.len() > 1;
+        let each = own.iter().map(|pick| {
+            let on: Vec<&str> = pick.on.iter().map(|best| best.object.name.as_str()).collect();
+            let on = if is_everywhere { "every object".into() } else { list(&on) };
+            format!("{} on {on}", pick.method.label)
+        });
+        Some(format!("{}: {}.", capital(want.heading), each.collect::<Vec<_>>().join("; ")))
+    };
+    WANTS.iter().filter_map(sentence).collect()
 }
 
 /// The method whose triangles are the most regular, over all objects.

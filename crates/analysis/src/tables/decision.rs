@@ -1,7 +1,7 @@
 //! Which method to take for what, and who is beaten in both time and error.
 
 use crate::decision::{
-    Axes, Cost, Estimate, ObjectCandidates, Pick, Standing, Want, candidates, fronts, picks,
+    Axes, Cost, Estimate, LEAST_ERROR, ObjectCandidates, Pick, Standing, Want, candidates, fronts, picks,
 };
 use crate::inputs::Inputs;
 use crate::words::{list, whole};
@@ -79,6 +79,13 @@ fn decision(objects: &[ObjectCandidates<'_>], picks: &[Pick<'_>]) -> Table {
             Cell::text(why(pick)),
             Cell::text(cost(pick)),
         ]);
+    }
+    if !picks.is_empty() {
+        table.notes.push(
+            "What it costs: beside the least of all methods with the object's own cubes. In the row \u{201c}as many triangles\u{201d} it is \
+             beside the least of those."
+                .into(),
+        );
     }
     table
 }
@@ -171,6 +178,9 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
          object's own cubes are compared, but for \u{201c}as many triangles\u{201d}. Not told apart: the intervals at 95 % meet; \
          those of fewer than six times reach from the shortest to the longest. ",
     );
+    if objects.iter().any(ObjectCandidates::has_least_error) {
+        text.push_str(&format!("A mean error below {LEAST_ERROR} counts as {LEAST_ERROR}. "));
+    }
     if inputs.chunks.iter().any(|times| !times.edit_s.is_empty()) {
         text.push_str("Edits differ by their places, and their interval is over places. ");
     }

@@ -2,6 +2,7 @@
 
 use crate::inputs::Inputs;
 use crate::mesh_set::MeshSet;
+use crate::words::list;
 use ::design::config::Quantity;
 use ::design::record::{MadeBy, Purpose};
 use ::design::{Factor, MethodId, Study};
@@ -107,16 +108,22 @@ pub(super) fn configurations(inputs: &Inputs<'_>) -> Table {
 
 /// Which methods have another spacing than their object, and why, in a sentence.
 pub(crate) fn budgets(inputs: &Inputs<'_>) -> Option<String> {
-    let with_budget = |method: &::design::Method| {
-        let budget = method.budget?;
+    // Those of one budget together, in the order of the first of each.
+    let mut found: Vec<(String, Vec<String>)> = Vec::new();
+    for method in &inputs.study.methods {
+        let Some(budget) = method.budget else { continue };
         let (what, of) = (budget.quantity.names()[1], budget.of);
         let much = if budget.quantity == Quantity::Time { "much" } else { "many" };
         let within = table::digits::number(100.0 * budget.within, 2);
         let within = within.trim_end_matches('0').trim_end_matches('.');
-        Some(format!("{} to have as {much} {what} as {of} to {within} %", method.id))
-    };
-    let found: Vec<String> = inputs.study.methods.iter().filter_map(with_budget).collect();
-    (!found.is_empty()).then(|| format!("Spacings were chosen for {}, object by object.", found.join(", ")))
+        let aim = format!("to have as {much} {what} as {of} to {within} %");
+        match found.iter_mut().find(|(other, _)| *other == aim) {
+            Some((_, methods)) => methods.push(method.id.to_string()),
+            None => found.push((aim, vec![method.id.to_string()])),
+        }
+    }
+    let found: Vec<String> = found.iter().map(|(aim, methods)| format!("{} {aim}", list(methods))).collect();
+    (!found.is_empty()).then(|| format!("Spacings were chosen for {}, object by object.", found.join("; ")))
 }
 
 /// The questions: what is shown on which side (appendix C).

@@ -24,13 +24,19 @@ pub(super) fn path(configuration: &Configuration) -> String {
 }
 
 impl Pipeline<'_> {
-    /// The configurations on the pages' picture; none of a study with too many methods.
+    /// The configurations on the pages' picture; none of a study with too many methods. A method whose cells alone differ from those
+    /// of an earlier one is not among them.
     pub(super) fn pictured(&self) -> Vec<&Configuration> {
         let object = object(self.study);
-        match self.study.methods.len() {
-            1..=MOST => self.selected(&[]).into_iter().filter(|c| c.object == object).collect(),
-            _ => Vec::new(),
-        }
+        let study = self.study;
+        let is_new = |c: &&Configuration| {
+            let own = study.method(c.id.method);
+            let mut earlier = study.methods.iter().take_while(|other| other.id != own.id);
+            own.budget.is_none() || !earlier.any(|other| other.recipe == own.recipe)
+        };
+        let of_object = self.selected(&[]).into_iter().filter(|c| c.object == object);
+        let shown: Vec<&Configuration> = of_object.filter(is_new).collect();
+        if shown.len() > MOST { Vec::new() } else { shown }
     }
 
     /// Takes the first frame of each turntable of one object. `turntables` are in the order of the configurations.
