@@ -395,9 +395,115 @@ fn worst_plane_angles(samples: u64, seed: u64) -> [f64; 2] {
     worst
 }
 
-/// Found by sampling: just beyond what millions of samples gave. Labelle and Shewchuk (2007) state 10.7 and 164.8 degrees for this
-/// pair of shares, of tetrahedra whose quadrilaterals are cut by a rule of their own, and of points that are moved one after the other.
-/// Those with quadrilaterals are left out here, and points may move as if none of the others had.
+/// One tetrahedron with all neighbours of its corners, each with a sample: what the program sees of it.
+struct Samples {
+    places: Vec<Place>,
+    values: Vec<f64>,
+}
+
+impl Samples {
+    fn random(numbers: &mut Numbers) -> Self {
+        let mut places = TETRAHEDRON.to_vec();
+        for (corner, offset) in
+            TETRAHEDRON.into_iter().flat_map(|c| offsets().into_iter().map(move |o| (c, o)))
+        {
+            let place = plus(corner, offset);
+            if !places.contains(&place) {
+                places.push(place);
+            }
+        }
+        let values =
+            places.iter().map(|_| numbers.below(1 << 24) as f64 / f64::from(1 << 23) - 1.0).collect();
+        Self { places, values }
+    }
+
+    fn value(&self, place: Place) -> f64 {
+        self.values[self.places.iter().position(|p| *p == place).expect("a neighbour")]
+    }
+
+    /// The tetrahedron's angles, its corners moved as published, one after the other: a corner that was moved lies on the surface, and
+    /// its edges have no crossings any more. Without an order all are moved at once, as the extractor does. None where the tetrahedron
+    /// has a quadrilateral, or nothing inside.
+    fn dihedral_angles(&self, order: Option<[usize; 4]>) -> Option<[f64; 2]> {
+        let at = |place: Place| DVec3::from_array(place.map(f64::from));
+        let crossing = |p: Place, q: Place| {
+            let (here, there) = (self.value(p), self.value(q));
+            ((here > 0.0) != (there > 0.0)).then(|| here / (here - there))
+        };
+        let mut warped: [Option<DVec3>; 4] = [None; 4];
+        for i in order.unwrap_or([0, 1, 2, 3]) {
+            let place = TETRAHEDRON[i];
+            let reached = offsets().into_iter().filter_map(|offset| {
+                let other = plus(place, offset);
+                let is_on_surface =
+                    TETRAHEDRON.iter().zip(&warped).any(|(p, at)| *p == other && at.is_some());
+                let share = crossing(place, other).filter(|_| order.is_none() || !is_on_surface)?;
+                (share < alpha(offset)).then_some((share, offset))
+            });
+            let nearest = reached.min_by(|a, b| a.0.total_cmp(&b.0));
+            warped[i] = nearest.map(|(share, offset)| at(place) + at(offset) * share);
+        }
+        let is_inside = |i: usize| self.value(TETRAHEDRON[i]) > 0.0;
+        let of = |inside: bool| (0..4).filter(move |&i| warped[i].is_none() && is_inside(i) == inside);
+        let (inside, outside): (Vec<usize>, Vec<usize>) = (of(true).collect(), of(false).collect());
+        if !(inside.len() == 1 || !inside.is_empty() && outside.is_empty()) {
+            return None;
+        }
+        let mut corners: [DVec3; 4] = std::array::from_fn(|i| warped[i].unwrap_or(at(TETRAHEDRON[i])));
+        for &q in &outside {
+            let (from, to) = (TETRAHEDRON[inside[0]], TETRAHEDRON[q]);
+            corners[q] = at(from).lerp(at(to), crossing(from, to).expect("they are on two sides"));
+        }
+        Some(dihedral_angles(corners))
+    }
+}
+
+/// The smallest and the largest angle that samples were driven to, a few at a time, from many starts.
+fn driven_dihedral_angles(starts: u32, steps: u32, seed: u64, in_order: bool) -> [f64; 2] {
+    let mut numbers = Numbers::new(seed);
+    let mut worst = [180.0f64, 0.0f64];
+    for start in 0..starts {
+        let end = start as usize % 2;
+        let badness = |angles: [f64; 2]| if end == 0 { -angles[0] } else { angles[1] };
+        let mut samples = Samples::random(&mut numbers);
+        let mut order = [0, 1, 2, 3];
+        for i in (1..4).rev() {
+            order.swap(i, numbers.below(i as u64 + 1) as usize);
+        }
+        let order = in_order.then_some(order);
+        let mut now = samples.dihedral_angles(order);
+        for step in 0..steps {
+            let before = samples.values.clone();
+            // Ever smaller, now a sample anew.
+            let scale = 0.5f64.powi((10 * step / steps) as i32);
+            for _ in 0..1 + numbers.below(3) {
+                let which = numbers.below(samples.values.len() as u64) as usize;
+                let unit = numbers.below(1 << 24) as f64 / f64::from(1 << 23) - 1.0;
+                let value = samples.values[which];
+                samples.values[which] = match numbers.below(4) {
+                    0 => unit,
+                    1 => -value,
+                    2 => value * (1.0 + scale * unit),
+                    _ => value + scale * unit,
+                };
+            }
+            let then = samples.dihedral_angles(order);
+            match (now, then) {
+                (None, _) => now = then,
+                (Some(old), Some(new)) if badness(new) >= badness(old) => now = then,
+                _ => samples.values = before,
+            }
+        }
+        if let Some([least, most]) = now {
+            worst = [worst[0].min(least), worst[1].max(most)];
+        }
+    }
+    worst
+}
+
+/// Found by sampling: just beyond what millions of samples gave. Labelle and Shewchuk (2007) state 10.7 and 164.8 degrees, and this pair
+/// of shares is given for them. They cut quadrilaterals by a rule of their own, so tetrahedra with such are left out here. The others have
+/// smaller angles all the same: see below.
 const DIHEDRAL: [f64; 2] = [9.31, 161.7];
 /// The same of the triangles.
 const PLANE: [f64; 2] = [7.5, 159.0];
@@ -408,6 +514,48 @@ fn dihedral_angles_are_bounded() {
     assert!(least > DIHEDRAL[0] && most < DIHEDRAL[1], "{least} {most}");
     // The samples are adversarial.
     assert!(least < DIHEDRAL[0] + 1.0 && most > DIHEDRAL[1] - 3.0, "{least} {most}");
+}
+
+/// No artefact of corners that move without regard to each other: there are samples for which the published steps, in their order, end
+/// at these very angles.
+#[test]
+fn samples_reach_the_bounds_of_dihedral_angles() {
+    for in_order in [false, true] {
+        let [least, most] = driven_dihedral_angles(80, 6_000, 5, in_order);
+        assert!(least > DIHEDRAL[0] && most < DIHEDRAL[1], "{least} {most}");
+        assert!(least < 9.4 && most > 161.3, "{least} {most}");
+    }
+}
+
+/// One tetrahedron by hand: a corner inside that stays, and three that move by all that they may, one of them towards another.
+#[test]
+fn a_tetrahedron_has_a_smaller_angle_than_published() {
+    let short = 0.411_889;
+    let moves: [Place; 3] = [[-1, 1, 1], [1, 1, 1], [-1, -1, -1]];
+    let mut corners = TETRAHEDRON.map(|place| DVec3::from_array(place.map(f64::from)));
+    for (corner, offset) in corners.iter_mut().zip(moves) {
+        *corner += short * DVec3::from_array(offset.map(f64::from));
+    }
+    // Samples for which it comes to be, the third corner moved before the first. All others are next to 0: crossings are next to them,
+    // and out of reach of the corners.
+    let mut samples = Samples::random(&mut Numbers::new(0));
+    samples.values.fill(1e-3);
+    let mut set = |place: Place, value: f64| {
+        let at = samples.places.iter().position(|p| *p == place).unwrap();
+        samples.values[at] = value;
+    };
+    // Crossings at 0.411889 of the way: towards (-1, 1, 1), from (1, 1, 1) to the first corner, and from the second to (3, 1, 1).
+    let beyond = (1.0 - short) / short;
+    set([0, 0, 0], -1.0);
+    set([1, 1, 1], 1.0 / beyond);
+    set([-1, 1, 1], beyond);
+    set([2, 0, 0], 1.0);
+    set([3, 1, 1], -beyond);
+    set([1, -1, 1], 1.0);
+    let [least, most] = dihedral_angles(corners);
+    assert!((least - 9.3175).abs() < 1e-3 && (most - 160.838).abs() < 1e-2, "{least} {most}");
+    let [found, _] = samples.dihedral_angles(Some([2, 0, 1, 3])).unwrap();
+    assert!((found - least).abs() < 1e-6, "{found} {least}");
 }
 
 #[test]

@@ -166,7 +166,12 @@ fn best(inputs: &Inputs<'_>) -> Vec<String> {
         });
         Some(format!("{}: {}.", capital(want.heading), each.collect::<Vec<_>>().join("; ")))
     };
-    WANTS.iter().filter_map(sentence).collect()
+    let mut found: Vec<String> = WANTS.iter().filter_map(sentence).collect();
+    let told = picks.iter().filter(|pick| WANTS.contains(&pick.want.name));
+    if told.flat_map(|pick| &pick.on).any(|best| !best.alike.is_empty()) {
+        found.push("From some of these others are not told apart: the first table marks them.".into());
+    }
+    found
 }
 
 /// The method whose triangles are the most regular, over all objects.

@@ -101,7 +101,7 @@ static PRESETS: [Preset; 36] = [
     },
     Preset {
         id: "nets-manifold",
-        label: "surface nets, manifold",
+        label: "surface nets (manifold)",
         method: Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 0, edge_clamp: 0.0 }),
         source: PATCHES,
     },
@@ -118,7 +118,7 @@ static PRESETS: [Preset; 36] = [
     },
     Preset {
         id: "dc-manifold",
-        label: "dual contouring, manifold",
+        label: "dual contouring (manifold)",
         method: Method::DualContouring(DualContouring {
             patches: true,
             truncation: 1e-3,
