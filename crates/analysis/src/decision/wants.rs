@@ -20,6 +20,8 @@ pub(crate) struct Want {
     among: Among,
     quantity: fn(&Candidate<'_>) -> Option<Estimate>,
     is_larger_better: bool,
+    /// What decides between those that are not told apart from the best, if not the quantity itself; less is better.
+    between: fn(&Candidate<'_>) -> Option<Estimate>,
 }
 
 /// Who takes part.
@@ -47,6 +49,7 @@ const WANTS: [Want; 9] = [
         among: Among::All,
         quantity: |of| of.preference,
         is_larger_better: true,
+        between: |_| None,
     },
     Want {
         name: "fastest",
@@ -57,6 +60,7 @@ const WANTS: [Want; 9] = [
         among: Among::SameCells,
         quantity: |of| of.time_s.map(milliseconds),
         is_larger_better: false,
+        between: |of| of.error,
     },
     Want {
         name: "edit",
@@ -67,6 +71,7 @@ const WANTS: [Want; 9] = [
         among: Among::SameCells,
         quantity: |of| of.edit_s.map(milliseconds),
         is_larger_better: false,
+        between: |of| of.error,
     },
     Want {
         name: "closest",
@@ -77,6 +82,7 @@ const WANTS: [Want; 9] = [
         among: Among::SameCells,
         quantity: |of| of.error,
         is_larger_better: false,
+        between: |of| of.time_s,
     },
     Want {
         name: "closest_per_triangle",
@@ -87,6 +93,7 @@ const WANTS: [Want; 9] = [
         among: Among::SameTriangles,
         quantity: |of| of.error,
         is_larger_better: false,
+        between: |of| of.time_s,
     },
     Want {
         name: "edges",
@@ -97,6 +104,7 @@ const WANTS: [Want; 9] = [
         among: Among::SameCells,
         quantity: |of| of.sharp_edges,
         is_larger_better: false,
+        between: |of| of.time_s,
     },
     Want {
         name: "regular",
@@ -107,6 +115,7 @@ const WANTS: [Want; 9] = [
         among: Among::SameCells,
         quantity: |of| known(&of.mesh.quality.radius_ratio, |ratio| ratio.mean).map(Estimate::exact),
         is_larger_better: true,
+        between: |_| None,
     },
     Want {
         name: "faultless",
@@ -117,6 +126,7 @@ const WANTS: [Want; 9] = [
         among: Among::Faultless,
         quantity: |of| of.time_s.map(milliseconds),
         is_larger_better: false,
+        between: |of| of.error,
     },
     Want {
         name: "topology",
@@ -127,6 +137,7 @@ const WANTS: [Want; 9] = [
         among: Among::RightTopology,
         quantity: |of| of.time_s.map(milliseconds),
         is_larger_better: false,
+        between: |of| of.error,
     },
 ];
 
@@ -142,13 +153,13 @@ pub(crate) struct Pick<'a> {
     pub(crate) on: Vec<Best<'a>>,
 }
 
-/// The best of one object.
+/// What to take on one object: the best, or one that is not told apart from it.
 pub(crate) struct Best<'a> {
     pub(crate) object: &'a ObjectSection,
     pub(crate) value: Estimate,
-    /// The next best, and its value; `None` where no other qualifies.
+    /// The best of all others, and its value; `None` where no other qualifies.
     pub(crate) next: Option<(&'a Method, Estimate)>,
-    /// Whose interval meets that of the best.
+    /// Which others are not told apart from the best: their intervals meet.
     pub(crate) alike: Vec<MethodId>,
     pub(crate) cost: Cost,
 }
@@ -191,12 +202,21 @@ impl Want {
             pool.iter().filter_map(|&candidate| Some((candidate, (self.quantity)(candidate)?))).collect();
         let sign = if self.is_larger_better { -1.0 } else { 1.0 };
         ranked.sort_by(|a, b| (sign * a.1.value).total_cmp(&(sign * b.1.value)));
-        let &(first, value) = ranked.first()?;
+        let &(_, least) = ranked.first()?;
         if of.candidates.len() < 2 || !self.among.is_strict() && ranked.len() < 2 {
             return None;
         }
-        let next = ranked.get(1).map(|(of, value)| (of.method, *value));
-        let alike = ranked[1..].iter().filter(|(_, other)| other.meets(value)).map(|(of, _)| of.id());
+        // The best of a run is chance among those that are not told apart from it.
+        let is_alike = |(_, other): &&(&Candidate<'a>, Estimate)| other.meets(least);
+        let between = |of: &Candidate<'_>| (self.between)(of).map_or(f64::INFINITY, |of| of.value);
+        let &(first, value) = ranked
+            .iter()
+            .filter(is_alike)
+            .min_by(|a, b| between(a.0).total_cmp(&between(b.0)))
+            .unwrap_or(&ranked[0]);
+        let others = || ranked.iter().filter(|(of, _)| of.id() != first.id());
+        let next = others().next().map(|(of, value)| (of.method, *value));
+        let alike = others().filter(is_alike).map(|(of, _)| of.id());
         let beside = match self.among {
             Among::SameTriangles => pool.clone(),
             _ => Among::SameCells.pool(&of.candidates),
