@@ -209,6 +209,18 @@ fn the_small_terrain_study_answers_from_its_own_numbers() {
         );
         assert!(number(row, "chunk_ms").unwrap() > 0.0 && number(row, "edit_ms").unwrap() > 0.0);
     }
+    // All methods are asked the same edits.
+    let edits = |id: &str| {
+        let text = fs::read_to_string(out.join(format!("bench/chunks/{id}.json"))).unwrap();
+        let times: serde_json::Value = serde_json::from_str(&text).unwrap();
+        times["edit_chunks"].clone()
+    };
+    for object in ["hi", "cl", "ca", "bu"] {
+        let of_cubes = edits(&format!("{object}_mc"));
+        assert_eq!(of_cubes.as_array().unwrap().len(), 10);
+        assert_eq!(edits(&format!("{object}_mc33")), of_cubes, "{object}");
+        assert_eq!(edits(&format!("{object}_snapmc")).as_array().unwrap().len(), 10);
+    }
     for page in ["index.html", "report.html"] {
         let text = fs::read_to_string(out.join(page)).unwrap();
         assert!(text.contains(r##"href="#decision""##), "{page}");

@@ -8,7 +8,7 @@ mod estimate;
 mod fronts;
 mod wants;
 
-pub(crate) use candidate::{Candidate, LEAST_ERROR, ObjectCandidates, candidates};
+pub(crate) use candidate::{Candidate, Each, LEAST_ERROR, ObjectCandidates, candidates};
 pub(crate) use estimate::Estimate;
 pub(crate) use fronts::{Axes, Front, FrontPoint, Standing, fronts};
 pub(crate) use wants::{Cost, Pick, Want, picks};

@@ -293,7 +293,7 @@ pub struct ChunkTimes {
     pub chunk_s: Vec<f64>,
     /// Chunks that each edit touches.
     pub edit_chunks: Vec<u64>,
-    /// Seconds to extract all of them again, edit by edit.
+    /// Seconds to extract all of them again, edit by edit: the median of a few rounds. Edits are at the same places for all methods.
     pub edit_s: Vec<f64>,
     /// Boundary edges of the chunks welded together, less those of the mesh that is made at once.
     pub open_seam_edges: i64,

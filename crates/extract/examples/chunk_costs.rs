@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use extract::{
     Arrangement, CellBox, Chunk, ChunkExtractor, ChunkSettings, Control, Grid, Method, Normals, Placement,
-    ScalarField, Source, Tetrahedra, from_fn,
+    ScalarField, Source, Tetrahedra, from_fn, presets,
 };
 use ground::{Ground, Hole};
 
@@ -70,6 +70,26 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             chunk.indices_u16(&mut indices).is_ok()
         });
     }
+    for preset in ["mc", "nets", "nets-manifold", "dc", "dc-in-cell"] {
+        println!("{preset}, chunks of 32³ cells:");
+        let method = presets().iter().find(|of| of.id == preset).ok_or("a preset")?.method;
+        let mut extractor = ChunkExtractor::try_new(&grid, &method, &ChunkSettings::default())?;
+        let mut chunk = Chunk::default();
+        for (what, field) in [("with a bound", Source::from(&ground)), ("without", Source::from(&unbounded))]
+        {
+            timed(what, ids().map(|id| grid.chunk(id, 32)), |cells| {
+                extractor.extract_into(field, cells, Control::default(), &mut chunk).is_ok()
+            });
+        }
+    }
+    // What no method can do without that takes every sample.
+    let method = Method::Tetrahedra(Tetrahedra::new(Arrangement::SimpleCubic));
+    let extractor = ChunkExtractor::try_new(&grid, &method, &ChunkSettings::default())?;
+    let mut samples = Vec::new();
+    timed("33³ samples and nothing else", ids(), |id| {
+        let layout = extractor.layout(grid.chunk(id, 32));
+        layout.map(|layout| layout.fill(&ground, &mut samples)).is_ok()
+    });
     Ok(())
 }
 

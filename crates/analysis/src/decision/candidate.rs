@@ -30,8 +30,11 @@ pub(crate) struct Candidate<'a> {
     pub(crate) mesh: &'a MeshRecord,
     /// Median seconds from the field to the mesh, normals left out.
     pub(crate) time_s: Option<Estimate>,
-    /// Median seconds to extract again the chunks that an edit touches.
-    pub(crate) edit_s: Option<Estimate>,
+    /// Median seconds to extract a chunk, chunk by chunk, and to extract again what an edit touches, edit by edit.
+    pub(crate) chunks: Option<Each>,
+    pub(crate) edits: Option<Each>,
+    /// Bytes that extraction takes beside the field.
+    pub(crate) memory: Option<u64>,
     /// Mean distance from the mesh to the isosurface or back, whichever is larger, in edges of the object's benchmark cubes: one
     /// unit for all methods of the object. At least [`LEAST_ERROR`].
     pub(crate) error: Option<Estimate>,
@@ -39,6 +42,30 @@ pub(crate) struct Candidate<'a> {
     pub(crate) sharp_edges: Option<Estimate>,
     /// Mean over people of the answers for it less those against it, per answer that showed it on this object: 1 is always chosen.
     pub(crate) preference: Option<Estimate>,
+}
+
+/// Times of the same pieces of work, one after the other, and their median.
+pub(crate) struct Each {
+    times_s: Vec<f64>,
+    pub(crate) median_s: Estimate,
+}
+
+impl Each {
+    fn of(times_s: Vec<f64>) -> Option<Self> {
+        let found = median(times_s.clone(), LEVEL)?;
+        Some(Self { times_s, median_s: Estimate::within(found.median, found.interval) })
+    }
+
+    /// Whether the median ratio of one piece's two times may be 1; `None` where the pieces are not the same.
+    pub(crate) fn may_equal(&self, other: &Self) -> Option<bool> {
+        if self.times_s.len() != other.times_s.len() {
+            return None;
+        }
+        let ratios = self.times_s.iter().zip(&other.times_s).map(|(a, b)| a / b).collect();
+        let found = median(ratios, LEVEL)?;
+        let of = Estimate::within(found.median, found.interval);
+        Some(of.low <= 1.0 && 1.0 <= of.high)
+    }
 }
 
 impl ObjectCandidates<'_> {
@@ -86,11 +113,16 @@ pub(crate) fn candidates<'a>(inputs: &Inputs<'a>) -> Vec<ObjectCandidates<'a>> {
             let mesh = meshes.at(place, method.id)?;
             let unit = object.benchmark_spacing;
             let id = ConfigurationId { object: object.id.clone(), method: method.id };
+            let chunks = inputs.chunks.iter().find(|times| times.id == id);
             Some(Candidate {
                 method,
                 mesh,
                 time_s: inputs.bench.and_then(|run| time(run, &id)),
-                edit_s: inputs.chunks.iter().find(|times| times.id == id).and_then(edit),
+                chunks: chunks.and_then(|times| Each::of(per_chunk(times))),
+                edits: chunks.and_then(|times| Each::of(times.edit_s.clone())),
+                memory: inputs
+                    .bench
+                    .and_then(|run| run.memory.iter().find(|peak| peak.id == id)?.of_extraction()),
                 error: error(mesh, unit),
                 sharp_edges: mesh.accuracy.sharp_edges.as_ref().and_then(mean).map(|mean| mean.per(unit)),
                 preference: inputs.answers.and_then(|answers| preference(study, answers, place, method.id)),
@@ -113,9 +145,11 @@ fn time(run: &BenchRun, id: &ConfigurationId) -> Option<Estimate> {
     Some(Estimate::within(found.median, found.interval))
 }
 
-fn edit(times: &ChunkTimes) -> Option<Estimate> {
-    let found = median(times.edit_s.clone(), LEVEL)?;
-    Some(Estimate::within(found.median, found.interval))
+/// Of each chunk the median of its rounds.
+fn per_chunk(times: &ChunkTimes) -> Vec<f64> {
+    let count = times.timed as usize;
+    let of = |chunk| median(times.chunk_s.iter().copied().skip(chunk).step_by(count).collect(), LEVEL);
+    (0..count).filter_map(of).map(|of| of.median).collect()
 }
 
 fn error(mesh: &MeshRecord, unit: f64) -> Option<Estimate> {

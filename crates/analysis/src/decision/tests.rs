@@ -1,7 +1,7 @@
 use super::*;
 use crate::fixture::{self, Everything};
 use design::ConfigurationId;
-use design::record::{MeshRecord, Purpose};
+use design::record::{ChunkTimes, MeshRecord, Purpose};
 
 fn exact(x: f64, y: f64) -> [f64; 2] {
     [x, y]
@@ -115,6 +115,51 @@ fn of_those_not_told_apart_in_time_the_closest_is_taken() {
     assert_eq!((best.next.unwrap().0.id, &best.alike[..]), (ids[1], &[ids[1]][..]));
     assert!((best.value.value - 5.01).abs() < 1e-9);
     assert!((best.cost.time.unwrap() - 1.002).abs() < 1e-6 && (best.cost.error.unwrap() - 6.0).abs() < 1e-9);
+}
+
+/// Places differ a hundredfold, methods by a few per cent; what is asked of all at one place is compared there.
+#[test]
+fn chunks_and_edits_are_compared_one_by_one() {
+    let all = planted(&[[10.0, 0.1], [5.0, 0.4], [20.0, 0.3], [6.0, 0.2], [8.0, 0.2], [30.0, 0.05]]);
+    let ids = all.study.method_ids();
+    let place = |i: usize| 1e-4 * 1.6f64.powi(i as i32);
+    // The second is as fast as the first, here and there; the third is slower by 5 % everywhere; the others by half.
+    let share = |method: usize, i: usize| match method {
+        0 => 1.0,
+        1 => [0.99, 1.01, 1.001, 0.998][i % 4],
+        2 => 1.05,
+        _ => 1.5,
+    };
+    let mut chunks = Vec::new();
+    for object in &all.study.file.objects {
+        for (method, &id) in ids.iter().enumerate() {
+            let times: Vec<f64> = (0..10).map(|i| place(i) * share(method, i)).collect();
+            chunks.push(ChunkTimes {
+                id: ConfigurationId { object: object.id.clone(), method: id },
+                cells: 32,
+                chunks: 12,
+                timed: 10,
+                // Three rounds; the last was disturbed.
+                chunk_s: [&times[..], &times, &[1.0; 10]].concat(),
+                edit_chunks: vec![1; 10],
+                edit_s: times,
+                open_seam_edges: 0,
+                is_whole: true,
+            });
+        }
+    }
+    let inputs = crate::inputs::Inputs { chunks: &chunks, ..all.inputs() };
+    let objects = candidates(&inputs);
+    let picks = picks(&objects);
+    for name in ["chunk", "edit"] {
+        let [pick] = picks.iter().filter(|pick| pick.want.name == name).collect::<Vec<_>>()[..] else {
+            panic!("{name}: one on all objects")
+        };
+        assert_eq!((pick.method.id, pick.on.len()), (ids[0], 3), "{name}: of two alike the closer");
+        assert_eq!(pick.on[0].alike, [ids[1]], "{name}");
+        let middle = 1e3 * (place(4) + place(5)) / 2.0;
+        assert!((pick.on[0].value.value - middle).abs() < 1e-9, "{name}: {}", pick.on[0].value.value);
+    }
 }
 
 /// A method that is exact but for rounding is not a million times as good as the next.

@@ -1,6 +1,6 @@
 //! What somebody may want of a mesh, and who is the best at it on each object.
 
-use super::{Candidate, Estimate, ObjectCandidates};
+use super::{Candidate, Each, Estimate, ObjectCandidates};
 use crate::mesh_set::known;
 use design::config::{ObjectSection, Quantity};
 use design::{Method, MethodId};
@@ -22,6 +22,8 @@ pub(crate) struct Want {
     is_larger_better: bool,
     /// What decides between those that are not told apart from the best, if not the quantity itself; less is better.
     between: fn(&Candidate<'_>) -> Option<Estimate>,
+    /// Times that are compared one by one, if they are there.
+    pairs: for<'b> fn(&'b Candidate<'_>) -> Option<&'b Each>,
 }
 
 /// Who takes part.
@@ -39,7 +41,7 @@ enum Among {
     All,
 }
 
-const WANTS: [Want; 9] = [
+const WANTS: [Want; 10] = [
     Want {
         name: "preferred",
         heading: "most liked",
@@ -50,6 +52,7 @@ const WANTS: [Want; 9] = [
         quantity: |of| of.preference,
         is_larger_better: true,
         between: |_| None,
+        pairs: |_| None,
     },
     Want {
         name: "fastest",
@@ -61,17 +64,31 @@ const WANTS: [Want; 9] = [
         quantity: |of| of.time_s.map(milliseconds),
         is_larger_better: false,
         between: |of| of.error,
+        pairs: |_| None,
+    },
+    Want {
+        name: "chunk",
+        heading: "shortest chunk",
+        unit: "{} ms",
+        phrase: "the shortest time for a chunk",
+        says: "{} ms",
+        among: Among::SameCells,
+        quantity: |of| of.chunks.as_ref().map(|of| milliseconds(of.median_s)),
+        is_larger_better: false,
+        between: |of| of.error,
+        pairs: |of| of.chunks.as_ref(),
     },
     Want {
         name: "edit",
         heading: "shortest edit",
         unit: "{} ms",
-        phrase: "the shortest time for an edit of terrain in chunks",
+        phrase: "the shortest time for an edit, in chunks",
         says: "{} ms",
         among: Among::SameCells,
-        quantity: |of| of.edit_s.map(milliseconds),
+        quantity: |of| of.edits.as_ref().map(|of| milliseconds(of.median_s)),
         is_larger_better: false,
         between: |of| of.error,
+        pairs: |of| of.edits.as_ref(),
     },
     Want {
         name: "closest",
@@ -83,6 +100,7 @@ const WANTS: [Want; 9] = [
         quantity: |of| of.error,
         is_larger_better: false,
         between: |of| of.time_s,
+        pairs: |_| None,
     },
     Want {
         name: "closest_per_triangle",
@@ -94,6 +112,7 @@ const WANTS: [Want; 9] = [
         quantity: |of| of.error,
         is_larger_better: false,
         between: |of| of.time_s,
+        pairs: |_| None,
     },
     Want {
         name: "edges",
@@ -105,6 +124,7 @@ const WANTS: [Want; 9] = [
         quantity: |of| of.sharp_edges,
         is_larger_better: false,
         between: |of| of.time_s,
+        pairs: |_| None,
     },
     Want {
         name: "regular",
@@ -116,6 +136,7 @@ const WANTS: [Want; 9] = [
         quantity: |of| known(&of.mesh.quality.radius_ratio, |ratio| ratio.mean).map(Estimate::exact),
         is_larger_better: true,
         between: |_| None,
+        pairs: |_| None,
     },
     Want {
         name: "faultless",
@@ -127,6 +148,7 @@ const WANTS: [Want; 9] = [
         quantity: |of| of.time_s.map(milliseconds),
         is_larger_better: false,
         between: |of| of.error,
+        pairs: |_| None,
     },
     Want {
         name: "topology",
@@ -138,6 +160,7 @@ const WANTS: [Want; 9] = [
         quantity: |of| of.time_s.map(milliseconds),
         is_larger_better: false,
         between: |of| of.error,
+        pairs: |_| None,
     },
 ];
 
@@ -170,6 +193,10 @@ pub(crate) struct Cost {
     pub(crate) time: Option<f64>,
     /// Its triangles over the fewest.
     pub(crate) triangles: f64,
+    /// Values of the field that it asks for over the fewest; `None` where they were not counted.
+    pub(crate) samples: Option<f64>,
+    /// Its memory over the least.
+    pub(crate) memory: Option<f64>,
     /// Its error over the smallest.
     pub(crate) error: Option<f64>,
     /// Pairs of triangles that pass through each other.
@@ -202,12 +229,15 @@ impl Want {
             pool.iter().filter_map(|&candidate| Some((candidate, (self.quantity)(candidate)?))).collect();
         let sign = if self.is_larger_better { -1.0 } else { 1.0 };
         ranked.sort_by(|a, b| (sign * a.1.value).total_cmp(&(sign * b.1.value)));
-        let &(_, least) = ranked.first()?;
+        let &(leader, least) = ranked.first()?;
         if of.candidates.len() < 2 || !self.among.is_strict() && ranked.len() < 2 {
             return None;
         }
         // The best of a run is chance among those that are not told apart from it.
-        let is_alike = |(_, other): &&(&Candidate<'a>, Estimate)| other.meets(least);
+        let is_alike = |(other, value): &&(&Candidate<'a>, Estimate)| {
+            let in_pairs = (self.pairs)(leader).zip((self.pairs)(other)).and_then(|(a, b)| a.may_equal(b));
+            in_pairs.unwrap_or_else(|| value.meets(least))
+        };
         let between = |of: &Candidate<'_>| (self.between)(of).map_or(f64::INFINITY, |of| of.value);
         let &(first, value) = ranked
             .iter()
@@ -229,6 +259,8 @@ impl Want {
         let cost = Cost {
             time: least(|of| of.time_s.map(|time| time.value)),
             triangles: least(|of| Some(of.triangles().value)).unwrap_or(1.0),
+            samples: least(|of| of.mesh.counts.evaluations.map(|calls| calls as f64)),
+            memory: least(|of| of.memory.map(|bytes| bytes as f64)),
             error: least(|of| of.error.map(|error| error.value)),
             crossing_triangles: topology.self_intersections.unwrap_or(0),
             no_manifold: topology.non_manifold_edges + topology.non_manifold_vertices,

@@ -11,6 +11,8 @@ use design::record::{Distribution, MeshRecord, Purpose};
 use design::{MethodId, Study};
 
 const ROW: f64 = 400.0;
+/// A box lower than this is a line.
+const FLAT: f64 = 5.0;
 
 type Measure = (&'static str, fn(&MeshRecord) -> &Distribution);
 
@@ -94,5 +96,7 @@ pub(super) fn draw_box(canvas: &mut Canvas, (x, half): (f64, f64), heights: [f64
         canvas.line(vec![(x - half / 2.0, outer), (x + half / 2.0, outer)], BLACK, 1.0);
     }
     fill.paint(canvas, (x - half, lower), (x + half, upper));
-    canvas.line(vec![(x - half, median), (x + half, median)], fill.ink(), 2.0);
+    // In a box as flat as the line, what stands out against the fill might not against the page.
+    let ink = if (upper - lower).abs() < FLAT { fill.outline } else { fill.ink() };
+    canvas.line(vec![(x - half, median), (x + half, median)], ink, 2.0);
 }

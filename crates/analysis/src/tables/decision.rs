@@ -149,6 +149,8 @@ fn cost(pick: &Pick<'_>) -> String {
     factor(costs().filter_map(|cost| cost.time).collect(), "times the shortest time");
     factor(costs().map(|cost| cost.triangles).collect(), "times the fewest triangles");
     factor(costs().filter_map(|cost| cost.error).collect(), "times the smallest error");
+    factor(costs().filter_map(|cost| cost.samples).collect(), "times the fewest samples");
+    factor(costs().filter_map(|cost| cost.memory).collect(), "times the least memory");
     let most = |count: &dyn Fn(&Cost) -> u64| costs().map(count).max().unwrap_or(0);
     let up_to = |most: u64, what: &str| {
         let or = if pick.on.len() > 1 { "up to " } else { "" };
@@ -183,7 +185,7 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
         text.push_str(&format!("A mean error below {LEAST_ERROR} counts as {LEAST_ERROR}. "));
     }
     if inputs.chunks.iter().any(|times| !times.edit_s.is_empty()) {
-        text.push_str("Edits differ by their places, and their interval is over places. ");
+        text.push_str("Chunks and edits are compared one by one: the interval of the median ratio has 1 in it, or not. ");
     }
     let is_liked = objects.iter().flat_map(|of| &of.candidates).any(|of| of.preference.is_some());
     if is_liked {
@@ -196,7 +198,10 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
     if !is_liked {
         not.push("what people like, since nobody's answers are here");
     }
-    not.extend(["memory", "ease of use"]);
+    if !objects.iter().flat_map(|of| &of.candidates).any(|of| of.memory.is_some()) {
+        not.push("memory");
+    }
+    not.push("ease of use");
     text.push_str(&format!("{}.", list(&not)));
     text
 }
