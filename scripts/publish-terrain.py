@@ -4,6 +4,7 @@
 Run `make terrain` and `isostudy bench configs/paper-terrain.toml`, `isostudy study configs/paper-terrain.toml` first, on a machine
 that does nothing else.
 """
+import csv
 import datetime
 import json
 import pathlib
@@ -58,7 +59,168 @@ def main():
     replace(page, "choices", f"{choices}\n\n{conditions}")
     replace(page, "decision", rows(TERRAIN / "tables/decision.md"))
     replace(page, "chunks", chunks())
+    replace(page, "fronts", unbeaten())
+    replace(page, "work", work())
     replace(page, "claims", rows(PAPER / "tables/claims.md"))
+    replace(page, "conclusions", conclusions())
+    replace(ROOT / "README.md", "take", take())
+
+
+def table(name):
+    """A table of the study, by id; of the quality tables what is said of the benchmark's meshes."""
+    lines = csv.DictReader((TERRAIN / f"tables/{name}.csv").open())
+    return {row["id"]: row for row in lines if row.get("purpose", "benchmark") == "benchmark"}
+
+
+def range_of(values, digits):
+    low, high = f"{min(values):.{digits}f}", f"{max(values):.{digits}f}"
+    return low if low == high else f"{low} to {high}"
+
+
+OBJECTS = ["hi", "cl", "ca", "bu"]
+
+
+def ratios(name, column, method, beside="mc"):
+    """Of a method to another, object by object."""
+    of = table(name)
+    return [float(of[f"{o}_{method}"][column]) / float(of[f"{o}_{beside}"][column]) for o in OBJECTS]
+
+
+def errors(method):
+    """Mean distance, the larger of both ways, object by object."""
+    of = table("accuracy")
+    rows = [of[f"{o}_{method}"] for o in OBJECTS]
+    return [max(float(row["distance_mean"]), float(row["distance_to_mesh_mean"])) for row in rows]
+
+
+def take():
+    """README's first table: which method, why, and its price."""
+    chunk = lambda method: range_of(ratios("chunks", "chunk_ms", method), 1)
+    error = lambda method: [of / cubes for of, cubes in zip(errors(method), errors("mc"))]
+    fewer = [100 * (1 - ratio) for ratio in ratios("benchmark", "triangles", "snapmc")]
+    ratio = lambda method: range_of([float(table("quality")[f"{o}_{method}"]["radius_ratio_mean"]) for o in OBJECTS], 2)
+    edge = lambda method: float(table("accuracy")[f"bu_{method}"]["sharp_edges_mean"])
+    pairs = lambda id: int(table("topology")[id]["self_intersections"])
+    most = max(pairs(f"{o}_bi-relaxed") for o in OBJECTS)
+    mc33 = 100 * (max(ratios("chunks", "chunk_ms", "mc33")) - 1)
+    more = range_of(ratios("benchmark", "triangles", "bi-relaxed"), 1)
+    lines = [
+        ("for", "take", "because", "its price"),
+        ("---", "---", "---", "---"),
+        ("smooth terrain", "`mc`", "nothing is faster", "thin triangles"),
+        (
+            "the same, and tools that go on working on the mesh",
+            "`nets-manifold`",
+            f"more regular triangles: mean radius ratio {ratio('nets-manifold')}, of `mc` {ratio('mc')}",
+            f"{chunk('nets-manifold')} times the time per chunk, and up to {max(error('nets-manifold')):.1f} times the error, of `mc`",
+        ),
+        (
+            "cliffs and caves",
+            "`mc33`",
+            "a manifold that has every tunnel of the interpolated samples",
+            f"up to {max(1, mc33):.0f} % more time per chunk than `mc`",
+        ),
+        (
+            "buildings and sharp edges",
+            "`dc-in-cell`",
+            f"{edge('dc-in-cell'):.3f} cube edges of error at the sharp edges of the building's block, where `mc` has {edge('mc'):.2f}",
+            f"{chunk('dc-in-cell')} times the time per chunk; {pairs('bu_dc-in-cell'):,} pairs of triangles intersect there, {pairs('ca_dc-in-cell'):,} in the caves",
+        ),
+        (
+            "near-equilateral triangles",
+            "`bi-relaxed`",
+            f"mean radius ratio {ratio('bi-relaxed')}; {range_of(error('bi-relaxed'), 2)} of the error of `mc`",
+            f"{chunk('bi-relaxed')} times the time per chunk, and {more} times the triangles, of `mc`; single thin triangles, up to {most} pairs intersect",
+        ),
+        (
+            "few triangles, none of them thin",
+            "`snapmc`",
+            f"{range_of(fewer, 0)} % fewer than `mc`; no angle below 12.7 degrees",
+            f"{chunk('snapmc')} times the time per chunk, and up to {max(error('snapmc')):.2f} times the error, of `mc`; no manifold where sheets lie close, as in caves",
+        ),
+        ("terrain that is coarse far away", "`mc`, `nets`, `dc`", "[levels of detail](docs/lod.md) without cracks", "duals are no manifold there"),
+        (
+            "the look that people chose",
+            "`si` or `bi`",
+            "integrated clustering was preferred to none and to edge collapse",
+            "seen on other objects, with the paper's six methods alone",
+        ),
+    ]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def unbeaten():
+    """Who is on each front, object by object."""
+    rows = list(csv.DictReader((TERRAIN / "tables/fronts.csv").open()))
+    fronts = list(dict.fromkeys(row["front"] for row in rows))
+    lines = ["| nobody is better in both than | " + " | ".join(fronts) + " |", "|---|" + "---|" * len(fronts)]
+    for name in dict.fromkeys(row["object"] for row in rows):
+        on = lambda front: [
+            f"`{row['method']}`"
+            for row in rows
+            if (row["object"], row["front"], row["standing"]) == (name, front, "on the front")
+        ]
+        lines.append(f"| {name} | " + " | ".join(", ".join(on(front)) for front in fronts) + " |")
+    return "\n".join(lines)
+
+
+def work():
+    """Samples and memory of one block, a row a method, a column an object."""
+    of = table("benchmark")
+    names = {row["id"].split("_")[0]: row["object"] for row in csv.DictReader((TERRAIN / "tables/configurations.csv").open())}
+    methods = [m for m in dict.fromkeys(id.split("_")[1] for id in of) if not m.endswith(("-flat", "-matched"))]
+    lines = ["| method | " + " | ".join(names[o] for o in OBJECTS) + " |", "|---|" + "---:|" * len(OBJECTS)]
+    for method in methods:
+        rows = [of[f"{o}_{method}"] for o in OBJECTS]
+        samples = lambda row: f"{int(row['evaluations']):,}" if row["evaluations"] else "all"
+        memory = lambda row: f"{int(row['extraction_memory_bytes']) / 1e6:.1f}" if row["extraction_memory_bytes"] else "not seen"
+        lines.append(f"| `{method}` | " + " | ".join(f"{samples(row)}; {memory(row)}" for row in rows) + " |")
+    return "\n".join(lines)
+
+
+# What the paper concludes, by the claim that says it, and how the claim's number upholds it here.
+CONCLUSIONS = {
+    "discard_integrated": ("Integrated clustering discards most triangles", "most"),
+    "discard_edge_collapse": ("Edge collapse discards most triangles", "most"),
+    "vertex_integrated": ("Integrated clustering lengthens the vertex pass", "time"),
+    "geometry_integrated": ("Integrated clustering shortens the geometry pass", "time"),
+    "vertex_edge_collapse": ("Edge collapse shortens the vertex pass", "time"),
+    "geometry_edge_collapse": ("Edge collapse lengthens the geometry pass", "time"),
+    "arrangement_vertex": ("The body-centred lattice lengthens the vertex pass", "time"),
+    "arrangement_geometry": ("The body-centred lattice lengthens the geometry pass", "time"),
+    "arrangement_triangles": ("The body-centred lattice gives more triangles", "more"),
+    "arrangement_samples": ("The body-centred lattice takes twice the samples", "twice"),
+    "less_uniform": ("Integrated clustering gives less uniform triangles than edge collapse", "cases"),
+    "fewer_triangles": ("Integrated clustering gives fewer triangles than edge collapse", "cases"),
+}
+
+
+def conclusions():
+    """Whether the paper's conclusions hold on terrain, by the direction of what was measured and its interval."""
+    lines = ["| Conclusion of the paper | There | Here | Holds here |", "|:---|---:|---:|:---|"]
+    for row in csv.DictReader((PAPER / "tables/claims.csv").open()):
+        if row["id"] not in CONCLUSIONS:
+            continue
+        conclusion, rule = CONCLUSIONS[row["id"]]
+        ours, reason = float(row["ours"]), row["reason"]
+        if rule == "most":
+            verdict = "yes" if ours > 50 else "no"
+        elif rule == "more":
+            verdict = "yes" if ours > 0 else "no"
+        elif rule == "twice":
+            verdict = "yes" if abs(ours - 2) < 0.15 else "no"
+        elif rule == "cases":
+            verdict = re.match(r"holds (in \d+ of \d+ cases)", reason)[1]
+        else:
+            said = {"same direction": "yes", "opposite direction": "no", "no change measurable": "open"}
+            verdict = next(verdict for words, verdict in said.items() if reason.startswith(words))
+        percent = row["unit"] == "%"
+        show = lambda value: (f"{float(value):.0f} %" if percent else f"{float(value):.2f}").replace("-", "\u2212")
+        there = show(row["published"]) if row["published"] else ""
+        here = "" if rule == "cases" else show(row["ours"])
+        lines.append(f"| {conclusion} | {there} | {here} | {verdict} |")
+    return "\n".join(lines)
+
 
 
 def short(milliseconds):
@@ -68,8 +230,6 @@ def short(milliseconds):
 
 def chunks():
     """Milliseconds per chunk and per edit, a row a method, a column an object."""
-    import csv
-
     table = list(csv.DictReader((TERRAIN / "tables/chunks.csv").open()))
     objects = list(dict.fromkeys(row["id"].split("_")[0] for row in table))
     names = {row["id"].split("_")[0]: row["object"] for row in csv.DictReader((TERRAIN / "tables/configurations.csv").open())}
