@@ -2,7 +2,7 @@
 
 use cells::Cell;
 use extract::{
-    BoxGrid, ChunkExtractor, ChunkSettings, Cubes, Execution, Extractor, Method, Source, SurfaceNets,
+    BoxGrid, ChunkExtractor, ChunkSettings, Cubes, Execution, Extractor, Faces, Method, Source, SurfaceNets,
     weld_chunks,
 };
 use field::{Gyroid, StudyField};
@@ -279,6 +279,19 @@ fn counts_are_those_of_other_programs() {
         assert_eq!(count(&Formula(ring), &method), (5_904, 5_904, 0, 0));
         assert_eq!(count(&cube, &method), (9_128, 9_126, 0, 2));
     }
+    // A gyroid that a ball cuts off has sheets that share cells. As published it is negative inside.
+    let gyroid = |p: Vec3| {
+        let [x, y, z] = (9.0 * p).to_array();
+        let wall = (x.sin() * y.cos() + y.sin() * z.cos() + z.sin() * x.cos()) / 9.0;
+        -wall.max(p.length() - 0.9017)
+    };
+    let gyroid = Formula(gyroid);
+    let of_cubes = Method::Cubes(Cubes { faces: Faces::SeparateInside, ..Cubes::default() });
+    let (_, _, _, primal) = count(&gyroid, &of_cubes);
+    let (vertices, quads, four_sided, _) = count(&gyroid, &NETS);
+    assert_eq!((vertices, quads, four_sided), (29_013, 29_184, 96));
+    assert_eq!(count(&gyroid, &MANIFOLD), (29_136, 29_184, 0, -48));
+    assert_eq!(primal, -48);
 }
 
 /// The mesh is one for any number of threads, and chunks of any size weld to it.
