@@ -294,6 +294,32 @@ fn counts_are_those_of_other_programs() {
     assert_eq!(primal, -48);
 }
 
+/// Means of points on a sphere are inside of it, by the square of the spacing: their mean distance from it falls to a quarter with half
+/// the spacing.
+#[test]
+fn smooth_surfaces_converge_by_squares() {
+    struct Ball;
+    impl StudyField for Ball {
+        fn sample(&self, p: Vec3) -> f32 {
+            0.8013 - p.length()
+        }
+    }
+    for method in [NETS, MANIFOLD] {
+        let errors = [16, 32, 64, 128].map(|cells| {
+            let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+            let grid = BoxGrid { bounds, spacing: 2.0 / cells as f32 };
+            let source = Source::Study(&Ball);
+            let mesh = method.extract(&mut Extractor::new(), source, &grid, 0.0, &ONE).unwrap().mesh;
+            let below = mesh.positions.iter().map(|p| 0.8013 - p.as_dvec3().length());
+            assert!(below.clone().all(|below| below > -1e-6));
+            below.sum::<f64>() / mesh.positions.len() as f64
+        });
+        for pair in errors.windows(2) {
+            assert!((3.7..4.1).contains(&(pair[0] / pair[1])), "{errors:?}");
+        }
+    }
+}
+
 /// The mesh is one for any number of threads, and chunks of any size weld to it.
 #[test]
 fn threads_and_chunks_do_not_show() {
