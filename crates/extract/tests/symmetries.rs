@@ -1,5 +1,5 @@
-//! Surface nets and dual contouring of a field that is turned, mirrored, moved or has its sides exchanged: the same net, as far as the
-//! methods promise it.
+//! Surface nets and dual contouring of a field that is turned, mirrored, moved or has its sides exchanged:
+//! the same net, as far as the methods promise it.
 
 use std::collections::HashMap;
 
@@ -15,15 +15,18 @@ use mesh::{Bounds, TriangleMesh};
 
 const ONE: Execution = Execution { threads: 1 };
 
-/// Cells along each axis, with steps of 1 and the origin in the middle: permutations and changes of sign are exact.
+/// Cells along each axis, with steps of 1 and the origin in the middle: permutations and changes of sign are
+/// exact.
 const CELLS: i32 = 14;
 const HALF: f32 = CELLS as f32 / 2.0;
 
-/// How far apart vertices may be that should be one, in cells. Coordinates are up to 16, with a last digit of 1e-6.
+/// How far apart vertices may be that should be one, in cells. Coordinates are up to 16, with a last digit of
+/// 1e-6.
 ///
-/// The mean of some crossings is off by a few last digits. The meeting of tangent planes is off by more: the search for a crossing
-/// runs upwards along each axis, so that seen from the other side it ends up to 1e-6 away; and along the eigenvector of an
-/// eigenvalue of 1e-3 of the largest, the least that counts, planes that are off by this meet some thirty times as far away.
+/// The mean of some crossings is off by a few last digits. The meeting of tangent planes is off by more: the
+/// search for a crossing runs upwards along each axis, so that seen from the other side it ends up to 1e-6
+/// away; and along the eigenvector of an eigenvalue of 1e-3 of the largest, the least that counts, planes
+/// that are off by this meet some thirty times as far away.
 const OF_MEANS: f32 = 4e-6;
 const OF_MEETINGS: f32 = 1e-4;
 
@@ -141,7 +144,8 @@ fn has_patches(method: &Method) -> bool {
     }
 }
 
-/// Of each point the place among `others` of one that is within the tolerance, each given once; or the first that has none.
+/// Of each point the place among `others` of one that is within the tolerance, each given once; or the first
+/// that has none.
 fn matched(points: &[Vec3], others: &[Vec3], tolerance: f32) -> Result<Vec<u32>, Vec3> {
     let mut by_cell: HashMap<[i32; 3], Vec<u32>> = HashMap::new();
     let cell = |p: Vec3| p.floor().to_array().map(|c| c as i32);
@@ -208,8 +212,8 @@ fn assert_same(method: &Method, tolerance: f32, field: &Waves, plain: &TriangleM
     }
 }
 
-/// One symmetry of each kind, where the net is closed and where it ends at the box; and where it is closed a fifth of all 48, in which
-/// kinds are mixed.
+/// One symmetry of each kind, where the net is closed and where it ends at the box; and where it is closed a
+/// fifth of all 48, in which kinds are mixed.
 #[test]
 fn nets_turn_and_move_with_the_field() {
     let of_each_kind = [
@@ -244,9 +248,9 @@ fn nets_without_patches_stay_when_sides_are_exchanged() {
     }
 }
 
-/// Patches keep the inside corners of an ambiguous face apart, so where sides are exchanged they part what they had joined. There are as
-/// many quadrilaterals, and vertices of cells without such a face stay; that is all there can be. Smoothing draws those that stay after
-/// the others, so it is left out.
+/// Patches keep the inside corners of an ambiguous face apart, so where sides are exchanged they part what
+/// they had joined. There are as many quadrilaterals, and vertices of cells without such a face stay; that is
+/// all there can be. Smoothing draws those that stay after the others, so it is left out.
 #[test]
 fn patches_change_in_ambiguous_cells_alone_when_sides_are_exchanged() {
     let cube = Cell::cube();
