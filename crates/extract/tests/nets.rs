@@ -2,7 +2,7 @@
 
 use cells::Cell;
 use extract::{
-    BoxGrid, ChunkExtractor, ChunkSettings, Cubes, Execution, Extractor, Method, Source, SurfaceNets,
+    BoxGrid, ChunkExtractor, ChunkSettings, Cubes, Execution, Extractor, Faces, Method, Source, SurfaceNets,
     weld_chunks,
 };
 use field::{Gyroid, StudyField};
@@ -278,6 +278,45 @@ fn counts_are_those_of_other_programs() {
         assert_eq!(count(&sphere, &method), (12_464, 12_462, 0, 2));
         assert_eq!(count(&Formula(ring), &method), (5_904, 5_904, 0, 0));
         assert_eq!(count(&cube, &method), (9_128, 9_126, 0, 2));
+    }
+    // A gyroid that a ball cuts off has sheets that share cells. As published it is negative inside.
+    let gyroid = |p: Vec3| {
+        let [x, y, z] = (9.0 * p).to_array();
+        let wall = (x.sin() * y.cos() + y.sin() * z.cos() + z.sin() * x.cos()) / 9.0;
+        -wall.max(p.length() - 0.9017)
+    };
+    let gyroid = Formula(gyroid);
+    let of_cubes = Method::Cubes(Cubes { faces: Faces::SeparateInside, ..Cubes::default() });
+    let (_, _, _, primal) = count(&gyroid, &of_cubes);
+    let (vertices, quads, four_sided, _) = count(&gyroid, &NETS);
+    assert_eq!((vertices, quads, four_sided), (29_013, 29_184, 96));
+    assert_eq!(count(&gyroid, &MANIFOLD), (29_136, 29_184, 0, -48));
+    assert_eq!(primal, -48);
+}
+
+/// Means of points on a sphere are inside of it, by the square of the spacing: their mean distance from it falls to a quarter with half
+/// the spacing.
+#[test]
+fn smooth_surfaces_converge_by_squares() {
+    struct Ball;
+    impl StudyField for Ball {
+        fn sample(&self, p: Vec3) -> f32 {
+            0.8013 - p.length()
+        }
+    }
+    for method in [NETS, MANIFOLD] {
+        let errors = [16, 32, 64, 128].map(|cells| {
+            let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+            let grid = BoxGrid { bounds, spacing: 2.0 / cells as f32 };
+            let source = Source::Study(&Ball);
+            let mesh = method.extract(&mut Extractor::new(), source, &grid, 0.0, &ONE).unwrap().mesh;
+            let below = mesh.positions.iter().map(|p| 0.8013 - p.as_dvec3().length());
+            assert!(below.clone().all(|below| below > -1e-6));
+            below.sum::<f64>() / mesh.positions.len() as f64
+        });
+        for pair in errors.windows(2) {
+            assert!((3.7..4.1).contains(&(pair[0] / pair[1])), "{errors:?}");
+        }
     }
 }
 
