@@ -2,16 +2,19 @@
 //! extracted again. Prints the time of an edit, then checks that the chunks are still the mesh of the whole.
 //!
 //! `cargo run --release -p isostudy-extract --example dig -- [cells along an axis] [cells of a chunk] [edits] [arrangement]`
+//!
+//! `--method ID` takes any of the methods that `isostudy methods` lists and that makes chunks, in place of an arrangement.
 
 use std::time::Instant;
 
 use extract::{
-    Arrangement, BoxGrid, Chunk, ChunkExtractor, ChunkSettings, Clustering, Control, Execution, Method,
-    Source, Tetrahedra, extract, weld_chunks,
+    BoxGrid, Chunk, ChunkError, ChunkExtractor, ChunkSettings, Control, Execution, Extractor, Preset, Source,
+    presets, weld_chunks,
 };
 use field::{Asteroid, FieldCache, StudyField};
 use glam::Vec3;
 use mesh::Bounds;
+use mesh::topology::topology;
 
 /// A solid less the balls that were dug out of it.
 struct Dug<'a> {
@@ -87,27 +90,31 @@ impl StudyField for Dug<'_> {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let mut arguments = std::env::args().skip(1);
+    let (method, mut arguments) = method_and_numbers(std::env::args().skip(1))?;
     let mut number = |default: u32| arguments.next().map_or(Ok(default), |text| text.parse());
     let (cells, chunk_cells, edits) = (number(128)?, number(16)?, number(100)?);
-    let (arrangement, clustering) = match arguments.next().as_deref() {
-        None | Some("body-centred") => (Arrangement::BodyCentred, Clustering::Integrated),
-        Some("simple-cubic") => (Arrangement::SimpleCubic, Clustering::Integrated),
-        Some("five-tetrahedra") => (Arrangement::FiveTetrahedra, Clustering::None),
-        Some("face-centred") => (Arrangement::FaceCentred, Clustering::None),
-        Some(other) => return Err(format!("no arrangement {other}").into()),
+    let method = match (method, arguments.next()) {
+        (Some(id), None) => preset(&id)?,
+        (None, arrangement) => preset(of_arrangement(arrangement.as_deref())?)?,
+        (Some(_), Some(word)) => {
+            return Err(format!("{word}: give --method or an arrangement, not both").into());
+        }
     };
     let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     let grid = BoxGrid { bounds, spacing: 2.0 / cells as f32 };
-    let lattice = grid.lattice(arrangement)?;
-    let tetrahedra = Tetrahedra { clustering, ..Tetrahedra::new(arrangement) };
     let control = Control::default();
 
     let (asteroid, mut kept) = (Asteroid::default(), FieldCache::default());
     let solid = asteroid.prepared(&mut kept).unwrap_or(&asteroid);
-    let mut field = Dug { solid, holes: Vec::new(), deepest: DEEPEST * lattice.spacing() };
-    let mut extractor =
-        ChunkExtractor::in_box(&grid, &Method::Tetrahedra(tetrahedra), &ChunkSettings::default())?;
+    let mut field = Dug { solid, holes: Vec::new(), deepest: DEEPEST * grid.spacing };
+    let mut extractor = ChunkExtractor::in_box(&grid, &method.method, &ChunkSettings::default()).map_err(
+        |error| match error {
+            ChunkError::Method | ChunkError::Accumulated | ChunkError::Placement { .. } => {
+                format!("{} cannot be dug chunk by chunk: {error}", method.id)
+            }
+            error => format!("{}: {error}", method.id),
+        },
+    )?;
     let boxes: Vec<_> = extractor.grid(chunk_cells).collect();
     let start = Instant::now();
     let mut chunks: Vec<Chunk> = Vec::new();
@@ -116,7 +123,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let with_surface = chunks.iter().filter(|chunk| !chunk.triangles.is_empty()).count();
     println!(
-        "{cells}^3 cells, {arrangement:?} {clustering:?}: {} chunks of {chunk_cells}^3 cells, {with_surface} with surface, in {:.0} ms",
+        "{cells}^3 cells, {} ({}): {} chunks of {chunk_cells}^3 cells, {with_surface} with surface, in {:.0} ms",
+        method.id,
+        method.label,
         chunks.len(),
         start.elapsed().as_secs_f64() * 1e3
     );
@@ -149,7 +158,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("chunks per edit: {:.1}", f64::from(touched) / f64::from(edits.max(1)));
 
     let start = Instant::now();
-    let whole = extract(&field, &lattice, &tetrahedra.settings(0.0), &Execution { threads: 1 })?.mesh;
+    let execution = Execution { threads: 1 };
+    let whole =
+        method.method.extract(&mut Extractor::new(), Source::Study(&field), &grid, 0.0, &execution)?.mesh;
     println!(
         "the whole anew: {:.0} ms, {} triangles",
         start.elapsed().as_secs_f64() * 1e3,
@@ -158,11 +169,51 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let start = Instant::now();
     let welded = weld_chunks(&chunks)?;
     println!("welding all chunks: {:.0} ms", start.elapsed().as_secs_f64() * 1e3);
+    let open = topology(&welded).boundary_edges;
+    println!("open edges: {open}");
+    if open != 0 {
+        return Err("the welded chunks are open, and the asteroid does not reach the box".into());
+    }
     if welded != whole {
         return Err("the welded chunks are not the mesh of the whole".into());
     }
     println!("the welded chunks are the mesh of the whole");
     Ok(())
+}
+
+/// The id after `--method`, wherever it stands, and the other arguments.
+fn method_and_numbers(
+    mut arguments: impl Iterator<Item = String>,
+) -> Result<(Option<String>, std::vec::IntoIter<String>), String> {
+    let (mut method, mut others) = (None, Vec::new());
+    while let Some(argument) = arguments.next() {
+        if argument == "--method" {
+            method = Some(arguments.next().ok_or("--method: the id of a method must follow")?);
+        } else if argument.starts_with("--") {
+            return Err(format!("{argument}: there is no such option"));
+        } else {
+            others.push(argument);
+        }
+    }
+    Ok((method, others.into_iter()))
+}
+
+/// The id of the preset that an arrangement stands for.
+fn of_arrangement(name: Option<&str>) -> Result<&'static str, String> {
+    match name {
+        None | Some("body-centred") => Ok("bi"),
+        Some("simple-cubic") => Ok("si"),
+        Some("five-tetrahedra") => Ok("mu"),
+        Some("face-centred") => Ok("fu"),
+        Some(other) => Err(format!("no arrangement {other}")),
+    }
+}
+
+fn preset(id: &str) -> Result<&'static Preset, String> {
+    presets().iter().find(|preset| preset.id == id).ok_or_else(|| {
+        let ids: Vec<&str> = presets().iter().map(|preset| preset.id).collect();
+        format!("no method {id}; there are {}", ids.join(", "))
+    })
 }
 
 /// A place on the solid's surface, by bisection in one of many directions (Fibonacci's spiral).

@@ -1,28 +1,36 @@
 //! A camera over a terrain without an end, which is there in four levels of detail: fine near by, coarse far away. As it moves, chunks
 //! are divided and joined. Those whose neighbours changed are extracted again, and those that a hole reaches, which is dug every second.
-//! Prints how many, what a frame needs, how many triangles there are, and how many edges are open: none. Beside it the cheap way: a skirt
-//! along every side of a chunk.
+//! Prints how many, what a frame needs, how many triangles there are, how many edges are open: none, and how many triangles of seams are
+//! turned against the field's gradient. Beside it the cheap way: a skirt along every side of a chunk.
 //!
 //! With a file it leaves a turntable of the last frame, with levels as colours, and the seams between them.
 //!
-//! `cargo run --release -p isostudy-raster --example lod -- [frames] [metres per second] [cubes|nets|dc] [file.gif]`
+//! `cargo run --release -p isostudy-raster --example lod -- [frames] [metres per second] [cubes|nets|dc|dc-in-cell] [file.gif]`
+//!
+//! `--width W` sets the width of transitions, in cells. `--close-up FILE.png` walks no way and digs nothing. It draws one place of the
+//! seam between levels 0 and 1, as it is after so many frames, by marching cubes and by surface nets.
 
 #[path = "browser/src/ground.rs"]
 mod ground;
 
 use std::collections::{HashMap, HashSet};
 use std::error::Error;
+use std::fmt;
 use std::fs::File;
 use std::time::Instant;
 
 use extract::{
     Chunk, Control, Cubes, DualContouring, Grid, LevelExtractor, LevelSettings, Method, Neighbours,
-    SurfaceNets, weld_chunks,
+    ScalarField, SurfaceNets, weld_chunks,
 };
 use glam::Vec3;
 use ground::{Ground, Hole};
 use mesh::TriangleMesh;
-use raster::{Colouring, Look, Scale, Shading, Turntable, Values, turntable_coloured};
+use raster::tiny_skia::Pixmap;
+use raster::{
+    Camera, Colouring, Look, Panel, Scale, Shading, Sheet, Turntable, Values, Viewport, panels,
+    pixmap_to_png, render_coloured, turntable_coloured,
+};
 
 /// Levels, the finest of which has cells of a metre.
 const LEVELS: u32 = 4;
@@ -34,19 +42,41 @@ const SIGHT: [i32; 3] = [3, 3, 1];
 const NEAR: f32 = 1.5;
 /// Of transitions, in cells.
 const WIDTH: f32 = 0.25;
+/// Surface nets with one vertex per cell, which alone have levels.
+const NETS: Method = Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0, edge_clamp: 0.0 });
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut option = |name: &str| -> Result<Option<String>, String> {
+        let Some(i) = arguments.iter().position(|argument| argument == name) else { return Ok(None) };
+        arguments.remove(i);
+        if i == arguments.len() {
+            return Err(format!("{name}: a value must follow"));
+        }
+        Ok(Some(arguments.remove(i)))
+    };
+    let width = option("--width")?.map_or(Ok(WIDTH), |text| text.parse())?;
+    let close_up = option("--close-up")?;
+    if let Some(other) = arguments.iter().find(|argument| argument.starts_with("--")) {
+        return Err(format!("{other}: there is no such option").into());
+    }
     let number = |i: usize, default: u32| arguments.get(i).map_or(Ok(default), |text| text.parse());
     let (frames, speed) = (number(0, 900)?, number(1, 24)?);
     let method = match arguments.get(2).map_or("cubes", String::as_str) {
         "cubes" => Method::Cubes(Cubes::default()),
-        "nets" => Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0, edge_clamp: 0.0 }),
-        "dc" => Method::DualContouring(DualContouring { in_cell: true, ..DualContouring::default() }),
-        other => return Err(format!("{other}: must be cubes, nets or dc").into()),
+        "nets" => NETS,
+        "dc" => Method::DualContouring(DualContouring::default()),
+        "dc-in-cell" => Method::DualContouring(DualContouring { in_cell: true, ..DualContouring::default() }),
+        other => return Err(format!("{other}: must be cubes, nets, dc or dc-in-cell").into()),
     };
     let grid = Grid::try_new([0.0; 3], 1.0)?;
-    let walk = |between| World::new(&grid, &method, between)?.walk(frames, speed as f32);
+    if let Some(path) = close_up {
+        let way = frames.saturating_sub(1) as f32 * speed as f32 / 60.0;
+        std::fs::write(&path, draw_close_up(&grid, width, way)?)?;
+        println!("{path}");
+        return Ok(());
+    }
+    let walk = |between| World::new(&grid, &method, width, between)?.walk(frames, speed as f32);
     let world = walk(Between::Seams)?;
     // What duals have at a side reaches into the neighbour: it is no skirt.
     if matches!(method, Method::Cubes(_)) {
@@ -95,12 +125,12 @@ struct World {
 }
 
 impl World {
-    fn new(grid: &Grid, method: &Method, between: Between) -> Result<Self, Box<dyn Error>> {
+    fn new(grid: &Grid, method: &Method, width: f32, between: Between) -> Result<Self, Box<dyn Error>> {
         let grids: Result<_, _> = (0..LEVELS).map(|level| grid.coarser(level)).collect();
         Ok(Self {
             grids: grids?,
             between,
-            extractor: LevelExtractor::try_new(grid, method, &LevelSettings::default().with_width(WIDTH))?,
+            extractor: LevelExtractor::try_new(grid, method, &LevelSettings::default().with_width(width))?,
             ground: Ground::default(),
             camera: Vec3::ZERO,
             wanted: Vec::new(),
@@ -115,11 +145,9 @@ impl World {
         // Of all frames, and of those in which chunks were made.
         let mut times = [Vec::new(), Vec::new()];
         let (mut new, mut again, mut dug, mut most_open) = (0, 0, 0, 0);
+        let (mut of_seams, mut most_turned) = (Turned::default(), 0);
         for frame in 0..frames {
-            // West by south-west, so that numbers become negative.
-            let way = frame as f32 * speed / 60.0;
-            let (x, y) = (-way, -0.4 * way);
-            self.camera = Vec3::new(x, y, self.ground.height(x, y) + 10.0);
+            self.go_to(frame as f32 * speed / 60.0);
             let start = Instant::now();
             let reached = if frame % 60 == 30 { self.dig() } else { 0 };
             let made = self.frame()?;
@@ -132,6 +160,9 @@ impl World {
             }
             if frame % 10 == 0 {
                 most_open = most_open.max(self.open_edges()?);
+                let turned = self.turned(true);
+                most_turned = most_turned.max(turned.turned);
+                of_seams.add(turned);
             }
         }
         let chunks = |level| self.held.keys().filter(|id| id.0 == level).count();
@@ -152,7 +183,30 @@ impl World {
         }
         println!("  triangles: {}, {seams} of them between levels", triangles + total(&|held| held.skirts));
         println!("  open edges: {most_open}");
+        let of_chunks = self.turned(false);
+        println!(
+            "  turned against the gradient, of seams in every tenth frame: {of_seams}; {most_turned} in one at most"
+        );
+        println!("  turned against the gradient, of the chunks' own in the last frame: {of_chunks}");
         Ok(self)
+    }
+
+    /// Puts the camera where it is so many metres from the beginning: west by south-west, so that numbers become negative.
+    fn go_to(&mut self, way: f32) {
+        let (x, y) = (-way, -0.4 * way);
+        self.camera = Vec3::new(x, y, self.ground.height(x, y) + 10.0);
+    }
+
+    /// Counts the triangles of seams, or all others, that face the inside.
+    fn turned(&self, is_seam: bool) -> Turned {
+        let mut found = Turned::default();
+        for chunk in self.held.values().map(|held| &held.chunk) {
+            let (own, seam) = chunk.triangles.split_at(chunk.triangles.len() - chunk.seam as usize);
+            for &triangle in if is_seam { seam } else { own } {
+                found.count(triangle.map(|v| Vec3::from(chunk.positions[v as usize])), &self.ground);
+            }
+        }
+        found
     }
 
     /// Makes the chunks that the camera's place asks for. Returns how many are new, and how many were made again.
@@ -271,12 +325,14 @@ impl World {
             let root = [0, 1].map(|axis| here[axis] + side * SIGHT[axis] + i32::from(side > 0));
             top.position([root[0] * CHUNK as i32, root[1] * CHUNK as i32, 0])
         });
-        // Duals end half a cell before.
-        let slack = if matches!(self.held.values().next(), Some(held) if is_dual(&held.chunk)) {
-            top.spacing()
-        } else {
-            0.0
-        };
+        // Duals end half a cell before. A vertex that may leave its cell does so by up to a cell more.
+        let slack = top.spacing()
+            * match self.held.values().next().and_then(|held| held.chunk.world()).map(|world| world.method())
+            {
+                None | Some(Method::Cubes(_)) => 0.0,
+                Some(Method::DualContouring(dual)) if !dual.in_cell => 2.0,
+                Some(_) => 1.0,
+            };
         let is_at_end = |v: u32, axis: usize, end: usize| {
             (f64::from(mesh.positions[v as usize][axis]) - ends[end][axis]).abs() <= slack
         };
@@ -286,6 +342,49 @@ impl World {
             })
         };
         Ok(runs.iter().filter(|(edge, run)| **run != 0 && !is_rim(edge)).count())
+    }
+
+    /// Draws the seam between levels 0 and 1 where it turns, with edges of triangles and levels as colours.
+    fn picture_of_corner(&self) -> Result<Pixmap, Box<dyn Error>> {
+        let ends = self.held.keys().filter(|id| id.0 == 0).map(|&(_, id)| [id[0] + 1, id[1] + 1]);
+        let corner = ends.reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])]).unwrap_or_default();
+        let [x, y] = corner.map(|i| (i * CHUNK as i32) as f32);
+        let target = Vec3::new(x - 1.0, y - 1.0, self.ground.height(x, y));
+        // Every triangle has corners of its own, so that it is lit by its own normal.
+        let mut mesh = TriangleMesh::default();
+        let mut colours = Vec::new();
+        for chunk in self.held.values().map(|held| &held.chunk) {
+            let own = chunk.triangles.len() - chunk.seam as usize;
+            for (t, triangle) in chunk.triangles.iter().enumerate() {
+                let corners = triangle.map(|v| Vec3::from(chunk.positions[v as usize]));
+                if corners.iter().all(|p| p.distance(target) > 120.0) {
+                    continue;
+                }
+                let [a, b, c] = corners;
+                let first = mesh.positions.len() as u32;
+                mesh.positions.extend(corners);
+                mesh.normals.extend([(b - a).cross(c - a).normalize_or_zero(); 3]);
+                mesh.triangles.push([first, first + 1, first + 2]);
+                colours.push(match t {
+                    _ if is_turned(corners, &self.ground) => 0.0,
+                    t if t >= own => 0.65,
+                    _ if chunk.level == 0 => 1.0,
+                    _ => 0.35,
+                });
+            }
+        }
+        let scale = Scale { title: String::new(), dark: 0.0, bright: 1.0, marks: Vec::new() };
+        let colouring = Colouring { values: Values::PerTriangle(colours), scale };
+        let camera = Camera {
+            eye: target + Vec3::new(-3.0, -6.0, 22.0),
+            target,
+            up: Vec3::Z,
+            vertical_fov_rad: 0.75,
+            near: 0.1,
+            far: 1000.0,
+        };
+        let viewport = Viewport { width: 560, height: 480, supersampling: 3 };
+        Ok(render_coloured(&mesh, &colouring, &camera, viewport, &Shading::default(), Look::SmoothWireframe)?)
     }
 
     /// Draws a turn round what there is, with levels as colours.
@@ -321,8 +420,76 @@ impl World {
     }
 }
 
-fn is_dual(chunk: &Chunk) -> bool {
-    chunk.world().is_some_and(|world| !matches!(world.method(), Method::Cubes(_)))
+/// Of some triangles, how many there are and how many are turned against the field's gradient.
+#[derive(Debug, Clone, Copy, Default)]
+struct Turned {
+    triangles: usize,
+    turned: usize,
+    /// Those of `turned` with a shortest height of a hundredth of the longest edge or more: the others are slivers.
+    with_area: usize,
+    /// Of all, the slivers.
+    slivers: usize,
+}
+
+impl Turned {
+    fn count(&mut self, corners: [Vec3; 3], ground: &Ground) {
+        let is_turned = is_turned(corners, ground);
+        let is_sliver = is_sliver(corners);
+        self.triangles += 1;
+        self.turned += usize::from(is_turned);
+        self.with_area += usize::from(is_turned && !is_sliver);
+        self.slivers += usize::from(is_sliver);
+    }
+
+    fn add(&mut self, other: Self) {
+        self.triangles += other.triangles;
+        self.turned += other.turned;
+        self.with_area += other.with_area;
+        self.slivers += other.slivers;
+    }
+}
+
+impl fmt::Display for Turned {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { triangles, turned, with_area, slivers } = self;
+        write!(f, "{turned} of {triangles}, {with_area} of them no slivers; {slivers} slivers in all")
+    }
+}
+
+/// Whether a triangle faces the inside, as the gradient at its middle has it. A triangle without area faces nowhere.
+fn is_turned([a, b, c]: [Vec3; 3], ground: &Ground) -> bool {
+    let slope = |p: Vec3| {
+        Vec3::from_array(Vec3::AXES.map(|axis| {
+            let value = |way: f32| ground.sample((p + axis * way).to_array());
+            value(1e-2) - value(-1e-2)
+        }))
+    };
+    // Far from the surface the ground's values are cut off; its slope there is that at the corners.
+    let at_middle = slope((a + b + c) / 3.0);
+    let slope = if at_middle == Vec3::ZERO { slope(a) + slope(b) + slope(c) } else { at_middle };
+    (b - a).cross(c - a).dot(slope) > 1e-9
+}
+
+/// Whether a triangle's least height is below a hundredth of its longest edge.
+fn is_sliver([a, b, c]: [Vec3; 3]) -> bool {
+    let longest = [a - b, b - c, c - a].map(Vec3::length_squared).into_iter().fold(0.0, f32::max);
+    (b - a).cross(c - a).length() < 0.01 * longest
+}
+
+/// A PNG of the place where the finest level has its north-eastern corner, by marching cubes and by surface nets, when the camera has gone
+/// so many metres.
+fn draw_close_up(grid: &Grid, width: f32, way: f32) -> Result<Vec<u8>, Box<dyn Error>> {
+    let mut pictures = Vec::new();
+    for method in [Method::Cubes(Cubes::default()), NETS] {
+        let mut world = World::new(grid, &method, width, Between::Seams)?;
+        world.go_to(way);
+        world.frame()?;
+        pictures.push(world.picture_of_corner()?);
+    }
+    let labels = ["marching cubes: transition cells", "surface nets: polygons round minimal edges"];
+    let row: Vec<Panel> =
+        pictures.iter().zip(labels).map(|(picture, label)| Panel { picture, label }).collect();
+    Ok(pixmap_to_png(&panels(&row, &Sheet { columns: 2, ..Sheet::default() })?))
 }
 
 /// The triangles of a band that hangs from every edge in which a chunk ends, a cell down into the ground.
