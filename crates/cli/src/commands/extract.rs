@@ -155,7 +155,7 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     };
     let grid = source.grid();
     if extraction.mesh.triangles.is_empty() {
-        bail!(source.no_surface());
+        bail!(source.no_surface_of(&method));
     }
     write_whole_by(out, |file| {
         let mut buffered = BufWriter::new(file);
