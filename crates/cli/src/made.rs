@@ -29,17 +29,20 @@ impl Prepared<'_> {
     pub(crate) fn make(&self, extractor: &mut Extractor, execution: &Execution) -> Result<Made> {
         let made = self.make_any(extractor, execution)?;
         if made.mesh.triangles.is_empty() {
-            let why = match (self.missed(), made.counts.crossings) {
-                (Some(why), _) => why,
-                (None, Some(0)) => "every sample lies on one side".into(),
-                (None, _) => "no triangle is left".into(),
+            let spacing = self.grid.spacing;
+            if let Some(why) = self.missed() {
+                bail!("no surface was reached with spacing {spacing:?}: {why}");
+            }
+            let why = match made.counts.crossings {
+                Some(0) => "every sample lies on one side",
+                _ => "no triangle is left",
             };
-            bail!("no surface with spacing {:?}: {why}", self.grid.spacing);
+            bail!("no surface with spacing {spacing:?}: {why}");
         }
         Ok(made)
     }
 
-    /// Why given seeds made no mesh; `None` of what has none.
+    /// Why given seeds reached no surface; `None` of what has no seeds.
     pub(crate) fn missed(&self) -> Option<String> {
         match &self.recipe {
             Recipe::Extractor(method) => seeds::missed(method),

@@ -241,10 +241,7 @@ pub(crate) fn check_limit(
     held: u64,
     limit: Limit,
 ) -> Result<()> {
-    if let Some(seed) = seeds::outside(method, &grid.bounds) {
-        let Bounds { min, max } = grid.bounds;
-        bail!("{seed}: this seed lies outside of the box, from {} to {}", place(min), place(max));
-    }
+    check_seeds(method, grid)?;
     method.check(grid)?;
     let needed = method.memory_bytes(grid, execution)?;
     if needed.saturating_add(held) > limit.bytes {
@@ -258,6 +255,16 @@ pub(crate) fn check_limit(
         bail!("{what} needs {needed}{beside}, {} {allowed}", limit.name);
     }
     Ok(())
+}
+
+/// Checks that given seeds lie in the box: the extractor would begin at the nearest cell of it.
+///
+/// # Errors
+/// The first seed that does not.
+pub(crate) fn check_seeds(method: &Method, grid: &BoxGrid) -> Result<()> {
+    let Some(seed) = seeds::outside(method, &grid.bounds) else { return Ok(()) };
+    let Bounds { min, max } = grid.bounds;
+    bail!("{seed}: this seed lies outside of the box, from {} to {}", place(min), place(max))
 }
 
 fn gibibytes(bytes: u64) -> String {

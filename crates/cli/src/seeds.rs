@@ -56,12 +56,12 @@ pub(crate) fn in_steps(method: &Method, volume: &Volume) -> Result<Method> {
     Ok(Method::Continuation(extract::Continuation { seeds: Seeds::try_new(&points)?, ..*continuation }))
 }
 
-/// Why a method with given seeds made no triangle; `None` of methods that find every surface.
+/// Why a method with given seeds reached no surface; `None` of methods that find every surface.
 pub(crate) fn missed(method: &Method) -> Option<String> {
     let seeds: Vec<String> = given(method).iter().map(|&seed| place(Vec3::from_array(seed))).collect();
     (!seeds.is_empty()).then(|| {
         format!(
-            "the walk from seeds = [{}] reached no surface; move them next to the surface, or leave `seeds` out",
+            "the walk from seeds = [{}] met none; move them next to the surface, or leave `seeds` out",
             seeds.join(", ")
         )
     })

@@ -318,20 +318,20 @@ impl Source {
 
     /// What to say where no surface is found.
     pub(crate) fn no_surface(&self) -> String {
-        self.no_surface_because("every sample lies on one side")
+        self.nothing("no surface", "every sample lies on one side")
     }
 
     /// The same of a method, which may have begun at seeds.
     pub(crate) fn no_surface_of(&self, method: &Method) -> String {
         match seeds::missed(method) {
-            Some(why) => self.no_surface_because(&why),
+            Some(why) => self.nothing("no surface was reached", &why),
             None => self.no_surface(),
         }
     }
 
-    fn no_surface_because(&self, why: &str) -> String {
+    fn nothing(&self, what: &str, why: &str) -> String {
         format!(
-            "no surface at isovalue {} from {} to {} with spacing {:?}: {why}{}",
+            "{what} at isovalue {} from {} to {} with spacing {:?}: {why}{}",
             self.asked_isovalue(),
             place(self.bounds.min),
             place(self.bounds.max),

@@ -193,6 +193,7 @@ fn on_a_grid(
     let source =
         arguments.source.read()?.context("one of a study, --field, --volume and --mesh is needed")?;
     let grid = source.grid();
+    prepare::check_seeds(method, &grid)?;
     prepare::check_limit(method, &grid, execution, source.held, arguments.source.limit())
         .with_context(|| source.place())?;
     let mut kept = FieldCache::default();

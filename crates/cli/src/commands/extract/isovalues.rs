@@ -80,8 +80,11 @@ impl Isovalues {
                 None => sweep.on_a_grid()?,
             };
         if surfaces.iter().all(|surface| surface.file.is_none()) {
-            let why = seeds::missed(&method).map_or_else(String::new, |why| format!(": {why}"));
-            bail!("no surface at any of {}{why}{values}", counted(self.0.len() as u64, "isovalue"));
+            let all = counted(self.0.len() as u64, "isovalue");
+            match seeds::missed(&method) {
+                Some(why) => bail!("no surface was reached at any of {all}: {why}{values}"),
+                None => bail!("no surface at any of {all}{values}"),
+            }
         }
         if arguments.json {
             let report =
@@ -209,6 +212,7 @@ impl Sweep<'_> {
             let options = self.options(isovalue);
             let source = read.at(&options)?;
             let (grid, limit) = (source.grid(), options.limit);
+            prepare::check_seeds(&self.method, &grid)?;
             prepare::check_limit(&self.method, &grid, &self.execution, source.held, limit)
                 .with_context(|| source.place())?;
             let field: &dyn StudyField = &*source.field;
