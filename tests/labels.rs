@@ -113,6 +113,7 @@ fn what_is_wrong_is_said() {
     folder.write("minus.nrrd", header.to_owned() + "0 0 1 1 0 0 -3 1");
     folder.write("one.nrrd", header.to_owned() + "7 7 7 7 7 7 7 7");
     let blocks = ["--labels", "blocks.nrrd"];
+    let clamped = "{ kind = \"surface-nets\", edge_clamp = 0.25 }";
     let refused: &[(&[&str], &str)] = &[
         (
             &["--labels", "half.nrrd", "-o", "a.ply"],
@@ -134,7 +135,14 @@ fn what_is_wrong_is_said() {
         ),
         (&[&blocks[..], &["-o", "a.ply", "--only", "0"]].concat(), "label 0 is the background"),
         (&[&blocks[..], &["-o", "a.ply", "--method", "mc"]].concat(), "--method nets"),
-        (&[&blocks[..], &["-o", "a.ply", "--method", "nets-manifold"]].concat(), "a vertex per cell"),
+        (
+            &[&blocks[..], &["-o", "a.ply", "--method", "nets-manifold"]].concat(),
+            "patches = true is refused, since boundaries of labels have a vertex per cell",
+        ),
+        (
+            &[&blocks[..], &["-o", "a.ply", "--recipe", clamped]].concat(),
+            "edge_clamp = 0.25 is refused, since crossings of labels are in the middles of edges",
+        ),
         (&[&blocks[..], &["-o", "blocks.nrrd"]].concat(), "known endings are"),
         (&[&blocks[..], &["-o", "a.ply", "--isovalue", "1"]].concat(), "cannot be used with"),
         (&["--labels", "none.nrrd", "-o", "a.ply"], "none.nrrd"),

@@ -2,7 +2,7 @@
 
 use crate::prepare::Prepared;
 use crate::recipe::Recipe;
-use crate::{mesh_file, records};
+use crate::{mesh_file, records, seeds};
 use anyhow::{Context, Result, bail};
 use design::record::{Counts, MadeBy};
 use extract::{Execution, Extractor};
@@ -29,13 +29,25 @@ impl Prepared<'_> {
     pub(crate) fn make(&self, extractor: &mut Extractor, execution: &Execution) -> Result<Made> {
         let made = self.make_any(extractor, execution)?;
         if made.mesh.triangles.is_empty() {
+            let spacing = self.grid.spacing;
+            if let Some(why) = self.missed() {
+                bail!("no surface was reached with spacing {spacing:?}: {why}");
+            }
             let why = match made.counts.crossings {
                 Some(0) => "every sample lies on one side",
                 _ => "no triangle is left",
             };
-            bail!("no surface with spacing {:?}: {why}", self.grid.spacing);
+            bail!("no surface with spacing {spacing:?}: {why}");
         }
         Ok(made)
+    }
+
+    /// Why given seeds reached no surface; `None` of what has no seeds.
+    pub(crate) fn missed(&self) -> Option<String> {
+        match &self.recipe {
+            Recipe::Extractor(method) => seeds::missed(method),
+            Recipe::Program(_) | Recipe::Meshes(_) => None,
+        }
     }
 
     /// The mesh, which may have no triangles if it is an extractor's or a file's.

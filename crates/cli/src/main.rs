@@ -26,6 +26,7 @@ mod prepare;
 mod recipe;
 mod records;
 mod run_file;
+mod seeds;
 mod source;
 mod source_digests;
 mod store;

@@ -3,12 +3,15 @@
 use crate::fields::{self, Fields};
 use crate::memory::Limit;
 use crate::recipe::{self, Recipe, recipe};
+use crate::seeds;
+use crate::source::place;
 use anyhow::{Context, Result, bail};
 use design::config::{ObjectSection, SweepSection};
 use design::record::Purpose;
 use design::{Configuration, ConfigurationId, MethodId, Study};
 use extract::{Arrangement, BoxGrid, Execution, Method, MethodError};
 use field::StudyField;
+use mesh::Bounds;
 use serde::{Deserialize, Serialize};
 
 /// At which resolution, and for what.
@@ -141,6 +144,14 @@ pub(crate) fn check(study: &Study, machine_bytes: Option<u64>) -> Result<()> {
         let spacing = wanted.spacing(object);
         let Recipe::Extractor(method) = recipe(study, id, wanted.purpose())? else { return Ok(()) };
         let grid = grid(object, spacing);
+        if let Some(seed) = seeds::outside(&method, &grid.bounds) {
+            let (key, Bounds { min, max }) = (recipe::key(study, id), grid.bounds);
+            let (id, from, to) = (&object.id, place(min), place(max));
+            bail!(
+                "{key}.{seed}: this seed lies outside of the box of object {id}, from {from} to {to}; \
+                 each seed must lie in the box of each object"
+            );
+        }
         // What does not go together whatever the grid is the recipe's fault.
         if let Err(error @ MethodError::Extract(_)) = method.check(&grid) {
             bail!("{}: {error}", recipe::key(study, id));
@@ -230,6 +241,7 @@ pub(crate) fn check_limit(
     held: u64,
     limit: Limit,
 ) -> Result<()> {
+    check_seeds(method, grid)?;
     method.check(grid)?;
     let needed = method.memory_bytes(grid, execution)?;
     if needed.saturating_add(held) > limit.bytes {
@@ -243,6 +255,16 @@ pub(crate) fn check_limit(
         bail!("{what} needs {needed}{beside}, {} {allowed}", limit.name);
     }
     Ok(())
+}
+
+/// Checks that given seeds lie in the box: the extractor would begin at the nearest cell of it.
+///
+/// # Errors
+/// The first seed that does not.
+pub(crate) fn check_seeds(method: &Method, grid: &BoxGrid) -> Result<()> {
+    let Some(seed) = seeds::outside(method, &grid.bounds) else { return Ok(()) };
+    let Bounds { min, max } = grid.bounds;
+    bail!("{seed}: this seed lies outside of the box, from {} to {}", place(min), place(max))
 }
 
 fn gibibytes(bytes: u64) -> String {

@@ -2,11 +2,12 @@
 
 use crate::memory::Limit;
 use crate::mesh_file;
+use crate::seeds;
 use crate::terminal::tell_once;
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use expression::{Expression, ExpressionError};
-use extract::BoxGrid;
+use extract::{BoxGrid, Method};
 use field::{Beyond, Holes, MeshDistance, MeshFieldError, Negated, StudyField, VolumeField, Walled};
 use glam::Vec3;
 use mesh::{Bounds, repair};
@@ -317,8 +318,20 @@ impl Source {
 
     /// What to say where no surface is found.
     pub(crate) fn no_surface(&self) -> String {
+        self.nothing("no surface", "every sample lies on one side")
+    }
+
+    /// The same of a method, which may have begun at seeds.
+    pub(crate) fn no_surface_of(&self, method: &Method) -> String {
+        match seeds::missed(method) {
+            Some(why) => self.nothing("no surface was reached", &why),
+            None => self.no_surface(),
+        }
+    }
+
+    fn nothing(&self, what: &str, why: &str) -> String {
         format!(
-            "no surface at isovalue {} from {} to {} with spacing {:?}: every sample lies on one side{}",
+            "{what} at isovalue {} from {} to {} with spacing {:?}: {why}{}",
             self.asked_isovalue(),
             place(self.bounds.min),
             place(self.bounds.max),

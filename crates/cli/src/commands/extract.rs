@@ -155,7 +155,7 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     };
     let grid = source.grid();
     if extraction.mesh.triangles.is_empty() {
-        bail!(source.no_surface());
+        bail!(source.no_surface_of(&method));
     }
     write_whole_by(out, |file| {
         let mut buffered = BufWriter::new(file);
@@ -193,6 +193,7 @@ fn on_a_grid(
     let source =
         arguments.source.read()?.context("one of a study, --field, --volume and --mesh is needed")?;
     let grid = source.grid();
+    prepare::check_seeds(method, &grid)?;
     prepare::check_limit(method, &grid, execution, source.held, arguments.source.limit())
         .with_context(|| source.place())?;
     let mut kept = FieldCache::default();

@@ -6,7 +6,7 @@ use crate::outcome::Outcome;
 use crate::source::{Inside, Options, values_of_samples};
 use crate::store::write_whole_by;
 use crate::terminal::{counted, say};
-use crate::{input, mesh_file, prepare};
+use crate::{input, mesh_file, prepare, seeds};
 use anyhow::{Context, Result, bail};
 use extract::{Execution, Extraction, Extractor, Method, VolumeCells};
 use field::StudyField;
@@ -67,7 +67,11 @@ impl Isovalues {
                 bail!("{}: is the input; it would be written over", out.display());
             }
         }
-        let files = Files { name: &name, format, is_json: arguments.json };
+        let none = match seeds::missed(&method) {
+            Some(_) => "no surface reached from the seeds, no file",
+            None => "no surface, no file",
+        };
+        let files = Files { name: &name, format, is_json: arguments.json, none };
         let execution = Execution { threads: arguments.threads as usize };
         let sweep = Sweep { isovalues: &self.0, arguments, path, method, execution, files };
         let (ranges, surfaces, values) =
@@ -76,7 +80,11 @@ impl Isovalues {
                 None => sweep.on_a_grid()?,
             };
         if surfaces.iter().all(|surface| surface.file.is_none()) {
-            bail!("no surface at any of {}{values}", counted(self.0.len() as u64, "isovalue"));
+            let all = counted(self.0.len() as u64, "isovalue");
+            match seeds::missed(&method) {
+                Some(why) => bail!("no surface was reached at any of {all}: {why}{values}"),
+                None => bail!("no surface at any of {all}{values}"),
+            }
         }
         if arguments.json {
             let report =
@@ -142,6 +150,8 @@ struct Files<'a> {
     name: &'a str,
     format: MeshFormat,
     is_json: bool,
+    /// What to say where there is no triangle.
+    none: &'static str,
 }
 
 /// Several isovalues of a volume.
@@ -172,6 +182,7 @@ impl Sweep<'_> {
         if is_below {
             volume.values.iter_mut().for_each(|value| *value = -*value);
         }
+        let method = seeds::in_steps(&self.method, &volume).with_context(name)?;
         let volume::Volume { counts, values: samples, origin, steps } = &volume;
         let cells = VolumeCells { counts: *counts, values: samples, origin: *origin, steps: *steps };
         let began = Instant::now();
@@ -181,12 +192,12 @@ impl Sweep<'_> {
             bytes: extract::active::ActiveCells::bytes(&bricks),
         };
         let held = (size_of::<f32>() * samples.len() + ranges.bytes) as u64;
-        prepare::check_limit(&self.method, &cells.grid(), &self.execution, held, limit).with_context(name)?;
+        prepare::check_limit(&method, &cells.grid(), &self.execution, held, limit).with_context(name)?;
         let mut extractor = Extractor::new();
         let surfaces = self.isovalues.iter().map(|&isovalue| {
             let level = if is_below { -isovalue } else { isovalue };
             let extraction =
-                cells.extract_by_bricks(&bricks, &self.method, &mut extractor, level, &self.execution);
+                cells.extract_by_bricks(&bricks, &method, &mut extractor, level, &self.execution);
             self.files.keep(isovalue, &extraction.with_context(name)?, false)
         });
         let surfaces = surfaces.collect::<Result<_>>()?;
@@ -201,6 +212,7 @@ impl Sweep<'_> {
             let options = self.options(isovalue);
             let source = read.at(&options)?;
             let (grid, limit) = (source.grid(), options.limit);
+            prepare::check_seeds(&self.method, &grid)?;
             prepare::check_limit(&self.method, &grid, &self.execution, source.held, limit)
                 .with_context(|| source.place())?;
             let field: &dyn StudyField = &*source.field;
@@ -239,7 +251,7 @@ impl Files<'_> {
             surface.file = Some(out.display().to_string());
         }
         if !self.is_json {
-            say(&surface.to_line())?;
+            say(&surface.to_line(self.none))?;
         }
         if let (Some(found), Some(file)) = (found, &surface.file) {
             tell!("isostudy: {file}: the surface was to be closed and has {found}");
@@ -250,10 +262,10 @@ impl Files<'_> {
 }
 
 impl Surface {
-    fn to_line(&self) -> String {
+    fn to_line(&self, none: &str) -> String {
         let what = match &self.file {
             Some(file) => format!("{file}: {}", counted(self.triangles, "triangle")),
-            None => format!("isovalue {}: no surface, no file", self.isovalue),
+            None => format!("isovalue {}: {none}", self.isovalue),
         };
         let [search, rest] = [self.search_s, self.triangles_s].map(|time| 1e3 * time);
         let cells = counted(self.cells_visited, "cell");

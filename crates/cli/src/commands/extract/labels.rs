@@ -60,17 +60,20 @@ pub(super) fn extract(arguments: &Arguments, path: &Path) -> Result<Outcome> {
 
 /// Steps of smoothing, which is all that a method may say.
 fn smoothing(method: Option<Method>) -> Result<u32> {
-    match method {
-        None => Ok(0),
-        // Crossings of labels are in the middles of edges.
+    let why = match method {
+        None => return Ok(0),
         Some(Method::SurfaceNets(SurfaceNets { patches: false, smoothing, edge_clamp: 0.0 })) => {
-            Ok(smoothing)
+            return Ok(smoothing);
         }
-        Some(_) => bail!(
-            "--labels: boundaries of labels are surface nets with a vertex per cell: --method nets, \
-             or --recipe '{{ kind = \"surface-nets\", smoothing = 8 }}'"
+        Some(Method::SurfaceNets(SurfaceNets { patches: true, .. })) => {
+            "patches = true is refused, since boundaries of labels have a vertex per cell".to_owned()
+        }
+        Some(Method::SurfaceNets(SurfaceNets { edge_clamp, .. })) => format!(
+            "edge_clamp = {edge_clamp:?} is refused, since crossings of labels are in the middles of edges"
         ),
-    }
+        Some(_) => "boundaries of labels are surface nets with a vertex per cell".to_owned(),
+    };
+    bail!("--labels: {why}; take --method nets, or --recipe '{{ kind = \"surface-nets\", smoothing = 8 }}'")
 }
 
 /// The labels of `--only`.

@@ -1,8 +1,8 @@
 //! A volume's surface on the volume's own cells, for methods of cubes: what other programs extract on too.
 
 use super::super::source_arguments::SourceArguments;
-use crate::prepare;
 use crate::source::{Inside, OwnCells};
+use crate::{prepare, seeds};
 use anyhow::{Context, Result};
 use extract::{Execution, Extraction, Extractor, Method, VolumeCells};
 use std::path::Path;
@@ -27,6 +27,7 @@ pub(super) fn extract(
         volume.values.iter_mut().for_each(|value| *value = -*value);
     }
     let isovalue = if is_below { -options.isovalue } else { options.isovalue };
+    let method = &seeds::in_steps(method, &volume).with_context(name)?;
     let held = (size_of::<f32>() * volume.values.len()) as u64;
     let volume::Volume { counts, values, origin, steps } = &volume;
     let cells = VolumeCells { counts: *counts, values, origin: *origin, steps: *steps };

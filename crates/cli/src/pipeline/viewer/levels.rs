@@ -135,7 +135,10 @@ impl Pipeline<'_> {
         }
         let mut extractor = Extractor::new().with_progress(step.within(TICKS_A_MESH));
         match prepared.make_any(&mut extractor, &Execution { threads: self.threads }) {
-            Ok(made) if made.mesh.triangles.is_empty() => Ok(Err("there is no surface".into())),
+            Ok(made) if made.mesh.triangles.is_empty() => Ok(Err(match prepared.missed() {
+                Some(why) => format!("no surface was reached: {why}"),
+                None => "there is no surface".into(),
+            })),
             Ok(made) => Ok(Ok(made)),
             Err(error) => match program_error(&error) {
                 Some(failed) => Ok(Err(failed.to_string())),
