@@ -138,7 +138,7 @@ def take():
             f"{range_of(fewer, 0)} % fewer than `mc`; no angle below 12.7 degrees",
             f"{chunk('snapmc')} times the time per chunk, and up to {max(error('snapmc')):.2f} times the error, of `mc`; no manifold where sheets lie close, as in caves",
         ),
-        ("terrain that is coarse far away", "`mc`, `nets`, `dc`", "[levels of detail](docs/lod.md) without cracks", "duals are no manifold there"),
+        ("terrain that is coarse far away", "`mc` or `nets`", "[levels of detail](docs/lod.md) without cracks", "`nets` is no manifold; `dc` there for flat walls alone"),
         (
             "the look that people chose",
             "`si` or `bi`",

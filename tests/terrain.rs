@@ -283,3 +283,59 @@ fn pages_say_what_was_published() {
         assert!(block.contains(&format!("Measured {}.", made.lines().last().unwrap())), "{page}");
     }
 }
+
+/// The prices in README's first table, once more from the published tables.
+#[test]
+fn readmes_prices_follow_from_what_was_published() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let published = root.join("results/published/terrain");
+    let readme = fs::read_to_string(root.join("README.md")).unwrap();
+    let value = |table: &str, id: &str, column: &str| -> f64 {
+        let mut reader = csv::Reader::from_path(published.join(format!("{table}.csv"))).unwrap();
+        let rows: Vec<Row> = reader.deserialize().collect::<Result<_, _>>().unwrap();
+        let is_own =
+            |row: &&Row| row["id"] == id && row.get("purpose").is_none_or(|purpose| purpose == "benchmark");
+        number(rows.iter().find(is_own).unwrap(), column).unwrap()
+    };
+    let objects = ["hi", "cl", "ca", "bu"];
+    let each = |of: &dyn Fn(&str) -> f64| -> [f64; 2] {
+        let all = objects.map(of);
+        [all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(0.0, f64::max)]
+    };
+    let ratio = |table: &str, column: &str, method: &str| {
+        each(&|o| value(table, &format!("{o}_{method}"), column) / value(table, &format!("{o}_mc"), column))
+    };
+    let error = |id: String| {
+        value("accuracy", &id, "distance_mean").max(value("accuracy", &id, "distance_to_mesh_mean"))
+    };
+    let worse = |method: &str| each(&|o| error(format!("{o}_{method}")) / error(format!("{o}_mc")));
+    let row = |method: &str| {
+        let of_method =
+            |line: &&str| line.split('|').nth(2).is_some_and(|cell| cell.trim() == format!("`{method}`"));
+        readme.lines().find(of_method).unwrap_or_else(|| panic!("{method} has no row"))
+    };
+    for method in ["nets-manifold", "dc-in-cell", "bi-relaxed", "snapmc"] {
+        let [low, high] = ratio("chunks", "chunk_ms", method);
+        let said = format!("{low:.1} to {high:.1} times the time per chunk");
+        let same = format!("{low:.1} times the time per chunk");
+        assert!(row(method).contains(&said) || row(method).contains(&same), "{method}: {said}");
+    }
+    assert!(
+        row("nets-manifold").contains(&format!("up to {:.1} times the error", worse("nets-manifold")[1]))
+    );
+    assert!(row("snapmc").contains(&format!("up to {:.2} times the error", worse("snapmc")[1])));
+    let [low, high] = worse("bi-relaxed");
+    assert!(
+        row("bi-relaxed").contains(&format!("{low:.2} to {high:.2} of the error of `mc`")),
+        "{low} {high}"
+    );
+    let [most, least] = ratio("benchmark", "triangles", "snapmc").map(|ratio| 100.0 * (1.0 - ratio));
+    assert!(row("snapmc").contains(&format!("{least:.0} to {most:.0} % fewer than `mc`")), "{least} {most}");
+    let [edges, of_cubes] = ["bu_dc-in-cell", "bu_mc"].map(|id| value("accuracy", id, "sharp_edges_mean"));
+    let said = format!(
+        "{edges:.3} cube edges of error at the sharp edges of the building's block, where `mc` has {of_cubes:.2}"
+    );
+    assert!(row("dc-in-cell").contains(&said), "{said}");
+    let pairs = value("topology", "bu_dc-in-cell", "self_intersections");
+    assert!(row("dc-in-cell").contains(&format!("{pairs} pairs of triangles intersect there")), "{pairs}");
+}
