@@ -36,8 +36,8 @@ struct Known {
     ranges: [[f64; 2]; 2],
 }
 
-/// What is best at something, by hand: who may be as good as the best by its interval, and is better in the other of time and error.
-/// Equals are the study's first.
+/// What is best at something, by hand: of those that may be as good as the best by their intervals, those that are better in the other
+/// of time and error, and of these the best. Equals are the study's first.
 fn best<'a>(own: &[&'a Known], want: &str) -> &'a Known {
     let cost = |of: &Known| match want {
         "fastest" => of.seconds,
@@ -50,10 +50,13 @@ fn best<'a>(own: &[&'a Known], want: &str) -> &'a Known {
     };
     let first = least(own, &cost);
     let Some(which) = ["fastest", "closest"].iter().position(|other| *other == want) else { return first };
-    let [low, high] = first.ranges[which];
-    let meets = |of: &&Known| of.ranges[which][0] <= high && low <= of.ranges[which][1];
-    let alike: Vec<&Known> = own.iter().copied().filter(meets).collect();
-    least(&alike, &|of| [of.error, of.seconds][which])
+    let meets = |a: &Known, b: &Known, which: usize| {
+        a.ranges[which][0] <= b.ranges[which][1] && b.ranges[which][0] <= a.ranges[which][1]
+    };
+    let alike: Vec<&Known> = own.iter().copied().filter(|of| meets(of, first, which)).collect();
+    let other = least(&alike, &|of| [of.error, of.seconds][which]);
+    let as_good: Vec<&Known> = alike.into_iter().filter(|of| meets(of, other, 1 - which)).collect();
+    least(&as_good, &cost)
 }
 
 fn known(out: &Path) -> Vec<Known> {

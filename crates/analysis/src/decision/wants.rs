@@ -238,12 +238,12 @@ impl Want {
             let in_pairs = (self.pairs)(leader).zip((self.pairs)(other)).and_then(|(a, b)| a.may_equal(b));
             in_pairs.unwrap_or_else(|| value.meets(least))
         };
-        let between = |of: &Candidate<'_>| (self.between)(of).map_or(f64::INFINITY, |of| of.value);
-        let &(first, value) = ranked
-            .iter()
-            .filter(is_alike)
-            .min_by(|a, b| between(a.0).total_cmp(&between(b.0)))
-            .unwrap_or(&ranked[0]);
+        let tied: Vec<&(&Candidate<'a>, Estimate)> = ranked.iter().filter(is_alike).collect();
+        let between = |of: &Candidate<'_>| (self.between)(of);
+        let closest =
+            tied.iter().filter_map(|(of, _)| between(of)).min_by(|a, b| a.value.total_cmp(&b.value));
+        let is_as_good = |of: &Candidate<'_>| closest.zip(between(of)).is_none_or(|(a, b)| a.meets(b));
+        let &&(first, value) = tied.iter().find(|(of, _)| is_as_good(of)).unwrap_or(&&ranked[0]);
         let others = || ranked.iter().filter(|(of, _)| of.id() != first.id());
         let next = others().next().map(|(of, value)| (of.method, *value));
         let alike = others().filter(is_alike).map(|(of, _)| of.id());
