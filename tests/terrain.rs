@@ -53,7 +53,8 @@ fn best<'a>(own: &[&'a Known], want: &str) -> &'a Known {
     let meets = |a: &Known, b: &Known, which: usize| {
         a.ranges[which][0] <= b.ranges[which][1] && b.ranges[which][0] <= a.ranges[which][1]
     };
-    let alike: Vec<&Known> = own.iter().copied().filter(|of| meets(of, first, which)).collect();
+    let close = |of: &Known| cost(of) <= 1.05 * cost(first);
+    let alike: Vec<&Known> = own.iter().copied().filter(|of| meets(of, first, which) && close(of)).collect();
     let other = least(&alike, &|of| [of.error, of.seconds][which]);
     let as_good: Vec<&Known> = alike.into_iter().filter(|of| meets(of, other, 1 - which)).collect();
     least(&as_good, &cost)

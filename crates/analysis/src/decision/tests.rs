@@ -163,6 +163,21 @@ fn chunks_and_edits_are_compared_one_by_one() {
     }
 }
 
+/// On a busy machine intervals are wide; who takes twice the time is not the fastest all the same.
+#[test]
+fn who_is_much_slower_is_not_taken_for_the_fastest() {
+    let mut all = planted(&[[10.0, 0.1], [5.0, 0.4], [20.0, 0.3], [6.0, 0.2], [8.0, 0.2], [30.0, 0.05]]);
+    let ids = all.study.method_ids();
+    for (i, sample) in all.bench.samples.iter_mut().enumerate() {
+        // Every third round takes ten times as long, so that all intervals meet.
+        sample.total_s *= if sample.iteration % 3 == 0 { 10.0 } else { 1.0 + 1e-9 * i as f64 };
+    }
+    let objects = candidates(&all.inputs());
+    let picks = picks(&objects);
+    let fastest = picks.iter().find(|pick| pick.want.name == "fastest").unwrap();
+    assert_eq!((fastest.method.id, fastest.on.len()), (ids[1], 3));
+}
+
 /// A method that is exact but for rounding is not a million times as good as the next.
 #[test]
 fn an_error_below_the_least_that_is_told_apart_counts_as_that() {

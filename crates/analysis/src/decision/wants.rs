@@ -26,6 +26,9 @@ pub(crate) struct Want {
     pairs: for<'b> fn(&'b Candidate<'_>) -> Option<&'b Each>,
 }
 
+/// Times the best: who is farther from it is not taken in its place, however wide the intervals of a busy machine are.
+const CLOSE: f64 = 1.05;
+
 /// Who takes part.
 #[derive(Clone, Copy, PartialEq)]
 enum Among {
@@ -238,7 +241,9 @@ impl Want {
             let in_pairs = (self.pairs)(leader).zip((self.pairs)(other)).and_then(|(a, b)| a.may_equal(b));
             in_pairs.unwrap_or_else(|| value.meets(least))
         };
-        let tied: Vec<&(&Candidate<'a>, Estimate)> = ranked.iter().filter(is_alike).collect();
+        let is_close = |(_, value): &&(&Candidate<'a>, Estimate)| value.value <= CLOSE * least.value;
+        let tied: Vec<&(&Candidate<'a>, Estimate)> =
+            ranked.iter().filter(is_alike).filter(is_close).collect();
         let between = |of: &Candidate<'_>| (self.between)(of);
         let closest =
             tied.iter().filter_map(|(of, _)| between(of)).min_by(|a, b| a.value.total_cmp(&b.value));

@@ -178,8 +178,8 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
          edges kept: mean distance from points of the object's sharp edges to the mesh, in that unit; where the object ends at walls, their \
          edges are among them. Each column takes the best in its quantity, whatever else it costs. Those with the \
          object's own cubes are compared, but for \u{201c}as many triangles\u{201d}. Not told apart: the intervals at 95 % meet; \
-         those of fewer than six times reach from the shortest to the longest. Of those not told apart in time the one with the \
-         smallest mean error is named, of those not told apart in error the fastest. ",
+         those of fewer than six times reach from the shortest to the longest. Of those not told apart, and within 5 % of \
+         the best, the one with the smallest mean error is named if time is wanted, the fastest if error is. ",
     );
     if objects.iter().any(ObjectCandidates::has_least_error) {
         text.push_str(&format!("A mean error below {LEAST_ERROR} counts as {LEAST_ERROR}. "));
