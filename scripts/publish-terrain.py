@@ -164,18 +164,20 @@ def unbeaten():
     return "\n".join(lines)
 
 
-def work():
-    """Samples and memory of one block, a row a method, a column an object."""
-    of = table("benchmark")
-    names = {row["id"].split("_")[0]: row["object"] for row in csv.DictReader((TERRAIN / "tables/configurations.csv").open())}
+def by_object(of, cell):
+    """A row a method, a column an object, of a table by id; what is there for its look or its number of triangles alone is left out."""
+    names = {id.split("_")[0]: row["object"] for id, row in table("configurations").items()}
     methods = [m for m in dict.fromkeys(id.split("_")[1] for id in of) if not m.endswith(("-flat", "-matched"))]
     lines = ["| method | " + " | ".join(names[o] for o in OBJECTS) + " |", "|---|" + "---:|" * len(OBJECTS)]
     for method in methods:
-        rows = [of[f"{o}_{method}"] for o in OBJECTS]
-        samples = lambda row: f"{int(row['evaluations']):,}" if row["evaluations"] else "all"
-        memory = lambda row: f"{int(row['extraction_memory_bytes']) / 1e6:.1f}" if row["extraction_memory_bytes"] else "not seen"
-        lines.append(f"| `{method}` | " + " | ".join(f"{samples(row)}; {memory(row)}" for row in rows) + " |")
+        lines.append(f"| `{method}` | " + " | ".join(cell(of[f"{o}_{method}"]) for o in OBJECTS) + " |")
     return "\n".join(lines)
+
+
+def work():
+    """Samples of the field, and megabytes where somebody saw them, of one block."""
+    memory = lambda row: f"{int(row['extraction_memory_bytes']) / 1e6:.1f}" if row["extraction_memory_bytes"] else "unknown"
+    return by_object(table("benchmark"), lambda row: f"{int(row['evaluations']):,}; {memory(row)}")
 
 
 # What the paper concludes, by the claim that says it, and how the claim's number upholds it here.
@@ -222,25 +224,14 @@ def conclusions():
     return "\n".join(lines)
 
 
-
 def short(milliseconds):
     value = float(milliseconds)
     return f"{value:.0f}" if value >= 10 else f"{value:.1f}"
 
 
 def chunks():
-    """Milliseconds per chunk and per edit, a row a method, a column an object."""
-    table = list(csv.DictReader((TERRAIN / "tables/chunks.csv").open()))
-    objects = list(dict.fromkeys(row["id"].split("_")[0] for row in table))
-    names = {row["id"].split("_")[0]: row["object"] for row in csv.DictReader((TERRAIN / "tables/configurations.csv").open())}
-    methods = [m for m in dict.fromkeys(row["id"].split("_")[1] for row in table) if not m.endswith("-flat")]
-    of = {row["id"]: row for row in table}
-    lines = ["| method | " + " | ".join(names[o] for o in objects) + " |", "|---|" + "---:|" * len(objects)]
-    for method in methods:
-        cells = [of.get(f"{o}_{method}") for o in objects]
-        text = [f"{short(c['chunk_ms'])}, {short(c['edit_ms'])}" if c else "" for c in cells]
-        lines.append(f"| `{method}` | " + " | ".join(text) + " |")
-    return "\n".join(lines)
+    """Milliseconds per chunk and per edit."""
+    return by_object(table("chunks"), lambda row: f"{short(row['chunk_ms'])}, {short(row['edit_ms'])}")
 
 
 main()

@@ -286,17 +286,54 @@ fn pages_say_what_was_published() {
         assert_eq!(said, rows, "{page}");
         assert!(block.contains(&format!("Measured {}.", made.lines().last().unwrap())), "{page}");
     }
+    // Whole rows of the decision; and conclusions, by what the claims say of time.
+    let page = read("docs/terrain.md");
+    for line in csv_rows("decision") {
+        let cells: Vec<&str> = ["want", "objects", "take", "why", "cost"].map(|column| &*line[column]).into();
+        let row = format!("| {} |", cells.join(" | "));
+        assert!(page.contains(&row), "{row}");
+    }
+    let conclusion = |text: &str| {
+        let row = page.lines().find(|line| line.starts_with(&format!("| {text} |"))).unwrap();
+        row.trim_end_matches(" |").rsplit("| ").next().unwrap().to_owned()
+    };
+    for (id, text) in [
+        ("vertex_integrated", "Integrated clustering lengthens the vertex pass"),
+        ("geometry_integrated", "Integrated clustering shortens the geometry pass"),
+        ("vertex_edge_collapse", "Edge collapse shortens the vertex pass"),
+        ("geometry_edge_collapse", "Edge collapse lengthens the geometry pass"),
+        ("arrangement_vertex", "The body-centred lattice lengthens the vertex pass"),
+        ("arrangement_geometry", "The body-centred lattice lengthens the geometry pass"),
+    ] {
+        let claim = csv_rows("claims").into_iter().find(|row| row["id"] == id).unwrap();
+        // The interval of the change decides, with the run's noise.
+        let (_, numbers) = claim["reason"].split_once("interval over rounds ").unwrap();
+        let mut numbers = numbers.split([' ', '%']).filter_map(|word| word.parse::<f64>().ok());
+        let [low, high, noise] = [(); 3].map(|()| numbers.next().unwrap());
+        let published: f64 = claim["published"].parse().unwrap();
+        let want = match (low > noise || high < -noise, published * low > 0.0) {
+            (false, _) => "open",
+            (true, true) => "yes",
+            (true, false) => "no",
+        };
+        assert_eq!(conclusion(text), want, "{text}: {}", claim["reason"]);
+    }
+}
+
+/// A published table of the terrain study.
+fn csv_rows(table: &str) -> Vec<Row> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let path = root.join(format!("results/published/terrain/{table}.csv"));
+    csv::Reader::from_path(path).unwrap().deserialize().collect::<Result<_, _>>().unwrap()
 }
 
 /// The prices in README's first table, once more from the published tables.
 #[test]
 fn readmes_prices_follow_from_what_was_published() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let published = root.join("results/published/terrain");
     let readme = fs::read_to_string(root.join("README.md")).unwrap();
     let value = |table: &str, id: &str, column: &str| -> f64 {
-        let mut reader = csv::Reader::from_path(published.join(format!("{table}.csv"))).unwrap();
-        let rows: Vec<Row> = reader.deserialize().collect::<Result<_, _>>().unwrap();
+        let rows = csv_rows(table);
         let is_own =
             |row: &&Row| row["id"] == id && row.get("purpose").is_none_or(|purpose| purpose == "benchmark");
         number(rows.iter().find(is_own).unwrap(), column).unwrap()

@@ -1,7 +1,7 @@
 //! Which method to take: what each costs and gives on each object, who is beaten in both, and who is the best at what is wanted.
 //!
 //! Nothing here weighs time against error. A front leaves out what nobody should take; a want names one quantity and takes the best
-//! in it. Whose intervals meet the best's is named beside it.
+//! in it. Who is not told apart from the best is named beside it, or taken in its place: see [`Want`].
 
 mod candidate;
 mod estimate;

@@ -18,7 +18,8 @@ const EDITS: usize = 10;
 const EDIT_ROUNDS: usize = 3;
 
 /// Times every chunk of so many cells a side that has triangles, round by round, then edits: the chunks round a point of the surface,
-/// extracted again. The points are vertices of marching cubes, whatever the method: all methods are asked the same. All on the calling thread. `None` for what makes no chunks.
+/// extracted again. The points are vertices of marching cubes whatever the method, so that all are asked the same. All on the calling
+/// thread. `None` for what makes no chunks.
 ///
 /// # Errors
 /// If the chunks cannot be extracted, or do not fit together.
@@ -54,8 +55,7 @@ pub(crate) fn chunk_times(prepared: &Prepared<'_>, cells: u32, rounds: u32) -> R
     }
     let whole = of.extract(&Execution { threads: 1 })?.mesh;
     let (mut edit_chunks, mut edit_s) = (Vec::new(), Vec::new());
-    let places = places(&of)?;
-    for at in places {
+    for at in places(&of)? {
         let changed = Aabb::around(at.to_array(), REACH * of.grid.spacing);
         let touched: Vec<usize> = (0..boxes.len()).filter(|&i| chunks[i].is_touched_by(changed)).collect();
         let mut rounds = [0.0; EDIT_ROUNDS];

@@ -30,8 +30,9 @@ pub(crate) struct Candidate<'a> {
     pub(crate) mesh: &'a MeshRecord,
     /// Median seconds from the field to the mesh, normals left out.
     pub(crate) time_s: Option<Estimate>,
-    /// Median seconds to extract a chunk, chunk by chunk, and to extract again what an edit touches, edit by edit.
+    /// Seconds to extract each chunk.
     pub(crate) chunks: Option<Each>,
+    /// Seconds to extract again what each edit touches.
     pub(crate) edits: Option<Each>,
     /// Bytes that extraction takes beside the field.
     pub(crate) memory: Option<u64>,
@@ -56,7 +57,8 @@ impl Each {
         Some(Self { times_s, median_s: Estimate::within(found.median, found.interval) })
     }
 
-    /// Whether the median ratio of one piece's two times may be 1; `None` where the pieces are not the same.
+    /// Whether the median ratio of a piece's two times may be 1; `None` where there are more pieces of one than of the other, so that they
+    /// are not the same.
     pub(crate) fn may_equal(&self, other: &Self) -> Option<bool> {
         if self.times_s.len() != other.times_s.len() {
             return None;

@@ -185,7 +185,7 @@ pub(crate) struct Best<'a> {
     pub(crate) value: Estimate,
     /// The best of all others, and its value; `None` where no other qualifies.
     pub(crate) next: Option<(&'a Method, Estimate)>,
-    /// Which others are not told apart from the best: their intervals meet.
+    /// Which others are not told apart from the best.
     pub(crate) alike: Vec<MethodId>,
     pub(crate) cost: Cost,
 }
@@ -198,7 +198,7 @@ pub(crate) struct Cost {
     pub(crate) triangles: f64,
     /// Values of the field that it asks for over the fewest; `None` where they were not counted.
     pub(crate) samples: Option<f64>,
-    /// Its memory over the least.
+    /// Bytes that its extraction takes beside the field over the least; `None` where nobody saw them.
     pub(crate) memory: Option<f64>,
     /// Its error over the smallest.
     pub(crate) error: Option<f64>,
@@ -236,42 +236,46 @@ impl Want {
         if of.candidates.len() < 2 || !self.among.is_strict() && ranked.len() < 2 {
             return None;
         }
-        // The best of a run is chance among those that are not told apart from it.
         let is_alike = |(other, value): &&(&Candidate<'a>, Estimate)| {
             let in_pairs = (self.pairs)(leader).zip((self.pairs)(other)).and_then(|(a, b)| a.may_equal(b));
             in_pairs.unwrap_or_else(|| value.meets(least))
         };
         let is_close = |(_, value): &&(&Candidate<'a>, Estimate)| value.value <= CLOSE * least.value;
+        // The best of a run is chance among those that are not told apart from it.
         let tied: Vec<&(&Candidate<'a>, Estimate)> =
             ranked.iter().filter(is_alike).filter(is_close).collect();
         let between = |of: &Candidate<'_>| (self.between)(of);
-        let closest =
+        let least_of_tied =
             tied.iter().filter_map(|(of, _)| between(of)).min_by(|a, b| a.value.total_cmp(&b.value));
-        let is_as_good = |of: &Candidate<'_>| closest.zip(between(of)).is_none_or(|(a, b)| a.meets(b));
-        let &&(first, value) = tied.iter().find(|(of, _)| is_as_good(of)).unwrap_or(&&ranked[0]);
-        let others = || ranked.iter().filter(|(of, _)| of.id() != first.id());
+        let is_as_good = |of: &Candidate<'_>| least_of_tied.zip(between(of)).is_none_or(|(a, b)| a.meets(b));
+        let &&(taken, value) = tied.iter().find(|(of, _)| is_as_good(of)).unwrap_or(&&ranked[0]);
+        let others = || ranked.iter().filter(|(of, _)| of.id() != taken.id());
         let next = others().next().map(|(of, value)| (of.method, *value));
-        let alike = others().filter(is_alike).map(|(of, _)| of.id());
-        let beside = match self.among {
-            Among::SameTriangles => pool.clone(),
-            _ => Among::SameCells.pool(&of.candidates),
+        let alike = others().filter(is_alike).map(|(of, _)| of.id()).collect();
+        let cost = match self.among {
+            Among::SameTriangles => Cost::of(taken, &pool),
+            _ => Cost::of(taken, &Among::SameCells.pool(&of.candidates)),
         };
-        let least = |quantity: fn(&Candidate<'_>) -> Option<f64>| {
+        Some((taken.method, Best { object: of.object, value, next, alike, cost }))
+    }
+}
+
+impl Cost {
+    fn of(taken: &Candidate<'_>, beside: &[&Candidate<'_>]) -> Self {
+        let over_least = |quantity: fn(&Candidate<'_>) -> Option<f64>| {
             let least = beside.iter().filter_map(|&of| quantity(of)).min_by(f64::total_cmp);
-            Some(quantity(first)? / least.filter(|&least| least > 0.0)?)
+            Some(quantity(taken)? / least.filter(|&least| least > 0.0)?)
         };
-        let topology = &first.mesh.topology;
-        let cost = Cost {
-            time: least(|of| of.time_s.map(|time| time.value)),
-            triangles: least(|of| Some(of.triangles().value)).unwrap_or(1.0),
-            samples: least(|of| of.mesh.counts.evaluations.map(|calls| calls as f64)),
-            memory: least(|of| of.memory.map(|bytes| bytes as f64)),
-            error: least(|of| of.error.map(|error| error.value)),
+        let topology = &taken.mesh.topology;
+        Self {
+            time: over_least(|of| of.time_s.map(|time| time.value)),
+            triangles: over_least(|of| Some(of.triangles().value)).unwrap_or(1.0),
+            samples: over_least(|of| of.mesh.counts.evaluations.map(|calls| calls as f64)),
+            memory: over_least(|of| of.memory.map(|bytes| bytes as f64)),
+            error: over_least(|of| of.error.map(|error| error.value)),
             crossing_triangles: topology.self_intersections.unwrap_or(0),
             no_manifold: topology.non_manifold_edges + topology.non_manifold_vertices,
-        };
-        let best = Best { object: of.object, value, next, alike: alike.collect(), cost };
-        Some((first.method, best))
+        }
     }
 }
 

@@ -41,7 +41,7 @@ pub(super) fn chunks(inputs: &Inputs<'_>) -> Option<Table> {
     let cells = inputs.chunks.first()?.cells;
     table.notes.push(format!(
         "One thread, from the field, with chunks of {cells} cells per side. Timed: chunks of full size that have triangles. An edit is a change within 5 cube \
-         edges of a point of the surface: the chunks that it touches are extracted again. Median, its interval at 95 %, and the longest. \
+         edges of a point of the surface, at the same points for all methods: the chunks that it touches are extracted again. Median, its interval at 95 %, and the longest. \
          The whole mesh: whether the chunks, welded, are the mesh that is made at once, to the bit."
     ));
     let study = inputs.study;

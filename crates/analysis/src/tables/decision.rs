@@ -102,7 +102,7 @@ fn why(pick: &Pick<'_>) -> String {
         [] => format!("{own}; no other qualifies"),
         [(first, _), ..] => {
             let same = others.iter().all(|(id, _)| *id == first);
-            let next = if same { first.to_string() } else { "the next".into() };
+            let next = if same { first.to_string() } else { "the best other".into() };
             let values: Vec<f64> = others.iter().map(|(_, value)| *value).collect();
             format!("{own}; {next}: {}", ranged(&values))
         }
