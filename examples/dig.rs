@@ -7,14 +7,14 @@
 
 use std::time::Instant;
 
-use extract::{
+use glam::Vec3;
+use isostudy_extract::{
     BoxGrid, Chunk, ChunkError, ChunkExtractor, ChunkSettings, Control, Execution, Extractor, Preset, Source,
     presets, weld_chunks,
 };
-use field::{Asteroid, FieldCache, StudyField};
-use glam::Vec3;
-use mesh::Bounds;
-use mesh::topology::topology;
+use isostudy_field::{Asteroid, FieldCache, StudyField};
+use isostudy_mesh::Bounds;
+use isostudy_mesh::topology::topology;
 
 /// A solid less the balls that were dug out of it.
 struct Dug<'a> {

@@ -12,10 +12,10 @@ use std::collections::{HashMap, VecDeque};
 use std::sync::{Condvar, Mutex};
 use std::time::{Duration, Instant};
 
-use extract::{
+use ground::{Ground, Hole};
+use isostudy_extract::{
     Aabb, Arrangement, Chunk, ChunkExtractor, ChunkSettings, Control, Grid, Method, Tetrahedra, check_field,
 };
-use ground::{Ground, Hole};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
 #[global_allocator]
@@ -260,7 +260,12 @@ impl<'a> World<'a> {
     }
 
     /// Digs, and asks for the chunks anew that the hole reaches. Returns how many.
-    fn dig(&mut self, shared: &Shared, hole: Hole, frame: usize) -> Result<usize, extract::GridError> {
+    fn dig(
+        &mut self,
+        shared: &Shared,
+        hole: Hole,
+        frame: usize,
+    ) -> Result<usize, isostudy_extract::GridError> {
         shared.holes.lock().expect("no thread panics").push(hole);
         let mut touched = 0;
         for id in self.grid.touched(hole.reach(), CHUNK, self.method)? {

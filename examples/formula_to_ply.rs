@@ -6,10 +6,10 @@ use std::env::args;
 use std::error::Error;
 use std::fs::File;
 
-use expression::Expression;
-use extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
-use field::Negated;
-use mesh::{Bounds, glam::Vec3, topology::topology, write_ply};
+use isostudy_expression::Expression;
+use isostudy_extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+use isostudy_field::Negated;
+use isostudy_mesh::{Bounds, glam::Vec3, topology::topology, write_ply};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let formula = args().nth(1).unwrap_or("sqrt(x^2 + y^2 + z^2) - 1".into());

@@ -19,15 +19,15 @@ use std::fmt;
 use std::fs::File;
 use std::time::Instant;
 
-use extract::{
+use glam::Vec3;
+use ground::{Ground, Hole};
+use isostudy_extract::{
     Chunk, Control, Cubes, DualContouring, Grid, LevelExtractor, LevelSettings, Method, Neighbours,
     ScalarField, SurfaceNets, weld_chunks,
 };
-use glam::Vec3;
-use ground::{Ground, Hole};
-use mesh::TriangleMesh;
-use raster::tiny_skia::Pixmap;
-use raster::{
+use isostudy_mesh::TriangleMesh;
+use isostudy_raster::tiny_skia::Pixmap;
+use isostudy_raster::{
     Camera, Colouring, Look, Panel, Scale, Shading, Sheet, Turntable, Values, Viewport, panels,
     pixmap_to_png, render_coloured, turntable_coloured,
 };

@@ -7,9 +7,9 @@ use std::error::Error;
 use std::fs::{File, read};
 use std::path::Path;
 
-use extract::{Arrangement, Execution, ExtractSettings, Extractor, Lattice, Source};
-use field::{Holes, MeshDistance};
-use mesh::{MeshFormat, quality::quality, weld};
+use isostudy_extract::{Arrangement, Execution, ExtractSettings, Extractor, Lattice, Source};
+use isostudy_field::{Holes, MeshDistance};
+use isostudy_mesh::{MeshFormat, quality::quality, weld};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let [Some(input), Some(stem)] = [1, 2].map(|n| args().nth(n)) else {
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             extractor.extract(Source::Study(&field), &lattice, &settings, &Execution::default())?.mesh;
 
         let path = format!("{stem}-{cells}.ply");
-        mesh::write_ply(&surface, File::create(&path)?)?;
+        isostudy_mesh::write_ply(&surface, File::create(&path)?)?;
         let worth = quality(&surface).radius_ratio.mean;
         println!(
             "{path}: spacing {spacing}, {} triangles, mean radius ratio {worth:.3}",

@@ -6,15 +6,15 @@ use std::env::args;
 use std::error::Error;
 use std::fs::File;
 
-use extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
-use field::{Beyond, VolumeField};
-use mesh::write_glb;
+use isostudy_extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+use isostudy_field::{Beyond, VolumeField};
+use isostudy_mesh::write_glb;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let [Some(input), Some(isovalue), Some(output)] = [1, 2, 3].map(|n| args().nth(n)) else {
         return Err("usage: volume_to_gltf VOLUME ISOVALUE OUTPUT.glb".into());
     };
-    let volume = volume::read(input.as_ref(), volume::NO_LIMIT)?;
+    let volume = isostudy_volume::read(input.as_ref(), isostudy_volume::NO_LIMIT)?;
     println!("{:?} samples", volume.counts);
     // Where the surface leaves the volume it is closed; without `closing_at` the lattice's box would cut it off.
     let isovalue = isovalue.parse()?;

@@ -144,13 +144,13 @@ fn help_names_every_format_and_column() {
     };
     let (analyse, convert) = (help("analyse"), help("convert"));
     for help in [&analyse, &convert] {
-        assert!(help.contains(&responses::Format::names()), "{help}");
+        assert!(help.contains(&isostudy_responses::Format::names()), "{help}");
     }
-    for column in responses::LONG_COLUMNS {
+    for column in isostudy_responses::LONG_COLUMNS {
         let named = [", ", " ", ". "].iter().any(|end| analyse.contains(&format!(" {column}{end}")));
         assert!(named, "{column}: {analyse}");
     }
-    assert!(convert.contains(&format!("long: {}", responses::LONG_WRITTEN.join(", "))), "{convert}");
+    assert!(convert.contains(&format!("long: {}", isostudy_responses::LONG_WRITTEN.join(", "))), "{convert}");
 }
 
 #[test]

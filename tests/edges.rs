@@ -4,12 +4,12 @@ mod command;
 
 use command::Folder;
 use glam::{DMat3, DVec3, EulerRot};
-use mesh::TriangleMesh;
-use mesh::topology::topology;
+use isostudy_mesh::TriangleMesh;
+use isostudy_mesh::topology::topology;
 
 /// The mesh that was written last.
 fn made(folder: &Folder) -> TriangleMesh {
-    mesh::read_ply(&*std::fs::read(folder.path("made.ply")).unwrap()).unwrap()
+    isostudy_mesh::read_ply(&*std::fs::read(folder.path("made.ply")).unwrap()).unwrap()
 }
 
 /// The spacing of the grids on which turned boxes are extracted.
@@ -126,7 +126,7 @@ fn distances_from_sharp_edges_are_those_of_the_box() {
     for turn in 0..2 {
         let wanted = TurnedBox::numbered(turn);
         let mut bytes = Vec::new();
-        mesh::write_ply(&wanted.as_mesh(), &mut bytes).unwrap();
+        isostudy_mesh::write_ply(&wanted.as_mesh(), &mut bytes).unwrap();
         folder.write("box.ply", bytes);
         for source in [["--field", &*wanted.formula()], ["--mesh", "box.ply"]] {
             for method in ["mc", "dc", "bi"] {
@@ -156,7 +156,7 @@ fn dual_contouring_keeps_the_edges_of_formulas_and_meshes() {
         let wanted = TurnedBox::numbered(turn);
         let formula = wanted.formula();
         let mut bytes = Vec::new();
-        mesh::write_ply(&wanted.as_mesh(), &mut bytes).unwrap();
+        isostudy_mesh::write_ply(&wanted.as_mesh(), &mut bytes).unwrap();
         folder.write("box.ply", bytes);
         for source in [["--field", &*formula], ["--mesh", "box.ply"]] {
             let name = source[0];

@@ -3,7 +3,7 @@
 mod command;
 
 use command::Folder;
-use mesh::MeshFormat;
+use isostudy_mesh::MeshFormat;
 use serde_json::json;
 
 /// Two blocks of 3 x 4 x 4 samples side by side, labels 2 and 5, a step of 2 along x, in a volume of 10 x 8 x 8.

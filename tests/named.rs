@@ -1,13 +1,13 @@
 //! `isostudy methods`, `extract --method` and `--recipe`, and `isostudy new`, as a user runs them; and the keys of
 //! `docs/study-file.md` that crates other than `design` read.
 
-#[path = "../crates/design/tests/page/mod.rs"]
+#[path = "../crates/isostudy-design/tests/page/mod.rs"]
 mod page;
 
 mod command;
 
 use command::Folder;
-use extract::{Method, presets};
+use isostudy_extract::{Method, presets};
 use page::{Row, Section, sections};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -329,10 +329,10 @@ fn the_page_has_the_keys_of_what_the_study_hands_on() {
 #[test]
 fn the_page_has_the_defaults_of_terrains() {
     let section = section("objects.field", "terrain");
-    use field::TerrainCharacter::{Caves, Cliffs, Hills};
+    use isostudy_field::TerrainCharacter::{Caves, Cliffs, Hills};
     for (place, character) in [Hills, Cliffs, Caves].into_iter().enumerate() {
         // Written out, so that a setting that is added does not compile before it is here.
-        let field::TerrainSettings {
+        let isostudy_field::TerrainSettings {
             seed,
             ground,
             relief,

@@ -200,7 +200,7 @@ fn a_killed_study_resumes_to_the_same_bytes() {
 
 /// Frames of an animation: how bright each is where it differs from the first pixel, on average, and the darkest of it.
 fn brightness(gif: &[u8]) -> Vec<(f64, u32)> {
-    let animation = raster::Animation::read_gif(gif).unwrap();
+    let animation = isostudy_raster::Animation::read_gif(gif).unwrap();
     let sum = |index: u8| animation.palette.colours()[usize::from(index)].iter().map(|&v| u32::from(v)).sum();
     let of_frame = |frame: &Vec<u8>| {
         let shown: Vec<u32> = frame.iter().filter(|&&i| i != frame[0]).map(|&i| sum(i)).collect();
@@ -252,7 +252,7 @@ fn stills_turn_and_have_colours_for_numbers() {
     let made = files(fixture.out());
     let gif = |look: &str| {
         let bytes = &made[&format!("figures/still_sphere_{look}.gif")];
-        raster::Animation::read_gif(bytes.as_slice()).unwrap()
+        isostudy_raster::Animation::read_gif(bytes.as_slice()).unwrap()
     };
     let (flat, quality, error) = (gif("flat"), gif("quality"), gif("error"));
     assert_eq!((flat.width, flat.height, flat.frames.len()), (96, 96, 12));
@@ -260,7 +260,7 @@ fn stills_turn_and_have_colours_for_numbers() {
     let page = String::from_utf8(made["index.html"].clone()).unwrap();
     assert!(page.contains("href=\"figures/still_sphere_error.gif\">error</a>"));
     assert!(!page.contains("still_bunny_"), "only where it is asked for");
-    let sheet = raster::pixmap_from_png(&made["figures/still_sphere.png"]).unwrap();
+    let sheet = isostudy_raster::pixmap_from_png(&made["figures/still_sphere.png"]).unwrap();
     assert!(sheet.width() > 3 * 96 && sheet.height() > quality.height);
     let again = fixture.succeed("study", &[]);
     assert!(!again.stderr.contains(" made, "), "{}", again.stderr);

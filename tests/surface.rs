@@ -3,8 +3,8 @@
 mod command;
 
 use command::{Folder, Run};
-use mesh::topology::topology;
-use mesh::{MeshFormat, TriangleMesh};
+use isostudy_mesh::topology::topology;
+use isostudy_mesh::{MeshFormat, TriangleMesh};
 use std::path::Path;
 
 /// A mesh that was written.
@@ -253,13 +253,13 @@ fn a_mesh_becomes_another() {
     let thick = mesh_of(&folder, "thick.ply").volume() / BALL_VOLUME;
     assert!((thick - 1.5f64.powi(3)).abs() < 0.1, "{thick}");
 
-    let mut open = mesh::weld(&mesh_of(&folder, "ball.stl"));
+    let mut open = isostudy_mesh::weld(&mesh_of(&folder, "ball.stl"));
     let top = |t: &[u32; 3]| t.iter().any(|&v| open.positions[v as usize].z > 0.8);
     let kept = open.triangles.iter().copied().filter(|t| !top(t)).collect();
     open.triangles = kept;
     let write = |name: &str, mesh: &TriangleMesh| {
         let mut bytes = Vec::new();
-        mesh::write_ply(mesh, &mut bytes).unwrap();
+        isostudy_mesh::write_ply(mesh, &mut bytes).unwrap();
         folder.write(name, bytes);
     };
     write("open.ply", &open);
@@ -274,12 +274,12 @@ fn a_mesh_becomes_another() {
     let spanned = mesh_of(&folder, "a.ply");
     assert!(topology(&spanned).is_closed_manifold() && spanned.volume() > 0.85 * BALL_VOLUME);
 
-    write("inward.ply", &mesh::repair::flip(&again));
+    write("inward.ply", &isostudy_mesh::repair::flip(&again));
     let said = folder.succeed(&["--mesh", "inward.ply", "--cells", "40", "-o", "a.ply"]);
     assert!(said.stderr.contains("inward.ply: its triangles face inward: turned round"), "{}", said.stderr);
     assert!(mesh_of(&folder, "a.ply").volume() > 4.0);
     // Of two balls, the second faces inward and is no cavity of the first.
-    let apart = mesh::repair::flip(&again.transformed(|p| p * 0.5 + glam::Vec3::new(3.0, 0.0, 0.0)));
+    let apart = isostudy_mesh::repair::flip(&again.transformed(|p| p * 0.5 + glam::Vec3::new(3.0, 0.0, 0.0)));
     let moved = |t: &[u32; 3]| t.map(|v| v + again.positions.len() as u32);
     write(
         "two.ply",

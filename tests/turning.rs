@@ -3,7 +3,7 @@
 mod command;
 
 use command::{Folder, Run};
-use raster::Animation;
+use isostudy_raster::Animation;
 
 /// An animation that was made with these arguments.
 fn made(folder: &Folder, arguments: &[&str]) -> Animation {
@@ -86,7 +86,7 @@ fn colours_stand_for_numbers_and_have_a_scale() {
     };
     // Half a spacing off: beyond the default scale, in the middle of one to 1.
     let near = |found: [u8; 3], place: f32| {
-        let want = raster::map_colour(place).map(|v| (v * 255.0) as u8);
+        let want = isostudy_raster::map_colour(place).map(|v| (v * 255.0) as u8);
         assert!((0..3).all(|c| found[c].abs_diff(want[c]) < 14), "{found:?} is not {want:?}");
     };
     near(error("large.obj", &[]), 0.0);

@@ -1,8 +1,8 @@
 //! Hills with overhangs and no end, and the holes that were dug into them: a field of a game.
 
-use extract::{Aabb, Bound, ScalarField};
-use field::{NOISE_SLOPE, noise, noise_range};
 use glam::{DVec3, Vec3};
+use isostudy_extract::{Aabb, Bound, ScalarField};
+use isostudy_field::{NOISE_SLOPE, noise, noise_range};
 
 /// Values farther from the surface than this are cut off, in units: an edit changes the field near by and nowhere else.
 const DEEPEST: f32 = 4.0;

@@ -11,8 +11,10 @@ mod ground;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use extract::{Arrangement, Chunk, ChunkExtractor, ChunkSettings, Control, Grid, Method, Tetrahedra};
 use ground::{Ground, Hole};
+use isostudy_extract::{
+    Arrangement, Chunk, ChunkExtractor, ChunkSettings, Control, Grid, Method, Tetrahedra,
+};
 
 /// Cells along a side of a chunk.
 const CHUNK: u32 = 32;

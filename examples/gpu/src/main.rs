@@ -3,11 +3,11 @@
 //!
 //! `cargo run --release -p isostudy-gpu`
 
-use extract::{
+use glam::Vec3;
+use isostudy_extract::{
     Aabb, Arrangement, Bound, Chunk, ChunkExtractor, ChunkSettings, Control, Grid, Method, ScalarField,
     Tetrahedra,
 };
-use glam::Vec3;
 use wgpu_types::{BufferUsages, IndexFormat, VertexAttribute, VertexFormat, VertexStepMode};
 
 /// A ball, in `glam` 0.30: the extractor has another one inside, and nobody notices.

@@ -3,7 +3,7 @@
 use crate::{Extract, Extraction};
 use fast_surface_nets::ndshape::RuntimeShape;
 use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
-use mesh::TriangleMesh;
+use isostudy_mesh::TriangleMesh;
 use std::time::Instant;
 
 pub(crate) fn extractor() -> Extract {

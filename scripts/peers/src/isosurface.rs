@@ -3,7 +3,7 @@
 use crate::{Extract, Extraction};
 use isosurface::marching_cubes::MarchingCubes;
 use isosurface::source::Source;
-use mesh::TriangleMesh;
+use isostudy_mesh::TriangleMesh;
 use std::time::Instant;
 
 /// Looks samples up in a cube of edge 1. Inside is negative there.

@@ -6,7 +6,7 @@ mod isosurface;
 mod request;
 mod transvoxel;
 
-use mesh::{TriangleMesh, write_ply};
+use isostudy_mesh::{TriangleMesh, write_ply};
 use request::Request;
 use serde_json::{Value, json};
 use std::error::Error;

@@ -1,6 +1,6 @@
 //! A request's line, its samples, and where they lie.
 
-use mesh::glam::Vec3;
+use isostudy_mesh::glam::Vec3;
 use serde::Deserialize;
 use std::path::PathBuf;
 

@@ -1,7 +1,7 @@
 //! transvoxel: Lengyel's marching cubes, without transitions.
 
 use crate::{Extract, Extraction};
-use mesh::TriangleMesh;
+use isostudy_mesh::TriangleMesh;
 use std::time::Instant;
 use transvoxel::prelude::{Block, BlockStarView, GenericMeshBuilder, extract};
 use transvoxel::structs::voxel_index::VoxelIndex;

@@ -5,12 +5,12 @@
 
 use std::process::ExitCode;
 
-use extract::{
+use glam::Vec3;
+use isostudy_extract::{
     Arrangement, BoxGrid, ChunkExtractor, ChunkSettings, Clustering, Control, Method, Tetrahedra, weld_chunks,
 };
-use field::Sphere;
-use glam::Vec3;
-use mesh::Bounds;
+use isostudy_field::Sphere;
+use isostudy_mesh::Bounds;
 
 fn main() -> ExitCode {
     for (arrangement, clustering) in [

@@ -8,8 +8,8 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
-use mesh::TriangleMesh;
-use mesh::quality::TriangleQuality;
+use isostudy_mesh::TriangleMesh;
+use isostudy_mesh::quality::TriangleQuality;
 use parry3d::math::Vector;
 use parry3d::shape::{TriMesh, TriMeshFlags};
 
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut meshes = Vec::new();
     for file in files {
         let name = Path::new(file).file_stem().ok_or("a file without a name")?.to_string_lossy().into_owned();
-        meshes.push((name, mesh::read_ply(File::open(file)?)?));
+        meshes.push((name, isostudy_mesh::read_ply(File::open(file)?)?));
     }
     let mut times = vec![[const { Vec::new() }; WAYS.len()]; meshes.len()];
     // The first round makes room and does not count.

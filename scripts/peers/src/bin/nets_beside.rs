@@ -6,12 +6,12 @@ use std::error::Error;
 use std::hint::black_box;
 use std::time::Instant;
 
-use extract::{BoxGrid, Execution, Extraction, Extractor, Method, Source, presets};
+use isostudy_extract::{BoxGrid, Execution, Extraction, Extractor, Method, Source, presets};
 use fast_surface_nets::ndshape::RuntimeShape;
 use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
-use field::{Gyroid, Sphere, StudyField};
-use mesh::Bounds;
-use mesh::glam::Vec3;
+use isostudy_field::{Gyroid, Sphere, StudyField};
+use isostudy_mesh::Bounds;
+use isostudy_mesh::glam::Vec3;
 
 const ROUNDS: usize = 31;
 

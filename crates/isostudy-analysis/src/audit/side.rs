@@ -1,0 +1,95 @@
+//! Is one side chosen whatever it shows?
+
+use super::stimuli::{Stimuli, for_lower};
+use super::{ALARM, Audited, Probe, Report};
+use isostudy_statistics::ScoreTest;
+use isostudy_table::digits::counted;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// From pairs seen in both orders of sides: each participant's mean pull to the left, what the items themselves are worth
+/// taken off, against zero as t. From controls: the exact sign-flip test of left against right. If there are both, the
+/// smaller p, doubled. Questions with a suspect key are left out.
+pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSet<usize>) -> Report {
+    if !audited.sides_recorded {
+        return Report::not_answerable(Probe::Side, super::NO_SIDES);
+    }
+    let controls = audited.ballots.iter().filter(|b| b.left() == b.right());
+    let controls = ScoreTest::of(controls.map(|b| (b.participant(), b.outcome().sign())));
+    let of_pairs = pull(audited, stimuli, suspects);
+    let mut evidence = Vec::new();
+    let mut p = Vec::new();
+    if let Some((pairs, mean, of)) = of_pairs {
+        let towards = if mean >= 0.0 { "left" } else { "right" };
+        evidence.push(format!(
+            "{} seen in both orders {} {:.3} to the {towards}",
+            counted(pairs, "pair"),
+            if pairs == 1 { "pulls" } else { "pull" },
+            mean.abs()
+        ));
+        p.push(of);
+    }
+    if let (Some([left, none, right]), false) = (controls.counts, controls.participants() == 0) {
+        evidence.push(format!("controls: {left} left, {none} none, {right} right"));
+        // Fewer people could not show anything, whatever they chose.
+        if 2.0_f64.powi(1 - controls.participants() as i32) < ALARM {
+            p.push(controls.sign_flip.p());
+        }
+    }
+    match p.len() {
+        0 if !evidence.is_empty() => Report::not_answerable(
+            Probe::Side,
+            &format!(
+                "too few people answered controls, and no pair was seen in both orders ({})",
+                evidence.join("; ")
+            ),
+        ),
+        0 => Report::not_answerable(
+            Probe::Side,
+            "no pair was seen in both orders of sides and there are no controls: side goes with what was shown on it",
+        ),
+        n => {
+            let least = p.iter().copied().fold(1.0, f64::min);
+            Report::tested(Probe::Side, (n as f64 * least).min(1.0), evidence.join("; "))
+        }
+    }
+}
+
+/// Number of pairs, mean pull to the left in -1..=1 and its p; `None` if no pair or fewer than four people can tell.
+///
+/// A participant's score is the mean, over the answers, of (x - the stimulus's mean over both orders), counted for the
+/// left side. Two orders were fitted, hence m - 2 degrees of freedom.
+fn pull(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSet<usize>) -> Option<(usize, f64, f64)> {
+    let middles: BTreeMap<usize, f64> = stimuli
+        .in_both_orders()
+        .map(|(place, s)| (place, 0.5 * (s.orders[0].mean() + s.orders[1].mean())))
+        .collect();
+    let mut sums: Vec<(f64, f64)> = Vec::new();
+    for ballot in audited.ballots.iter().filter(|b| !suspects.contains(&b.question())) {
+        let place = stimuli.place(ballot, audited.scenes);
+        let Some(middle) = place.and_then(|place| middles.get(&place)) else { continue };
+        if ballot.participant() >= sums.len() {
+            sums.resize(ballot.participant() + 1, (0.0, 0.0));
+        }
+        let towards = if ballot.left() < ballot.right() { 1.0 } else { -1.0 };
+        let (sum, n) = &mut sums[ballot.participant()];
+        *sum += towards * (for_lower(ballot) as f64 - middle);
+        *n += 1.0;
+    }
+    let scores: Vec<f64> = sums.into_iter().filter(|&(_, n)| n > 0.0).map(|(sum, n)| sum / n).collect();
+    if scores.len() < 4 {
+        return None;
+    }
+    let m = scores.len() as f64;
+    let mean = scores.iter().sum::<f64>() / m;
+    let variance = scores.iter().map(|s| (s - mean) * (s - mean)).sum::<f64>() / (m - 2.0);
+    let t = mean.abs() / (variance / m).sqrt();
+    let p = match t.is_nan() {
+        true => 1.0,
+        false => 2.0 * StudentsT::new(0.0, 1.0, m - 2.0).expect("m - 2 > 0").sf(t),
+    };
+    // People who do not differ tell no spread, and t is beyond all bounds: no p is below that of the exact sign-flip test of so many
+    // who all lean one way.
+    let p = p.max(2.0_f64.powi(1 - m as i32));
+    Some((middles.len(), mean, p))
+}

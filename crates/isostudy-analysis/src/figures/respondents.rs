@@ -1,0 +1,84 @@
+//! How far each respondent agrees with the others.
+
+use super::axis::Axis;
+use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
+use super::forest::{self, Block, Row};
+use super::legend::Swatch;
+use super::marks::Mark;
+use super::style::{Fill, LEFT};
+use super::{Unfinished, WIDTH, canvas_with_legend};
+use isostudy_statistics::{Screening, ShownBallot, screening};
+
+/// Up to so many people have a row of their own; more are counted in steps of a twentieth.
+const ROWS: usize = 60;
+const STEPS: usize = 20;
+const NAME: &str = "respondents";
+
+pub(super) fn draft(ballots: &[ShownBallot]) -> Option<Unfinished> {
+    let mut screened = screening(ballots);
+    screened.retain(|s| s.comparable > 0);
+    if screened.is_empty() {
+        return None;
+    }
+    Some(if screened.len() <= ROWS { one_by_one(screened) } else { counted(&screened) })
+}
+
+const SAYS: &str = "share of a respondent's decided answers that side with the majority of the others, where they have one; half \
+                    is what answering by chance gives.";
+
+fn one_by_one(mut screened: Vec<Screening>) -> Unfinished {
+    screened.sort_by(|a, b| {
+        let share = |s: &Screening| s.agreement().unwrap_or_default();
+        share(b).total_cmp(&share(a)).then(a.participant.cmp(&b.participant))
+    });
+    let row = |s: &Screening| {
+        let [left, none, right] = s.answers;
+        let share = s.agreement();
+        Row {
+            label: format!("respondent {}", s.participant + 1),
+            value: share,
+            interval: None,
+            mark: Mark::nth(0, share.is_some_and(|share| share >= 0.5)),
+            remark: format!("{} of {}; left {left}, none {none}, right {right}", s.agreeing, s.comparable),
+        }
+    };
+    let rows: Vec<Row> = screened.iter().map(row).collect();
+    let blocks = [Block { heading: String::new(), rows }];
+    let legend = [
+        (Swatch::Mark(Mark::nth(0, true)), "with the others half the time or more".to_owned()),
+        (Swatch::Mark(Mark::nth(0, false)), "less than half".to_owned()),
+    ];
+    let (mut canvas, top) = canvas_with_legend(&legend, forest::height(&blocks));
+    forest::draw(&mut canvas, &blocks, &Axis::up_to(1.0), "agreement with the others", 0.5, top);
+    Unfinished { name: NAME, caption: format!("Agreement between respondents: {SAYS}"), canvas }
+}
+
+fn counted(screened: &[Screening]) -> Unfinished {
+    let mut counts = [0_u64; STEPS];
+    for share in screened.iter().filter_map(Screening::agreement) {
+        counts[((share * STEPS as f64) as usize).min(STEPS - 1)] += 1;
+    }
+    let slot = |(i, &count): (usize, &u64)| Slot {
+        label: format!("{:.2}", i as f64 / STEPS as f64),
+        bars: vec![Bar::of(Some(count as f64), Fill::plain(LEFT), None)],
+    };
+    let clusters = vec![Cluster {
+        label: "agreement with the others, from".into(),
+        slots: counts.iter().enumerate().map(slot).collect(),
+    }];
+    let panel = BarPanel {
+        heading: String::new(),
+        axis_label: "respondents".into(),
+        axis: Axis::from_zero(largest(&clusters)),
+        clusters,
+        broken: false,
+        cap: None,
+    };
+    let (mut canvas, top) = canvas_with_legend(&[], 340.0);
+    panel.draw(&mut canvas, (0.0, top), (WIDTH, top + 340.0));
+    Unfinished {
+        name: NAME,
+        caption: format!("Agreement between {} respondents: {SAYS}", screened.len()),
+        canvas,
+    }
+}

@@ -1,0 +1,179 @@
+//! Colours and fills: told apart by lightness as well as by hue (after Okabe and Ito 2008).
+//!
+//! Hue and lightness tell the level of the last factor, or the method of a study without factors; full, tinted or striped tells the
+//! level of the factor before. Stripes also tell the second stage or half of a bar.
+
+use super::canvas::{BLACK, Canvas, Colour, WHITE};
+use super::marks::{Filling, Mark};
+use isostudy_design::{MethodId, Study};
+use plotters::style::RGBColor;
+
+/// How an area is filled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Fill {
+    pub(super) colour: Colour,
+    pub(super) outline: Colour,
+    pub(super) stripes: bool,
+}
+
+/// What is hoped for, under what was measured.
+pub(super) const IDEAL: Colour = RGBColor(0x99, 0x99, 0x99);
+pub(super) const GRID: Colour = RGBColor(0xdd, 0xdd, 0xdd);
+pub(super) const LEFT: Colour = RGBColor(0x00, 0x72, 0xb2);
+pub(super) const NONE: Colour = RGBColor(0xdc, 0xdc, 0xdc);
+pub(super) const RIGHT: Colour = RGBColor(0xe6, 0x9f, 0x00);
+
+/// With more methods than this, their names would take more room than what is drawn.
+const MOST_NAMED: usize = 8;
+
+/// Whether figures name methods by their codes.
+pub(super) fn has_codes(study: &Study) -> bool {
+    study.methods.len() > MOST_NAMED
+}
+
+/// What stands under a method's bar or box: its name, or its code where there are many.
+pub(super) fn name(study: &Study, method: MethodId) -> String {
+    if has_codes(study) { method.to_string() } else { study.method(method).label.clone() }
+}
+
+impl Fill {
+    pub(super) fn plain(colour: Colour) -> Self {
+        Self { colour, outline: colour, stripes: false }
+    }
+
+    pub(super) fn striped(self) -> Self {
+        Self { stripes: true, ..self }
+    }
+
+    /// Black or white, whichever stands out.
+    pub(super) fn ink(self) -> Colour {
+        ink_on(self.colour)
+    }
+
+    /// Fills a rectangle; nothing if it is empty.
+    pub(super) fn paint(self, canvas: &mut Canvas, from: (f64, f64), to: (f64, f64)) {
+        let (x0, x1) = (from.0.min(to.0), from.0.max(to.0));
+        let (y0, y1) = (from.1.min(to.1), from.1.max(to.1));
+        if y1 - y0 < 0.25 || x1 - x0 < 0.25 {
+            return;
+        }
+        // An outline that is a line reaches half a pixel beyond the area, on one side: stacked areas would not be flush.
+        canvas.rectangle((x0, y0), (x1, y1), self.outline);
+        if self.colour == self.outline && !self.stripes {
+            return;
+        }
+        let (inner, outer) = ((x0 + 1.0, y0 + 1.0), (x1 - 1.0, y1 - 1.0));
+        if outer.0 <= inner.0 || outer.1 <= inner.1 {
+            return;
+        }
+        canvas.rectangle(inner, outer, self.colour);
+        if self.stripes {
+            stripes(canvas, inner, outer, self.ink());
+        }
+    }
+}
+
+/// Rising diagonal stripes, cut to the rectangle.
+fn stripes(canvas: &mut Canvas, from: (f64, f64), to: (f64, f64), colour: Colour) {
+    const STEP: f64 = 5.0;
+    let ((x0, y0), (x1, y1)) = (from, to);
+    // Lines x + y = c.
+    let mut c = ((x0 + y0) / STEP).ceil() * STEP;
+    while c < x1 + y1 {
+        let start = (c - y1).max(x0);
+        let end = (c - y0).min(x1);
+        if end - start > 0.5 {
+            canvas.line(vec![(start, c - start), (end, c - end)], colour, 0.5);
+        }
+        c += STEP;
+    }
+}
+
+/// Black or white, whichever stands out from a colour.
+pub(super) fn ink_on(colour: Colour) -> Colour {
+    let RGBColor(r, g, b) = colour;
+    let lightness = 0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b);
+    if lightness < 128.0 { WHITE } else { BLACK }
+}
+
+/// Hues of levels, by place: grey, orange, blue, green, purple, sky blue. As many as marks have shapes.
+const HUES: [Colour; 6] = [
+    RGBColor(0x4d, 0x4d, 0x4d),
+    RGBColor(0xe6, 0x9f, 0x00),
+    RGBColor(0x00, 0x72, 0xb2),
+    RGBColor(0x00, 0x9e, 0x73),
+    RGBColor(0xcc, 0x79, 0xa7),
+    RGBColor(0x56, 0xb4, 0xe9),
+];
+
+/// How many ways of filling there are.
+const FILLINGS: usize = 4;
+
+/// Whether two factors tell all methods apart, in hues and fillings enough.
+fn tells_methods(study: &Study) -> bool {
+    let all: Vec<&Vec<Option<usize>>> = study.methods.iter().map(|method| &method.levels).collect();
+    let fits = |levels: &[Option<usize>], most: [usize; 2]| {
+        levels.iter().zip(most).all(|(level, most)| level.is_some_and(|level| level < most))
+    };
+    let distinct = |i: usize| !all[..i].contains(&all[i]);
+    (0..all.len()).all(|i| fits(all[i], [FILLINGS, HUES.len()]) && distinct(i))
+}
+
+/// The colour of an object's marks: dark enough for white paper, and apart in lightness.
+pub(super) fn object_colour(object: usize) -> Colour {
+    const COLOURS: [Colour; 5] = [
+        RGBColor(0x00, 0x5b, 0x8f),
+        RGBColor(0xb8, 0x55, 0x00),
+        RGBColor(0x22, 0x22, 0x22),
+        RGBColor(0x00, 0x7a, 0x5a),
+        RGBColor(0x9b, 0x3f, 0x78),
+    ];
+    COLOURS[object % COLOURS.len()]
+}
+
+/// Which hue and which filling a method has, by place. No two of up to 24 methods of a study have both in common.
+pub(super) fn hue_and_filling(study: &Study, method: MethodId) -> [usize; 2] {
+    let level = |factor| study.level_of(method, factor).map(|level| level.index);
+    let crossed = match study.declared_factors().collect::<Vec<_>>()[..] {
+        [outer, inner] if tells_methods(study) => level(outer).zip(level(inner)),
+        _ => None,
+    };
+    let place = study.place(method);
+    let (filling, hue) = crossed.unwrap_or((place / HUES.len(), place));
+    [hue % HUES.len(), filling % FILLINGS]
+}
+
+/// The mark of a method: a shape for each hue of [`method`], a filling for each of its fillings.
+pub(super) fn mark(study: &Study, method: MethodId) -> Mark {
+    let [hue, filling] = hue_and_filling(study, method);
+    Mark::of(hue, [Filling::Full, Filling::Hollow, Filling::Dotted, Filling::Holed][filling])
+}
+
+/// The fill of a method.
+pub(super) fn method(study: &Study, method: MethodId) -> Fill {
+    let [hue, filling] = hue_and_filling(study, method);
+    let colour = HUES[hue];
+    match filling {
+        0 => Fill::plain(colour),
+        1 => Fill { colour: tint(colour), outline: colour, stripes: false },
+        2 => Fill { colour: tint(colour), outline: colour, stripes: true },
+        _ => Fill::plain(colour).striped(),
+    }
+}
+
+/// The fills of the five stages, in their order.
+pub(super) fn stages() -> [(&'static str, Fill); 5] {
+    [
+        ("allocation", Fill::plain(RGBColor(0x33, 0x33, 0x33))),
+        ("sampling", Fill::plain(RGBColor(0x56, 0xb4, 0xe9))),
+        ("vertex", Fill::plain(RGBColor(0xe6, 0x9f, 0x00))),
+        ("geometry", Fill::plain(RGBColor(0x00, 0x72, 0xb2)).striped()),
+        ("normals", Fill::plain(RGBColor(0xcc, 0x79, 0xa7))),
+    ]
+}
+
+fn tint(colour: Colour) -> Colour {
+    let RGBColor(r, g, b) = colour;
+    let lighter = |c: u8| (f64::from(c) * 0.38 + 255.0 * 0.62).round() as u8;
+    RGBColor(lighter(r), lighter(g), lighter(b))
+}

@@ -1,0 +1,506 @@
+use super::*;
+use crate::fixture::{self, Everything};
+use isostudy_responses::{Answer, Choice, Question, Responses};
+use isostudy_statistics::Outcome::{self, Left, Right, Tie};
+
+/// What the paper's study says if people answered like this; the argument is participant and question.
+fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'static str, Vec<Finding>)> {
+    let study = fixture::study();
+    let mut answers = fixture::answers(&study);
+    answers.answers.retain(|answer| (answer.participant as usize) < people);
+    for of in &mut answers.answers {
+        of.choice = choice(answer(of.participant as usize, of.question as usize));
+    }
+    let answered = Answered::of(&study, answers).unwrap();
+    let evidence = Evidence::of_study(&study, Some(&answered));
+    let mut builder = Builder::new(&[], &[]);
+    builder.preferences(&evidence, Vec::new());
+    builder.reliance(&evidence);
+    let report = builder.finish("A test".into(), &evidence, None, None);
+    let findings = |s: &Section| {
+        let of =
+            s.blocks.iter().filter_map(|b| if let Block::Finding(f) = b { Some(f.clone()) } else { None });
+        (s.id, of.collect())
+    };
+    report.sections.iter().map(findings).collect()
+}
+
+fn groups(answers: &[(usize, usize, usize, Outcome)]) -> Vec<BallotGroup> {
+    let ballot = |&(participant, left, right, outcome)| {
+        ShownBallot::new(participant, left + right - 1, [left, right], outcome)
+    };
+    let items = ["oak", "elm", "ash"].map(String::from).into();
+    vec![BallotGroup {
+        name: "trees".into(),
+        items,
+        ballots: answers.iter().map(ballot).collect(),
+        objects: Vec::new(),
+    }]
+}
+
+fn choice(outcome: Outcome) -> Choice {
+    match outcome {
+        Left => Choice::Left,
+        Tie => Choice::NoPreference,
+        Right => Choice::Right,
+    }
+}
+
+/// The report of these groups' answers, which are about one object.
+fn report_of(title: &str, groups: &[BallotGroup], tables: &[Table]) -> Report {
+    let mut answers = Responses { sides_recorded: true, ..Responses::default() };
+    for group in groups {
+        answers.items.extend(group.items.iter().cloned());
+        for ballot in &group.ballots {
+            let sides = [ballot.left() as u32, ballot.right() as u32];
+            while answers.questions.len() <= ballot.question() {
+                let id = format!("Q{}", answers.questions.len() + 1);
+                answers.questions.push(Question::new(&id, "garden", &group.name, sides));
+            }
+            let (person, question) = (ballot.participant() as u32, ballot.question() as u32);
+            answers.answers.push(Answer::new(person, question, sides, choice(ballot.outcome())));
+        }
+    }
+    report_of_groups(title, &answers, groups, tables, &[])
+}
+
+fn texts(report: &Report, id: &str) -> Vec<String> {
+    let section = report.sections.iter().find(|s| s.id == id);
+    let text = |b: &Block| if let Block::Finding(f) = b { Some(f.text.clone()) } else { None };
+    section.map(|s| s.blocks.iter().filter_map(text).collect()).unwrap_or_default()
+}
+
+fn of<'a>(said: &'a [(&str, Vec<Finding>)], id: &str, start: &str) -> &'a Finding {
+    let section = said.iter().find(|(name, _)| *name == id).unwrap_or_else(|| panic!("no section {id}"));
+    let found: Vec<&Finding> = section.1.iter().filter(|f| f.text.starts_with(start)).collect();
+    assert_eq!(found.len(), 1, "{start}: {:#?}", section.1);
+    found[0]
+}
+
+#[test]
+fn the_papers_answers() {
+    let all = Everything::of(fixture::study());
+    let tables = crate::tables(&all.inputs());
+    let figures = crate::figures(&all.inputs()).unwrap();
+    let report = report(&all.inputs(), &tables, &figures);
+    let ids: Vec<&str> = report.sections.iter().map(|s| s.id).collect();
+    let want = [
+        "decision",
+        "contrasts",
+        "holds",
+        "depends",
+        "fails",
+        "open",
+        "worths",
+        "benchmark",
+        "published",
+        "factors",
+        "prediction",
+        "unanswerable",
+        "declared",
+        "bearing",
+        "checks",
+        "tables",
+        "machine",
+        "appendix",
+    ];
+    assert_eq!(ids, want);
+    assert_eq!(
+        report.lead[0],
+        "18 participants gave 486 answers to 27 questions about 3 objects (sphere, asteroid and bunny)."
+    );
+    // The numbers are those of docs/statistics.md.
+    let holds = texts(&report, "holds");
+    assert!(holds.contains(
+        &"Integrated clustering was preferred to edge collapse: 67 answers against 18, 23 without preference. Mean score 0.45 \
+          (95 % t interval 0.30 to 0.61, 18 participants); exact sign-flip test, p < 0.001, p < 0.001 after Holm's \
+          correction for 4 tests. A liking for the right side of 0.86 log-odds, which takes 70 % of decided answers between \
+          equals, would undo it. It depends on the object (Friedman's test over objects, p = 0.0064 after Holm's correction)."
+            .into()
+    ), "{holds:#?}");
+    assert!(holds.contains(
+        &"The body-centred lattice was preferred to the simple cubic lattice: 84 answers against 56, 22 without preference. \
+          Mean score 0.17 (95 % t interval 0.06 to 0.29, 18 participants); exact sign-flip test, p = 0.0094, p = 0.0094 after \
+          Holm's correction for 4 tests. With one correction over all tests it does not hold (p = 0.22). A liking for the left side \
+          of 0.11 log-odds, which takes 53 % of decided answers between equals, would undo it. It depends on the object \
+          (Friedman's test over objects, p < 0.001 after Holm's correction). Without the sphere it is not shown: mean score \
+          \u{2212}0.10 (95 % t interval \u{2212}0.28 to 0.08, 18 participants); p = 0.30."
+            .into()
+    ), "{holds:#?}");
+    let open = texts(&report, "open");
+    assert!(open.contains(
+        &"Edge collapse and integrated clustering on the body-centred lattice cannot be told apart here: 15 answers against 22, \
+          17 without preference. Mean score \u{2212}0.13 (95 % t interval \u{2212}0.34 to 0.08, 18 participants); exact sign-flip \
+          test, p = 0.27, p = 0.82 after Holm's correction for 9 tests. Not significant is not equal: a mean score of up to 0.08 \
+          for the one or 0.34 for the other remains possible. The preference depends on the object (Friedman's test over objects, \
+          p = 0.0064 after Holm's correction)."
+            .into()
+    ), "{open:#?}");
+    let depends = texts(&report, "depends");
+    let differs = "How much the body-centred lattice is preferred to the simple cubic lattice differs. On the sphere: 44 answers \
+                   against 5, 5 without preference, mean score 0.72. On the asteroid: 18 answers against 27, 9 without preference, mean score \
+                   \u{2212}0.17. The difference holds: exact sign-flip test, ";
+    assert!(depends.iter().any(|text| text.starts_with(differs)), "{depends:#?}");
+    let factors = texts(&report, "factors");
+    assert!(
+        factors[1].ends_with(
+            "143/162 on the body-centred lattice (19 ties) and 154/162 on the simple cubic lattice (8 ties)."
+        ),
+        "{factors:#?}"
+    );
+    assert!(factors[2].contains("Of the difference of 0.150, \u{2212}0.023 comes from ties"), "{factors:#?}");
+    assert!(
+        factors[3].ends_with("the largest sum goes to bi on the sphere and si on the asteroid and bunny."),
+        "{factors:#?}"
+    );
+    let side = &texts(&report, "unanswerable")[0];
+    assert!(
+        side.contains("No clustering and the body-centred lattice always stood on the left")
+            && side.contains("144 answers went left, 293 right and 49 to neither"),
+        "{side}"
+    );
+    let bearing = texts(&report, "bearing").join("\n");
+    assert!(bearing.contains("Participant 16 (10 of 27, 37 %) answers against the majority of the others more often than with it; everybody else sides with it in 64 to 95 %."), "{bearing}");
+    assert!(
+        bearing.contains("of 108 triads of three items, 82 were decided throughout, and 5 go in a circle"),
+        "{bearing}"
+    );
+    let checks = texts(&report, "checks");
+    assert!(
+        checks[0].starts_with("1 of 18 participants broke a rule of screening (1 by answering against the others). Nobody is left out")
+            && checks[0]
+                .contains("Judged: agreement. Not judged, because the answers do not tell: one-sidedness, controls, repeats and times."),
+        "{checks:#?}"
+    );
+    assert!(
+        checks[1].starts_with(
+            "Participant 16 broke a rule by answering against the others: without them, 2 of 43 tests come"
+        ),
+        "{checks:#?}"
+    );
+    assert!(checks.iter().any(|text| text
+        == "Does anybody answer against the others? Found: respondent 16 agrees with the others' majority on 37 %; everybody \
+            else on 64 to 95 % (p = 0.0067)."), "{checks:#?}");
+    // Every table and figure is printed once.
+    let mut printed = 0;
+    for block in report.sections.iter().flat_map(|s| &s.blocks) {
+        printed += usize::from(matches!(block, Block::Table(_) | Block::Folded(_) | Block::Figure(_)));
+    }
+    printed += usize::from(report.methods.is_some());
+    assert_eq!(printed, tables.len() + figures.len());
+    // What stands before everything else.
+    let labels: Vec<&str> = report.summary.iter().map(|line| line.label).collect();
+    assert_eq!(labels, ["Compared", "By whom", "Found", "How sure", "Limits", "Next"]);
+    let line = |label: &str| &report.summary.iter().find(|line| line.label == label).unwrap().text;
+    assert!(line("Found").starts_with("People preferred integrated clustering over no clustering (86 %), "));
+    assert!(line("Found").contains("Simple cubic, integrated was chosen most: in 73 % of its showings."));
+    assert!(line("How sure").starts_with("21 of 43 contrasts hold at the level of 0.05"));
+    assert!(line("Limits").starts_with("No pair was shown with its sides exchanged"));
+    assert!(report.limits.iter().any(|limit| limit.starts_with("Display: the source files do not say")));
+}
+
+#[test]
+fn a_planted_effect_holds_whoever_stands_left() {
+    // Everybody takes the body-centred lattice, which stands on the left, and nobody decides on clusterings.
+    let said = said(18, |_, question| if question % 9 >= 6 { Left } else { Tie });
+    let found = of(&said, "holds", "The body-centred lattice was preferred to the simple cubic lattice:");
+    assert_eq!(found.standing, Standing::Holds);
+    assert_eq!(
+        found.text,
+        "The body-centred lattice was preferred to the simple cubic lattice: 162 answers against 0, none without preference. \
+         Mean score 1.00 (95 % interval 0.63 to 1.00, 18 participants); exact sign-flip test, p < 0.001, p < 0.001 \
+         after Holm's correction for 4 tests. How large a liking for a side would undo it cannot be said: no answer went \
+         the other way."
+    );
+    let found = of(&said, "open", "9 of 13 comparisons");
+    assert_eq!(found.standing, Standing::Open);
+    assert_eq!(
+        found.text,
+        "9 of 13 comparisons are not decided: no clustering against integrated clustering, no clustering against edge \
+         collapse, edge collapse against integrated clustering and 6 more. Nobody leans one way or the other on any of them. \
+         The table of tests has their counts."
+    );
+}
+
+#[test]
+fn nobody_leaning_is_said_so() {
+    let said = said(18, |_, _| Tie);
+    assert!(said.iter().all(|(id, _)| *id != "holds"), "{said:#?}");
+    of(&said, "open", "13 of 13 comparisons are not decided: ");
+    let answers: Vec<_> = (0..18).map(|person| (person, 0, 1, Tie)).collect();
+    let report = report_of("Trees", &groups(&answers), &[]);
+    assert_eq!(
+        texts(&report, "open"),
+        [
+            "oak against elm: nobody leans either way (0 answers against 0, 18 without preference), so no test has anything to \
+          work on."
+        ]
+    );
+}
+
+#[test]
+fn no_effect_is_open_and_says_what_remains_possible() {
+    // Nine people always left, nine always right: no net, and wide intervals.
+    let said = said(18, |participant, _| if participant % 2 == 0 { Left } else { Right });
+    let found = of(&said, "open", "The body-centred lattice and the simple cubic lattice cannot");
+    assert_eq!(
+        found.text,
+        "The body-centred lattice and the simple cubic lattice cannot be told apart here: 81 answers against 81, none without \
+         preference. Mean score 0.00 (95 % t interval \u{2212}0.51 to 0.51, 18 participants); exact sign-flip test, p = 1, p = 1 \
+         after Holm's correction for 4 tests. Not significant is not equal: a mean score of up to 0.51 for the one or 0.51 for \
+         the other remains possible."
+    );
+}
+
+#[test]
+fn small_differences_are_equal_within_the_margin() {
+    // Everybody splits each contrast as evenly as nine questions allow: +1 for half the people, -1 for the other half.
+    let said = said(18, |p, q| if (q + q / 9 + p) % 2 == 0 { Left } else { Right });
+    let found = of(&said, "holds", "The body-centred lattice and the simple cubic lattice are liked alike");
+    assert_eq!(found.standing, Standing::Equal);
+    assert!(found.text.contains("within the margin of 0.2: 81 answers against 81"), "{}", found.text);
+}
+
+#[test]
+fn equal_counts_stand_in_the_order_of_the_names() {
+    // Elm, the second, is ahead by a little: of forty answers, twelve people give 18 for oak, eight 22.
+    let one = |p: usize| {
+        (0..40).map(move |q| (p, 0, 1, if q < if p < 12 { 18 } else { 22 } { Left } else { Right }))
+    };
+    let report = report_of("Trees", &groups(&(0..20).flat_map(one).collect::<Vec<_>>()), &[]);
+    let text = &texts(&report, "holds")[0];
+    assert!(
+        text.contains(
+            "liked alike, within the margin of 0.2: 392 answers against 408, none without preference."
+        ) && text.contains("Mean score \u{2212}0.02 (95 % t interval \u{2212}0.07 to 0.03, 20 participants)"),
+        "{text}"
+    );
+}
+
+#[test]
+fn too_few_people_are_told_what_they_could_have_shown() {
+    let said = said(3, |_, _| Left);
+    let found = of(&said, "open", "13 of 13 comparisons are not decided: ");
+    assert_eq!(found.standing, Standing::TooFew);
+    assert!(
+        found.text.ends_with(
+            "edge collapse against integrated clustering and 10 more. At most 3 participants lean one way or the other, and no \
+             outcome of so few is significant (exact sign-flip test; 6 would have to). The table of tests has their counts."
+        ),
+        "{}",
+        found.text
+    );
+    // A few are told one by one.
+    let answers: Vec<_> = (0..3).map(|person| (person, 0, 1, Left)).collect();
+    let report = report_of("Trees", &groups(&answers), &[]);
+    assert_eq!(
+        texts(&report, "open"),
+        [
+            "oak against elm is not decided: 3 answers against 0, none without preference. 3 participants lean one way or the \
+          other, and no outcome of so few is significant (exact sign-flip test, smallest possible p = 0.25)."
+        ]
+    );
+}
+
+#[test]
+fn answers_without_a_study() {
+    // Ten people, oak over elm over ash but for one who never chooses; sides exchanged for half of them.
+    let mut answers = Vec::new();
+    for person in 0..10 {
+        for (a, b) in [(0, 1), (1, 2), (0, 2)] {
+            let chosen = if person == 9 { Tie } else { Left };
+            answers.push(match person % 2 {
+                0 => (person, a, b, chosen),
+                _ => (person, b, a, chosen.swapped()),
+            });
+        }
+    }
+    let report = report_of("Trees", &groups(&answers), &[]);
+    assert_eq!(report.lead[0], "10 participants gave 30 answers to 3 questions.");
+    assert_eq!(
+        texts(&report, "holds")[0],
+        "oak was preferred to elm: 9 answers against 0, 1 without preference. Mean score 0.90 (95 % t interval 0.67 to 1.00, 10 \
+         participants); exact sign-flip test, p = 0.0039, p = 0.012 after Holm's correction for 3 tests."
+    );
+    // Pairs in both orders: the side can be asked about; but the answers separate the items, so nothing is estimated.
+    let side = texts(&report, "unanswerable");
+    assert_eq!(side, ["Over all questions 15 answers went left, 12 right and 3 to neither."]);
+    assert!(report.to_markdown().starts_with("# Trees\n\n- **Compared:** 3 items: ash, elm and oak.\n"));
+    let titled = report_of("<b> [x](y) *\n# z", &groups(&answers), &[]);
+    assert!(
+        titled.to_markdown().starts_with("# &lt;b> \\[x\\](y) \\* # z\n\n- **Compared:**"),
+        "a title is no mark-up"
+    );
+}
+
+#[test]
+fn names_of_items_stay_as_they_are() {
+    // Two items that differ in their first letter's case alone.
+    let answers: Vec<_> = (0..8).map(|person| (person, 0, 1, Left)).collect();
+    let mut groups = groups(&answers);
+    groups[0].items = ["\u{e9}clair", "\u{c9}clair"].map(String::from).into();
+    let report = report_of("Cakes", &groups, &[]);
+    let text = &texts(&report, "holds")[0];
+    assert!(text.starts_with("\u{e9}clair was preferred to \u{c9}clair: 8 answers against 0"), "{text}");
+}
+
+#[test]
+fn no_answers_at_all() {
+    let report = report_of("Nothing", &[], &[]);
+    assert_eq!(report.lead, ["No answers were given, so nothing is said about preference."]);
+    assert!(report.sections.is_empty());
+    let control = |participant| ShownBallot::new(participant, 0, [0, 0], Left);
+    let protocol = isostudy_statistics::Protocol::default();
+    let respondents = crate::tables::agreement::respondents(&[control(0), control(1)], &protocol, 0);
+    let report = report_of("Controls", &[], &[respondents]);
+    assert_eq!(
+        report.lead,
+        [
+            "Only controls were answered, which show an item beside itself: 2 answers. So nothing is said about preference."
+        ]
+    );
+    let small = fixture::small_study();
+    let inputs =
+        Inputs { study: &small, meshes: &[], bench: None, chunks: &[], answers: None, left_out: &[] };
+    let tables = crate::tables(&inputs);
+    let report = super::report(&inputs, &tables, &[]);
+    assert_eq!(report.sections.iter().map(|s| s.id).collect::<Vec<_>>(), ["tables"]);
+}
+
+/// Forty people, oak over elm on one object and elm over oak on the other.
+fn opposite_on_two_objects() -> Vec<BallotGroup> {
+    let ballot =
+        |person: usize, question: usize, outcome| ShownBallot::new(person, question, [0, 1], outcome);
+    let both = (0..40).flat_map(|person| [ballot(person, 0, Left), ballot(person, 1, Right)]);
+    // Two people are of another mind on one of them, so that scores differ.
+    let ballots = both
+        .map(|b| if b.participant() < 2 && b.question() == 0 { ballot(b.participant(), 0, Tie) } else { b });
+    vec![BallotGroup {
+        name: "trees".into(),
+        items: ["oak", "elm"].map(String::from).into(),
+        ballots: ballots.collect(),
+        objects: ["garden", "street"].map(String::from).into(),
+    }]
+}
+
+#[test]
+fn opposite_preferences_are_not_liked_alike_without_a_study_either() {
+    let groups = opposite_on_two_objects();
+    let report = report_of("Trees", &groups, &[]);
+    // 38 people score 0 and two -1/2: the mean is -0.025.
+    let all =
+        texts(&report, "holds").into_iter().chain(texts(&report, "open")).collect::<Vec<_>>().join("\n");
+    assert!(!all.contains("liked alike,") && all.contains("The preference depends on the object"), "{all}");
+    let depends = texts(&report, "depends");
+    let starts = [
+        "How much oak is preferred to elm differs. On garden: 38 answers against 0, 2 without preference, mean score 0.95. On \
+         street: 0 answers against 40",
+        "oak was preferred to elm on garden",
+        "elm was preferred to oak on street",
+    ];
+    for (text, start) in depends.iter().zip(starts) {
+        assert!(text.starts_with(start), "{depends:#?}");
+    }
+    let table = crate::pair_tests(&groups);
+    let rows: Vec<String> = table.shown_rows().iter().map(|row| row[..3].join(" ")).collect();
+    let want = [
+        "trees oak-elm all",
+        "trees on objects oak-elm garden",
+        "trees on objects oak-elm street",
+        "trees between objects oak-elm garden \u{2212} street",
+    ];
+    assert_eq!(rows.iter().map(|row| row.replace(" - ", " \u{2212} ")).collect::<Vec<_>>(), want);
+}
+
+#[test]
+fn items_that_differ_by_rounding_stand_alike() {
+    // Everybody takes the left, and every pair is shown in both orders: nothing differs.
+    let answers: Vec<_> = (0..12)
+        .flat_map(|person| [(0, 1), (1, 2), (0, 2)].map(|pair| (person, pair)))
+        .flat_map(|(person, (a, b))| [(person, a, b, Left), (person, b, a, Left)])
+        .collect();
+    let report = report_of("Trees", &groups(&answers), &[]);
+    let worths = texts(&report, "worths").join("\n");
+    assert!(worths.contains("All stand alike.") && !worths.contains("highest"), "{worths}");
+}
+
+#[test]
+fn a_liking_for_a_side_is_no_equality() {
+    // Forty people take the left; ten of them are once undecided, so that somebody leans.
+    let mut answers = Vec::new();
+    for person in 0..40 {
+        for (question, (a, b)) in [(0, 1), (1, 0), (0, 1), (1, 0)].into_iter().enumerate() {
+            let chosen = if person % 4 == 0 && question == person / 4 % 4 { Tie } else { Left };
+            answers.push((person, a, b, chosen));
+        }
+    }
+    let groups = groups(&answers);
+    let tables = [a_side_was_found()];
+    let without = texts(&report_of("Trees", &groups, &[]), "holds").join("\n");
+    assert!(without.contains("liked alike, within the margin"), "{without}");
+    let report = report_of("Trees", &groups, &tables);
+    assert!(!texts(&report, "holds").join("\n").contains("liked alike"));
+    let open = texts(&report, "open").join("\n");
+    assert!(
+        open.contains("average out within the margin") && open.contains("People favour a side"),
+        "{open}"
+    );
+}
+
+/// A table of probes in which a side was found.
+fn a_side_was_found() -> Table {
+    let report = crate::audit::Report {
+        probe: crate::audit::Probe::Side,
+        finding: crate::audit::Finding::Found,
+        p: Some(0.001),
+        evidence: "controls: 20 left, 1 none, 2 right".into(),
+    };
+    crate::audit_table(&[report])
+}
+
+#[test]
+fn who_is_left_out_is_left_out_everywhere() {
+    let mut study = fixture::study();
+    study.file.analysis.exclude = vec![isostudy_design::config::Exclusion::Outlying];
+    let answered = Answered::of(&study, fixture::answers(&study)).unwrap();
+    let inputs = Inputs {
+        study: &study,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        answers: Some(&answered),
+        left_out: &[],
+    };
+    let (tables, figures) = (crate::tables(&inputs), crate::figures(&inputs).unwrap());
+    let named = |name: &str| tables.iter().find(|table| table.name == name).unwrap();
+    let columns: Vec<&str> = named("answers").columns.iter().map(|column| column.name.as_str()).collect();
+    assert!(columns.len() == 18 && !columns.contains(&"respondent_16"), "{columns:?}");
+    assert_eq!(named("respondents").rows.len(), 18);
+    let answers = figures.iter().find(|figure| figure.name == "answers").unwrap();
+    assert!(answers.caption.starts_with("Answers of 17 participants"), "{}", answers.caption);
+    let text = report(&inputs, &tables, &figures).to_markdown();
+    for wrong in ["nobody is left out", "Nobody is left out", "is with everybody", "18 participants gave"] {
+        assert!(!text.contains(wrong), "{wrong}");
+    }
+    assert!(text.contains("17 participants gave 459 answers"), "{text}");
+    // A rule that takes everybody.
+    study.file.analysis.exclude = vec![isostudy_design::config::Exclusion::Time];
+    let mut hasty = fixture::answers(&study);
+    hasty.answers.iter_mut().for_each(|answer| answer.rt_ms = Some(10.0));
+    let answered = Answered::of(&study, hasty).unwrap();
+    let inputs = Inputs {
+        study: &study,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        answers: Some(&answered),
+        left_out: &[],
+    };
+    let lead = report(&inputs, &crate::tables(&inputs), &[]).lead;
+    assert_eq!(
+        lead,
+        [
+            "Nothing is said about preference: 18 participants answered, and all broke a rule whose breakers the study leaves out."
+        ]
+    );
+}

@@ -1,0 +1,251 @@
+//! What is extracted of a box of cells.
+
+use std::collections::TryReserveError;
+use std::error::Error;
+use std::fmt;
+
+use glam::Vec3;
+use isostudy_field::Aabb;
+use isostudy_mesh::TriangleMesh;
+
+use super::world::{OfLevels, World};
+use crate::grid::Grid;
+use crate::lattice::CellBox;
+use crate::memory::refill;
+use crate::method::Method;
+use crate::trace::VertexKey;
+
+/// The surface in a box of cells of a larger lattice: a [`ChunkExtractor`](crate::ChunkExtractor) makes it.
+///
+/// A triangle belongs to the cell whose tetrahedron it lies in, and a cell to one chunk. A vertex on the seam is in all
+/// chunks that have a triangle at it, everywhere with the same key, position and normal, to the bit.
+///
+/// The numbers are plain: `bytemuck::cast_slice` makes bytes for a GPU of [`positions`](Self::positions),
+/// [`normals`](Self::normals) and [`triangles`](Self::triangles), and vectors of any library are made from arrays.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chunk {
+    /// The cells whose triangles these are.
+    pub cells: CellBox,
+    /// Where the vertices are, in the field's coordinates.
+    pub positions: Vec<[f32; 3]>,
+    /// Outward, of unit length: those of the whole mesh. As many as positions, or none
+    /// ([`Normals::None`](crate::Normals)).
+    pub normals: Vec<[f32; 3]>,
+    /// Numbers of vertices, counter-clockwise seen from outside, in the order of the whole mesh. Those of
+    /// [seams](crate::LevelExtractor) to other levels come last.
+    pub triangles: Vec<[u32; 3]>,
+    /// The key of each vertex. Ascending, unless edges were collapsed: then vertices are numbered by first use. Vertices that only
+    /// seams have come last.
+    pub keys: Vec<VertexKey>,
+    /// The cell of each triangle by its number in `cells`, x fastest. Ascending, seams aside. See [`cell_of`](Self::cell_of).
+    pub triangle_cells: Vec<u32>,
+    /// The cells whose samples were looked at, those of seams aside.
+    pub window: CellBox,
+    /// The level whose grid the cells are of: 0 but for chunks of a [`LevelExtractor`](crate::LevelExtractor).
+    pub level: u32,
+    /// How many of the triangles, the last ones, are of seams to other levels.
+    pub seam: u32,
+    /// The box of those samples.
+    pub(super) sampled: Aabb,
+    /// The box of the vertices.
+    pub(super) bounds: Option<Aabb>,
+    pub(super) world: Option<World>,
+    /// Whether vertices of the whole are numbered by first use, not by key.
+    pub(super) numbered_by_use: bool,
+}
+
+impl Default for Chunk {
+    /// Of no world: room for chunks to come.
+    fn default() -> Self {
+        Self {
+            cells: CellBox::default(),
+            positions: Vec::new(),
+            normals: Vec::new(),
+            triangles: Vec::new(),
+            keys: Vec::new(),
+            triangle_cells: Vec::new(),
+            window: CellBox::default(),
+            level: 0,
+            seam: 0,
+            sampled: Aabb { min: [f32::NEG_INFINITY; 3], max: [f32::INFINITY; 3] },
+            bounds: None,
+            world: None,
+            numbered_by_use: false,
+        }
+    }
+}
+
+/// More vertices than 16 bits can name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TooManyVertices {
+    /// How many there are.
+    pub vertices: usize,
+}
+
+impl fmt::Display for TooManyVertices {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { vertices } = self;
+        write!(f, "{vertices} vertices are more than 16-bit indices can name, which is {}", 1 << 16)
+    }
+}
+
+impl Error for TooManyVertices {}
+
+impl Chunk {
+    /// Makes room for so many vertices, and for the triangles that as many have: twice as many. For chunks whose room is
+    /// made before the first one is extracted.
+    pub fn reserve(&mut self, vertices: usize) {
+        self.positions.reserve(vertices);
+        self.normals.reserve(vertices);
+        self.keys.reserve(vertices);
+        self.triangles.reserve(2 * vertices);
+        self.triangle_cells.reserve(2 * vertices);
+    }
+
+    /// Whether the chunk can be another one when the field has changed in this box, and nowhere else. If not, it is the
+    /// same to the bit: nothing in the box was looked at. [`Grid::touched`] names all such chunks.
+    ///
+    /// The box is that of all points whose *value* changes. To dig a ball out of a distance with `min(solid, ball)`
+    /// changes values everywhere outside of the ball that are greater than the distance to it: cut the field off a few
+    /// cells inside the solid, as `examples/dig.rs` does.
+    ///
+    /// A bound that is not a number is a change everywhere. A chunk that was never extracted is touched by everything.
+    pub fn is_touched_by(&self, changed: impl Into<Aabb>) -> bool {
+        self.sampled.meets(&changed.into())
+    }
+
+    /// What it is a chunk of; `None` if it was never extracted.
+    pub fn world(&self) -> Option<&World> {
+        self.world.as_ref()
+    }
+
+    /// Whether it is a chunk of this grid, by this method. Of a level, the grid is that of the level.
+    pub fn is_of(&self, grid: &Grid, method: &Method) -> bool {
+        self.world.is_some_and(|world| world.grid() == Some(grid) && world.method() == method)
+    }
+
+    /// The lowest corner of its cells.
+    pub fn origin(&self) -> [f64; 3] {
+        self.world.map_or([0.0; 3], |world| world.position(self.cells.start))
+    }
+
+    /// The least box round the vertices, for culling; `None` without any.
+    pub fn bounds(&self) -> Option<Aabb> {
+        self.bounds
+    }
+
+    /// The cell of a triangle, in the whole lattice.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    pub fn cell_of(&self, triangle: usize) -> [i32; 3] {
+        self.cells.cell(self.triangle_cells[triangle])
+    }
+
+    /// Positions less the [`origin`](Self::origin), for a renderer whose origin moves with the player. They are as fine as
+    /// `f32` is at the vertex's own place: at 160,000 units that is 0.016.
+    pub fn relative_positions(&self, relative: &mut Vec<[f32; 3]>) {
+        let origin = self.origin();
+        relative.clear();
+        relative.extend(
+            self.positions.iter().map(|p| [0, 1, 2].map(|axis| (f64::from(p[axis]) - origin[axis]) as f32)),
+        );
+    }
+
+    /// Vertex numbers in 16 bits, three a triangle. A chunk of 32³ cells has some thousand vertices.
+    ///
+    /// # Errors
+    /// [`TooManyVertices`]; then there are none.
+    pub fn indices_u16(&self, indices: &mut Vec<u16>) -> Result<(), TooManyVertices> {
+        indices.clear();
+        if self.positions.len() > 1 << 16 {
+            return Err(TooManyVertices { vertices: self.positions.len() });
+        }
+        indices.extend(self.triangles.iter().flatten().map(|&v| v as u16));
+        Ok(())
+    }
+
+    /// The triangles as a mesh, with vertices of `glam`: a copy.
+    pub fn mesh(&self) -> TriangleMesh {
+        let points = |of: &[[f32; 3]]| of.iter().copied().map(Vec3::from).collect();
+        TriangleMesh {
+            positions: points(&self.positions),
+            normals: points(&self.normals),
+            triangles: self.triangles.clone(),
+        }
+    }
+
+    /// Begins another chunk, in the room that there is.
+    pub(super) fn start(&mut self, world: &World, cells: CellBox, window: CellBox, sampled: Aabb) {
+        self.clear();
+        (self.cells, self.window, self.sampled) = (cells, window, sampled);
+        self.world = Some(*world);
+    }
+
+    /// Empty and of no world; its vectors keep their room.
+    pub(crate) fn clear(&mut self) {
+        let Self { positions, normals, triangles, keys, triangle_cells, .. } = self;
+        positions.clear();
+        normals.clear();
+        triangles.clear();
+        keys.clear();
+        triangle_cells.clear();
+        *self = Self {
+            positions: std::mem::take(positions),
+            normals: std::mem::take(normals),
+            triangles: std::mem::take(triangles),
+            keys: std::mem::take(keys),
+            triangle_cells: std::mem::take(triangle_cells),
+            ..Self::default()
+        };
+    }
+
+    /// Makes it one of several levels, seams and all.
+    pub(crate) fn close_level(&mut self, of: OfLevels) {
+        self.level = of.level;
+        self.world = self.world.map(|world| World { levels: Some(of), ..world });
+        self.close();
+    }
+
+    /// Takes away the vertices of other cells that no triangle has.
+    pub(crate) fn drop_strangers(&mut self) -> Result<(), TryReserveError> {
+        let own = |key: &VertexKey| key.level() == self.level && self.cells.contains(key.cell());
+        let mut numbers = Vec::new();
+        refill(&mut numbers, self.keys.len(), u32::MAX)?;
+        let used = self.triangles.iter().flatten().map(|&v| v as usize);
+        used.chain((0..self.keys.len()).filter(|&v| own(&self.keys[v]))).for_each(|v| numbers[v] = 0);
+        let mut next = 0;
+        for (v, number) in numbers.iter_mut().enumerate().filter(|(_, number)| **number != u32::MAX) {
+            let to = next as usize;
+            (self.keys[to], self.positions[to], *number) = (self.keys[v], self.positions[v], next);
+            if let Some(&normal) = self.normals.get(v) {
+                self.normals[to] = normal;
+            }
+            next += 1;
+        }
+        self.keys.truncate(next as usize);
+        self.positions.truncate(next as usize);
+        self.normals.truncate(next as usize);
+        self.triangles.iter_mut().flatten().for_each(|v| *v = numbers[*v as usize]);
+        Ok(())
+    }
+
+    /// It depends on the samples of another chunk, too.
+    pub(crate) fn also_sampled(&mut self, other: &Self) {
+        let axes = [0, 1, 2];
+        let (one, other) = (self.sampled, other.sampled);
+        self.sampled = Aabb {
+            min: axes.map(|i| one.min[i].min(other.min[i])),
+            max: axes.map(|i| one.max[i].max(other.max[i])),
+        };
+    }
+
+    /// Finds the box of the vertices.
+    pub(super) fn close(&mut self) {
+        self.bounds = self.positions.iter().fold(None, |bounds: Option<Aabb>, &p| {
+            let Aabb { min, max } = bounds.unwrap_or(Aabb { min: p, max: p });
+            let axes = [0, 1, 2];
+            Some(Aabb { min: axes.map(|i| min[i].min(p[i])), max: axes.map(|i| max[i].max(p[i])) })
+        });
+    }
+}

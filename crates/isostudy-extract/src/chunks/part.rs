@@ -1,0 +1,53 @@
+//! A chunk's own part of the mesh of its window.
+
+use std::collections::TryReserveError;
+
+use isostudy_mesh::TriangleMesh;
+
+use super::chunk::Chunk;
+use super::settings::Normals;
+use crate::lattice::Lattice;
+use crate::memory::{push, refill};
+use crate::trace::Trace;
+
+/// The number of a vertex that is not in the chunk, and of one that is, before it has one.
+const NOWHERE: u32 = u32::MAX;
+const SOMEWHERE: u32 = 0;
+
+/// Cuts the chunk's cells out of the mesh of a window: their triangles, with the vertices that they use and those of the
+/// chunk's own points. `numbers` is room to work in.
+pub(super) fn cut_out(
+    mesh: &TriangleMesh,
+    trace: &Trace,
+    window: &Lattice,
+    numbers: &mut Vec<u32>,
+    normals: Normals,
+    chunk: &mut Chunk,
+) -> Result<(), TryReserveError> {
+    let seen = window.cell_box();
+    numbers.clear();
+    refill(numbers, mesh.positions.len(), NOWHERE)?;
+    for (number, key) in numbers.iter_mut().zip(&trace.keys) {
+        if chunk.cells.contains(window.cell_of_point(key.stored())) {
+            *number = SOMEWHERE;
+        }
+    }
+    for (triangle, &number) in mesh.triangles.iter().zip(&trace.cells) {
+        let cell = seen.cell(number);
+        if chunk.cells.contains(cell) {
+            push(&mut chunk.triangles, *triangle)?;
+            push(&mut chunk.triangle_cells, chunk.cells.number(cell))?;
+            triangle.iter().for_each(|&v| numbers[v as usize] = SOMEWHERE);
+        }
+    }
+    for (v, number) in numbers.iter_mut().enumerate().filter(|(_, number)| **number != NOWHERE) {
+        *number = chunk.keys.len() as u32;
+        push(&mut chunk.keys, trace.keys[v])?;
+        push(&mut chunk.positions, mesh.positions[v].to_array())?;
+        if normals != Normals::None {
+            push(&mut chunk.normals, mesh.normals[v].to_array())?;
+        }
+    }
+    chunk.triangles.iter_mut().flatten().for_each(|v| *v = numbers[*v as usize]);
+    Ok(())
+}

@@ -1,0 +1,78 @@
+//! What the passes need to know about the lattice, worked out once.
+
+use std::collections::TryReserveError;
+
+use glam::Vec3;
+use isostudy_mesh::Bounds;
+
+use crate::bits::between;
+use crate::lattice::{Border, Lattice};
+use crate::memory::refilled;
+use crate::tiles::Points;
+
+/// Columns, rows and layers of a tile.
+const TILE: usize = 2;
+/// Layers of sides and samples in sight: the two of a cell, and one on either side.
+pub(super) const SLOTS: usize = 4;
+
+/// The corners of the cubes as the passes see them.
+pub(super) struct Grid<'a> {
+    pub(super) lattice: &'a Lattice,
+    /// Points a row, rows a layer, layers.
+    pub(super) size: [usize; 3],
+    /// Words of bits a row.
+    pub(super) words: usize,
+    /// Along each axis.
+    pub(super) at: [Vec<f32>; 3],
+}
+
+impl<'a> Grid<'a> {
+    pub(super) fn new(lattice: &'a Lattice) -> Result<Self, TryReserveError> {
+        Self::within(lattice, Default::default())
+    }
+
+    /// The same, with coordinates in vectors that are there.
+    pub(super) fn within(lattice: &'a Lattice, mut at: [Vec<f32>; 3]) -> Result<Self, TryReserveError> {
+        let size = lattice.stored_grid().map(|n| n as usize);
+        let first = lattice.origin();
+        for (axis, at) in at.iter_mut().enumerate() {
+            let coordinate =
+                |i: usize| lattice.coordinate(axis, 2 * (i64::from(first[axis]) + i as i64), Border::OnBox);
+            refilled(at, (0..size[axis]).map(coordinate))?;
+        }
+        Ok(Self { lattice, size, words: size[0].div_ceil(64), at })
+    }
+
+    pub(super) fn position(&self, place: [usize; 3]) -> Vec3 {
+        Vec3::from_array([0, 1, 2].map(|axis| self.at[axis][place[axis]]))
+    }
+
+    /// The points of a word that have a next one in their row: those that cells begin at.
+    #[inline(always)]
+    pub(super) fn with_next(&self, word: usize) -> u64 {
+        between(word, 0, self.size[0] - 1)
+    }
+}
+
+impl Points for Grid<'_> {
+    fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    fn side(&self) -> usize {
+        TILE
+    }
+
+    fn depth(&self) -> usize {
+        TILE
+    }
+
+    fn spacing(&self) -> f32 {
+        self.lattice.spacing()
+    }
+
+    fn bounds(&self, columns: [usize; 2], rows: [usize; 2], layers: [usize; 2]) -> Bounds {
+        let [min, max] = [0, 1].map(|end| self.position([columns[end], rows[end], layers[end]]));
+        Bounds { min, max }
+    }
+}

@@ -1,0 +1,263 @@
+//! The extractor: which of the ways a surface is extracted in, and the buffers that stay.
+
+use isostudy_field::{FieldCache, Plain, StudyField, Watched};
+
+use crate::by_cell::CellStreamer;
+use crate::clock::Moment;
+use crate::control::Control;
+use crate::cubes;
+use crate::dense;
+use crate::extraction::{ExtractError, Extraction, check};
+use crate::lattice::Lattice;
+use crate::placement;
+use crate::settings::{Execution, ExtractSettings, Positions};
+use crate::slabs::threads_and_slabs;
+use crate::source::{Request, Sampler, Source};
+use crate::streaming::{Progress, Streamer};
+use crate::trace::Trace;
+
+/// An extractor that keeps its buffers, for one surface after another.
+///
+/// With indexed positions it streams: memory grows with a layer of the lattice and with the mesh. From the second
+/// volume of a size on, with one thread, unless edges are collapsed or vertices placed otherwise than at the mean of
+/// interpolated crossings, [`extract_into`](Self::extract_into) allocates nothing, as long as the surface does not
+/// outgrow those before it; an [`Asteroid`](isostudy_field::Asteroid) other than the one before has its tables made again.
+///
+/// ```
+/// use isostudy_extract::{Arrangement, Execution, ExtractSettings, Extraction, Extractor, Lattice};
+/// use isostudy_field::{StudyField, Sphere};
+/// # use glam::Vec3;
+/// # use isostudy_mesh::Bounds;
+/// # let bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) };
+/// let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.1)?;
+/// let mut extractor = Extractor::new();
+/// let mut extraction = Extraction::default();
+/// for radius in [0.8, 0.9, 1.0] {
+///     let sphere: &dyn StudyField = &Sphere { radius };
+///     let (settings, execution) = (ExtractSettings::default(), Execution { threads: 1 });
+///     extractor.extract_into(sphere.into(), &lattice, &settings, &execution, &mut extraction)?;
+///     assert_eq!(extraction.counts.vertices * 2, extraction.counts.triangles + 4);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Default)]
+pub struct Extractor {
+    streamer: Streamer,
+    cell_streamer: CellStreamer,
+    cube_streamer: cubes::CubeStreamer,
+    kept: FieldCache,
+    progress: Option<Box<Progress>>,
+    /// Where the last mesh came from, if `traced`.
+    pub(crate) trace: Trace,
+    pub(crate) traced: bool,
+    pub(crate) most_vertices: MostVertices,
+}
+
+/// How many vertices a mesh may have.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MostVertices(pub(crate) u32);
+
+impl Default for MostVertices {
+    /// What a 32-bit index can name.
+    fn default() -> Self {
+        Self(u32::MAX)
+    }
+}
+
+impl Extractor {
+    /// An extractor without buffers yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Calls `progress` with the layers done and the layers there are, from any of the threads, while extracting.
+    /// Does not apply to accumulated positions.
+    pub fn with_progress(mut self, progress: impl Fn(usize, usize) + Send + Sync + 'static) -> Self {
+        self.progress = Some(Box::new(progress));
+        self
+    }
+
+    /// Extracts a surface, as [`extract`](crate::extract).
+    ///
+    /// # Errors
+    /// As [`extract_into`](Self::extract_into).
+    pub fn extract<'c>(
+        &mut self,
+        source: Source,
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        control: impl Into<Control<'c>>,
+    ) -> Result<Extraction, ExtractError> {
+        let mut extraction = Extraction::default();
+        self.extract_into(source, lattice, settings, control, &mut extraction)?;
+        Ok(extraction)
+    }
+
+    /// Extracts a surface into `extraction`, whose vectors are used again. After an error it is empty.
+    ///
+    /// # Errors
+    /// As [`extract`](crate::extract); [`ExtractError::Cancelled`]; [`ExtractError::SampleCount`] when given samples are not as many as the
+    /// lattice has, [`ExtractError::SamplesAccumulated`] when they come with accumulated positions,
+    /// [`ExtractError::PlacementNeedsField`] when they come with a placement that calls the field.
+    pub fn extract_into<'c>(
+        &mut self,
+        source: Source,
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        control: impl Into<Control<'c>>,
+        extraction: &mut Extraction,
+    ) -> Result<(), ExtractError> {
+        let result = self.try_extract_into(source, lattice, settings, None, control.into(), extraction);
+        if result.is_err() {
+            extraction.clear();
+        }
+        result
+    }
+
+    /// The same by marching cubes, on the points of a simple cubic lattice.
+    pub(crate) fn extract_cubes_into(
+        &mut self,
+        source: Source,
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        way: cubes::Way,
+        control: Control,
+        extraction: &mut Extraction,
+    ) -> Result<(), ExtractError> {
+        let result = self.try_extract_into(source, lattice, settings, Some(way), control, extraction);
+        if result.is_err() {
+            extraction.clear();
+        }
+        result
+    }
+
+    fn try_extract_into(
+        &mut self,
+        source: Source,
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        cubes: Option<cubes::Way>,
+        control: Control,
+        extraction: &mut Extraction,
+    ) -> Result<(), ExtractError> {
+        check(settings, lattice.arrangement())?;
+        let (values, bricks) = match source {
+            Source::Field(field) => {
+                placement::check(settings, true)?;
+                // In debug builds somebody looks whether it keeps its promises.
+                return if cfg!(debug_assertions) {
+                    self.of_field(&Watched::new(field), lattice, settings, cubes, control, extraction)
+                } else {
+                    self.of_field(&Plain(field), lattice, settings, cubes, control, extraction)
+                };
+            }
+            Source::Study(field) => {
+                placement::check(settings, true)?;
+                return self.of_field(field, lattice, settings, cubes, control, extraction);
+            }
+            Source::Samples(samples) => (samples, None),
+            Source::Bricks(bricks) => {
+                let (given, wanted) = (bricks.samples().counts(), lattice.stored_grid().map(|n| n as usize));
+                if given != wanted {
+                    return Err(ExtractError::BrickCounts { given, wanted });
+                }
+                (bricks.samples().values(), Some(bricks))
+            }
+            Source::Window { cells, samples } => {
+                let wanted = lattice.cell_box();
+                if cells != wanted {
+                    return Err(ExtractError::Window { given: cells, wanted });
+                }
+                (samples, None)
+            }
+        };
+        placement::check(settings, false)?;
+        let (given, wanted) = (values.len() as u64, lattice.stored_samples());
+        if given != wanted {
+            return Err(ExtractError::SampleCount { given, wanted });
+        }
+        if settings.positions != Positions::Indexed {
+            return Err(ExtractError::SamplesAccumulated);
+        }
+        let start = Moment::now();
+        self.stream((Sampler::Given { values, bricks }, start), lattice, settings, cubes, control, extraction)
+    }
+
+    fn of_field(
+        &mut self,
+        field: &dyn StudyField,
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        cubes: Option<cubes::Way>,
+        control: Control,
+        extraction: &mut Extraction,
+    ) -> Result<(), ExtractError> {
+        if settings.positions != Positions::Indexed {
+            *extraction = dense::extract(field, lattice, settings, control, self.most_vertices.0)?;
+            return Ok(());
+        }
+        let start = Moment::now();
+        let mut kept = std::mem::take(&mut self.kept);
+        let source = Sampler::Field(field.prepared(&mut kept).unwrap_or(field));
+        let result = self.stream((source, start), lattice, settings, cubes, control, extraction);
+        self.kept = kept;
+        result
+    }
+
+    fn stream(
+        &mut self,
+        (source, start): (Sampler, Moment),
+        lattice: &Lattice,
+        settings: &ExtractSettings,
+        cubes: Option<cubes::Way>,
+        control: Control,
+        extraction: &mut Extraction,
+    ) -> Result<(), ExtractError> {
+        let most_vertices = self.most_vertices.0;
+        let request = Request { source, lattice, settings, control, most_vertices, start };
+        let trace = self.traced.then_some(&mut self.trace);
+        if let Some(way) = cubes {
+            self.cube_streamer.extract(&request, way, self.progress.as_deref(), trace, extraction)
+        } else if lattice.arrangement().uniform().is_some() {
+            self.streamer.extract(&request, self.progress.as_deref(), trace, extraction)
+        } else {
+            self.cell_streamer.extract(&request, self.progress.as_deref(), trace, extraction)
+        }
+    }
+}
+
+/// Extracts the surface where `field` has the isovalue.
+///
+/// The mesh depends on the field, the lattice and the settings, never on `execution`, to the byte. See the crate's
+/// front page for what it is and what it is not.
+///
+/// # Errors
+/// [`ExtractError`] if the settings are not valid, memory or threads are not to be had, or there are too many
+/// vertices.
+pub fn extract(
+    field: &dyn StudyField,
+    lattice: &Lattice,
+    settings: &ExtractSettings,
+    execution: &Execution,
+) -> Result<Extraction, ExtractError> {
+    Extractor::new().extract(Source::Study(field), lattice, settings, execution)
+}
+
+impl Lattice {
+    /// What [`extract`](crate::extract) holds of the lattice at a time with these settings:
+    /// [`memory_bytes`](Self::memory_bytes) or [`streaming_bytes`](Self::streaming_bytes). The mesh comes on top.
+    pub fn memory_bytes_for(&self, settings: &ExtractSettings, execution: &Execution) -> u64 {
+        self.memory_bytes_on(settings, Control::from(execution).threads.count())
+    }
+
+    /// The same on so many threads.
+    pub(crate) fn memory_bytes_on(&self, settings: &ExtractSettings, threads: usize) -> u64 {
+        match settings.positions {
+            Positions::Indexed => {
+                let layers = self.stored_grid()[2] as usize;
+                self.streaming_bytes(threads_and_slabs(threads, layers).0 as u64)
+            }
+            Positions::Accumulated { .. } => self.memory_bytes(),
+        }
+    }
+}

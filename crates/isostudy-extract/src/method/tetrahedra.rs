@@ -1,0 +1,246 @@
+//! Marching tetrahedra as a method.
+
+use super::{ByWindow, Family, MethodError, Promises};
+use crate::box_grid::BoxGrid;
+use crate::extraction::{Extraction, check};
+use crate::extractor::Extractor;
+use crate::lattice::{Arrangement, LatticeError};
+use crate::settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
+use crate::source::Source;
+
+/// Regularised marching tetrahedra: an arrangement of sample points, and what [`ExtractSettings`] have beside the isovalue.
+///
+/// With the feature `serde` the keys are those of the fields, and `arrangement` must be given. `positions` is `"indexed"`
+/// or `"accumulated"`; to the latter belongs a number `accumulation_chunks`, 1 if it is left out, without effect beside the
+/// former.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "keys::Keys", into = "keys::Keys"))]
+pub struct Tetrahedra {
+    /// How sample points fill the box, and which tetrahedra they make.
+    pub arrangement: Arrangement,
+    /// How vertices are merged.
+    pub clustering: Clustering,
+    /// Whether merging keeps the surface a manifold.
+    pub topology: Topology,
+    /// How the positions of sample points are computed.
+    pub positions: Positions,
+    /// Where a vertex goes.
+    pub placement: Placement,
+    /// Whether crossings are roots of the field rather than interpolated between samples.
+    pub refine_crossings: bool,
+    /// How far crossings are kept from sample points, in lengths of a lattice edge: see [`ExtractSettings::edge_clamp`].
+    pub edge_clamp: f32,
+}
+
+impl Tetrahedra {
+    /// An arrangement with the defaults of [`ExtractSettings`].
+    pub fn new(arrangement: Arrangement) -> Self {
+        Self::with(arrangement, &ExtractSettings::default())
+    }
+
+    /// An arrangement with settings, whose isovalue is left out.
+    pub fn with(arrangement: Arrangement, settings: &ExtractSettings) -> Self {
+        let ExtractSettings {
+            isovalue: _,
+            clustering,
+            topology,
+            positions,
+            placement,
+            refine_crossings,
+            edge_clamp,
+        } = *settings;
+        Self { arrangement, clustering, topology, positions, placement, refine_crossings, edge_clamp }
+    }
+
+    /// The settings of an extraction.
+    pub fn settings(&self, isovalue: f32) -> ExtractSettings {
+        let Self { arrangement: _, clustering, topology, positions, placement, refine_crossings, edge_clamp } =
+            *self;
+        ExtractSettings { isovalue, clustering, topology, positions, placement, refine_crossings, edge_clamp }
+    }
+
+    /// Where vertices stay at the mean of their crossings.
+    fn unmoved_halo(&self) -> u32 {
+        if self.arrangement.uniform().is_some() { 2 } else { 1 }
+    }
+}
+
+impl Family for Tetrahedra {
+    fn check_own(&self) -> Result<(), MethodError> {
+        Ok(())
+    }
+
+    fn calls_the_field_always(&self) -> bool {
+        false
+    }
+
+    fn check(&self, grid: &BoxGrid) -> Result<(), MethodError> {
+        check(&self.settings(0.0), self.arrangement)?;
+        grid.lattice(self.arrangement)?;
+        Ok(())
+    }
+
+    fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError> {
+        Ok(grid.lattice(self.arrangement)?.cells())
+    }
+
+    fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError> {
+        Ok(grid.lattice(self.arrangement)?.memory_bytes_for(&self.settings(0.0), execution))
+    }
+
+    fn promises(&self) -> Promises {
+        let guarded = match self.topology {
+            Topology::Guarded => true,
+            Topology::Published => false,
+        };
+        let collapses = self.clustering.collapses();
+        let indexed = self.positions == Positions::Indexed;
+        let moved_in_chunks = match self.placement {
+            Placement::MeanOfCrossings => true,
+            Placement::Projected | Placement::Relaxed => !collapses,
+            Placement::CurvatureWeighted => false,
+        };
+        Promises {
+            manifold: guarded && self.clustering != Clustering::Warp,
+            closed_off_the_box: guarded,
+            // A warp has not all placements.
+            same_triangles_for_all_placements: !collapses && self.clustering != Clustering::Warp,
+            chunks: indexed && !self.refine_crossings && moved_in_chunks,
+            samples_suffice: indexed && !self.refine_crossings && !self.placement.calls_the_field(),
+        }
+    }
+
+    fn is_of_cubes(&self) -> bool {
+        false
+    }
+
+    fn has_corners(&self) -> bool {
+        self.arrangement == Arrangement::SimpleCubic
+            && self.topology == Topology::Guarded
+            && self.positions == Positions::Indexed
+    }
+
+    fn cells_otherwise(&self, _counts: [usize; 3], _values: &[f32], _isovalue: f32) -> Option<u64> {
+        None
+    }
+
+    fn tables(&self) -> Vec<isostudy_cells::Table> {
+        crate::tetrahedra::tables(self.arrangement)
+    }
+
+    /// A vertex of a cell is one of its neighbours' too, their other vertices give it its normal, and those depend on
+    /// samples one lattice edge away. Where cubes are cut each by itself the last step leads no farther. A vertex that is
+    /// moved looks at its triangles, and one that is relaxed at its neighbours first.
+    fn halo(&self) -> Option<u32> {
+        if self.clustering.collapses() || self.positions != Positions::Indexed {
+            return None;
+        }
+        let moves = match self.placement {
+            Placement::MeanOfCrossings => 0,
+            Placement::Projected => 1,
+            Placement::Relaxed => 2,
+            Placement::CurvatureWeighted => return None,
+        };
+        Some(moves + self.unmoved_halo())
+    }
+
+    fn by_window(&self, isovalue: f32) -> Option<ByWindow> {
+        let (settings, halo) = (self.settings(isovalue), self.unmoved_halo());
+        Some(ByWindow { arrangement: self.arrangement, settings, cubes: None, halo })
+    }
+
+    fn extract_into(
+        &self,
+        extractor: &mut Extractor,
+        source: Source,
+        grid: &BoxGrid,
+        isovalue: f32,
+        execution: &Execution,
+        extraction: &mut Extraction,
+    ) -> Result<(), MethodError> {
+        let settings = self.settings(isovalue);
+        // Before the lattice, as in `check`.
+        check(&settings, self.arrangement)?;
+        let lattice = grid.lattice(self.arrangement)?;
+        Ok(extractor.extract_into(source, &lattice, &settings, execution, extraction)?)
+    }
+}
+
+/// The keys of a file.
+#[cfg(feature = "serde")]
+mod keys {
+    use serde::{Deserialize, Serialize};
+
+    use super::{Arrangement, Clustering, Placement, Tetrahedra, Topology};
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub(super) struct Keys {
+        arrangement: Arrangement,
+        #[serde(default)]
+        clustering: Clustering,
+        #[serde(default)]
+        topology: Topology,
+        #[serde(default)]
+        positions: Positions,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        accumulation_chunks: Option<u32>,
+        #[serde(default)]
+        placement: Placement,
+        #[serde(default)]
+        refine_crossings: bool,
+        #[serde(default)]
+        edge_clamp: f32,
+    }
+
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    enum Positions {
+        #[default]
+        Indexed,
+        Accumulated,
+    }
+
+    impl From<Tetrahedra> for Keys {
+        fn from(method: Tetrahedra) -> Self {
+            let Tetrahedra {
+                arrangement,
+                clustering,
+                topology,
+                positions,
+                placement,
+                refine_crossings,
+                edge_clamp,
+            } = method;
+            let (positions, accumulation_chunks) = match positions {
+                super::Positions::Indexed => (Positions::Indexed, None),
+                super::Positions::Accumulated { chunks } => (Positions::Accumulated, Some(chunks)),
+            };
+            Self {
+                arrangement,
+                clustering,
+                topology,
+                positions,
+                accumulation_chunks,
+                placement,
+                refine_crossings,
+                edge_clamp,
+            }
+        }
+    }
+
+    impl From<Keys> for Tetrahedra {
+        fn from(keys: Keys) -> Self {
+            let chunks = keys.accumulation_chunks.unwrap_or(1);
+            let positions = match keys.positions {
+                // Study files keep the number for the day when they sum up again.
+                Positions::Indexed => super::Positions::Indexed,
+                Positions::Accumulated => super::Positions::Accumulated { chunks },
+            };
+            let Keys { arrangement, clustering, topology, placement, refine_crossings, edge_clamp, .. } =
+                keys;
+            Self { arrangement, clustering, topology, positions, placement, refine_crossings, edge_clamp }
+        }
+    }
+}

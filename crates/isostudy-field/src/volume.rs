@@ -1,0 +1,337 @@
+//! Samples on a regular grid, interpolated.
+
+mod ranges;
+
+use std::collections::TryReserveError;
+use std::error::Error;
+use std::fmt;
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3, Vec3};
+use isostudy_mesh::Bounds;
+
+use self::ranges::Ranges;
+use super::{SAFE, StudyField};
+
+/// What a volume's value is beyond its outermost samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Beyond {
+    /// That of the nearest point of the volume: a surface that reaches the volume's end goes on, and is cut off by the
+    /// lattice's box.
+    #[default]
+    Continued,
+    /// The same, less the difference between the largest and the smallest sample for each step from sample to sample:
+    /// what is inside ends, and its surface closes, less than a step beyond the volume's end.
+    Falling,
+    /// The same, but more: for a field that is turned round ([`Negated`](crate::Negated)).
+    Rising,
+}
+
+/// How much the value changes beyond the volume; positive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Fall {
+    /// For each step from sample to sample, along the axis with the most of them.
+    Step(f32),
+    /// For each unit of length.
+    Length(f64),
+}
+
+/// Why samples make no field.
+#[derive(Debug, Clone, PartialEq)]
+pub enum VolumeFieldError {
+    /// An axis has no samples, or the counts do not make the number of samples.
+    Counts {
+        /// As given.
+        counts: [usize; 3],
+        /// How many samples there are.
+        samples: usize,
+    },
+    /// An axis has one sample, so that there is nothing between samples and the volume is flat.
+    Flat {
+        /// As given.
+        counts: [usize; 3],
+    },
+    /// The steps from sample to sample are not finite or span no space.
+    Steps {
+        /// As given.
+        steps: [[f64; 3]; 3],
+        /// As given.
+        origin: [f64; 3],
+    },
+    /// No sample is a finite number.
+    NoNumbers,
+    /// Memory that is not to be had.
+    OutOfMemory,
+}
+
+impl fmt::Display for VolumeFieldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Counts { counts, samples } => write!(f, "{samples} samples, and {counts:?} along the axes"),
+            Self::Flat { counts } => write!(
+                f,
+                "{counts:?} samples along the axes; there must be two or more along each, or the volume is flat"
+            ),
+            Self::Steps { steps, origin } => {
+                write!(f, "the steps {steps:?} from sample to sample, from {origin:?}, span no space")
+            }
+            Self::NoNumbers => f.write_str("none of the samples is a finite number"),
+            Self::OutOfMemory => f.write_str("no memory for the bounds of the samples"),
+        }
+    }
+}
+
+impl Error for VolumeFieldError {}
+
+/// Samples on a regular grid with an interpolated value between them: trilinear, in single precision, continuous, and
+/// at a sample the sample. Inside is what is brighter than the isovalue.
+///
+/// The grid may be turned, mirrored and sheared; it is sampled in the space its steps are in, so that triangles
+/// always face outward there. [`Beyond`] says what is outside the volume. Between a sample that is `NaN` or infinite and
+/// its neighbours the value is `NaN`, which counts as outside; at the neighbours it is theirs, on all sides alike, as far
+/// as single-precision coordinates can tell that they are met.
+///
+/// Blocks whose samples are all on one side are never sampled: a tree keeps the range of the samples. Copies share samples and tree.
+#[derive(Debug, Clone)]
+pub struct VolumeField {
+    counts: [usize; 3],
+    /// Shared by copies, as the ranges are.
+    values: Arc<Vec<f32>>,
+    origin: DVec3,
+    steps: DMat3,
+    to_index: DMat3,
+    beyond: Beyond,
+    /// The least and the greatest sample that is finite.
+    value_range: (f32, f32),
+    /// How the value changes beyond the volume.
+    fall: Fall,
+    ranges: Arc<Ranges>,
+}
+
+impl VolumeField {
+    /// A field of `counts[0] * counts[1] * counts[2]` samples, the first axis fastest. Sample `(i, j, k)` lies at
+    /// `origin + i * steps[0] + j * steps[1] + k * steps[2]`.
+    ///
+    /// # Errors
+    /// [`VolumeFieldError`].
+    pub fn try_new(
+        counts: [usize; 3],
+        values: Vec<f32>,
+        origin: [f64; 3],
+        steps: [[f64; 3]; 3],
+        beyond: Beyond,
+    ) -> Result<Self, VolumeFieldError> {
+        let product = counts.iter().try_fold(1usize, |product, &n| product.checked_mul(n));
+        if product != Some(values.len()) || values.is_empty() {
+            return Err(VolumeFieldError::Counts { counts, samples: values.len() });
+        }
+        if counts.contains(&1) {
+            return Err(VolumeFieldError::Flat { counts });
+        }
+        let matrix = DMat3::from_cols_array_2d(&steps);
+        let lengths = matrix.x_axis.length() * matrix.y_axis.length() * matrix.z_axis.length();
+        let start = DVec3::from_array(origin);
+        let to_index = matrix.inverse();
+        let is_sound = start.is_finite() && to_index.is_finite() && lengths.is_finite();
+        if !is_sound || matrix.determinant().abs() <= 1e-6 * lengths {
+            return Err(VolumeFieldError::Steps { steps, origin });
+        }
+        let finite = values.iter().copied().filter(|v| v.is_finite());
+        let (low, high) = finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        if low > high {
+            return Err(VolumeFieldError::NoNumbers);
+        }
+        let ranges =
+            Ranges::new(counts, &values).map_err(|_: TryReserveError| VolumeFieldError::OutOfMemory)?;
+        let fall = Fall::Step(if high > low { (high - low).min(f32::MAX) } else { 1.0 });
+        let value_range = (low, high);
+        let (values, ranges) = (Arc::new(values), Arc::new(ranges));
+        Ok(Self { counts, values, origin: start, steps: matrix, to_index, beyond, value_range, fall, ranges })
+    }
+
+    /// The same with something else beyond the outermost samples.
+    pub fn with_beyond(self, beyond: Beyond) -> Self {
+        Self { beyond, ..self }
+    }
+
+    /// The same with a surface that closes round everything beyond `isovalue`, however long the steps are and however the
+    /// grid is turned: beyond the outermost samples the value falls, or rises if that was asked for, with the distance
+    /// from the volume, and no point that is one shortest step ([`spacing`](Self::spacing)) or more away from it is
+    /// inside. [`closing_bounds`](Self::closing_bounds) is a box with room for that.
+    pub fn closing_at(self, isovalue: f32) -> Self {
+        let (low, high) = (f64::from(self.value_range.0), f64::from(self.value_range.1));
+        let (beyond, depth) = match self.beyond {
+            Beyond::Continued | Beyond::Falling => (Beyond::Falling, high - f64::from(isovalue)),
+            Beyond::Rising => (Beyond::Rising, f64::from(isovalue) - low),
+        };
+        let change = depth.max(high - low);
+        // Nothing is inside, or all samples are equal.
+        let change = if change > 0.0 { change } else { 1.0 };
+        Self { beyond, fall: Fall::Length(change / self.shortest_step()), ..self }
+    }
+
+    /// A box that a surface which was closed ([`closing_at`](Self::closing_at)) stays clear of: half a shortest step more
+    /// than it needs.
+    pub fn closing_bounds(&self) -> Bounds {
+        self.bounds().grown(1.5 * self.spacing())
+    }
+
+    /// The smallest box round all samples; none wider than `f32` can tell from a point.
+    pub fn bounds(&self) -> Bounds {
+        let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for corner in 0..8 {
+            let index =
+                std::array::from_fn(|k| if corner >> k & 1 == 1 { self.counts[k] - 1 } else { 0 } as f64);
+            let p = self.origin + self.steps * DVec3::from_array(index);
+            (min, max) = (min.min(p), max.max(p));
+        }
+        Bounds { min: min.as_vec3(), max: max.as_vec3() }
+    }
+
+    /// The shortest distance from sample to sample.
+    pub fn spacing(&self) -> f32 {
+        self.shortest_step() as f32
+    }
+
+    fn shortest_step(&self) -> f64 {
+        let steps = [self.steps.x_axis, self.steps.y_axis, self.steps.z_axis];
+        steps.iter().map(|step| step.length()).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether the grid's axes are those of space, in any order and direction.
+    pub fn is_axis_aligned(&self) -> bool {
+        let axes = [self.steps.x_axis, self.steps.y_axis, self.steps.z_axis];
+        axes.iter().all(|step| step.abs().max_element() >= (1.0 - 1e-9) * step.length())
+    }
+
+    /// The smallest and the largest sample; those that are not finite aside.
+    pub fn value_range(&self) -> (f32, f32) {
+        self.value_range
+    }
+
+    /// Bytes of the samples and of their ranges.
+    pub fn memory_bytes(&self) -> u64 {
+        (size_of::<f32>() * self.values.capacity() + self.ranges.bytes()) as u64
+    }
+
+    /// The value at `p`, with the one at the nearest point of the volume, given in steps.
+    fn value(&self, p: Vec3, interpolated: impl Fn(&Self, DVec3) -> f32) -> f32 {
+        let index = self.to_index * (p.as_dvec3() - self.origin);
+        if !index.is_finite() {
+            return f32::NAN;
+        }
+        let last = DVec3::from_array(self.counts.map(|n| (n - 1) as f64));
+        let nearest = index.clamp(DVec3::ZERO, last);
+        let value = interpolated(self, nearest);
+        let way = index - nearest;
+        let away = match self.fall {
+            Fall::Step(fall) => fall * way.abs().max_element() as f32,
+            // Only a number too large for `f32` is infinite, which is as good as far beyond the isovalue.
+            Fall::Length(fall) => (fall * (self.steps * way).length()) as f32,
+        };
+        match self.beyond {
+            Beyond::Continued => value,
+            Beyond::Falling => value - away,
+            Beyond::Rising => value + away,
+        }
+    }
+
+    fn interpolated(&self, index: DVec3) -> f32 {
+        let (mut first, mut part) = ([0; 3], [0.0f32; 3]);
+        for k in 0..3 {
+            first[k] = (index[k] as usize).min(self.counts[k] - 2);
+            part[k] = (index[k] - first[k] as f64) as f32;
+        }
+        let [along, up, back] = self.strides();
+        let at = first[0] + first[1] * up + first[2] * back;
+        let between = |a: f32, b: f32, part: f32| a + (b - a) * part;
+        let along_x = |at: usize| between(self.values[at], self.values[at + along], part[0]);
+        let along_y = |at: usize| between(along_x(at), along_x(at + up), part[1]);
+        between(along_y(at), along_y(at + back), part[2])
+    }
+
+    /// The value at `p`, which is next to a sample that is not finite, or to very different ones. On a plane, an edge or a
+    /// corner of a cell only the samples there count.
+    #[cold]
+    fn value_with_care(&self, p: Vec3) -> f32 {
+        // A few units in the last place of the coordinates, in steps.
+        let coordinates = 2.5e-7 * (p.as_dvec3().abs() + self.origin.abs());
+        let slack: [f64; 3] = std::array::from_fn(|k| self.to_index.row(k).abs().dot(coordinates));
+        let strides = self.strides();
+        self.value(p, |_, index| {
+            // Samples, and the weight of each.
+            let (mut corners, mut count) = ([(0, 1.0); 8], 1);
+            for k in 0..3 {
+                let met = index[k].round();
+                if (index[k] - met).abs() <= slack[k] {
+                    corners[..count].iter_mut().for_each(|corner| corner.0 += met as usize * strides[k]);
+                    continue;
+                }
+                let (first, part) = (index[k] as usize * strides[k], index[k].fract());
+                for i in 0..count {
+                    let (at, weight) = corners[i];
+                    corners[i] = (at + first, weight * (1.0 - part));
+                    corners[count + i] = (at + first + strides[k], weight * part);
+                }
+                count *= 2;
+            }
+            let value: f64 =
+                corners[..count].iter().map(|&(at, weight)| f64::from(self.values[at]) * weight).sum();
+            if value.is_finite() { value as f32 } else { f32::NAN }
+        })
+    }
+
+    fn strides(&self) -> [usize; 3] {
+        [1, self.counts[0], self.counts[0] * self.counts[1]]
+    }
+}
+
+impl StudyField for VolumeField {
+    fn sample(&self, p: Vec3) -> f32 {
+        let value = self.value(p, Self::interpolated);
+        if value.is_finite() { value } else { self.value_with_care(p) }
+    }
+
+    /// That of the samples round the box.
+    fn range(&self, bounds: Bounds, _value: f32) -> Option<(f32, f32)> {
+        let (min, max) = (bounds.min.as_dvec3() - self.origin, bounds.max.as_dvec3() - self.origin);
+        let centre = self.to_index * ((min + max) * 0.5);
+        let size = (max - min) * 0.5;
+        let turned = DMat3::from_cols(
+            self.to_index.x_axis.abs(),
+            self.to_index.y_axis.abs(),
+            self.to_index.z_axis.abs(),
+        );
+        let half = turned * size + DVec3::splat(1e-9) + centre.abs() * 1e-12;
+        if !centre.is_finite() || !half.is_finite() {
+            return None;
+        }
+        let last = DVec3::from_array(self.counts.map(|n| (n - 1) as f64));
+        let (low, high) =
+            ((centre - half).clamp(DVec3::ZERO, last), (centre + half).clamp(DVec3::ZERO, last));
+        let first = low.to_array().map(|v| v as usize);
+        let end = high.to_array().map(|v| v.ceil() as usize);
+        let (mut least, mut most) = self.ranges.of(first, end)?;
+        // Equal samples interpolate to themselves; others with rounding.
+        if least < most {
+            let rounding = least.abs().max(most.abs()) * (SAFE - 1.0);
+            (least, most) = (least - rounding, most + rounding);
+        }
+        let outside = (low - (centre - half)).max(centre + half - high);
+        let away = SAFE
+            * match self.fall {
+                Fall::Step(fall) => fall * outside.max_element() as f32,
+                Fall::Length(fall) => {
+                    let lengths =
+                        [self.steps.x_axis, self.steps.y_axis, self.steps.z_axis].map(DVec3::length);
+                    (fall * outside.dot(DVec3::from_array(lengths))) as f32
+                }
+            };
+        match self.beyond {
+            Beyond::Continued => {}
+            Beyond::Falling => least -= away,
+            Beyond::Rising => most += away,
+        }
+        Some((least, most))
+    }
+}

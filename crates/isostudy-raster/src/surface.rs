@@ -1,0 +1,106 @@
+//! A mesh that has been checked, with what its colours follow from.
+
+use crate::colouring::{Colouring, Values};
+use crate::{Look, RasterError, Shading};
+use glam::Vec3;
+use isostudy_mesh::TriangleMesh;
+
+/// A drawable mesh.
+pub(crate) struct Surface<'a> {
+    pub(crate) positions: &'a [Vec3],
+    pub(crate) triangles: &'a [[u32; 3]],
+    normals: Normals<'a>,
+    /// Places on the scale of colours, 0 to 1; `None` for a surface that shows its material.
+    places: Option<Values>,
+}
+
+enum Normals<'a> {
+    PerVertex(&'a [Vec3]),
+    PerTriangle(Vec<Vec3>),
+}
+
+/// A surface's exposures under one light, in the order of its normals.
+pub(crate) struct Lit(Vec<f32>);
+
+/// What a triangle's corners are drawn with.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Corners {
+    pub(crate) exposures: [f32; 3],
+    /// 0 for a surface that shows its material.
+    pub(crate) places: [f32; 3],
+}
+
+impl<'a> Surface<'a> {
+    /// # Errors
+    /// When an index is out of range, a used position or normal is not finite, a smooth look lacks normals, the ambient
+    /// light is out of range, or the numbers do not fit the mesh.
+    pub(crate) fn try_new(
+        mesh: &'a TriangleMesh,
+        colouring: Option<&Colouring>,
+        shading: &Shading,
+        look: Look,
+    ) -> Result<Self, RasterError> {
+        shading.check()?;
+        let (normals, vertices) = (mesh.normals.len(), mesh.positions.len());
+        let smooth = look != Look::Flat;
+        if smooth && normals != vertices {
+            return Err(RasterError::Normals { normals, vertices });
+        }
+        for (triangle, corners) in mesh.triangles.iter().enumerate() {
+            for &vertex in corners {
+                let position = mesh.positions.get(vertex as usize).ok_or(RasterError::NoSuchVertex {
+                    triangle,
+                    vertex,
+                    vertices,
+                })?;
+                let vertex = vertex as usize;
+                if !position.is_finite() {
+                    return Err(RasterError::NotFinite { vertex, part: "position" });
+                }
+                if smooth && !mesh.normals[vertex].is_finite() {
+                    return Err(RasterError::NotFinite { vertex, part: "normal" });
+                }
+            }
+        }
+        let normals = if smooth {
+            Normals::PerVertex(&mesh.normals)
+        } else {
+            let face_normal = |t| {
+                let [a, b, c] = mesh.corners(t);
+                (b - a).cross(c - a).normalize_or_zero()
+            };
+            Normals::PerTriangle((0..mesh.triangles.len()).map(face_normal).collect())
+        };
+        let places = colouring.map(|colouring| colouring.places(mesh)).transpose()?;
+        Ok(Surface { positions: &mesh.positions, triangles: &mesh.triangles, normals, places })
+    }
+
+    pub(crate) fn is_coloured(&self) -> bool {
+        self.places.is_some()
+    }
+
+    /// The exposures under the light of `shading`, which stands as it is.
+    pub(crate) fn lit(&self, shading: &Shading) -> Lit {
+        let normals = match &self.normals {
+            Normals::PerVertex(normals) => normals,
+            Normals::PerTriangle(normals) => &normals[..],
+        };
+        Lit(normals.iter().map(|&n| shading.exposure(n)).collect())
+    }
+
+    /// What the three corners of `triangle` are drawn with.
+    #[inline]
+    pub(crate) fn corners(&self, lit: &Lit, triangle: usize) -> Corners {
+        let vertices = || self.triangles[triangle].map(|v| v as usize);
+        let exposures = match &self.normals {
+            Normals::PerVertex(_) => vertices().map(|v| lit.0[v]),
+            Normals::PerTriangle(_) => [lit.0[triangle]; 3],
+        };
+        let places = match &self.places {
+            None => [0.0; 3],
+            Some(Values::PerVertex(places)) => vertices().map(|v| places[v]),
+            Some(Values::PerTriangle(places)) => [places[triangle]; 3],
+        };
+        Corners { exposures, places }
+    }
+}

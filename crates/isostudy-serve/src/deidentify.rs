@@ -1,0 +1,128 @@
+//! Answers that can be given to others.
+
+use crate::export::Given;
+use crate::record::Answer;
+use crate::screen::Screen;
+use isostudy_design::forms::FormFile;
+use std::collections::BTreeMap;
+
+/// The same answers, their participants renamed `p1`, `p2`, and so on by their names, which are random, so that neither
+/// names nor order tell who came when.
+pub fn deidentified(given: &[Given]) -> Vec<Given> {
+    let mut names: BTreeMap<&str, usize> =
+        given.iter().map(|given| (given.participant.as_str(), 0)).collect();
+    names.values_mut().enumerate().for_each(|(place, number)| *number = place + 1);
+    let width = names.len().to_string().len();
+    let renamed = |given: &Given| {
+        let number = names[given.participant.as_str()];
+        let screen = given.answer.screen.map(Screen::rounded);
+        let answer = Answer { screen, ..given.answer.clone() };
+        Given { participant: format!("p{number:0width$}"), answer, ..*given }
+    };
+    let mut shared: Vec<Given> = given.iter().map(renamed).collect();
+    shared.sort_by(|a, b| (&a.participant, a.answer.order).cmp(&(&b.participant, b.answer.order)));
+    shared
+}
+
+/// What the columns of the shared answers mean, in Markdown. The digests are of the forms when the first answer came, and now.
+pub fn codebook(file: &FormFile, (then, now): (&str, &str), participants: usize, answers: usize) -> String {
+    let [left, none, right] = file.choices.each_ref().map(|text| escaped(text));
+    let changed = if then == now {
+        String::new()
+    } else {
+        format!(
+            "The study file was changed after the first answer (forms {then}): texts below are those of forms {now}.\n\n"
+        )
+    };
+    let count = |number: usize, word: &str| format!("{number} {word}{}", if number == 1 { "" } else { "s" });
+    format!(
+        "# Codebook\n\n\
+         Answers to \"{title}\" (study `{study}`, forms {now}): {answers} of {participants}, in `answers.csv`.\n\n{changed}\
+         Participants are numbered at random. No name, address, panel identifier or date is in this set.\n\n\
+         | column | meaning | values |\n|---|---|---|\n\
+         | `participant` | who answered | `p1`, `p2`, ... |\n\
+         | `form` | number of the form | 1 to {forms} |\n\
+         | `order` | place in the form, practice included | from 1 |\n\
+         | `question` | what was compared | id of the study file, with `-r` where it was asked again; `control-1`, ... |\n\
+         | `object` | what both sides show | name of the study file |\n\
+         | `group` | comparison group; empty for controls | id of the study file |\n\
+         | `left`, `right` | configuration shown on that side | object, underscore, method |\n\
+         | `choice` | answer to \"{prompt}\" | `L` {left}, `NP` {none}, `R` {right}, as shown |\n\
+         | `rt_ms` | time from the pair on the screen to the answer | milliseconds; a turn takes {loop_ms} |\n\
+         | `role` | why it was asked | `comparison`; `control`: the same on both sides; `repeat`: asked again, sides swapped |\n\
+         | `stimulus` | code name of the animation | |\n\
+         | `viewport_width`, `viewport_height` | the browser's window | CSS pixels, rounded down to whole 50 |\n\
+         | `pixel_ratio` | pixels of the screen for one CSS pixel | |\n\
+         | `surface_px` | largest width that each surface had | CSS pixels, rounded down to whole 50 |\n\
+         | `layout` | how the surfaces stood | `beside`; `stacked`: left over right |\n\
+         | `input` | what the answer was given with | `mouse`, `touch`, `pen`, `keyboard` |\n\
+         | `dropped` | frames that the browser did not show | from 0 |\n\
+         | `hidden_ms` | time for which the page was out of sight, within `rt_ms` | milliseconds |\n\
+         | `shown_as` | how the pair was stored | `gif`, `mp4`, `webm` |\n",
+        answers = count(answers, "answer"),
+        participants = count(participants, "participant"),
+        title = escaped(&file.title),
+        study = file.study,
+        forms = file.forms.len(),
+        prompt = escaped(&file.prompt),
+        loop_ms = file.loop_ms,
+    )
+}
+
+/// Without what Markdown would read as mark-up, as a table's row or as HTML.
+fn escaped(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '\\' | '|' | '_' | '*' | '`' | '[' | ']' => plain.extend(['\\', letter]),
+            '&' => plain.push_str("&amp;"),
+            '<' => plain.push_str("&lt;"),
+            '\n' | '\r' => plain.push(' '),
+            _ => plain.push(letter),
+        }
+    }
+    plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Choice;
+
+    #[test]
+    fn neither_names_nor_order_tell_who_came_when() {
+        let given = |participant: &str, order| Given {
+            participant: participant.into(),
+            form: 1,
+            answer: Answer { order, stimulus: "tani".into(), choice: Choice::L, rt_ms: 900, screen: None },
+        };
+        let shared = deidentified(&[given("c0", 1), given("c0", 2), given("0a", 1), given("77", 1)]);
+        let found: Vec<(&str, u32)> =
+            shared.iter().map(|g| (g.participant.as_str(), g.answer.order)).collect();
+        assert_eq!(found, [("p1", 1), ("p2", 1), ("p3", 1), ("p3", 2)]);
+        assert!(shared.iter().all(|g| g.form == 1 && g.answer.rt_ms == 900));
+    }
+
+    #[test]
+    fn a_text_of_the_study_is_no_mark_up() {
+        let texts = ["Left | a", "[None](http://example.org)", "Right"];
+        let file = FormFile {
+            schema: 1,
+            study: "trial".into(),
+            title: "<script> & *stars*".into(),
+            prompt: "Which\nof two?".into(),
+            choices: texts.map(Into::into),
+            choices_stacked: None,
+            min_surface_px: None,
+            consent: String::new(),
+            instructions: String::new(),
+            loop_ms: 100,
+            page_scale: 1,
+            forms: Vec::new(),
+        };
+        let text = codebook(&file, ("d", "d"), 1, 1);
+        assert!(text.contains("&lt;script> &amp; \\*stars\\*"), "{text}");
+        assert!(text.contains("Left \\| a, `NP` \\[None\\](http://example.org), `R` Right"), "{text}");
+        assert!(text.contains("answer to \"Which of two?\""), "{text}");
+    }
+}

@@ -1,0 +1,149 @@
+//! Answers joined with the key: the long format that `isostudy analyse` reads.
+
+use crate::record::Answer;
+use crate::screen;
+use isostudy_design::forms::KeyEntry;
+use serde::Serialize;
+use std::collections::HashMap;
+
+/// An answer and whose it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Given {
+    /// The participant's name in the answers: random, and never an identifier of a panel.
+    pub participant: String,
+    /// The form's number, from 1.
+    pub form: usize,
+    /// What was answered.
+    pub answer: Answer,
+}
+
+/// A line of the long format.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Line<'a> {
+    participant: &'a str,
+    form: usize,
+    order: u32,
+    question: &'a str,
+    object: &'a str,
+    group: &'a str,
+    left: &'a str,
+    right: &'a str,
+    choice: &'static str,
+    rt_ms: u32,
+    role: &'a isostudy_design::forms::Role,
+    stimulus: &'a str,
+    screen: [String; 9],
+}
+
+/// An answer that the key does not fit.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "participant {participant}, form {form}, place {order}: the study shows {shown} there, the answer is to {stimulus}; was the study file changed?"
+)]
+pub struct OtherStudy {
+    participant: String,
+    form: usize,
+    order: u32,
+    shown: String,
+    stimulus: String,
+}
+
+/// Each answer with what its key says was shown, in the order given.
+///
+/// # Errors
+/// The first answer to something that the key does not know.
+pub fn lines<'a>(given: &'a [Given], key: &'a [KeyEntry]) -> Result<Vec<Line<'a>>, OtherStudy> {
+    let shown: HashMap<(usize, usize), &KeyEntry> = key.iter().map(|k| ((k.form, k.order), k)).collect();
+    let line = |given: &'a Given| {
+        let Given { participant, form, answer } = given;
+        let entry = shown.get(&(*form, answer.order as usize));
+        match entry.filter(|entry| entry.stimulus == answer.stimulus) {
+            None => Err(OtherStudy {
+                participant: participant.clone(),
+                form: *form,
+                order: answer.order,
+                shown: entry.map_or_else(|| "nothing".into(), |entry| entry.stimulus.clone()),
+                stimulus: answer.stimulus.clone(),
+            }),
+            Some(entry) => Ok(Line {
+                participant,
+                form: *form,
+                order: answer.order,
+                question: &entry.question,
+                object: &entry.object,
+                group: &entry.group,
+                left: &entry.left,
+                right: &entry.right,
+                choice: answer.choice.code(),
+                rt_ms: answer.rt_ms,
+                role: &entry.role,
+                stimulus: &answer.stimulus,
+                screen: screen::cells(answer.screen.as_ref()),
+            }),
+        }
+    };
+    given.iter().map(line).collect()
+}
+
+/// Lines as CSV with a header, `\n` at the ends, and no formula to a spreadsheet: names come from files that a participant has had
+/// in hand.
+pub fn csv<T: Serialize>(lines: &[T], header: &[&str]) -> String {
+    let writer = || csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    let write = || -> Result<String, Box<dyn std::error::Error>> {
+        let (mut plain, mut safe) = (writer(), writer());
+        lines.iter().try_for_each(|line| plain.serialize(line))?;
+        safe.write_record(header)?;
+        let plain = plain.into_inner()?;
+        for record in csv::ReaderBuilder::new().has_headers(false).from_reader(&plain[..]).records() {
+            safe.write_record(record?.iter().map(|cell| isostudy_table::formula::escape(cell).into_owned()))?;
+        }
+        Ok(String::from_utf8(safe.into_inner()?)?)
+    };
+    write().expect("memory takes everything, and texts are UTF-8")
+}
+
+/// The columns of [`Line`].
+pub const HEADER: [&str; 21] = [
+    "participant",
+    "form",
+    "order",
+    "question",
+    "object",
+    "group",
+    "left",
+    "right",
+    "choice",
+    "rt_ms",
+    "role",
+    "stimulus",
+    "viewport_width",
+    "viewport_height",
+    "pixel_ratio",
+    "surface_px",
+    "layout",
+    "input",
+    "dropped",
+    "hidden_ms",
+    "shown_as",
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_becomes_a_formula_and_everything_comes_back() {
+        let names = ["=1+1", "+1", "-2", "@SUM(A1)", "'quoted'", "plain", "a,b", "two\nlines", "\"q\""];
+        let rows: Vec<_> = names.iter().map(|name| (name, 812)).collect();
+        let text = csv(&rows, &["participant", "rt_ms"]);
+        assert!(text.starts_with(
+            "participant,rt_ms\n'=1+1,812\n'+1,812\n'-2,812\n'@SUM(A1),812\n''quoted',812\nplain,812\n"
+        ));
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let back: Vec<String> = reader
+            .records()
+            .map(|row| isostudy_table::formula::unescape(&row.unwrap()[0]).to_owned())
+            .collect();
+        assert_eq!(back, names);
+    }
+}

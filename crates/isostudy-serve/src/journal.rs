@@ -1,0 +1,578 @@
+//! Participants and their answers on disk: `answers.sqlite`, and `identities.sqlite` for what a panel says of them.
+//!
+//! Changes are made in batches: what arrives while one is being synced goes into the next, and each is answered after its
+//! batch was committed (write-ahead log, `synchronous = FULL`). A process that is killed loses nothing that was answered.
+//! Where a file is gone or was cut between two runs, `count` tells: it holds how much there was.
+//!
+//! Somebody is written down with the first answer; until then a form dealt is known in memory alone. All files, and the folder
+//! if it is made here, are their owner's alone. One process changes them at a time (`lock`); others may read meanwhile.
+
+mod copy;
+mod files;
+mod owned;
+mod place;
+mod seal;
+mod summary;
+mod thread;
+mod waiting;
+
+#[cfg(test)]
+mod tests;
+
+pub use files::{Kept, kept};
+pub use seal::Held;
+pub use summary::Summary;
+pub use thread::{Handle, Keeper, Unsaved, start};
+
+use crate::export::Given;
+use crate::record::{Answer, Choice, Identifiers, Refusal, check, first_place};
+use copy::Copied;
+use isostudy_design::forms::{FormEntry, FormFile};
+use place::Place;
+use rusqlite::{Connection, params};
+use seal::{Seal, Sealed};
+use serde::Serialize;
+use std::collections::HashMap;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use waiting::{Newcomer, Waiting};
+
+/// Whoever has sent nothing for so long is taken to have given up; the form is dealt again.
+const GIVEN_UP_MS: i64 = 2 * 3_600_000;
+/// Most participants of a study.
+const MOST: usize = 100_000;
+
+/// Why the journal cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum JournalError {
+    /// The folder cannot be made.
+    #[error("{path}: {source}")]
+    Folder {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// SQLite says no.
+    #[error("{path}: {source}")]
+    Database {
+        /// The folder.
+        path: PathBuf,
+        /// Why.
+        source: rusqlite::Error,
+    },
+    /// Answers of another study, or of another version of it, are there.
+    #[error(
+        "{path}: holds answers to study {found}, version {version}, not to this one; keep them and name another folder"
+    )]
+    OtherStudy {
+        /// The folder.
+        path: PathBuf,
+        /// Id of the study there.
+        found: String,
+        /// Digest of its forms.
+        version: String,
+    },
+    /// Somebody was dealt a form that there no longer is.
+    #[error(
+        "{path}: holds answers to form {form}, and the study plans {planned} participants; plan no fewer than before"
+    )]
+    FewerForms {
+        /// The folder.
+        path: PathBuf,
+        /// Which.
+        form: usize,
+        /// How many there are now.
+        planned: usize,
+    },
+    /// Another server has it.
+    #[error("{path}: in use by another process, such as a running server")]
+    InUse {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// There is less than there was.
+    #[error(
+        "{path}: holds {found}, and held {before} when a server last wrote to it. A file was removed, cut or put back from an \
+         older copy. Keep a copy of the folder and look for a better one, or accept the loss with --accept-loss"
+    )]
+    Lost {
+        /// The folder.
+        path: PathBuf,
+        /// What there is.
+        found: Held,
+        /// What there was.
+        before: Held,
+    },
+    /// Files that were open when the server stopped are not where they were.
+    #[error(
+        "{path}: removed or replaced while the server ran, and not back when it stopped. Answers that were acknowledged may be \
+         lost. Look for the folder where it was moved to, or for a copy of it"
+    )]
+    Gone {
+        /// The first of them.
+        path: PathBuf,
+    },
+    /// What tells how much there was cannot be read.
+    #[error(
+        "{path}: the file `count` is damaged, so nobody can tell whether answers are missing; {found} are there. If that is \
+         right, start with --accept-loss"
+    )]
+    Damaged {
+        /// The folder.
+        path: PathBuf,
+        /// What there is.
+        found: Held,
+    },
+    /// The thread that keeps the answers has ended, which is a fault of the program.
+    #[error(
+        "the thread that saves answers has ended; what was acknowledged is saved, start the server again"
+    )]
+    Ended,
+}
+
+/// What to do where a folder holds less than it did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Loss {
+    /// Do not go on.
+    Refuse,
+    /// Go on with what there is.
+    Accept,
+}
+
+/// What a participant is dealt.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Dealt {
+    /// The participant's name in the answers.
+    pub participant: String,
+    /// What proves to be the participant; never exported.
+    pub token: String,
+    /// The form.
+    pub form: FormEntry,
+    /// How many questions have been answered already.
+    pub answered: u32,
+}
+
+struct Person {
+    number: i64,
+    name: String,
+    form: usize,
+    choices: Vec<Choice>,
+    last_ms: i64,
+    finished: bool,
+}
+
+/// The journal of one study; one process has it at a time.
+pub struct Journal {
+    folder: PathBuf,
+    answers: Connection,
+    identities: Connection,
+    forms: Vec<FormEntry>,
+    people: Vec<Person>,
+    by_token: HashMap<String, usize>,
+    by_identifiers: HashMap<Identifiers, usize>,
+    waiting: Waiting,
+    held: Held,
+    uncounted: bool,
+    seal: Seal,
+    place: Place,
+    /// Held as long as the journal is.
+    _lock: File,
+}
+
+impl std::hash::Hash for Identifiers {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        self.named().hash(state);
+    }
+}
+
+impl Journal {
+    /// Opens the journal in a folder, which is made if it is not there. `digest` tells one version of the forms from another,
+    /// whatever their number.
+    ///
+    /// # Errors
+    /// [`JournalError`].
+    pub fn open(folder: &Path, file: &FormFile, digest: &str, loss: Loss) -> Result<Self, JournalError> {
+        let failed = |source| JournalError::Folder { path: folder.into(), source };
+        let database = |source| files::error(folder, source);
+        let lock = files::lock(folder)?;
+        let sealed = Sealed::read(folder).map_err(failed)?;
+        // Whatever SQLite opens it changes: it makes files, begins logs anew and throws away those of a database that is gone. A
+        // folder that is refused stays as it is, so a copy is looked at first.
+        let whole = {
+            let copy = Copied::of(folder, &[files::ANSWERS, files::IDENTITIES])?;
+            let lock = lock.try_clone().map_err(failed)?;
+            let (copied, _) = Self::at(copy.folder(), folder, file, digest, lock)?;
+            compare(folder, copied.held, sealed, loss)?
+        };
+        let (mut journal, nobodys) = Self::at(folder, folder, file, digest, lock)?;
+        journal.uncounted = sealed == Sealed::Nothing && journal.held != Held::default();
+        files::may_tidy(&journal.answers)
+            .and_then(|()| files::may_tidy(&journal.identities))
+            .map_err(database)?;
+        // After a loss they may be all that is left of somebody.
+        if whole {
+            journal.forget(&nobodys).map_err(database)?;
+        }
+        journal.seal().and_then(|()| journal.seal.sync()).map_err(failed)?;
+        Ok(journal)
+    }
+
+    /// Opens and reads the files in `from`, which messages call `folder`. Returns names with identifiers and without an answer too.
+    fn at(
+        from: &Path,
+        folder: &Path,
+        file: &FormFile,
+        digest: &str,
+        lock: File,
+    ) -> Result<(Self, Vec<String>), JournalError> {
+        let failed = |source| JournalError::Folder { path: folder.into(), source };
+        let database = |source| files::error(folder, source);
+        let files::Opened { answers, identities } = files::open(from, folder)?;
+        let seal = Seal::open(from).map_err(failed)?.0;
+        match files::study(&answers).map_err(database)? {
+            None => {
+                let add = "INSERT INTO study VALUES (?1, ?2)";
+                answers.execute(add, params![file.study, digest]).map_err(database)?;
+            }
+            Some((found, version)) if found != file.study || version != digest => {
+                return Err(JournalError::OtherStudy { path: folder.into(), found, version });
+            }
+            Some(_) => {}
+        }
+        let mut journal = Self {
+            folder: folder.into(),
+            answers,
+            identities,
+            forms: file.forms.clone(),
+            people: Vec::new(),
+            by_token: HashMap::new(),
+            by_identifiers: HashMap::new(),
+            waiting: Waiting::default(),
+            held: Held::default(),
+            uncounted: false,
+            seal,
+            place: Place::default(),
+            _lock: lock,
+        };
+        let nobodys = journal.read().map_err(database)?;
+        // Whatever SQLite makes beside its files it has made by now.
+        journal.place = Place::of(from);
+        let planned = journal.forms.len();
+        if let Some(form) =
+            journal.people.iter().map(|person| person.form).max().filter(|form| *form > planned)
+        {
+            return Err(JournalError::FewerForms { path: folder.into(), form, planned });
+        }
+        Ok((journal, nobodys))
+    }
+
+    /// How much there is on disk.
+    pub fn held(&self) -> Held {
+        self.held
+    }
+
+    /// Whether there were answers and no count of them at the start: nobody can tell whether all are there.
+    pub fn is_uncounted(&self) -> bool {
+        self.uncounted
+    }
+
+    /// Writes down how much there is, for whoever opens the folder next.
+    fn seal(&mut self) -> std::io::Result<()> {
+        self.seal.write(self.held)
+    }
+
+    /// Takes back what was not committed, and reads again what was; whoever is not there still waits.
+    fn roll_back(&mut self) -> Result<(), JournalError> {
+        for database in [&self.answers, &self.identities] {
+            if !database.is_autocommit() {
+                drop(database.execute_batch("ROLLBACK"));
+            }
+        }
+        self.waiting.turned_back();
+        let nobodys = self.read().map_err(|e| files::error(&self.folder, e))?;
+        let waits = |name: &String| self.waiting.iter().any(|newcomer| newcomer.name == *name);
+        let committed: Vec<String> = nobodys.into_iter().filter(waits).collect();
+        // Where that fails, the disk is full, say, they are written again with the first answer, or removed at the next start.
+        drop(self.forget(&committed));
+        Ok(())
+    }
+
+    /// Removes the identifiers of those who have answered nothing.
+    fn forget(&self, names: &[String]) -> rusqlite::Result<()> {
+        if names.is_empty() {
+            return Ok(());
+        }
+        let transaction = self.identities.unchecked_transaction()?;
+        for name in names {
+            transaction.execute("DELETE FROM identities WHERE participant = ?1", [name])?;
+        }
+        transaction.commit()
+    }
+
+    /// Reads what is on disk into memory. Returns names with identifiers and without an answer.
+    fn read(&mut self) -> rusqlite::Result<Vec<String>> {
+        self.people.clear();
+        self.by_token.clear();
+        self.by_identifiers.clear();
+        let mut by_number = HashMap::new();
+        let all = "SELECT number, name, token, form, last_ms, finished_ms FROM participants ORDER BY number";
+        let mut statement = self.answers.prepare(all)?;
+        let mut rows = statement.query([])?;
+        while let Some(row) = rows.next()? {
+            let (number, form): (i64, i64) = (row.get(0)?, row.get(3)?);
+            let finished = row.get::<_, Option<i64>>(5)?.is_some();
+            let person = Person {
+                number,
+                name: row.get(1)?,
+                form: form as usize,
+                choices: Vec::new(),
+                last_ms: row.get(4)?,
+                finished,
+            };
+            by_number.insert(number, self.people.len());
+            self.by_token.insert(row.get(2)?, self.people.len());
+            self.people.push(person);
+        }
+        let mut statement =
+            self.answers.prepare("SELECT participant, choice FROM answers ORDER BY participant, place")?;
+        let mut rows = statement.query([])?;
+        while let Some(row) = rows.next()? {
+            let choice: String = row.get(1)?;
+            let of = by_number.get(&row.get::<_, i64>(0)?);
+            if let (Some(&person), Some(choice)) = (of, Choice::of_code(&choice)) {
+                self.people[person].choices.push(choice);
+            }
+        }
+        let by_name: HashMap<&str, usize> =
+            self.people.iter().enumerate().map(|(i, person)| (person.name.as_str(), i)).collect();
+        let (mut found, mut nobodys) = (HashMap::new(), Vec::new());
+        self.held = Held { participants: self.people.len() as u64, ..Held::default() };
+        for (name, identifiers) in files::identities(&self.identities)? {
+            if let Some(&person) = by_name.get(name.as_str()) {
+                found.insert(identifiers, person);
+                self.held.identities += 1;
+            } else {
+                nobodys.push(name);
+            }
+        }
+        self.by_identifiers = found;
+        self.held.answers = self.people.iter().map(|person| person.choices.len() as u64).sum();
+        Ok(nobodys)
+    }
+
+    /// Deals one of the forms with the fewest participants to somebody new, which one by chance, so that forms do not tell
+    /// who came when; whom a panel has sent before gets the same form again.
+    pub(crate) fn begin(&mut self, given: Identifiers, now_ms: i64) -> Result<Dealt, Refusal> {
+        given.check()?;
+        // Without a session of the panel's own, two people could be taken for one.
+        let known = given.prolific_pid.is_some() && given.session_id.is_some();
+        if let Some(&person) = self.by_identifiers.get(&given).filter(|_| known) {
+            let token = self.by_token.iter().find(|(_, of)| **of == person).map(|(token, _)| token.clone());
+            return Ok(self.dealt(person, token.expect("everybody has one")));
+        }
+        if let Some(newcomer) = self.waiting.iter().find(|one| known && one.identifiers == given) {
+            return Ok(self.welcome(newcomer));
+        }
+        if self.people.len() >= MOST {
+            return Err(Refusal::Full);
+        }
+        let mut load = vec![0_usize; self.forms.len()];
+        let mut count = |form: usize, last_ms: i64, finished: bool| {
+            load[form - 1] += usize::from(finished || now_ms - last_ms < GIVEN_UP_MS);
+        };
+        self.people.iter().for_each(|person| count(person.form, person.last_ms, person.finished));
+        self.waiting.iter().for_each(|newcomer| count(newcomer.form, newcomer.since_ms, false));
+        let least = load.iter().min().copied().unwrap_or_default();
+        let free: Vec<usize> = (1..=load.len()).filter(|form| load[form - 1] == least).collect();
+        let newcomer = Newcomer {
+            name: random_hex(8),
+            token: random_hex(16),
+            form: free[random_index(free.len())],
+            identifiers: given,
+            since_ms: now_ms,
+        };
+        let dealt = self.welcome(&newcomer);
+        self.waiting.add(newcomer)?;
+        Ok(dealt)
+    }
+
+    /// Where somebody stands.
+    pub(crate) fn state(&self, token: &str) -> Result<Dealt, Refusal> {
+        match self.by_token.get(token) {
+            Some(&person) => Ok(self.dealt(person, token.into())),
+            None => self.waiting.by_token(token).map(|one| self.welcome(one)).ok_or(Refusal::UnknownToken),
+        }
+    }
+
+    /// Somebody who waits; whoever is written down is found without looking through them.
+    fn newcomer(&self, token: &str) -> Option<&Newcomer> {
+        if self.by_token.contains_key(token) { None } else { self.waiting.by_token(token) }
+    }
+
+    fn welcome(&self, newcomer: &Newcomer) -> Dealt {
+        let Newcomer { name, token, form, .. } = newcomer;
+        let form = self.forms[form - 1].clone();
+        Dealt { participant: name.clone(), token: token.clone(), form, answered: 0 }
+    }
+
+    /// Writes down somebody who waits: a first answer has come.
+    fn write_down(&mut self, token: &str) -> rusqlite::Result<()> {
+        let Some(newcomer) = self.waiting.take(token) else { return Ok(()) };
+        let Newcomer { name, token, form, identifiers, since_ms } = newcomer;
+        if !identifiers.is_empty() {
+            // One transaction, and one sync, for all of a batch.
+            if !self.answers.is_autocommit() && self.identities.is_autocommit() {
+                self.identities.execute_batch("BEGIN IMMEDIATE")?;
+            }
+            // There already if it could not be removed after the answers' part of a batch failed.
+            let add = "INSERT OR REPLACE INTO identities VALUES (?1, ?2, ?3, ?4)";
+            let Identifiers { prolific_pid, study_id, session_id } = identifiers;
+            self.identities.execute(add, params![name, prolific_pid, study_id, session_id])?;
+        }
+        self.answers.execute(
+            "INSERT INTO participants (name, token, form, started_ms, last_ms) VALUES (?1, ?2, ?3, ?4, ?4)",
+            params![name, token, *form as i64, since_ms],
+        )?;
+        let place = self.people.len();
+        self.people.push(Person {
+            number: self.answers.last_insert_rowid(),
+            name: name.clone(),
+            form: *form,
+            choices: Vec::new(),
+            last_ms: *since_ms,
+            finished: false,
+        });
+        self.by_token.insert(token.clone(), place);
+        self.held.participants += 1;
+        if !identifiers.is_empty() {
+            self.held.identities += 1;
+            self.by_identifiers.insert(identifiers.clone(), place);
+        }
+        Ok(())
+    }
+
+    fn dealt(&self, person: usize, token: String) -> Dealt {
+        let Person { name, form, choices, .. } = &self.people[person];
+        let (form, answered) = (self.forms[form - 1].clone(), choices.len() as u32);
+        Dealt { participant: name.clone(), token, form, answered }
+    }
+
+    /// Keeps an answer; one that is kept already is kept.
+    ///
+    /// # Errors
+    /// If SQLite fails.
+    pub(crate) fn answer(
+        &mut self,
+        token: &str,
+        answer: &Answer,
+        now_ms: i64,
+    ) -> rusqlite::Result<Result<(), Refusal>> {
+        if let Some(newcomer) = self.newcomer(token) {
+            if let Err(refusal) = check(answer, &self.forms[newcomer.form - 1], 0) {
+                return Ok(Err(refusal));
+            }
+            if self.people.len() >= MOST {
+                return Ok(Err(Refusal::Full));
+            }
+            self.write_down(token)?;
+        }
+        let Some(&person) = self.by_token.get(token) else { return Ok(Err(Refusal::UnknownToken)) };
+        let person = &mut self.people[person];
+        let form = &self.forms[person.form - 1];
+        if let Err(refusal) = check(answer, form, person.choices.len() as u32) {
+            return Ok(Err(refusal));
+        }
+        let place = (answer.order - first_place(form)) as usize;
+        if let Some(&kept) = person.choices.get(place) {
+            return Ok(if kept == answer.choice { Ok(()) } else { Err(Refusal::Answered(answer.order)) });
+        }
+        let values =
+            params![person.number, answer.order, answer.stimulus, answer.choice.code(), answer.rt_ms, now_ms];
+        self.answers
+            .prepare_cached("INSERT INTO answers VALUES (?1, ?2, ?3, ?4, ?5, ?6)")?
+            .execute(values)?;
+        if let Some(screen) = &answer.screen {
+            let said = serde_json::to_string(screen).expect("numbers and words alone");
+            self.answers.prepare_cached("INSERT INTO screens VALUES (?1, ?2, ?3)")?.execute(params![
+                person.number,
+                answer.order,
+                said
+            ])?;
+        }
+        let touch = "UPDATE participants SET last_ms = ?2 WHERE number = ?1";
+        self.answers.prepare_cached(touch)?.execute(params![person.number, now_ms])?;
+        person.choices.push(answer.choice);
+        person.last_ms = now_ms;
+        self.held.answers += 1;
+        Ok(Ok(()))
+    }
+
+    /// Notes that everything has been answered.
+    ///
+    /// # Errors
+    /// If SQLite fails.
+    pub(crate) fn finish(&mut self, token: &str, now_ms: i64) -> rusqlite::Result<Result<(), Refusal>> {
+        if let Some(newcomer) = self.newcomer(token) {
+            return Ok(Err(Refusal::Unfinished(self.forms[newcomer.form - 1].questions.len() as u32)));
+        }
+        let Some(&person) = self.by_token.get(token) else { return Ok(Err(Refusal::UnknownToken)) };
+        let person = &mut self.people[person];
+        let left = self.forms[person.form - 1].questions.len() - person.choices.len();
+        if left > 0 {
+            return Ok(Err(Refusal::Unfinished(left as u32)));
+        }
+        if !person.finished {
+            let finish = "UPDATE participants SET finished_ms = ?2, last_ms = ?2 WHERE number = ?1";
+            self.answers.execute(finish, params![person.number, now_ms])?;
+            person.finished = true;
+        }
+        Ok(Ok(()))
+    }
+
+    /// Every answer, participant by participant in the order in which they began to answer.
+    ///
+    /// # Errors
+    /// If SQLite fails.
+    pub fn given(&self) -> rusqlite::Result<Vec<Given>> {
+        files::given(&self.answers)
+    }
+
+    /// Names of participants and what a panel says of them, in the order of names.
+    ///
+    /// # Errors
+    /// If SQLite fails.
+    pub fn identities(&self) -> rusqlite::Result<Vec<(String, Identifiers)>> {
+        files::identities(&self.identities)
+    }
+}
+
+/// Whether there is as much as there was; an error where there is less and the loss is not accepted.
+fn compare(folder: &Path, found: Held, sealed: Sealed, loss: Loss) -> Result<bool, JournalError> {
+    let path = folder.into();
+    match sealed {
+        Sealed::Held(before) if found.lacks(&before) && loss == Loss::Refuse => {
+            Err(JournalError::Lost { path, found, before })
+        }
+        Sealed::Damaged if loss == Loss::Refuse => Err(JournalError::Damaged { path, found }),
+        Sealed::Held(before) => Ok(!found.lacks(&before)),
+        Sealed::Nothing | Sealed::Damaged => Ok(false),
+    }
+}
+
+/// So many random bytes, 16 at most, as text: names and tokens that nobody can guess.
+///
+/// # Panics
+/// If the system has no random numbers, in which case nothing here is safe.
+pub fn random_hex(bytes: usize) -> String {
+    let mut buffer = [0; 16];
+    getrandom::fill(&mut buffer[..bytes]).expect("the system gives random numbers");
+    buffer[..bytes].iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// One of so many, by chance.
+fn random_index(count: usize) -> usize {
+    let number = getrandom::u64().expect("the system gives random numbers");
+    // Some are likelier than others by less than one in 10^14.
+    (number % count as u64) as usize
+}

@@ -1,0 +1,174 @@
+//! What participants send, and when it is refused.
+
+use crate::screen::{LONGEST_MS, Screen};
+use isostudy_design::forms::FormEntry;
+use serde::{Deserialize, Serialize};
+
+/// Longest identifier of a panel.
+const LONGEST_ID: usize = 64;
+
+/// What was chosen, as shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Choice {
+    /// The left half.
+    L,
+    /// No preference.
+    #[serde(rename = "NP")]
+    Np,
+    /// The right half.
+    R,
+}
+
+impl Choice {
+    /// `L`, `NP` or `R`.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::L => "L",
+            Self::Np => "NP",
+            Self::R => "R",
+        }
+    }
+
+    /// The choice with this code.
+    pub fn of_code(code: &str) -> Option<Self> {
+        [Self::L, Self::Np, Self::R].into_iter().find(|choice| choice.code() == code)
+    }
+}
+
+/// One answer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// Place in the form, from 1, training included.
+    pub order: u32,
+    /// Code name of the pair that was shown.
+    pub stimulus: String,
+    /// What was chosen, as shown.
+    pub choice: Choice,
+    /// Milliseconds from the moment the pair was on the screen.
+    pub rt_ms: u32,
+    /// On what it was given, where that was recorded.
+    pub screen: Option<Screen>,
+}
+
+/// Why something that was sent is refused; nothing has changed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Refusal {
+    /// No participant has this token.
+    #[error("this questionnaire is not known here; reload the page")]
+    UnknownToken,
+    /// The form has no such question.
+    #[error("place {0} is no question of this form")]
+    UnknownPlace(u32),
+    /// The form shows something else there.
+    #[error("place {0} of this form shows another pair")]
+    OtherStimulus(u32),
+    /// A place before it has no answer yet.
+    #[error("place {given} cannot be answered before place {next}")]
+    OutOfOrder {
+        /// The place that was answered.
+        given: u32,
+        /// The first without an answer.
+        next: u32,
+    },
+    /// There is another answer already.
+    #[error("place {0} has been answered otherwise")]
+    Answered(u32),
+    /// Questions are left.
+    #[error("{0} questions have no answer yet")]
+    Unfinished(u32),
+    /// More than a day.
+    #[error("rt_ms: at most {LONGEST_MS}")]
+    TooLong,
+    /// An identifier with other characters or too many.
+    #[error("{0}: 1 to {LONGEST_ID} letters, digits, hyphens or underscores")]
+    BadIdentifier(&'static str),
+    /// As many as can be.
+    #[error("the study is full")]
+    Full,
+    /// As many as can be have begun and not answered.
+    #[error("too many people have begun and not answered yet; try again in some minutes")]
+    Crowded,
+}
+
+impl Refusal {
+    /// Its name, for the page.
+    pub fn id(&self) -> &'static str {
+        match self {
+            Self::UnknownToken => "unknown-token",
+            Self::UnknownPlace(_) => "unknown-place",
+            Self::OtherStimulus(_) => "other-stimulus",
+            Self::OutOfOrder { .. } => "out-of-order",
+            Self::Answered(_) => "answered",
+            Self::Unfinished(_) => "unfinished",
+            Self::TooLong => "too-long",
+            Self::BadIdentifier(_) => "bad-identifier",
+            Self::Full => "full",
+            Self::Crowded => "crowded",
+        }
+    }
+}
+
+/// The first place of a form that is a question, from 1.
+pub fn first_place(form: &FormEntry) -> u32 {
+    form.training.len() as u32 + 1
+}
+
+/// Whether an answer fits a form of which this many questions have been answered; an answer to one of those is judged by the
+/// caller, who knows it.
+///
+/// # Errors
+/// [`Refusal`].
+pub fn check(answer: &Answer, form: &FormEntry, answered: u32) -> Result<(), Refusal> {
+    let first = first_place(form);
+    let question = answer.order.checked_sub(first).and_then(|place| form.questions.get(place as usize));
+    let shown = question.ok_or(Refusal::UnknownPlace(answer.order))?;
+    if *shown != answer.stimulus {
+        return Err(Refusal::OtherStimulus(answer.order));
+    }
+    if answer.rt_ms > LONGEST_MS {
+        return Err(Refusal::TooLong);
+    }
+    let next = first + answered;
+    if answer.order > next { Err(Refusal::OutOfOrder { given: answer.order, next }) } else { Ok(()) }
+}
+
+/// What a panel such as Prolific adds to the address of a study.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Identifiers {
+    /// `PROLIFIC_PID`.
+    pub prolific_pid: Option<String>,
+    /// `STUDY_ID`.
+    pub study_id: Option<String>,
+    /// `SESSION_ID`.
+    pub session_id: Option<String>,
+}
+
+impl Identifiers {
+    /// Whether there are any.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Name and value of each.
+    pub fn named(&self) -> [(&'static str, Option<&str>); 3] {
+        [
+            ("PROLIFIC_PID", self.prolific_pid.as_deref()),
+            ("STUDY_ID", self.study_id.as_deref()),
+            ("SESSION_ID", self.session_id.as_deref()),
+        ]
+    }
+
+    /// # Errors
+    /// If one is empty, too long, or holds anything but letters, digits, hyphens and underscores.
+    pub fn check(&self) -> Result<(), Refusal> {
+        let plain = |text: &str| {
+            (1..=LONGEST_ID).contains(&text.len())
+                && text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-' || b == b'_')
+        };
+        match self.named().into_iter().find(|(_, value)| value.is_some_and(|text| !plain(text))) {
+            Some((name, _)) => Err(Refusal::BadIdentifier(name)),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,425 @@
+//! Two programs that were timed in turn: is the new one slower?
+//!
+//! For each configuration and pair of processes the median, over rounds, of the logarithm of new over old: what slows a moment, a round
+//! or a process pair's hour down is in both. The means of these medians over pairs of processes have t intervals, since what chance
+//! gives a process stays with it and is in all of its rounds alike. Half of the 5 % that intervals may miss is the mean's over all
+//! configurations, the other half is shared by the configurations (Bonferroni).
+
+use super::series::{Verdict, middle};
+use isostudy_design::ConfigurationId;
+use isostudy_design::record::{AbPair, AbRun, BenchSample, Failure};
+use isostudy_statistics::interval::Interval;
+use isostudy_table::digits::counted;
+use isostudy_table::{Cell, Table};
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::collections::BTreeMap;
+
+/// The version of [`AbComparison`] as JSON.
+pub const AB_SCHEMA: u32 = 1;
+/// The chance that any interval of a quantity misses.
+const MISSES: f64 = 0.05;
+/// How many verdicts are written out in short.
+const LISTED: usize = 4;
+
+/// What of an extraction is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Quantity {
+    /// The total time.
+    Time,
+    /// CPU time over all threads.
+    CpuTime,
+    /// Instructions retired.
+    Instructions,
+}
+
+impl Quantity {
+    const ALL: [Self; 3] = [Self::Time, Self::CpuTime, Self::Instructions];
+
+    /// The word for it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Time => "total time",
+            Self::CpuTime => "CPU time",
+            Self::Instructions => "instructions",
+        }
+    }
+
+    fn of(self, sample: &BenchSample) -> Option<f64> {
+        match self {
+            Self::Time => Some(sample.total_s),
+            Self::CpuTime => sample.counters.cpu_s,
+            Self::Instructions => sample.counters.instructions.map(|count| count as f64),
+        }
+    }
+}
+
+/// What a run of two programs says.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AbComparison {
+    /// Version of this layout; [`AB_SCHEMA`].
+    pub schema: u32,
+    /// Whether both files are the same, byte for byte.
+    pub same_program: bool,
+    /// Time first, and first of each quantity that of all configurations together.
+    pub rows: Vec<AbRow>,
+    /// Configurations that were left out, and what was said of each.
+    pub failed: Vec<Failure>,
+}
+
+/// One quantity of one configuration, or of all together.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AbRow {
+    /// What is compared.
+    pub quantity: Quantity,
+    /// Of which configuration; `None` for the geometric mean over all.
+    pub id: Option<ConfigurationId>,
+    /// Rounds in which both measured it.
+    pub pairs: usize,
+    /// New over old.
+    pub ratio: f64,
+    /// Where it may lie, for all rows of the quantity together.
+    pub interval: Option<Interval>,
+    /// The smallest ratio above 1 that would have been told, with an interval as wide as this one.
+    pub smallest_detectable: Option<f64>,
+    /// What can be said of the new program.
+    pub verdict: Verdict,
+}
+
+/// Compares the programs of a run.
+pub fn ab(run: &AbRun) -> AbComparison {
+    AbComparison {
+        schema: AB_SCHEMA,
+        same_program: run.old.sha256 == run.new.sha256,
+        rows: Quantity::ALL.into_iter().flat_map(|quantity| rows(run, quantity)).collect(),
+        failed: run.failed.clone(),
+    }
+}
+
+/// None where some sample has not got the quantity, or it is 0.
+fn rows(run: &AbRun, quantity: Quantity) -> Vec<AbRow> {
+    let log = |pair: &AbPair| {
+        let (old, new) = (quantity.of(&pair.old)?, quantity.of(&pair.new)?);
+        (old > 0.0 && new > 0.0).then(|| (new / old).ln())
+    };
+    let mut logs = BTreeMap::<&ConfigurationId, BTreeMap<u32, Vec<f64>>>::new();
+    for pair in &run.pairs {
+        let Some(log) = log(pair) else { return Vec::new() };
+        logs.entry(&pair.old.id).or_default().entry(pair.old.invocation).or_default().push(log);
+    }
+    let chance = MISSES / 2.0 / logs.len().max(1) as f64;
+    let medians: Vec<(&ConfigurationId, BTreeMap<u32, f64>)> = logs
+        .iter()
+        .map(|(id, processes)| (*id, processes.iter().map(|(&at, logs)| (at, middle(logs))).collect()))
+        .collect();
+    let pairs = |id: &ConfigurationId| logs[id].values().map(Vec::len).sum();
+    let each = medians.iter().map(|(id, medians)| {
+        let values: Vec<f64> = medians.values().copied().collect();
+        row(quantity, Some((*id).clone()), pairs(id), &values, chance)
+    });
+    // A pair of processes counts where it has every configuration, as each has.
+    let mut sums = BTreeMap::<u32, Vec<f64>>::new();
+    medians
+        .iter()
+        .flat_map(|(_, medians)| medians)
+        .for_each(|(&at, &log)| sums.entry(at).or_default().push(log));
+    let means: Vec<f64> = sums
+        .values()
+        .filter(|logs| logs.len() == medians.len())
+        .map(|logs| logs.iter().sum::<f64>() / logs.len() as f64)
+        .collect();
+    if means.is_empty() {
+        return Vec::new();
+    }
+    let all = row(quantity, None, run.pairs.len(), &means, MISSES / 2.0);
+    [all].into_iter().chain(each).collect()
+}
+
+fn row(quantity: Quantity, id: Option<ConfigurationId>, pairs: usize, logs: &[f64], chance: f64) -> AbRow {
+    let n = logs.len() as f64;
+    let mean = logs.iter().sum::<f64>() / n;
+    let half = (logs.len() > 1).then(|| {
+        let variance = logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        let quantile =
+            StudentsT::new(0.0, 1.0, n - 1.0).expect("degrees > 0").inverse_cdf(1.0 - chance / 2.0);
+        quantile * (variance / n).sqrt()
+    });
+    let verdict = match half {
+        Some(half) if mean - half > 0.0 => Verdict::Slower,
+        Some(half) if mean + half < 0.0 => Verdict::Faster,
+        _ => Verdict::CannotSay,
+    };
+    AbRow {
+        quantity,
+        id,
+        pairs,
+        ratio: mean.exp(),
+        interval: half.map(|half| Interval { low: (mean - half).exp(), high: (mean + half).exp() }),
+        smallest_detectable: half.map(f64::exp),
+        verdict,
+    }
+}
+
+impl AbComparison {
+    /// Of one quantity, all together first.
+    pub fn of(&self, quantity: Quantity) -> impl Iterator<Item = &AbRow> {
+        self.rows.iter().filter(move |row| row.quantity == quantity)
+    }
+
+    /// What is more by more than a share: all together, and of each configuration.
+    pub fn regressions(&self, quantity: Quantity, relative: f64) -> Vec<&AbRow> {
+        let beyond = |row: &&AbRow| row.verdict == Verdict::Slower && row.ratio > 1.0 + relative;
+        self.of(quantity).filter(beyond).collect()
+    }
+
+    /// Whether growth of all configurations together by a share would have been told.
+    pub fn would_tell(&self, quantity: Quantity, share: f64) -> bool {
+        let all = self.of(quantity).next().and_then(|row| row.smallest_detectable);
+        all.is_some_and(|ratio| ratio <= 1.0 + share)
+    }
+
+    /// What was told, and what could have been: ten lines at most.
+    pub fn brief(&self, run: &AbRun) -> Vec<String> {
+        let count = self.of(Quantity::Time).count().saturating_sub(1);
+        let mut lines = vec![format!(
+            "NEW against OLD: {} in {} pairs of processes, {} pairs of samples.",
+            counted(count, "configuration"),
+            run.processes,
+            run.pairs.len()
+        )];
+        if self.same_program {
+            lines.push("NEW and OLD are the same program.".into());
+        }
+        for quantity in Quantity::ALL {
+            let Some(all) = self.of(quantity).next() else { continue };
+            lines.push(format!("All together, {}: {}.", quantity.label(), told(all)));
+            for (verdict, word) in [(Verdict::Slower, "Slower"), (Verdict::Faster, "Faster")] {
+                let found: Vec<String> = self
+                    .of(quantity)
+                    .filter(|row| row.verdict == verdict)
+                    .filter_map(|row| Some(format!("{} {}", row.id.as_ref()?, change(row.ratio))))
+                    .collect();
+                if quantity == Quantity::Time && !found.is_empty() {
+                    let more = found.len().saturating_sub(LISTED);
+                    let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
+                    lines.push(format!("{word}: {}{rest}.", found[..found.len() - more].join(", ")));
+                }
+            }
+        }
+        let tellable = self.of(Quantity::Time).filter(|row| row.id.is_some());
+        let mut each: Vec<f64> = tellable.filter_map(|row| row.smallest_detectable).collect();
+        each.sort_unstable_by(f64::total_cmp);
+        if let (Some(least), Some(most)) = (each.first(), each.last()) {
+            let [least, most] = [least, most].map(|ratio| 100.0 * (ratio - 1.0));
+            lines.push(format!(
+                "Of one configuration, from {least:.1} to {most:.1} % on would have been told."
+            ));
+        }
+        if !self.failed.is_empty() {
+            let ids: Vec<String> = self.failed.iter().map(|failure| failure.id.to_string()).collect();
+            let more = ids.len().saturating_sub(LISTED);
+            let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
+            lines.push(format!("Failed and left out: {}{rest}.", ids[..ids.len() - more].join(", ")));
+        }
+        lines
+    }
+
+    /// Every row.
+    pub fn table(&self) -> Table {
+        let columns = [
+            ("quantity", "Quantity"),
+            ("id", "Id"),
+            ("pairs", "Pairs"),
+            ("ratio", "New / old"),
+            ("low", "from"),
+            ("high", "to"),
+            ("smallest_detectable", "Smallest detectable"),
+            ("verdict", "New is"),
+        ];
+        let mut table = Table::new("bench_ab", "New against old", &columns);
+        for row in &self.rows {
+            let end = |end: fn(Interval) -> f64| Cell::number(row.interval.map(end), 3);
+            table.push(vec![
+                Cell::text(row.quantity.label()),
+                row.id.as_ref().map_or_else(|| Cell::text("all"), Cell::text),
+                Cell::count(row.pairs as u64),
+                Cell::Number(row.ratio, 3),
+                end(|i| i.low),
+                end(|i| i.high),
+                Cell::number(row.smallest_detectable, 3),
+                Cell::text(row.verdict.label()),
+            ]);
+        }
+        let said = |failure: &Failure| format!("{} failed and is left out: {}", failure.id, failure.reason);
+        table.notes.extend(self.failed.iter().map(said));
+        table
+    }
+}
+
+fn told(row: &AbRow) -> String {
+    let detectable = row.smallest_detectable.map_or_else(
+        || "one pair of processes tells nothing".to_owned(),
+        |ratio| format!("{:.1} % would have been told", 100.0 * (ratio - 1.0)),
+    );
+    match row.verdict {
+        Verdict::CannotSay => format!("cannot say; {detectable}"),
+        verdict => format!("{} by {}; {detectable}", verdict.label(), change(row.ratio)),
+    }
+}
+
+fn change(ratio: f64) -> String {
+    format!("{:+.1} %", 100.0 * (ratio - 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::simulation::sample;
+    use super::*;
+    use crate::fixture;
+    use isostudy_design::record::AbProgram;
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+    use std::f64::consts::TAU;
+
+    /// A run with pairs that `log` makes of configuration, pair of processes and round.
+    fn run(ids: &[&str], processes: u32, rounds: u32, mut log: impl FnMut(usize, u32, u32) -> f64) -> AbRun {
+        let template = fixture::bench(&fixture::study());
+        let mut pairs = Vec::new();
+        for invocation in 0..processes {
+            for round in 0..rounds {
+                for (place, id) in ids.iter().enumerate() {
+                    let id = id.parse().unwrap();
+                    let of = |total| sample(&id, invocation, round, place as u32, total, 0.001);
+                    let new = of(0.01 * log(place, invocation, round).exp());
+                    pairs.push(AbPair { new_first: false, old: of(0.01), new });
+                }
+            }
+        }
+        let program = |sha256: &str| AbProgram { path: "isostudy".into(), sha256: sha256.into() };
+        AbRun {
+            schema: AbRun::SCHEMA,
+            study: "made up".into(),
+            workloads: Vec::new(),
+            old: program("a"),
+            new: program("b"),
+            warmup: 1,
+            processes,
+            seed: 1,
+            threads: 1,
+            pinned: None,
+            machine: template.machine,
+            pairs,
+            load: Vec::new(),
+            failed: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn what_was_left_out_is_named_within_ten_lines() {
+        let ids = ["ss_bi", "ss_su"];
+        let mut made = run(&ids, 4, 3, |place, _, _| if place == 0 { 0.1 } else { -0.1 });
+        for (id, why) in
+            [("as_bi", "asked by OLD: no"), ("as_su", "x"), ("bs_bi", "x"), ("bs_su", "x"), ("bs_bu", "x")]
+        {
+            made.failed.push(Failure { id: id.parse().unwrap(), reason: why.into() });
+        }
+        for pair in &mut made.pairs {
+            for sample in [&mut pair.old, &mut pair.new] {
+                (sample.counters.cpu_s, sample.counters.instructions) = (Some(0.01), Some(1_000_000));
+            }
+        }
+        made.new.sha256 = made.old.sha256.clone();
+        let found = ab(&made);
+        let lines = found.brief(&made);
+        assert!(lines.len() <= 10, "{lines:?}");
+        assert_eq!(lines.last().unwrap(), "Failed and left out: as_bi, as_su, bs_bi, bs_su and 1 more.");
+        assert_eq!(found.table().notes[0], "as_bi failed and is left out: asked by OLD: no");
+    }
+
+    /// By hand: medians of three processes are .01, .02 and .06, their mean .03, their standard deviation sqrt(.0007), and R's
+    /// `qt(0.9875, 2)` is 6.205347: the half width is 6.205347 * sqrt(.0007 / 3).
+    #[test]
+    fn the_interval_is_that_of_the_processes_medians() {
+        let medians = [0.01, 0.02, 0.06];
+        let made =
+            run(&["ss_bi"], 3, 3, |_, at, round| medians[at as usize] + [0.0, -0.5, 0.5][round as usize]);
+        let found = ab(&made);
+        assert_eq!(found.rows.len(), 2, "neither CPU time nor instructions were counted");
+        for row in &found.rows {
+            let interval = row.interval.unwrap();
+            let half = 6.205_346_816_570_732 * (0.0007_f64 / 3.0).sqrt();
+            assert!((row.ratio.ln() - 0.03).abs() < 1e-12, "{row:?}");
+            assert!(
+                (interval.high.ln() - 0.03 - half).abs() < 1e-9
+                    && (interval.low.ln() - 0.03 + half).abs() < 1e-9
+            );
+            assert_eq!(row.verdict, Verdict::CannotSay);
+            assert!((row.smallest_detectable.unwrap().ln() - half).abs() < 1e-9);
+        }
+        assert!(!found.would_tell(Quantity::Time, 0.05) && found.would_tell(Quantity::Time, 0.2));
+    }
+
+    #[test]
+    fn what_is_slower_by_both_is_a_regression() {
+        let tremble = |at: u32| 0.001 * f64::from(at % 3);
+        let made =
+            run(&["ss_bi", "ss_su"], 6, 3, |place, at, _| tremble(at) + if place == 0 { 0.05 } else { 0.0 });
+        let found = ab(&made);
+        let slower: Vec<_> =
+            found.regressions(Quantity::Time, 0.02).iter().map(|row| row.id.clone()).collect();
+        assert_eq!(slower, [None, Some("ss_bi".parse().unwrap())]);
+        assert_eq!(found.regressions(Quantity::Time, 0.04).len(), 1, "half of it is all together's");
+        let lines = found.brief(&made);
+        assert!(
+            lines.len() <= 10 && lines[1].starts_with("All together, total time: slower by +2.6 %"),
+            "{lines:?}"
+        );
+        let better = ab(&run(&["ss_bi"], 6, 3, |_, at, _| tremble(at) - 0.05));
+        assert!(
+            better.regressions(Quantity::Time, 0.0).is_empty() && better.rows[0].verdict == Verdict::Faster
+        );
+    }
+
+    #[test]
+    fn a_quantity_of_its_own_is_there_where_all_samples_have_it() {
+        let mut made = run(&["ss_bi"], 4, 3, |_, _, _| 0.0);
+        for (pair, step) in made.pairs.iter_mut().zip(0_u64..) {
+            pair.old.counters.instructions = Some(1_000_000);
+            pair.new.counters.instructions = Some(1_010_000 + step % 2);
+        }
+        let found = ab(&made);
+        let all = found.of(Quantity::Instructions).next().unwrap();
+        assert_eq!(all.verdict, Verdict::Slower, "1 % more instructions, where time says nothing");
+        assert_eq!(found.of(Quantity::Time).next().unwrap().verdict, Verdict::CannotSay);
+        assert!(
+            found.regressions(Quantity::Time, 0.0).is_empty()
+                && !found.regressions(Quantity::Instructions, 0.005).is_empty()
+        );
+        made.pairs[3].new.counters.instructions = None;
+        assert_eq!(ab(&made).of(Quantity::Instructions).count(), 0);
+    }
+
+    /// Samples that scatter by 10 %, processes by 1 %: of 200 runs of one build at most one in twenty has a verdict.
+    #[test]
+    fn one_build_is_not_told_from_itself() {
+        let mut stream = Pcg64::seed_from_u64(5);
+        let mut normal = move || {
+            let [a, b]: [f64; 2] = [stream.random_range(f64::EPSILON..1.0), stream.random_range(0.0..1.0)];
+            (-2.0 * a.ln()).sqrt() * (TAU * b).cos()
+        };
+        let mut told = [0; 2];
+        for slowdown in [0.0, 0.05] {
+            for _ in 0..200 {
+                let process: Vec<f64> = (0..32).map(|_| 0.01 * normal()).collect();
+                let made = run(&["ss_bi", "ss_su"], 16, 15, |place, at, _| {
+                    slowdown + process[2 * at as usize + place] + 0.1 * normal()
+                });
+                told[usize::from(slowdown > 0.0)] +=
+                    usize::from(!ab(&made).regressions(Quantity::Time, 0.0).is_empty());
+            }
+        }
+        assert!(told[0] <= 10, "{told:?}");
+        assert!(told[1] >= 190, "5 % is found: {told:?}");
+    }
+}

@@ -1,0 +1,60 @@
+//! Files of answers: those that a study names, and those without a study.
+
+use crate::input;
+use crate::terminal::counted;
+use anyhow::{Context, Result, bail};
+use isostudy_design::Study;
+use isostudy_design::config::ResponsesSection;
+use isostudy_responses::{Kind, Mapping, Plan, Reading, Report};
+use std::path::Path;
+
+/// The answers that a study names, if it names any.
+///
+/// # Errors
+/// If they cannot be read for this study.
+pub(crate) fn of_study(study: &Study) -> Result<Option<Reading>> {
+    let Some(path) = &study.responses else { return Ok(None) };
+    let section = study.file.responses.clone().unwrap_or_default();
+    let mapping = Mapping::of(&section).with_context(|| study.path.display().to_string())?;
+    if !mapping.pairs.is_empty() {
+        bail!("the mapping has `pairs`; the questions are the comparisons of {}", study.path.display());
+    }
+    if section.reference.is_some() {
+        bail!(
+            "{}: responses.reference is of answers without a study alone; a study names its reference as \
+             analysis.reference",
+            study.path.display()
+        );
+    }
+    input::regular(path)?;
+    Ok(Some(isostudy_responses::read(path, Some(&Plan::of_study(study)), &mapping)?))
+}
+
+/// Answers without a study.
+///
+/// # Errors
+/// If they cannot be read.
+pub(crate) fn without_study(path: &Path, section: &ResponsesSection) -> Result<(Reading, Option<Plan>)> {
+    let mapping = Mapping::of(section)?;
+    let plan = match &mapping.pairs[..] {
+        [] => None,
+        pairs => {
+            let plan = Plan::of_pairs(pairs);
+            Some(plan.map_err(|id| anyhow::anyhow!("pairs: question {id} is declared twice"))?)
+        }
+    };
+    input::regular(path)?;
+    Ok((isostudy_responses::read(path, plan.as_ref(), &mapping)?, plan))
+}
+
+/// Says on standard error how a file was read, and what was not taken as it stands.
+pub(crate) fn announce(report: &Report) {
+    const SHOWN: usize = 20;
+    let said = report.to_string();
+    said.lines().take(1 + SHOWN).for_each(|line| tell!("{line}"));
+    let (repaired, rejected) = (report.count(Kind::Repaired), report.count(Kind::Rejected));
+    if !report.remarks.is_empty() {
+        let all = counted(report.remarks.len() as u64, "remark");
+        tell!("{}: {all}: {repaired} repaired, {rejected} rejected", report.file.display());
+    }
+}

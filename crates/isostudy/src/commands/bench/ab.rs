@@ -1,0 +1,148 @@
+//! `isostudy bench ab`: two builds in the same rounds.
+
+use super::compare::share;
+use crate::commands::study_run::{Run, Selection, with_selection};
+use crate::outcome::Outcome;
+use crate::pipeline::AbChoice;
+use crate::terminal::say;
+use anyhow::{Context, Result, bail};
+use clap::{Args, ValueEnum};
+use isostudy_design::record::AbRun;
+use isostudy_timing::{AbComparison, Quantity};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The program that the other is compared with: an isostudy of an earlier commit
+    old: PathBuf,
+    /// The program that is judged
+    new: PathBuf,
+    #[command(flatten)]
+    run: Run,
+    /// Measure this configuration alone, such as ss_bi; may be given several times
+    #[arg(long, value_name = "ID")]
+    only: Vec<String>,
+    /// Measure for so many seconds
+    #[arg(long, default_value_t = 170, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=86_400))]
+    seconds: u32,
+    /// Measure in so many pairs of processes; the more there are, the less chance gives either program
+    #[arg(long, default_value_t = 16, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    processes: u32,
+    /// What decides. CPU time and instructions hardly change beside other work, but do not show threads that wait
+    #[arg(long, default_value = "time")]
+    by: By,
+    /// Slower is a regression beyond this share: 0.01, or 1%
+    #[arg(long, default_value = "0.01", value_name = "SHARE", value_parser = share)]
+    relative: f64,
+    /// Exit 3 if growth of all totals together by this share would not have been told
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    must_tell: Option<f64>,
+    /// Print every row as a table, in place of ten lines
+    #[arg(long)]
+    all: bool,
+    /// Print every row in this format
+    #[arg(long)]
+    format: Option<Format>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum By {
+    Time,
+    CpuTime,
+    Instructions,
+}
+
+impl From<By> for Quantity {
+    fn from(by: By) -> Self {
+        match by {
+            By::Time => Self::Time,
+            By::CpuTime => Self::CpuTime,
+            By::Instructions => Self::Instructions,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Markdown,
+    Csv,
+    Json,
+}
+
+/// What a program reads.
+#[derive(Serialize)]
+struct Record<'a> {
+    exit_status: u8,
+    by: Quantity,
+    relative: f64,
+    must_tell: Option<f64>,
+    regressions: Vec<&'a isostudy_timing::AbRow>,
+    #[serde(flatten)]
+    comparison: &'a AbComparison,
+}
+
+/// Measures both, and says whether the new one is slower.
+///
+/// # Errors
+/// If a program or the study is wrong, or a measurement fails.
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let [old, new] = [&arguments.old, &arguments.new].map(|path| program(path));
+    let (old, new) = (old?, new?);
+    let selection = Selection { run: arguments.run.clone(), only: arguments.only.clone() };
+    let mut judged = Outcome::Done;
+    let done = with_selection(&selection, |pipeline, only, _| {
+        let choice = AbChoice {
+            old,
+            new,
+            only: only.to_vec(),
+            processes: arguments.processes,
+            seconds: f64::from(arguments.seconds),
+        };
+        let run = pipeline.ab(&choice)?;
+        judged = answer(arguments, &run)?;
+        Ok(())
+    })?;
+    Ok(if done == Outcome::Done { judged } else { done })
+}
+
+fn answer(arguments: &Arguments, run: &AbRun) -> Result<Outcome> {
+    let comparison = isostudy_timing::ab(run);
+    let by = Quantity::from(arguments.by);
+    if comparison.of(by).next().is_none() {
+        bail!("--by {}: not every sample has it, on this system or of these programs", by.label());
+    }
+    let regressions = comparison.regressions(by, arguments.relative);
+    let blind = arguments.must_tell.is_some_and(|share| !comparison.would_tell(by, share));
+    let outcome = match () {
+        () if !(regressions.is_empty() && run.failed.is_empty()) => Outcome::CheckFailed,
+        () if blind => Outcome::Blind,
+        () => Outcome::Done,
+    };
+    match arguments.format.or(arguments.all.then_some(Format::Markdown)) {
+        None => {
+            for line in comparison.brief(run) {
+                say(&line)?;
+            }
+        }
+        Some(Format::Markdown) => say(&comparison.table().to_markdown())?,
+        Some(Format::Csv) => say(&comparison.table().to_csv())?,
+        Some(Format::Json) => {
+            let record = Record {
+                exit_status: outcome.status(),
+                by,
+                relative: arguments.relative,
+                must_tell: arguments.must_tell,
+                regressions,
+                comparison: &comparison,
+            };
+            say(&serde_json::to_string_pretty(&record)?)?;
+        }
+    }
+    Ok(outcome)
+}
+
+/// A file, wherever it is started from.
+fn program(path: &Path) -> Result<PathBuf> {
+    std::fs::canonicalize(path).with_context(|| format!("cannot find the program {}", path.display()))
+}

@@ -1,0 +1,23 @@
+//! A study that work can begin on.
+
+use crate::{answer_files, fields, input, prepare, recipe};
+use anyhow::Result;
+use isostudy_design::Study;
+use std::path::Path;
+
+/// Reads and checks a study and everything it names: lattices and memory, mesh files, answers.
+///
+/// # Errors
+/// If something in it is wrong, or not there.
+pub(super) fn load(path: &Path) -> Result<Study> {
+    let study = input::study(path)?;
+    recipe::check(&study)?;
+    prepare::check(&study, isostudy_bench::read_machine().memory_bytes)?;
+    fields::check(&study)?;
+    if let Some(reading) =
+        answer_files::of_study(&study)?.filter(|reading| !reading.report.remarks.is_empty())
+    {
+        answer_files::announce(&reading.report);
+    }
+    Ok(study)
+}

@@ -1,0 +1,57 @@
+//! `isostudy collect`: what participants downloaded from the page, in one file of answers.
+
+use super::given_answers::{csv, participants};
+use super::study_forms::forms;
+use crate::outcome::Outcome;
+use crate::terminal::{counted, say};
+use crate::{input, store};
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use isostudy_serve::download;
+use isostudy_serve::export::{self, Given};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Study file whose bundle was answered
+    study: PathBuf,
+    /// Files that the page gave, CSV or JSON
+    #[arg(required = true)]
+    downloads: Vec<PathBuf>,
+    /// File to write, in the long format
+    #[arg(long, short, value_name = "FILE")]
+    out: PathBuf,
+}
+
+/// Joins the page's downloads with the key into one file that `analyse` reads.
+///
+/// # Errors
+/// If a file cannot be read or contradicts another, or the study is not the one that was answered.
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let study = input::study(&arguments.study)?;
+    let (file, key, _) = forms(&study)?;
+    let mut all: BTreeMap<(String, u32), Given> = BTreeMap::new();
+    let mut again = 0;
+    for path in &arguments.downloads {
+        let place = || path.display().to_string();
+        input::regular(path)?;
+        ensure!(
+            !input::is_same(path, &arguments.out),
+            "{}: is a download; it would be written over",
+            place()
+        );
+        let text = std::fs::read_to_string(path).with_context(place)?;
+        let given = download::read(&text, &file.study).with_context(place)?;
+        ensure!(!given.is_empty(), "{}: no answers in it", place());
+        export::lines(&given, &key).with_context(place)?;
+        again += download::add(&mut all, given).with_context(place)?;
+    }
+    let given: Vec<Given> = all.into_values().collect();
+    store::write_whole(&arguments.out, csv(&given, &key)?.as_bytes())?;
+    let repeated = if again > 0 { format!("; {again} came twice") } else { String::new() };
+    let people = counted(participants(&given) as u64, "participant");
+    tell!("{} of {people}{repeated}", counted(given.len() as u64, "answer"));
+    say(&arguments.out.display().to_string())?;
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,100 @@
+//! `isostudy design power`: how likely a study is to find a preference. It is simulated in `isostudy_analysis::power`.
+
+use super::forms_section;
+use crate::outcome::Outcome;
+use crate::terminal::progress::Step;
+use crate::terminal::say;
+use crate::{input, store};
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use isostudy_analysis::power::{Assumptions, power as simulated};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Study file with [forms], such as configs/balanced.toml
+    study: PathBuf,
+    /// Numbers of participants [default: from a sixth to twice of forms.participants]
+    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    participants: Vec<u32>,
+    /// Shares of decided answers for the first of two properties
+    #[arg(long, value_name = "SHARE,SHARE", value_delimiter = ',', value_parser = share, default_values_t = [0.6, 0.69, 0.77])]
+    shares: Vec<f64>,
+    /// Standard deviation between people, in logits
+    #[arg(long, value_name = "LOGITS", value_parser = deviation, default_value_t = 1.0)]
+    person_sd: f64,
+    /// Standard deviation between objects, in logits
+    #[arg(long, value_name = "LOGITS", value_parser = deviation, default_value_t = 0.5)]
+    object_sd: f64,
+    /// Davidson's tie parameter nu: two equal items tie with chance nu / (2 + nu)
+    #[arg(long, value_name = "NU", value_parser = deviation, default_value_t = 0.3)]
+    ties: f64,
+    /// Studies to simulate for each share
+    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
+    studies: u64,
+    /// Seed of the simulated studies; the same seed gives the same numbers on any number of threads
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+    /// Folder for tables and figure [default: results/<study id>-power]
+    #[arg(long, short, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if value > 0.0 && value < 1.0 { Ok(value) } else { Err("allowed: above 0 and below 1".into()) }
+}
+
+fn deviation(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.0..=100.0).contains(&value) { Ok(value) } else { Err("allowed: 0 to 100".into()) }
+}
+
+/// Prints and writes how likely the study is to find a preference.
+///
+/// # Errors
+/// If the study cannot be read or has no forms, or a file cannot be written.
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let study = input::study(&arguments.study)?;
+    let planned = forms_section(&study)?.participants as usize;
+    let mut participants: Vec<usize> = arguments.participants.iter().map(|&n| n as usize).collect();
+    if participants.is_empty() {
+        // In twelfths of the plan: from a sixth to twice.
+        participants = [2, 4, 6, 8, 12, 16, 24].map(|twelfths| (planned * twelfths).div_ceil(12)).into();
+    }
+    participants.sort_unstable();
+    participants.dedup();
+    let assumptions = Assumptions {
+        participants,
+        shares: arguments.shares.clone(),
+        person_sd: arguments.person_sd,
+        object_sd: arguments.object_sd,
+        ties: arguments.ties,
+        studies: arguments.studies,
+        seed: arguments.seed,
+    };
+    let studies = assumptions.shares.len() * assumptions.studies as usize;
+    let step = Step::begin("studies", studies, studies);
+    let found = simulated(&study, &assumptions, &|| step.tick(1)).unwrap_or_default();
+    step.count_all(true);
+    step.end();
+    ensure!(!found.is_empty(), "{}: there is no comparison to simulate", study.path.display());
+
+    let tables = isostudy_analysis::power_tables(&assumptions, &found);
+    let figure = isostudy_analysis::power_figure(&assumptions, &found)?;
+    let folder = || Path::new("results").join(format!("{}-power", study.file.study.id));
+    let out = arguments.out.clone().unwrap_or_else(folder);
+    std::fs::create_dir_all(&out).with_context(|| out.display().to_string())?;
+    let mut files =
+        vec![("power.svg".to_owned(), figure.svg.into_bytes()), ("power.png".to_owned(), figure.png)];
+    for table in &tables {
+        files.push((format!("{}.csv", table.name), table.to_csv().into_bytes()));
+        files.push((format!("{}.md", table.name), table.to_markdown().into_bytes()));
+    }
+    for (name, bytes) in &files {
+        store::write_whole(&out.join(name), bytes)?;
+    }
+    say(&tables[1].to_markdown())?;
+    say(&out.display().to_string())?;
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,256 @@
+//! `isostudy extract`: the meshes of a study, or the surface of a formula, a volume or a mesh in a file.
+
+mod chosen_method;
+mod isovalues;
+mod labels;
+mod own_cells;
+mod quality_report;
+
+use super::named::named;
+use super::source_arguments::SourceArguments;
+use super::study_run::{Run, Selection, with_selection};
+use crate::outcome::Outcome;
+use crate::source::{Source, place};
+use crate::store::{write_whole, write_whole_by};
+use crate::terminal::{counted, say};
+use crate::{input, mesh_file, prepare, records};
+use anyhow::{Context, Result, bail};
+use clap::{ArgGroup, Args};
+use isostudy_design::record::Counts;
+use isostudy_extract::{Arrangement, Clustering, Execution, Extraction, Extractor, Method, Tetrahedra};
+use isostudy_field::{Counted, FieldCache, StudyField};
+use isostudy_mesh::TriangleMesh;
+use isostudy_raster::{Camera, Look, Shading, Viewport};
+use isovalues::Isovalues;
+use quality_report::{Cells, QualityReport};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("source").args(["study", "field", "volume", "mesh", "labels"]).required(true)))]
+#[command(after_help = "\
+Examples:
+  isostudy extract --field 'sqrt(x^2+y^2+z^2) - 1' --bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2 --spacing 0.05 -o ball.ply
+  isostudy extract --volume head.nrrd --isovalue 300.5 -o head.glb --quality
+  isostudy extract --labels organs.seg.nrrd --only 2,5 -o organs.glb
+  isostudy extract --volume head.nrrd --isovalues 100:1500:15 -o 'head-{isovalue}.ply' --method mc
+  isostudy extract --mesh scan.stl --cells 200 -o even.obj --picture even.png --method bi-relaxed
+  isostudy extract configs/paper.toml --only ss_bi")]
+pub(crate) struct Arguments {
+    /// Study file, such as configs/paper.toml: extract its meshes and measure them
+    #[arg(conflicts_with_all = ["bounds", "spacing", "cells", "isovalue", "isovalues", "inside", "close", "allow_open", "memory"])]
+    study: Option<PathBuf>,
+    #[command(flatten)]
+    source: SourceArguments,
+    /// Volume of labels, whole numbers of which 0 is the background: the boundaries between every two of them, by surface nets
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["study", "bounds", "spacing", "cells", "isovalue", "inside", "allow_open", "arrangement", "clustering"])]
+    labels: Option<PathBuf>,
+    /// Values of several surfaces of a volume, which is read once: numbers, and ranges FROM:TO:COUNT, with commas between them. -o must
+    /// have {isovalue} in it
+    #[arg(long, value_name = "LIST", value_parser = Isovalues::parse, allow_hyphen_values = true, group = "level", requires = "volume",
+        conflicts_with_all = ["study", "quality", "picture"])]
+    isovalues: Option<Isovalues>,
+    /// How sample points fill space: body-centred, simple-cubic, five-tetrahedra, face-centred
+    #[arg(long, value_name = "NAME", default_value = "body-centred", value_parser = named::<Arrangement>, conflicts_with = "study")]
+    arrangement: Arrangement,
+    /// How vertices are merged: none, integrated, edge-collapse, integrated-collapse, warp; the last two arrangements have no
+    /// integrated clustering, and warp is for the first [default: integrated; edge-collapse where there is none]
+    #[arg(long, value_name = "NAME", value_parser = named::<Clustering>, conflicts_with = "study")]
+    clustering: Option<Clustering>,
+    /// A method by its name instead, such as bi-relaxed; `isostudy methods` lists them
+    #[arg(long, value_name = "ID", value_parser = chosen_method::preset, conflicts_with_all = ["study", "recipe", "arrangement", "clustering"])]
+    method: Option<Method>,
+    /// A method as a study file has it instead: '{ kind = "tetrahedra", arrangement = "body-centred", placement = "relaxed" }'
+    #[arg(long, value_name = "TOML", value_parser = chosen_method::recipe, conflicts_with_all = ["study", "arrangement", "clustering"])]
+    recipe: Option<Method>,
+    /// Mesh to write, .obj, .ply, .stl or .glb; of a study, the folder for results [default: results/<study id>]
+    #[arg(long, short, value_name = "FILE", required_unless_present = "study")]
+    out: Option<PathBuf>,
+    /// Draw the surface as well, z up, 800 pixels square
+    #[arg(long, value_name = "PNG", conflicts_with = "study")]
+    picture: Option<PathBuf>,
+    /// Print what the mesh is worth: triangles, topology, distance to the surface
+    #[arg(long, conflicts_with = "study")]
+    quality: bool,
+    /// Print that as JSON
+    #[arg(long, conflicts_with = "study")]
+    json: bool,
+    /// Threads to work with; 0 takes every core. The mesh is the same bytes with any number
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1024))]
+    threads: u32,
+    /// Of a study, redo what is up to date as well
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "labels"])]
+    force: bool,
+    /// Of a study, run the programs that it names as methods; they may do whatever you may do
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "labels"])]
+    allow_programs: bool,
+    /// Of a study, only these configurations, such as ss_bi; of labels, only these, such as 2,5 [default: all]
+    #[arg(long, value_name = "ID", value_delimiter = ',', conflicts_with_all = ["field", "volume", "mesh"])]
+    only: Vec<String>,
+}
+
+impl Arguments {
+    /// What is asked of a study, if one is given.
+    fn of_study(&self) -> Option<Selection> {
+        let study = self.study.clone()?;
+        let run = Run {
+            study,
+            out: self.out.clone(),
+            force: self.force,
+            threads: self.threads,
+            allow_programs: self.allow_programs,
+        };
+        Some(Selection { run, only: self.only.clone() })
+    }
+
+    fn method(&self) -> Method {
+        self.method.or(self.recipe).unwrap_or_else(|| {
+            let clustering = self.clustering.unwrap_or(match self.arrangement {
+                Arrangement::BodyCentred | Arrangement::SimpleCubic => Clustering::Integrated,
+                Arrangement::FiveTetrahedra | Arrangement::FaceCentred => Clustering::EdgeCollapse,
+            });
+            Method::Tetrahedra(Tetrahedra { clustering, ..Tetrahedra::new(self.arrangement) })
+        })
+    }
+}
+
+/// Extracts a study's meshes, or one surface.
+///
+/// # Errors
+/// If the input is wrong or a file cannot be written.
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let Some(selection) = arguments.of_study() else {
+        return extract(arguments);
+    };
+    with_selection(&selection, |pipeline, only, out| {
+        pipeline.all_meshes(only)?;
+        say(&out.join("meshes").display().to_string())
+    })
+}
+
+/// Extracts, writes and reports. A surface that was to be closed and is not fails the check.
+///
+/// # Errors
+/// If the input cannot be read, has no inside, or has no surface there; if a file cannot be written.
+fn extract(arguments: &Arguments) -> Result<Outcome> {
+    if let Some(path) = &arguments.labels {
+        return labels::extract(arguments, path);
+    }
+    let out = arguments.out.as_deref().context("-o is needed")?;
+    if let Some(isovalues) = &arguments.isovalues {
+        return isovalues.extract(arguments, out);
+    }
+    let format = mesh_file::format_to_write(out).with_context(|| out.display().to_string())?;
+    check_outputs(arguments, out)?;
+    let method = arguments.method();
+    let execution = Execution { threads: arguments.threads as usize };
+    let volume = arguments.source.volume_alone().filter(|_| method.is_of_cubes());
+    let (extraction, source, cells, counts) = match volume {
+        Some(path) => {
+            let (extraction, own) = own_cells::extract(&arguments.source, path, &method, &execution)?;
+            let counts = records::counts(&extraction.counts);
+            (extraction, own.source, Cells::Own { counts: own.cells, is_turned: own.is_turned }, counts)
+        }
+        None => on_a_grid(arguments, &method, &execution)?,
+    };
+    let grid = source.grid();
+    if extraction.mesh.triangles.is_empty() {
+        bail!(source.no_surface_of(&method));
+    }
+    write_whole_by(out, |file| {
+        let mut buffered = BufWriter::new(file);
+        format.write(&extraction.mesh, &mut buffered)?;
+        buffered.flush()
+    })?;
+    if let Some(path) = &arguments.picture {
+        write_whole(path, &picture(&extraction.mesh)?)?;
+    }
+    if arguments.quality || arguments.json {
+        let accuracy =
+            isostudy_extract::accuracy(&extraction.mesh, &*source.field, source.isovalue, &grid, &execution)?;
+        let report = QualityReport::new(method, &source, cells, &extraction, counts, &accuracy);
+        say(&if arguments.json { serde_json::to_string_pretty(&report)? } else { report.to_text()? })?;
+    }
+    // With --json standard output is JSON and nothing else.
+    if !arguments.json {
+        say(&out.display().to_string())?;
+    }
+    if source.is_closed
+        && let Some(found) = open_edges(&extraction.mesh)
+    {
+        tell!("isostudy: {}: the surface was to be closed and has {found}", out.display());
+        return Ok(Outcome::CheckFailed);
+    }
+    Ok(Outcome::Done)
+}
+
+/// The surface of a field on a grid of cubes.
+fn on_a_grid(
+    arguments: &Arguments,
+    method: &Method,
+    execution: &Execution,
+) -> Result<(Extraction, Source, Cells, Counts)> {
+    let source =
+        arguments.source.read()?.context("one of a study, --field, --volume and --mesh is needed")?;
+    let grid = source.grid();
+    prepare::check_seeds(method, &grid)?;
+    prepare::check_limit(method, &grid, execution, source.held, arguments.source.limit())
+        .with_context(|| source.place())?;
+    let mut kept = FieldCache::default();
+    let field = Counted::new(&*source.field, &mut kept);
+    let study: &dyn StudyField = &field;
+    let extraction =
+        method.extract(&mut Extractor::new(), study.into(), &grid, source.isovalue, execution)?;
+    let counts = records::with_calls(records::counts(&extraction.counts), &field);
+    Ok((extraction, source, Cells::Cubes(method.cells(&grid)?), counts))
+}
+
+/// How many boundary edges a mesh has, and where one of them is; `None` if it has none.
+fn open_edges(mesh: &TriangleMesh) -> Option<String> {
+    let [from, to] = isostudy_mesh::topology::first_boundary_edge(mesh)?;
+    let edges = isostudy_mesh::topology::topology(mesh).boundary_edges;
+    Some(format!("{}, one from {} to {}", counted(edges, "boundary edge"), place(from), place(to)))
+}
+
+/// Nothing that was given is written over; and no output over another, since no mesh ends as pictures do.
+fn check_outputs(arguments: &Arguments, out: &Path) -> Result<()> {
+    let outputs = [Some(out), arguments.picture.as_deref()];
+    let given = arguments.labels.as_deref().or(arguments.source.file());
+    for output in outputs.into_iter().flatten() {
+        if given.is_some_and(|file| input::is_same(file, output)) {
+            bail!("{}: is the input; it would be written over", output.display());
+        }
+    }
+    let Some(picture) = &arguments.picture else { return Ok(()) };
+    if !picture.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        bail!("--picture {}: pictures are .png", picture.display());
+    }
+    Ok(())
+}
+
+fn picture(mesh: &TriangleMesh) -> Result<Vec<u8>> {
+    let bounds = mesh.bounds().context("there is nothing to draw")?;
+    let viewport = Viewport { width: 800, height: 800, supersampling: 2 };
+    let picture =
+        isostudy_raster::render(mesh, &Camera::around(&bounds), viewport, &Shading::default(), Look::Smooth)?;
+    Ok(isostudy_raster::pixmap_to_png(&picture))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_open_is_said_with_its_place() {
+        let positions = [[0.0, 0.0, 0.0], [1.5, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1.0]];
+        let mut mesh = TriangleMesh {
+            positions: positions.map(glam::Vec3::from).to_vec(),
+            triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+            ..TriangleMesh::default()
+        };
+        assert_eq!(open_edges(&mesh), None);
+        mesh.triangles.remove(0);
+        let want = "3 boundary edges, one from [0.0, 0.0, 0.0] to [1.5, 0.0, 0.0]";
+        assert_eq!(open_edges(&mesh).as_deref(), Some(want));
+    }
+}

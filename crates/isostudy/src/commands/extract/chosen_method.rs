@@ -1,0 +1,135 @@
+//! A method on the command line: by its name, or by the recipe that a study file would have for it.
+
+use crate::recipe::StudyKind;
+use isostudy_extract::{Method, Preset, presets};
+use serde::{Deserialize, Serialize};
+use toml::de::ValueDeserializer;
+
+/// The kinds that go without one.
+const KINDS: &str = "\"tetrahedra\", \"cubes\", \"snap-cubes\", \"macet\", \"surface-nets\", \"dual-contouring\", \"continuation\"";
+
+/// A method as reports name it.
+#[derive(Debug, Serialize)]
+pub(super) struct Described {
+    /// The name of the preset that it is, if it is one.
+    id: Option<&'static str>,
+    /// The same in words.
+    label: Option<&'static str>,
+    /// What a study file says of it, defaults written out.
+    recipe: Method,
+}
+
+impl Described {
+    /// Looks for the preset that makes the same meshes.
+    pub(super) fn of(method: Method) -> Self {
+        let preset = presets().iter().find(|preset| preset.method == method);
+        Self { id: preset.map(|of| of.id), label: preset.map(|of| of.label), recipe: method }
+    }
+
+    /// The name, or else the recipe.
+    ///
+    /// # Errors
+    /// If the recipe cannot be written as TOML, which each can.
+    pub(super) fn to_text(&self) -> Result<String, toml::ser::Error> {
+        match (self.id, self.label) {
+            (Some(id), Some(label)) => Ok(format!("{id}: {label}")),
+            _ => Ok(toml::Value::try_from(self.recipe)?.to_string()),
+        }
+    }
+}
+
+/// The method of a preset's id.
+///
+/// # Errors
+/// If no preset has it; those that there are are named.
+pub(super) fn preset(id: &str) -> Result<Method, String> {
+    let found = presets().iter().find(|preset| preset.id == id);
+    let known = || presets().iter().map(|Preset { id, .. }| *id).collect::<Vec<_>>().join(", ");
+    found.map(|preset| preset.method).ok_or_else(|| {
+        format!("no method has this name; `isostudy methods` explains those that do: {}", known())
+    })
+}
+
+/// The method of a recipe, an inline table as in a study file.
+///
+/// # Errors
+/// If it is no TOML, no table, or of a kind that goes with studies alone; if a key or a value is unknown, with those that are known.
+pub(super) fn recipe(text: &str) -> Result<Method, String> {
+    let value = ValueDeserializer::parse(text).and_then(toml::Value::deserialize);
+    let value = value.map_err(|error| error.to_string().trim_end().to_owned())?;
+    let toml::Value::Table(table) = &value else {
+        return Err(
+            "must be a table, such as { kind = \"tetrahedra\", arrangement = \"body-centred\" }".into()
+        );
+    };
+    let kind = match table.get("kind") {
+        Some(toml::Value::String(kind)) => kind.as_str(),
+        Some(other) => return Err(format!("kind = {other}: allowed: {KINDS}")),
+        None => return Err(format!("kind is missing; allowed: {KINDS}")),
+    };
+    if let Some(of) = StudyKind::of(kind) {
+        return Err(format!("kind = \"{kind}\": {}; allowed here: {KINDS}", why_not(of)));
+    }
+    // Errors in values do not say their key, for what has a kind is read twice.
+    let known = Method::deserialize(value.clone()).map_err(|error| error.message().to_owned());
+    known.map_err(|error| match guilty(table) {
+        Some((key, value)) => format!("{key} = {value}: {error}"),
+        None => error,
+    })
+}
+
+/// Why a study alone can have recipes of a kind.
+fn why_not(kind: StudyKind) -> &'static str {
+    match kind {
+        StudyKind::Program => {
+            "programs are methods of a study, in whose folder they are found and by whose limits they are held; \
+             see `isostudy study`"
+        }
+        StudyKind::Meshes => {
+            "finished meshes belong to the objects of a study; what is extracted here is none of them. \
+             See `isostudy study`"
+        }
+    }
+}
+
+/// The one key whose removal mends a recipe, or whose value alone is wrong.
+fn guilty(table: &toml::Table) -> Option<(&String, &toml::Value)> {
+    let mended = |key: &str| {
+        let mut rest = table.clone();
+        rest.remove(key);
+        Method::deserialize(toml::Value::Table(rest)).is_ok()
+    };
+    table.iter().find(|(key, _)| mended(key))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isostudy_extract::{Arrangement, Placement, Tetrahedra};
+
+    #[test]
+    fn a_recipe_has_the_defaults_of_the_library() {
+        let text = "{ kind = \"tetrahedra\", arrangement = \"body-centred\", placement = \"relaxed\" }";
+        let relaxed =
+            Tetrahedra { placement: Placement::Relaxed, ..Tetrahedra::new(Arrangement::BodyCentred) };
+        assert_eq!(recipe(text), Ok(Method::Tetrahedra(relaxed)));
+        assert_eq!(preset("bi-relaxed"), recipe(text));
+    }
+
+    #[test]
+    fn what_is_described_is_read_again() {
+        for preset in presets() {
+            let described = Described::of(preset.method);
+            assert_eq!((described.id, described.label), (Some(preset.id), Some(preset.label)));
+            assert_eq!(described.to_text().unwrap(), format!("{}: {}", preset.id, preset.label));
+            assert_eq!(
+                recipe(&toml::Value::try_from(described.recipe).unwrap().to_string()),
+                Ok(preset.method)
+            );
+        }
+        let own = Tetrahedra { refine_crossings: true, ..Tetrahedra::new(Arrangement::SimpleCubic) };
+        let described = Described::of(Method::Tetrahedra(own));
+        assert_eq!((described.id, described.label), (None, None));
+        assert_eq!(recipe(&described.to_text().unwrap()), Ok(Method::Tetrahedra(own)));
+    }
+}

@@ -1,0 +1,132 @@
+//! The options that name a surface: a formula, a volume or a mesh, and where to look at it.
+
+use crate::memory::{self, Limit};
+use crate::source::{Inside, Options, Source};
+use anyhow::{Context, Result};
+use clap::Args;
+use glam::Vec3;
+use isostudy_mesh::Bounds;
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub(crate) struct SourceArguments {
+    /// Formula in x, y and z, such as 'sqrt(x^2+y^2+z^2) - 1'; needs --bounds
+    #[arg(long, value_name = "FORMULA", requires = "bounds", allow_hyphen_values = true)]
+    field: Option<String>,
+    /// Volume: .nrrd, .nhdr, .mha, .mhd, or the .toml that describes raw data; needs --isovalue
+    #[arg(long, value_name = "FILE", requires = "level")]
+    volume: Option<PathBuf>,
+    /// Triangle mesh, of which the signed distance is taken: .obj, .ply or .stl
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
+    /// Box to look at: smallest corner, then largest [default: that of the volume, or round the mesh]
+    #[arg(long, value_name = "X,Y,Z,X,Y,Z", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Bounds>,
+    /// Edge of the lattice's cubes [default: that of the volume's samples; otherwise 100 cubes along the longest side.
+    /// Methods of cubes take the volume's own cells]
+    #[arg(long, value_name = "LENGTH", value_parser = spacing, allow_hyphen_values = true, conflicts_with = "cells")]
+    pub(super) spacing: Option<f32>,
+    /// The same, as the number of cubes along the longest side
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16384))]
+    cells: Option<u32>,
+    /// Value of the surface
+    #[arg(long, default_value_t = 0.0, value_parser = finite, allow_hyphen_values = true, group = "level")]
+    isovalue: f32,
+    /// Side of the isovalue that is inside [default: below for a formula, above for a volume; a mesh's distance is
+    /// positive inside]
+    #[arg(long, value_name = "SIDE", conflicts_with = "mesh")]
+    inside: Option<Inside>,
+    /// Close the surface where it leaves the volume, and where the box cuts it off
+    #[arg(long)]
+    close: bool,
+    /// Take a mesh with holes: inside is what is seen from behind in most directions
+    #[arg(long, conflicts_with_all = ["field", "volume"])]
+    allow_open: bool,
+    /// Most memory for a volume's samples and for the lattice; the mesh comes on top. Such as 500MB or 16GiB
+    #[arg(long, value_name = "SIZE", default_value = memory::DEFAULT, value_parser = memory::size)]
+    memory: u64,
+}
+
+impl SourceArguments {
+    /// The file that is read, if it is one.
+    pub(super) fn file(&self) -> Option<&Path> {
+        self.volume.as_deref().or(self.mesh.as_deref())
+    }
+
+    /// Whether a formula, a volume or a mesh is named.
+    pub(super) fn is_given(&self) -> bool {
+        self.field.is_some() || self.file().is_some()
+    }
+
+    /// What memory there is for it.
+    pub(super) fn limit(&self) -> Limit {
+        Limit::of(self.memory)
+    }
+
+    /// The volume, where one is named and nothing says which grid it is to be sampled on, or to close its surface.
+    pub(super) fn volume_alone(&self) -> Option<&Path> {
+        let is_alone = self.bounds.is_none() && self.spacing.is_none() && self.cells.is_none() && !self.close;
+        self.volume.as_deref().filter(|_| is_alone)
+    }
+
+    pub(super) fn options(&self) -> Options {
+        Options {
+            bounds: self.bounds,
+            spacing: self.spacing,
+            cells: self.cells,
+            isovalue: self.isovalue,
+            inside: self.inside,
+            close: self.close,
+            allow_open: self.allow_open,
+            limit: self.limit(),
+        }
+    }
+
+    /// What is asked for, if anything is. What had to be done to it is said on standard error.
+    ///
+    /// # Errors
+    /// If it cannot be read or has no inside.
+    pub(super) fn read(&self) -> Result<Option<Source>> {
+        let options = self.options();
+        if let Some(formula) = &self.field {
+            let bounds = self.bounds.context("--bounds is needed")?;
+            return options.of_formula(formula, bounds, "--field").map(Some);
+        }
+        if let Some(path) = &self.volume {
+            return options.of_volume(path).map(Some);
+        }
+        self.mesh.as_deref().map(|path| options.of_mesh(path)).transpose()
+    }
+}
+
+fn number(text: &str) -> Result<f32, String> {
+    text.trim().parse().map_err(|_| format!("`{text}` is not a number"))
+}
+
+pub(super) fn finite(text: &str) -> Result<f32, String> {
+    let value = number(text)?;
+    if value.is_finite() { Ok(value) } else { Err(format!("isovalue must be finite, not {value}")) }
+}
+
+fn spacing(text: &str) -> Result<f32, String> {
+    let value = number(text)?;
+    let is_valid = value > 0.0 && value.is_finite();
+    if is_valid { Ok(value) } else { Err(format!("spacing must be positive and finite, not {value:?}")) }
+}
+
+fn bounds(text: &str) -> Result<Bounds, String> {
+    let numbers = text.split(',').map(number).collect::<Result<Vec<f32>, _>>()?;
+    let [a, b, c, d, e, f] = numbers[..] else {
+        return Err(
+            "six numbers with commas between them: x,y,z of the smallest corner, then of the largest".into(),
+        );
+    };
+    for (axis, min, max) in [("x", a, d), ("y", b, e), ("z", c, f)] {
+        if !(min.is_finite() && max.is_finite() && min < max) {
+            return Err(format!(
+                "bounds along {axis} must be finite with min below max, not {min:?} to {max:?}"
+            ));
+        }
+    }
+    Ok(Bounds { min: Vec3::new(a, b, c), max: Vec3::new(d, e, f) })
+}

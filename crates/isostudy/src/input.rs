@@ -1,0 +1,78 @@
+//! Files that are named to be read. A device or a pipe may never end, or never begin.
+
+use crate::recipe::recipe;
+use anyhow::{Context, Result, bail};
+use isostudy_design::Study;
+use isostudy_design::record::Purpose;
+use std::path::{Path, PathBuf};
+
+/// What is there must be a file; that it is not there at all its reader says.
+///
+/// # Errors
+/// If it is a folder, a device or a pipe. The path is named.
+pub(crate) fn regular(path: &Path) -> Result<()> {
+    check(path).with_context(|| path.display().to_string())
+}
+
+/// The same for a reader that names the path itself.
+///
+/// # Errors
+/// If it is a folder, a device or a pipe.
+pub(crate) fn check(path: &Path) -> Result<()> {
+    match std::fs::metadata(path) {
+        Ok(found) if !found.is_file() => bail!("not a file"),
+        _ => Ok(()),
+    }
+}
+
+/// What a file holds.
+///
+/// # Errors
+/// If it is no file, or cannot be read. The path is named.
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>> {
+    regular(path)?;
+    std::fs::read(path).with_context(|| path.display().to_string())
+}
+
+/// A study, and what it names.
+///
+/// # Errors
+/// If it is no file, or something in it is wrong.
+pub(crate) fn study(path: &Path) -> Result<Study> {
+    regular(path)?;
+    let study = Study::load(path)?;
+    for method in &study.methods {
+        recipe(&study, method.id, Purpose::Benchmark)?;
+    }
+    Ok(study)
+}
+
+/// The files of a folder with an extension, in the order of names; none where there is no folder.
+///
+/// # Errors
+/// If the folder cannot be read.
+pub(crate) fn files_of(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    if folder.is_dir() {
+        for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
+            let path = entry?.path();
+            files.extend(path.extension().is_some_and(|e| e == extension).then_some(path));
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// Whether two paths lead to one file, which need not be there.
+pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
+    match (resolved(a), resolved(b)) {
+        (Some(a), Some(b)) => a == b,
+        _ => a == b,
+    }
+}
+
+/// Where a file is or would be, whatever way leads there.
+fn resolved(path: &Path) -> Option<PathBuf> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    path.canonicalize().ok().or_else(|| Some(folder.canonicalize().ok()?.join(path.file_name()?)))
+}

@@ -1,0 +1,141 @@
+//! A configuration's mesh, however it comes to be.
+
+use crate::prepare::Prepared;
+use crate::recipe::Recipe;
+use crate::{mesh_file, records, seeds};
+use anyhow::{Context, Result, bail};
+use glam::Vec3;
+use isostudy_design::record::{Counts, MadeBy};
+use isostudy_extract::{Execution, Extractor};
+use isostudy_field::{Counted, FieldCache};
+use isostudy_mesh::TriangleMesh;
+use isostudy_program::{Program, ProgramError, Ready, Request, Samples, Worker};
+use rayon::prelude::*;
+use std::path::Path;
+
+/// A mesh, and what was counted on the way.
+pub(crate) struct Made {
+    pub(crate) mesh: TriangleMesh,
+    pub(crate) counts: Counts,
+    /// The program that made it.
+    pub(crate) program: Option<MadeBy>,
+}
+
+impl Prepared<'_> {
+    /// The mesh. On one thread it is also counted how often the field was called.
+    ///
+    /// # Errors
+    /// If there is no surface; what an extractor refuses; [`ProgramError`] of a program, which names it; if a file is no mesh.
+    pub(crate) fn make(&self, extractor: &mut Extractor, execution: &Execution) -> Result<Made> {
+        let made = self.make_any(extractor, execution)?;
+        if made.mesh.triangles.is_empty() {
+            let spacing = self.grid.spacing;
+            if let Some(why) = self.missed() {
+                bail!("no surface was reached with spacing {spacing:?}: {why}");
+            }
+            let why = match made.counts.crossings {
+                Some(0) => "every sample lies on one side",
+                _ => "no triangle is left",
+            };
+            bail!("no surface with spacing {spacing:?}: {why}");
+        }
+        Ok(made)
+    }
+
+    /// Why given seeds reached no surface; `None` of what has no seeds.
+    pub(crate) fn missed(&self) -> Option<String> {
+        match &self.recipe {
+            Recipe::Extractor(method) => seeds::missed(method),
+            Recipe::Program(_) | Recipe::Meshes(_) => None,
+        }
+    }
+
+    /// The mesh, which may have no triangles if it is an extractor's or a file's.
+    ///
+    /// # Errors
+    /// As [`make`](Self::make), but for that.
+    pub(crate) fn make_any(&self, extractor: &mut Extractor, execution: &Execution) -> Result<Made> {
+        Ok(match &self.recipe {
+            Recipe::Extractor(_) => {
+                let mut kept = FieldCache::default();
+                let field = Counted::new(self.field, &mut kept);
+                let prepared = Prepared { field: &field, ..self.clone() };
+                let extraction =
+                    prepared.extractor().context("an extractor")?.extract_with(extractor, execution)?;
+                let counts = records::counts(&extraction.counts);
+                // Slabs of several threads sample some layers twice, and no record may depend on threads.
+                let is_exact = execution.threads == 1;
+                let counts = if is_exact { records::with_calls(counts, &field) } else { counts };
+                Made { counts, mesh: extraction.mesh, program: None }
+            }
+            Recipe::Program(program) => self.by_program(program)?,
+            Recipe::Meshes(files) => {
+                let path = files.get(&self.id.object).context("checked when the study was read")?;
+                let mesh = with_normals(mesh_file::read(path)?);
+                Made { counts: records::counts_of_mesh(&mesh, None), mesh, program: None }
+            }
+        })
+    }
+
+    fn by_program(&self, program: &Program) -> Result<Made> {
+        let cells = self.cells()?;
+        let mut worker = Worker::start(program)?;
+        let path = worker.folder().join("mesh.ply");
+        let samples = self.samples(cells);
+        let answer = worker.extract(&self.request(Samples::Values(&samples), cells, Some(&path)))?;
+        let Ready { name, version, note } = worker.ready().clone();
+        let made_by = MadeBy { name, version, note };
+        worker.finish()?;
+        let mesh = with_normals(answer.mesh.context("a mesh was asked for")?);
+        let counts =
+            Counts { evaluations: Some(samples.len() as u64), ..records::counts_of_mesh(&mesh, Some(cells)) };
+        Ok(Made { counts, mesh, program: Some(made_by) })
+    }
+
+    /// What a program is asked.
+    pub(crate) fn request<'r>(
+        &self,
+        samples: Samples<'r>,
+        cells: [u32; 3],
+        mesh: Option<&'r Path>,
+    ) -> Request<'r> {
+        Request {
+            samples,
+            size: cells.map(|along| along + 1),
+            origin: self.grid.bounds.min.to_array().map(f64::from),
+            spacing: [f64::from(self.grid.spacing); 3],
+            isovalue: f64::from(self.isovalue),
+            mesh,
+            may_be_empty: false,
+        }
+    }
+
+    /// The field at the corners of the grid's cells, x fastest. Where the spacing does not divide the box, the last lie beyond it.
+    pub(crate) fn samples(&self, cells: [u32; 3]) -> Vec<f32> {
+        let (min, spacing) = (self.grid.bounds.min, self.grid.spacing);
+        let [along_x, along_y, along_z] = cells.map(|along| along as usize + 1);
+        let place = |start: f32, i: usize| start + i as f32 * spacing;
+        let x: Vec<f32> = (0..along_x).map(|i| place(min.x, i)).collect();
+        let mut samples = vec![0.0; along_x * along_y * along_z];
+        samples.par_chunks_exact_mut(along_x).enumerate().for_each(|(row, values)| {
+            let (y, z) = (place(min.y, row % along_y), place(min.z, row / along_y));
+            self.field.sample_row(&x, y, z, values);
+        });
+        samples
+    }
+}
+
+/// Whoever draws a mesh needs normals.
+fn with_normals(mut mesh: TriangleMesh) -> TriangleMesh {
+    if mesh.normals.len() != mesh.positions.len() {
+        mesh.normals = isostudy_mesh::normals::area_weighted_normals(&mesh.positions, &mesh.triangles);
+        // A vertex without a triangle, or with such as cancel out, points anywhere.
+        mesh.normals.iter_mut().filter(|normal| !normal.is_finite()).for_each(|normal| *normal = Vec3::Z);
+    }
+    mesh
+}
+
+/// What is wrong with a program, if that is why something failed: the others then go on.
+pub(crate) fn program_error(error: &anyhow::Error) -> Option<&ProgramError> {
+    error.chain().find_map(|cause| cause.downcast_ref::<ProgramError>())
+}

@@ -1,0 +1,123 @@
+//! The configurations of a study in front of the clock: extractors of ours, and programs that stay started.
+
+use crate::prepare::Prepared;
+use crate::recipe::Recipe;
+use isostudy_bench::{AllocationCounts, Asked, Measured, PeakBytes, StageSeconds, Timed};
+use isostudy_program::{Answer, Program, Samples, Worker, write_samples};
+use std::collections::HashMap;
+use std::hint::black_box;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Makes a configuration ready, by number.
+type Prepare<'a> = dyn FnMut(usize) -> Result<Prepared<'a>, String> + 'a;
+
+/// What is timed in one measuring process.
+pub(crate) struct Clock<'a> {
+    prepare: Box<Prepare<'a>>,
+    running: HashMap<usize, Running>,
+}
+
+/// A program that is started, and the samples that it is given.
+struct Running {
+    worker: Worker,
+    samples: PathBuf,
+    cells: [u32; 3],
+}
+
+impl<'a> Clock<'a> {
+    pub(crate) fn new(prepare: impl FnMut(usize) -> Result<Prepared<'a>, String> + 'a) -> Self {
+        Self { prepare: Box::new(prepare), running: HashMap::new() }
+    }
+
+    /// Asks a program once, started before and with its samples written, neither of which is timed.
+    fn ask(&mut self, number: usize, prepared: &Prepared<'_>, program: &Program) -> Result<Answer, String> {
+        let running = self.started(number, prepared, program)?;
+        let request = prepared.request(Samples::File(&running.samples), running.cells, None);
+        running.worker.extract(&request).map_err(|error| format!("{}: {error}", prepared.id))
+    }
+
+    fn started(
+        &mut self,
+        number: usize,
+        prepared: &Prepared<'_>,
+        program: &Program,
+    ) -> Result<&mut Running, String> {
+        let text = |error: &dyn std::fmt::Display| format!("{}: {error}", prepared.id);
+        if self.running.get(&number).is_none_or(|running| !running.worker.is_running()) {
+            let cells = prepared.cells().map_err(|error| text(&format!("{error:#}")))?;
+            let worker = Worker::start(program).map_err(|error| text(&error))?;
+            let samples = worker.folder().join("samples.f32");
+            write_samples(&samples, &prepared.samples(cells)).map_err(|error| text(&error))?;
+            self.running.insert(number, Running { worker, samples, cells });
+        }
+        self.running.get_mut(&number).ok_or_else(|| text(&"not started"))
+    }
+}
+
+impl Measured for Clock<'_> {
+    fn time(&mut self, number: usize, threads: u32) -> Result<Timed, String> {
+        let prepared = (self.prepare)(number)?;
+        match &prepared.recipe {
+            Recipe::Program(program) => {
+                let sampling_s = sampling(&prepared, threads)?;
+                let answer = self.ask(number, &prepared, program)?;
+                // A program says how long it took, not what each stage did: it is all in one.
+                let geometry_s = answer.extraction_s.unwrap_or(answer.wall.as_secs_f64());
+                let stages = StageSeconds { sampling_s, geometry_s, ..StageSeconds::default() };
+                Ok(Timed { stages, ..Timed::default() })
+            }
+            _ => extractor(&prepared)?.time(threads),
+        }
+    }
+
+    fn memory(&mut self, number: usize, threads: u32) -> Result<Option<PeakBytes>, String> {
+        let prepared = (self.prepare)(number)?;
+        match &prepared.recipe {
+            Recipe::Program(program) => {
+                // Started anew, so that no earlier extraction is in its peak.
+                self.running.remove(&number);
+                let before = self.started(number, &prepared, program)?.worker.memory();
+                let answer = self.ask(number, &prepared, program)?;
+                Ok(before.zip(answer.memory).map(|(before, after)| PeakBytes {
+                    before_bytes: before.resident_bytes,
+                    peak_before_bytes: before.peak_bytes,
+                    peak_bytes: after.peak_bytes,
+                }))
+            }
+            _ => extractor(&prepared)?.memory(threads),
+        }
+    }
+
+    /// Of a program it is not known.
+    fn allocations(&mut self, number: usize) -> Result<Option<AllocationCounts>, String> {
+        let prepared = (self.prepare)(number)?;
+        match &prepared.recipe {
+            Recipe::Program(_) => Ok(None),
+            _ => extractor(&prepared)?.allocations(),
+        }
+    }
+}
+
+/// What this process's allocator was asked for until now.
+pub(crate) fn asked() -> Asked {
+    let stats = crate::ALLOCATOR.stats();
+    let calls = (stats.allocations + stats.reallocations) as u64;
+    Asked { calls, bytes: stats.bytes_allocated as u64 }
+}
+
+/// Seconds to compute all the samples that a program is given, so that its total, too, is from field to mesh.
+fn sampling(prepared: &Prepared<'_>, threads: u32) -> Result<f64, String> {
+    let text = |error: &dyn std::fmt::Display| format!("{}: {error:#}", prepared.id);
+    let cells = prepared.cells().map_err(|error| text(&error))?;
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build();
+    threads.map_err(|error| text(&error))?.install(|| {
+        let began = Instant::now();
+        black_box(prepared.samples(cells));
+        Ok(began.elapsed().as_secs_f64())
+    })
+}
+
+fn extractor<'a>(prepared: &Prepared<'a>) -> Result<isostudy_bench::Prepared<'a>, String> {
+    prepared.extractor().ok_or_else(|| format!("{}: there is nothing to time", prepared.id))
+}

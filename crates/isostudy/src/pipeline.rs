@@ -1,0 +1,181 @@
+//! The chain of stages from a study file to the page that shows it all.
+//!
+//! ```text
+//! objects ─ budgets ─ meshes ─┬─ turntables ─┬─ pairs, key ─┐
+//! comparisons ─ forms, key ───┼──────────────┼──────────────┤
+//!                             ├─ stills ─────┼──────────────┤
+//!                             └─ viewer ─────┼──────────────┤
+//! objects ─ budgets ─ timings ─┤             │              ├─ page ─ manifest
+//! objects ─────────── chunks ──┤             │              │
+//!              first frames ───┼─────────────┘              │
+//! answers ─────────────────────┴─ tables, figures, report ──┘
+//! ```
+
+mod ab;
+mod budgets;
+mod bundle;
+mod chunks;
+mod formats;
+mod meshes;
+mod pages;
+mod pictures;
+mod stimuli;
+mod sweep;
+mod tables;
+mod timings;
+mod viewer;
+mod web;
+mod worker;
+
+pub(crate) use ab::AbChoice;
+pub(crate) use bundle::forms_digest;
+pub(crate) use meshes::Meshes;
+pub(crate) use stimuli::MadeWith;
+pub(crate) use tables::{write_answers_only, write_without_study};
+pub(crate) use timings::{Choice, PlanLength};
+pub(crate) use web::Videos;
+pub(crate) use worker::{Invocation, measure};
+
+use crate::fields::Fields;
+use crate::made;
+use crate::prepare::{Prepared, Spacings, Wanted, prepare};
+use crate::store::{Inputs, Stamp, Store, Writer};
+use anyhow::{Context, Result};
+use isostudy_design::record::Purpose;
+use isostudy_design::{Configuration, ConfigurationId, Study};
+use std::collections::BTreeMap;
+use std::sync::{PoisonError, RwLock, RwLockReadGuard};
+
+/// Stages that only commands of their own make; a whole study leaves them in place.
+const ASKED_FOR: [&str; 5] = ["bench/", "bundle", "contact_sheet", "video/", "web"];
+
+/// One study being worked on.
+pub(crate) struct Pipeline<'a> {
+    study: &'a Study,
+    store: Store,
+    fields: Fields<'a>,
+    threads: usize,
+    /// Meshes, animations and timings are only looked up, never made.
+    frozen: bool,
+    /// What was found for methods with a budget.
+    spacings: RwLock<Spacings>,
+    /// Configurations whose program failed, and why.
+    failed: RwLock<BTreeMap<ConfigurationId, String>>,
+}
+
+impl<'a> Pipeline<'a> {
+    pub(crate) fn new(study: &'a Study, store: Store, threads: usize) -> Self {
+        Self {
+            study,
+            store,
+            fields: Fields::new(study),
+            threads,
+            frozen: false,
+            spacings: RwLock::default(),
+            failed: RwLock::default(),
+        }
+    }
+
+    /// The whole study. What an earlier form of it left behind goes. Returns the published
+    /// numbers that ours differ from without a known reason.
+    pub(crate) fn study(&self) -> Result<Vec<String>> {
+        let meshes = self.all_meshes(&[])?;
+        let turntables = self.turntables(&meshes, &[])?;
+        let pairs = self.pairs(&turntables)?;
+        self.finished_videos(&pairs)?;
+        let forms: Vec<Stamp> = self.forms()?.into_iter().collect();
+        let stills = self.stills()?;
+        let timings = self.timings(&PlanLength::Short)?;
+        let pictures = self.pictures(&turntables)?;
+        let chunks = self.chunk_times()?;
+        let tables = self.tables(&meshes, &timings, &chunks, &pictures)?;
+        let viewer = self.viewer(&meshes)?;
+        let made = [turntables, pairs, forms, stills, pictures, chunks, vec![timings, tables]].concat();
+        self.page(&meshes, &made, viewer)?;
+        self.store.retire_untouched(|stage| ASKED_FOR.iter().any(|start| stage.starts_with(start)))?;
+        self.unexplained()
+    }
+
+    /// Tables, figures and the page again, from what is there.
+    pub(crate) fn report(&mut self) -> Result<Vec<String>> {
+        self.frozen = true;
+        self.study()
+    }
+
+    /// A configuration, with the spacing that was found for it.
+    fn prepare(&self, configuration: &Configuration, wanted: Wanted) -> Result<Prepared<'_>> {
+        prepare(self.study, &self.fields, &self.spacings(), configuration, wanted)
+    }
+
+    /// What was found for methods with a budget.
+    fn spacings(&self) -> RwLockReadGuard<'_, Spacings> {
+        read(&self.spacings)
+    }
+
+    /// The spacings that budgets led to.
+    pub(crate) fn found_spacings(&self) -> Spacings {
+        self.spacings().clone()
+    }
+
+    fn keep_spacing(&self, id: ConfigurationId, purpose: Purpose, spacing: f64) {
+        self.spacings.write().unwrap_or_else(PoisonError::into_inner).keep(id, purpose, spacing);
+    }
+
+    /// Whether a configuration's program failed: the others go on without it.
+    fn has_failed(&self, id: &ConfigurationId) -> bool {
+        read(&self.failed).contains_key(id)
+    }
+
+    /// Keeps why a configuration failed, and says it, if its program is to blame.
+    ///
+    /// # Errors
+    /// Anything else that went wrong.
+    fn fail(&self, id: &ConfigurationId, error: anyhow::Error) -> Result<()> {
+        if made::program_error(&error).is_none() {
+            return Err(error);
+        }
+        self.leave_out(id, format!("{error:#}"));
+        Ok(())
+    }
+
+    /// Goes on without a configuration.
+    fn leave_out(&self, id: &ConfigurationId, why: String) {
+        tell!("{id} failed and is left out: {why}");
+        self.failed.write().unwrap_or_else(PoisonError::into_inner).insert(id.clone(), why);
+    }
+
+    /// The configurations that failed, in order.
+    pub(crate) fn failed(&self) -> Vec<ConfigurationId> {
+        read(&self.failed).keys().cloned().collect()
+    }
+
+    /// The configurations that failed, in order, and why.
+    fn left_out(&self) -> Vec<(ConfigurationId, String)> {
+        read(&self.failed).iter().map(|(id, why)| (id.clone(), why.clone())).collect()
+    }
+
+    /// Clears away what is no longer part of the study, and writes the manifest of what is.
+    pub(crate) fn finish(&self) -> Result<()> {
+        self.store.remove_retired()?;
+        crate::manifest::write(&crate::manifest::Origin::of(self.study)?, &self.store)
+    }
+
+    /// Does a stage that makes meshes, animations or timings; when frozen, only looks it up.
+    fn stage(
+        &self,
+        name: &str,
+        inputs: Inputs,
+        make: impl FnOnce(&mut Writer<'_>) -> Result<()>,
+    ) -> Result<Stamp> {
+        if self.frozen {
+            let missing = || format!("{name} is not up to date: run `isostudy study` first");
+            return self.store.peek(name, inputs).with_context(missing);
+        }
+        self.store.stage(name, inputs, make).with_context(|| name.to_owned())
+    }
+}
+
+/// Nothing is left half done where a thread panics.
+fn read<T>(lock: &RwLock<T>) -> RwLockReadGuard<'_, T> {
+    lock.read().unwrap_or_else(PoisonError::into_inner)
+}

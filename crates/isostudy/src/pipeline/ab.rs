@@ -1,0 +1,143 @@
+//! Two builds of this program, timed in turn.
+
+use super::Pipeline;
+use super::formats::write_table;
+use super::worker::is_program;
+use crate::machine;
+use crate::store::{Inputs, remove_if_there, sha256, write_whole};
+use crate::terminal::progress::Step;
+use crate::terminal::tell_once;
+use anyhow::{Context, Result};
+use isostudy_bench::{AbEntry, AbPlan, BenchError, ProcessExecutor, run_ab};
+use isostudy_design::ConfigurationId;
+use isostudy_design::record::{AbProgram, AbRun, Purpose};
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const STAGE: &str = "bench/ab";
+
+/// What is timed, and how.
+#[derive(Debug, Clone)]
+pub(crate) struct AbChoice {
+    pub(crate) old: PathBuf,
+    pub(crate) new: PathBuf,
+    /// Configurations; none for all.
+    pub(crate) only: Vec<ConfigurationId>,
+    /// Pairs of processes.
+    pub(crate) processes: u32,
+    /// For all of them together.
+    pub(crate) seconds: f64,
+}
+
+impl Pipeline<'_> {
+    /// Times both, and returns what was measured; a killed run goes on after the last pair of processes that ended.
+    ///
+    /// # Errors
+    /// If a program cannot be read, started or asked, or a file not be written.
+    pub(crate) fn ab(&self, choice: &AbChoice) -> Result<AbRun> {
+        if self.spacings().is_empty() {
+            self.budgets(&[Purpose::Benchmark], &choice.only)?;
+        }
+        let machine = machine::read();
+        let section = &self.study.file.benchmark;
+        let configurations = self.timed_of(&choice.only)?;
+        let plan = AbPlan {
+            warmup: section.warmup.min(1),
+            processes: choice.processes,
+            seconds: choice.seconds,
+            seed: self.study.file.study.seed,
+        };
+        let [old, new] = [program(&choice.old)?, program(&choice.new)?];
+        let workloads = self.workloads(&configurations, None)?;
+        let inputs = || {
+            Inputs::default()
+                .value("programs", &[&old.sha256, &new.sha256])
+                .value("plan", &plan)
+                .value("threads", &(section.threads, section.pin))
+                .value("workloads", &workloads)
+                .value("machine", &machine.lasting())
+        };
+        let (journal, key) = (self.store.journal(STAGE), inputs().finish());
+        let ids: Vec<ConfigurationId> = configurations.iter().map(|c| c.id.clone()).collect();
+        let step = Step::begin("bench ab", plan.processes as usize, 0);
+        let stamp = self.stage(STAGE, inputs(), |writer| {
+            let done = self.take_up_ab(&journal, &key)?;
+            let begun = AbEntry::Begun { key: key.clone() };
+            let lines: String = [&begun].into_iter().chain(&done).map(AbEntry::line).collect();
+            write_whole(&journal, lines.as_bytes())?;
+            let mut file = File::options().append(true).open(&journal)?;
+            let mut record = |entry: &AbEntry| file.write_all(entry.line().as_bytes());
+            let spacings = self.spacings_file()?;
+            let told = self.invocation([section.threads, u32::from(section.pin)], &ids, spacings.path())?;
+            let command = |program: &Path| -> Command { told.command(program) };
+            let (of_old, of_new) = (|| command(&choice.old), || command(&choice.new));
+            let may_fail = |number: usize| is_program(self.study, configurations[number]);
+            let [mut of_old, mut of_new] = [&of_old as &dyn Fn() -> Command, &of_new]
+                .map(|command| ProcessExecutor::new(command).leaving_out(&may_fail).telling(tell_once));
+            let on_pair = &mut |done, all| step.set(done, all);
+            let measured = run_ab(&plan, &ids, [&mut of_old, &mut of_new], done, &mut record, on_pair)?;
+            let mut workloads = workloads.clone();
+            workloads.retain(|workload| measured.failed.iter().all(|failure| failure.id != workload.id));
+            let run = AbRun {
+                schema: AbRun::SCHEMA,
+                study: self.study.file.study.id.clone(),
+                workloads,
+                old: old.clone(),
+                new: new.clone(),
+                warmup: plan.warmup,
+                processes: plan.processes,
+                seed: plan.seed,
+                threads: if section.threads == 0 { machine.threads } else { section.threads },
+                pinned: measured.pinned,
+                machine: machine.clone(),
+                pairs: measured.pairs,
+                load: measured.load,
+                failed: measured.failed,
+            };
+            writer.write_json(&format!("{STAGE}/ab.json"), &run)?;
+            write_table(writer, STAGE, &isostudy_timing::ab(&run).table())
+        })?;
+        remove_if_there(&journal)?;
+        step.count_all(stamp.redone);
+        step.end();
+        if !stamp.redone {
+            tell!("bench ab: nothing was measured; --force measures again");
+        }
+        let path = self.store.root().join(stamp.file("ab.json"));
+        let run: AbRun = serde_json::from_slice(&std::fs::read(&path)?)?;
+        for (pair, place) in run.pairs.iter().zip(0..) {
+            pair.check().with_context(|| format!("{}: pairs[{place}]", path.display()))?;
+        }
+        // Said again by every run that goes on from these times.
+        self.leave_out_failed(&run.failed);
+        Ok(run)
+    }
+
+    fn take_up_ab(&self, journal: &Path, key: &str) -> Result<Vec<AbEntry>> {
+        let Ok(text) = std::fs::read_to_string(journal) else { return Ok(Vec::new()) };
+        if self.store.forced() {
+            return Ok(Vec::new());
+        }
+        match isostudy_bench::read_ab_journal(&text, key).map_err(BenchError::from) {
+            Ok(done) => {
+                if !done.is_empty() {
+                    tell!("bench ab: an unfinished run is gone on with ({} entries)", done.len());
+                }
+                Ok(done)
+            }
+            Err(error) => {
+                let error = anyhow::Error::from(error);
+                tell!("bench ab: begun anew; {} is not gone on from: {error:#}", journal.display());
+                Ok(Vec::new())
+            }
+        }
+    }
+}
+
+/// What a program's file holds is what it is, wherever it lies.
+fn program(path: &Path) -> Result<AbProgram> {
+    let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    Ok(AbProgram { path: path.display().to_string(), sha256: sha256(&bytes) })
+}

@@ -1,0 +1,171 @@
+//! What participants get, and what the researcher keeps: the forms, the bundle, the keys, the contact sheet.
+
+use super::web::{LEAST_PADDING, Videos, Web};
+use super::{Meshes, Pipeline};
+use crate::picture;
+use crate::source_digests;
+use crate::store::{FileStamp, Inputs, Stamp, sha256};
+use crate::terminal::progress::Step;
+use anyhow::Result;
+use isostudy_design::ConfigurationId;
+use isostudy_design::forms::{FormFile, Questionnaire, Stimulus};
+use isostudy_design::record::Purpose;
+use isostudy_raster::tiny_skia::Pixmap;
+use isostudy_serve::page::{Media, MediaFormat};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+use sha2::{Digest, Sha256};
+use std::collections::HashMap;
+
+const BUNDLE: &str = "bundle";
+
+/// Noise after the end of a GIF, where no reader looks, or in an MP4's free space: unlike zeros it neither shows nor can be compressed.
+fn pad(bytes: &mut Vec<u8>, size: usize, seed: u64, name: &str) {
+    let digest: [u8; 32] = Sha256::digest(format!("padding {seed} {name}")).into();
+    let from = bytes.len();
+    bytes.resize(size, 0);
+    Pcg64::from_seed(digest).fill_bytes(&mut bytes[from..]);
+}
+
+/// Tells one version of a study's forms from another: 16 hexadecimal digits. The same for more participants, whose forms
+/// follow those of fewer.
+///
+/// # Errors
+/// None to be expected.
+pub(crate) fn forms_digest(file: &FormFile) -> Result<String> {
+    let first = FormFile { forms: file.forms.iter().take(1).cloned().collect(), ..file.clone() };
+    let mut digest = sha256(&serde_json::to_vec(&first)?);
+    digest.truncate(16);
+    Ok(digest)
+}
+
+impl Pipeline<'_> {
+    /// The participants' forms, and the key to them, kept apart like the key to the stimuli. `None` for a study that asks
+    /// nobody.
+    pub(crate) fn forms(&self) -> Result<Option<Stamp>> {
+        let Some(questionnaire) = Questionnaire::of(self.study) else { return Ok(None) };
+        let inputs = Inputs::of_sources(source_digests::KEYS).value("study", &self.study.file);
+        let stamp = self.store.stage("forms", inputs, |writer| {
+            writer.write_json("forms/forms.json", &questionnaire.file())?;
+            let mut key = csv::Writer::from_writer(Vec::new());
+            for line in questionnaire.key() {
+                key.serialize(line)?;
+            }
+            writer.write("key/forms.csv", &key.into_inner()?)
+        })?;
+        Ok(Some(stamp))
+    }
+
+    /// The folder for participants: the page, the forms and every pair, and nothing that tells what a pair shows. All files of a
+    /// kind are made the same size, since a smoother surface compresses better. Returns what a participant loads, too.
+    pub(crate) fn bundle(&self, forms: &Stamp, pairs: &[Stamp], videos: Videos) -> Result<Media> {
+        let text = std::fs::read(self.store.root().join(forms.file("forms.json")))?;
+        let file: FormFile = serde_json::from_slice(&text)?;
+        let Web { stamps: shown, kinds } = self.web(&file, pairs, videos)?;
+        let ends = |file: &&FileStamp, kind: MediaFormat| file.path.ends_with(&format!(".{}", kind.ending()));
+        let size = |kind: MediaFormat| {
+            let of_kind = shown.iter().flat_map(|stamp| &stamp.files).filter(|file| ends(file, kind));
+            of_kind.map(|file| file.bytes).max().unwrap_or(0) as usize + LEAST_PADDING
+        };
+        let turntable = &self.study.file.turntable;
+        let scale = self.study.file.stimuli.pair_scale;
+        let media = Media {
+            kinds: kinds.iter().map(|&(kind, frames)| (kind, size(kind) as u64, frames)).collect(),
+            surface: [turntable.width, turntable.height].map(|pixels| pixels * scale),
+        };
+        let step = Step::begin("bundle", 1, shown.len());
+        let seed = self.study.file.study.seed;
+        let mut inputs = Inputs::of_sources(source_digests::BUNDLES)
+            .value("seed", &seed)
+            .value("kinds", &kinds)
+            .stamp(forms);
+        for stamp in &shown {
+            inputs = inputs.stamp(stamp);
+        }
+        let stamp = self.stage(BUNDLE, inputs, |writer| {
+            let root = self.store.root();
+            let mut files = Vec::new();
+            for file in shown.iter().flat_map(|stamp| &stamp.files) {
+                let name = file.path.rsplit('/').next().unwrap_or(&file.path);
+                let kind = kinds.iter().map(|&(kind, _)| kind).find(|&kind| ends(&file, kind));
+                files.extend(kind.map(|kind| (name, kind, file)));
+            }
+            // In the order of names, so that times of modification tell nothing either.
+            files.sort_by_key(|&(name, _, _)| name);
+            for (name, kind, file) in files {
+                let mut bytes = std::fs::read(root.join(&file.path))?;
+                let size = size(kind);
+                match kind {
+                    MediaFormat::Mp4 => {
+                        // A box that says it is free space: as long as what follows, its own eight bytes included.
+                        bytes.extend(u32::try_from(size - bytes.len())?.to_be_bytes());
+                        bytes.extend(b"free");
+                    }
+                    MediaFormat::WebM => {
+                        // An element that says it is void, with its length in eight bytes, the first of which says so.
+                        let length = (size - bytes.len() - 9) as u64;
+                        bytes.push(0xec);
+                        bytes.extend((length | 1 << 56).to_be_bytes());
+                    }
+                    MediaFormat::Gif => {}
+                }
+                pad(&mut bytes, size, seed, &file.path);
+                writer.write(&format!("{BUNDLE}/stimuli/{name}"), &bytes)?;
+                step.tick(1);
+            }
+            writer.write(&format!("{BUNDLE}/forms.json"), &text)?;
+            let script = isostudy_serve::page::forms_js(&file, &forms_digest(&file)?, &media, false);
+            writer.write(&format!("{BUNDLE}/forms.js"), script.as_bytes())?;
+            for (name, _, content) in isostudy_serve::page::FILES {
+                writer.write(&format!("{BUNDLE}/{name}"), content.as_bytes())?;
+            }
+            Ok(())
+        })?;
+        step.count(stamp.redone);
+        step.end();
+        Ok(media)
+    }
+
+    /// Every pair with its code name and what it shows, on one page: for the researcher.
+    pub(crate) fn contact_sheet(&self, meshes: &Meshes) -> Result<Stamp> {
+        const HALF_PX: u32 = 128;
+        let stimuli = self.study.stimuli();
+        let mut inputs = Inputs::of_sources(source_digests::PICTURES).value("study", &self.study.file);
+        for configuration in &self.study.configurations {
+            inputs = inputs.stamp(meshes.stamp(&configuration.id, Purpose::Stimulus));
+        }
+        self.stage("contact_sheet", inputs, |writer| {
+            let mut halves: HashMap<&ConfigurationId, Pixmap> = HashMap::new();
+            for configuration in &self.study.configurations {
+                let mesh = self.read_mesh(meshes.stamp(&configuration.id, Purpose::Stimulus))?;
+                let camera = &self.study.object(configuration).camera;
+                let settings = picture::turntable(&self.study.file.turntable, camera);
+                let shading = picture::shading(&self.study.file.shading);
+                let look = self.study.look(configuration);
+                let half = picture::thumbnail(&mesh, &settings, &shading, look, HALF_PX)?;
+                halves.insert(&configuration.id, half);
+            }
+            let question = |s: &Stimulus| {
+                let shows = |c: &&isostudy_design::Comparison| {
+                    (&c.left, &c.right) == (&s.left, &s.right) || (&c.left, &c.right) == (&s.right, &s.left)
+                };
+                self.study
+                    .comparisons
+                    .iter()
+                    .find(shows)
+                    .map_or(if s.left == s.right { "control" } else { "training" }, |c| c.question.as_str())
+            };
+            let pairs: Vec<(String, Pixmap)> = stimuli
+                .iter()
+                .map(|s| {
+                    let label = format!("{}\n{}: {} | {}", s.code, question(s), s.left, s.right);
+                    (label, picture::side_by_side(&halves[&s.left], &halves[&s.right]))
+                })
+                .collect();
+            writer.write(
+                "key/contact_sheet.png",
+                &picture::contact_sheet(&pairs, &self.study.file.study.title)?,
+            )
+        })
+    }
+}

@@ -1,0 +1,183 @@
+//! Every configuration's mesh, once a purpose, with its record.
+
+use super::Pipeline;
+use crate::made::Made;
+use crate::prepare::{Prepared, Wanted};
+use crate::records::mesh_record;
+use crate::store::{Inputs, Stamp};
+use crate::terminal::progress::Step;
+use crate::trilinear_truth::trilinear_truth;
+use crate::{recipe, source_digests};
+use anyhow::{Context, Result};
+use isostudy_design::record::{MeshRecord, Purpose};
+use isostudy_design::{Configuration, ConfigurationId};
+use isostudy_extract::{Execution, Extractor};
+use isostudy_mesh::TriangleMesh;
+
+/// How far a mesh moves the bar, which moves while one is extracted: a large volume takes minutes.
+pub(super) const TICKS_A_MESH: usize = 1000;
+
+/// The finished mesh stages, in the study's order.
+pub(crate) struct Meshes {
+    entries: Vec<(ConfigurationId, Purpose, Stamp)>,
+}
+
+impl Meshes {
+    pub(crate) fn stamps(&self) -> impl Iterator<Item = &Stamp> {
+        self.entries.iter().map(|(_, _, stamp)| stamp)
+    }
+
+    pub(super) fn stamp(&self, id: &ConfigurationId, purpose: Purpose) -> &Stamp {
+        let same = |(i, p, _): &&(ConfigurationId, Purpose, Stamp)| i == id && *p == purpose;
+        let (_, _, stamp) = self.entries.iter().find(same).expect("every selected mesh has been made");
+        stamp
+    }
+}
+
+impl Pipeline<'_> {
+    /// The meshes of every purpose: what is measured, and what is shown.
+    pub(crate) fn all_meshes(&self, only: &[ConfigurationId]) -> Result<Meshes> {
+        let mut purposes = vec![Purpose::Benchmark, Purpose::Stimulus];
+        if recipe::sums_positions(self.study)? {
+            purposes.push(Purpose::Indexed);
+        }
+        self.meshes(&purposes, only)
+    }
+
+    /// The meshes that animations show.
+    pub(crate) fn stimulus_meshes(&self, only: &[ConfigurationId]) -> Result<Meshes> {
+        self.meshes(&[Purpose::Stimulus], only)
+    }
+
+    /// Extracts and measures the configurations in `only`, or all if it is empty.
+    fn meshes(&self, purposes: &[Purpose], only: &[ConfigurationId]) -> Result<Meshes> {
+        self.budgets(purposes, only)?;
+        let selected = self.selected(only);
+        let count = selected.len() * purposes.len();
+        let step = Step::begin("meshes", count, count * TICKS_A_MESH);
+        let (mut entries, mut reached) = (Vec::new(), 0);
+        for &purpose in purposes {
+            for configuration in &selected {
+                reached += TICKS_A_MESH;
+                // What a program did once it does again.
+                if self.has_failed(&configuration.id) {
+                    continue;
+                }
+                match self.mesh(configuration, purpose, &step) {
+                    Ok(stamp) => {
+                        step.count(stamp.redone);
+                        entries.push((configuration.id.clone(), purpose, stamp));
+                    }
+                    Err(error) => self.fail(&configuration.id, error)?,
+                }
+                step.reach(reached);
+            }
+        }
+        entries.retain(|(id, ..)| !self.has_failed(id));
+        step.end();
+        Ok(Meshes { entries })
+    }
+
+    /// Those that are asked for and have not failed.
+    pub(super) fn selected(&self, only: &[ConfigurationId]) -> Vec<&Configuration> {
+        let wanted =
+            |c: &&Configuration| (only.is_empty() || only.contains(&c.id)) && !self.has_failed(&c.id);
+        self.study.configurations.iter().filter(wanted).collect()
+    }
+
+    fn mesh(&self, configuration: &Configuration, purpose: Purpose, step: &Step) -> Result<Stamp> {
+        let name = purpose_name(purpose);
+        let object = self.study.object(configuration);
+        let found = self.spacings().of(&configuration.id, purpose);
+        let spacing = found.unwrap_or_else(|| Wanted::For(purpose).spacing(object));
+        let inputs = self.extraction_inputs(configuration, purpose)?.value("spacing", &spacing);
+        self.stage(&format!("mesh/{name}/{}", configuration.id), inputs, |writer| {
+            let prepared = self.prepare(configuration, Wanted::For(purpose))?;
+            // On one thread, so that calls of the field are counted.
+            let execution = Execution { threads: 1 };
+            let Made { mesh, counts, program } = self.make(configuration, &prepared, &execution, step)?;
+            let accuracy = self.accuracy(&prepared, &mesh)?;
+            let cells = prepared.cells()?;
+            let mut record =
+                mesh_record(&configuration.id, purpose, spacing, cells, counts, &mesh, &accuracy);
+            record.trilinear = trilinear_truth(&prepared, cells);
+            record.program = program;
+            // The indexed variant is only measured: nothing is rendered from it.
+            if purpose != Purpose::Indexed {
+                let mut ply = Vec::new();
+                isostudy_mesh::write_ply(&mesh, &mut ply)?;
+                writer.write(&format!("meshes/{name}/{}.ply", configuration.id), &ply)?;
+            }
+            writer.write_json(&format!("meshes/{name}/{}.json", configuration.id), &record)
+        })
+    }
+
+    /// Everything that an extraction depends on except its spacing.
+    pub(super) fn extraction_inputs(
+        &self,
+        configuration: &Configuration,
+        purpose: Purpose,
+    ) -> Result<Inputs> {
+        let object = self.study.object(configuration);
+        Ok(Inputs::of_sources(source_digests::MESHES)
+            .value("id", &configuration.id)
+            .value("purpose", &purpose)
+            .value("volume", &(object.min, object.max))
+            .value("isovalue", &object.isovalue)
+            .value("recipe", &self.study.method(configuration.id.method).recipe)
+            .value("recipe files", &recipe::inputs(self.study, configuration.id.method)?)
+            .text("field", self.fields.inputs(configuration.object)?))
+    }
+
+    /// Makes the mesh of one configuration, and moves the bar meanwhile by up to [`TICKS_A_MESH`].
+    pub(super) fn make(
+        &self,
+        configuration: &Configuration,
+        prepared: &Prepared<'_>,
+        execution: &Execution,
+        step: &Step,
+    ) -> Result<Made> {
+        let mut extractor = Extractor::new().with_progress(step.within(TICKS_A_MESH));
+        let place = || {
+            let isovalue = self.study.object(configuration).isovalue;
+            let file = self.study.path.display();
+            format!("{file}: objects[{}] with isovalue {isovalue:?}", configuration.object)
+        };
+        prepared.make(&mut extractor, execution).with_context(place)
+    }
+
+    /// How well a configuration's mesh stands for its isosurface.
+    pub(super) fn accuracy(
+        &self,
+        prepared: &Prepared<'_>,
+        mesh: &TriangleMesh,
+    ) -> Result<isostudy_extract::Accuracy> {
+        let Prepared { field, grid, isovalue, .. } = prepared;
+        Ok(isostudy_extract::accuracy(mesh, *field, *isovalue, grid, &Execution { threads: self.threads })?)
+    }
+
+    /// The records of finished meshes.
+    pub(super) fn mesh_records(&self, meshes: &Meshes) -> Result<Vec<MeshRecord>> {
+        let read = |stamp: &Stamp| {
+            let file = stamp.file(".json");
+            let text = std::fs::read(self.store.root().join(file))?;
+            serde_json::from_slice(&text).with_context(|| file.to_owned())
+        };
+        meshes.stamps().map(read).collect()
+    }
+
+    /// A finished mesh.
+    pub(super) fn read_mesh(&self, stamp: &Stamp) -> Result<TriangleMesh> {
+        let file = stamp.file(".ply");
+        let bytes = std::fs::read(self.store.root().join(file))?;
+        isostudy_mesh::read_ply(bytes.as_slice()).with_context(|| file.to_owned())
+    }
+}
+
+pub(super) fn purpose_name(purpose: Purpose) -> &'static str {
+    match purpose {
+        Purpose::Benchmark => "benchmark",
+        Purpose::Stimulus => "stimulus",
+        Purpose::Indexed => "indexed",
+    }
+}

@@ -1,0 +1,216 @@
+//! Tables, figures and the report, from records, timings and answers.
+
+use super::formats::{write_figure, write_table};
+use super::pages::{Abstract, PictureData, fits, write_report};
+use super::{Meshes, Pipeline};
+use crate::source_digests;
+use crate::store::{Inputs, Stamp, Store, Writer, sha256};
+use crate::terminal::progress::Step;
+use anyhow::{Context, Result};
+use isostudy_analysis::{Answered, Figure, LongFrame};
+use isostudy_design::Study;
+use isostudy_design::config::ResponsesSection;
+use isostudy_responses::Reading;
+use isostudy_table::Table;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+impl Pipeline<'_> {
+    /// Every table and figure of the study.
+    pub(crate) fn tables(
+        &self,
+        meshes: &Meshes,
+        timings: &Stamp,
+        chunks: &[Stamp],
+        pictures: &[Stamp],
+    ) -> Result<Stamp> {
+        let step = Step::begin("tables", 1, 1);
+        let mut inputs = study_inputs(self.study)?.stamp(timings);
+        for stamp in meshes.stamps().chain(chunks).chain(pictures) {
+            inputs = inputs.stamp(stamp);
+        }
+        let left_out = self.left_out();
+        let inputs = inputs.value("left out", &left_out);
+        let stamp = self.store.stage("tables", inputs, |writer| {
+            let records = self.mesh_records(meshes)?;
+            let run = self.bench_run(timings)?;
+            let chunks = self.chunk_records(chunks)?;
+            let answers = crate::answer_files::of_study(self.study)?;
+            let answers = answers.and_then(|reading| Answered::of(self.study, reading.responses));
+            let inputs = isostudy_analysis::Inputs {
+                study: self.study,
+                meshes: &records,
+                bench: Some(&run),
+                chunks: &chunks,
+                answers: answers.as_ref(),
+                left_out: &left_out,
+            };
+            write(writer, &inputs, &self.read_pictures()?, true)?;
+            writer.write_json(UNEXPLAINED, &isostudy_analysis::unexplained_differences(&inputs))
+        })?;
+        step.count(stamp.redone);
+        step.end();
+        Ok(stamp)
+    }
+
+    /// The published numbers that ours differ from without a known reason, as the tables stage found them.
+    pub(super) fn unexplained(&self) -> Result<Vec<String>> {
+        let path = self.store.root().join(UNEXPLAINED);
+        let text = std::fs::read(&path).with_context(|| path.display().to_string())?;
+        Ok(serde_json::from_slice(&text)?)
+    }
+}
+
+/// The preference tables and figures alone, into a folder of their own, with how the answers were read.
+///
+/// # Errors
+/// If the files cannot be written.
+pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store) -> Result<Vec<Table>> {
+    let answers = Answered::of(study, reading.responses);
+    let inputs = isostudy_analysis::Inputs {
+        study,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        answers: answers.as_ref(),
+        left_out: &[],
+    };
+    let mut made = None;
+    store.stage("answers", study_inputs(study)?, |writer| {
+        writer.write(READING, reading.report.to_csv().as_bytes())?;
+        made = Some(write(writer, &inputs, &[], false)?);
+        Ok(())
+    })?;
+    Ok(made.unwrap_or_else(|| isostudy_analysis::tables(&inputs)))
+}
+
+/// Tables, figures and report of answers without a study, into a folder of their own, with how the answers were read.
+///
+/// # Errors
+/// If the files cannot be written.
+pub(crate) fn write_without_study(
+    path: &Path,
+    section: &ResponsesSection,
+    reading: &Reading,
+    store: &Store,
+) -> Result<Vec<Table>> {
+    let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+    let inputs = Inputs::of_sources(source_digests::TABLES)
+        .value("mapping", section)
+        .text("responses", &sha256(&bytes));
+    let items = &reading.responses.items;
+    if let Some(reference) = section.reference.as_ref().filter(|reference| !items.contains(reference)) {
+        anyhow::bail!("reference = {reference:?}: no item has this name; there are {}", items.join(", "));
+    }
+    let groups = isostudy_analysis::open_groups(&reading.responses, section.reference.as_deref());
+    let tables = isostudy_analysis::answer_tables(&reading.responses, &groups, section.shown_s);
+    let title = path.file_name().unwrap_or_default().to_string_lossy();
+    store.stage("answers", inputs, |writer| {
+        writer.write(READING, reading.report.to_csv().as_bytes())?;
+        write_tables(writer, &tables)?;
+        let figures = isostudy_analysis::figures_of_groups(&groups).context("figures")?;
+        write_figures(writer, &figures)?;
+        write_frames(writer, &[isostudy_analysis::answers_frame(&reading.responses)])?;
+        write_report(
+            writer,
+            &isostudy_analysis::report_of_groups(&title, &reading.responses, &groups, &tables, &figures),
+            &[],
+            false,
+        )
+    })?;
+    Ok(tables)
+}
+
+/// What the page needs to know of a table: `tables/contents.json` lists these.
+#[derive(Serialize, Deserialize)]
+pub(super) struct TableEntry {
+    pub(super) name: String,
+    pub(super) caption: String,
+    pub(super) html: String,
+    /// Whether it is set to fit the page.
+    pub(super) fits: bool,
+}
+
+/// What the page needs to know of a figure: `figures/contents.json` lists these.
+#[derive(Serialize, Deserialize)]
+pub(super) struct FigureEntry {
+    pub(super) name: String,
+    pub(super) caption: String,
+    /// Size as shown, in pixels.
+    pub(super) width: u32,
+    pub(super) height: u32,
+}
+
+/// Cells and rows of the answers that were not taken as they stand.
+const READING: &str = "tables/reading.csv";
+const UNEXPLAINED: &str = "tables/unexplained.json";
+pub(super) const TABLE_CONTENTS: &str = "tables/contents.json";
+/// What the report says first.
+pub(super) const ABSTRACT: &str = "tables/abstract.json";
+pub(super) const FIGURE_CONTENTS: &str = "figures/contents.json";
+
+/// The tables that were written. `gallery` says whether an `index.html` will stand beside the report.
+fn write(
+    writer: &mut Writer<'_>,
+    inputs: &isostudy_analysis::Inputs<'_>,
+    pictures: &[PictureData],
+    gallery: bool,
+) -> Result<Vec<Table>> {
+    let tables = isostudy_analysis::tables(inputs);
+    write_tables(writer, &tables)?;
+    let figures = isostudy_analysis::figures(inputs).context("figures")?;
+    write_figures(writer, &figures)?;
+    let report = isostudy_analysis::report(inputs, &tables, &figures);
+    write_report(writer, &report, pictures, gallery)?;
+    if gallery {
+        writer.write_json(ABSTRACT, &Abstract::of(&report))?;
+    }
+    write_frames(writer, &isostudy_analysis::frames(inputs))?;
+    Ok(tables)
+}
+
+/// What tables summarise, row by row, for other programs.
+fn write_frames(writer: &mut Writer<'_>, frames: &[LongFrame]) -> Result<()> {
+    for frame in frames {
+        writer.write(&format!("data/{}.parquet", frame.name), &frame.to_parquet()?)?;
+    }
+    Ok(())
+}
+
+fn write_figures(writer: &mut Writer<'_>, figures: &[Figure]) -> Result<()> {
+    let mut entries = Vec::new();
+    for figure in figures {
+        write_figure(writer, "figures", figure)?;
+        let [width, height] = figure.size();
+        let (name, caption) = (figure.name.clone(), figure.caption.clone());
+        entries.push(FigureEntry { name, caption, width, height });
+    }
+    writer.write_json(FIGURE_CONTENTS, &entries)
+}
+
+fn write_tables(writer: &mut Writer<'_>, tables: &[Table]) -> Result<()> {
+    let mut entries = Vec::new();
+    for table in tables {
+        write_table(writer, "tables", table)?;
+        let (name, caption) = (table.name.clone(), table.caption.clone());
+        let fits = fits(&name);
+        let html = if fits { table.to_html_cards() } else { table.to_html() };
+        entries.push(TableEntry { name, caption, html, fits });
+    }
+    writer.write_json(TABLE_CONTENTS, &entries)
+}
+
+/// The study file, its answers and its published numbers.
+fn study_inputs(study: &Study) -> Result<Inputs> {
+    let published = &study.published;
+    let mut inputs = Inputs::of_sources(source_digests::TABLES)
+        .value("study", &study.file)
+        .value("benchmark", &published.benchmark)
+        .value("preferences", &published.preferences)
+        .value("claims", &published.claims);
+    if let Some(path) = &study.responses {
+        let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+        inputs = inputs.text("responses", &sha256(&bytes));
+    }
+    Ok(inputs)
+}

@@ -1,0 +1,245 @@
+//! What a study's recipes ask for: an extractor of ours, a program, or meshes that are there.
+
+use anyhow::{Context, Result, bail};
+use isostudy_design::config::Quantity;
+use isostudy_design::record::Purpose;
+use isostudy_design::{MethodId, Study};
+use isostudy_extract::{Method, Positions, Tetrahedra};
+use isostudy_program::Program;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// The kinds of recipes that are the study's own, and never the extractor's: a game's library must not be able to start processes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum StudyKind {
+    Program,
+    Meshes,
+}
+
+impl StudyKind {
+    const ALL: [Self; 2] = [Self::Program, Self::Meshes];
+
+    /// What `kind = ...` calls it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Program => "program",
+            Self::Meshes => "meshes",
+        }
+    }
+
+    /// The kind of a name; `None` for the extractor's kinds, and for what is none.
+    pub(crate) fn of(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+}
+
+/// How the meshes of a method come to be.
+#[derive(Debug, Clone)]
+pub(crate) enum Recipe {
+    /// An extractor of ours.
+    Extractor(Method),
+    /// A program that is given samples and answers with a mesh.
+    Program(Program),
+    /// Meshes that are there: an object's id, and its file.
+    Meshes(BTreeMap<String, PathBuf>),
+}
+
+/// The keys of a program.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ProgramKeys {
+    command: Vec<String>,
+    #[serde(default = "a_minute")]
+    time_limit_s: f64,
+    #[serde(default = "four")]
+    memory_gib: f64,
+}
+
+/// The keys of meshes that are there.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MeshKeys {
+    files: BTreeMap<String, String>,
+}
+
+fn a_minute() -> f64 {
+    60.0
+}
+
+fn four() -> f64 {
+    4.0
+}
+
+/// What a study's method asks for. Meshes made for [`Purpose::Indexed`] have indexed positions whatever the study says.
+///
+/// # Errors
+/// If its recipe is none, naming file, key and what is allowed.
+pub(crate) fn recipe(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
+    read(study, id, purpose).with_context(|| key(study, id))
+}
+
+/// Where a method's recipe stands.
+pub(crate) fn key(study: &Study, id: MethodId) -> String {
+    let key = match study.file.methods.iter().position(|section| section.id == id) {
+        Some(i) => format!("methods[{i}].recipe"),
+        None => "extraction".to_owned(),
+    };
+    format!("{}: {key}", study.path.display())
+}
+
+fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
+    let recipe = &study.method(id).recipe;
+    let keys = recipe.settings.clone();
+    match StudyKind::of(&recipe.kind) {
+        Some(StudyKind::Program) => {
+            let keys: ProgramKeys = toml::Value::Table(keys).try_into()?;
+            for (name, value, most) in
+                [("time_limit_s", keys.time_limit_s, 86_400.0), ("memory_gib", keys.memory_gib, 1024.0)]
+            {
+                if !(value > 0.0 && value <= most) {
+                    bail!("{name} = {value:?}: must be above 0 and at most {most}");
+                }
+            }
+            Ok(Recipe::Program(Program {
+                command: keys.command,
+                base: study.resolve("."),
+                time_limit: Duration::from_secs_f64(keys.time_limit_s),
+                memory_limit_bytes: Some((keys.memory_gib * (1u64 << 30) as f64) as u64),
+            }))
+        }
+        Some(StudyKind::Meshes) => {
+            let keys: MeshKeys = toml::Value::Table(keys).try_into()?;
+            let objects: Vec<&str> = study.file.objects.iter().map(|object| object.id.as_str()).collect();
+            if let Some(other) = keys.files.keys().find(|id| !objects.contains(&id.as_str())) {
+                bail!("files.{other}: is not an object of this study, which has {}", objects.join(", "));
+            }
+            if let Some(missing) = objects.iter().find(|id| !keys.files.contains_key(**id)) {
+                bail!("files.{missing}: must name a mesh of this object");
+            }
+            Ok(Recipe::Meshes(keys.files.into_iter().map(|(id, file)| (id, study.resolve(&file))).collect()))
+        }
+        None => {
+            let (kind, mut keys) = (recipe.kind.as_str(), keys);
+            keys.insert("kind".into(), kind.into());
+            let method = toml::Value::Table(keys).try_into().map_err(|error: toml::de::Error| {
+                let error = error.to_string();
+                let own = StudyKind::ALL.map(|kind| format!("`{}`", kind.name())).join(", ");
+                // The study's own kinds are kinds too; values of other keys have variants as well.
+                let is_kind = error.contains(&format!("unknown variant `{kind}`"));
+                let text = match is_kind {
+                    true => format!("{}, {own}", error.lines().next().unwrap_or_default()),
+                    false => error.trim_end().to_owned(),
+                };
+                anyhow::Error::msg(text)
+            })?;
+            Ok(Recipe::Extractor(match (method, purpose) {
+                (Method::Tetrahedra(of), Purpose::Indexed) => {
+                    Method::Tetrahedra(Tetrahedra { positions: Positions::Indexed, ..of })
+                }
+                (method, _) => method,
+            }))
+        }
+    }
+}
+
+/// Checks that every recipe is one, and that programs and meshes are there.
+///
+/// # Errors
+/// The first that is not, naming file, key and what is allowed.
+pub(crate) fn check(study: &Study) -> Result<()> {
+    for method in &study.methods {
+        match recipe(study, method.id, Purpose::Benchmark)? {
+            Recipe::Extractor(_) => {}
+            Recipe::Program(program) => program.check().with_context(|| key(study, method.id))?,
+            Recipe::Meshes(files) => {
+                for (object, path) in &files {
+                    if !path.is_file() {
+                        bail!(
+                            "{}.files.{object} names {}: no such file",
+                            key(study, method.id),
+                            path.display()
+                        );
+                    }
+                }
+            }
+        }
+        check_budget(study, method)?;
+    }
+    Ok(())
+}
+
+/// Checks that a method with a budget has a spacing to choose, and that the method to be matched has what is to be matched.
+fn check_budget(study: &Study, method: &isostudy_design::Method) -> Result<()> {
+    let Some(budget) = method.budget else { return Ok(()) };
+    let is_there =
+        |id| Ok::<bool, anyhow::Error>(matches!(recipe(study, id, Purpose::Benchmark)?, Recipe::Meshes(_)));
+    let i = study.place(method.id);
+    let [name, what] = budget.quantity.names();
+    let key = format!("{}: methods[{i}].match.{name} = {}", study.path.display(), budget.of);
+    if is_there(method.id)? {
+        bail!("{key}: meshes that are there have no spacing to choose");
+    }
+    if budget.quantity != Quantity::Triangles && is_there(budget.of)? {
+        bail!("{key}: meshes that are there have no {what} to match; triangles_of can match them");
+    }
+    Ok(())
+}
+
+/// The commands that a study would run.
+///
+/// # Errors
+/// As [`recipe`].
+pub(crate) fn commands(study: &Study) -> Result<Vec<String>> {
+    let mut commands = Vec::new();
+    for method in &study.methods {
+        if let Recipe::Program(program) = recipe(study, method.id, Purpose::Benchmark)? {
+            commands.push(format!("{}: {}", method.id, program.command.join(" ")));
+        }
+    }
+    Ok(commands)
+}
+
+/// Whether some method sums its positions up, so that meshes with indexed ones are measured beside.
+///
+/// # Errors
+/// As [`recipe`].
+pub(crate) fn sums_positions(study: &Study) -> Result<bool> {
+    for method in &study.methods {
+        if let Recipe::Extractor(Method::Tetrahedra(of)) = recipe(study, method.id, Purpose::Benchmark)?
+            && of.positions != Positions::Indexed
+        {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// What a recipe depends on beside its keys: the digests of [`files`].
+///
+/// # Errors
+/// If one cannot be read.
+pub(crate) fn inputs(study: &Study, id: MethodId) -> Result<Vec<String>> {
+    Ok(files(study, id)?.into_iter().map(|(_, digest)| digest).collect())
+}
+
+/// The programs and meshes that a recipe names, from the study's folder where they lie in or beside it, with their SHA-256.
+///
+/// # Errors
+/// If one cannot be read.
+pub(crate) fn files(study: &Study, id: MethodId) -> Result<Vec<(String, String)>> {
+    let files = match recipe(study, id, Purpose::Benchmark)? {
+        Recipe::Extractor(_) => Vec::new(),
+        Recipe::Program(program) => program.files().with_context(|| key(study, id))?,
+        Recipe::Meshes(files) => files.into_values().collect(),
+    };
+    let folder = study.path.parent().unwrap_or(Path::new(""));
+    let absolute = std::env::current_dir()?.join(folder);
+    let digest = |path: &PathBuf| {
+        let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+        let short = path.strip_prefix(&absolute).or(path.strip_prefix(folder)).unwrap_or(path);
+        Ok((short.display().to_string(), crate::store::sha256(&bytes)))
+    };
+    files.iter().map(digest).collect()
+}

@@ -1,0 +1,33 @@
+//! What the trilinear interpolant of a configuration's samples has for a surface.
+
+use crate::prepare::Prepared;
+use crate::recipe::Recipe;
+use isostudy_design::record::Trilinear;
+use isostudy_extract::CornerSamples;
+use isostudy_trilinear::{Samples, Ties, topology};
+
+/// The truth that a mesh is held against; `None` where the method's samples are not the corners of the grid's cells, or not all numbers.
+pub(crate) fn trilinear_truth(prepared: &Prepared<'_>, cells: [u32; 3]) -> Option<Trilinear> {
+    let (counts, values) = match &prepared.recipe {
+        Recipe::Extractor(method) => {
+            let CornerSamples { counts, values } =
+                method.corner_samples(prepared.field, &prepared.grid).ok()??;
+            (counts, values)
+        }
+        Recipe::Program(_) => (cells.map(|n| n as usize + 1), prepared.samples(cells)),
+        Recipe::Meshes(_) => return None,
+    };
+    let samples = Samples::try_new(counts, &values).ok()?;
+    let surface = topology(&samples, prepared.isovalue, Ties::Outside).ok()?;
+    let cells_otherwise = match &prepared.recipe {
+        Recipe::Extractor(method) => method.cells_otherwise(counts, &values, prepared.isovalue),
+        _ => None,
+    };
+    Some(Trilinear {
+        components: surface.components.len() as u64,
+        euler_characteristic: surface.components.iter().map(|component| component.euler_characteristic).sum(),
+        genus: surface.genus(),
+        tunnel_cells: surface.tunnel_cells,
+        cells_otherwise,
+    })
+}
