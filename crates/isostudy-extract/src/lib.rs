@@ -110,7 +110,7 @@
 //!
 //! - With [`Faces::Trilinear`] the mesh has the components, tunnels and boundary loops of the trilinear interpolant of the samples,
 //!   at a level above the isovalue by less than any number: samples, saddles of faces and saddles of cells that equal it are
-//!   outside. The crate `trilinear` counts the same without a mesh; 100,000 random grids agree (`tests/cubes_trilinear.rs`).
+//!   outside. The crate `trilinear` counts the same without a mesh; 100,000 random grids agree (`tests/it/cubes_trilinear.rs`).
 //! - A vertex is a crossing, but for a few in cells whose polygons have all diagonals in faces, or whose tube has a rung there.
 //!   Vertices stand in storage order of the lower ends of their edges, then of the axes.
 //! - [`SnapCubes`] draws crossings to nearby samples, so that angles are bounded; its mesh is closed off the box, and a manifold only
@@ -118,7 +118,7 @@
 //!   field to do so. It makes no chunks.
 //! - [`VolumeCells`] takes a volume's own cells, turned, mirrored, sheared and of unequal steps as they may be. At
 //!   `isovalue.next_down()` vertices and triangles are as many as VTK's Flying Edges makes at `isovalue`, which has equal samples
-//!   inside (`tests/cubes_vtk.rs`).
+//!   inside (`tests/it/cubes_vtk.rs`).
 //!
 //! # Odd input
 //!
@@ -172,13 +172,13 @@
 #[cfg(test)]
 extern crate self as isostudy_extract;
 #[cfg(test)]
-#[path = "../tests/bunny/mod.rs"]
+#[path = "../tests/it/bunny.rs"]
 mod bunny;
 #[cfg(test)]
-#[path = "../tests/fields/mod.rs"]
+#[path = "../tests/it/fields.rs"]
 mod fields;
 #[cfg(test)]
-#[path = "../tests/survey/mod.rs"]
+#[path = "../tests/it/survey.rs"]
 mod survey;
 
 /// The extractor in a game: from a field to terrain that is dug, and what each call costs.
