@@ -1,6 +1,6 @@
 //! Marching cubes: the extractor for cubes that are not cut any further.
 //!
-//! Like [`crate::streaming`] it streams: a few layers in memory, samples only where the field does not rule the surface out, slabs of
+//! Like [`crate::tetrahedra::streamed`] it streams: a few layers in memory, samples only where the field does not rule the surface out, slabs of
 //! cells on several threads. A vertex is a crossing, numbered by the lower end of its lattice edge, then by axis; after them come
 //! the few vertices in the cell whose lowest corner that point is. Triangles go cell by cell. Which triangles a cell has is a
 //! [`patches::Patch`], made by rule from [`cells`] at first use.
@@ -8,28 +8,23 @@
 mod cells_pass;
 mod continuation;
 mod exact;
-mod grid;
+pub(crate) mod grid;
 mod moved;
-mod nets;
 mod patches;
-mod records;
-mod rows;
+pub(crate) mod records;
+pub(crate) mod rows;
 mod rule;
-mod sampling;
+pub(crate) mod sampling;
 mod slab;
 mod snap;
 mod tubes;
 mod tunnel;
-mod vertices;
-mod volume_cells;
+pub(crate) mod vertices;
 
 pub(crate) use continuation::Continued;
 pub use continuation::{ContinuedCells, Seeds, SeedsError};
 pub(crate) use moved::EdgeMoves;
-pub use nets::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
-pub(crate) use nets::{Nets, ROUND, Sharp, is_other_better};
 pub use rule::{Diagonals, Faces, Flat};
-pub use volume_cells::{VolumeCells, VolumeCellsError};
 
 use isostudy_cells::{Cell, Table};
 
@@ -42,11 +37,12 @@ use self::patches::Patches;
 use self::slab::{Job, Workspace, stream_slab};
 use self::vertices::Placer;
 use crate::clock::Moment;
+use crate::duals::{self, Nets};
 use crate::extraction::{ExtractError, Extraction};
 use crate::slabs::{Piece, assemble, on_slabs, threads_and_slabs};
 use crate::source::Request;
-use crate::streaming::Progress;
-use crate::trace::Trace;
+use crate::surface::trace::Trace;
+use crate::tetrahedra::streamed::Progress;
 
 /// What decides the triangles of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -122,12 +118,12 @@ pub(crate) struct CubeStreamer {
     kept: Kept,
     patches: Vec<Workspace>,
     snapped: Vec<snap::Workspace>,
-    nets: Vec<nets::Workspace>,
+    nets: Vec<duals::Workspace>,
 }
 
 /// What every way has.
 #[derive(Default)]
-struct Kept {
+pub(crate) struct Kept {
     /// The coordinates of the grid's points along each axis.
     at: [Vec<f32>; 3],
     pieces: Vec<Piece>,
@@ -155,7 +151,7 @@ impl CubeStreamer {
             Way::Snapped { gamma, flat } => {
                 snap::extract((kept, snapped), request, gamma, flat, progress, trace, extraction)
             }
-            Way::Nets(of) => nets::extract((kept, nets), request, of, progress, trace, extraction),
+            Way::Nets(of) => duals::extract((kept, nets), request, of, progress, trace, extraction),
             Way::Continued(continued) => {
                 let rule = Rule { faces: Faces::SeparateInside, diagonals: Diagonals::Fan };
                 continuation::extract(request, continued, rule, progress, extraction)
@@ -189,12 +185,12 @@ fn extract_patches(
 }
 
 /// Told when a layer of cells is done.
-type LayerDone<'a> = dyn Fn() + Sync + 'a;
+pub(crate) type LayerDone<'a> = dyn Fn() + Sync + 'a;
 
 /// Streams the slabs of a simple cubic lattice, and makes one mesh of them, timed and counted. `work` does the layers of cells it is
 /// given, with a workspace that `fit` made room in, and says when it has done one. Workspaces hold so many `times` what a lattice's
 /// layers do; the function among the buffers makes one without room.
-fn in_slabs<W: Send>(
+pub(crate) fn in_slabs<W: Send>(
     (kept, workspaces, new): (&mut Kept, &mut Vec<W>, impl Fn() -> W),
     request: &Request,
     progress: Option<&Progress>,

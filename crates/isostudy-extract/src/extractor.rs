@@ -1,20 +1,23 @@
 //! The extractor: which of the ways a surface is extracted in, and the buffers that stay.
 
+#[cfg(test)]
+mod limits;
+
 use isostudy_field::{FieldCache, Plain, StudyField, Watched};
 
-use crate::by_cell::CellStreamer;
 use crate::clock::Moment;
-use crate::control::Control;
 use crate::cubes;
-use crate::dense;
+use crate::execution::control::Control;
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::lattice::Lattice;
 use crate::placement;
 use crate::settings::{Execution, ExtractSettings, Positions};
 use crate::slabs::threads_and_slabs;
 use crate::source::{Request, Sampler, Source};
-use crate::streaming::{Progress, Streamer};
-use crate::trace::Trace;
+use crate::surface::trace::Trace;
+use crate::tetrahedra::by_cell::CellStreamer;
+use crate::tetrahedra::dense;
+use crate::tetrahedra::streamed::{Progress, Streamer};
 
 /// An extractor that keeps its buffers, for one surface after another.
 ///

@@ -7,6 +7,7 @@ mod crossings;
 mod curvature;
 mod moves;
 mod relaxation;
+pub(crate) mod spot;
 mod surroundings;
 
 pub(crate) use self::crossings::{CrossingPlacer, clamped, crossing_ratio};

@@ -1,5 +1,7 @@
 //! Slabs of layers: how many there are, which thread does which, and one mesh of what they give.
 
+pub(crate) mod finish;
+
 use std::ops::Range;
 use std::sync::Mutex;
 use std::time::Duration;
@@ -8,13 +10,13 @@ use glam::Vec3;
 use isostudy_mesh::TriangleMesh;
 
 use crate::clock::Moment;
-use crate::control::Threads;
+use crate::execution::control::Threads;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes};
-use crate::finish::finish;
 use crate::memory::{refill, with_room};
+use crate::slabs::finish::finish;
 use crate::source::Request;
-use crate::trace::Trace;
-use crate::triangles::Triangulation;
+use crate::surface::trace::Trace;
+use crate::tetrahedra::dense::triangles::Triangulation;
 
 /// Slabs a thread, so that an uneven surface still keeps all threads busy.
 const SLABS_PER_THREAD: usize = 2;
@@ -276,7 +278,7 @@ enum Part<'a> {
     Triangles(&'a mut Vec<[u32; 3]>),
 }
 
-/// Area-weighted mean normals, as [`vertex_normals`](crate::normals::vertex_normals), to the bit: each vertex adds up
+/// Area-weighted mean normals, as [`vertex_normals`](crate::surface::normals::vertex_normals), to the bit: each vertex adds up
 /// its triangles in their order. With seams, each thread does the vertices of a run of slabs.
 fn make_normals(
     mesh: &mut TriangleMesh,
@@ -289,7 +291,7 @@ fn make_normals(
     refill(normals, positions.len(), Vec3::ZERO).map_err(|_| ExtractError::NoMemoryForMesh)?;
     let seams = seams.filter(|seams| threads > 1 && seams.len() > 1);
     let Some(seams) = seams else {
-        crate::normals::accumulate(positions, triangles, normals);
+        crate::surface::normals::accumulate(positions, triangles, normals);
         return Ok(());
     };
     let mut rest: &mut [Vec3] = normals;
@@ -305,7 +307,7 @@ fn make_normals(
         runs.push((low, &triangles[from..to], mine));
     }
     on_each(on, &mut runs, |_, (low, triangles, mine)| {
-        crate::normals::accumulate_some(positions, triangles, *low as u32, mine);
+        crate::surface::normals::accumulate_some(positions, triangles, *low as u32, mine);
         Ok(())
     })
 }

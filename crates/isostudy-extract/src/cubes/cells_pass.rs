@@ -10,8 +10,8 @@ use super::rows::next;
 use super::slab::Job;
 use super::tubes::INNER;
 use super::vertices::{Record, corner_of};
-use crate::in_sight::Values;
-use crate::triangles::Triangulation;
+use crate::sampling::in_sight::Values;
+use crate::tetrahedra::dense::triangles::Triangulation;
 
 /// The triangulation of a cell's polygons that was chosen last.
 #[derive(Default)]

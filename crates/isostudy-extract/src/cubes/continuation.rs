@@ -2,7 +2,7 @@
 //! Bloomenthal 1988, 1994).
 //!
 //! Only how cubes are visited is new. Their corners are the points of the simple cubic lattice, a sample that equals the isovalue is
-//! outside, and triangles are those of [`super::patches`], or those of [`crate::tetrahedra`] in each of six tetrahedra. Visited cubes are put
+//! outside, and triangles are those of [`super::patches`], or those of [`crate::tetrahedra::cases`] in each of six tetrahedra. Visited cubes are put
 //! into storage order before anything is made of them, so the mesh depends on which they are and not on the way.
 
 mod corners;
@@ -21,10 +21,10 @@ use super::grid::Grid;
 use super::{Rule, vertices::Placer};
 use crate::clock::Moment;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes};
-use crate::normals::vertex_normals;
 use crate::source::Request;
-use crate::streaming::Progress;
-use crate::triangles::Triangulation;
+use crate::surface::normals::vertex_normals;
+use crate::tetrahedra::dense::triangles::Triangulation;
+use crate::tetrahedra::streamed::Progress;
 
 /// Which cubes are visited, and what is made of them.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -13,7 +13,7 @@ use super::sampling::{Samples, Sampling};
 use super::vertices::{Placer, Record, VertexPass, Vertices};
 use crate::ExtractError;
 use crate::clock::Laps;
-use crate::control::Control;
+use crate::execution::control::Control;
 use crate::slabs::Piece;
 use crate::source::Sampler;
 

@@ -26,12 +26,12 @@ use super::sampling::{Samples, Sampling};
 use super::vertices::{Placer, Vertices};
 use super::{Kept, LayerDone, in_slabs};
 use crate::clock::Laps;
-use crate::control::Control;
+use crate::execution::control::Control;
 use crate::extraction::{ExtractError, Extraction};
 use crate::slabs::Piece;
 use crate::source::{Request, Sampler};
-use crate::streaming::Progress;
-use crate::trace::Trace;
+use crate::surface::trace::Trace;
+use crate::tetrahedra::streamed::Progress;
 
 /// Layers of sides and samples in sight.
 const SLOTS: usize = 6;

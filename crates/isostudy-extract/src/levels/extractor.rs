@@ -12,15 +12,15 @@ use super::neighbours::Neighbours;
 use super::shift::Shift;
 use super::transitions::{Corner, Decision, triangulate};
 use crate::chunks::{Chunk, ChunkError, ChunkExtractor, ChunkSettings, OfLevels};
-use crate::control::Control;
 use crate::cubes::Faces;
-use crate::grid::Grid;
+use crate::execution::control::Control;
 use crate::lattice::CellBox;
-use crate::level::Level;
+use crate::lattice::endless::Grid;
 use crate::memory::push;
 use crate::method::Method;
+use crate::sampling::level::Level;
 use crate::source::Source;
-use crate::trace::VertexKey;
+use crate::surface::trace::VertexKey;
 
 /// The coarsest level that there is.
 const COARSEST: u32 = 24;

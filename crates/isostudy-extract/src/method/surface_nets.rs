@@ -2,7 +2,8 @@
 
 use super::of_cubes::OfCubes;
 use super::{MethodError, Promises};
-use crate::cubes::{Nets, Way};
+use crate::cubes::Way;
+use crate::duals::Nets;
 use crate::settings::{Clustering, ExtractSettings, Topology};
 
 /// Surface nets, the dual of marching cubes: a vertex in each cube that the surface crosses, at the mean of the crossings of its edges,

@@ -14,7 +14,7 @@ use crate::cubes::patches::{Patch, Patches};
 use crate::cubes::tubes::INNER;
 use crate::cubes::vertices::{Placer, corner_of};
 use crate::memory::push;
-use crate::tetrahedra::{CASES, Case, EDGES};
+use crate::tetrahedra::cases::{CASES, Case, EDGES};
 
 /// The six tetrahedra of a cube, corners `x + 2 y + 4 z`: Bloomenthal's (1994). With `e1, e2, e3` from the first to the others,
 /// `det(e1, e2, e3) > 0`.

@@ -11,7 +11,7 @@ use super::labels::Labels;
 use super::table::{CORNER, MOST_TRIANGLES, Table};
 use super::vertices::Record;
 use crate::memory::reset;
-use crate::triangles::Triangulation;
+use crate::tetrahedra::dense::triangles::Triangulation;
 
 /// The patches of two layers of cells, and the points on the surface that they use.
 #[derive(Default)]

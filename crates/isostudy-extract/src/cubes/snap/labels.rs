@@ -5,8 +5,8 @@ use std::collections::TryReserveError;
 use super::super::grid::Grid;
 use super::super::rows::{Rows, before, next};
 use super::super::sampling::{Near, Samples};
-use crate::in_sight::{State, Values};
 use crate::memory::reset;
+use crate::sampling::in_sight::{State, Values};
 
 /// Layers in sight: of a cell, the two of its corners, and one more on either side.
 const SLOTS: usize = 4;

@@ -9,9 +9,9 @@ use super::super::records::Records;
 use super::super::rows::{Rows, next};
 use super::super::vertices::{Placer, RANK, Vertices};
 use super::labels::Labels;
-use crate::bits::between;
-use crate::in_sight::Values;
 use crate::memory::push;
+use crate::sampling::bits::between;
+use crate::sampling::in_sight::Values;
 
 /// The number in a key of a vertex that stands for a point. Those on edges have the edge's axis.
 const AT_POINT: usize = 3;
