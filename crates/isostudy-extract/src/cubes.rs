@@ -6,7 +6,7 @@
 //! [`patches::Patch`], made by rule from [`cells`] at first use.
 
 mod cells_pass;
-mod continuation;
+pub(crate) mod continuation;
 mod exact;
 pub(crate) mod grid;
 mod moved;
@@ -16,7 +16,7 @@ pub(crate) mod rows;
 mod rule;
 pub(crate) mod sampling;
 mod slab;
-mod snap;
+pub(crate) mod snap;
 mod tubes;
 mod tunnel;
 pub(crate) mod vertices;
@@ -32,17 +32,17 @@ use std::collections::TryReserveError;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use self::grid::Grid;
+use self::grid::CubeGrid;
 use self::patches::Patches;
-use self::slab::{Job, Workspace, stream_slab};
+pub(crate) use self::slab::Workspace;
+use self::slab::{Job, stream_slab};
 use self::vertices::Placer;
 use crate::clock::Moment;
-use crate::duals::{self, Nets};
 use crate::extraction::{ExtractError, Extraction};
+use crate::slabs::Progress;
 use crate::slabs::{Piece, assemble, on_slabs, threads_and_slabs};
 use crate::source::Request;
 use crate::surface::trace::Trace;
-use crate::tetrahedra::streamed::Progress;
 
 /// What decides the triangles of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,40 +87,6 @@ pub(crate) fn cells_otherwise(rule: Rule, [nx, ny, nz]: [usize; 3], values: &[f3
     count
 }
 
-/// What is made of the cubes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Way {
-    /// Patches of crossings.
-    Patches(Rule),
-    /// Patches of crossings that are moved.
-    Moved {
-        /// What decides the patches.
-        rule: Rule,
-        /// How they are moved.
-        moves: EdgeMoves,
-    },
-    /// Patches of crossings and of points that crossings were drawn to.
-    Snapped {
-        /// How near to a point a crossing must be, in lengths of its edge.
-        gamma: f32,
-        /// What faces between cells get.
-        flat: Flat,
-    },
-    /// The dual of patches: vertices in cells.
-    Nets(Nets),
-    /// Patches of crossings, in those cubes that are reached from seeds.
-    Continued(Continued),
-}
-
-/// An extractor's buffers, kept from one surface to the next.
-#[derive(Default)]
-pub(crate) struct CubeStreamer {
-    kept: Kept,
-    patches: Vec<Workspace>,
-    snapped: Vec<snap::Workspace>,
-    nets: Vec<duals::Workspace>,
-}
-
 /// What every way has.
 #[derive(Default)]
 pub(crate) struct Kept {
@@ -129,39 +95,8 @@ pub(crate) struct Kept {
     pieces: Vec<Piece>,
 }
 
-impl CubeStreamer {
-    /// Extracts the cubes of a simple cubic lattice one way or the other.
-    pub(crate) fn extract(
-        &mut self,
-        request: &Request,
-        way: Way,
-        progress: Option<&Progress>,
-        trace: Option<&mut Trace>,
-        extraction: &mut Extraction,
-    ) -> Result<(), ExtractError> {
-        let Self { kept, patches, snapped, nets } = self;
-        match way {
-            Way::Patches(rule) => {
-                extract_patches((kept, patches), request, rule, 0.0, progress, trace, extraction)
-            }
-            Way::Moved { rule, moves } => {
-                extract_patches((kept, patches), request, rule, moves.pull, progress, trace, extraction)?;
-                moves.apply(request, extraction)
-            }
-            Way::Snapped { gamma, flat } => {
-                snap::extract((kept, snapped), request, gamma, flat, progress, trace, extraction)
-            }
-            Way::Nets(of) => duals::extract((kept, nets), request, of, progress, trace, extraction),
-            Way::Continued(continued) => {
-                let rule = Rule { faces: Faces::SeparateInside, diagonals: Diagonals::Fan };
-                continuation::extract(request, continued, rule, progress, extraction)
-            }
-        }
-    }
-}
-
 /// The stages in order, timed and counted. The lattice is simple cubic: its points are the corners of the cubes.
-fn extract_patches(
+pub(crate) fn extract_patches(
     (kept, workspaces): (&mut Kept, &mut Vec<Workspace>),
     request: &Request,
     rule: Rule,
@@ -174,8 +109,12 @@ fn extract_patches(
     let patches = Patches::get(rule);
     let placer = &Placer::new(request.lattice, settings, request.level()).pulled(pull);
     let (isovalue, traced) = (settings.isovalue, trace.is_some());
-    let fit = |workspace: &mut Workspace, grid: &Grid| workspace.fit(grid, source);
-    let work = |grid: &Grid, layer_done: &LayerDone, own, workspace: &mut Workspace, piece: &mut Piece| {
+    let fit = |workspace: &mut Workspace, grid: &CubeGrid| workspace.fit(grid, source);
+    let work = |grid: &CubeGrid,
+                layer_done: &LayerDone,
+                own,
+                workspace: &mut Workspace,
+                piece: &mut Piece| {
         let job =
             Job { grid, source, isovalue, rule, patches, placer, most_vertices, traced, control, layer_done };
         stream_slab(&job, own, workspace, piece)
@@ -197,15 +136,15 @@ pub(crate) fn in_slabs<W: Send>(
     mut trace: Option<&mut Trace>,
     extraction: &mut Extraction,
     times: u64,
-    fit: impl Fn(&mut W, &Grid) -> Result<(), TryReserveError>,
-    work: impl Fn(&Grid, &LayerDone, Range<usize>, &mut W, &mut Piece) -> Result<(), ExtractError> + Sync,
+    fit: impl Fn(&mut W, &CubeGrid) -> Result<(), TryReserveError>,
+    work: impl Fn(&CubeGrid, &LayerDone, Range<usize>, &mut W, &mut Piece) -> Result<(), ExtractError> + Sync,
 ) -> Result<(), ExtractError> {
     let Request { lattice, control, start, .. } = *request;
     let (threads, slabs) = threads_and_slabs(control.threads.count(), lattice.stored_grid()[2] as usize);
     let out_of_memory =
         |_| ExtractError::OutOfMemory { bytes: times * lattice.streaming_bytes(threads as u64) };
     let Kept { at, pieces } = kept;
-    let grid = Grid::within(lattice, std::mem::take(at)).map_err(out_of_memory)?;
+    let grid = CubeGrid::within(lattice, std::mem::take(at)).map_err(out_of_memory)?;
     workspaces.resize_with(threads, new);
     pieces.resize_with(slabs, Piece::default);
     for workspace in &mut *workspaces {

@@ -21,6 +21,7 @@ mod vertices;
 
 pub use labels::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
 pub(crate) use quads::{ROUND, is_other_better};
+pub(crate) use relaxed::MOST_SMOOTHING;
 pub(crate) use sharp::Sharp;
 
 use std::collections::TryReserveError;
@@ -31,16 +32,16 @@ use self::quads::QuadPass;
 use self::tangents::{Known, Tangents};
 use self::vertices::{Record, VertexPass, Vertices};
 use crate::clock::Laps;
-use crate::cubes::grid::{Grid, SLOTS};
+use crate::cubes::grid::{CubeGrid, SLOTS};
 use crate::cubes::records::Records;
 use crate::cubes::sampling::{Samples, Sampling};
 use crate::cubes::vertices::Placer;
 use crate::cubes::{Kept, LayerDone, in_slabs};
 use crate::extraction::{ExtractError, Extraction};
 use crate::slabs::Piece;
+use crate::slabs::Progress;
 use crate::source::{Request, Sampler};
 use crate::surface::trace::Trace;
-use crate::tetrahedra::streamed::Progress;
 
 /// What decides a net.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,18 +91,19 @@ fn extract_unmoved(
     let table = Table::get(patches);
     let placer = &Placer::new(request.lattice, request.settings, None);
     let traced = trace.is_some();
-    let fit = |workspace: &mut Workspace, grid: &Grid| workspace.fit(grid, request.source, table);
-    let work = |grid: &Grid, layer_done: &LayerDone, own, workspace: &mut Workspace, piece: &mut Piece| {
-        let job = Job { grid, request, sharp, placer, traced, layer_done };
-        stream_slab(&job, own, workspace, piece)
-    };
+    let fit = |workspace: &mut Workspace, grid: &CubeGrid| workspace.fit(grid, request.source, table);
+    let work =
+        |grid: &CubeGrid, layer_done: &LayerDone, own, workspace: &mut Workspace, piece: &mut Piece| {
+            let job = Job { grid, request, sharp, placer, traced, layer_done };
+            stream_slab(&job, own, workspace, piece)
+        };
     let buffers = (kept, workspaces, || Workspace::new(table));
     in_slabs(buffers, request, progress, trace, extraction, 1, fit, work)
 }
 
 /// What all slabs of an extraction share.
 struct Job<'a> {
-    grid: &'a Grid<'a>,
+    grid: &'a CubeGrid<'a>,
     request: &'a Request<'a>,
     /// By tangent planes, if there is a field to have them.
     sharp: Option<Sharp>,
@@ -127,7 +129,12 @@ impl Workspace {
         Self { samples, records, plans: Plans::new(table), tangents }
     }
 
-    fn fit(&mut self, grid: &Grid, source: Sampler, table: &'static Table) -> Result<(), TryReserveError> {
+    fn fit(
+        &mut self,
+        grid: &CubeGrid,
+        source: Sampler,
+        table: &'static Table,
+    ) -> Result<(), TryReserveError> {
         if !std::ptr::eq(self.plans.table, table) {
             self.plans = Plans::new(table);
         }

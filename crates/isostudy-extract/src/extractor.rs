@@ -1,23 +1,26 @@
 //! The extractor: which of the ways a surface is extracted in, and the buffers that stay.
 
 #[cfg(test)]
-mod limits;
+mod tests;
+mod ways;
 
 use isostudy_field::{FieldCache, Plain, StudyField, Watched};
 
 use crate::clock::Moment;
-use crate::cubes;
 use crate::execution::control::Control;
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::lattice::Lattice;
 use crate::placement;
 use crate::settings::{Execution, ExtractSettings, Positions};
+use crate::slabs::Progress;
 use crate::slabs::threads_and_slabs;
 use crate::source::{Request, Sampler, Source};
 use crate::surface::trace::Trace;
 use crate::tetrahedra::by_cell::CellStreamer;
 use crate::tetrahedra::dense;
-use crate::tetrahedra::streamed::{Progress, Streamer};
+use crate::tetrahedra::streamed::Streamer;
+use ways::CubeStreamer;
+pub(crate) use ways::Way;
 
 /// An extractor that keeps its buffers, for one surface after another.
 ///
@@ -47,7 +50,7 @@ use crate::tetrahedra::streamed::{Progress, Streamer};
 pub struct Extractor {
     streamer: Streamer,
     cell_streamer: CellStreamer,
-    cube_streamer: cubes::CubeStreamer,
+    cube_streamer: CubeStreamer,
     kept: FieldCache,
     progress: Option<Box<Progress>>,
     /// Where the last mesh came from, if `traced`.
@@ -123,7 +126,7 @@ impl Extractor {
         source: Source,
         lattice: &Lattice,
         settings: &ExtractSettings,
-        way: cubes::Way,
+        way: Way,
         control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
@@ -139,7 +142,7 @@ impl Extractor {
         source: Source,
         lattice: &Lattice,
         settings: &ExtractSettings,
-        cubes: Option<cubes::Way>,
+        cubes: Option<Way>,
         control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
@@ -191,7 +194,7 @@ impl Extractor {
         field: &dyn StudyField,
         lattice: &Lattice,
         settings: &ExtractSettings,
-        cubes: Option<cubes::Way>,
+        cubes: Option<Way>,
         control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
@@ -212,7 +215,7 @@ impl Extractor {
         (source, start): (Sampler, Moment),
         lattice: &Lattice,
         settings: &ExtractSettings,
-        cubes: Option<cubes::Way>,
+        cubes: Option<Way>,
         control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {

@@ -7,6 +7,7 @@ mod counts;
 mod directions;
 pub(crate) mod endless;
 mod layout;
+pub(crate) mod tetrahedra;
 
 pub use box_grid::BoxGrid;
 pub use cell_box::CellBox;

@@ -17,18 +17,16 @@ pub use dual_contouring::DualContouring;
 pub use macet::Macet;
 pub use presets::{Preset, presets};
 pub use snap_cubes::SnapCubes;
-pub(crate) use surface_nets::MOST_SMOOTHING;
 pub use surface_nets::SurfaceNets;
 pub use tetrahedra::Tetrahedra;
-pub(crate) use volume_cells::Space;
 pub use volume_cells::{VolumeCells, VolumeCellsError};
 
 use std::error::Error;
 use std::fmt;
 
-use crate::cubes::Way;
 use crate::extraction::{ExtractError, Extraction};
 use crate::extractor::Extractor;
+use crate::extractor::Way;
 use crate::lattice::BoxGrid;
 use crate::lattice::{Arrangement, Border, CellBox, LatticeError};
 use crate::settings::{Execution, ExtractSettings};

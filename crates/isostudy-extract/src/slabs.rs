@@ -11,17 +11,21 @@ use isostudy_mesh::TriangleMesh;
 
 use crate::clock::Moment;
 use crate::execution::control::Threads;
+use crate::execution::threads::on_each;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes};
 use crate::memory::{refill, with_room};
 use crate::slabs::finish::finish;
 use crate::source::Request;
 use crate::surface::trace::Trace;
-use crate::tetrahedra::dense::triangles::Triangulation;
+use crate::surface::triangulation::Triangulation;
 
 /// Slabs a thread, so that an uneven surface still keeps all threads busy.
 const SLABS_PER_THREAD: usize = 2;
 /// A slab has at least this many layers: the halo on either side costs up to four more.
 const LEAST_LAYERS: usize = 16;
+
+/// Told how many layers of how many are done.
+pub(crate) type Progress = dyn Fn(usize, usize) + Send + Sync;
 
 /// The surface in a slab.
 ///
@@ -101,55 +105,6 @@ pub(crate) fn on_slabs<W: Send>(
         }
     };
     on_each(on, workspaces, |_, workspace| work(workspace))
-}
-
-/// Does `work` with each item, on as many threads, which are started for it, or as jobs. Each thread takes the next item that is left.
-///
-/// # Errors
-/// [`ExtractError::Threads`], and an error of `work`; items that nobody had begun are left out then.
-pub(crate) fn on_each<T: Send>(
-    on: Threads,
-    items: &mut [T],
-    work: impl Fn(usize, &mut T) -> Result<(), ExtractError> + Sync,
-) -> Result<(), ExtractError> {
-    let threads = items.len();
-    let left = Mutex::new(items.iter_mut().enumerate());
-    run(on, threads, &|| {
-        let next = left.lock().expect("no thread panics with it").next();
-        next.map(|(i, item)| work(i, item))
-    })
-}
-
-/// Calls `next` on all threads until nothing is left. It is not generic: what starts threads is long, and compiled once.
-fn run(
-    on: Threads,
-    threads: usize,
-    next: &(dyn Fn() -> Option<Result<(), ExtractError>> + Sync),
-) -> Result<(), ExtractError> {
-    let all = || -> Result<(), ExtractError> { std::iter::from_fn(next).collect() };
-    if let Threads::Jobs(jobs) = on {
-        let result = Mutex::new(Ok(()));
-        jobs.run(&|_| {
-            if let Err(error) = all() {
-                *result.lock().expect("no job panics with it") = Err(error);
-            }
-        });
-        return result.into_inner().expect("no job panics with it");
-    }
-    std::thread::scope(|scope| {
-        // The calling thread is one of them.
-        let handles = (1..threads)
-            .map(|_| {
-                std::thread::Builder::new()
-                    .spawn_scoped(scope, all)
-                    .map_err(|error| ExtractError::Threads { threads, reason: error.to_string() })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        all()?;
-        handles
-            .into_iter()
-            .try_for_each(|handle| handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-    })
 }
 
 /// Makes the mesh of the whole out of its pieces, and finishes it as the settings say. `allocating` and `streaming` are what

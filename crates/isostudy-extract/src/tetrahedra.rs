@@ -2,6 +2,6 @@
 //! have an extractor of their own ([`by_cell`]). With accumulated positions all samples are stored ([`dense`]).
 
 pub(crate) mod by_cell;
-pub(crate) mod cases;
 pub(crate) mod dense;
 pub(crate) mod streamed;
+mod ties;

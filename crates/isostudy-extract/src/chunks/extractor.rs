@@ -22,9 +22,9 @@ use crate::lattice::endless::Grid;
 use crate::lattice::{Border, CellBox, Lattice};
 use crate::memory::refill;
 use crate::method::{ByWindow, Method, MethodError};
+use crate::placement::FieldTargets;
 use crate::sampling::level::Level;
 use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topology};
-use crate::slabs::finish::FieldTargets;
 use crate::source::Source;
 use crate::surface::normals::accumulate;
 

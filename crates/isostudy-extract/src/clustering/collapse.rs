@@ -9,7 +9,7 @@ use glam::Vec3;
 
 use crate::memory::{collected, filled, push, with_room};
 use crate::settings::{Clustering, ExtractSettings, Topology};
-use crate::tetrahedra::dense::triangles::Triangulation;
+use crate::surface::triangulation::Triangulation;
 
 /// Collapses short edges by the rules of the settings, if they ask for it. Returns whether they do.
 pub(crate) fn collapse(

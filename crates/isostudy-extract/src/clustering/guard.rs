@@ -13,9 +13,7 @@ mod link;
 mod shapes;
 
 #[cfg(test)]
-mod certificate;
-#[cfg(test)]
-mod lemmas;
+mod tests;
 
 use std::sync::OnceLock;
 

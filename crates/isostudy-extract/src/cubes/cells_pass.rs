@@ -11,7 +11,7 @@ use super::slab::Job;
 use super::tubes::INNER;
 use super::vertices::{Record, corner_of};
 use crate::sampling::in_sight::Values;
-use crate::tetrahedra::dense::triangles::Triangulation;
+use crate::surface::triangulation::Triangulation;
 
 /// The triangulation of a cell's polygons that was chosen last.
 #[derive(Default)]

@@ -16,7 +16,7 @@ const TILE: usize = 2;
 pub(crate) const SLOTS: usize = 4;
 
 /// The corners of the cubes as the passes see them.
-pub(crate) struct Grid<'a> {
+pub(crate) struct CubeGrid<'a> {
     pub(crate) lattice: &'a Lattice,
     /// Points a row, rows a layer, layers.
     pub(crate) size: [usize; 3],
@@ -26,7 +26,7 @@ pub(crate) struct Grid<'a> {
     pub(crate) at: [Vec<f32>; 3],
 }
 
-impl<'a> Grid<'a> {
+impl<'a> CubeGrid<'a> {
     pub(crate) fn new(lattice: &'a Lattice) -> Result<Self, TryReserveError> {
         Self::within(lattice, Default::default())
     }
@@ -54,7 +54,7 @@ impl<'a> Grid<'a> {
     }
 }
 
-impl Points for Grid<'_> {
+impl Points for CubeGrid<'_> {
     fn size(&self) -> [usize; 3] {
         self.size
     }

@@ -7,9 +7,9 @@ use crate::clock::Moment;
 use crate::execution::threads::for_each_on_threads;
 use crate::extraction::{ExtractError, Extraction};
 use crate::memory::copied;
+use crate::placement::FieldTargets;
 use crate::placement::Moves;
 use crate::settings::Placement;
-use crate::slabs::finish::FieldTargets;
 use crate::source::Request;
 use crate::surface::normals::vertex_normals;
 

@@ -2,7 +2,7 @@
 
 use std::collections::TryReserveError;
 
-use super::grid::Grid;
+use super::grid::CubeGrid;
 use crate::memory::reset;
 
 /// The records of two layers, written and read only where there is something to know.
@@ -14,7 +14,7 @@ pub(crate) struct Records<R> {
 
 impl<R: Copy + Default> Records<R> {
     /// Makes room, with nothing in it.
-    pub(crate) fn fit(&mut self, grid: &Grid) -> Result<(), TryReserveError> {
+    pub(crate) fn fit(&mut self, grid: &CubeGrid) -> Result<(), TryReserveError> {
         let [nx, ny, _] = grid.size;
         self.size = [nx, ny];
         reset(&mut self.records, 2 * nx * ny, R::default())

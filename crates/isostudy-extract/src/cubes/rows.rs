@@ -2,7 +2,7 @@
 
 use std::collections::TryReserveError;
 
-use super::grid::Grid;
+use super::grid::CubeGrid;
 use crate::memory::reset;
 
 /// A ring of layers of rows. Each row has a word of zeros at its end, so that the bit after each can be asked for.
@@ -17,7 +17,7 @@ pub(crate) struct Rows {
 
 impl Rows {
     /// Makes room for so many layers at a time, all zeros.
-    pub(crate) fn fit(&mut self, grid: &Grid, slots: usize) -> Result<(), TryReserveError> {
+    pub(crate) fn fit(&mut self, grid: &CubeGrid, slots: usize) -> Result<(), TryReserveError> {
         let slots = slots.next_power_of_two();
         (self.stride, self.rows, self.ring) = (grid.words + 1, grid.size[1], slots - 1);
         reset(&mut self.words, self.stride * self.rows * slots, 0)

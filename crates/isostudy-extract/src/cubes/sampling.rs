@@ -2,7 +2,7 @@
 
 use std::collections::TryReserveError;
 
-use super::grid::Grid;
+use super::grid::CubeGrid;
 use super::rows::{Rows, before, next};
 use crate::memory::reset;
 use crate::sampling::bits::{between, set_above, set_range};
@@ -15,7 +15,7 @@ use isostudy_field::StudyField;
 /// What is sampled, and where.
 #[derive(Clone, Copy)]
 pub(crate) struct Sampling<'a> {
-    pub(crate) grid: &'a Grid<'a>,
+    pub(crate) grid: &'a CubeGrid<'a>,
     pub(crate) source: Sampler<'a>,
     pub(crate) isovalue: f32,
     /// Whether all corners of a crossed cell have samples, or the ends of crossed edges alone.
@@ -47,7 +47,12 @@ struct Called {
 
 impl Samples {
     /// Makes room for so many layers in sight.
-    pub(crate) fn fit(&mut self, grid: &Grid, source: Sampler, slots: usize) -> Result<(), TryReserveError> {
+    pub(crate) fn fit(
+        &mut self,
+        grid: &CubeGrid,
+        source: Sampler,
+        slots: usize,
+    ) -> Result<(), TryReserveError> {
         self.slots = slots;
         if matches!(source, Sampler::Field(_)) {
             self.called.fit(grid, slots)?;
@@ -56,7 +61,7 @@ impl Samples {
         self.sides.fit(grid, slots)
     }
 
-    pub(crate) fn values<'a>(&'a self, grid: &Grid, source: Sampler<'a>) -> Values<'a> {
+    pub(crate) fn values<'a>(&'a self, grid: &CubeGrid, source: Sampler<'a>) -> Values<'a> {
         let size = grid.size;
         match source {
             Sampler::Given { values, .. } => Values::new(values, size, size[2]),
@@ -72,7 +77,7 @@ impl Samples {
 
     /// Whether all points of some rows are on one side.
     #[inline]
-    pub(crate) fn is_uniform(&self, grid: &Grid, rows: &[[usize; 2]]) -> bool {
+    pub(crate) fn is_uniform(&self, grid: &CubeGrid, rows: &[[usize; 2]]) -> bool {
         let state = |[y, z]: [usize; 2]| self.states[z % self.slots * grid.size[1] + y];
         let first = state(rows[0]);
         first != State::Mixed && rows.iter().all(|&row| state(row) == first)
@@ -142,7 +147,7 @@ pub(crate) struct Near {
 
 impl Near {
     /// Of a row in a layer.
-    pub(crate) fn new(grid: &Grid, [row, layer]: [usize; 2], all_corners: bool) -> Self {
+    pub(crate) fn new(grid: &CubeGrid, [row, layer]: [usize; 2], all_corners: bool) -> Self {
         let [_, ny, nz] = grid.size;
         let (rows, layers) =
             (row.saturating_sub(1)..ny.min(row + 2), layer.saturating_sub(1)..nz.min(layer + 2));
@@ -163,7 +168,7 @@ impl Near {
 
     /// Calls `visit` with each word of the row and the points of it that cells need: ends of crossed edges, or all corners of
     /// crossed cells.
-    pub(crate) fn for_each_word(&self, grid: &Grid, sides: &Rows, mut visit: impl FnMut(usize, u64)) {
+    pub(crate) fn for_each_word(&self, grid: &CubeGrid, sides: &Rows, mut visit: impl FnMut(usize, u64)) {
         let lines = self.around.map(|[y, z]| sides.row(y, z));
         for word in 0..grid.words {
             let [mut any, mut all] = [lines[0][word]; 2];
@@ -181,7 +186,7 @@ impl Near {
 }
 
 impl Called {
-    fn fit(&mut self, grid: &Grid, slots: usize) -> Result<(), TryReserveError> {
+    fn fit(&mut self, grid: &CubeGrid, slots: usize) -> Result<(), TryReserveError> {
         let [nx, ny, _] = grid.size;
         self.slots = slots;
         self.tiles.fit(grid)?;
@@ -224,7 +229,7 @@ impl Called {
     }
 
     /// Takes the samples of a row that are wanted and not there yet.
-    fn fill(&mut self, grid: &Grid, field: &dyn StudyField, [row, layer]: [usize; 2]) {
+    fn fill(&mut self, grid: &CubeGrid, field: &dyn StudyField, [row, layer]: [usize; 2]) {
         let [nx, ny, _] = grid.size;
         let (y, z) = (grid.at[1][row], grid.at[2][layer]);
         let values = &mut self.values[(layer % self.slots * ny + row) * nx..][..nx];

@@ -6,20 +6,20 @@ use std::ops::Range;
 
 use super::Rule;
 use super::cells_pass::{BestTriangles, triangulate_layer};
-use super::grid::{Grid, SLOTS};
+use super::grid::{CubeGrid, SLOTS};
 use super::patches::Patches;
 use super::records::Records;
 use super::sampling::{Samples, Sampling};
 use super::vertices::{Placer, Record, VertexPass, Vertices};
-use crate::ExtractError;
 use crate::clock::Laps;
 use crate::execution::control::Control;
+use crate::extraction::ExtractError;
 use crate::slabs::Piece;
 use crate::source::Sampler;
 
 /// What all slabs of an extraction share.
 pub(super) struct Job<'a> {
-    pub(super) grid: &'a Grid<'a>,
+    pub(super) grid: &'a CubeGrid<'a>,
     pub(super) source: Sampler<'a>,
     pub(super) isovalue: f32,
     pub(super) rule: Rule,
@@ -35,7 +35,7 @@ pub(super) struct Job<'a> {
 
 /// Buffers of one thread, a few layers each, kept between slabs and between extractions.
 #[derive(Default)]
-pub(super) struct Workspace {
+pub(crate) struct Workspace {
     samples: Samples,
     records: Records<Record>,
     best: BestTriangles,
@@ -43,7 +43,7 @@ pub(super) struct Workspace {
 
 impl Workspace {
     /// Makes room.
-    pub(super) fn fit(&mut self, grid: &Grid, source: Sampler) -> Result<(), TryReserveError> {
+    pub(super) fn fit(&mut self, grid: &CubeGrid, source: Sampler) -> Result<(), TryReserveError> {
         self.samples.fit(grid, source, SLOTS)?;
         self.records.fit(grid)
     }

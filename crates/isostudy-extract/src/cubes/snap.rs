@@ -20,7 +20,7 @@ use self::labels::{Labels, Snap};
 use self::table::Table;
 use self::vertices::{Record, VertexPass};
 use super::Flat;
-use super::grid::Grid;
+use super::grid::CubeGrid;
 use super::records::Records;
 use super::sampling::{Samples, Sampling};
 use super::vertices::{Placer, Vertices};
@@ -29,15 +29,15 @@ use crate::clock::Laps;
 use crate::execution::control::Control;
 use crate::extraction::{ExtractError, Extraction};
 use crate::slabs::Piece;
+use crate::slabs::Progress;
 use crate::source::{Request, Sampler};
 use crate::surface::trace::Trace;
-use crate::tetrahedra::streamed::Progress;
 
 /// Layers of sides and samples in sight.
 const SLOTS: usize = 6;
 
 /// The stages in order, timed and counted. The lattice is simple cubic.
-pub(super) fn extract(
+pub(crate) fn extract(
     (kept, workspaces): (&mut Kept, &mut Vec<Workspace>),
     request: &Request,
     gamma: f32,
@@ -51,18 +51,20 @@ pub(super) fn extract(
     let placer = &Placer::new(request.lattice, settings, None);
     let snap = Snap { isovalue: settings.isovalue, gamma };
     let traced = trace.is_some();
-    let fit = |workspace: &mut Workspace, grid: &Grid| workspace.fit(grid, source);
-    let work = |grid: &Grid, layer_done: &LayerDone, own, workspace: &mut Workspace, piece: &mut Piece| {
-        let job = Job { grid, source, snap, flat, table, placer, most_vertices, traced, control, layer_done };
-        stream_slab(&job, own, workspace, piece)
-    };
+    let fit = |workspace: &mut Workspace, grid: &CubeGrid| workspace.fit(grid, source);
+    let work =
+        |grid: &CubeGrid, layer_done: &LayerDone, own, workspace: &mut Workspace, piece: &mut Piece| {
+            let job =
+                Job { grid, source, snap, flat, table, placer, most_vertices, traced, control, layer_done };
+            stream_slab(&job, own, workspace, piece)
+        };
     let buffers = (kept, workspaces, Workspace::default);
     in_slabs(buffers, request, progress, trace, extraction, 3, fit, work)
 }
 
 /// What all slabs of an extraction share.
 struct Job<'a> {
-    grid: &'a Grid<'a>,
+    grid: &'a CubeGrid<'a>,
     source: Sampler<'a>,
     snap: Snap,
     flat: Flat,
@@ -77,7 +79,7 @@ struct Job<'a> {
 
 /// Buffers of one thread, a few layers each, kept between slabs and between extractions.
 #[derive(Default)]
-pub(super) struct Workspace {
+pub(crate) struct Workspace {
     samples: Samples,
     labels: Labels,
     chosen: Chosen,
@@ -85,7 +87,7 @@ pub(super) struct Workspace {
 }
 
 impl Workspace {
-    fn fit(&mut self, grid: &Grid, source: Sampler) -> Result<(), TryReserveError> {
+    fn fit(&mut self, grid: &CubeGrid, source: Sampler) -> Result<(), TryReserveError> {
         self.samples.fit(grid, source, SLOTS)?;
         self.labels.fit(grid)?;
         self.chosen.fit(grid)?;

@@ -5,7 +5,7 @@ use std::collections::TryReserveError;
 use glam::{Vec3, Vec4};
 
 use super::Rule;
-use super::grid::Grid;
+use super::grid::CubeGrid;
 use super::patches::{Patch, Patches};
 use super::records::Records;
 use super::rows::next;
@@ -52,7 +52,7 @@ pub(crate) static RANK: [u8; 8] = [0, 1, 1, 2, 1, 2, 2, 3];
 
 /// What the pass reads.
 pub(crate) struct VertexPass<'a> {
-    pub(crate) grid: &'a Grid<'a>,
+    pub(crate) grid: &'a CubeGrid<'a>,
     pub(crate) samples: &'a Samples,
     pub(crate) values: Values<'a>,
     pub(crate) isovalue: f32,
@@ -270,7 +270,7 @@ impl<'a> Placer<'a> {
     #[inline]
     pub(crate) fn position(
         &self,
-        grid: &Grid,
+        grid: &CubeGrid,
         place: [usize; 3],
         axis: usize,
         [here, there]: [f32; 2],
@@ -308,7 +308,7 @@ impl<'a> Placer<'a> {
     }
 
     #[inline(never)]
-    fn drawn(&self, ratio: f32, grid: &Grid, place: [usize; 3], axis: usize) -> f32 {
+    fn drawn(&self, ratio: f32, grid: &CubeGrid, place: [usize; 3], axis: usize) -> f32 {
         let is_on_side = |other: usize| place[other] == 0 || place[other] + 1 == grid.size[other];
         if (0..3).any(|other| other != axis && is_on_side(other)) {
             return ratio;
@@ -317,7 +317,13 @@ impl<'a> Placer<'a> {
     }
 
     /// Where the settings want it, if elsewhere.
-    fn target(&self, grid: &Grid, place: [usize; 3], axis: usize, [here, there]: [f32; 2]) -> Option<Vec3> {
+    fn target(
+        &self,
+        grid: &CubeGrid,
+        place: [usize; 3],
+        axis: usize,
+        [here, there]: [f32; 2],
+    ) -> Option<Vec3> {
         if !self.refines {
             return None;
         }

@@ -14,12 +14,11 @@ use glam::Vec3;
 use isostudy_mesh::{LabelledMesh, TriangleMesh};
 
 use super::quads::{CORNERS, Quadrilateral};
-use super::relaxed::relax_positions;
+use super::relaxed::{MOST_SMOOTHING, relax_positions};
 use crate::execution::control::Control;
 use crate::extraction::ExtractError;
 use crate::memory::{filled, push};
-use crate::method::MOST_SMOOTHING;
-use crate::method::Space;
+use crate::surface::space::Space;
 
 /// The label of what is outside of everything.
 const BACKGROUND: u32 = 0;

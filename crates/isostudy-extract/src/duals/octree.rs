@@ -16,7 +16,7 @@ use self::net::Net;
 use super::quads::Quadrilateral;
 use super::sharp::Sharp;
 use crate::clock::Moment;
-use crate::cubes::grid::Grid;
+use crate::cubes::grid::CubeGrid;
 use crate::extraction::{ExtractError, Extraction};
 use crate::memory::collected;
 use crate::source::Request;
@@ -37,7 +37,7 @@ pub(super) fn simplify(
 ) -> Result<(), ExtractError> {
     let Some(level) = request.level() else { return Ok(()) };
     let start = Moment::now();
-    let grid = &Grid::new(request.lattice)?;
+    let grid = &CubeGrid::new(request.lattice)?;
     let hermite = &Hermite::of(request, level, grid, trace)?;
     let most = f64::from(tolerance) * f64::from(level.spacing);
     let merged = merged_cells(request, &Merging { grid, hermite, sharp, most })?;

@@ -7,13 +7,13 @@ use glam::Vec3;
 
 use super::plan::Plans;
 use super::vertices::Record;
-use crate::cubes::grid::Grid;
+use crate::cubes::grid::CubeGrid;
 use crate::cubes::records::Records;
 use crate::cubes::rows::next;
 use crate::cubes::sampling::Samples;
 use crate::sampling::bits::between;
 use crate::sampling::level::Level;
-use crate::tetrahedra::dense::triangles::Triangulation;
+use crate::surface::triangulation::Triangulation;
 
 /// Of the four cells round an edge along x, y or z, how many cells back each is, along the two other axes in cyclic order; counter-clockwise
 /// seen against the edge.
@@ -119,7 +119,7 @@ fn is_other_sharper(level: Level, corners: [Vec3; 4], is_shorter: bool) -> bool 
 
 /// What the pass reads. Records are those of the cells above a layer of points and below it.
 pub(super) struct QuadPass<'a> {
-    pub(super) grid: &'a Grid<'a>,
+    pub(super) grid: &'a CubeGrid<'a>,
     pub(super) samples: &'a Samples,
     pub(super) plans: &'a Plans,
     pub(super) records: &'a Records<Record>,

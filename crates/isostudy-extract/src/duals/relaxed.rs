@@ -11,7 +11,7 @@ use isostudy_mesh::TriangleMesh;
 
 use super::quads::Quadrilateral;
 use crate::clock::Moment;
-use crate::cubes::grid::Grid;
+use crate::cubes::grid::CubeGrid;
 use crate::execution::control::Control;
 use crate::execution::threads::for_each_on_threads;
 use crate::extraction::{ExtractError, Extraction};
@@ -19,6 +19,9 @@ use crate::memory::{copied, filled};
 use crate::source::Request;
 use crate::surface::normals::vertex_normals;
 use crate::surface::trace::Trace;
+
+/// The most steps: each needs one more cell round a chunk.
+pub(crate) const MOST_SMOOTHING: u32 = 64;
 
 /// The share of the way to the mean of the linked vertices that a step takes.
 const STEP: f32 = 0.5;
@@ -34,7 +37,7 @@ pub(super) fn relax(
     extraction: &mut Extraction,
 ) -> Result<(), ExtractError> {
     let start = Moment::now();
-    let grid = &Grid::new(request.lattice)?;
+    let grid = &CubeGrid::new(request.lattice)?;
     let origin = request.lattice.origin();
     let mesh = &mut extraction.mesh;
     relax_positions(&request.control, steps, mesh, |v| {

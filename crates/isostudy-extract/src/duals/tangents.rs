@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::cubes::grid::Grid;
+use crate::cubes::grid::CubeGrid;
 use crate::sampling::bracket::Bracket;
 use crate::sampling::level::Level;
 
@@ -38,7 +38,7 @@ impl<'a> Tangents<'a> {
     }
 
     /// The crossing of the edge that begins at a point, with the samples at its ends.
-    pub(super) fn at(&mut self, grid: &Grid, from: [usize; 3], axis: usize, ends: [f32; 2]) -> Tangent {
+    pub(super) fn at(&mut self, grid: &CubeGrid, from: [usize; 3], axis: usize, ends: [f32; 2]) -> Tangent {
         let [x, y, z] = from;
         let level = self.level;
         *self.known[z % 2].entry([x, y, axis]).or_insert_with(|| tangent(level, grid, from, axis, ends))
@@ -46,7 +46,13 @@ impl<'a> Tangents<'a> {
 }
 
 /// The same, found anew.
-pub(super) fn tangent(level: Level, grid: &Grid, from: [usize; 3], axis: usize, ends: [f32; 2]) -> Tangent {
+pub(super) fn tangent(
+    level: Level,
+    grid: &CubeGrid,
+    from: [usize; 3],
+    axis: usize,
+    ends: [f32; 2],
+) -> Tangent {
     let start = grid.position(from);
     let mut edge = DVec3::ZERO;
     edge[axis] = f64::from(grid.at[axis][from[axis] + 1]) - f64::from(grid.at[axis][from[axis]]);

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3, Vec4};
 use super::plan::{EDGE_STARTS, EDGES, Mean, Plans};
 use super::sharp::Sharp;
 use super::tangents::{Tangent, Tangents};
-use crate::cubes::grid::Grid;
+use crate::cubes::grid::CubeGrid;
 use crate::cubes::records::Records;
 use crate::cubes::rows::next;
 use crate::cubes::sampling::Samples;
@@ -39,7 +39,7 @@ impl Vertices {
 
 /// What the pass reads.
 pub(super) struct VertexPass<'a> {
-    pub(super) grid: &'a Grid<'a>,
+    pub(super) grid: &'a CubeGrid<'a>,
     pub(super) samples: &'a Samples,
     pub(super) values: Values<'a>,
     pub(super) placer: &'a Placer<'a>,

@@ -4,7 +4,7 @@ use std::fmt;
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::ExtractError;
+use crate::extraction::ExtractError;
 use crate::settings::Execution;
 
 /// Threads that somebody else has: a game's job system, a pool.

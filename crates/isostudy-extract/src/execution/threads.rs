@@ -1,40 +1,16 @@
-//! Sampling stage: the field at every stored point.
+//! Work handed out to threads: each takes what comes next, and which one that is does not show.
 
 use std::sync::Mutex;
 
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
-use crate::ExtractError;
-use crate::execution::control::{Control, Threads};
-use crate::lattice::{Coordinates, Layout};
+use crate::execution::control::Threads;
+use crate::extraction::ExtractError;
 use crate::settings::Execution;
-use crate::slabs::on_each;
-use isostudy_field::StudyField;
 
 /// The fewest items that are worth a thread.
 pub(crate) const SHARE: usize = 256;
-
-/// Fills `samples`, layer by layer, fillers too. Layers are handed out to threads; each value depends on its own
-/// position alone, so the number of threads cannot show.
-pub(crate) fn sample(
-    field: &dyn StudyField,
-    layout: &Layout,
-    coordinates: &Coordinates,
-    control: Control,
-    samples: &mut [f32],
-) -> Result<(), ExtractError> {
-    // A layer of a mesh's distance may cost twice another's: handed out one by one, no thread waits long at the end.
-    in_parts(control.threads, samples, layout.layer_len(), |layer, values| {
-        control.check()?;
-        let kind = layout.kind(layer);
-        let (x, z) = (coordinates.x(kind), coordinates.z()[layer]);
-        for (row, &y) in values.chunks_exact_mut(x.len()).zip(coordinates.y(kind)) {
-            field.sample_row(x, y, z, row);
-        }
-        Ok(())
-    })
-}
 
 /// Calls `work` with each item and its number, on some threads.
 pub(crate) fn for_each_on_threads<T: Send>(
@@ -49,7 +25,7 @@ pub(crate) fn for_each_on_threads<T: Send>(
 }
 
 /// Calls `work` with each part of so many items and its number, handed out one by one to as many threads as have some.
-fn in_parts<T: Send>(
+pub(crate) fn in_parts<T: Send>(
     threads: Threads,
     items: &mut [T],
     each: usize,
@@ -101,4 +77,53 @@ pub(crate) fn on_threads<R: Send>(
         let pool = pool.map_err(|error| ExtractError::Threads { threads, reason: error.to_string() })?;
         Ok(pool.install(work))
     }
+}
+
+/// Does `work` with each item, on as many threads, which are started for it, or as jobs. Each thread takes the next item that is left.
+///
+/// # Errors
+/// [`ExtractError::Threads`], and an error of `work`; items that nobody had begun are left out then.
+pub(crate) fn on_each<T: Send>(
+    on: Threads,
+    items: &mut [T],
+    work: impl Fn(usize, &mut T) -> Result<(), ExtractError> + Sync,
+) -> Result<(), ExtractError> {
+    let threads = items.len();
+    let left = Mutex::new(items.iter_mut().enumerate());
+    run(on, threads, &|| {
+        let next = left.lock().expect("no thread panics with it").next();
+        next.map(|(i, item)| work(i, item))
+    })
+}
+
+/// Calls `next` on all threads until nothing is left. It is not generic: what starts threads is long, and compiled once.
+fn run(
+    on: Threads,
+    threads: usize,
+    next: &(dyn Fn() -> Option<Result<(), ExtractError>> + Sync),
+) -> Result<(), ExtractError> {
+    let all = || -> Result<(), ExtractError> { std::iter::from_fn(next).collect() };
+    if let Threads::Jobs(jobs) = on {
+        let result = Mutex::new(Ok(()));
+        jobs.run(&|_| {
+            if let Err(error) = all() {
+                *result.lock().expect("no job panics with it") = Err(error);
+            }
+        });
+        return result.into_inner().expect("no job panics with it");
+    }
+    std::thread::scope(|scope| {
+        // The calling thread is one of them.
+        let handles = (1..threads)
+            .map(|_| {
+                std::thread::Builder::new()
+                    .spawn_scoped(scope, all)
+                    .map_err(|error| ExtractError::Threads { threads, reason: error.to_string() })
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        all()?;
+        handles
+            .into_iter()
+            .try_for_each(|handle| handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    })
 }

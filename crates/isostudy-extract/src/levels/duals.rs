@@ -13,7 +13,7 @@ use std::collections::{HashMap, TryReserveError};
 use glam::Vec3;
 use isostudy_field::StudyField;
 
-use super::extractor::LevelError;
+use super::error::LevelError;
 use super::layer::point;
 use super::neighbours::Neighbours;
 use crate::chunks::{Chunk, Normals};

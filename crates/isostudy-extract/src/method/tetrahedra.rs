@@ -126,7 +126,7 @@ impl Family for Tetrahedra {
     }
 
     fn tables(&self) -> Vec<isostudy_cells::Table> {
-        crate::tetrahedra::cases::tables(self.arrangement)
+        crate::lattice::tetrahedra::tables(self.arrangement)
     }
 
     /// A vertex of a cell is one of its neighbours' too, their other vertices give it its normal, and those depend on

@@ -3,11 +3,11 @@
 use std::error::Error;
 use std::fmt;
 
-use glam::{DMat3, DVec3, Vec3};
-use isostudy_mesh::{Bounds, TriangleMesh};
+use glam::Vec3;
+use isostudy_mesh::Bounds;
 
-use crate::ExtractError;
 use crate::active::{ActiveError, Bricks, GridSamples};
+use crate::extraction::ExtractError;
 use crate::extraction::Extraction;
 use crate::extractor::Extractor;
 use crate::lattice::BoxGrid;
@@ -15,6 +15,7 @@ use crate::method::{Method, MethodError};
 use crate::settings::Execution;
 use crate::source::Source;
 use crate::surface::normals::vertex_normals;
+use crate::surface::space::Space;
 
 /// Samples on a regular grid that may be turned, mirrored, sheared and unequal in its steps. Sample `(i, j, k)` lies at
 /// `origin + i * steps[0] + j * steps[1] + k * steps[2]`, the first axis fastest.
@@ -74,34 +75,6 @@ impl Error for VolumeCellsError {}
 impl From<MethodError> for VolumeCellsError {
     fn from(error: MethodError) -> Self {
         Self::Extract(error)
-    }
-}
-
-/// Where the steps of a grid lead.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Space {
-    start: DVec3,
-    matrix: DMat3,
-}
-
-impl Space {
-    /// `None` if the steps span no space, or are not finite.
-    pub(crate) fn try_new(origin: [f64; 3], steps: [[f64; 3]; 3]) -> Option<Self> {
-        let (matrix, start) = (DMat3::from_cols_array_2d(&steps), DVec3::from_array(origin));
-        let lengths = matrix.x_axis.length() * matrix.y_axis.length() * matrix.z_axis.length();
-        let is_space =
-            start.is_finite() && lengths.is_finite() && matrix.determinant().abs() > 1e-6 * lengths;
-        is_space.then_some(Self { start, matrix })
-    }
-
-    /// Takes a mesh in steps of the grid to space. Triangles face the same way there as here, mirrored or not.
-    pub(crate) fn place(self, mesh: &mut TriangleMesh) {
-        for position in &mut mesh.positions {
-            *position = (self.start + self.matrix * position.as_dvec3()).as_vec3();
-        }
-        if self.matrix.determinant() < 0.0 {
-            mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
-        }
     }
 }
 

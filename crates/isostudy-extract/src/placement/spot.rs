@@ -135,7 +135,7 @@ pub(crate) fn linear_ratio(difference: f32, here: f32, there: f32) -> f32 {
 pub(crate) mod tests {
     use super::*;
     use crate::lattice::Arrangement;
-    use crate::tetrahedra::cases::spokes;
+    use crate::lattice::tetrahedra::spokes;
     use glam::{DMat3, DVec3};
     use isostudy_mesh::Bounds;
 

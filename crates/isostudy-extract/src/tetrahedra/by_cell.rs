@@ -19,22 +19,22 @@ mod tests;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use self::grid::Grid;
+use self::grid::CutGrid;
 use self::points::Placer;
 use self::slab::{Job, Workspace, stream_slab};
 use crate::clock::Moment;
 use crate::extraction::{ExtractError, Extraction};
 use crate::lattice::Border;
+use crate::slabs::Progress;
 use crate::slabs::{Piece, assemble, on_slabs, threads_and_slabs};
 use crate::source::Request;
 use crate::surface::trace::Trace;
-use crate::tetrahedra::dense::vertices::Ties;
-use crate::tetrahedra::streamed::Progress;
+use crate::tetrahedra::ties::Ties;
 
 /// The extractor's plan and buffers, kept from one surface to the next.
 #[derive(Debug, Default)]
 pub(crate) struct CellStreamer {
-    grid: Option<Grid>,
+    grid: Option<CutGrid>,
     workspaces: Vec<Workspace>,
     pieces: Vec<Piece>,
 }
@@ -56,7 +56,7 @@ impl CellStreamer {
             Some(grid) if grid.lattice.arrangement() == lattice.arrangement() => {
                 grid.refit(lattice, Border::of(settings)).map_err(out_of_memory)?;
             }
-            _ => *grid = Some(Grid::new(lattice, Border::of(settings)).map_err(out_of_memory)?),
+            _ => *grid = Some(CutGrid::new(lattice, Border::of(settings)).map_err(out_of_memory)?),
         }
         let grid = grid.as_ref().expect("it was just made");
         workspaces.resize_with(threads, Workspace::default);

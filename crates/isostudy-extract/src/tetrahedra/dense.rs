@@ -2,8 +2,9 @@
 //!
 //! It serves accumulated positions, and is what the streaming one is compared with.
 
-mod edges;
-mod sides;
+pub(crate) mod edges;
+pub(crate) mod sampling;
+pub(crate) mod sides;
 pub(crate) mod triangles;
 pub(crate) mod vertices;
 
@@ -11,9 +12,9 @@ use std::time::Duration;
 
 use isostudy_mesh::TriangleMesh;
 
+use self::sampling::sample;
 use crate::clock::Moment;
 use crate::execution::control::Control;
-use crate::execution::threads::sample;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
 use crate::lattice::{Border, Coordinates, Lattice, Layout};
 use crate::placement::CrossingPlacer;

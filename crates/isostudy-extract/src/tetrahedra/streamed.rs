@@ -19,4 +19,4 @@ mod slab;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use driver::{Progress, Streamer};
+pub(crate) use driver::Streamer;

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::link::Link;
+use crate::lattice::tetrahedra::{Spoke, belongs_to_an_earlier_cell, spokes};
 use crate::lattice::{Arrangement, DIRECTIONS, Directions, Offset, Uniform};
-use crate::tetrahedra::cases::{Spoke, belongs_to_an_earlier_cell, spokes};
 
 /// Two cells along each axis have a point in every place: low end, high end and between.
 const CELLS: usize = 2;

@@ -4,7 +4,7 @@ use std::collections::TryReserveError;
 
 use glam::Vec3;
 
-use super::super::grid::Grid;
+use super::super::grid::CubeGrid;
 use super::super::records::Records;
 use super::super::rows::{Rows, next};
 use super::super::vertices::{Placer, RANK, Vertices};
@@ -34,7 +34,7 @@ impl Record {
 
 /// What the pass reads.
 pub(super) struct VertexPass<'a> {
-    pub(super) grid: &'a Grid<'a>,
+    pub(super) grid: &'a CubeGrid<'a>,
     pub(super) labels: &'a Labels,
     pub(super) used: &'a Rows,
     pub(super) values: Values<'a>,

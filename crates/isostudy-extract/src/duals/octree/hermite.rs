@@ -6,7 +6,7 @@ use glam::DVec3;
 use isostudy_cells::Cell;
 
 use super::super::tangents::{Tangent, tangent};
-use crate::cubes::grid::Grid;
+use crate::cubes::grid::CubeGrid;
 use crate::execution::threads::for_each_on_threads;
 use crate::extraction::ExtractError;
 use crate::memory::{filled, push, with_room};
@@ -43,7 +43,7 @@ impl Hermite {
     pub(super) fn of(
         request: &Request,
         level: Level,
-        grid: &Grid,
+        grid: &CubeGrid,
         trace: &Trace,
     ) -> Result<Self, ExtractError> {
         let threads = request.control.threads;
@@ -92,7 +92,7 @@ impl Hermite {
     }
 
     /// The numbers of a leaf's crossed edges.
-    fn crossed(&self, grid: &Grid, leaf: &Leaf) -> impl Iterator<Item = u64> {
+    fn crossed(&self, grid: &CubeGrid, leaf: &Leaf) -> impl Iterator<Item = u64> {
         let crossed = self.cube.crossed(u32::from(leaf.inside));
         let edges = self.cube.edges().iter().enumerate().filter(move |(e, _)| crossed >> e & 1 != 0);
         edges.map(|(_, [low, high])| {
@@ -106,7 +106,7 @@ impl Hermite {
     }
 
     /// The crossings of some leaves, each once, in the order of their edges' numbers.
-    pub(super) fn crossings(&self, grid: &Grid, leaves: Range<usize>) -> Vec<Tangent> {
+    pub(super) fn crossings(&self, grid: &CubeGrid, leaves: Range<usize>) -> Vec<Tangent> {
         let mut edges: Vec<u64> =
             self.leaves[leaves].iter().flat_map(|leaf| self.crossed(grid, leaf)).collect();
         edges.sort_unstable();
@@ -116,7 +116,7 @@ impl Hermite {
 }
 
 /// The cells that have vertices, along the octree's curve, without what samples say of them.
-fn leaves(grid: &Grid, trace: &Trace) -> Result<Vec<Leaf>, ExtractError> {
+fn leaves(grid: &CubeGrid, trace: &Trace) -> Result<Vec<Leaf>, ExtractError> {
     let origin = grid.lattice.origin();
     let mut leaves: Vec<Leaf> = Vec::new();
     for (v, key) in trace.keys.iter().enumerate() {
@@ -146,12 +146,12 @@ fn corner(cell: [usize; 3], c: u8) -> [usize; 3] {
     [0, 1, 2].map(|axis| cell[axis] + usize::from(c >> axis & 1))
 }
 
-pub(super) fn point_number(grid: &Grid, [x, y, z]: [usize; 3]) -> u64 {
+pub(super) fn point_number(grid: &CubeGrid, [x, y, z]: [usize; 3]) -> u64 {
     let [nx, ny, _] = grid.size;
     ((z * ny + y) * nx + x) as u64
 }
 
-fn point_of(grid: &Grid, number: u64) -> [usize; 3] {
+fn point_of(grid: &CubeGrid, number: u64) -> [usize; 3] {
     let ([nx, ny, _], number) = (grid.size, number as usize);
     [number % nx, number / nx % ny, number / nx / ny]
 }

@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::super::sharp::Sharp;
 use super::super::tangents::Tangent;
 use super::hermite::{Hermite, Leaf};
-use crate::cubes::grid::Grid;
+use crate::cubes::grid::CubeGrid;
 use crate::execution::threads::for_each_on_threads;
 use crate::extraction::ExtractError;
 use crate::memory::{collected, push, with_room};
@@ -33,7 +33,7 @@ pub(super) struct Merged {
 
 /// What decides whether cells become one.
 pub(super) struct Merging<'a> {
-    pub(super) grid: &'a Grid<'a>,
+    pub(super) grid: &'a CubeGrid<'a>,
     pub(super) hermite: &'a Hermite,
     pub(super) sharp: Sharp,
     /// The farthest that a vertex may be from a tangent plane.

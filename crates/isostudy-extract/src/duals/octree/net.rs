@@ -6,7 +6,7 @@ use isostudy_mesh::TriangleMesh;
 use super::super::quads::{Quadrilateral, is_other_better};
 use super::hermite::{Hermite, point_number};
 use super::merging::Merged;
-use crate::cubes::grid::Grid;
+use crate::cubes::grid::CubeGrid;
 use crate::extraction::ExtractError;
 use crate::memory::{collected, copied, filled, push};
 use crate::sampling::level::Level;
@@ -19,7 +19,7 @@ const FLAT: f64 = 1e-4;
 /// The uniform net, and cells of it that may be merged.
 pub(super) struct Net<'a> {
     pub(super) level: Level<'a>,
-    pub(super) grid: &'a Grid<'a>,
+    pub(super) grid: &'a CubeGrid<'a>,
     pub(super) hermite: &'a Hermite,
     /// Each before those in it.
     pub(super) merged: &'a [Merged],

@@ -2,19 +2,19 @@
 
 use std::collections::TryReserveError;
 
-use super::grid::{CORNERS, Grid};
+use super::grid::{CORNERS, CutGrid};
 use super::points::{Record, Records};
 use super::rows::{BitRows, is_set, shifted};
+use crate::lattice::tetrahedra::{CASES, Case};
 use crate::sampling::bits::between;
-use crate::tetrahedra::cases::{CASES, Case};
-use crate::tetrahedra::dense::triangles::Triangulation;
+use crate::surface::triangulation::Triangulation;
 
 /// Two in each of 24 tetrahedra.
 const MOST_TRIANGLES_A_CELL: usize = 48;
 
 /// Adds the triangles of layer `z` of the cells. Of the layers of points round it, sides and records are known.
 pub(super) fn triangulate_layer(
-    grid: &Grid,
+    grid: &CutGrid,
     sides: &BitRows,
     active: &BitRows,
     records: &Records,

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use crate::lattice::Arrangement;
-use crate::tetrahedra::cases::EDGES;
+use crate::lattice::tetrahedra::EDGES;
 
 /// A place or a step on the grid of stored points.
 pub(super) type Step = [i8; 3];
@@ -29,7 +29,7 @@ pub(super) struct Cut {
     pub(super) edges_of: [Directions; 8],
 }
 
-/// Corners as places in the cube, turning as [`crate::tetrahedra::cases::CASES`] wants them.
+/// Corners as places in the cube, turning as [`crate::lattice::tetrahedra::CASES`] wants them.
 #[derive(Debug)]
 pub(super) struct CutTetrahedron {
     pub(super) corners: [Step; 4],

@@ -7,15 +7,15 @@ use super::grid::{Coordinates, is_regular};
 use super::points::{Placer, Record, Vertices};
 use crate::execution::control::Threads;
 use crate::extraction::{Counts, Extraction};
+use crate::lattice::tetrahedra::{CASES, Case};
 use crate::lattice::{Border, Lattice};
 use crate::sampling::level::Level;
 use crate::settings::ExtractSettings;
 use crate::slabs::finish::finish;
 use crate::surface::normals::vertex_normals;
 use crate::surface::trace::{Trace, VertexKey};
-use crate::tetrahedra::cases::{CASES, Case};
-use crate::tetrahedra::dense::triangles::Triangulation;
-use crate::tetrahedra::dense::vertices::Ties;
+use crate::surface::triangulation::Triangulation;
+use crate::tetrahedra::ties::Ties;
 use isostudy_field::StudyField;
 
 /// What [`super::extract`] gives, and the trace.

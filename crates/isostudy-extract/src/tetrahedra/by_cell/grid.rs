@@ -22,7 +22,7 @@ pub(super) const CORNERS: usize = 15;
 
 /// The lattice as the passes see it.
 #[derive(Debug)]
-pub(super) struct Grid {
+pub(super) struct CutGrid {
     pub(super) lattice: Lattice,
     border: Border,
     pub(super) cut: &'static Cut,
@@ -102,7 +102,7 @@ impl Coordinates {
     }
 }
 
-impl Grid {
+impl CutGrid {
     pub(super) fn new(lattice: &Lattice, border: Border) -> Result<Self, TryReserveError> {
         let cut = Cut::get(lattice.arrangement());
         let (mut lines, mut line) = (vec![[0, 0]], [0; DIRECTIONS]);
@@ -213,7 +213,7 @@ impl Grid {
 /// Columns, rows and layers of a tile for each of a cell.
 const TILE: usize = 2;
 
-impl Points for Grid {
+impl Points for CutGrid {
     fn size(&self) -> [usize; 3] {
         self.size
     }

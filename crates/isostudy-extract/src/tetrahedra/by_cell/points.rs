@@ -5,7 +5,7 @@ use std::collections::TryReserveError;
 use glam::{DVec3, Vec3};
 
 use super::cut::{Cut, Directions};
-use super::grid::{Grid, LINES};
+use super::grid::{CutGrid, LINES};
 use super::rows::{BitRows, is_set};
 use crate::lattice::Lattice;
 use crate::memory::{push, refill};
@@ -15,7 +15,7 @@ use crate::sampling::in_sight::Values;
 use crate::sampling::level::Level;
 use crate::settings::{ExtractSettings, Placement};
 use crate::surface::trace::VertexKey;
-use crate::tetrahedra::dense::vertices::Ties;
+use crate::tetrahedra::ties::Ties;
 
 /// The crossings that belong to a point; their vertices are numbered from `first` on, by direction.
 #[derive(Debug, Clone, Copy, Default)]
@@ -47,7 +47,7 @@ struct Layer {
 
 impl Records {
     /// Makes room for the layers of a cell; keeps what is large enough.
-    pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), TryReserveError> {
+    pub(super) fn fit(&mut self, grid: &CutGrid) -> Result<(), TryReserveError> {
         self.layers.resize_with(grid.reach() + 1, Layer::default);
         self.layers.iter_mut().try_for_each(|layer| refill(&mut layer.starts, grid.words * grid.size[1], 0))
     }
@@ -59,7 +59,7 @@ impl Records {
     /// The records of a row, by whether its points are active.
     pub(super) fn row<'a>(
         &'a self,
-        grid: &Grid,
+        grid: &CutGrid,
         [row, layer]: [usize; 2],
         active: &'a BitRows,
     ) -> RecordRow<'a> {
@@ -92,7 +92,7 @@ impl RecordRow<'_> {
 
 /// What the pass reads.
 pub(super) struct PointPass<'a> {
-    pub(super) grid: &'a Grid,
+    pub(super) grid: &'a CutGrid,
     pub(super) values: Values<'a>,
     pub(super) sides: &'a BitRows,
     pub(super) active: &'a BitRows,

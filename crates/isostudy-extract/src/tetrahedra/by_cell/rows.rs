@@ -2,7 +2,7 @@
 
 use std::collections::TryReserveError;
 
-use super::grid::Grid;
+use super::grid::CutGrid;
 use crate::memory::refill;
 
 /// A ring of layers. Each row has a word of zeros at either end, so that a shift by a few points needs no special case.
@@ -16,7 +16,7 @@ pub(super) struct BitRows {
 
 impl BitRows {
     /// All zero, in the room that there is if that is enough.
-    pub(super) fn fit(&mut self, grid: &Grid, slots: usize) -> Result<(), TryReserveError> {
+    pub(super) fn fit(&mut self, grid: &CutGrid, slots: usize) -> Result<(), TryReserveError> {
         (self.stride, self.rows, self.slots) = (grid.words + 2, grid.size[1], slots);
         self.words.clear();
         refill(&mut self.words, self.stride * self.rows * slots, 0)

@@ -6,7 +6,7 @@
 
 use std::collections::TryReserveError;
 
-use super::grid::{Grid, LINES};
+use super::grid::{CutGrid, LINES};
 use super::rows::{BitRows, shifted};
 use crate::memory::refill;
 use crate::sampling::bits::{between, set_above, set_range};
@@ -41,14 +41,14 @@ struct Called {
 /// What is sampled, and where.
 #[derive(Clone, Copy)]
 pub(super) struct Sampling<'a> {
-    pub(super) grid: &'a Grid,
+    pub(super) grid: &'a CutGrid,
     pub(super) source: Sampler<'a>,
     pub(super) isovalue: f32,
 }
 
 impl Samples {
     /// Makes room; keeps what is large enough.
-    pub(super) fn fit(&mut self, grid: &Grid, source: Sampler) -> Result<(), TryReserveError> {
+    pub(super) fn fit(&mut self, grid: &CutGrid, source: Sampler) -> Result<(), TryReserveError> {
         self.slots = grid.slots();
         if matches!(source, Sampler::Field(_)) {
             self.called.get_or_insert_default().fit(grid, self.slots)?;
@@ -58,7 +58,7 @@ impl Samples {
         refill(&mut self.states, grid.size[1] * self.slots, State::Outside)
     }
 
-    pub(super) fn values<'a>(&'a self, grid: &Grid, source: Sampler<'a>) -> Values<'a> {
+    pub(super) fn values<'a>(&'a self, grid: &CutGrid, source: Sampler<'a>) -> Values<'a> {
         let size = grid.size;
         match (source, &self.called) {
             (Sampler::Given { values, .. }, _) => Values::new(values, size, size[2]),
@@ -133,7 +133,7 @@ impl Samples {
 
 /// Sets the bits of points with a neighbour on the other side.
 fn mark_crossings(
-    grid: &Grid,
+    grid: &CutGrid,
     [row, layer]: [usize; 2],
     here: &[u64],
     lines: &[Option<&[u64]>; LINES],
@@ -154,7 +154,7 @@ fn mark_crossings(
 }
 
 impl Called {
-    fn fit(&mut self, grid: &Grid, slots: usize) -> Result<(), TryReserveError> {
+    fn fit(&mut self, grid: &CutGrid, slots: usize) -> Result<(), TryReserveError> {
         let [nx, ny, _] = grid.size;
         self.tiles.fit(grid)?;
         self.gaps.fit(nx)?;
@@ -195,7 +195,7 @@ impl Called {
     /// Takes the samples of a row at points with a crossing that have none yet.
     fn fill(
         &mut self,
-        grid: &Grid,
+        grid: &CutGrid,
         field: &dyn StudyField,
         [row, layer]: [usize; 2],
         active: &[u64],

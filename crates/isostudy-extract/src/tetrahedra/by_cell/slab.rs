@@ -5,19 +5,19 @@ use std::collections::TryReserveError;
 use std::ops::Range;
 
 use super::cells::triangulate_layer;
-use super::grid::Grid;
+use super::grid::CutGrid;
 use super::points::{Placer, PointPass, Records, Vertices};
 use super::sampling::{Samples, Sampling};
-use crate::ExtractError;
 use crate::clock::Laps;
 use crate::execution::control::Control;
+use crate::extraction::ExtractError;
 use crate::slabs::Piece;
 use crate::source::Sampler;
-use crate::tetrahedra::dense::vertices::Ties;
+use crate::tetrahedra::ties::Ties;
 
 /// What all slabs of an extraction share.
 pub(super) struct Job<'a> {
-    pub(super) grid: &'a Grid,
+    pub(super) grid: &'a CutGrid,
     pub(super) source: Sampler<'a>,
     pub(super) isovalue: f32,
     pub(super) ties: Ties,
@@ -39,7 +39,7 @@ pub(super) struct Workspace {
 
 impl Workspace {
     /// Makes room; keeps what is large enough.
-    pub(super) fn fit(&mut self, grid: &Grid, source: Sampler) -> Result<(), TryReserveError> {
+    pub(super) fn fit(&mut self, grid: &CutGrid, source: Sampler) -> Result<(), TryReserveError> {
         self.samples.fit(grid, source)?;
         self.records.fit(grid)
     }

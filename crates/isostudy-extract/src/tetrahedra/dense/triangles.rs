@@ -2,31 +2,13 @@
 
 use std::collections::TryReserveError;
 
-use crate::lattice::{Arrangement, DirectionSet, Lattice, Layout};
-use crate::surface::trace::Trace;
-use crate::tetrahedra::cases::{CASES, Case, Tetrahedron, belongs_to_an_earlier_cell, spokes};
+use crate::lattice::tetrahedra::{
+    CASES, Case, MOST_TRIANGLES_A_CELL, Tetrahedron, belongs_to_an_earlier_cell, deciding_edges, spokes,
+};
+use crate::lattice::{DirectionSet, Lattice, Layout};
+use crate::surface::triangulation::Triangulation;
 use crate::tetrahedra::dense::edges::EdgeTable;
 use crate::tetrahedra::dense::sides::Sides;
-
-/// The most triangles of a cell: two in each tetrahedron, of which a cell in a lowest corner of the box has 24.
-pub(crate) const MOST_TRIANGLES_A_CELL: usize = 48;
-
-/// Triangles, and how many there would have been.
-#[derive(Debug, Default)]
-pub(crate) struct Triangulation {
-    pub(crate) triangles: Vec<[u32; 3]>,
-    /// Cells that were not skipped.
-    pub(crate) cells_visited: u64,
-    /// Their tetrahedra.
-    pub(crate) tetrahedra_evaluated: u64,
-    /// Triangles left out because two corners are the same vertex.
-    pub(crate) discarded: u64,
-    /// The same as the original counts them: two whenever the second and third corner coincide, even in a
-    /// tetrahedron that has one triangle only (Costen 2026).
-    pub(crate) discarded_as_published: u64,
-    /// The cell of each triangle, where that is asked for.
-    pub(crate) trace: Option<Trace>,
-}
 
 /// Walks the cells in storage order and skips those that no lattice edge of theirs crosses.
 pub(crate) fn triangulate(
@@ -75,44 +57,6 @@ pub(crate) fn triangulate(
         }
     }
     Ok(result)
-}
-
-impl Triangulation {
-    pub(crate) fn add(&mut self, case: Case, vertex: impl Fn(u8) -> u32) {
-        match case {
-            Case::Empty => {}
-            Case::Triangle(edges) => {
-                let triangle = edges.map(vertex);
-                let [_, q1, q2] = triangle;
-                self.discarded_as_published += u64::from(q1 == q2);
-                self.keep_or_discard(triangle);
-            }
-            Case::Quad(edges) => {
-                let [q0, q1, q2, q3] = edges.map(vertex);
-                self.keep_or_discard([q0, q1, q2]);
-                self.keep_or_discard([q3, q2, q1]);
-            }
-        }
-    }
-
-    fn keep_or_discard(&mut self, triangle: [u32; 3]) {
-        let [a, b, c] = triangle;
-        if a == b || b == c || c == a {
-            self.discarded += 1;
-            self.discarded_as_published += 1;
-        } else {
-            self.triangles.push(triangle);
-        }
-    }
-}
-
-/// The edges at the base point that tell whether the surface meets the cell: all of a centre's, and of a lowest
-/// corner those to the cube's other seven corners.
-pub(crate) fn deciding_edges(arrangement: Arrangement) -> DirectionSet {
-    let offsets = &arrangement.directions().offsets;
-    (0..offsets.len())
-        .filter(|&d| arrangement == Arrangement::BodyCentred || offsets[d].iter().all(|&o| o >= 0))
-        .fold(0, |set, d| set | 1 << d)
 }
 
 /// The number of the case: one bit a corner.

@@ -4,14 +4,13 @@
 //! nearer to it than to the other end, partitions them into clusters and places one vertex a cluster. Vertices are
 //! numbered in storage order of their points, then by direction.
 
-use std::cmp::Ordering;
 use std::collections::TryReserveError;
 
 use glam::Vec3;
 
-use crate::ExtractError;
 use crate::clustering::clusters::Clusters;
 use crate::clustering::guard::{Class, Guard};
+use crate::extraction::ExtractError;
 use crate::lattice::{
     ALL_DIRECTIONS, Arrangement, Border, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout,
     members,
@@ -22,6 +21,7 @@ use crate::placement::{CrossingPlacer, Surroundings};
 use crate::settings::{Clustering, ExtractSettings, Topology};
 use crate::tetrahedra::dense::edges::EdgeTable;
 use crate::tetrahedra::dense::sides::Sides;
+use crate::tetrahedra::ties::Ties;
 
 /// Places the vertices of a lattice, point by point.
 pub(crate) struct VertexStage<'a> {
@@ -202,57 +202,5 @@ impl<'a> VertexStage<'a> {
     fn edge_vector(&self, direction: usize) -> Vec3 {
         let [x, y, z] = self.directions.offsets[direction].map(f32::from);
         Vec3::new(x, y, z) * (self.lattice.spacing() / 2.0)
-    }
-}
-
-/// What becomes of a crossing in the very middle of its edge.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Ties {
-    /// It belongs to both ends, as published.
-    BothEnds,
-    /// It belongs to the inside end, so that every crossing has one owner.
-    InsideEnd,
-}
-
-impl Ties {
-    pub(crate) fn of(topology: Topology) -> Self {
-        match topology {
-            Topology::Guarded => Self::InsideEnd,
-            Topology::Published => Self::BothEnds,
-        }
-    }
-
-    /// Whether a crossing belongs to this end: it is nearer to the smaller difference from the isovalue. A
-    /// difference that is not a number leaves it to the inside end.
-    #[inline(always)]
-    pub(crate) fn is_near(self, inside: bool, here: f32, there: f32) -> bool {
-        let (here, there) = (here.abs(), there.abs());
-        match self {
-            Self::BothEnds => here <= there || inside && there.is_nan(),
-            Self::InsideEnd if inside => !matches!(there.partial_cmp(&here), Some(Ordering::Less)),
-            Self::InsideEnd => here < there,
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_crossing_belongs_to_an_end() {
-        let values = [0.0, 0.5, 2.0, f32::INFINITY, f32::NAN];
-        for outside in values {
-            for inside in &values[1..4] {
-                let (d_out, d_in) = (outside, -inside);
-                let owners = |ties: Ties| [ties.is_near(true, d_in, d_out), ties.is_near(false, d_out, d_in)];
-                let both = owners(Ties::BothEnds);
-                assert!(both.contains(&true), "{outside} {inside}");
-                assert_eq!(both == [true, true], outside == *inside, "a tie has both: {outside} {inside}");
-                let one = owners(Ties::InsideEnd);
-                assert_ne!(one[0], one[1], "{outside} {inside}");
-                assert_eq!(one[0], both[0], "the inside end wins: {outside} {inside}");
-            }
-        }
     }
 }

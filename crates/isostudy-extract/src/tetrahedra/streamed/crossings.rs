@@ -1,6 +1,6 @@
 //! Where signs differ from those of neighbours, 64 points at a time.
 
-use super::grid::{Grid, LINES, Neighbourhood};
+use super::grid::{LINES, Neighbourhood, UniformGrid};
 use super::signs::{MIXED, Signs};
 use crate::lattice::DIRECTIONS;
 use crate::sampling::bits::between;
@@ -26,7 +26,7 @@ pub(super) struct Crossings {
 
 impl<'a> Lines<'a> {
     /// `None` where all points and all their neighbours are on one side. `rows` are those of
-    /// [`Grid::rows`], `places` the first places of their layers.
+    /// [`UniformGrid::rows`], `places` the first places of their layers.
     #[inline]
     pub(super) fn new(
         signs: &'a Signs,
@@ -47,7 +47,7 @@ impl<'a> Lines<'a> {
     #[inline(always)]
     pub(super) fn visit<E>(
         &self,
-        grid: &Grid,
+        grid: &UniformGrid,
         mut each: impl FnMut(Crossings) -> Result<(), E>,
     ) -> Result<(), E> {
         let (mut before, mut here) = (Common::of(&self.words, 0), Common::of(&self.words, 1));

@@ -4,7 +4,7 @@ use std::collections::TryReserveError;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::faces::FaceTables;
-use super::grid::Grid;
+use super::grid::UniformGrid;
 use super::rule::{ClusterRule, Guarded, Published, Unclustered};
 use super::slab::{Job, Workspace, stream_slab};
 use crate::clock::Moment;
@@ -12,17 +12,14 @@ use crate::clustering::warp::warp;
 use crate::extraction::{ExtractError, Extraction};
 use crate::lattice::{Border, Lattice};
 use crate::placement::CrossingPlacer;
+use crate::placement::move_vertices;
 use crate::placement::spot::Apart;
 use crate::settings::{Clustering, ExtractSettings, Placement, Topology};
-use crate::slabs::finish::move_vertices;
-use crate::slabs::{Piece, assemble, on_slabs, threads_and_slabs};
+use crate::slabs::{Piece, Progress, assemble, on_slabs, threads_and_slabs};
 use crate::source::Request;
 use crate::surface::normals::vertex_normals;
 use crate::surface::trace::Trace;
 use isostudy_mesh::TriangleMesh;
-
-/// Told how many layers of how many are done.
-pub(crate) type Progress = dyn Fn(usize, usize) + Send + Sync;
 
 /// A streaming extractor's plan and buffers.
 #[derive(Default)]
@@ -34,7 +31,7 @@ pub(crate) struct Streamer {
 
 /// What depends on the lattice and its border alone; the tables on its arrangement only.
 struct Plan {
-    grid: Grid,
+    grid: UniformGrid,
     tables: FaceTables,
 }
 
@@ -48,7 +45,7 @@ impl Plan {
                 Ok(plan)
             }
             _ => {
-                let grid = Grid::new(lattice, border)?;
+                let grid = UniformGrid::new(lattice, border)?;
                 let tables = FaceTables::new(&grid);
                 Ok(Self { grid, tables })
             }

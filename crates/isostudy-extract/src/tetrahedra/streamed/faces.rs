@@ -5,12 +5,13 @@
 //! entries names the corners whose vertices they join, and leaves out triangles that would join a vertex with itself.
 //! Most triangles are never made.
 
-use super::grid::Grid;
+use super::grid::UniformGrid;
 use super::records::{Record, Records};
 use crate::lattice::DIRECTIONS;
-use crate::tetrahedra::cases::{CASES, Case, EDGES, Tetrahedron, belongs_to_an_earlier_cell};
-use crate::tetrahedra::dense::triangles::{MOST_TRIANGLES_A_CELL, Triangulation};
-use crate::tetrahedra::dense::vertices::Ties;
+use crate::lattice::tetrahedra::MOST_TRIANGLES_A_CELL;
+use crate::lattice::tetrahedra::{CASES, Case, EDGES, Tetrahedron, belongs_to_an_earlier_cell};
+use crate::surface::triangulation::Triangulation;
+use crate::tetrahedra::ties::Ties;
 
 /// The triangles of a tetrahedron whose corners have one vertex each, in 32 bits so that the table is small: six bits
 /// a triangle, two a corner; then how many are kept, how many discarded, and how many the original would count.
@@ -43,7 +44,7 @@ pub(super) struct FaceTables {
 }
 
 impl FaceTables {
-    pub(super) fn new(grid: &Grid) -> Self {
+    pub(super) fn new(grid: &UniformGrid) -> Self {
         let arrangement = grid.lattice.arrangement();
         let tetrahedra: Vec<&Tetrahedron> = grid
             .spokes
@@ -123,7 +124,7 @@ impl Faces {
 
 /// Makes the triangles of the cells with base points in `layer`, row by row.
 pub(super) fn triangulate_layer(
-    grid: &Grid,
+    grid: &UniformGrid,
     tables: &FaceTables,
     ties: Ties,
     records: &Records,
@@ -159,7 +160,7 @@ pub(super) fn triangulate_layer(
 
 /// A row of base points and the rows of their neighbours.
 struct CellRow<'a> {
-    grid: &'a Grid,
+    grid: &'a UniformGrid,
     tables: &'a FaceTables,
     ties: Ties,
     records: &'a Records,
@@ -172,7 +173,7 @@ struct CellRow<'a> {
 
 impl<'a> CellRow<'a> {
     fn new(
-        grid: &'a Grid,
+        grid: &'a UniformGrid,
         tables: &'a FaceTables,
         ties: Ties,
         records: &'a Records,

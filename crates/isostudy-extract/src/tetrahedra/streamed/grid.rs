@@ -5,20 +5,20 @@ use std::collections::TryReserveError;
 use glam::{Vec3, Vec3A};
 use isostudy_mesh::Bounds;
 
+use crate::lattice::tetrahedra::deciding_edges;
+use crate::lattice::tetrahedra::{Spoke, spokes};
 use crate::lattice::{
     Border, Coordinates, DIRECTIONS, DirectionSet, Directions, Lattice, Layout, PointKind, Uniform, members,
 };
 use crate::sampling::tiles::Points;
 use crate::settings::Positions;
-use crate::tetrahedra::cases::{Spoke, spokes};
-use crate::tetrahedra::dense::triangles::deciding_edges;
 
 /// The most rows that a point and its neighbours lie in.
 pub(super) const LINES: usize = 9;
 
 /// The lattice as the passes see it.
 #[derive(Debug, Clone)]
-pub(super) struct Grid {
+pub(super) struct UniformGrid {
     pub(super) lattice: Lattice,
     pub(super) border: Border,
     pub(super) layout: Layout,
@@ -58,7 +58,7 @@ pub(super) struct Neighbourhood {
     pub(super) funnel: [(usize, u32); DIRECTIONS],
 }
 
-impl Grid {
+impl UniformGrid {
     pub(super) fn new(lattice: &Lattice, border: Border) -> Result<Self, TryReserveError> {
         let layout = Layout::new(lattice);
         let directions = lattice.arrangement().directions();
@@ -160,7 +160,7 @@ impl Grid {
 /// Columns and rows of a tile, and cells in the height of a brick.
 pub(super) const TILE: usize = 2;
 
-impl Points for Grid {
+impl Points for UniformGrid {
     fn size(&self) -> [usize; 3] {
         self.size
     }

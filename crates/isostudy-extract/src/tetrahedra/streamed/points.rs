@@ -8,7 +8,7 @@ use std::collections::TryReserveError;
 use glam::{Vec3, Vec3A};
 
 use super::crossings::{Crossings, Lines};
-use super::grid::{Grid, LINES};
+use super::grid::{LINES, UniformGrid};
 use super::records::{Numbering, Record, Records};
 use super::rule::ClusterRule;
 use super::signs::Signs;
@@ -27,7 +27,7 @@ pub(super) struct Samples<'a> {
 
 /// What the pass reads.
 pub(super) struct PointPass<'a, R> {
-    pub(super) grid: &'a Grid,
+    pub(super) grid: &'a UniformGrid,
     pub(super) rule: &'a R,
     pub(super) samples: Samples<'a>,
     pub(super) signs: &'a Signs,
@@ -314,7 +314,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
     }
 
     fn ways(&self, point: &Point, layer: usize) -> [Vec3; DIRECTIONS] {
-        let Grid { coordinates, layout, directions, .. } = self.grid;
+        let UniformGrid { coordinates, layout, directions, .. } = self.grid;
         coordinates.ways(layout, [point.column, point.row, layer], point.present, &directions.offsets)
     }
 }

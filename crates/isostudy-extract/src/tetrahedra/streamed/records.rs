@@ -2,7 +2,7 @@
 
 use std::collections::TryReserveError;
 
-use super::grid::Grid;
+use super::grid::UniformGrid;
 use crate::clustering::clusters::Clusters;
 use crate::lattice::{DIRECTIONS, DirectionSet, members};
 use crate::memory::refill;
@@ -110,7 +110,7 @@ pub(super) struct Records {
 }
 
 impl Records {
-    pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), TryReserveError> {
+    pub(super) fn fit(&mut self, grid: &UniformGrid) -> Result<(), TryReserveError> {
         (self.size, self.words, self.slots) = ([grid.size[0], grid.size[1]], grid.words, grid.slots());
         refill(&mut self.records, grid.layer_len() * self.slots, Record::default())?;
         refill(&mut self.active, self.words * self.size[1] * self.slots, 0)?;

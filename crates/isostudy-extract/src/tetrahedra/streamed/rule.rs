@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use crate::clustering::clusters::Clusters;
 use crate::clustering::guard::{Class, Guard};
 use crate::lattice::{ALL_DIRECTIONS, Arrangement, DIRECTIONS, DirectionSet, Directions};
-use crate::tetrahedra::dense::vertices::Ties;
+use crate::tetrahedra::ties::Ties;
 
 /// A rule that sees one point: its crossing edges, those nearer to it, and those that belong to the lattice.
 pub(super) trait ClusterRule: Sync {

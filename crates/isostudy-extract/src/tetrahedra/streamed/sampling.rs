@@ -8,7 +8,7 @@ use std::collections::TryReserveError;
 use std::convert::Infallible;
 
 use super::crossings::{Crossings, Lines};
-use super::grid::Grid;
+use super::grid::UniformGrid;
 use super::points::Samples;
 use super::signs::Signs;
 use crate::memory::refill;
@@ -21,7 +21,7 @@ use isostudy_field::StudyField;
 #[derive(Clone, Copy)]
 pub(super) struct FieldPass<'a> {
     pub(super) field: &'a dyn StudyField,
-    pub(super) grid: &'a Grid,
+    pub(super) grid: &'a UniformGrid,
     pub(super) isovalue: f32,
     /// Whether samples are wanted at points without a crossing as well: then all are taken.
     pub(super) everywhere: bool,
@@ -38,7 +38,7 @@ pub(super) struct FieldSamples {
 }
 
 /// The signs of a layer of given samples.
-pub(super) fn signs_of(grid: &Grid, values: &[f32], isovalue: f32, layer: usize, signs: &mut Signs) {
+pub(super) fn signs_of(grid: &UniformGrid, values: &[f32], isovalue: f32, layer: usize, signs: &mut Signs) {
     let [points, rows] = grid.layout.used(grid.layout.kind(layer));
     let [stride, all_rows, _] = grid.size;
     for row in 0..rows {
@@ -48,7 +48,7 @@ pub(super) fn signs_of(grid: &Grid, values: &[f32], isovalue: f32, layer: usize,
 }
 
 impl FieldSamples {
-    pub(super) fn fit(&mut self, grid: &Grid, slots: usize) -> Result<(), TryReserveError> {
+    pub(super) fn fit(&mut self, grid: &UniformGrid, slots: usize) -> Result<(), TryReserveError> {
         self.slots = slots;
         refill(&mut self.values, grid.layer_len() * slots, 0.0)?;
         refill(&mut self.taken, grid.words * grid.size[1] * slots, 0)?;

@@ -1,6 +1,6 @@
 //! Rows of sign bits, 64 points a word, for the few layers in sight.
 
-use super::grid::Grid;
+use super::grid::UniformGrid;
 use crate::memory::refill;
 use crate::sampling::bits::{between, set_above};
 
@@ -21,7 +21,11 @@ pub(super) struct Signs {
 }
 
 impl Signs {
-    pub(super) fn fit(&mut self, grid: &Grid, slots: usize) -> Result<(), std::collections::TryReserveError> {
+    pub(super) fn fit(
+        &mut self,
+        grid: &UniformGrid,
+        slots: usize,
+    ) -> Result<(), std::collections::TryReserveError> {
         (self.stride, self.rows, self.slots) = (grid.words + 2, grid.size[1], slots);
         refill(&mut self.words, self.stride * self.rows * self.slots, 0)?;
         refill(&mut self.states, self.rows * self.slots, ALL_OUTSIDE)

@@ -4,15 +4,15 @@
 use std::ops::Range;
 
 use super::faces::{FaceTables, triangulate_layer};
-use super::grid::Grid;
+use super::grid::UniformGrid;
 use super::points::{Placed, PointPass, Samples};
 use super::records::Records;
 use super::rule::ClusterRule;
 use super::sampling::{FieldPass, FieldSamples, signs_of};
 use super::signs::Signs;
-use crate::ExtractError;
 use crate::clock::Laps;
 use crate::execution::control::Control;
+use crate::extraction::ExtractError;
 use crate::placement::CrossingPlacer;
 use crate::placement::spot::Apart;
 use crate::slabs::Piece;
@@ -20,7 +20,7 @@ use crate::source::Sampler;
 
 /// What all slabs of an extraction share.
 pub(super) struct Job<'a, R> {
-    pub(super) grid: &'a Grid,
+    pub(super) grid: &'a UniformGrid,
     pub(super) tables: &'a FaceTables,
     pub(super) rule: &'a R,
     pub(super) source: Sampler<'a>,
@@ -47,7 +47,7 @@ impl Workspace {
     /// Makes room; keeps what is large enough.
     pub(super) fn fit(
         &mut self,
-        grid: &Grid,
+        grid: &UniformGrid,
         source: Sampler,
     ) -> Result<(), std::collections::TryReserveError> {
         let slots = grid.slots() + lead(grid, source);
@@ -61,7 +61,7 @@ impl Workspace {
 
 /// How many layers signs are ahead of the samples at crossings. A crossing is known when the signs of all neighbours
 /// are; given samples are there before that.
-fn lead(grid: &Grid, source: Sampler) -> usize {
+fn lead(grid: &UniformGrid, source: Sampler) -> usize {
     match source {
         Sampler::Field(_) => grid.reach,
         Sampler::Given { .. } => 0,

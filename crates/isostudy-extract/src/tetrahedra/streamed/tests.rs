@@ -106,8 +106,14 @@ fn all_samples(field: &dyn StudyField, lattice: &Lattice, settings: &ExtractSett
     let (layout, border) = (Layout::new(lattice), Border::of(settings));
     let coordinates = Coordinates::sampled(lattice, &layout, Positions::Indexed, border).unwrap();
     let mut samples = vec![0.0; layout.len()];
-    crate::execution::threads::sample(field, &layout, &coordinates, Default::default(), &mut samples)
-        .unwrap();
+    crate::tetrahedra::dense::sampling::sample(
+        field,
+        &layout,
+        &coordinates,
+        Default::default(),
+        &mut samples,
+    )
+    .unwrap();
     samples
 }
 

@@ -7,7 +7,10 @@
 
 use isostudy_cells::{Cell, Table};
 
-use crate::lattice::{Arrangement, Directions, Uniform, members};
+/// The most triangles of a cell: two in each tetrahedron, of which a cell in a lowest corner of the box has 24.
+pub(crate) const MOST_TRIANGLES_A_CELL: usize = 48;
+
+use crate::lattice::{Arrangement, DirectionSet, Directions, Uniform, members};
 
 /// The tetrahedra round one lattice edge.
 #[derive(Debug, Clone)]
@@ -174,6 +177,15 @@ fn turn(directions: &Directions, [a, b, c]: [u8; 3]) -> i32 {
     let [a, b, c] = [a, b, c].map(|d| directions.offsets[d as usize].map(i32::from));
     a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
         + a[2] * (b[0] * c[1] - b[1] * c[0])
+}
+
+/// The edges at the base point that tell whether the surface meets the cell: all of a centre's, and of a lowest
+/// corner those to the cube's other seven corners.
+pub(crate) fn deciding_edges(arrangement: Arrangement) -> DirectionSet {
+    let offsets = &arrangement.directions().offsets;
+    (0..offsets.len())
+        .filter(|&d| arrangement == Arrangement::BodyCentred || offsets[d].iter().all(|&o| o >= 0))
+        .fold(0, |set, d| set | 1 << d)
 }
 
 #[cfg(test)]

@@ -5,8 +5,8 @@
 
 use std::collections::BTreeSet;
 
-use super::link::{BEYOND, Link};
-use super::{Class, Guard, Partition, shapes};
+use super::super::link::{BEYOND, Link};
+use super::super::{Class, Guard, Partition, shapes};
 use crate::lattice::{ALL_DIRECTIONS, Arrangement, DIRECTIONS, DirectionSet, Lattice, Layout, members};
 use glam::Vec3;
 use isostudy_mesh::Bounds;

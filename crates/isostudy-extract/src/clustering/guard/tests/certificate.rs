@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
-use super::{Class, Guard};
+use super::super::{Class, Guard};
 use crate::clustering::clusters::Clusters;
 use crate::fields::{FAMILIES, Family, Volume, image};
 use crate::lattice::{Border, Coordinates, DIRECTIONS, Layout, members};
@@ -15,7 +15,7 @@ use crate::tetrahedra::dense::edges::EdgeTable;
 use crate::tetrahedra::dense::sides::Sides;
 use crate::tetrahedra::dense::triangles::triangulate;
 use crate::tetrahedra::dense::vertices::VertexStage;
-use crate::{Arrangement, Lattice, execution::threads};
+use crate::{Arrangement, Lattice, tetrahedra::dense::sampling};
 use glam::Vec3;
 use isostudy_field::{Asteroid, StudyField};
 use isostudy_mesh::Bounds;
@@ -59,7 +59,7 @@ fn stages_of(
     let layout = Layout::new(lattice);
     let mut samples = vec![0.0; layout.len()];
     let coordinates = Coordinates::sampled(lattice, &layout, Positions::Indexed, Border::OnBox).unwrap();
-    threads::sample(field, &layout, &coordinates, Default::default(), &mut samples).unwrap();
+    sampling::sample(field, &layout, &coordinates, Default::default(), &mut samples).unwrap();
     let (mut sides, mut edges) = (Sides::new(&layout), EdgeTable::new(layout.len()));
     VertexStage::new(lattice, &samples, &settings, None, &mut sides, &mut edges)
         .run(&layout, u32::MAX)
