@@ -10,12 +10,12 @@ pub(crate) mod continuation;
 mod exact;
 pub(crate) mod grid;
 mod moved;
+pub(crate) mod patched;
 mod patches;
 pub(crate) mod records;
 pub(crate) mod rows;
 mod rule;
 pub(crate) mod sampling;
-mod slab;
 pub(crate) mod snap;
 mod tubes;
 mod tunnel;
@@ -28,21 +28,11 @@ pub use rule::{Diagonals, Faces, Flat};
 
 use isostudy_cells::{Cell, Table};
 
-use std::collections::TryReserveError;
-use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use self::grid::CubeGrid;
 use self::patches::Patches;
-pub(crate) use self::slab::Workspace;
-use self::slab::{Job, stream_slab};
-use self::vertices::Placer;
-use crate::clock::Moment;
-use crate::extraction::{ExtractError, Extraction};
-use crate::slabs::Progress;
-use crate::slabs::{Piece, assemble, on_slabs, threads_and_slabs};
+use crate::extraction::ExtractError;
+use crate::slabs::{Piece, Run, Streamed, in_slabs, out_of_memory};
 use crate::source::Request;
-use crate::surface::trace::Trace;
 
 /// What decides the triangles of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,7 +77,7 @@ pub(crate) fn cells_otherwise(rule: Rule, [nx, ny, nz]: [usize; 3], values: &[f3
     count
 }
 
-/// What every way has.
+/// What every way keeps from one surface to the next.
 #[derive(Default)]
 pub(crate) struct Kept {
     /// The coordinates of the grid's points along each axis.
@@ -95,85 +85,34 @@ pub(crate) struct Kept {
     pieces: Vec<Piece>,
 }
 
-/// The stages in order, timed and counted. The lattice is simple cubic: its points are the corners of the cubes.
-pub(crate) fn extract_patches(
-    (kept, workspaces): (&mut Kept, &mut Vec<Workspace>),
-    request: &Request,
-    rule: Rule,
-    pull: f32,
-    progress: Option<&Progress>,
-    trace: Option<&mut Trace>,
-    extraction: &mut Extraction,
-) -> Result<(), ExtractError> {
-    let Request { source, settings, control, most_vertices, .. } = *request;
-    let patches = Patches::get(rule);
-    let placer = &Placer::new(request.lattice, settings, request.level()).pulled(pull);
-    let (isovalue, traced) = (settings.isovalue, trace.is_some());
-    let fit = |workspace: &mut Workspace, grid: &CubeGrid| workspace.fit(grid, source);
-    let work = |grid: &CubeGrid,
-                layer_done: &LayerDone,
-                own,
-                workspace: &mut Workspace,
-                piece: &mut Piece| {
-        let job =
-            Job { grid, source, isovalue, rule, patches, placer, most_vertices, traced, control, layer_done };
-        stream_slab(&job, own, workspace, piece)
-    };
-    let buffers = (kept, workspaces, Workspace::default);
-    in_slabs(buffers, request, progress, trace, extraction, 1, fit, work)
-}
-
-/// Told when a layer of cells is done.
-pub(crate) type LayerDone<'a> = dyn Fn() + Sync + 'a;
-
-/// Streams the slabs of a simple cubic lattice, and makes one mesh of them, timed and counted. `work` does the layers of cells it is
-/// given, with a workspace that `fit` made room in, and says when it has done one. Workspaces hold so many `times` what a lattice's
-/// layers do; the function among the buffers makes one without room.
-pub(crate) fn in_slabs<W: Send>(
-    (kept, workspaces, new): (&mut Kept, &mut Vec<W>, impl Fn() -> W),
-    request: &Request,
-    progress: Option<&Progress>,
-    mut trace: Option<&mut Trace>,
-    extraction: &mut Extraction,
-    times: u64,
-    fit: impl Fn(&mut W, &CubeGrid) -> Result<(), TryReserveError>,
-    work: impl Fn(&CubeGrid, &LayerDone, Range<usize>, &mut W, &mut Piece) -> Result<(), ExtractError> + Sync,
-) -> Result<(), ExtractError> {
-    let Request { lattice, control, start, .. } = *request;
-    let (threads, slabs) = threads_and_slabs(control.threads.count(), lattice.stored_grid()[2] as usize);
-    let out_of_memory =
-        |_| ExtractError::OutOfMemory { bytes: times * lattice.streaming_bytes(threads as u64) };
-    let Kept { at, pieces } = kept;
-    let grid = CubeGrid::within(lattice, std::mem::take(at)).map_err(out_of_memory)?;
-    workspaces.resize_with(threads, new);
-    pieces.resize_with(slabs, Piece::default);
-    for workspace in &mut *workspaces {
-        fit(workspace, &grid).map_err(out_of_memory)?;
+impl Kept {
+    /// The grid of a request whose workspaces hold so many `times` what a lattice's layers do.
+    pub(crate) fn grid<'a>(
+        &mut self,
+        request: &Request<'a>,
+        times: u64,
+    ) -> Result<CubeGrid<'a>, ExtractError> {
+        let at = std::mem::take(&mut self.at);
+        CubeGrid::within(request.lattice, at).map_err(|_| out_of_memory(request, times))
     }
-    // The first piece is written where the whole mesh will be.
-    pieces[0].positions = std::mem::take(&mut extraction.mesh.positions);
-    pieces[0].surface.triangles = std::mem::take(&mut extraction.mesh.triangles);
-    pieces[0].surface.trace = trace.as_deref_mut().map(std::mem::take);
-    let allocation = start.elapsed();
 
-    let streaming = Moment::now();
-    let cells = lattice.cells()[2] as usize;
-    let done = AtomicUsize::new(0);
-    let layer_done = || {
-        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
-        if let Some(progress) = progress {
-            progress(done, cells);
-        }
-        if let Some(progress) = control.progress {
-            progress(done, cells);
-        }
-    };
-    on_slabs(cells, control.threads, workspaces, pieces, |own, workspace, piece| {
-        work(&grid, &layer_done, own, workspace, piece)
-    })?;
-    *at = grid.at;
-    let times = [allocation, streaming.elapsed()];
-    assemble(request, pieces, threads, times, trace, extraction)?;
-    extraction.counts.tetrahedra = None;
-    Ok(())
+    /// Streams the layers of cubes; see [`in_slabs`].
+    pub(crate) fn stream<S: Streamed>(
+        &mut self,
+        of: &S,
+        times: u64,
+        workspaces: &mut Vec<S::Workspace>,
+        run: Run,
+    ) -> Result<(), ExtractError> {
+        let Run { request, progress, trace, extraction } = run;
+        let run = Run { request, progress, trace, extraction: &mut *extraction };
+        in_slabs(of, request.lattice.cells()[2] as usize, times, workspaces, &mut self.pieces, run)?;
+        extraction.counts.tetrahedra = None;
+        Ok(())
+    }
+
+    /// Keeps the room of a grid that is not needed any more.
+    pub(crate) fn keep(&mut self, grid: CubeGrid) {
+        self.at = grid.at;
+    }
 }

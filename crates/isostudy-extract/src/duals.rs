@@ -30,17 +30,16 @@ use std::ops::Range;
 use self::plan::{Plans, Table};
 use self::quads::QuadPass;
 use self::tangents::{Known, Tangents};
-use self::vertices::{Record, VertexPass, Vertices};
-use crate::clock::Laps;
+use self::vertices::{Record, VertexPass};
+use crate::cubes::Kept;
 use crate::cubes::grid::{CubeGrid, SLOTS};
 use crate::cubes::records::Records;
 use crate::cubes::sampling::{Samples, Sampling};
 use crate::cubes::vertices::Placer;
-use crate::cubes::{Kept, LayerDone, in_slabs};
-use crate::extraction::{ExtractError, Extraction};
-use crate::slabs::Piece;
-use crate::slabs::Progress;
-use crate::source::{Request, Sampler};
+use crate::extraction::ExtractError;
+use crate::sampling::level::Level;
+use crate::slabs::{LayerDone, Pass, Piece, Run, Stage, Streamed, Vertices, stream};
+use crate::source::Request;
 use crate::surface::trace::Trace;
 
 /// What decides a net.
@@ -59,20 +58,20 @@ pub(crate) struct Nets {
 /// The stages in order, timed and counted. The lattice is simple cubic.
 pub(crate) fn extract(
     buffers: (&mut Kept, &mut Vec<Workspace>),
-    request: &Request,
-    Nets { patches, sharp, smoothing, tolerance }: Nets,
-    progress: Option<&Progress>,
-    trace: Option<&mut Trace>,
-    extraction: &mut Extraction,
+    nets: Nets,
+    run: Run,
 ) -> Result<(), ExtractError> {
+    let Nets { sharp, smoothing, tolerance, .. } = nets;
     let sharp_and_merged = sharp.filter(|_| tolerance > 0.0);
     if smoothing == 0 && sharp_and_merged.is_none() {
-        return extract_unmoved(buffers, request, patches, sharp, progress, trace, extraction);
+        return extract_unmoved(buffers, nets, run);
     }
     // The trace says which cell a vertex is of.
     let mut own = Trace::default();
+    let Run { request, progress, trace, extraction } = run;
     let trace = trace.unwrap_or(&mut own);
-    extract_unmoved(buffers, request, patches, sharp, progress, Some(trace), extraction)?;
+    let run = Run { request, progress, trace: Some(&mut *trace), extraction: &mut *extraction };
+    extract_unmoved(buffers, nets, run)?;
     match sharp_and_merged {
         Some(sharp) => octree::simplify(request, sharp, tolerance, trace, extraction),
         None => relaxed::relax(request, smoothing, trace, extraction),
@@ -81,40 +80,30 @@ pub(crate) fn extract(
 
 fn extract_unmoved(
     (kept, workspaces): (&mut Kept, &mut Vec<Workspace>),
-    request: &Request,
-    patches: bool,
-    sharp: Option<Sharp>,
-    progress: Option<&Progress>,
-    trace: Option<&mut Trace>,
-    extraction: &mut Extraction,
+    Nets { patches, sharp, .. }: Nets,
+    run: Run,
 ) -> Result<(), ExtractError> {
-    let table = Table::get(patches);
-    let placer = &Placer::new(request.lattice, request.settings, None);
-    let traced = trace.is_some();
-    let fit = |workspace: &mut Workspace, grid: &CubeGrid| workspace.fit(grid, request.source, table);
-    let work =
-        |grid: &CubeGrid, layer_done: &LayerDone, own, workspace: &mut Workspace, piece: &mut Piece| {
-            let job = Job { grid, request, sharp, placer, traced, layer_done };
-            stream_slab(&job, own, workspace, piece)
-        };
-    let buffers = (kept, workspaces, || Workspace::new(table));
-    in_slabs(buffers, request, progress, trace, extraction, 1, fit, work)
+    let (request, table) = (run.request, Table::get(patches));
+    let placer = Placer::new(request.lattice, request.settings, None);
+    let grid = kept.grid(request, 1)?;
+    // By tangent planes, if there is a field to have them.
+    let level = sharp.and(request.level());
+    kept.stream(&Net { grid: &grid, request, table, sharp, level, placer }, 1, workspaces, run)?;
+    kept.keep(grid);
+    Ok(())
 }
 
 /// What all slabs of an extraction share.
-struct Job<'a> {
+struct Net<'a> {
     grid: &'a CubeGrid<'a>,
     request: &'a Request<'a>,
-    /// By tangent planes, if there is a field to have them.
+    table: &'static Table,
     sharp: Option<Sharp>,
-    placer: &'a Placer<'a>,
-    /// Whether vertices get keys and triangles the numbers of their cells.
-    traced: bool,
-    /// Called when a layer of cells is done.
-    layer_done: &'a (dyn Fn() + Sync),
+    level: Option<Level<'a>>,
+    placer: Placer<'a>,
 }
 
-/// Buffers of one thread, a few layers each, kept between slabs and between extractions.
+/// Buffers of one thread.
 pub(crate) struct Workspace {
     samples: Samples,
     records: Records<Record>,
@@ -122,94 +111,115 @@ pub(crate) struct Workspace {
     tangents: Known,
 }
 
-impl Workspace {
-    /// Without room yet.
-    fn new(table: &'static Table) -> Self {
+impl Streamed for Net<'_> {
+    type Workspace = Workspace;
+
+    fn workspace(&self) -> Workspace {
         let (samples, records, tangents) = Default::default();
-        Self { samples, records, plans: Plans::new(table), tangents }
+        Workspace { samples, records, plans: Plans::new(self.table), tangents }
     }
 
-    fn fit(
-        &mut self,
-        grid: &CubeGrid,
-        source: Sampler,
-        table: &'static Table,
-    ) -> Result<(), TryReserveError> {
-        if !std::ptr::eq(self.plans.table, table) {
-            self.plans = Plans::new(table);
+    fn fit(&self, workspace: &mut Workspace) -> Result<(), TryReserveError> {
+        if !std::ptr::eq(workspace.plans.table, self.table) {
+            workspace.plans = Plans::new(self.table);
         }
-        self.samples.fit(grid, source, SLOTS)?;
-        self.records.fit(grid)
+        workspace.samples.fit(self.grid, self.request.source, SLOTS)?;
+        workspace.records.fit(self.grid)
+    }
+
+    /// The quadrilaterals are those of the edges that begin at the lower points of the layers. Those lead to cells one layer down,
+    /// which are the slab's below.
+    fn slab(
+        &self,
+        own: Range<usize>,
+        layer_done: &LayerDone,
+        workspace: &mut Workspace,
+        piece: &mut Piece,
+    ) -> Result<(), ExtractError> {
+        let layers = self.grid.size[2];
+        let numbered = own.start.saturating_sub(1)..own.end;
+        let filled = numbered.start..own.end + 1;
+        let sided = numbered.start.saturating_sub(1)..layers.min(own.end + 2);
+        let passes = [
+            Pass { stage: Stage::Sampling, behind: 0, layers: sided, run: Slab::find_sides },
+            Pass { stage: Stage::Sampling, behind: 1, layers: filled, run: Slab::fill },
+            Pass { stage: Stage::Vertex, behind: 2, layers: numbered, run: Slab::place },
+            Pass { stage: Stage::Geometry, behind: 2, layers: own.clone(), run: Slab::join },
+        ];
+        let Workspace { samples, records, plans, tangents } = workspace;
+        let Request { source, settings, control, .. } = *self.request;
+        let grid = self.grid;
+        let sampling = Sampling { grid, source, isovalue: settings.isovalue, all_corners: false };
+        let tangents = self.level.map(|level| Tangents::new(level, tangents));
+        let vertices = Vertices::within(piece);
+        let mut slab =
+            Slab { of: self, layer_done, sampling, samples, records, plans, tangents, vertices, own };
+        stream(&mut slab, passes, control, piece)?;
+        let mut vertices = slab.vertices;
+        piece.tail = piece.surface.triangles.len();
+        // Those of the slab below were needed for diagonals alone.
+        let below = piece.below as usize;
+        vertices.positions.drain(..below);
+        if let Some(keys) = &mut vertices.keys {
+            keys.drain(..below);
+        }
+        vertices.give_to(piece);
+        Ok(())
     }
 }
 
-/// Extracts the layers `own` of cells: their vertices, and the quadrilaterals of the edges that begin at their lower points. Those lead
-/// to cells one layer down, which are the slab's below.
-fn stream_slab(
-    job: &Job,
+/// A slab on its way.
+struct Slab<'a> {
+    of: &'a Net<'a>,
+    layer_done: &'a LayerDone<'a>,
+    sampling: Sampling<'a>,
+    samples: &'a mut Samples,
+    records: &'a mut Records<Record>,
+    plans: &'a mut Plans,
+    tangents: Option<Tangents<'a>>,
+    vertices: Vertices,
     own: Range<usize>,
-    Workspace { samples, records, plans, tangents }: &mut Workspace,
-    piece: &mut Piece,
-) -> Result<(), ExtractError> {
-    let Job { grid, request, sharp, placer, .. } = *job;
-    let Request { source, settings, most_vertices, .. } = *request;
-    let layers = grid.size[2];
-    let numbered = own.start.saturating_sub(1)..own.end;
-    let filled = numbered.start..own.end + 1;
-    let sided = numbered.start.saturating_sub(1)..layers.min(own.end + 2);
-    let sampling = Sampling { grid, source, isovalue: settings.isovalue, all_corners: false };
-    let level = sharp.and(request.level());
-    let mut tangents = level.map(|level| Tangents::new(level, tangents));
-    piece.clear(job.traced);
-    let keys = piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys));
-    let mut vertices = Vertices { positions: std::mem::take(&mut piece.positions), keys };
-    let mut laps = Laps::new();
-    for step in sided.start..own.end + 2 {
-        if sided.contains(&step) {
-            request.control.check()?;
-            samples.find_sides(sampling, step);
-        }
-        if let Some(layer) = step.checked_sub(1).filter(|layer| filled.contains(layer)) {
-            samples.fill(sampling, layer);
-        }
-        piece.times.sampling += laps.lap();
+}
 
-        let Some(layer) = step.checked_sub(2).filter(|layer| numbered.contains(layer)) else { continue };
-        let samples = &*samples;
-        let pass = VertexPass { grid, samples, values: samples.values(grid, source), placer };
-        let by_planes = sharp.zip(tangents.as_mut());
-        let cells = pass.layer(layer, by_planes, plans, records, &mut vertices)?;
-        if vertices.numbered() > u64::from(most_vertices) {
-            return Err(ExtractError::TooManyVertices { limit: most_vertices });
-        }
-        piece.times.vertex += laps.lap();
+impl Slab<'_> {
+    fn find_sides(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
+        self.samples.find_sides(self.sampling, layer);
+        Ok(())
+    }
 
-        if !own.contains(&layer) {
-            piece.below = vertices.numbered();
-            continue;
+    fn fill(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
+        self.samples.fill(self.sampling, layer);
+        Ok(())
+    }
+
+    fn place(&mut self, layer: usize, piece: &mut Piece) -> Result<(), ExtractError> {
+        let Net { grid, request, sharp, placer, .. } = self.of;
+        let samples = &*self.samples;
+        let pass = VertexPass { grid, samples, values: samples.values(grid, request.source), placer };
+        let by_planes = sharp.zip(self.tangents.as_mut());
+        let cells = pass.layer(layer, by_planes, self.plans, self.records, &mut self.vertices)?;
+        self.vertices.check(request.most_vertices)?;
+        match self.own.contains(&layer) {
+            true => piece.surface.cells_visited += cells,
+            false => piece.below = self.vertices.numbered,
         }
-        piece.surface.cells_visited += cells;
+        Ok(())
+    }
+
+    fn join(&mut self, layer: usize, piece: &mut Piece) -> Result<(), ExtractError> {
+        let Net { grid, level, .. } = *self.of;
+        let Self { samples, records, plans, vertices, .. } = self;
         let pass = QuadPass { grid, samples, plans, records, positions: &vertices.positions, level };
         let mut crossings = pass.layer(layer, &mut piece.surface)?;
-        if layer == own.start {
+        if layer == self.own.start {
             // Only the lowest points have quadrilaterals with vertices of the slab below.
             piece.head = piece.surface.triangles.len();
         }
-        if layer + 2 == layers {
+        if layer + 2 == grid.size[2] {
             crossings += pass.crossings(layer + 1);
         }
-        // As if seen from both ends.
-        piece.crossing_ends += 2 * crossings;
-        piece.times.geometry += laps.lap();
-        (job.layer_done)();
+        vertices.crossing_ends += 2 * crossings;
+        (self.layer_done)();
+        Ok(())
     }
-    piece.tail = piece.surface.triangles.len();
-    // Those of the slab below were needed for diagonals alone.
-    vertices.positions.drain(..piece.below as usize);
-    piece.positions = vertices.positions;
-    if let (Some(trace), Some(mut keys)) = (&mut piece.surface.trace, vertices.keys) {
-        keys.drain(..piece.below as usize);
-        trace.keys = keys;
-    }
-    Ok(())
 }

@@ -13,7 +13,7 @@ use crate::lattice::Lattice;
 use crate::placement;
 use crate::settings::{Execution, ExtractSettings, Positions};
 use crate::slabs::Progress;
-use crate::slabs::threads_and_slabs;
+use crate::slabs::{Run, threads_and_slabs};
 use crate::source::{Request, Sampler, Source};
 use crate::surface::trace::Trace;
 use crate::tetrahedra::by_cell::CellStreamer;
@@ -222,12 +222,13 @@ impl Extractor {
         let most_vertices = self.most_vertices.0;
         let request = Request { source, lattice, settings, control, most_vertices, start };
         let trace = self.traced.then_some(&mut self.trace);
+        let run = Run { request: &request, progress: self.progress.as_deref(), trace, extraction };
         if let Some(way) = cubes {
-            self.cube_streamer.extract(&request, way, self.progress.as_deref(), trace, extraction)
+            self.cube_streamer.extract(way, run)
         } else if lattice.arrangement().uniform().is_some() {
-            self.streamer.extract(&request, self.progress.as_deref(), trace, extraction)
+            self.streamer.extract(run)
         } else {
-            self.cell_streamer.extract(&request, self.progress.as_deref(), trace, extraction)
+            self.cell_streamer.extract(run)
         }
     }
 }

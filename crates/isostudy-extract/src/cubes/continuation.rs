@@ -20,8 +20,8 @@ use self::surface::Surface;
 use super::grid::CubeGrid;
 use super::{Rule, vertices::Placer};
 use crate::clock::Moment;
-use crate::extraction::{Counts, ExtractError, Extraction, StageTimes};
-use crate::slabs::Progress;
+use crate::extraction::{Counts, ExtractError, StageTimes};
+use crate::slabs::Run;
 use crate::source::Request;
 use crate::surface::normals::vertex_normals;
 use crate::surface::triangulation::Triangulation;
@@ -37,11 +37,9 @@ pub(crate) struct Continued {
 
 /// Visits, then makes vertices and triangles, on the thread that calls.
 pub(crate) fn extract(
-    request: &Request,
     continued: Continued,
     rule: Rule,
-    progress: Option<&Progress>,
-    extraction: &mut Extraction,
+    Run { request, progress, extraction, .. }: Run,
 ) -> Result<(), ExtractError> {
     let Request { source, lattice, settings, control, most_vertices, start } = *request;
     let out_of_memory = |_: TryReserveError| ExtractError::NoMemoryForMesh;

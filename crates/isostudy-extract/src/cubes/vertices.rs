@@ -18,8 +18,7 @@ use crate::sampling::bits::between;
 use crate::sampling::in_sight::Values;
 use crate::sampling::level::Level;
 use crate::settings::{ExtractSettings, Placement, Topology};
-use crate::slabs::Piece;
-use crate::surface::trace::VertexKey;
+use crate::slabs::Vertices;
 
 /// What is known of a point: its vertices are numbered from `first` on, those of its crossed edges by axis, then those in the cell
 /// that begins there.
@@ -59,55 +58,6 @@ pub(crate) struct VertexPass<'a> {
     pub(crate) rule: Rule,
     pub(super) patches: &'a Patches,
     pub(crate) placer: &'a Placer<'a>,
-}
-
-/// The vertices of a slab.
-#[derive(Debug, Default)]
-pub(crate) struct Vertices {
-    /// How many were numbered, those beyond the slab's own layers too.
-    pub(crate) numbered: u64,
-    pub(crate) positions: Vec<Vec3>,
-    /// Where the settings want them, if elsewhere.
-    pub(crate) targets: Vec<Vec3>,
-    /// Where they are asked for.
-    pub(crate) keys: Option<Vec<VertexKey>>,
-    /// Crossed edges of the slab's own layers, but for those that were snapped.
-    pub(crate) crossings: u64,
-}
-
-impl Vertices {
-    /// None yet, in the room of an empty piece.
-    pub(crate) fn within(piece: &mut Piece) -> Self {
-        Self {
-            positions: std::mem::take(&mut piece.positions),
-            targets: std::mem::take(&mut piece.targets),
-            keys: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys)),
-            ..Self::default()
-        }
-    }
-
-    /// Names the vertex that was placed last, where keys are asked for.
-    pub(crate) fn name(
-        &mut self,
-        lattice: &Lattice,
-        place: [usize; 3],
-        number: usize,
-    ) -> Result<(), TryReserveError> {
-        if let Some(keys) = &mut self.keys {
-            push(keys, VertexKey::new(lattice.arrangement(), lattice.stored(place), number))?;
-        }
-        Ok(())
-    }
-
-    /// Makes them those of a slab's piece.
-    pub(crate) fn give_to(self, piece: &mut Piece) {
-        (piece.positions, piece.targets) = (self.positions, self.targets);
-        // As if seen from both ends.
-        piece.crossing_ends = 2 * self.crossings;
-        if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, self.keys) {
-            trace.keys = keys;
-        }
-    }
 }
 
 impl VertexPass<'_> {
@@ -167,7 +117,7 @@ impl VertexPass<'_> {
                     vertices.numbered += u64::from(crossings) + u64::from(inner);
                     records.set(start + place[0], record);
                     if is_own {
-                        vertices.crossings += u64::from(crossings);
+                        vertices.crossing_ends += 2 * u64::from(crossings);
                         self.place(place, record.crossed, vertices)?;
                         if inner != 0 {
                             self.place_inner(place, self.patches.at(record.patch), vertices)?;

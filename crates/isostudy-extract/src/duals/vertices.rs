@@ -14,6 +14,7 @@ use crate::cubes::sampling::Samples;
 use crate::cubes::vertices::{Placer, corner_of};
 use crate::memory::push;
 use crate::sampling::in_sight::Values;
+use crate::slabs::Vertices;
 use crate::surface::trace::VertexKey;
 
 /// What is known of a crossed cell: its vertices are numbered from `first` on.
@@ -21,20 +22,6 @@ use crate::surface::trace::VertexKey;
 pub(super) struct Record {
     pub(super) first: u32,
     pub(super) plan: u32,
-}
-
-/// The vertices of a slab, and of the layer of cells below it.
-#[derive(Debug, Default)]
-pub(super) struct Vertices {
-    pub(super) positions: Vec<Vec3>,
-    /// Where they are asked for.
-    pub(super) keys: Option<Vec<VertexKey>>,
-}
-
-impl Vertices {
-    pub(super) fn numbered(&self) -> u64 {
-        self.positions.len() as u64
-    }
 }
 
 /// What the pass reads.
@@ -86,7 +73,7 @@ impl VertexPass<'_> {
                     let inside = (0..8).fold(0, |set, c| set | ((corners[c] >> bit & 1) as u8) << c);
                     let plan = plans.number(inside, self.joined(plans, cell, inside), self.at_box(cell));
                     let place = start + cell[0];
-                    records.set(place, Record { first: vertices.numbered() as u32, plan });
+                    records.set(place, Record { first: vertices.positions.len() as u32, plan });
                     for (number, mean) in plans.at(plan).means.iter().enumerate() {
                         let position = match &mut by_planes {
                             None => {
@@ -106,6 +93,7 @@ impl VertexPass<'_> {
                 }
             }
         }
+        vertices.numbered = vertices.positions.len() as u64;
         Ok(visited)
     }
 

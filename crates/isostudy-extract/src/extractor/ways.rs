@@ -1,13 +1,9 @@
 //! What is made of the cubes of a simple cubic lattice, one way or the other.
 
-use crate::cubes::{
-    self, Continued, Diagonals, EdgeMoves, Faces, Flat, Kept, Rule, continuation, extract_patches, snap,
-};
+use crate::cubes::{Continued, Diagonals, EdgeMoves, Faces, Flat, Kept, Rule, continuation, patched, snap};
 use crate::duals::{self, Nets};
-use crate::extraction::{ExtractError, Extraction};
-use crate::slabs::Progress;
-use crate::source::Request;
-use crate::surface::trace::Trace;
+use crate::extraction::ExtractError;
+use crate::slabs::Run;
 
 /// What is made of the cubes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,37 +34,28 @@ pub(crate) enum Way {
 #[derive(Default)]
 pub(crate) struct CubeStreamer {
     kept: Kept,
-    patches: Vec<cubes::Workspace>,
+    patches: Vec<patched::Workspace>,
     snapped: Vec<snap::Workspace>,
     nets: Vec<duals::Workspace>,
 }
 
 impl CubeStreamer {
     /// Extracts the cubes of a simple cubic lattice one way or the other.
-    pub(crate) fn extract(
-        &mut self,
-        request: &Request,
-        way: Way,
-        progress: Option<&Progress>,
-        trace: Option<&mut Trace>,
-        extraction: &mut Extraction,
-    ) -> Result<(), ExtractError> {
+    pub(crate) fn extract(&mut self, way: Way, run: Run) -> Result<(), ExtractError> {
         let Self { kept, patches, snapped, nets } = self;
         match way {
-            Way::Patches(rule) => {
-                extract_patches((kept, patches), request, rule, 0.0, progress, trace, extraction)
-            }
+            Way::Patches(rule) => patched::extract((kept, patches), rule, 0.0, run),
             Way::Moved { rule, moves } => {
-                extract_patches((kept, patches), request, rule, moves.pull, progress, trace, extraction)?;
+                let Run { request, progress, trace, extraction } = run;
+                let run = Run { request, progress, trace, extraction: &mut *extraction };
+                patched::extract((kept, patches), rule, moves.pull, run)?;
                 moves.apply(request, extraction)
             }
-            Way::Snapped { gamma, flat } => {
-                snap::extract((kept, snapped), request, gamma, flat, progress, trace, extraction)
-            }
-            Way::Nets(of) => duals::extract((kept, nets), request, of, progress, trace, extraction),
+            Way::Snapped { gamma, flat } => snap::extract((kept, snapped), gamma, flat, run),
+            Way::Nets(of) => duals::extract((kept, nets), of, run),
             Way::Continued(continued) => {
                 let rule = Rule { faces: Faces::SeparateInside, diagonals: Diagonals::Fan };
-                continuation::extract(request, continued, rule, progress, extraction)
+                continuation::extract(continued, rule, run)
             }
         }
     }

@@ -13,23 +13,21 @@ mod grid;
 mod points;
 mod rows;
 mod sampling;
-mod slab;
 #[cfg(test)]
 mod tests;
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::collections::TryReserveError;
+use std::ops::Range;
 
+use self::cells::triangulate_layer;
 use self::grid::CutGrid;
-use self::points::Placer;
-use self::slab::{Job, Workspace, stream_slab};
-use crate::clock::Moment;
-use crate::extraction::{ExtractError, Extraction};
+use self::points::{Placer, PointPass, Records};
+use self::sampling::{Samples, Sampling};
+use super::ties::Ties;
+use crate::extraction::ExtractError;
 use crate::lattice::Border;
-use crate::slabs::Progress;
-use crate::slabs::{Piece, assemble, on_slabs, threads_and_slabs};
+use crate::slabs::{LayerDone, Pass, Piece, Run, Stage, Streamed, Vertices, in_slabs, out_of_memory, stream};
 use crate::source::Request;
-use crate::surface::trace::Trace;
-use crate::tetrahedra::ties::Ties;
 
 /// The extractor's plan and buffers, kept from one surface to the next.
 #[derive(Debug, Default)]
@@ -41,55 +39,137 @@ pub(crate) struct CellStreamer {
 
 impl CellStreamer {
     /// The stages in order, timed and counted. The trace, if there is one, is that before edges are collapsed.
-    pub(crate) fn extract(
-        &mut self,
-        request: &Request,
-        progress: Option<&Progress>,
-        mut trace: Option<&mut Trace>,
-        extraction: &mut Extraction,
-    ) -> Result<(), ExtractError> {
-        let Request { source, lattice, settings, control, most_vertices, start } = *request;
-        let (threads, slabs) = threads_and_slabs(control.threads.count(), lattice.stored_grid()[2] as usize);
-        let out_of_memory = |_| ExtractError::OutOfMemory { bytes: lattice.streaming_bytes(threads as u64) };
+    pub(crate) fn extract(&mut self, run: Run) -> Result<(), ExtractError> {
+        let Request { lattice, settings, .. } = *run.request;
+        let request = run.request;
         let Self { grid, workspaces, pieces } = self;
+        let border = Border::of(settings);
         match grid {
             Some(grid) if grid.lattice.arrangement() == lattice.arrangement() => {
-                grid.refit(lattice, Border::of(settings)).map_err(out_of_memory)?;
+                grid.refit(lattice, border).map_err(|_| out_of_memory(request, 1))?;
             }
-            _ => *grid = Some(CutGrid::new(lattice, Border::of(settings)).map_err(out_of_memory)?),
+            _ => *grid = Some(CutGrid::new(lattice, border).map_err(|_| out_of_memory(request, 1))?),
         }
         let grid = grid.as_ref().expect("it was just made");
-        workspaces.resize_with(threads, Workspace::default);
-        pieces.resize_with(slabs, Piece::default);
-        for workspace in &mut *workspaces {
-            workspace.fit(grid, source).map_err(out_of_memory)?;
-        }
-        // The first piece is written where the whole mesh will be.
-        pieces[0].positions = std::mem::take(&mut extraction.mesh.positions);
-        pieces[0].surface.triangles = std::mem::take(&mut extraction.mesh.triangles);
-        pieces[0].surface.trace = trace.as_deref_mut().map(std::mem::take);
-        let allocation = start.elapsed();
+        let placer = Placer::new(lattice, grid.cut, settings, request.level());
+        in_slabs(&ByCell { grid, request, placer }, lattice.cells()[2] as usize, 1, workspaces, pieces, run)
+    }
+}
 
-        let streaming = Moment::now();
-        let (isovalue, ties) = (settings.isovalue, Ties::of(settings.topology));
-        let placer = &Placer::new(lattice, grid.cut, settings, request.level());
-        let cells = lattice.cells()[2] as usize;
-        let done = AtomicUsize::new(0);
-        let progress = || {
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if let Some(progress) = progress {
-                progress(done, cells);
-            }
-            if let Some(progress) = control.progress {
-                progress(done, cells);
-            }
-        };
-        let (traced, progress) = (trace.is_some(), &progress);
-        let job = Job { grid, source, isovalue, ties, placer, most_vertices, traced, control, progress };
-        on_slabs(cells, control.threads, workspaces, pieces, |own, workspace, piece| {
-            stream_slab(&job, own, workspace, piece)
-        })?;
-        let times = [allocation, streaming.elapsed()];
-        assemble(request, pieces, threads, times, trace, extraction)
+/// What all slabs of an extraction share.
+struct ByCell<'a> {
+    grid: &'a CutGrid,
+    request: &'a Request<'a>,
+    placer: Placer<'a>,
+}
+
+/// Buffers of one thread.
+#[derive(Debug, Default)]
+struct Workspace {
+    samples: Samples,
+    records: Records,
+}
+
+impl Streamed for ByCell<'_> {
+    type Workspace = Workspace;
+
+    fn workspace(&self) -> Workspace {
+        Workspace::default()
+    }
+
+    fn fit(&self, workspace: &mut Workspace) -> Result<(), TryReserveError> {
+        workspace.samples.fit(self.grid, self.request.source)?;
+        workspace.records.fit(self.grid)
+    }
+
+    /// Each pass is as many layers behind the one before as a lattice edge can reach.
+    fn slab(
+        &self,
+        own: Range<usize>,
+        layer_done: &LayerDone,
+        workspace: &mut Workspace,
+        piece: &mut Piece,
+    ) -> Result<(), ExtractError> {
+        let grid = self.grid;
+        let (steps, reach, layers) = (grid.cut.steps_a_cell, grid.reach(), grid.size[2]);
+        let (lowest, highest) = (own.start * steps, own.end * steps);
+        let around = |n: usize| lowest.saturating_sub(n)..layers.min(highest + n + 1);
+        let behind = 2 * reach;
+        let passes = [
+            Pass { stage: Stage::Sampling, behind: 0, layers: around(2 * reach), run: Slab::find_sides },
+            Pass { stage: Stage::Sampling, behind: reach, layers: around(reach), run: Slab::find_crossings },
+            Pass { stage: Stage::Vertex, behind, layers: around(0), run: Slab::place },
+            Pass {
+                stage: Stage::Geometry,
+                behind,
+                layers: lowest + steps..highest + 1,
+                run: Slab::triangulate,
+            },
+        ];
+        let Request { source, settings, control, .. } = *self.request;
+        let sampling = Sampling { grid, source, isovalue: settings.isovalue };
+        let mut slab =
+            Slab { of: self, layer_done, sampling, workspace, vertices: Vertices::within(piece), highest };
+        stream(&mut slab, passes, control, piece)?;
+        slab.vertices.give_to(piece);
+        Ok(())
+    }
+}
+
+/// A slab on its way.
+struct Slab<'a> {
+    of: &'a ByCell<'a>,
+    layer_done: &'a LayerDone<'a>,
+    sampling: Sampling<'a>,
+    workspace: &'a mut Workspace,
+    vertices: Vertices,
+    /// The layer of points above the slab's cells, whose vertices are the next slab's.
+    highest: usize,
+}
+
+impl Slab<'_> {
+    fn find_sides(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
+        self.workspace.samples.find_sides(self.sampling, layer);
+        Ok(())
+    }
+
+    fn find_crossings(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
+        self.workspace.samples.find_crossings(self.sampling, layer);
+        Ok(())
+    }
+
+    fn place(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
+        let ByCell { grid, request, placer } = self.of;
+        let Workspace { samples, records } = &mut *self.workspace;
+        let (values, isovalue) = (samples.values(grid, request.source), request.settings.isovalue);
+        let (sides, active, ties) = (&samples.sides, &samples.active, Ties::of(request.settings.topology));
+        let pass = PointPass { grid, values, sides, active, isovalue, ties, placer };
+        let is_own = layer < self.highest || layer + 1 == grid.size[2];
+        pass.layer(layer, is_own, records, &mut self.vertices)?;
+        self.vertices.check(request.most_vertices)
+    }
+
+    /// The cells below a layer of points, where it is not in the middle of cells.
+    fn triangulate(&mut self, layer: usize, piece: &mut Piece) -> Result<(), ExtractError> {
+        let grid = self.of.grid;
+        let steps = grid.cut.steps_a_cell;
+        if layer % steps != 0 {
+            return Ok(());
+        }
+        if layer == self.highest {
+            // Only the highest cells have vertices of the slab above.
+            piece.tail = piece.surface.triangles.len();
+        }
+        let Workspace { samples, records } = &*self.workspace;
+        triangulate_layer(
+            grid,
+            &samples.sides,
+            &samples.active,
+            records,
+            layer / steps - 1,
+            &mut piece.surface,
+        )?;
+        (self.layer_done)();
+        Ok(())
     }
 }

@@ -4,13 +4,14 @@ use isostudy_mesh::TriangleMesh;
 
 use super::cut::{Cut, Step};
 use super::grid::{Coordinates, is_regular};
-use super::points::{Placer, Record, Vertices};
+use super::points::{Placer, Record};
 use crate::execution::control::Threads;
 use crate::extraction::{Counts, Extraction};
 use crate::lattice::tetrahedra::{CASES, Case};
 use crate::lattice::{Border, Lattice};
 use crate::sampling::level::Level;
 use crate::settings::ExtractSettings;
+use crate::slabs::Vertices;
 use crate::slabs::finish::finish;
 use crate::surface::normals::vertex_normals;
 use crate::surface::trace::{Trace, VertexKey};

@@ -8,13 +8,13 @@ use super::cut::{Cut, Directions};
 use super::grid::{CutGrid, LINES};
 use super::rows::{BitRows, is_set};
 use crate::lattice::Lattice;
-use crate::memory::{push, refill};
+use crate::memory::refill;
 use crate::placement::spot::{Apart, Company, linear_ratio};
 use crate::placement::{clamped, crossing_ratio};
 use crate::sampling::in_sight::Values;
 use crate::sampling::level::Level;
 use crate::settings::{ExtractSettings, Placement};
-use crate::surface::trace::VertexKey;
+use crate::slabs::Vertices;
 use crate::tetrahedra::ties::Ties;
 
 /// The crossings that belong to a point; their vertices are numbered from `first` on, by direction.
@@ -101,20 +101,6 @@ pub(super) struct PointPass<'a> {
     pub(super) placer: &'a Placer<'a>,
 }
 
-/// The vertices of a slab.
-#[derive(Debug, Default)]
-pub(super) struct Vertices {
-    /// How many were numbered, those beyond the slab's own layers too.
-    pub(super) numbered: u64,
-    pub(super) positions: Vec<Vec3>,
-    /// Where the settings want them, if elsewhere.
-    pub(super) targets: Vec<Vec3>,
-    /// Where they are asked for.
-    pub(super) keys: Option<Vec<VertexKey>>,
-    /// Lattice edges that cross the surface, seen from either end.
-    pub(super) crossing_ends: u64,
-}
-
 impl PointPass<'_> {
     /// Visits a layer. Of a slab's own, vertices are placed; of others, numbered.
     pub(super) fn layer(
@@ -194,10 +180,7 @@ impl PointPass<'_> {
             }
             let way = grid.way(place, direction, self.placer.edges[direction]);
             self.placer.place(grid.coordinates.at(place), (direction, way), [value, neighbour], vertices)?;
-            if let Some(keys) = &mut vertices.keys {
-                let (arrangement, stored) = (grid.lattice.arrangement(), grid.lattice.stored(place));
-                push(keys, VertexKey::new(arrangement, stored, direction))?;
-            }
+            vertices.name(&grid.lattice, place, direction)?;
         }
         Ok(record)
     }

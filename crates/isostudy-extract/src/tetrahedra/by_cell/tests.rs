@@ -14,6 +14,7 @@ use crate::clock::Moment;
 use crate::fields::{FAMILIES, Family, Numbers, Volume};
 use crate::lattice::Border;
 use crate::placement::spot::tests::normal_lies_between;
+use crate::slabs::Run;
 use crate::source::{Request, Sampler};
 use crate::surface::trace::Trace;
 use crate::{
@@ -174,14 +175,9 @@ fn check(
                 let (mut found, mut found_trace) = (Extraction::default(), Trace::default());
                 let execution = Execution { threads };
                 let kept = Some(&mut found_trace);
-                CellStreamer::default()
-                    .extract(
-                        &request(source, lattice, &settings, &execution, u32::MAX),
-                        None,
-                        kept,
-                        &mut found,
-                    )
-                    .unwrap();
+                let request = &request(source, lattice, &settings, &execution, u32::MAX);
+                let run = Run { request, progress: None, trace: kept, extraction: &mut found };
+                CellStreamer::default().extract(run).unwrap();
                 let what = format!("{what:?} {:?} {settings:?} {threads} threads", lattice.arrangement());
                 assert_eq!(found.counts, expected.counts, "{what}");
                 let bits = |points: &[Vec3]| {
@@ -387,12 +383,9 @@ fn more_vertices_than_may_be_are_an_error() {
             let run = |most| {
                 let (mut found, execution) = (Extraction::default(), Execution { threads });
                 let source = Sampler::Field(&Sphere { radius: 0.8 });
-                CellStreamer::default().extract(
-                    &request(source, &lattice, &settings, &execution, most),
-                    None,
-                    None,
-                    &mut found,
-                )?;
+                let request = &request(source, &lattice, &settings, &execution, most);
+                let run = Run { request, progress: None, trace: None, extraction: &mut found };
+                CellStreamer::default().extract(run)?;
                 Ok(found.mesh.positions.len() as u32)
             };
             let all = run(u32::MAX).unwrap();

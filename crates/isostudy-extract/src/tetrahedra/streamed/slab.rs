@@ -1,6 +1,7 @@
-//! A slab of layers, streamed from the bottom up: sampled, then searched for vertices, then for triangles, each pass
-//! as many layers behind the one before as a lattice edge can reach.
+//! The passes over a slab: sampled, then searched for vertices, then for triangles, each pass as many layers behind the one before as
+//! a lattice edge can reach.
 
+use std::collections::TryReserveError;
 use std::ops::Range;
 
 use super::faces::{FaceTables, triangulate_layer};
@@ -10,32 +11,24 @@ use super::records::Records;
 use super::rule::ClusterRule;
 use super::sampling::{FieldPass, FieldSamples, signs_of};
 use super::signs::Signs;
-use crate::clock::Laps;
-use crate::execution::control::Control;
 use crate::extraction::ExtractError;
 use crate::placement::CrossingPlacer;
 use crate::placement::spot::Apart;
-use crate::slabs::Piece;
-use crate::source::Sampler;
+use crate::slabs::{LayerDone, Pass, Piece, Stage, Streamed, stream};
+use crate::source::{Request, Sampler};
 
 /// What all slabs of an extraction share.
-pub(super) struct Job<'a, R> {
+pub(super) struct Points<'a, R> {
     pub(super) grid: &'a UniformGrid,
     pub(super) tables: &'a FaceTables,
     pub(super) rule: &'a R,
-    pub(super) source: Sampler<'a>,
-    pub(super) isovalue: f32,
+    pub(super) request: &'a Request<'a>,
     pub(super) apart: Apart,
-    pub(super) most_vertices: u32,
-    pub(super) placer: Option<&'a CrossingPlacer<'a>>,
-    /// Whether vertices get keys and triangles the numbers of their cells.
-    pub(super) traced: bool,
-    pub(super) control: Control<'a>,
-    /// Called with the number of layers sampled since the last call.
-    pub(super) progress: &'a (dyn Fn(usize) + Sync),
+    pub(super) placer: Option<CrossingPlacer<'a>>,
+    pub(super) has_trace: bool,
 }
 
-/// Buffers of one thread, a few layers each, kept between slabs and between extractions.
+/// Buffers of one thread.
 #[derive(Debug, Default)]
 pub(super) struct Workspace {
     samples: FieldSamples,
@@ -43,117 +36,148 @@ pub(super) struct Workspace {
     records: Records,
 }
 
-impl Workspace {
-    /// Makes room; keeps what is large enough.
-    pub(super) fn fit(
-        &mut self,
-        grid: &UniformGrid,
-        source: Sampler,
-    ) -> Result<(), std::collections::TryReserveError> {
-        let slots = grid.slots() + lead(grid, source);
-        if matches!(source, Sampler::Field(_)) {
-            self.samples.fit(grid, slots)?;
+impl<R: ClusterRule> Points<'_, R> {
+    /// How many layers signs are ahead of the samples at crossings. A crossing is known when the signs of all neighbours
+    /// are; given samples are there before that.
+    fn lead(&self) -> usize {
+        match self.request.source {
+            Sampler::Field(_) => self.grid.reach,
+            Sampler::Given { .. } => 0,
         }
-        self.signs.fit(grid, slots)?;
-        self.records.fit(grid)
+    }
+
+    fn field_pass(&self) -> Option<FieldPass<'_>> {
+        let Sampler::Field(field) = self.request.source else { return None };
+        let everywhere = self.placer.as_ref().is_some_and(CrossingPlacer::reads_neighbours);
+        Some(FieldPass { field, grid: self.grid, isovalue: self.request.settings.isovalue, everywhere })
     }
 }
 
-/// How many layers signs are ahead of the samples at crossings. A crossing is known when the signs of all neighbours
-/// are; given samples are there before that.
-fn lead(grid: &UniformGrid, source: Sampler) -> usize {
-    match source {
-        Sampler::Field(_) => grid.reach,
-        Sampler::Given { .. } => 0,
+impl<R: ClusterRule> Streamed for Points<'_, R> {
+    type Workspace = Workspace;
+
+    fn workspace(&self) -> Workspace {
+        Workspace::default()
+    }
+
+    fn fit(&self, workspace: &mut Workspace) -> Result<(), TryReserveError> {
+        let slots = self.grid.slots() + self.lead();
+        if matches!(self.request.source, Sampler::Field(_)) {
+            workspace.samples.fit(self.grid, slots)?;
+        }
+        workspace.signs.fit(self.grid, slots)?;
+        workspace.records.fit(self.grid)
+    }
+
+    fn slab(
+        &self,
+        own: Range<usize>,
+        layer_done: &LayerDone,
+        workspace: &mut Workspace,
+        piece: &mut Piece,
+    ) -> Result<(), ExtractError> {
+        let (reach, layers, lead) = (self.grid.reach, self.grid.size[2], self.lead());
+        let around = |n: usize| own.start.saturating_sub(n)..layers.min(own.end + n);
+        let [signed, sampled, recorded] = [2 * reach + lead, 2 * reach, reach].map(around);
+        let passes = [
+            Pass { stage: Stage::Sampling, behind: 0, layers: signed, run: Slab::find_signs },
+            Pass { stage: Stage::Sampling, behind: lead, layers: sampled, run: Slab::fill },
+            Pass { stage: Stage::Vertex, behind: lead + reach, layers: recorded, run: Slab::place },
+            Pass {
+                stage: Stage::Geometry,
+                behind: lead + 2 * reach,
+                layers: own.clone(),
+                run: Slab::triangulate,
+            },
+        ];
+        let placed = Placed {
+            targets: std::mem::take(&mut piece.targets),
+            keys: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys)),
+            ..Placed::default()
+        };
+        let field = self.field_pass();
+        let mut slab = Slab { of: self, layer_done, field, workspace, placed, own };
+        stream(&mut slab, passes, self.request.control, piece)?;
+        let Placed { targets, keys, .. } = slab.placed;
+        piece.targets = targets;
+        if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, keys) {
+            trace.keys = keys;
+        }
+        Ok(())
     }
 }
 
-/// Extracts the layers `own`, vertices and triangles.
-pub(super) fn stream_slab<R: ClusterRule>(
-    job: &Job<R>,
+/// A slab on its way.
+struct Slab<'a, R> {
+    of: &'a Points<'a, R>,
+    layer_done: &'a LayerDone<'a>,
+    /// What is called, if it is a field.
+    field: Option<FieldPass<'a>>,
+    workspace: &'a mut Workspace,
+    placed: Placed,
     own: Range<usize>,
-    workspace: &mut Workspace,
-    piece: &mut Piece,
-) -> Result<(), ExtractError> {
-    let Job { grid, isovalue, .. } = *job;
-    let (reach, layers) = (grid.reach, grid.size[2]);
-    let recorded = own.start.saturating_sub(reach)..layers.min(own.end + reach);
-    let sampled = own.start.saturating_sub(2 * reach)..layers.min(own.end + 2 * reach);
-    let lead = lead(grid, job.source);
-    let signed = sampled.start.saturating_sub(lead)..layers.min(sampled.end + lead);
-    let out_of_memory = |_| ExtractError::NoMemoryForMesh;
-    let everywhere = job.placer.is_some_and(CrossingPlacer::reads_neighbours);
-    let field_pass = |field| FieldPass { field, grid, isovalue, everywhere };
+}
 
-    piece.clear(job.traced);
-    let mut placed = Placed {
-        targets: std::mem::take(&mut piece.targets),
-        keys: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys)),
-        ..Placed::default()
-    };
-    let mut laps = Laps::new();
-    for step in signed.start..own.end + 2 * reach + lead {
-        if signed.contains(&step) {
-            job.control.check()?;
-            match job.source {
-                Sampler::Given { values, .. } => signs_of(grid, values, isovalue, step, &mut workspace.signs),
-                Sampler::Field(field) => {
-                    workspace.samples.find_signs(field_pass(field), step, &mut workspace.signs);
-                }
+impl<R: ClusterRule> Slab<'_, R> {
+    fn find_signs(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
+        let Points { grid, request, .. } = self.of;
+        let Workspace { samples, signs, .. } = &mut *self.workspace;
+        match (request.source, self.field) {
+            (Sampler::Given { values, .. }, _) => {
+                signs_of(grid, values, request.settings.isovalue, layer, signs);
             }
-            if own.contains(&step) {
-                (job.progress)(1);
-            }
+            (Sampler::Field(_), Some(pass)) => samples.find_signs(pass, layer, signs),
+            (Sampler::Field(_), None) => unreachable!("made for a field"),
         }
-        let Some(step) = step.checked_sub(lead) else { continue };
-        if let Sampler::Field(field) = job.source
-            && sampled.contains(&step)
-        {
-            workspace.samples.fill(field_pass(field), step, &workspace.signs);
-        }
-        piece.times.sampling += laps.lap();
-
-        if let Some(layer) = step.checked_sub(reach).filter(|layer| recorded.contains(layer)) {
-            let samples = match job.source {
-                Sampler::Given { values, .. } => Samples { values, slots: layers },
-                Sampler::Field(_) => workspace.samples.samples(),
-            };
-            let (signs, placer) = (&workspace.signs, job.placer);
-            let has_more = placer.is_some() || job.traced;
-            let (rule, apart) = (job.rule, job.apart);
-            let pass = PointPass { grid, rule, samples, signs, isovalue, apart, placer, has_more };
-            if layer == own.start {
-                piece.below = placed.numbered;
-            }
-            if own.contains(&layer) {
-                let seen = placed.crossing_ends;
-                pass.layer(layer, &mut workspace.records, &mut placed, Some(&mut piece.positions))
-                    .map_err(out_of_memory)?;
-                piece.crossing_ends += placed.crossing_ends - seen;
-            } else {
-                pass.layer(layer, &mut workspace.records, &mut placed, None).map_err(out_of_memory)?;
-            }
-            if placed.numbered > u64::from(job.most_vertices) {
-                return Err(ExtractError::TooManyVertices { limit: job.most_vertices });
-            }
-        }
-        piece.times.vertex += laps.lap();
-
-        if let Some(layer) = step.checked_sub(2 * reach).filter(|layer| own.contains(layer)) {
-            if layer + 2 * reach <= own.end {
-                piece.tail = piece.surface.triangles.len();
-            }
-            triangulate_layer(grid, job.tables, R::TIES, &workspace.records, layer, &mut piece.surface)
-                .map_err(out_of_memory)?;
-            if layer < own.start + 2 * reach {
-                piece.head = piece.surface.triangles.len();
-            }
-        }
-        piece.times.geometry += laps.lap();
+        Ok(())
     }
-    piece.targets = placed.targets;
-    if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, placed.keys) {
-        trace.keys = keys;
+
+    fn fill(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
+        if let Some(pass) = self.field {
+            self.workspace.samples.fill(pass, layer, &self.workspace.signs);
+        }
+        Ok(())
     }
-    Ok(())
+
+    fn place(&mut self, layer: usize, piece: &mut Piece) -> Result<(), ExtractError> {
+        let &Points { grid, rule, request, apart, ref placer, has_trace, .. } = self.of;
+        let Workspace { samples, signs, records } = &mut *self.workspace;
+        let samples = match request.source {
+            Sampler::Given { values, .. } => Samples { values, slots: grid.size[2] },
+            Sampler::Field(_) => samples.samples(),
+        };
+        let (placer, isovalue) = (placer.as_ref(), request.settings.isovalue);
+        let has_more = placer.is_some() || has_trace;
+        let pass = PointPass { grid, rule, samples, signs, isovalue, apart, placer, has_more };
+        let placed = &mut self.placed;
+        if layer == self.own.start {
+            piece.below = placed.numbered;
+        }
+        if self.own.contains(&layer) {
+            let seen = placed.crossing_ends;
+            pass.layer(layer, records, placed, Some(&mut piece.positions))?;
+            piece.crossing_ends += placed.crossing_ends - seen;
+        } else {
+            pass.layer(layer, records, placed, None)?;
+        }
+        let limit = request.most_vertices;
+        if placed.numbered > u64::from(limit) {
+            return Err(ExtractError::TooManyVertices { limit });
+        }
+        Ok(())
+    }
+
+    fn triangulate(&mut self, layer: usize, piece: &mut Piece) -> Result<(), ExtractError> {
+        let Points { grid, tables, .. } = self.of;
+        let farthest = 2 * grid.reach;
+        if layer + farthest <= self.own.end {
+            piece.tail = piece.surface.triangles.len();
+        }
+        triangulate_layer(grid, tables, R::TIES, &self.workspace.records, layer, &mut piece.surface)?;
+        if layer < self.own.start + farthest {
+            piece.head = piece.surface.triangles.len();
+        }
+        (self.layer_done)();
+        Ok(())
+    }
 }
