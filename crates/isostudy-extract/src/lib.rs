@@ -185,81 +185,47 @@ mod survey;
 #[doc = include_str!("../../../docs/engine.md")]
 pub mod engine {}
 
-mod accuracy;
 pub mod active;
-mod bits;
-mod box_grid;
-mod bracket;
-mod by_cell;
 mod chunks;
 mod clock;
-mod clusters;
-mod collapse;
-mod control;
+mod clustering;
 mod cubes;
-mod dense;
-mod distances;
-mod edges;
+mod duals;
+mod execution;
 mod extraction;
 mod extractor;
-mod finish;
-mod grid;
-mod guard;
-mod in_sight;
-mod isosurface;
 mod lattice;
-mod level;
 mod levels;
-#[cfg(test)]
-mod limits;
-mod line;
+mod measure;
 mod memory;
 mod method;
-mod normal_errors;
-mod normals;
 mod placement;
 mod sampling;
 mod settings;
-mod sharp_edges;
-mod sides;
 mod slabs;
 mod source;
-mod spot;
-mod streaming;
+mod surface;
 mod tetrahedra;
-mod tiles;
-mod trace;
-mod triangle_distances;
-mod triangles;
-mod vertices;
-mod warp;
 
-pub use accuracy::{Accuracy, accuracy};
-pub use box_grid::BoxGrid;
 pub use chunks::{
     Chunk, ChunkError, ChunkExtractor, ChunkSettings, Mismatch, Normals, SampleLayout, TooManyVertices,
     WeldError, World, weld_chunks,
 };
 #[cfg(feature = "stage-clock")]
 pub use clock::set_stage_clock;
-pub use control::{Control, Jobs, Threads};
-pub use cubes::{
-    ContinuedCells, Diagonals, Faces, Flat, LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume,
-    Seeds, SeedsError, VolumeCells, VolumeCellsError,
-};
-pub use distances::{DistanceError, distances};
+pub use cubes::{ContinuedCells, Diagonals, Faces, Flat, Seeds, SeedsError};
+pub use duals::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
+pub use execution::{Control, Jobs, Threads};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, TetrahedraCounts};
 pub use extractor::{Extractor, extract};
-pub use grid::{Grid, GridError};
 pub use isostudy_field::{Aabb, Bound, FieldFault, FromFn, ScalarField, StudyField, check_field, from_fn};
-pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
+pub use lattice::{Arrangement, BoxGrid, CellBox, Grid, GridError, Lattice, LatticeError};
 pub use levels::{LevelError, LevelExtractor, LevelSettings, Neighbours};
+pub use measure::{Accuracy, DistanceError, accuracy, distances, normal_errors_deg, triangle_distances};
 pub use method::{
     Continuation, CornerSamples, Cubes, DualContouring, Macet, Method, MethodError, Preset, Promises,
-    SnapCubes, SurfaceNets, Tetrahedra, presets,
+    SnapCubes, SurfaceNets, Tetrahedra, VolumeCells, VolumeCellsError, presets,
 };
-pub use normal_errors::normal_errors_deg;
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use source::Source;
-pub use trace::VertexKey;
-pub use triangle_distances::triangle_distances;
+pub use surface::trace::VertexKey;

@@ -2,7 +2,8 @@
 
 use super::of_cubes::OfCubes;
 use super::{MethodError, Promises};
-use crate::cubes::{Flat, Way};
+use crate::cubes::Flat;
+use crate::extractor::Way;
 
 /// Marching cubes whose crossings near a point of the lattice are drawn to it, so that triangles have bounded angles (Raman & Wenger
 /// 2008): from 12.7 to 144.2 degrees with the default, whatever the samples (`tests/it/snap.rs` tries every triangle of the table).
