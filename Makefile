@@ -43,6 +43,7 @@ figures: bunny ## draw tables, figures and index.html again from the results tha
 check: ## formatting, lints, licences, and the English of README and docs
 	scripts/check-words.py
 	cargo fmt --all --check
+	scripts/draw-house.py --check
 	cargo clippy --release --locked --workspace --all-targets -- -D warnings
 	@if command -v cargo-deny >/dev/null; then cargo deny --locked check bans licenses sources; else echo "cargo-deny is not installed: licences and bans not checked"; fi
 

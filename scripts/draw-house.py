@@ -3,7 +3,8 @@
 
 Usage: scripts/draw-house.py [--check] [--circles] [FOLDER]
 
-Reads crates/*/Cargo.toml and the sources of FOLDER (by default this workspace). It fails (exit 1)
+Reads crates/*/Cargo.toml and the sources of FOLDER (by default this workspace), and writes docs/house.svg there.
+It fails (exit 1)
 - if crates depend on each other in a circle, in what they need to be built for use;
 - if a crate uses what a rule below gives to others, or reaches a crate that it must never meet;
 - if files of a crate use each other in a circle. A parent and its own child may.
@@ -36,9 +37,13 @@ NEVER = {
     "isostudy-raster": {"isostudy-extract", "isostudy-field", "isostudy-design"},
     "isostudy-trilinear": {"isostudy-extract", "isostudy-field"},
     "isostudy-statistics": {"isostudy-design", "isostudy-table", "isostudy-mesh"},
-    "isostudy-inference": {"isostudy-mesh", "isostudy-table", "isostudy-report", "isostudy-paper"},
+    "isostudy-inference": {"isostudy-mesh", "isostudy-report", "isostudy-paper"},
     "isostudy-report": {"isostudy-mesh", "isostudy-paper"},
 }
+# Crates that the first one must not use itself; what it uses may.
+NOT_ITSELF = {"isostudy-inference": {"isostudy-table"}}
+# The program. Crates that it is not built from are for development, and drawn with dashes.
+PROGRAM = "isostudy"
 
 
 # --- crates ------------------------------------------------------------------------------------
@@ -88,6 +93,8 @@ def faults_of_crates(crates):
                 faults.append(f"{name} uses {other}, which only {', '.join(sorted(ONLY[other]))} may")
         for other in sorted(reachable(arrows, name) & NEVER.get(name, set())):
             faults.append(f"{name} reaches {other} and must not")
+        for other in sorted(inside & NOT_ITSELF.get(name, set())):
+            faults.append(f"{name} uses {other} and must not")
     return faults
 
 
@@ -429,6 +436,7 @@ def draw(crates):
                     share = (place + 0.5) / len(mine) - 0.5
                     ends[piece, side] = centre[node] + room * share
     level_of = {node: level for level, row in enumerate(rows) for node in row}
+    built = reachable(arrows, PROGRAM) | {PROGRAM} if PROGRAM in arrows else set(arrows)
     for a, b in sorted(pieces, key=str):
         from_y, to_y = top[level_of[a]] + height[level_of[a]], top[level_of[b]]
         x0, x1 = ends[(a, b), 0], ends[(a, b), 1]
@@ -437,14 +445,16 @@ def draw(crates):
         if isinstance(b, tuple):
             line += f"V{to_y + height[level_of[b]]:.1f}"
         head = "" if isinstance(b, tuple) else ' marker-end="url(#head)"'
+        head += "" if isinstance(a, tuple) or a in built else ' stroke-dasharray="4 3"'
         out.append(f'<path d="{line}" fill="none" stroke="#47586b" stroke-width="1.3"{head}/>')
     for level, row in enumerate(rows):
         for node in row:
             if isinstance(node, tuple):
                 continue
             x = centre[node] - BOX / 2
-            fill = "#e8eef5" if arrows[node] else "#f4ecd8"
-            out.append(f'<rect x="{x:.1f}" y="{top[level]:.1f}" width="{BOX}" height="{height[level]:.1f}" rx="5" fill="{fill}" stroke="#47586b"/>')
+            fill = ("#e8eef5" if arrows[node] else "#f4ecd8") if node in built else "#ffffff"
+            dashes = "" if node in built else ' stroke-dasharray="4 3"'
+            out.append(f'<rect x="{x:.1f}" y="{top[level]:.1f}" width="{BOX}" height="{height[level]:.1f}" rx="5" fill="{fill}" stroke="#47586b"{dashes}/>')
             name = node.removeprefix("isostudy-")
             out.append(f'<text x="{centre[node]:.1f}" y="{top[level] + 18:.1f}" font-size="{NAME}" font-weight="bold" text-anchor="middle" fill="#12202f">{escape(name)}</text>')
             for number, line in enumerate(texts[node]):
