@@ -46,6 +46,7 @@ check: ## formatting, lints, licences, the English of README and docs, and that 
 	scripts/check-words.py
 	scripts/check-one-build.py
 	cargo fmt --all --check
+	scripts/draw-house.py --check
 	cargo clippy --release --locked --workspace --all-targets -- -D warnings
 	@if command -v cargo-deny >/dev/null; then cargo deny --locked check bans licenses sources; else echo "cargo-deny is not installed: licences and bans not checked"; fi
 

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::parser::function_names;
+use crate::functions::function_names;
 
 /// Why text is no formula. Columns count characters from 1.
 #[derive(Debug, Clone, PartialEq, Error)]

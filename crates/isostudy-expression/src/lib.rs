@@ -55,6 +55,7 @@
 //!   mesh's, may differ from machine to machine; not from thread to thread.
 
 mod error;
+mod functions;
 mod interval;
 mod noise_call;
 mod parser;

@@ -1,4 +1,4 @@
-//! What each placement of vertices does to triangles and accuracy: the numbers of DESIGN.md, as a Markdown table.
+//! What each placement of vertices does to triangles and accuracy: the numbers of docs/why.md, as a Markdown table.
 //! Arguments: cells along an axis (64; the bunny: the spacing that gives in a box of side 2), part of a row's name.
 //!
 //! Times are of the processor, best of a few. `cargo run --release -p isostudy-extract --example placement`

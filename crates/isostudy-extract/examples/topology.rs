@@ -1,4 +1,4 @@
-//! What the guard costs and what it saves, on the evaluation's sphere and asteroid: the numbers of DESIGN.md.
+//! What the guard costs and what it saves, on the evaluation's sphere and asteroid: the numbers of docs/why.md.
 //!
 //! `cargo run --release -p isostudy-extract --example topology`
 

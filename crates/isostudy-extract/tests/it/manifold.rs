@@ -121,7 +121,7 @@ fn one_inside(name: &'static str, others: &[[i32; 3]]) -> Pattern {
     Pattern { name, samples, rest: -9.0, characteristics: &[2] }
 }
 
-/// The counterexamples to other rules, of the two analyses in DESIGN.md.
+/// The counterexamples to other rules, of the two analyses in docs/manifold.md.
 fn counterexamples() -> Vec<Pattern> {
     let inside = |value: f32, points: &[[i32; 3]]| points.iter().map(|&at| (at, value)).collect::<Vec<_>>();
     let neighbours = [-1, 1].map(|way| {
