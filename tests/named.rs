@@ -31,7 +31,7 @@ fn every_method_of_the_list_makes_a_ball() {
     let methods = list["methods"].as_array().unwrap();
     let ids: Vec<&str> = methods.iter().map(|method| method["id"].as_str().unwrap()).collect();
     assert_eq!(ids, presets().iter().map(|preset| preset.id).collect::<Vec<_>>());
-    let text = folder.succeed(&["methods"]).stdout;
+    let text = folder.succeed(&["methods", "--all"]).stdout;
     for method in methods {
         let id = method["id"].as_str().unwrap();
         let label = method["label"].as_str().unwrap();

@@ -31,7 +31,7 @@ const CRATES: [&str; 18] = [
 /// The pages that people read: a digest of their own.
 const PAGES: &str = "pipeline/pages";
 /// Modules of the command that change no result: what is asked, what is said meanwhile, and how it ended.
-const ASIDE: [&str; 4] = ["main", "commands", "outcome", "terminal"];
+const ASIDE: [&str; 5] = ["main", "commands", "help", "outcome", "terminal"];
 
 fn main() {
     let root = Path::new(&std::env::var("CARGO_MANIFEST_DIR").expect("cargo says where the package is"))

@@ -3,9 +3,8 @@
 //! The program's allocator counts what it is asked for. While an extraction is counted, the extractor's stages have that count for a
 //! clock: once for calls and once for bytes. Nothing is timed meanwhile, and nothing is counted while anything is timed.
 
-use crate::worker::Prepared;
 use isostudy_design::record::StageCounts;
-use isostudy_extract::{Execution, StageTimes};
+use isostudy_extract::{Execution, Extraction, StageTimes};
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::sync::OnceLock;
@@ -54,30 +53,30 @@ fn clock() -> Option<Duration> {
     ALLOCATOR.get().map(|asked| Duration::from_nanos(of(asked())))
 }
 
-impl Prepared<'_> {
-    /// Extracts three times, counts in the second and the third, and says what was asked of the allocator; `None` where nobody counts. On one
-    /// thread, and alone in the process: counts are those of all its threads.
-    ///
-    /// # Errors
-    /// Why it cannot be extracted.
-    pub fn allocations(&self) -> Result<Option<AllocationCounts>, String> {
-        let Some(&asked) = ALLOCATOR.get() else { return Ok(None) };
-        let run = |counted: u8| -> Result<StageTimes, String> {
-            COUNTED.store(counted, Ordering::Relaxed);
-            let extraction = self.extract(&Execution { threads: 1 });
-            COUNTED.store(NOTHING, Ordering::Relaxed);
-            extraction.map(|extraction| black_box(extraction).times).map_err(|error| error.to_string())
-        };
-        let count = |counted: u8, of: fn(Asked) -> u64| -> Result<StageCounts, String> {
-            let before = of(asked());
-            let times = run(counted)?;
-            Ok(StageCounts { total: of(asked()) - before, ..by_stage(&times) })
-        };
-        // Tables that are made at first use are no extraction's own.
-        run(NOTHING)?;
-        let (calls, bytes) = (count(CALLS, |asked| asked.calls)?, count(BYTES, |asked| asked.bytes)?);
-        Ok(Some(AllocationCounts { calls, bytes }))
-    }
+/// Extracts three times, counts in the second and the third, and says what was asked of the allocator; `None` where nobody counts. On
+/// one thread, and alone in the process: counts are those of all its threads.
+///
+/// # Errors
+/// Why it cannot be extracted.
+pub(crate) fn allocations<E: std::fmt::Display>(
+    extract: impl Fn(&Execution) -> Result<Extraction, E>,
+) -> Result<Option<AllocationCounts>, String> {
+    let Some(&asked) = ALLOCATOR.get() else { return Ok(None) };
+    let run = |counted: u8| -> Result<StageTimes, String> {
+        COUNTED.store(counted, Ordering::Relaxed);
+        let extraction = extract(&Execution { threads: 1 });
+        COUNTED.store(NOTHING, Ordering::Relaxed);
+        extraction.map(|extraction| black_box(extraction).times).map_err(|error| error.to_string())
+    };
+    let count = |counted: u8, of: fn(Asked) -> u64| -> Result<StageCounts, String> {
+        let before = of(asked());
+        let times = run(counted)?;
+        Ok(StageCounts { total: of(asked()) - before, ..by_stage(&times) })
+    };
+    // Tables that are made at first use are no extraction's own.
+    run(NOTHING)?;
+    let (calls, bytes) = (count(CALLS, |asked| asked.calls)?, count(BYTES, |asked| asked.bytes)?);
+    Ok(Some(AllocationCounts { calls, bytes }))
 }
 
 fn by_stage(times: &StageTimes) -> StageCounts {

@@ -1,6 +1,6 @@
 //! What the measuring process does: it reads requests, a line each, and answers each with a line, in JSON.
 
-use crate::allocations::AllocationCounts;
+use crate::allocations::{AllocationCounts, allocations};
 use crate::error::BenchError;
 use crate::load::resident_bytes;
 use crate::meter::Meter;
@@ -60,6 +60,15 @@ impl Prepared<'_> {
         let times = extraction.map(|extraction| black_box(extraction).times);
         let timed = |times| Timed { stages: StageSeconds::from(&times), counters };
         times.map(timed).map_err(|error| error.to_string())
+    }
+
+    /// What an extraction asks of the allocator, on one thread, which must be alone in the process; `None` where nobody counts
+    /// ([`count_allocations`](crate::count_allocations)).
+    ///
+    /// # Errors
+    /// Why it cannot be extracted.
+    pub fn allocations(&self) -> Result<Option<AllocationCounts>, String> {
+        allocations(|execution| self.extract(execution))
     }
 
     /// Extracts once and says how much memory that took.

@@ -52,4 +52,7 @@ pub use screen::{SCREEN_COLUMNS, Screen, ScreenId};
 pub use sides::SidesSource;
 pub use value::{Answer, Participant, Question, Responses, StimulusId, UnknownStimuli};
 pub use words::{Words, normalise};
-pub use write::{LONG_WRITTEN, Ties, WriteError, Written, write_arenakit, write_long, write_pwcmp};
+pub use write::{
+    LONG_WRITTEN, LONG_WRITTEN_WITH_SCREENS, Ties, WriteError, Written, write_arenakit, write_long,
+    write_pwcmp,
+};

@@ -2,24 +2,38 @@
 
 use std::num::NonZeroU32;
 
-/// Columns of the long format that say it, in the order of [`Screen`].
-pub const SCREEN_COLUMNS: [&str; 9] = [
-    "viewport_width",
-    "viewport_height",
-    "pixel_ratio",
-    "surface_px",
-    "layout",
-    "input",
-    "dropped",
-    "hidden_ms",
-    "shown_as",
+/// A column: its name, and what of a [`Screen`] it says.
+enum Column {
+    /// A number from 0.
+    Number(&'static str, fn(&mut Screen) -> &mut Option<f32>),
+    /// One of some words.
+    Word(&'static str, &'static [&'static str], fn(&mut Screen) -> &mut Option<&'static str>),
+}
+
+const COLUMNS: [Column; 9] = [
+    Column::Number("viewport_width", |screen| &mut screen.viewport_width),
+    Column::Number("viewport_height", |screen| &mut screen.viewport_height),
+    Column::Number("pixel_ratio", |screen| &mut screen.pixel_ratio),
+    Column::Number("surface_px", |screen| &mut screen.surface_px),
+    Column::Word("layout", &["beside", "stacked"], |screen| &mut screen.layout),
+    Column::Word("input", &["mouse", "touch", "pen", "keyboard"], |screen| &mut screen.input),
+    Column::Number("dropped", |screen| &mut screen.dropped),
+    Column::Number("hidden_ms", |screen| &mut screen.hidden_ms),
+    Column::Word("shown_as", &["gif", "mp4", "webm"], |screen| &mut screen.shown_as),
 ];
 
-/// How many of [`SCREEN_COLUMNS`] are numbers, and which.
-const NUMBERS: [usize; 6] = [0, 1, 2, 3, 6, 7];
-/// What the others may say.
-const WORDS: [(usize, &[&str]); 3] =
-    [(4, &["beside", "stacked"]), (5, &["mouse", "touch", "pen", "keyboard"]), (8, &["gif", "mp4", "webm"])];
+/// Columns of the long format that say it, in the order of [`Screen`].
+pub const SCREEN_COLUMNS: [&str; COLUMNS.len()] = {
+    let mut names = [""; COLUMNS.len()];
+    let mut place = 0;
+    while place < names.len() {
+        names[place] = match COLUMNS[place] {
+            Column::Number(name, _) | Column::Word(name, ..) => name,
+        };
+        place += 1;
+    }
+    names
+};
 
 /// On what an answer was given; whatever was not recorded is `None`. Widths and heights are in CSS pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -65,20 +79,11 @@ impl ScreenId {
 
 impl Screen {
     /// The cells of [`SCREEN_COLUMNS`].
-    pub(crate) fn cells(&self) -> [String; 9] {
-        let number = |value: Option<f32>| value.map_or(String::new(), |value| value.to_string());
-        let word = |value: Option<&str>| value.unwrap_or_default().to_owned();
-        [
-            number(self.viewport_width),
-            number(self.viewport_height),
-            number(self.pixel_ratio),
-            number(self.surface_px),
-            word(self.layout),
-            word(self.input),
-            number(self.dropped),
-            number(self.hidden_ms),
-            word(self.shown_as),
-        ]
+    pub(crate) fn cells(mut self) -> [String; COLUMNS.len()] {
+        COLUMNS.map(|column| match column {
+            Column::Number(_, of) => of(&mut self).map_or(String::new(), |value| value.to_string()),
+            Column::Word(_, _, of) => of(&mut self).unwrap_or_default().to_owned(),
+        })
     }
 
     /// Takes a cell of one of [`SCREEN_COLUMNS`], which is not empty.
@@ -86,26 +91,15 @@ impl Screen {
     /// # Errors
     /// What it can be.
     pub(crate) fn set(&mut self, column: usize, cell: &str) -> Result<(), String> {
-        if NUMBERS.contains(&column) {
-            let sound = |value: &f32| value.is_finite() && *value >= 0.0;
-            let value = Some(cell.parse().ok().filter(sound).ok_or("not a number from 0")?);
-            match column {
-                0 => self.viewport_width = value,
-                1 => self.viewport_height = value,
-                2 => self.pixel_ratio = value,
-                3 => self.surface_px = value,
-                6 => self.dropped = value,
-                _ => self.hidden_ms = value,
+        match COLUMNS[column] {
+            Column::Number(_, of) => {
+                let sound = |value: &f32| value.is_finite() && *value >= 0.0;
+                *of(self) = Some(cell.parse().ok().filter(sound).ok_or("not a number from 0")?);
             }
-            return Ok(());
-        }
-        let known = WORDS.iter().find(|(of, _)| *of == column).map_or(&[][..], |(_, words)| words);
-        let word = known.iter().copied().find(|word| *word == cell);
-        let value = Some(word.ok_or_else(|| format!("not one of {}", known.join(", ")))?);
-        match column {
-            4 => self.layout = value,
-            5 => self.input = value,
-            _ => self.shown_as = value,
+            Column::Word(_, known, of) => {
+                let word = known.iter().copied().find(|word| *word == cell);
+                *of(self) = Some(word.ok_or_else(|| format!("not one of {}", known.join(", ")))?);
+            }
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! Answers in the formats of other programs.
 
 use crate::choice::Choice;
+use crate::formats::long::joined;
 use crate::screen::SCREEN_COLUMNS;
 use crate::value::{Answer, Question, Responses};
 use isostudy_design::forms::Role;
@@ -65,6 +66,10 @@ pub const LONG_WRITTEN: [&str; 12] = [
     "role",
     "stimulus",
 ];
+
+/// [`LONG_WRITTEN`] and [`SCREEN_COLUMNS`].
+pub const LONG_WRITTEN_WITH_SCREENS: [&str; LONG_WRITTEN.len() + SCREEN_COLUMNS.len()] =
+    joined(&LONG_WRITTEN, &SCREEN_COLUMNS);
 
 /// The columns of [`LONG_WRITTEN`], `sides_unknown` where sides were not recorded, and those of [`SCREEN_COLUMNS`] where any answer says
 /// them: everything, with the sides as they were shown; controls and repeats are marked by their role. Cells that a spreadsheet would run as a formula are escaped; reading the

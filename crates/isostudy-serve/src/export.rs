@@ -103,29 +103,7 @@ pub fn csv<T: Serialize>(lines: &[T], header: &[&str]) -> String {
 }
 
 /// The columns of [`Line`].
-pub const HEADER: [&str; 21] = [
-    "participant",
-    "form",
-    "order",
-    "question",
-    "object",
-    "group",
-    "left",
-    "right",
-    "choice",
-    "rt_ms",
-    "role",
-    "stimulus",
-    "viewport_width",
-    "viewport_height",
-    "pixel_ratio",
-    "surface_px",
-    "layout",
-    "input",
-    "dropped",
-    "hidden_ms",
-    "shown_as",
-];
+pub const HEADER: [&str; 21] = isostudy_responses::LONG_WRITTEN_WITH_SCREENS;
 
 #[cfg(test)]
 mod tests {

@@ -66,17 +66,7 @@ pub struct Screen {
 }
 
 /// Columns of answers, in the order of [`Screen`].
-pub const COLUMNS: [&str; 9] = [
-    "viewport_width",
-    "viewport_height",
-    "pixel_ratio",
-    "surface_px",
-    "layout",
-    "input",
-    "dropped",
-    "hidden_ms",
-    "shown_as",
-];
+pub use isostudy_responses::SCREEN_COLUMNS as COLUMNS;
 
 /// Largest window that is believed.
 const LARGEST_PX: u32 = 100_000;

@@ -12,6 +12,7 @@ mod chunk_times;
 mod commands;
 mod error_colours;
 mod fields;
+mod help;
 mod input;
 mod machine;
 mod made;
@@ -34,7 +35,7 @@ mod trilinear_truth;
 mod video;
 
 use anyhow::Result;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use outcome::Outcome;
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
 use std::alloc::System;
@@ -50,9 +51,9 @@ const INPUT_ERROR: u8 = 2;
 /// Isosurface extraction methods in front of a clock, a ruler and people.
 #[derive(Debug, Parser)]
 #[command(name = "isostudy", version, arg_required_else_help = true, max_term_width = 100)]
-#[command(
-    after_help = "Exit codes: 0 done, 1 a check failed, 2 wrong usage or input, 3 a benchmark could not have told what it must."
-)]
+#[command(after_help = "\
+Exit codes: 0 done, 1 a check failed, 2 wrong usage or input, 3 a benchmark could
+not have told what it must.")]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -104,7 +105,8 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    match run(&Cli::parse().command) {
+    let asked = help::grouped(Cli::command()).get_matches();
+    match run(&Cli::from_arg_matches(&asked).unwrap_or_else(|error| error.exit()).command) {
         Ok(outcome) => outcome.exit_code(),
         Err(error) => {
             // The exit code tells where nothing can be written.
@@ -150,4 +152,38 @@ fn with_causes(error: &anyhow::Error) -> String {
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn help_names_every_command_once_with_an_example_that_parses() {
+        let command = Cli::command();
+        let mut named: Vec<&str> = help::examples().map(|(name, _)| name).collect();
+        let mut known: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
+        named.sort_unstable();
+        known.sort_unstable();
+        assert_eq!(named, known);
+        for (name, example) in help::examples() {
+            let words: Vec<&str> = example.split(' ').collect();
+            assert_eq!(words[..2], ["isostudy", name], "{example}");
+            let asked = help::grouped(Cli::command()).try_get_matches_from(words);
+            if let Err(error) = asked.and_then(|asked| Cli::from_arg_matches(&asked)) {
+                panic!("{example}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn help_fits_eighty_columns_and_every_command_shows_an_example() {
+        let mut grouped = help::grouped(Cli::command());
+        let help = grouped.render_help().to_string();
+        assert!(help.lines().all(|line| line.chars().count() <= 80), "{help}");
+        for own in grouped.get_subcommands_mut() {
+            let help = own.render_long_help().to_string();
+            assert!(help.contains("Example") && help.contains("  isostudy "), "{help}");
+        }
+    }
 }

@@ -19,7 +19,7 @@ use std::num::IntErrorKind;
 
 mod columns;
 
-pub(crate) use columns::{Columns, Rule};
+pub(crate) use columns::{Columns, Rule, joined};
 pub use columns::{LONG_COLUMNS, LONG_NEEDED};
 
 /// Whether a header has the columns that nothing else has.

@@ -56,7 +56,10 @@ const PROMISES: [Promise; 5] = [
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Print JSON instead
+    /// List those that are there for comparison alone, too
+    #[arg(long)]
+    all: bool,
+    /// Print JSON instead: every method, and whether it is there for comparison alone
     #[arg(long)]
     json: bool,
 }
@@ -72,7 +75,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             methods: presets().iter().map(Entry::of).collect(),
         })?
     } else {
-        text()
+        text(arguments.all)
     })?;
     Ok(Outcome::Done)
 }
@@ -91,6 +94,8 @@ struct Entry {
     recipe: Method,
     promises: BTreeMap<&'static str, bool>,
     source: &'static str,
+    /// There to be compared with, not to be chosen.
+    for_comparison: bool,
 }
 
 impl Entry {
@@ -102,19 +107,26 @@ impl Entry {
             recipe: preset.method,
             promises: PROMISES.iter().map(|of| (of.key, (of.is_made)(&made))).collect(),
             source: preset.source,
+            for_comparison: preset.is_for_comparison(),
         }
     }
 }
 
-fn text() -> String {
+fn text(all: bool) -> String {
     let mut lines = Vec::new();
-    for preset in presets() {
+    for preset in presets().iter().filter(|preset| all || !preset.is_for_comparison()) {
         let made = preset.method.promises();
         let words: Vec<&str> = PROMISES.iter().filter(|of| (of.is_made)(&made)).map(|of| of.word).collect();
         let words = if words.is_empty() { "nothing".to_owned() } else { words.join(", ") };
         lines.push(format!("{:<INDENT$}{}", preset.id, preset.label));
         lines.push(format!("{:<INDENT$}promises {words}", ""));
         lines.push(format!("{:<INDENT$}source   {}", "", preset.source));
+    }
+    let others: Vec<&str> =
+        presets().iter().filter(|preset| preset.is_for_comparison()).map(|preset| preset.id).collect();
+    if !all {
+        lines.push("\n`isostudy methods --all` lists those that are there for comparison alone:".into());
+        lines.extend(others.chunks(8).map(|ids| format!("  {}", ids.join(", "))));
     }
     lines.push(
         "\nPromises hold for every mesh, whatever the field. What is not promised may still hold for one."
@@ -133,9 +145,23 @@ mod tests {
 
     #[test]
     fn lines_fit_a_hundred_columns() {
-        for line in text().lines() {
+        for line in [text(false), text(true)].iter().flat_map(|text| text.lines()) {
             assert!(line.chars().count() <= 100, "{line}");
         }
         assert!(presets().iter().all(|preset| preset.id.len() < INDENT));
+    }
+
+    #[test]
+    fn every_method_is_listed_once_or_named_for_comparison() {
+        let (some, all) = (text(false), text(true));
+        for preset in presets() {
+            let entry = format!("{:<INDENT$}{}\n", preset.id, preset.label);
+            assert_eq!(all.matches(&entry).count(), 1, "{}", preset.id);
+            assert_eq!(some.contains(&entry), !preset.is_for_comparison(), "{}", preset.id);
+        }
+        // Those that README and the terrain study recommend.
+        for id in ["mc", "mc33", "bi", "bi-relaxed", "si", "nets", "dc-in-cell"] {
+            assert!(some.contains(&format!("\n{id} ")) || some.starts_with(&format!("{id} ")), "{id}");
+        }
     }
 }

@@ -9,8 +9,8 @@ use crate::screen::SCREEN_COLUMNS;
 use crate::sides::SidesSource;
 use crate::words::normalise;
 
-/// Columns that the long format may have; others are noted and not read.
-pub const LONG_COLUMNS: [&str; 23] = [
+/// Columns of an answer and of what was asked, in the order in which [`Columns::of`] takes them.
+const OF_ANSWERS: [&str; 14] = [
     "participant",
     "question",
     "left",
@@ -25,16 +25,29 @@ pub const LONG_COLUMNS: [&str; 23] = [
     "stimulus",
     "count",
     "sides_unknown",
-    "viewport_width",
-    "viewport_height",
-    "pixel_ratio",
-    "surface_px",
-    "layout",
-    "input",
-    "dropped",
-    "hidden_ms",
-    "shown_as",
 ];
+/// Columns that the long format may have; others are noted and not read.
+pub const LONG_COLUMNS: [&str; OF_ANSWERS.len() + SCREEN_COLUMNS.len()] =
+    joined(&OF_ANSWERS, &SCREEN_COLUMNS);
+
+/// Two lists of names as one.
+///
+/// # Panics
+/// If there are not as many.
+pub(crate) const fn joined<const N: usize>(
+    first: &[&'static str],
+    second: &[&'static str],
+) -> [&'static str; N] {
+    assert!(first.len() + second.len() == N, "as many as both have");
+    let mut names = [""; N];
+    let mut place = 0;
+    while place < N {
+        names[place] = if place < first.len() { first[place] } else { second[place - first.len()] };
+        place += 1;
+    }
+    names
+}
+
 /// How many of them, from the first on, a file needs that has neither a study nor a `count`.
 pub const LONG_NEEDED: usize = 5;
 
