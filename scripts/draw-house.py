@@ -85,7 +85,7 @@ def circles(arrows):
 def faults_of_crates(crates):
     arrows = {name: inside for name, (_, _, inside, _) in crates.items()}
     faults = ["crates in a circle: " + ", ".join(group) for group in circles(arrows)]
-    for name, (_, description, _, needed) in crates.items():
+    for name, (_, description, inside, needed) in crates.items():
         if not description:
             faults.append(f"{name} has no description in its Cargo.toml")
         for other in sorted(needed):
