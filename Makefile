@@ -13,11 +13,13 @@ study: bunny viewer-library ## regenerate every mesh, animation, table and figur
 	$(ISOSTUDY) study configs/paper.toml
 
 test: bunny viewer-library ## run every test; those in a browser need Node and chromium and say so where there is none
-	cargo test --release --locked --workspace
-	scripts/test-browser.sh
+	@failed=0; \
+	cargo test --release --locked --workspace --no-fail-fast || failed=1; \
+	scripts/test-browser.sh || failed=1; \
+	exit $$failed
 
 test-long: bunny ## run the tests that take minutes: 74,640 volumes against the manifold guarantee, and more
-	cargo test --release --locked --workspace -- --ignored
+	cargo test --release --locked --workspace --no-fail-fast -- --ignored
 
 quick: bunny viewer-library ## the same study made small, into results/quick/
 	$(ISOSTUDY) study configs/quick.toml
@@ -40,8 +42,9 @@ bench-sweep: bunny ## time resolutions from 16 to 256 cells per axis on 1 and 2 
 figures: bunny ## draw tables, figures and index.html again from the results that are there
 	$(ISOSTUDY) report configs/paper.toml
 
-check: ## formatting, lints, licences, and the English of README and docs
+check: ## formatting, lints, licences, the English of README and docs, and that nothing is built twice
 	scripts/check-words.py
+	scripts/check-one-build.py
 	cargo fmt --all --check
 	scripts/draw-house.py --check
 	cargo clippy --release --locked --workspace --all-targets -- -D warnings

@@ -1,13 +1,9 @@
 //! A study may compare any method on any object: everything at once, from a study file to a report whose tests are about methods; and
 //! what is said where something is wrong with it.
 
-mod command;
-mod fixture;
-mod http;
-mod server;
-
-use command::Folder;
-use server::{Server, TOKEN, answer, begin};
+use crate::command::Folder;
+use crate::http;
+use crate::server::{Server, TOKEN, answer, begin};
 use std::collections::BTreeSet;
 use std::fs;
 use std::ops::Deref;

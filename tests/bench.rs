@@ -1,10 +1,8 @@
 //! The benchmark as a user runs it: killed and gone on with, compared, imported. No test here judges a measured time.
 
-mod command;
-mod fixture;
-
-use command::Run;
-use fixture::Fixture;
+use crate::command;
+use crate::command::Run;
+use crate::fixture::Fixture;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;

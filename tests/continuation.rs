@@ -1,8 +1,6 @@
 //! `isostudy extract` and `validate` with continuation's seeds: where they may lie, what they reach, and what is said if they reach nothing.
 
-mod command;
-
-use command::{Folder, Run};
+use crate::command::{Folder, Run};
 
 const BALL: [&str; 7] = [
     "extract",

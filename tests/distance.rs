@@ -1,8 +1,6 @@
 //! `isostudy distance` as a user runs it.
 
-mod command;
-
-use command::{Folder, Run};
+use crate::command::{Folder, Run};
 use std::path::Path;
 
 /// Two triangles: a square from the origin to `(side, side)` at the height `z`.

@@ -1,8 +1,6 @@
 //! `isostudy extract` by dual contouring: what has edges keeps them, and what is rough gets no spikes.
 
-mod command;
-
-use command::Folder;
+use crate::command::Folder;
 use glam::{DMat3, DVec3, EulerRot};
 use isostudy_mesh::TriangleMesh;
 use isostudy_mesh::topology::topology;

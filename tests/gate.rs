@@ -1,8 +1,6 @@
 //! A gate on runs whose times are planted: what it says of each, and how it ends. Nothing is measured here.
 
-mod command;
-
-use command::{Folder, Run};
+use crate::command::{Folder, Run};
 use serde_json::{Value, json};
 
 const IDS: [&str; 3] = ["ss_bu", "ss_bi", "as_sp"];

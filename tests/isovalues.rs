@@ -1,8 +1,6 @@
 //! `isostudy extract --isovalues`: the files are those of one isovalue after another, and each line tells what was found.
 
-mod command;
-
-use command::Folder;
+use crate::command::Folder;
 
 /// Noise of whole numbers, with steps of unequal lengths.
 fn volume(folder: &Folder, name: &str, directions: &str) {

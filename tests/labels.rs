@@ -1,8 +1,6 @@
 //! `isostudy extract --labels`, as a user runs it: what is written in each format, what is said, what is refused.
 
-mod command;
-
-use command::Folder;
+use crate::command::Folder;
 use isostudy_mesh::MeshFormat;
 use serde_json::json;
 

@@ -1,14 +1,9 @@
 //! `isostudy methods`, `extract --method` and `--recipe`, and `isostudy new`, as a user runs them; and the keys of
 //! `docs/study-file.md` that crates other than `design` read.
 
-#[path = "../crates/isostudy-design/tests/page/mod.rs"]
-mod page;
-
-mod command;
-
-use command::Folder;
+use crate::command::Folder;
+use crate::study_page::{Row, Section, sections};
 use isostudy_extract::{Method, presets};
-use page::{Row, Section, sections};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::PathBuf;

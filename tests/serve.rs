@@ -1,22 +1,18 @@
 //! The questionnaire's server as participants, and those who mean ill, meet it.
 
-mod command;
-mod fixture;
-mod http;
-mod server;
-
-use command::{Run, isostudy};
-use fixture::Fixture;
-use http::{get, post, raw};
+use crate::command::{Run, isostudy};
+use crate::fixture;
+use crate::fixture::Fixture;
+use crate::http::{get, post, raw};
+use crate::server::{Server, TOKEN, answer, begin, command};
 use serde_json::{Value, json};
-use server::{Server, TOKEN, answer, begin, command};
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::path::Path;
 use std::process::Stdio;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU16, Ordering};
 use std::time::Duration;
 
 /// The quick study asked as in configs/balanced.toml, bundled.
@@ -26,8 +22,12 @@ fn bundled() -> Fixture {
     fixture
 }
 
+/// A port that stays free while no server has it: none twice, and below those that a system gives to whoever asks for any.
 fn free_port() -> u16 {
-    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+    static GIVEN: AtomicU16 = AtomicU16::new(0);
+    let first = 20_000 + (std::process::id() % 10_000) as u16;
+    let mut ports = std::iter::repeat_with(|| first + GIVEN.fetch_add(1, Ordering::Relaxed));
+    ports.find(|&port| TcpListener::bind(("127.0.0.1", port)).is_ok()).unwrap()
 }
 
 /// Every answer there is: participant and place to choice.

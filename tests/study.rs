@@ -1,15 +1,8 @@
 //! The whole chain as a user runs it: the `isostudy` command on a small study with real answers.
 
-mod answers;
-mod asking;
-mod command;
-mod data;
-mod fixture;
-mod football;
-mod page;
-
-use command::{Run, isostudy};
-use fixture::{Fixture, files, without_measured_times};
+use crate::command::{Run, isostudy};
+use crate::fixture::{Fixture, files, without_measured_times};
+use crate::page;
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Stdio;
 use std::time::Duration;

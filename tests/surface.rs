@@ -1,8 +1,6 @@
 //! `isostudy extract` without a study, as a user runs it: formulas, volumes, meshes; what is written and what is refused.
 
-mod command;
-
-use command::{Folder, Run};
+use crate::command::{Folder, Run};
 use isostudy_mesh::topology::topology;
 use isostudy_mesh::{MeshFormat, TriangleMesh};
 use std::path::Path;

@@ -1,8 +1,6 @@
 //! `isostudy table` as a user runs it.
 
-mod command;
-
-use command::{Folder, Run};
+use crate::command::{Folder, Run};
 use serde_json::Value as Json;
 
 fn groups(folder: &Folder, more: &[&str]) -> Json {

@@ -1,9 +1,7 @@
 //! The terrain study made small, from its file to its answer: fronts and choices are computed once more from the tables of times,
 //! counts and distances, and chunks must be the whole mesh.
 
-mod command;
-
-use command::Folder;
+use crate::command::Folder;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;

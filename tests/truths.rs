@@ -1,15 +1,12 @@
 //! Planted truths, through the command and the files that people use. Every number of the tables is proved by
 //! `isostudy analyse --self-test`; here it is proved that forms, page, server and files lead to the same tables.
 
-mod command;
-mod fixture;
-mod http;
-mod server;
-
-use command::Run;
-use fixture::Fixture;
+use crate::command;
+use crate::command::Run;
+use crate::fixture::Fixture;
+use crate::http;
+use crate::server::{Server, TOKEN, answer, begin};
 use serde_json::{Value, json};
-use server::{Server, TOKEN, answer, begin};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,6 @@
 //! `isostudy turntable` with a mesh, as a user runs it.
 
-mod command;
-
-use command::{Folder, Run};
+use crate::command::{Folder, Run};
 use isostudy_raster::Animation;
 
 /// An animation that was made with these arguments.

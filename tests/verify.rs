@@ -1,8 +1,6 @@
 //! `isostudy verify` as a user runs it.
 
-mod command;
-
-use command::{Folder, Run};
+use crate::command::{Folder, Run};
 
 /// A ring of eight samples above zero in 5 x 5 x 3, as text.
 fn write_ring(folder: &Folder) {

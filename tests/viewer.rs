@@ -1,10 +1,7 @@
 //! The viewer of meshes, from study file to page, with a library that only looks like three.js: nothing is fetched.
 
-mod command;
-mod fixture;
-
+use crate::fixture::{Fixture, files};
 use base64::Engine;
-use fixture::{Fixture, files};
 use std::fs;
 use std::io::Read;
 use std::path::PathBuf;

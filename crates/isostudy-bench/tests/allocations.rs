@@ -1,4 +1,6 @@
 //! Allocations that are planted are counted, in the stage that they are in.
+//!
+//! A binary of its own, with one test: the allocator counts for the whole process.
 
 use glam::Vec3;
 use isostudy_bench::{AllocationCounts, Asked, Prepared, count_allocations};

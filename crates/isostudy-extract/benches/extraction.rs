@@ -4,7 +4,7 @@
 //! `all_samples_stage_` are single stages of the two, as the extractor times them itself. Body-centred, integrated, `CELLS` cells along the
 //! axes of the box (the bunny: the spacing that this gives a box of side 2).
 
-#[path = "../tests/bunny/mod.rs"]
+#[path = "../tests/it/bunny.rs"]
 mod bunny;
 
 use std::sync::LazyLock;

@@ -1,7 +1,7 @@
 //! Best-of-many CPU times from field to mesh, one thread, with sampling only where the surface can be.
 //! Arguments: cells along an axis, repetitions, part of a case's name. The bunny is at the paper's lattice.
 
-#[path = "../tests/bunny/mod.rs"]
+#[path = "../tests/it/bunny.rs"]
 mod bunny;
 
 use bunny::{BOX, bunny};

@@ -3,7 +3,7 @@
 //!
 //! Times are of the processor, best of a few. `cargo run --release -p isostudy-extract --example placement`
 
-#[path = "../tests/bunny/mod.rs"]
+#[path = "../tests/it/bunny.rs"]
 mod bunny;
 
 use bunny::{BOX, bunny};

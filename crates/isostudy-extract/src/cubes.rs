@@ -1,52 +1,38 @@
 //! Marching cubes: the extractor for cubes that are not cut any further.
 //!
-//! Like [`crate::streaming`] it streams: a few layers in memory, samples only where the field does not rule the surface out, slabs of
+//! Like [`crate::tetrahedra::streamed`] it streams: a few layers in memory, samples only where the field does not rule the surface out, slabs of
 //! cells on several threads. A vertex is a crossing, numbered by the lower end of its lattice edge, then by axis; after them come
 //! the few vertices in the cell whose lowest corner that point is. Triangles go cell by cell. Which triangles a cell has is a
 //! [`patches::Patch`], made by rule from [`cells`] at first use.
 
 mod cells_pass;
-mod continuation;
+pub(crate) mod continuation;
 mod exact;
-mod grid;
+pub(crate) mod grid;
 mod moved;
-mod nets;
+pub(crate) mod patched;
 mod patches;
-mod records;
-mod rows;
+pub(crate) mod records;
+pub(crate) mod rows;
 mod rule;
-mod sampling;
-mod slab;
-mod snap;
+pub(crate) mod sampling;
+pub(crate) mod snap;
 mod tubes;
 mod tunnel;
-mod vertices;
-mod volume_cells;
+pub(crate) mod vertices;
 
 pub(crate) use continuation::Continued;
 pub use continuation::{ContinuedCells, Seeds, SeedsError};
 pub(crate) use moved::EdgeMoves;
-pub use nets::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
-pub(crate) use nets::{Nets, ROUND, Sharp, is_other_better};
 pub use rule::{Diagonals, Faces, Flat};
-pub use volume_cells::{VolumeCells, VolumeCellsError};
 
 use isostudy_cells::{Cell, Table};
 
-use std::collections::TryReserveError;
-use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-use self::grid::Grid;
+use self::grid::CubeGrid;
 use self::patches::Patches;
-use self::slab::{Job, Workspace, stream_slab};
-use self::vertices::Placer;
-use crate::clock::Moment;
-use crate::extraction::{ExtractError, Extraction};
-use crate::slabs::{Piece, assemble, on_slabs, threads_and_slabs};
+use crate::extraction::ExtractError;
+use crate::slabs::{Piece, Run, Streamed, in_slabs, out_of_memory};
 use crate::source::Request;
-use crate::streaming::Progress;
-use crate::trace::Trace;
 
 /// What decides the triangles of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -91,154 +77,42 @@ pub(crate) fn cells_otherwise(rule: Rule, [nx, ny, nz]: [usize; 3], values: &[f3
     count
 }
 
-/// What is made of the cubes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Way {
-    /// Patches of crossings.
-    Patches(Rule),
-    /// Patches of crossings that are moved.
-    Moved {
-        /// What decides the patches.
-        rule: Rule,
-        /// How they are moved.
-        moves: EdgeMoves,
-    },
-    /// Patches of crossings and of points that crossings were drawn to.
-    Snapped {
-        /// How near to a point a crossing must be, in lengths of its edge.
-        gamma: f32,
-        /// What faces between cells get.
-        flat: Flat,
-    },
-    /// The dual of patches: vertices in cells.
-    Nets(Nets),
-    /// Patches of crossings, in those cubes that are reached from seeds.
-    Continued(Continued),
-}
-
-/// An extractor's buffers, kept from one surface to the next.
+/// What every way keeps from one surface to the next.
 #[derive(Default)]
-pub(crate) struct CubeStreamer {
-    kept: Kept,
-    patches: Vec<Workspace>,
-    snapped: Vec<snap::Workspace>,
-    nets: Vec<nets::Workspace>,
-}
-
-/// What every way has.
-#[derive(Default)]
-struct Kept {
+pub(crate) struct Kept {
     /// The coordinates of the grid's points along each axis.
     at: [Vec<f32>; 3],
     pieces: Vec<Piece>,
 }
 
-impl CubeStreamer {
-    /// Extracts the cubes of a simple cubic lattice one way or the other.
-    pub(crate) fn extract(
+impl Kept {
+    /// The grid of a request whose workspaces hold so many `times` what a lattice's layers do.
+    pub(crate) fn grid<'a>(
         &mut self,
-        request: &Request,
-        way: Way,
-        progress: Option<&Progress>,
-        trace: Option<&mut Trace>,
-        extraction: &mut Extraction,
+        request: &Request<'a>,
+        times: u64,
+    ) -> Result<CubeGrid<'a>, ExtractError> {
+        let at = std::mem::take(&mut self.at);
+        CubeGrid::within(request.lattice, at).map_err(|_| out_of_memory(request, times))
+    }
+
+    /// Streams the layers of cubes; see [`in_slabs`].
+    pub(crate) fn stream<S: Streamed>(
+        &mut self,
+        of: &S,
+        times: u64,
+        workspaces: &mut Vec<S::Workspace>,
+        run: Run,
     ) -> Result<(), ExtractError> {
-        let Self { kept, patches, snapped, nets } = self;
-        match way {
-            Way::Patches(rule) => {
-                extract_patches((kept, patches), request, rule, 0.0, progress, trace, extraction)
-            }
-            Way::Moved { rule, moves } => {
-                extract_patches((kept, patches), request, rule, moves.pull, progress, trace, extraction)?;
-                moves.apply(request, extraction)
-            }
-            Way::Snapped { gamma, flat } => {
-                snap::extract((kept, snapped), request, gamma, flat, progress, trace, extraction)
-            }
-            Way::Nets(of) => nets::extract((kept, nets), request, of, progress, trace, extraction),
-            Way::Continued(continued) => {
-                let rule = Rule { faces: Faces::SeparateInside, diagonals: Diagonals::Fan };
-                continuation::extract(request, continued, rule, progress, extraction)
-            }
-        }
+        let Run { request, progress, trace, extraction } = run;
+        let run = Run { request, progress, trace, extraction: &mut *extraction };
+        in_slabs(of, request.lattice.cells()[2] as usize, times, workspaces, &mut self.pieces, run)?;
+        extraction.counts.tetrahedra = None;
+        Ok(())
     }
-}
 
-/// The stages in order, timed and counted. The lattice is simple cubic: its points are the corners of the cubes.
-fn extract_patches(
-    (kept, workspaces): (&mut Kept, &mut Vec<Workspace>),
-    request: &Request,
-    rule: Rule,
-    pull: f32,
-    progress: Option<&Progress>,
-    trace: Option<&mut Trace>,
-    extraction: &mut Extraction,
-) -> Result<(), ExtractError> {
-    let Request { source, settings, control, most_vertices, .. } = *request;
-    let patches = Patches::get(rule);
-    let placer = &Placer::new(request.lattice, settings, request.level()).pulled(pull);
-    let (isovalue, traced) = (settings.isovalue, trace.is_some());
-    let fit = |workspace: &mut Workspace, grid: &Grid| workspace.fit(grid, source);
-    let work = |grid: &Grid, layer_done: &LayerDone, own, workspace: &mut Workspace, piece: &mut Piece| {
-        let job =
-            Job { grid, source, isovalue, rule, patches, placer, most_vertices, traced, control, layer_done };
-        stream_slab(&job, own, workspace, piece)
-    };
-    let buffers = (kept, workspaces, Workspace::default);
-    in_slabs(buffers, request, progress, trace, extraction, 1, fit, work)
-}
-
-/// Told when a layer of cells is done.
-type LayerDone<'a> = dyn Fn() + Sync + 'a;
-
-/// Streams the slabs of a simple cubic lattice, and makes one mesh of them, timed and counted. `work` does the layers of cells it is
-/// given, with a workspace that `fit` made room in, and says when it has done one. Workspaces hold so many `times` what a lattice's
-/// layers do; the function among the buffers makes one without room.
-fn in_slabs<W: Send>(
-    (kept, workspaces, new): (&mut Kept, &mut Vec<W>, impl Fn() -> W),
-    request: &Request,
-    progress: Option<&Progress>,
-    mut trace: Option<&mut Trace>,
-    extraction: &mut Extraction,
-    times: u64,
-    fit: impl Fn(&mut W, &Grid) -> Result<(), TryReserveError>,
-    work: impl Fn(&Grid, &LayerDone, Range<usize>, &mut W, &mut Piece) -> Result<(), ExtractError> + Sync,
-) -> Result<(), ExtractError> {
-    let Request { lattice, control, start, .. } = *request;
-    let (threads, slabs) = threads_and_slabs(control.threads.count(), lattice.stored_grid()[2] as usize);
-    let out_of_memory =
-        |_| ExtractError::OutOfMemory { bytes: times * lattice.streaming_bytes(threads as u64) };
-    let Kept { at, pieces } = kept;
-    let grid = Grid::within(lattice, std::mem::take(at)).map_err(out_of_memory)?;
-    workspaces.resize_with(threads, new);
-    pieces.resize_with(slabs, Piece::default);
-    for workspace in &mut *workspaces {
-        fit(workspace, &grid).map_err(out_of_memory)?;
+    /// Keeps the room of a grid that is not needed any more.
+    pub(crate) fn keep(&mut self, grid: CubeGrid) {
+        self.at = grid.at;
     }
-    // The first piece is written where the whole mesh will be.
-    pieces[0].positions = std::mem::take(&mut extraction.mesh.positions);
-    pieces[0].surface.triangles = std::mem::take(&mut extraction.mesh.triangles);
-    pieces[0].surface.trace = trace.as_deref_mut().map(std::mem::take);
-    let allocation = start.elapsed();
-
-    let streaming = Moment::now();
-    let cells = lattice.cells()[2] as usize;
-    let done = AtomicUsize::new(0);
-    let layer_done = || {
-        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
-        if let Some(progress) = progress {
-            progress(done, cells);
-        }
-        if let Some(progress) = control.progress {
-            progress(done, cells);
-        }
-    };
-    on_slabs(cells, control.threads, workspaces, pieces, |own, workspace, piece| {
-        work(&grid, &layer_done, own, workspace, piece)
-    })?;
-    *at = grid.at;
-    let times = [allocation, streaming.elapsed()];
-    assemble(request, pieces, threads, times, trace, extraction)?;
-    extraction.counts.tetrahedra = None;
-    Ok(())
 }

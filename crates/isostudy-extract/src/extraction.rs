@@ -9,7 +9,7 @@ use isostudy_mesh::TriangleMesh;
 
 use crate::lattice::{Arrangement, CellBox, Lattice};
 use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topology};
-use crate::triangles::Triangulation;
+use crate::surface::triangulation::Triangulation;
 
 /// A surface, what it took and what was seen on the way.
 #[derive(Debug, Clone, Default)]

@@ -1,20 +1,26 @@
 //! The extractor: which of the ways a surface is extracted in, and the buffers that stay.
 
+#[cfg(test)]
+mod tests;
+mod ways;
+
 use isostudy_field::{FieldCache, Plain, StudyField, Watched};
 
-use crate::by_cell::CellStreamer;
 use crate::clock::Moment;
-use crate::control::Control;
-use crate::cubes;
-use crate::dense;
+use crate::execution::control::Control;
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::lattice::Lattice;
 use crate::placement;
 use crate::settings::{Execution, ExtractSettings, Positions};
-use crate::slabs::threads_and_slabs;
+use crate::slabs::Progress;
+use crate::slabs::{Run, threads_and_slabs};
 use crate::source::{Request, Sampler, Source};
-use crate::streaming::{Progress, Streamer};
-use crate::trace::Trace;
+use crate::surface::trace::Trace;
+use crate::tetrahedra::by_cell::CellStreamer;
+use crate::tetrahedra::dense;
+use crate::tetrahedra::streamed::Streamer;
+use ways::CubeStreamer;
+pub(crate) use ways::Way;
 
 /// An extractor that keeps its buffers, for one surface after another.
 ///
@@ -44,7 +50,7 @@ use crate::trace::Trace;
 pub struct Extractor {
     streamer: Streamer,
     cell_streamer: CellStreamer,
-    cube_streamer: cubes::CubeStreamer,
+    cube_streamer: CubeStreamer,
     kept: FieldCache,
     progress: Option<Box<Progress>>,
     /// Where the last mesh came from, if `traced`.
@@ -120,7 +126,7 @@ impl Extractor {
         source: Source,
         lattice: &Lattice,
         settings: &ExtractSettings,
-        way: cubes::Way,
+        way: Way,
         control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
@@ -136,7 +142,7 @@ impl Extractor {
         source: Source,
         lattice: &Lattice,
         settings: &ExtractSettings,
-        cubes: Option<cubes::Way>,
+        cubes: Option<Way>,
         control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
@@ -188,7 +194,7 @@ impl Extractor {
         field: &dyn StudyField,
         lattice: &Lattice,
         settings: &ExtractSettings,
-        cubes: Option<cubes::Way>,
+        cubes: Option<Way>,
         control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
@@ -209,19 +215,20 @@ impl Extractor {
         (source, start): (Sampler, Moment),
         lattice: &Lattice,
         settings: &ExtractSettings,
-        cubes: Option<cubes::Way>,
+        cubes: Option<Way>,
         control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
         let most_vertices = self.most_vertices.0;
         let request = Request { source, lattice, settings, control, most_vertices, start };
         let trace = self.traced.then_some(&mut self.trace);
+        let run = Run { request: &request, progress: self.progress.as_deref(), trace, extraction };
         if let Some(way) = cubes {
-            self.cube_streamer.extract(&request, way, self.progress.as_deref(), trace, extraction)
+            self.cube_streamer.extract(way, run)
         } else if lattice.arrangement().uniform().is_some() {
-            self.streamer.extract(&request, self.progress.as_deref(), trace, extraction)
+            self.streamer.extract(run)
         } else {
-            self.cell_streamer.extract(&request, self.progress.as_deref(), trace, extraction)
+            self.cell_streamer.extract(run)
         }
     }
 }

@@ -1,14 +1,19 @@
 //! Sampling lattices: which points are sampled and which edges and tetrahedra join them.
 
+mod box_grid;
 mod cell_box;
 mod coordinates;
 mod counts;
 mod directions;
+pub(crate) mod endless;
 mod layout;
+pub(crate) mod tetrahedra;
 
+pub use box_grid::BoxGrid;
 pub use cell_box::CellBox;
 pub(crate) use coordinates::{Border, Coordinates};
 pub(crate) use directions::{ALL_DIRECTIONS, DIRECTIONS, DirectionSet, Directions, Offset, members};
+pub use endless::{Grid, GridError};
 pub(crate) use layout::{Layout, PADDING_LAYERS, PointKind};
 
 use std::error::Error;
@@ -17,7 +22,6 @@ use std::fmt;
 use glam::Vec3;
 use isostudy_mesh::Bounds;
 
-use crate::grid::Grid;
 use crate::settings::Clustering;
 
 /// How sample points fill space, and which tetrahedra they make.

@@ -12,6 +12,7 @@
 //! they are the neighbour's own to the bit, and so are their normals.
 
 mod duals;
+mod error;
 mod extractor;
 mod layer;
 mod neighbours;
@@ -19,5 +20,6 @@ mod patterns;
 mod shift;
 mod transitions;
 
-pub use extractor::{LevelError, LevelExtractor, LevelSettings};
+pub use error::LevelError;
+pub use extractor::{LevelExtractor, LevelSettings};
 pub use neighbours::Neighbours;

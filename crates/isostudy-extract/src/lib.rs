@@ -110,7 +110,7 @@
 //!
 //! - With [`Faces::Trilinear`] the mesh has the components, tunnels and boundary loops of the trilinear interpolant of the samples,
 //!   at a level above the isovalue by less than any number: samples, saddles of faces and saddles of cells that equal it are
-//!   outside. The crate `trilinear` counts the same without a mesh; 100,000 random grids agree (`tests/cubes_trilinear.rs`).
+//!   outside. The crate `trilinear` counts the same without a mesh; 100,000 random grids agree (`tests/it/cubes_trilinear.rs`).
 //! - A vertex is a crossing, but for a few in cells whose polygons have all diagonals in faces, or whose tube has a rung there.
 //!   Vertices stand in storage order of the lower ends of their edges, then of the axes.
 //! - [`SnapCubes`] draws crossings to nearby samples, so that angles are bounded; its mesh is closed off the box, and a manifold only
@@ -118,7 +118,7 @@
 //!   field to do so. It makes no chunks.
 //! - [`VolumeCells`] takes a volume's own cells, turned, mirrored, sheared and of unequal steps as they may be. At
 //!   `isovalue.next_down()` vertices and triangles are as many as VTK's Flying Edges makes at `isovalue`, which has equal samples
-//!   inside (`tests/cubes_vtk.rs`).
+//!   inside (`tests/it/cubes_vtk.rs`).
 //!
 //! # Odd input
 //!
@@ -172,94 +172,60 @@
 #[cfg(test)]
 extern crate self as isostudy_extract;
 #[cfg(test)]
-#[path = "../tests/bunny/mod.rs"]
+#[path = "../tests/it/bunny.rs"]
 mod bunny;
 #[cfg(test)]
-#[path = "../tests/fields/mod.rs"]
+#[path = "../tests/it/fields.rs"]
 mod fields;
 #[cfg(test)]
-#[path = "../tests/survey/mod.rs"]
+#[path = "../tests/it/survey.rs"]
 mod survey;
 
 /// The extractor in a game: from a field to terrain that is dug, and what each call costs.
 #[doc = include_str!("../../../docs/engine.md")]
 pub mod engine {}
 
-mod accuracy;
 pub mod active;
-mod bits;
-mod box_grid;
-mod bracket;
-mod by_cell;
 mod chunks;
 mod clock;
-mod clusters;
-mod collapse;
-mod control;
+mod clustering;
 mod cubes;
-mod dense;
-mod distances;
-mod edges;
+mod duals;
+mod execution;
 mod extraction;
 mod extractor;
-mod finish;
-mod grid;
-mod guard;
-mod in_sight;
-mod isosurface;
 mod lattice;
-mod level;
 mod levels;
-#[cfg(test)]
-mod limits;
-mod line;
+mod measure;
 mod memory;
 mod method;
-mod normal_errors;
-mod normals;
 mod placement;
 mod sampling;
 mod settings;
-mod sharp_edges;
-mod sides;
 mod slabs;
 mod source;
-mod spot;
-mod streaming;
+mod surface;
 mod tetrahedra;
-mod tiles;
-mod trace;
-mod triangle_distances;
-mod triangles;
-mod vertices;
-mod warp;
 
-pub use accuracy::{Accuracy, accuracy};
-pub use box_grid::BoxGrid;
 pub use chunks::{
     Chunk, ChunkError, ChunkExtractor, ChunkSettings, Mismatch, Normals, SampleLayout, TooManyVertices,
     WeldError, World, weld_chunks,
 };
 #[cfg(feature = "stage-clock")]
 pub use clock::set_stage_clock;
-pub use control::{Control, Jobs, Threads};
-pub use cubes::{
-    ContinuedCells, Diagonals, Faces, Flat, LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume,
-    Seeds, SeedsError, VolumeCells, VolumeCellsError,
-};
-pub use distances::{DistanceError, distances};
+pub use cubes::{ContinuedCells, Diagonals, Faces, Flat, Seeds, SeedsError};
+pub use duals::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
+pub use execution::{Control, Jobs, Threads};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, TetrahedraCounts};
 pub use extractor::{Extractor, extract};
-pub use grid::{Grid, GridError};
 pub use isostudy_field::{Aabb, Bound, FieldFault, FromFn, ScalarField, StudyField, check_field, from_fn};
-pub use lattice::{Arrangement, CellBox, Lattice, LatticeError};
+pub use lattice::{Arrangement, BoxGrid, CellBox, Grid, GridError, Lattice, LatticeError};
 pub use levels::{LevelError, LevelExtractor, LevelSettings, Neighbours};
+pub use measure::{Accuracy, DistanceError, accuracy, distances, normal_errors_deg, triangle_distances};
 pub use method::{
     Continuation, CornerSamples, Cubes, DualContouring, Macet, Method, MethodError, Preset, Promises,
-    SnapCubes, SurfaceNets, Tetrahedra, presets,
+    SnapCubes, SurfaceNets, Tetrahedra, VolumeCells, VolumeCellsError, presets,
 };
-pub use normal_errors::normal_errors_deg;
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use source::Source;
-pub use trace::VertexKey;
-pub use triangle_distances::triangle_distances;
+pub use surface::trace::VertexKey;

@@ -9,6 +9,7 @@ mod presets;
 mod snap_cubes;
 mod surface_nets;
 mod tetrahedra;
+mod volume_cells;
 
 pub use continuation::Continuation;
 pub use cubes::Cubes;
@@ -16,17 +17,17 @@ pub use dual_contouring::DualContouring;
 pub use macet::Macet;
 pub use presets::{Preset, presets};
 pub use snap_cubes::SnapCubes;
-pub(crate) use surface_nets::MOST_SMOOTHING;
 pub use surface_nets::SurfaceNets;
 pub use tetrahedra::Tetrahedra;
+pub use volume_cells::{VolumeCells, VolumeCellsError};
 
 use std::error::Error;
 use std::fmt;
 
-use crate::box_grid::BoxGrid;
-use crate::cubes::Way;
 use crate::extraction::{ExtractError, Extraction};
 use crate::extractor::Extractor;
+use crate::extractor::Way;
+use crate::lattice::BoxGrid;
 use crate::lattice::{Arrangement, Border, CellBox, LatticeError};
 use crate::settings::{Execution, ExtractSettings};
 use crate::source::Source;

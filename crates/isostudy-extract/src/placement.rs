@@ -7,13 +7,16 @@ mod crossings;
 mod curvature;
 mod moves;
 mod relaxation;
+pub(crate) mod spot;
 mod surroundings;
+mod targets;
 
 pub(crate) use self::crossings::{CrossingPlacer, clamped, crossing_ratio};
 pub(crate) use self::moves::{MOST_PASSES, Moves, on_box};
 pub(crate) use self::relaxation::{Around, relax};
 pub(crate) use self::surroundings::Surroundings;
-use crate::ExtractError;
+pub(crate) use self::targets::{FieldTargets, move_vertices};
+use crate::extraction::ExtractError;
 use crate::settings::ExtractSettings;
 
 /// # Errors

@@ -1,70 +1,71 @@
-//! Slabs of layers: how many there are, which thread does which, and one mesh of what they give.
+//! The driver that all streaming extractors share: a few layers in memory, slabs of layers on several threads, one mesh of them.
+//!
+//! Memory grows with a layer and with the mesh, not with the volume. Slabs are independent up to a few layers on either side, and
+//! vertices are numbered by sums over slabs, so any number of threads gives the same bytes. What is done with a layer is an
+//! extractor's own: a [`Streamed`], whose slabs go through its [`Pass`]es.
 
+mod assembling;
+pub(crate) mod finish;
+mod passes;
+mod piece;
+
+pub(crate) use passes::{Pass, Stage, stream};
+pub(crate) use piece::{Piece, Vertices};
+
+use std::collections::TryReserveError;
 use std::ops::Range;
 use std::sync::Mutex;
-use std::time::Duration;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
-use glam::Vec3;
-use isostudy_mesh::TriangleMesh;
-
+use self::assembling::assemble;
 use crate::clock::Moment;
-use crate::control::Threads;
-use crate::extraction::{Counts, ExtractError, Extraction, StageTimes};
-use crate::finish::finish;
-use crate::memory::{refill, with_room};
+use crate::execution::control::Threads;
+use crate::execution::threads::on_each;
+use crate::extraction::{ExtractError, Extraction};
 use crate::source::Request;
-use crate::trace::Trace;
-use crate::triangles::Triangulation;
+use crate::surface::trace::Trace;
 
 /// Slabs a thread, so that an uneven surface still keeps all threads busy.
 const SLABS_PER_THREAD: usize = 2;
 /// A slab has at least this many layers: the halo on either side costs up to four more.
 const LEAST_LAYERS: usize = 16;
 
-/// The surface in a slab.
-///
-/// Vertices are numbered from the lowest layer that the slab's triangles can touch, so that the numbers of the whole
-/// surface are these plus a constant, in the layers above and below the slab too.
-#[derive(Debug, Default)]
-pub(crate) struct Piece {
-    /// Of the slab's own layers.
-    pub(crate) positions: Vec<Vec3>,
-    /// Where the placer wants them.
-    pub(crate) targets: Vec<Vec3>,
-    pub(crate) surface: Triangulation,
-    /// Vertices numbered in the layers below the slab.
-    pub(crate) below: u64,
-    pub(crate) crossing_ends: u64,
-    /// Triangles that may touch a vertex below the slab, all before this one.
-    pub(crate) head: usize,
-    /// Triangles that may touch a vertex above the slab, all from this one on.
-    pub(crate) tail: usize,
-    pub(crate) times: SlabTimes,
+/// Told how many layers of how many are done.
+pub(crate) type Progress = dyn Fn(usize, usize) + Send + Sync;
+
+/// Told when a layer is done.
+pub(crate) type LayerDone<'a> = dyn Fn() + Sync + 'a;
+
+/// What is asked for, who is told, and where it goes.
+pub(crate) struct Run<'a> {
+    pub(crate) request: &'a Request<'a>,
+    pub(crate) progress: Option<&'a Progress>,
+    /// Where the mesh comes from, before edges are collapsed; where that is asked for.
+    pub(crate) trace: Option<&'a mut Trace>,
+    pub(crate) extraction: &'a mut Extraction,
 }
 
-/// Time spent in the passes.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct SlabTimes {
-    pub(crate) sampling: Duration,
-    pub(crate) vertex: Duration,
-    pub(crate) geometry: Duration,
-}
+/// What all slabs of an extraction share.
+pub(crate) trait Streamed: Sync {
+    /// Buffers of one thread, a few layers each, kept between slabs and between extractions.
+    type Workspace: Send;
 
-impl Piece {
-    /// Empty, to be traced or not.
-    pub(crate) fn clear(&mut self, traced: bool) {
-        self.positions.clear();
-        self.targets.clear();
-        self.surface.triangles.clear();
-        let triangles = std::mem::take(&mut self.surface.triangles);
-        let mut trace = traced.then(|| self.surface.trace.take().unwrap_or_default());
-        if let Some(trace) = &mut trace {
-            trace.clear();
-        }
-        self.surface = Triangulation { triangles, trace, ..Triangulation::default() };
-        (self.below, self.crossing_ends, self.head, self.tail) = (0, 0, 0, 0);
-        self.times = SlabTimes::default();
-    }
+    /// A workspace without room.
+    fn workspace(&self) -> Self::Workspace;
+
+    /// Makes room; keeps what is large enough.
+    fn fit(&self, workspace: &mut Self::Workspace) -> Result<(), TryReserveError>;
+
+    /// Extracts the layers `own`: their triangles, and the vertices of their points but for those of the highest layer, which
+    /// may be the next slab's. Vertices are numbered from the slab's first on, so that the numbers of the whole surface are these
+    /// plus a constant. The piece is empty.
+    fn slab(
+        &self,
+        own: Range<usize>,
+        layer_done: &LayerDone,
+        workspace: &mut Self::Workspace,
+        piece: &mut Piece,
+    ) -> Result<(), ExtractError>;
 }
 
 /// How many threads there is work for, and how many slabs they share.
@@ -74,11 +75,66 @@ pub(crate) fn threads_and_slabs(threads: usize, layers: usize) -> (usize, usize)
     (threads.min(slabs), slabs)
 }
 
+/// That workspaces have no room which hold so many `times` what a lattice's layers do.
+pub(crate) fn out_of_memory(request: &Request, times: u64) -> ExtractError {
+    let layers = request.lattice.stored_grid()[2] as usize;
+    let threads = threads_and_slabs(request.control.threads.count(), layers).0;
+    ExtractError::OutOfMemory { bytes: times * request.lattice.streaming_bytes(threads as u64) }
+}
+
+/// Streams slabs of `layers`, and makes one mesh of them, timed and counted. Workspaces hold so many `times` what a lattice's
+/// layers do.
+///
+/// # Errors
+/// [`ExtractError::OutOfMemory`], [`ExtractError::NoMemoryForMesh`], [`ExtractError::Threads`], [`ExtractError::TooManyVertices`],
+/// [`ExtractError::Cancelled`].
+pub(crate) fn in_slabs<S: Streamed>(
+    of: &S,
+    layers: usize,
+    times: u64,
+    workspaces: &mut Vec<S::Workspace>,
+    pieces: &mut Vec<Piece>,
+    run: Run,
+) -> Result<(), ExtractError> {
+    let Run { request, progress, mut trace, extraction } = run;
+    let Request { lattice, control, start, .. } = *request;
+    let (threads, slabs) = threads_and_slabs(control.threads.count(), lattice.stored_grid()[2] as usize);
+    workspaces.resize_with(threads, || of.workspace());
+    pieces.resize_with(slabs, Piece::default);
+    for workspace in &mut *workspaces {
+        of.fit(workspace).map_err(|_| out_of_memory(request, times))?;
+    }
+    // The first piece is written where the whole mesh will be.
+    pieces[0].positions = std::mem::take(&mut extraction.mesh.positions);
+    pieces[0].surface.triangles = std::mem::take(&mut extraction.mesh.triangles);
+    pieces[0].surface.trace = trace.as_deref_mut().map(std::mem::take);
+    let allocation = start.elapsed();
+
+    let streaming = Moment::now();
+    let done = AtomicUsize::new(0);
+    let layer_done = || {
+        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+        if let Some(progress) = progress {
+            progress(done, layers);
+        }
+        if let Some(progress) = control.progress {
+            progress(done, layers);
+        }
+    };
+    let traced = trace.is_some();
+    on_slabs(layers, control.threads, workspaces, pieces, |own, workspace, piece| {
+        piece.clear(traced);
+        of.slab(own, &layer_done, workspace, piece)
+    })?;
+    let times = [allocation, streaming.elapsed()];
+    assemble(request, pieces, threads, times, trace, extraction)
+}
+
 /// Has every slab of `layers` done, each by the thread that comes first. Which one that is does not show.
 ///
 /// # Errors
 /// [`ExtractError::Threads`], and the first error of `work`.
-pub(crate) fn on_slabs<W: Send>(
+fn on_slabs<W: Send>(
     layers: usize,
     on: Threads,
     workspaces: &mut [W],
@@ -99,213 +155,4 @@ pub(crate) fn on_slabs<W: Send>(
         }
     };
     on_each(on, workspaces, |_, workspace| work(workspace))
-}
-
-/// Does `work` with each item, on as many threads, which are started for it, or as jobs. Each thread takes the next item that is left.
-///
-/// # Errors
-/// [`ExtractError::Threads`], and an error of `work`; items that nobody had begun are left out then.
-pub(crate) fn on_each<T: Send>(
-    on: Threads,
-    items: &mut [T],
-    work: impl Fn(usize, &mut T) -> Result<(), ExtractError> + Sync,
-) -> Result<(), ExtractError> {
-    let threads = items.len();
-    let left = Mutex::new(items.iter_mut().enumerate());
-    run(on, threads, &|| {
-        let next = left.lock().expect("no thread panics with it").next();
-        next.map(|(i, item)| work(i, item))
-    })
-}
-
-/// Calls `next` on all threads until nothing is left. It is not generic: what starts threads is long, and compiled once.
-fn run(
-    on: Threads,
-    threads: usize,
-    next: &(dyn Fn() -> Option<Result<(), ExtractError>> + Sync),
-) -> Result<(), ExtractError> {
-    let all = || -> Result<(), ExtractError> { std::iter::from_fn(next).collect() };
-    if let Threads::Jobs(jobs) = on {
-        let result = Mutex::new(Ok(()));
-        jobs.run(&|_| {
-            if let Err(error) = all() {
-                *result.lock().expect("no job panics with it") = Err(error);
-            }
-        });
-        return result.into_inner().expect("no job panics with it");
-    }
-    std::thread::scope(|scope| {
-        // The calling thread is one of them.
-        let handles = (1..threads)
-            .map(|_| {
-                std::thread::Builder::new()
-                    .spawn_scoped(scope, all)
-                    .map_err(|error| ExtractError::Threads { threads, reason: error.to_string() })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        all()?;
-        handles
-            .into_iter()
-            .try_for_each(|handle| handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-    })
-}
-
-/// Makes the mesh of the whole out of its pieces, and finishes it as the settings say. `allocating` and `streaming` are what
-/// came before.
-///
-/// The buffers of the first piece become those of the mesh; its trace is exchanged for `trace`.
-///
-/// # Errors
-/// [`ExtractError::TooManyVertices`], [`ExtractError::NoMemoryForMesh`], [`ExtractError::Threads`].
-pub(crate) fn assemble(
-    request: &Request,
-    pieces: &mut [Piece],
-    threads: usize,
-    [allocating, streaming]: [Duration; 2],
-    trace: Option<&mut Trace>,
-    extraction: &mut Extraction,
-) -> Result<(), ExtractError> {
-    let mut times = shares(pieces, streaming);
-    times.allocation = allocating;
-
-    let joining = Moment::now();
-    let seams = join(pieces, request.most_vertices, request.control.threads)?;
-    let crossing_ends: u64 = pieces.iter().map(|piece| piece.crossing_ends).sum();
-    let first = pieces.first_mut().expect("there is a slab");
-    let surface = &mut first.surface;
-    if let (Some(trace), Some(found)) = (trace, &mut surface.trace) {
-        std::mem::swap(trace, found);
-    }
-    let mesh = &mut extraction.mesh;
-    mesh.positions = std::mem::take(&mut first.positions);
-    let targets = std::mem::take(&mut first.targets);
-    let Request { lattice, settings, control, .. } = *request;
-    let collapsing =
-        finish(request.level(), lattice, settings, control.threads, &targets, &mut mesh.positions, surface)?;
-    mesh.triangles = std::mem::take(&mut surface.triangles);
-    times.clustering = collapsing.unwrap_or_default();
-    times.geometry += joining.elapsed() - times.clustering;
-
-    let making_normals = Moment::now();
-    let seams = if collapsing.is_some() { None } else { Some(&*seams) };
-    make_normals(mesh, seams, control.threads, threads)?;
-    times.normals = making_normals.elapsed();
-
-    extraction.times = times;
-    // Each crossing was seen from both ends.
-    extraction.counts = Counts::of(lattice, mesh, surface, crossing_ends / 2);
-    Ok(())
-}
-
-/// Wall-clock time, divided as the threads spent theirs.
-fn shares(pieces: &[Piece], elapsed: Duration) -> StageTimes {
-    let sum = |of: fn(&SlabTimes) -> Duration| pieces.iter().map(|piece| of(&piece.times)).sum::<Duration>();
-    let [sampling, vertex, geometry] = [sum(|t| t.sampling), sum(|t| t.vertex), sum(|t| t.geometry)];
-    let all = (sampling + vertex + geometry).as_secs_f64().max(f64::MIN_POSITIVE);
-    let share = |part: Duration| elapsed.mul_f64((part.as_secs_f64() / all).min(1.0));
-    let (sampling, vertex) = (share(sampling), share(vertex));
-    // The rest, so that nothing is lost to rounding.
-    let geometry = elapsed.saturating_sub(sampling + vertex);
-    StageTimes { sampling, vertex, geometry, ..StageTimes::default() }
-}
-
-/// A slab's part of the whole mesh.
-#[derive(Debug, Clone, Copy)]
-struct Seam {
-    /// Vertices before the slab's own.
-    vertices: usize,
-    /// Triangles before `head` may touch vertices of the slab below; those from `tail` on, of the slab above.
-    head: usize,
-    tail: usize,
-}
-
-/// Appends all pieces to the first one, with vertex numbers of the whole.
-fn join(pieces: &mut [Piece], most_vertices: u32, on: Threads) -> Result<Vec<Seam>, ExtractError> {
-    let (first, rest) = pieces.split_first_mut().expect("there is a slab");
-    let mut seams = Vec::new();
-    if rest.is_empty() {
-        return Ok(seams);
-    }
-    let total: usize = first.positions.len() + rest.iter().map(|piece| piece.positions.len()).sum::<usize>();
-    if total as u64 > u64::from(most_vertices) {
-        return Err(ExtractError::TooManyVertices { limit: most_vertices });
-    }
-    let triangles: usize = rest.iter().map(|piece| piece.surface.triangles.len()).sum();
-    first.positions.try_reserve(total - first.positions.len()).map_err(|_| ExtractError::NoMemoryForMesh)?;
-    first.surface.triangles.try_reserve(triangles).map_err(|_| ExtractError::NoMemoryForMesh)?;
-    let targets: usize = rest.iter().map(|piece| piece.targets.len()).sum();
-    first.targets.try_reserve(targets).map_err(|_| ExtractError::NoMemoryForMesh)?;
-    seams.push(Seam { vertices: 0, head: first.head, tail: first.tail });
-    let (mut vertices, mut base) = (first.positions.len(), first.surface.triangles.len());
-    for piece in &mut *rest {
-        seams.push(Seam { vertices, head: base + piece.head, tail: base + piece.tail });
-        vertices += piece.positions.len();
-        base += piece.surface.triangles.len();
-        first.targets.append(&mut piece.targets);
-        if let (Some(whole), Some(trace)) = (&mut first.surface.trace, &mut piece.surface.trace) {
-            whole.keys.append(&mut trace.keys);
-            whole.cells.append(&mut trace.cells);
-        }
-        first.surface.cells_visited += piece.surface.cells_visited;
-        first.surface.tetrahedra_evaluated += piece.surface.tetrahedra_evaluated;
-        first.surface.discarded += piece.surface.discarded;
-        first.surface.discarded_as_published += piece.surface.discarded_as_published;
-    }
-    // One thread each: much of it is waiting for new pages.
-    let mut parts = [Part::Triangles(&mut first.surface.triangles), Part::Positions(&mut first.positions)];
-    let (rest, after_first) = (&*rest, &seams[1..]);
-    on_each(on, &mut parts, |_, part| {
-        match part {
-            Part::Positions(whole) => rest.iter().for_each(|piece| whole.extend_from_slice(&piece.positions)),
-            Part::Triangles(whole) => {
-                for (piece, seam) in rest.iter().zip(after_first) {
-                    let shift = (seam.vertices as u32).wrapping_sub(piece.below as u32);
-                    let global = |triangle: &[u32; 3]| triangle.map(|vertex| vertex.wrapping_add(shift));
-                    whole.extend(piece.surface.triangles.iter().map(global));
-                }
-            }
-        }
-        Ok(())
-    })?;
-    Ok(seams)
-}
-
-/// What of a mesh is appended to.
-enum Part<'a> {
-    Positions(&'a mut Vec<Vec3>),
-    Triangles(&'a mut Vec<[u32; 3]>),
-}
-
-/// Area-weighted mean normals, as [`vertex_normals`](crate::normals::vertex_normals), to the bit: each vertex adds up
-/// its triangles in their order. With seams, each thread does the vertices of a run of slabs.
-fn make_normals(
-    mesh: &mut TriangleMesh,
-    seams: Option<&[Seam]>,
-    on: Threads,
-    threads: usize,
-) -> Result<(), ExtractError> {
-    let TriangleMesh { positions, normals, triangles } = mesh;
-    normals.clear();
-    refill(normals, positions.len(), Vec3::ZERO).map_err(|_| ExtractError::NoMemoryForMesh)?;
-    let seams = seams.filter(|seams| threads > 1 && seams.len() > 1);
-    let Some(seams) = seams else {
-        crate::normals::accumulate(positions, triangles, normals);
-        return Ok(());
-    };
-    let mut rest: &mut [Vec3] = normals;
-    let mut runs = with_room(threads).map_err(|_| ExtractError::NoMemoryForMesh)?;
-    for thread in 0..threads {
-        let [first, end] = [thread, thread + 1].map(|t| t * seams.len() / threads);
-        let low = seams[first].vertices;
-        let high = seams.get(end).map_or(positions.len(), |seam| seam.vertices);
-        let from = if first == 0 { 0 } else { seams[first - 1].tail };
-        let to = seams.get(end).map_or(triangles.len(), |seam| seam.head);
-        let (mine, others) = rest.split_at_mut(high - low);
-        rest = others;
-        runs.push((low, &triangles[from..to], mine));
-    }
-    on_each(on, &mut runs, |_, (low, triangles, mine)| {
-        crate::normals::accumulate_some(positions, triangles, *low as u32, mine);
-        Ok(())
-    })
 }

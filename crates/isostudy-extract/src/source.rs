@@ -4,9 +4,9 @@ use isostudy_field::{ScalarField, StudyField};
 
 use crate::active::Bricks;
 use crate::clock::Moment;
-use crate::control::Control;
+use crate::execution::control::Control;
 use crate::lattice::{CellBox, Lattice};
-use crate::level::Level;
+use crate::sampling::level::Level;
 use crate::settings::ExtractSettings;
 
 /// What to extract from.

@@ -1,4 +1,6 @@
 //! Where memory runs out there is an error, and the extractor goes on.
+//!
+//! A binary of its own, with one test: the allocator has one limit for the whole process.
 
 use cap::Cap;
 use glam::Vec3;

@@ -1,4 +1,6 @@
 //! An extractor that has seen a volume of a size allocates nothing for the next one, whatever the field or the samples.
+//!
+//! A binary of its own, with one test: the allocator counts for the whole process.
 
 use glam::Vec3;
 use isostudy_extract::{

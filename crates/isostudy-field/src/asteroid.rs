@@ -2,9 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::asteroid_table::AsteroidTable;
 use super::sine::sin;
-use super::{FieldCache, StudyField};
 
 /// A lumpy ball: `f(p) = radius - |p/k| + amplitude * fbm(frequency * ((p/|p|)/k))`, `/k` by component.
 ///
@@ -47,40 +45,9 @@ impl Default for Asteroid {
     }
 }
 
-impl StudyField for Asteroid {
-    fn sample(&self, p: Vec3) -> f32 {
-        let distance = p.length();
-        if distance == 0.0 {
-            return self.radius;
-        }
-        let direction = (p / distance) / self.stretch;
-        (self.radius - (p / self.stretch).length()) + self.amplitude * self.noise(direction * self.frequency)
-    }
-
-    /// By the chain rule, in double precision but for the hashes.
-    fn gradient(&self, p: Vec3) -> Option<Vec3> {
-        let (p, stretch) = (p.as_dvec3(), self.stretch.as_dvec3());
-        let distance = p.length();
-        let direction = p / distance;
-        let frequency = f64::from(self.frequency);
-        let of_noise = self.noise_gradient((direction / stretch * frequency).as_vec3()) * frequency / stretch;
-        let across = (of_noise - direction * direction.dot(of_noise)) / distance;
-        let ball = p / (stretch * stretch) / (p / stretch).length();
-        // At the origin it is not a number, and there is none.
-        Some((across * f64::from(self.amplitude) - ball).as_vec3()).filter(|gradient| gradient.is_finite())
-    }
-
-    /// With the hashes in tables, and bounds.
-    fn prepared<'a>(&self, kept: &'a mut FieldCache) -> Option<&'a dyn StudyField> {
-        let table =
-            kept.get_or_make(|table: &AsteroidTable| table.is_of(self), || AsteroidTable::new(self))?;
-        Some(table)
-    }
-}
-
 impl Asteroid {
     /// Octaves of value noise at `q`, as their weighted mean: within [-1, 1].
-    fn noise(&self, q: Vec3) -> f32 {
+    pub(super) fn noise(&self, q: Vec3) -> f32 {
         let (mut sum, mut weights) = (0.0, 0.0);
         let (mut weight, mut frequency) = (1.0, 1.0);
         for _ in 0..self.octaves {
@@ -95,7 +62,7 @@ impl Asteroid {
         if weights == 0.0 { 0.0 } else { sum / weights }
     }
 
-    fn noise_gradient(&self, q: Vec3) -> DVec3 {
+    pub(super) fn noise_gradient(&self, q: Vec3) -> DVec3 {
         let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
         let (mut weight, mut frequency) = (1.0, 1.0);
         for _ in 0..self.octaves {
@@ -160,6 +127,7 @@ pub(super) fn blend(a: f32, b: f32, weight: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::StudyField;
 
     #[test]
     fn origin_has_the_plain_radius() {

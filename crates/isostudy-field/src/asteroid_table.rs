@@ -4,7 +4,7 @@ use glam::{Vec3, Vec3A, Vec4};
 use isostudy_mesh::Bounds;
 
 use super::asteroid::{Asteroid, blend, hash};
-use super::{SAFE, StudyField, has_sound_lengths};
+use super::{FieldCache, SAFE, StudyField, has_sound_lengths};
 
 /// The most whole-number points of all octaves together: 8 MiB of hashes and slopes.
 const MOST_POINTS: usize = 1 << 20;
@@ -31,6 +31,37 @@ struct Octave {
     /// By cell: the steepest that the noise can be, a unit of its own coordinates.
     slopes: Vec<f32>,
     steepest: f32,
+}
+
+impl StudyField for Asteroid {
+    fn sample(&self, p: Vec3) -> f32 {
+        let distance = p.length();
+        if distance == 0.0 {
+            return self.radius;
+        }
+        let direction = (p / distance) / self.stretch;
+        (self.radius - (p / self.stretch).length()) + self.amplitude * self.noise(direction * self.frequency)
+    }
+
+    /// By the chain rule, in double precision but for the hashes.
+    fn gradient(&self, p: Vec3) -> Option<Vec3> {
+        let (p, stretch) = (p.as_dvec3(), self.stretch.as_dvec3());
+        let distance = p.length();
+        let direction = p / distance;
+        let frequency = f64::from(self.frequency);
+        let of_noise = self.noise_gradient((direction / stretch * frequency).as_vec3()) * frequency / stretch;
+        let across = (of_noise - direction * direction.dot(of_noise)) / distance;
+        let ball = p / (stretch * stretch) / (p / stretch).length();
+        // At the origin it is not a number, and there is none.
+        Some((across * f64::from(self.amplitude) - ball).as_vec3()).filter(|gradient| gradient.is_finite())
+    }
+
+    /// With the hashes in tables, and bounds.
+    fn prepared<'a>(&self, kept: &'a mut FieldCache) -> Option<&'a dyn StudyField> {
+        let table =
+            kept.get_or_make(|table: &AsteroidTable| table.is_of(self), || AsteroidTable::new(self))?;
+        Some(table)
+    }
 }
 
 impl AsteroidTable {

@@ -1,7 +1,7 @@
 //! Times the stages of the study's turntables, and leaves pictures to look at:
 //! `cargo run --release -p isostudy-raster --example turntable_speed -- FOLDER`
 
-#[path = "../tests/shapes/mod.rs"]
+#[path = "../tests/it/shapes.rs"]
 mod shapes;
 
 use isostudy_raster::{

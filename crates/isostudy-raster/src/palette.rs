@@ -87,7 +87,7 @@ impl Palette {
     /// along its curve from d = -|L| to |L| (distance: the largest channel's difference). The background is exact.
     ///
     /// Error against [`render`](crate::render), default shading, in 8-bit levels over the channels of all pixels that
-    /// are not background (`tests/palette.rs` bounds it; sphere, torus):
+    /// are not background (`tests/it/palette.rs` bounds it; sphere, torus):
     ///
     /// | look, samples | mean | largest | PSNR, dB |
     /// |---|---|---|---|
@@ -124,7 +124,7 @@ impl Palette {
 
     /// The palette of turntables that are coloured by numbers, with paper and ink of the scale below them: the same for
     /// every mesh and every scale. Colours and their levels of brightness lie evenly. The background is exact; other
-    /// pixels are off by 1.5 8-bit levels on average, 1.7 with lines (`tests/looks.rs` bounds it).
+    /// pixels are off by 1.5 8-bit levels on average, 1.7 with lines (`tests/it/looks.rs` bounds it).
     pub fn of_numbers(shading: &Shading, look: Look) -> Palette {
         let grids: &[Grid] = match look {
             Look::Smooth | Look::Flat | Look::Wireframe => &PLAIN_NUMBERS,

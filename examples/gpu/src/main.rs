@@ -1,7 +1,7 @@
 //! A chunk's buffers in the types of a GPU API (`wgpu-types`: those of wgpu, without the driver), and a field written with
 //! mathematics that are not the extractor's own version.
 //!
-//! `cargo run --release -p isostudy-gpu`
+//! `cargo run --release --manifest-path examples/gpu/Cargo.toml --target-dir target/gpu`
 
 use glam::Vec3;
 use isostudy_extract::{

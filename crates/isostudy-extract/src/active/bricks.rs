@@ -3,9 +3,9 @@
 use super::scan::add_active;
 use super::spans::{NONE, Span, holds, union, with};
 use super::{ActiveCells, ActiveError, GridSamples};
-use crate::bits::{set_above, set_range};
-use crate::in_sight::State;
 use crate::memory::filled;
+use crate::sampling::bits::{set_above, set_range};
+use crate::sampling::in_sight::State;
 
 /// Cells along the edge of a brick.
 const BRICK: usize = 8;

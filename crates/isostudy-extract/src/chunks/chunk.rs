@@ -9,11 +9,11 @@ use isostudy_field::Aabb;
 use isostudy_mesh::TriangleMesh;
 
 use super::world::{OfLevels, World};
-use crate::grid::Grid;
 use crate::lattice::CellBox;
+use crate::lattice::endless::Grid;
 use crate::memory::refill;
 use crate::method::Method;
-use crate::trace::VertexKey;
+use crate::surface::trace::VertexKey;
 
 /// The surface in a box of cells of a larger lattice: a [`ChunkExtractor`](crate::ChunkExtractor) makes it.
 ///

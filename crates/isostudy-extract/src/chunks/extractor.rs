@@ -13,20 +13,20 @@ use super::piece::collapsed;
 use super::settings::{ChunkSettings, Normals};
 use super::settled::{MOST_EXTRA, Settled};
 use super::world::{Place, World};
-use crate::box_grid::BoxGrid;
-use crate::control::Control;
+use crate::clustering::guard::Guard;
+use crate::execution::control::Control;
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::extractor::Extractor;
-use crate::finish::FieldTargets;
-use crate::grid::Grid;
-use crate::guard::Guard;
+use crate::lattice::BoxGrid;
+use crate::lattice::endless::Grid;
 use crate::lattice::{Border, CellBox, Lattice};
-use crate::level::Level;
 use crate::memory::refill;
 use crate::method::{ByWindow, Method, MethodError};
-use crate::normals::accumulate;
+use crate::placement::FieldTargets;
+use crate::sampling::level::Level;
 use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topology};
 use crate::source::Source;
+use crate::surface::normals::accumulate;
 
 /// Of what decides about a surface component, this much is tried at first beyond the chunk.
 const FIRST_MARGIN: u32 = 8;

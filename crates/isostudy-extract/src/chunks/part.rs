@@ -8,7 +8,7 @@ use super::chunk::Chunk;
 use super::settings::Normals;
 use crate::lattice::Lattice;
 use crate::memory::{push, refill};
-use crate::trace::Trace;
+use crate::surface::trace::Trace;
 
 /// The number of a vertex that is not in the chunk, and of one that is, before it has one.
 const NOWHERE: u32 = u32::MAX;

@@ -6,12 +6,12 @@ use isostudy_mesh::TriangleMesh;
 
 use super::chunk::Chunk;
 use super::settings::Normals;
-use crate::collapse::collapse_traced;
+use crate::clustering::collapse::collapse_traced;
 use crate::lattice::{CellBox, Lattice};
 use crate::memory::{collected, filled, push};
-use crate::normals::vertex_normals;
 use crate::settings::Topology;
-use crate::trace::Trace;
+use crate::surface::normals::vertex_normals;
+use crate::surface::trace::Trace;
 
 const NOWHERE: u32 = u32::MAX;
 

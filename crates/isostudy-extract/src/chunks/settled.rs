@@ -11,7 +11,7 @@ use std::collections::TryReserveError;
 use crate::lattice::{CellBox, Lattice};
 use crate::memory::refill;
 use crate::placement::{MOST_PASSES, Moves, on_box};
-use crate::trace::Trace;
+use crate::surface::trace::Trace;
 use glam::Vec3;
 
 /// A vertex that is moved is followed so many cells from the chunk, where its neighbours decide whether it may be.

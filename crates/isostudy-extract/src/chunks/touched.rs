@@ -2,8 +2,8 @@
 
 use isostudy_field::Aabb;
 
-use crate::grid::{Grid, GridError, check};
 use crate::lattice::Arrangement;
+use crate::lattice::endless::{Grid, GridError, check};
 use crate::method::{ByWindow, Method};
 
 impl Grid {

@@ -11,7 +11,7 @@ use super::chunk::Chunk;
 use super::world::World;
 use crate::lattice::CellBox;
 use crate::memory::{push, with_room};
-use crate::trace::VertexKey;
+use crate::surface::trace::VertexKey;
 
 /// Why chunks do not weld.
 #[derive(Debug, Clone, PartialEq)]

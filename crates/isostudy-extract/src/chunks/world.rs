@@ -3,8 +3,8 @@
 use std::fmt;
 
 use super::settings::ChunkSettings;
-use crate::box_grid::BoxGrid;
-use crate::grid::Grid;
+use crate::lattice::BoxGrid;
+use crate::lattice::endless::Grid;
 use crate::method::Method;
 
 /// What chunks have in common that fit each other: the grid, the method and the settings. The field is not part of it.

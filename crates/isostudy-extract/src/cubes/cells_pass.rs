@@ -4,14 +4,15 @@ use std::collections::TryReserveError;
 
 use isostudy_cells::{PolygonTriangles, radius_ratio};
 
+use super::grid::CubeGrid;
 use super::patches::{MOST_TRIANGLES, Patch, Patches};
 use super::records::Records;
 use super::rows::next;
-use super::slab::Job;
+use super::sampling::Samples;
 use super::tubes::INNER;
-use super::vertices::{Record, corner_of};
-use crate::in_sight::Values;
-use crate::triangles::Triangulation;
+use super::vertices::{Placer, Record, corner_of};
+use crate::sampling::in_sight::Values;
+use crate::surface::triangulation::Triangulation;
 
 /// The triangulation of a cell's polygons that was chosen last.
 #[derive(Default)]
@@ -20,69 +21,78 @@ pub(super) struct BestTriangles {
     triangles: Vec<[u8; 3]>,
 }
 
-/// Adds the triangles of layer `z` of the cells. Of the layers of points below and above it, sides and records are known.
-pub(super) fn triangulate_layer(
-    job: &Job,
-    samples: &super::sampling::Samples,
-    values: Values,
-    records: &Records<Record>,
-    z: usize,
-    best: &mut BestTriangles,
-    result: &mut Triangulation,
-) -> Result<(), TryReserveError> {
-    let grid = job.grid;
-    for y in 0..grid.size[1] - 1 {
-        let rows = [[y, z], [y + 1, z], [y, z + 1], [y + 1, z + 1]];
-        if samples.is_uniform(grid, &rows) {
-            continue;
-        }
-        let lines = rows.map(|[y, z]| samples.sides.row(y, z));
-        let starts = rows.map(|[y, z]| records.start(y, z));
-        for word in 0..grid.words {
-            let here = lines.map(|line| line[word]);
-            let after = lines.map(|line| next(line, word));
-            let any = here.iter().chain(&after).fold(0, |any, bits| any | bits);
-            let all = here.iter().chain(&after).fold(!0, |all, bits| all & bits);
-            let mut left = any & !all & grid.with_next(word);
-            result.cells_visited += u64::from(left.count_ones());
-            result.triangles.try_reserve(MOST_TRIANGLES * left.count_ones() as usize)?;
-            while left != 0 {
-                let x = 64 * word + left.trailing_zeros() as usize;
-                left &= left - 1;
-                let at = |corner: u8| {
-                    let corner = usize::from(corner);
-                    records.at(starts[corner >> 1] + x + (corner & 1))
-                };
-                let patch = job.patches.at(at(0).patch);
-                let mut vertices = [0; 20];
-                for &edge in &patch.crossed {
-                    let (corner, axis) = job.patches.edge(edge);
-                    vertices[usize::from(edge)] = at(corner).vertex(axis);
-                }
-                let base: Record = at(0);
-                for v in 0..patch.inner.len() as u8 {
-                    vertices[usize::from(INNER + v)] = base.inner(v);
-                }
-                let numbered = |triangle: &[u8; 3]| triangle.map(|corner| vertices[usize::from(corner)]);
-                result.triangles.extend(patch.triangles.iter().map(numbered));
-                if !patch.polygons.is_empty() {
-                    best.find(job, values, patch, [x, y, z]);
-                    result.triangles.extend(best.triangles.iter().map(numbered));
-                }
-                if let Some(trace) = &mut result.trace {
-                    trace.close_cell(grid.lattice, [x, y, z], result.triangles.len())?;
+/// What the pass reads.
+pub(super) struct TrianglePass<'a> {
+    pub(super) grid: &'a CubeGrid<'a>,
+    pub(super) samples: &'a Samples,
+    pub(super) values: Values<'a>,
+    pub(super) patches: &'a Patches,
+    pub(super) placer: &'a Placer<'a>,
+}
+
+impl TrianglePass<'_> {
+    /// Adds the triangles of layer `z` of the cells. Of the layers of points below and above it, sides and records are known.
+    pub(super) fn layer(
+        &self,
+        z: usize,
+        records: &Records<Record>,
+        best: &mut BestTriangles,
+        result: &mut Triangulation,
+    ) -> Result<(), TryReserveError> {
+        let Self { grid, samples, patches, .. } = *self;
+        for y in 0..grid.size[1] - 1 {
+            let rows = [[y, z], [y + 1, z], [y, z + 1], [y + 1, z + 1]];
+            if samples.is_uniform(grid, &rows) {
+                continue;
+            }
+            let lines = rows.map(|[y, z]| samples.sides.row(y, z));
+            let starts = rows.map(|[y, z]| records.start(y, z));
+            for word in 0..grid.words {
+                let here = lines.map(|line| line[word]);
+                let after = lines.map(|line| next(line, word));
+                let any = here.iter().chain(&after).fold(0, |any, bits| any | bits);
+                let all = here.iter().chain(&after).fold(!0, |all, bits| all & bits);
+                let mut left = any & !all & grid.with_next(word);
+                result.cells_visited += u64::from(left.count_ones());
+                result.triangles.try_reserve(MOST_TRIANGLES * left.count_ones() as usize)?;
+                while left != 0 {
+                    let x = 64 * word + left.trailing_zeros() as usize;
+                    left &= left - 1;
+                    let at = |corner: u8| {
+                        let corner = usize::from(corner);
+                        records.at(starts[corner >> 1] + x + (corner & 1))
+                    };
+                    let patch = patches.at(at(0).patch);
+                    let mut vertices = [0; 20];
+                    for &edge in &patch.crossed {
+                        let (corner, axis) = patches.edge(edge);
+                        vertices[usize::from(edge)] = at(corner).vertex(axis);
+                    }
+                    let base: Record = at(0);
+                    for v in 0..patch.inner.len() as u8 {
+                        vertices[usize::from(INNER + v)] = base.inner(v);
+                    }
+                    let numbered = |triangle: &[u8; 3]| triangle.map(|corner| vertices[usize::from(corner)]);
+                    result.triangles.extend(patch.triangles.iter().map(numbered));
+                    if !patch.polygons.is_empty() {
+                        best.find(self, patch, [x, y, z]);
+                        result.triangles.extend(best.triangles.iter().map(numbered));
+                    }
+                    if let Some(trace) = &mut result.trace {
+                        trace.close_cell(grid.lattice, [x, y, z], result.triangles.len())?;
+                    }
                 }
             }
         }
+        Ok(())
     }
-    Ok(())
 }
 
 impl BestTriangles {
     /// Finds the triangulations of a patch's polygons with the largest sum of radius ratios.
     #[inline(never)]
-    fn find(&mut self, job: &Job, values: Values, patch: &Patch, cell: [usize; 3]) {
-        let patches: &Patches = job.patches;
+    fn find(&mut self, pass: &TrianglePass, patch: &Patch, cell: [usize; 3]) {
+        let TrianglePass { grid, values, patches, placer, .. } = *pass;
         let mut places = [[0.0; 3]; INNER as usize];
         for &edge in &patch.crossed {
             let (corner, axis) = patches.edge(edge);
@@ -90,7 +100,7 @@ impl BestTriangles {
             let mut to = from;
             to[axis] += 1;
             let ends = [values.at(from), values.at(to)];
-            let position = job.placer.position(job.grid, from, axis, ends);
+            let position = placer.position(grid, from, axis, ends);
             places[usize::from(edge)] = position.to_array().map(f64::from);
         }
         let cost = |triangle: [u8; 3]| 1.0 - radius_ratio(triangle.map(|edge| places[usize::from(edge)]));

@@ -2,7 +2,7 @@
 //! Bloomenthal 1988, 1994).
 //!
 //! Only how cubes are visited is new. Their corners are the points of the simple cubic lattice, a sample that equals the isovalue is
-//! outside, and triangles are those of [`super::patches`], or those of [`crate::tetrahedra`] in each of six tetrahedra. Visited cubes are put
+//! outside, and triangles are those of [`super::patches`], or those of [`crate::lattice::tetrahedra`] in each of six tetrahedra. Visited cubes are put
 //! into storage order before anything is made of them, so the mesh depends on which they are and not on the way.
 
 mod corners;
@@ -17,14 +17,14 @@ use std::hash::{BuildHasherDefault, Hasher};
 
 use self::corners::Corners;
 use self::surface::Surface;
-use super::grid::Grid;
+use super::grid::CubeGrid;
 use super::{Rule, vertices::Placer};
 use crate::clock::Moment;
-use crate::extraction::{Counts, ExtractError, Extraction, StageTimes};
-use crate::normals::vertex_normals;
+use crate::extraction::{Counts, ExtractError, StageTimes};
+use crate::slabs::Run;
 use crate::source::Request;
-use crate::streaming::Progress;
-use crate::triangles::Triangulation;
+use crate::surface::normals::vertex_normals;
+use crate::surface::triangulation::Triangulation;
 
 /// Which cubes are visited, and what is made of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,16 +36,14 @@ pub(crate) struct Continued {
 }
 
 /// Visits, then makes vertices and triangles, on the thread that calls.
-pub(super) fn extract(
-    request: &Request,
+pub(crate) fn extract(
     continued: Continued,
     rule: Rule,
-    progress: Option<&Progress>,
-    extraction: &mut Extraction,
+    Run { request, progress, extraction, .. }: Run,
 ) -> Result<(), ExtractError> {
     let Request { source, lattice, settings, control, most_vertices, start } = *request;
     let out_of_memory = |_: TryReserveError| ExtractError::NoMemoryForMesh;
-    let grid = &Grid::new(lattice).map_err(out_of_memory)?;
+    let grid = &CubeGrid::new(lattice).map_err(out_of_memory)?;
     let mut corners = Corners::new(grid, source, settings.isovalue);
     let mut times = StageTimes { allocation: start.elapsed(), ..StageTimes::default() };
 

@@ -5,34 +5,34 @@ use std::collections::TryReserveError;
 use glam::Vec3;
 use isostudy_mesh::Bounds;
 
-use crate::bits::between;
 use crate::lattice::{Border, Lattice};
 use crate::memory::refilled;
-use crate::tiles::Points;
+use crate::sampling::bits::between;
+use crate::sampling::tiles::Points;
 
 /// Columns, rows and layers of a tile.
 const TILE: usize = 2;
 /// Layers of sides and samples in sight: the two of a cell, and one on either side.
-pub(super) const SLOTS: usize = 4;
+pub(crate) const SLOTS: usize = 4;
 
 /// The corners of the cubes as the passes see them.
-pub(super) struct Grid<'a> {
-    pub(super) lattice: &'a Lattice,
+pub(crate) struct CubeGrid<'a> {
+    pub(crate) lattice: &'a Lattice,
     /// Points a row, rows a layer, layers.
-    pub(super) size: [usize; 3],
+    pub(crate) size: [usize; 3],
     /// Words of bits a row.
-    pub(super) words: usize,
+    pub(crate) words: usize,
     /// Along each axis.
-    pub(super) at: [Vec<f32>; 3],
+    pub(crate) at: [Vec<f32>; 3],
 }
 
-impl<'a> Grid<'a> {
-    pub(super) fn new(lattice: &'a Lattice) -> Result<Self, TryReserveError> {
+impl<'a> CubeGrid<'a> {
+    pub(crate) fn new(lattice: &'a Lattice) -> Result<Self, TryReserveError> {
         Self::within(lattice, Default::default())
     }
 
     /// The same, with coordinates in vectors that are there.
-    pub(super) fn within(lattice: &'a Lattice, mut at: [Vec<f32>; 3]) -> Result<Self, TryReserveError> {
+    pub(crate) fn within(lattice: &'a Lattice, mut at: [Vec<f32>; 3]) -> Result<Self, TryReserveError> {
         let size = lattice.stored_grid().map(|n| n as usize);
         let first = lattice.origin();
         for (axis, at) in at.iter_mut().enumerate() {
@@ -43,18 +43,18 @@ impl<'a> Grid<'a> {
         Ok(Self { lattice, size, words: size[0].div_ceil(64), at })
     }
 
-    pub(super) fn position(&self, place: [usize; 3]) -> Vec3 {
+    pub(crate) fn position(&self, place: [usize; 3]) -> Vec3 {
         Vec3::from_array([0, 1, 2].map(|axis| self.at[axis][place[axis]]))
     }
 
     /// The points of a word that have a next one in their row: those that cells begin at.
     #[inline(always)]
-    pub(super) fn with_next(&self, word: usize) -> u64 {
+    pub(crate) fn with_next(&self, word: usize) -> u64 {
         between(word, 0, self.size[0] - 1)
     }
 }
 
-impl Points for Grid<'_> {
+impl Points for CubeGrid<'_> {
     fn size(&self) -> [usize; 3] {
         self.size
     }

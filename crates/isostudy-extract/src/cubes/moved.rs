@@ -4,14 +4,14 @@ use glam::Vec3;
 use isostudy_mesh::TriangleMesh;
 
 use crate::clock::Moment;
+use crate::execution::threads::for_each_on_threads;
 use crate::extraction::{ExtractError, Extraction};
-use crate::finish::FieldTargets;
 use crate::memory::copied;
-use crate::normals::vertex_normals;
+use crate::placement::FieldTargets;
 use crate::placement::Moves;
-use crate::sampling::for_each_on_threads;
 use crate::settings::Placement;
 use crate::source::Request;
+use crate::surface::normals::vertex_normals;
 
 /// How vertices go.
 #[derive(Debug, Clone, Copy, PartialEq)]

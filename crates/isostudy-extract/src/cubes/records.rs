@@ -2,19 +2,19 @@
 
 use std::collections::TryReserveError;
 
-use super::grid::Grid;
+use super::grid::CubeGrid;
 use crate::memory::reset;
 
 /// The records of two layers, written and read only where there is something to know.
 #[derive(Default)]
-pub(super) struct Records<R> {
+pub(crate) struct Records<R> {
     records: Vec<R>,
     size: [usize; 2],
 }
 
 impl<R: Copy + Default> Records<R> {
     /// Makes room, with nothing in it.
-    pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), TryReserveError> {
+    pub(crate) fn fit(&mut self, grid: &CubeGrid) -> Result<(), TryReserveError> {
         let [nx, ny, _] = grid.size;
         self.size = [nx, ny];
         reset(&mut self.records, 2 * nx * ny, R::default())
@@ -22,17 +22,17 @@ impl<R: Copy + Default> Records<R> {
 
     /// Where the records of a row start.
     #[inline]
-    pub(super) fn start(&self, row: usize, layer: usize) -> usize {
+    pub(crate) fn start(&self, row: usize, layer: usize) -> usize {
         (layer % 2 * self.size[1] + row) * self.size[0]
     }
 
     #[inline]
-    pub(super) fn at(&self, place: usize) -> R {
+    pub(crate) fn at(&self, place: usize) -> R {
         self.records[place]
     }
 
     #[inline]
-    pub(super) fn set(&mut self, place: usize, record: R) {
+    pub(crate) fn set(&mut self, place: usize, record: R) {
         self.records[place] = record;
     }
 }

@@ -2,33 +2,33 @@
 
 use std::collections::TryReserveError;
 
-use super::grid::Grid;
+use super::grid::CubeGrid;
 use super::rows::{Rows, before, next};
-use crate::bits::{between, set_above, set_range};
-use crate::in_sight::{State, Values};
-use crate::line::{All, Gaps, Line};
 use crate::memory::reset;
+use crate::sampling::bits::{between, set_above, set_range};
+use crate::sampling::in_sight::{State, Values};
+use crate::sampling::line::{All, Gaps, Line};
+use crate::sampling::tiles::{Span, Tile, Tiles};
 use crate::source::Sampler;
-use crate::tiles::{Span, Tile, Tiles};
 use isostudy_field::StudyField;
 
 /// What is sampled, and where.
 #[derive(Clone, Copy)]
-pub(super) struct Sampling<'a> {
-    pub(super) grid: &'a Grid<'a>,
-    pub(super) source: Sampler<'a>,
-    pub(super) isovalue: f32,
+pub(crate) struct Sampling<'a> {
+    pub(crate) grid: &'a CubeGrid<'a>,
+    pub(crate) source: Sampler<'a>,
+    pub(crate) isovalue: f32,
     /// Whether all corners of a crossed cell have samples, or the ends of crossed edges alone.
-    pub(super) all_corners: bool,
+    pub(crate) all_corners: bool,
 }
 
 /// A few layers of samples and sides.
 #[derive(Default)]
-pub(super) struct Samples {
+pub(crate) struct Samples {
     /// Of a field that is called; without room where samples are given.
     called: Called,
     /// 1 inside.
-    pub(super) sides: Rows,
+    pub(crate) sides: Rows,
     states: Vec<State>,
     /// Layers in sight.
     slots: usize,
@@ -47,7 +47,12 @@ struct Called {
 
 impl Samples {
     /// Makes room for so many layers in sight.
-    pub(super) fn fit(&mut self, grid: &Grid, source: Sampler, slots: usize) -> Result<(), TryReserveError> {
+    pub(crate) fn fit(
+        &mut self,
+        grid: &CubeGrid,
+        source: Sampler,
+        slots: usize,
+    ) -> Result<(), TryReserveError> {
         self.slots = slots;
         if matches!(source, Sampler::Field(_)) {
             self.called.fit(grid, slots)?;
@@ -56,7 +61,7 @@ impl Samples {
         self.sides.fit(grid, slots)
     }
 
-    pub(super) fn values<'a>(&'a self, grid: &Grid, source: Sampler<'a>) -> Values<'a> {
+    pub(crate) fn values<'a>(&'a self, grid: &CubeGrid, source: Sampler<'a>) -> Values<'a> {
         let size = grid.size;
         match source {
             Sampler::Given { values, .. } => Values::new(values, size, size[2]),
@@ -65,21 +70,21 @@ impl Samples {
     }
 
     /// Where the points of each row of a layer are.
-    pub(super) fn states(&self, layer: usize) -> &[State] {
+    pub(crate) fn states(&self, layer: usize) -> &[State] {
         let rows = self.states.len() / self.slots;
         &self.states[layer % self.slots * rows..][..rows]
     }
 
     /// Whether all points of some rows are on one side.
     #[inline]
-    pub(super) fn is_uniform(&self, grid: &Grid, rows: &[[usize; 2]]) -> bool {
+    pub(crate) fn is_uniform(&self, grid: &CubeGrid, rows: &[[usize; 2]]) -> bool {
         let state = |[y, z]: [usize; 2]| self.states[z % self.slots * grid.size[1] + y];
         let first = state(rows[0]);
         first != State::Mixed && rows.iter().all(|&row| state(row) == first)
     }
 
     /// Finds the sides of a layer, with as few samples as may be.
-    pub(super) fn find_sides(&mut self, sampling: Sampling, layer: usize) {
+    pub(crate) fn find_sides(&mut self, sampling: Sampling, layer: usize) {
         let Sampling { grid, source, isovalue, .. } = sampling;
         let [nx, ny, _] = grid.size;
         let called = &mut self.called;
@@ -118,7 +123,7 @@ impl Samples {
     }
 
     /// Takes the samples of a layer that cells need and sides did not. The sides of the layers next to it are known.
-    pub(super) fn fill(&mut self, sampling: Sampling, layer: usize) {
+    pub(crate) fn fill(&mut self, sampling: Sampling, layer: usize) {
         let Sampling { grid, source, all_corners, .. } = sampling;
         let Sampler::Field(field) = source else { return };
         for row in 0..grid.size[1] {
@@ -134,7 +139,7 @@ impl Samples {
 }
 
 /// The rows at a row whose sides say which of its samples cells need.
-pub(super) struct Near {
+pub(crate) struct Near {
     around: [[usize; 2]; 9],
     count: usize,
     all_corners: bool,
@@ -142,7 +147,7 @@ pub(super) struct Near {
 
 impl Near {
     /// Of a row in a layer.
-    pub(super) fn new(grid: &Grid, [row, layer]: [usize; 2], all_corners: bool) -> Self {
+    pub(crate) fn new(grid: &CubeGrid, [row, layer]: [usize; 2], all_corners: bool) -> Self {
         let [_, ny, nz] = grid.size;
         let (rows, layers) =
             (row.saturating_sub(1)..ny.min(row + 2), layer.saturating_sub(1)..nz.min(layer + 2));
@@ -157,13 +162,13 @@ impl Near {
         near
     }
 
-    pub(super) fn rows(&self) -> &[[usize; 2]] {
+    pub(crate) fn rows(&self) -> &[[usize; 2]] {
         &self.around[..self.count]
     }
 
     /// Calls `visit` with each word of the row and the points of it that cells need: ends of crossed edges, or all corners of
     /// crossed cells.
-    pub(super) fn for_each_word(&self, grid: &Grid, sides: &Rows, mut visit: impl FnMut(usize, u64)) {
+    pub(crate) fn for_each_word(&self, grid: &CubeGrid, sides: &Rows, mut visit: impl FnMut(usize, u64)) {
         let lines = self.around.map(|[y, z]| sides.row(y, z));
         for word in 0..grid.words {
             let [mut any, mut all] = [lines[0][word]; 2];
@@ -181,7 +186,7 @@ impl Near {
 }
 
 impl Called {
-    fn fit(&mut self, grid: &Grid, slots: usize) -> Result<(), TryReserveError> {
+    fn fit(&mut self, grid: &CubeGrid, slots: usize) -> Result<(), TryReserveError> {
         let [nx, ny, _] = grid.size;
         self.slots = slots;
         self.tiles.fit(grid)?;
@@ -214,7 +219,7 @@ impl Called {
             sides,
         };
         let found = self.gaps.room();
-        line.sample(spans, known, crate::tiles::Points::side(grid), |line, first, end| {
+        line.sample(spans, known, crate::sampling::tiles::Points::side(grid), |line, first, end| {
             let found = &mut found[..end - first];
             line.field.sample_row(&line.x[first..end], line.y, line.z, found);
             for (i, &value) in (first..end).zip(&*found) {
@@ -224,7 +229,7 @@ impl Called {
     }
 
     /// Takes the samples of a row that are wanted and not there yet.
-    fn fill(&mut self, grid: &Grid, field: &dyn StudyField, [row, layer]: [usize; 2]) {
+    fn fill(&mut self, grid: &CubeGrid, field: &dyn StudyField, [row, layer]: [usize; 2]) {
         let [nx, ny, _] = grid.size;
         let (y, z) = (grid.at[1][row], grid.at[2][layer]);
         let values = &mut self.values[(layer % self.slots * ny + row) * nx..][..nx];

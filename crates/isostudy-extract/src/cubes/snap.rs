@@ -19,139 +19,159 @@ use self::cells_pass::Chosen;
 use self::labels::{Labels, Snap};
 use self::table::Table;
 use self::vertices::{Record, VertexPass};
-use super::Flat;
-use super::grid::Grid;
+use super::grid::CubeGrid;
 use super::records::Records;
 use super::sampling::{Samples, Sampling};
-use super::vertices::{Placer, Vertices};
-use super::{Kept, LayerDone, in_slabs};
-use crate::clock::Laps;
-use crate::control::Control;
-use crate::extraction::{ExtractError, Extraction};
-use crate::slabs::Piece;
-use crate::source::{Request, Sampler};
-use crate::streaming::Progress;
-use crate::trace::Trace;
+use super::vertices::Placer;
+use super::{Flat, Kept};
+use crate::extraction::ExtractError;
+use crate::slabs::{LayerDone, Pass, Piece, Run, Stage, Streamed, Vertices, stream};
+use crate::source::Request;
 
 /// Layers of sides and samples in sight.
 const SLOTS: usize = 6;
+/// Workspaces hold so many times what others do.
+const TIMES: u64 = 3;
 
 /// The stages in order, timed and counted. The lattice is simple cubic.
-pub(super) fn extract(
+pub(crate) fn extract(
     (kept, workspaces): (&mut Kept, &mut Vec<Workspace>),
-    request: &Request,
     gamma: f32,
     flat: Flat,
-    progress: Option<&Progress>,
-    trace: Option<&mut Trace>,
-    extraction: &mut Extraction,
+    run: Run,
 ) -> Result<(), ExtractError> {
-    let Request { source, settings, control, most_vertices, .. } = *request;
+    let request = run.request;
+    let placer = Placer::new(request.lattice, request.settings, None);
+    let snap = Snap { isovalue: request.settings.isovalue, gamma };
     let table = Table::get();
-    let placer = &Placer::new(request.lattice, settings, None);
-    let snap = Snap { isovalue: settings.isovalue, gamma };
-    let traced = trace.is_some();
-    let fit = |workspace: &mut Workspace, grid: &Grid| workspace.fit(grid, source);
-    let work = |grid: &Grid, layer_done: &LayerDone, own, workspace: &mut Workspace, piece: &mut Piece| {
-        let job = Job { grid, source, snap, flat, table, placer, most_vertices, traced, control, layer_done };
-        stream_slab(&job, own, workspace, piece)
-    };
-    let buffers = (kept, workspaces, Workspace::default);
-    in_slabs(buffers, request, progress, trace, extraction, 3, fit, work)
+    let grid = kept.grid(request, TIMES)?;
+    kept.stream(&Snapped { grid: &grid, request, snap, flat, table, placer }, TIMES, workspaces, run)?;
+    kept.keep(grid);
+    Ok(())
 }
 
 /// What all slabs of an extraction share.
-struct Job<'a> {
-    grid: &'a Grid<'a>,
-    source: Sampler<'a>,
+struct Snapped<'a> {
+    grid: &'a CubeGrid<'a>,
+    request: &'a Request<'a>,
     snap: Snap,
     flat: Flat,
     table: &'a Table,
-    placer: &'a Placer<'a>,
-    most_vertices: u32,
-    /// Whether vertices get keys and triangles the numbers of their cells.
-    traced: bool,
-    control: Control<'a>,
-    layer_done: &'a (dyn Fn() + Sync),
+    placer: Placer<'a>,
 }
 
-/// Buffers of one thread, a few layers each, kept between slabs and between extractions.
+/// Buffers of one thread.
 #[derive(Default)]
-pub(super) struct Workspace {
+pub(crate) struct Workspace {
     samples: Samples,
     labels: Labels,
     chosen: Chosen,
     records: Records<Record>,
 }
 
-impl Workspace {
-    fn fit(&mut self, grid: &Grid, source: Sampler) -> Result<(), TryReserveError> {
-        self.samples.fit(grid, source, SLOTS)?;
-        self.labels.fit(grid)?;
-        self.chosen.fit(grid)?;
-        self.records.fit(grid)
+impl Streamed for Snapped<'_> {
+    type Workspace = Workspace;
+
+    fn workspace(&self) -> Workspace {
+        Workspace::default()
+    }
+
+    fn fit(&self, workspace: &mut Workspace) -> Result<(), TryReserveError> {
+        workspace.samples.fit(self.grid, self.request.source, SLOTS)?;
+        workspace.labels.fit(self.grid)?;
+        workspace.chosen.fit(self.grid)?;
+        workspace.records.fit(self.grid)
+    }
+
+    fn slab(
+        &self,
+        own: Range<usize>,
+        layer_done: &LayerDone,
+        workspace: &mut Workspace,
+        piece: &mut Piece,
+    ) -> Result<(), ExtractError> {
+        let layers = self.grid.size[2];
+        let (lowest, highest) = (own.start, own.end);
+        let numbered = lowest..highest + 1;
+        // Whether a point is used is for the cells on both sides of its layer to say; which patch those have, for the next.
+        let chosen = lowest.saturating_sub(1)..(layers - 1).min(highest + 1);
+        let labelled = lowest.saturating_sub(2)..layers.min(highest + 3);
+        let filled = lowest.saturating_sub(3)..layers.min(highest + 4);
+        let sided = lowest.saturating_sub(4)..layers.min(highest + 5);
+        workspace.chosen.clear_used(chosen.start);
+        let passes = [
+            Pass { stage: Stage::Sampling, behind: 0, layers: sided, run: Slab::find_sides },
+            Pass { stage: Stage::Sampling, behind: 1, layers: filled, run: Slab::fill },
+            Pass { stage: Stage::Vertex, behind: 2, layers: labelled, run: Slab::label },
+            Pass { stage: Stage::Vertex, behind: 4, layers: chosen, run: Slab::choose },
+            Pass { stage: Stage::Vertex, behind: 4, layers: numbered, run: Slab::place },
+            Pass { stage: Stage::Geometry, behind: 5, layers: own, run: Slab::triangulate },
+        ];
+        let vertices = Vertices::within(piece);
+        let Request { source, control, .. } = *self.request;
+        let sampling = Sampling { grid: self.grid, source, isovalue: self.snap.isovalue, all_corners: true };
+        let mut slab = Slab { of: self, layer_done, sampling, workspace, vertices, highest };
+        stream(&mut slab, passes, control, piece)?;
+        slab.vertices.give_to(piece);
+        Ok(())
     }
 }
 
-/// Extracts the layers `own` of cells: their triangles, and the vertices of their points but for those of the highest layer,
-/// which are the next slab's.
-fn stream_slab(
-    job: &Job,
-    own: Range<usize>,
-    Workspace { samples, labels, chosen, records }: &mut Workspace,
-    piece: &mut Piece,
-) -> Result<(), ExtractError> {
-    let Job { grid, source, snap, flat, table, placer, .. } = *job;
-    let layers = grid.size[2];
-    let (lowest, highest) = (own.start, own.end);
-    let numbered = lowest..highest + 1;
-    // Whether a point is used is for the cells on both sides of its layer to say; which patch those have, for the next.
-    let chosen_cells = lowest.saturating_sub(1)..(layers - 1).min(highest + 1);
-    let labelled = lowest.saturating_sub(2)..layers.min(highest + 3);
-    let filled = lowest.saturating_sub(3)..layers.min(highest + 4);
-    let sided = lowest.saturating_sub(4)..layers.min(highest + 5);
-    let sampling = Sampling { grid, source, isovalue: snap.isovalue, all_corners: true };
-    piece.clear(job.traced);
-    let mut vertices = Vertices::within(piece);
-    chosen.clear_used(chosen_cells.start);
-    let mut laps = Laps::new();
-    for step in sided.start..=highest + 4 {
-        if sided.contains(&step) {
-            job.control.check()?;
-            samples.find_sides(sampling, step);
-        }
-        if let Some(layer) = step.checked_sub(1).filter(|layer| filled.contains(layer)) {
-            samples.fill(sampling, layer);
-        }
-        piece.times.sampling += laps.lap();
+/// A slab on its way.
+struct Slab<'a> {
+    of: &'a Snapped<'a>,
+    layer_done: &'a LayerDone<'a>,
+    sampling: Sampling<'a>,
+    workspace: &'a mut Workspace,
+    vertices: Vertices,
+    /// The layer above the slab's cells, whose vertices are the next slab's.
+    highest: usize,
+}
 
-        let values = samples.values(grid, source);
-        if let Some(layer) = step.checked_sub(2).filter(|layer| labelled.contains(layer)) {
-            labels.find(grid, samples, values, snap, layer);
-        }
-        let Some(layer) = step.checked_sub(4) else { continue };
-        if chosen_cells.contains(&layer) {
-            chosen.layer(grid, labels, table, flat, layer);
-        }
-        if !numbered.contains(&layer) {
-            continue;
-        }
+impl Slab<'_> {
+    fn find_sides(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
+        self.workspace.samples.find_sides(self.sampling, layer);
+        Ok(())
+    }
+
+    fn fill(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
+        self.workspace.samples.fill(self.sampling, layer);
+        Ok(())
+    }
+
+    fn label(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
+        let Snapped { grid, request, snap, .. } = self.of;
+        let Workspace { samples, labels, .. } = &mut *self.workspace;
+        labels.find(grid, samples, samples.values(grid, request.source), *snap, layer);
+        Ok(())
+    }
+
+    fn choose(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
+        let Snapped { grid, table, flat, .. } = self.of;
+        let Workspace { labels, chosen, .. } = &mut *self.workspace;
+        chosen.layer(grid, labels, table, *flat, layer);
+        Ok(())
+    }
+
+    fn place(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
+        let Snapped { grid, request, placer, .. } = self.of;
+        let Workspace { samples, labels, chosen, records } = &mut *self.workspace;
+        let values = samples.values(grid, request.source);
         let pass = VertexPass { grid, labels, used: &chosen.used, values, placer };
-        pass.layer(layer, layer < highest || layer + 1 == layers, records, &mut vertices)?;
-        if vertices.numbered > u64::from(job.most_vertices) {
-            return Err(ExtractError::TooManyVertices { limit: job.most_vertices });
-        }
-        piece.times.vertex += laps.lap();
+        let is_own = layer < self.highest || layer + 1 == grid.size[2];
+        pass.layer(layer, is_own, records, &mut self.vertices)?;
+        self.vertices.check(request.most_vertices)
+    }
 
-        let Some(z) = layer.checked_sub(1).filter(|z| own.contains(z)) else { continue };
-        if z + 1 == own.end {
+    fn triangulate(&mut self, layer: usize, piece: &mut Piece) -> Result<(), ExtractError> {
+        let Snapped { grid, table, .. } = self.of;
+        if layer + 1 == self.highest {
             // Only the highest cells have vertices of the slab above.
             piece.tail = piece.surface.triangles.len();
         }
-        chosen.triangulate(grid, table, records, z, &mut piece.surface)?;
-        piece.times.geometry += laps.lap();
-        (job.layer_done)();
+        let Workspace { chosen, records, .. } = &*self.workspace;
+        chosen.triangulate(grid, table, records, layer, &mut piece.surface)?;
+        (self.layer_done)();
+        Ok(())
     }
-    vertices.give_to(piece);
-    Ok(())
 }

@@ -5,29 +5,28 @@ use std::collections::TryReserveError;
 use glam::{Vec3, Vec4};
 
 use super::Rule;
-use super::grid::Grid;
+use super::grid::CubeGrid;
 use super::patches::{Patch, Patches};
 use super::records::Records;
 use super::rows::next;
 use super::sampling::Samples;
-use crate::bits::between;
-use crate::in_sight::Values;
 use crate::lattice::Lattice;
-use crate::level::Level;
 use crate::memory::push;
+use crate::placement::spot::{Apart, Company, linear_ratio};
 use crate::placement::{clamped, crossing_ratio};
+use crate::sampling::bits::between;
+use crate::sampling::in_sight::Values;
+use crate::sampling::level::Level;
 use crate::settings::{ExtractSettings, Placement, Topology};
-use crate::slabs::Piece;
-use crate::spot::{Apart, Company, linear_ratio};
-use crate::trace::VertexKey;
+use crate::slabs::Vertices;
 
 /// What is known of a point: its vertices are numbered from `first` on, those of its crossed edges by axis, then those in the cell
 /// that begins there.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Record {
+pub(crate) struct Record {
     first: u32,
     /// Of the cell that begins here, where its corners are on both sides.
-    pub(super) patch: u16,
+    pub(crate) patch: u16,
     /// The axes along which an edge that begins here is crossed, one bit each.
     crossed: u8,
 }
@@ -35,84 +34,35 @@ pub(super) struct Record {
 impl Record {
     /// The vertex of an edge that begins here.
     #[inline]
-    pub(super) fn vertex(self, axis: u8) -> u32 {
+    pub(crate) fn vertex(self, axis: u8) -> u32 {
         self.first.wrapping_add(u32::from(RANK[usize::from(self.crossed & ((1 << axis) - 1))]))
     }
 
     /// A vertex in the cell that begins here.
     #[inline]
-    pub(super) fn inner(self, vertex: u8) -> u32 {
+    pub(crate) fn inner(self, vertex: u8) -> u32 {
         let before = RANK[usize::from(self.crossed)] + vertex;
         self.first.wrapping_add(u32::from(before))
     }
 }
 
 /// Bits of a number below eight.
-pub(super) static RANK: [u8; 8] = [0, 1, 1, 2, 1, 2, 2, 3];
+pub(crate) static RANK: [u8; 8] = [0, 1, 1, 2, 1, 2, 2, 3];
 
 /// What the pass reads.
-pub(super) struct VertexPass<'a> {
-    pub(super) grid: &'a Grid<'a>,
-    pub(super) samples: &'a Samples,
-    pub(super) values: Values<'a>,
-    pub(super) isovalue: f32,
-    pub(super) rule: Rule,
+pub(crate) struct VertexPass<'a> {
+    pub(crate) grid: &'a CubeGrid<'a>,
+    pub(crate) samples: &'a Samples,
+    pub(crate) values: Values<'a>,
+    pub(crate) isovalue: f32,
+    pub(crate) rule: Rule,
     pub(super) patches: &'a Patches,
-    pub(super) placer: &'a Placer<'a>,
-}
-
-/// The vertices of a slab.
-#[derive(Debug, Default)]
-pub(super) struct Vertices {
-    /// How many were numbered, those beyond the slab's own layers too.
-    pub(super) numbered: u64,
-    pub(super) positions: Vec<Vec3>,
-    /// Where the settings want them, if elsewhere.
-    pub(super) targets: Vec<Vec3>,
-    /// Where they are asked for.
-    pub(super) keys: Option<Vec<VertexKey>>,
-    /// Crossed edges of the slab's own layers, but for those that were snapped.
-    pub(super) crossings: u64,
-}
-
-impl Vertices {
-    /// None yet, in the room of an empty piece.
-    pub(super) fn within(piece: &mut Piece) -> Self {
-        Self {
-            positions: std::mem::take(&mut piece.positions),
-            targets: std::mem::take(&mut piece.targets),
-            keys: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys)),
-            ..Self::default()
-        }
-    }
-
-    /// Names the vertex that was placed last, where keys are asked for.
-    pub(super) fn name(
-        &mut self,
-        lattice: &Lattice,
-        place: [usize; 3],
-        number: usize,
-    ) -> Result<(), TryReserveError> {
-        if let Some(keys) = &mut self.keys {
-            push(keys, VertexKey::new(lattice.arrangement(), lattice.stored(place), number))?;
-        }
-        Ok(())
-    }
-
-    /// Makes them those of a slab's piece.
-    pub(super) fn give_to(self, piece: &mut Piece) {
-        (piece.positions, piece.targets) = (self.positions, self.targets);
-        // As if seen from both ends.
-        piece.crossing_ends = 2 * self.crossings;
-        if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, self.keys) {
-            trace.keys = keys;
-        }
-    }
+    pub(crate) placer: &'a Placer<'a>,
 }
 
 impl VertexPass<'_> {
     /// Visits a layer. Of a slab's own, vertices are placed; of others, numbered.
-    pub(super) fn layer(
+    pub(crate) fn layer(
         &self,
         layer: usize,
         is_own: bool,
@@ -167,7 +117,7 @@ impl VertexPass<'_> {
                     vertices.numbered += u64::from(crossings) + u64::from(inner);
                     records.set(start + place[0], record);
                     if is_own {
-                        vertices.crossings += u64::from(crossings);
+                        vertices.crossing_ends += 2 * u64::from(crossings);
                         self.place(place, record.crossed, vertices)?;
                         if inner != 0 {
                             self.place_inner(place, self.patches.at(record.patch), vertices)?;
@@ -228,13 +178,13 @@ impl VertexPass<'_> {
     }
 }
 
-pub(super) fn corner_of([x, y, z]: [usize; 3], corner: u8) -> [usize; 3] {
+pub(crate) fn corner_of([x, y, z]: [usize; 3], corner: u8) -> [usize; 3] {
     let corner = usize::from(corner);
     [x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)]
 }
 
 /// Where on its edge a crossing is.
-pub(super) struct Placer<'a> {
+pub(crate) struct Placer<'a> {
     isovalue: f32,
     /// How near to either end it may lie.
     apart: Apart,
@@ -248,7 +198,7 @@ pub(super) struct Placer<'a> {
 }
 
 impl<'a> Placer<'a> {
-    pub(super) fn new(lattice: &Lattice, settings: &ExtractSettings, level: Option<Level<'a>>) -> Self {
+    pub(crate) fn new(lattice: &Lattice, settings: &ExtractSettings, level: Option<Level<'a>>) -> Self {
         Self {
             pull: 0.0,
             isovalue: settings.isovalue,
@@ -261,16 +211,16 @@ impl<'a> Placer<'a> {
     }
 
     /// The same with vertices drawn to the middles of their edges, but for edges in the sides of the box.
-    pub(super) fn pulled(self, pull: f32) -> Self {
+    pub(crate) fn pulled(self, pull: f32) -> Self {
         Self { pull, ..self }
     }
 
     /// The crossing by linear interpolation, on the edge that begins at a place. Of the edge alone, so that chunks, slabs and cells
     /// agree.
     #[inline]
-    pub(super) fn position(
+    pub(crate) fn position(
         &self,
-        grid: &Grid,
+        grid: &CubeGrid,
         place: [usize; 3],
         axis: usize,
         [here, there]: [f32; 2],
@@ -285,7 +235,7 @@ impl<'a> Placer<'a> {
     }
 
     /// The crossing on an edge that goes along several axes, the same way.
-    pub(super) fn position_between(&self, from: Vec3, to: Vec3, [here, there]: [f32; 2]) -> Vec3 {
+    pub(crate) fn position_between(&self, from: Vec3, to: Vec3, [here, there]: [f32; 2]) -> Vec3 {
         let least = self.apart.at(from).ratio(Company::Singles, 0, 0.0);
         let ratio = linear_ratio(self.isovalue - here, here, there).clamp(least, 1.0 - least);
         (from + (to - from) * ratio).clamp(from.min(to), from.max(to))
@@ -294,7 +244,7 @@ impl<'a> Placer<'a> {
     /// The shares of four edges at which their crossings are, by linear interpolation, where no vertex is drawn away. `from` says where
     /// each begins.
     #[inline(always)]
-    pub(super) fn shares(&self, from: impl Fn(usize) -> Vec3, here: Vec4, there: Vec4) -> Vec4 {
+    pub(crate) fn shares(&self, from: impl Fn(usize) -> Vec3, here: Vec4, there: Vec4) -> Vec4 {
         let least = match self.apart.everywhere() {
             Some(apart) => Vec4::splat(apart.ratio(Company::Singles, 0, 0.0)),
             None => Vec4::from_array(std::array::from_fn(|edge| {
@@ -308,7 +258,7 @@ impl<'a> Placer<'a> {
     }
 
     #[inline(never)]
-    fn drawn(&self, ratio: f32, grid: &Grid, place: [usize; 3], axis: usize) -> f32 {
+    fn drawn(&self, ratio: f32, grid: &CubeGrid, place: [usize; 3], axis: usize) -> f32 {
         let is_on_side = |other: usize| place[other] == 0 || place[other] + 1 == grid.size[other];
         if (0..3).any(|other| other != axis && is_on_side(other)) {
             return ratio;
@@ -317,7 +267,13 @@ impl<'a> Placer<'a> {
     }
 
     /// Where the settings want it, if elsewhere.
-    fn target(&self, grid: &Grid, place: [usize; 3], axis: usize, [here, there]: [f32; 2]) -> Option<Vec3> {
+    fn target(
+        &self,
+        grid: &CubeGrid,
+        place: [usize; 3],
+        axis: usize,
+        [here, there]: [f32; 2],
+    ) -> Option<Vec3> {
         if !self.refines {
             return None;
         }

@@ -13,17 +13,17 @@ use std::collections::{HashMap, TryReserveError};
 use glam::Vec3;
 use isostudy_field::StudyField;
 
-use super::extractor::LevelError;
+use super::error::LevelError;
 use super::layer::point;
 use super::neighbours::Neighbours;
 use crate::chunks::{Chunk, Normals};
-use crate::cubes::{ROUND, is_other_better};
-use crate::grid::Grid;
+use crate::duals::{ROUND, is_other_better};
+use crate::lattice::endless::Grid;
 use crate::lattice::{Arrangement, CellBox};
-use crate::level::Level;
 use crate::memory::push;
-use crate::spot::linear_ratio;
-use crate::trace::VertexKey;
+use crate::placement::spot::linear_ratio;
+use crate::sampling::level::Level;
+use crate::surface::trace::VertexKey;
 
 /// The vertex of a cell has this number; that of a cell without a crossed edge of its own the next.
 const OF_CELL: usize = 0;

@@ -1,29 +1,25 @@
 //! Extraction of chunks of all levels.
 
 use std::collections::{HashMap, TryReserveError};
-use std::error::Error;
-use std::fmt;
 
 use isostudy_field::{Plain, StudyField};
 
 use super::duals::{Known, Needed, Seams};
+use super::error::{COARSEST, LevelError};
 use super::layer::{Plane, layer};
 use super::neighbours::Neighbours;
 use super::shift::Shift;
 use super::transitions::{Corner, Decision, triangulate};
-use crate::chunks::{Chunk, ChunkError, ChunkExtractor, ChunkSettings, OfLevels};
-use crate::control::Control;
+use crate::chunks::{Chunk, ChunkExtractor, ChunkSettings, OfLevels};
 use crate::cubes::Faces;
-use crate::grid::Grid;
+use crate::execution::control::Control;
 use crate::lattice::CellBox;
-use crate::level::Level;
+use crate::lattice::endless::Grid;
 use crate::memory::push;
 use crate::method::Method;
+use crate::sampling::level::Level;
 use crate::source::Source;
-use crate::trace::VertexKey;
-
-/// The coarsest level that there is.
-const COARSEST: u32 = 24;
+use crate::surface::trace::VertexKey;
 
 /// Settings of chunks of several levels. Those that weld have the same.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -45,83 +41,6 @@ impl LevelSettings {
     /// The same with a width of transitions.
     pub fn with_width(self, width: f32) -> Self {
         Self { width, ..self }
-    }
-}
-
-/// Why a chunk of a level cannot be extracted.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub enum LevelError {
-    /// As for chunks of one level.
-    Chunk(ChunkError),
-    /// A method without levels.
-    Method,
-    /// A width that is none.
-    Width {
-        /// As given.
-        width: f32,
-    },
-    /// A level that there is not.
-    Level {
-        /// As given.
-        level: u32,
-    },
-    /// A neighbour whose level differs by more than one.
-    Step {
-        /// Where it is.
-        direction: [i32; 3],
-        /// The chunk's level, and the neighbour's.
-        levels: [u32; 2],
-    },
-    /// A finer neighbour of a chunk of the finest level.
-    Finest,
-    /// A chunk that begins or ends in the middle of a coarser neighbour's cell.
-    Odd {
-        /// As given.
-        cells: CellBox,
-    },
-    /// Samples in place of a field.
-    NeedsField,
-}
-
-impl fmt::Display for LevelError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Chunk(error) => error.fmt(f),
-            Self::Method => f.write_str(
-                "levels are for marching cubes, and for surface nets and dual contouring with one vertex a cell",
-            ),
-            Self::Width { width } => write!(f, "width = {width:?}: must be from 0 to 0.5, in cells"),
-            Self::Level { level } => {
-                write!(f, "level {level}: there are levels 0 to {COARSEST}, as far as cubes are finite in f32")
-            }
-            Self::Step { direction, levels: [of, neighbour] } => write!(
-                f,
-                "the neighbour in direction {direction:?} is of level {neighbour}, the chunk of level {of}: they may differ by \
-                 one"
-            ),
-            Self::Finest => f.write_str("level 0 is the finest: it has no finer neighbours"),
-            Self::Odd { cells } => write!(
-                f,
-                "cells {:?} to {:?} have a coarser neighbour: the numbers must be even",
-                cells.start, cells.end
-            ),
-            Self::NeedsField => f.write_str("seams need samples of two levels: give a field"),
-        }
-    }
-}
-
-impl Error for LevelError {}
-
-impl From<ChunkError> for LevelError {
-    fn from(error: ChunkError) -> Self {
-        Self::Chunk(error)
-    }
-}
-
-impl From<TryReserveError> for LevelError {
-    fn from(error: TryReserveError) -> Self {
-        Self::Chunk(error.into())
     }
 }
 

@@ -6,8 +6,8 @@ use glam::Vec3;
 use isostudy_field::StudyField;
 
 use crate::chunks::Chunk;
-use crate::grid::Grid;
 use crate::lattice::CellBox;
+use crate::lattice::endless::Grid;
 use crate::memory::refill;
 
 const NONE: u32 = u32::MAX;

@@ -1,6 +1,6 @@
 //! What is round a chunk.
 
-use super::extractor::LevelError;
+use super::error::LevelError;
 
 /// All directions, x fastest, the middle one to the chunk itself.
 pub(super) const DIRECTIONS: [[i32; 3]; 27] = {

@@ -77,7 +77,7 @@ impl Patterns {
                 let start = made.triangles.len();
                 for polygon in cell.loops(inside, joined.into()) {
                     let best = triangulator.cheapest(&polygon, |triangle| cost(&cell, triangle));
-                    made.triangles.extend(best.expect("cells/tests/transition.rs tries all"));
+                    made.triangles.extend(best.expect("isostudy-cells/tests/it/transition.rs tries all"));
                 }
                 made.ranges.insert((fine, joined), start..made.triangles.len());
             }

@@ -3,10 +3,10 @@
 use glam::Vec3;
 
 use super::neighbours::{DIRECTIONS, Neighbours, number};
-use crate::grid::Grid;
 use crate::lattice::CellBox;
-use crate::level::Level;
-use crate::trace::VertexKey;
+use crate::lattice::endless::Grid;
+use crate::sampling::level::Level;
+use crate::surface::trace::VertexKey;
 
 /// Where the corners of a chunk's cells go: away from finer chunks by the width of a transition, and other points between corners as
 /// these do. All chunks that have a corner say the same of it.

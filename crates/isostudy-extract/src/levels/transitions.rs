@@ -9,9 +9,9 @@ use super::layer::{Plane, point};
 use super::patterns::{CORNERS, Edge, Patterns, SQUARES};
 use crate::chunks::Chunk;
 use crate::cubes::{Faces, joins};
-use crate::grid::Grid;
 use crate::lattice::Arrangement;
-use crate::trace::VertexKey;
+use crate::lattice::endless::Grid;
+use crate::surface::trace::VertexKey;
 
 /// A corner of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

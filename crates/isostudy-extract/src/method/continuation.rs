@@ -2,7 +2,8 @@
 
 use super::of_cubes::OfCubes;
 use super::{MethodError, Promises};
-use crate::cubes::{Continued, ContinuedCells, Seeds, Way};
+use crate::cubes::{Continued, ContinuedCells, Seeds};
+use crate::extractor::Way;
 
 /// Marching cubes from cube to cube: from seeds on, across faces with corners on both sides (Wyvill, McPheeters & Wyvill 1986; Bloomenthal
 /// 1994). It takes about two samples for each vertex, however large the box is, and none between the surface and the box.

@@ -2,7 +2,8 @@
 
 use super::Promises;
 use super::of_cubes::OfCubes;
-use crate::cubes::{Diagonals, Faces, Rule, Way};
+use crate::cubes::{Diagonals, Faces, Rule};
+use crate::extractor::Way;
 use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topology};
 
 /// Marching cubes: cubes that are not cut any further, a polygon for each loop of surface round one (Lorensen & Cline 1987), and

@@ -2,7 +2,8 @@
 
 use super::of_cubes::OfCubes;
 use super::{MethodError, Promises};
-use crate::cubes::{Nets, Sharp, Way};
+use crate::duals::{Nets, Sharp};
+use crate::extractor::Way;
 
 /// Dual contouring (Ju, Losasso, Schaefer & Warren 2002) on a uniform grid, or an octree made of one: the connections of [surface nets](super::SurfaceNets), with
 /// each vertex where the field's tangent planes at the crossings of its cube meet, so that edges and corners are kept.

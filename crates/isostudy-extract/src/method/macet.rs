@@ -2,7 +2,8 @@
 
 use super::of_cubes::OfCubes;
 use super::{MethodError, Promises};
-use crate::cubes::{Diagonals, EdgeMoves, Faces, Rule, Way};
+use crate::cubes::{Diagonals, EdgeMoves, Faces, Rule};
+use crate::extractor::Way;
 
 /// Marching cubes whose edges are turned square to the surface before they are cut (Macet: Dietrich, Scheidegger, Schreiner, Comba,
 /// Nedel & Silva 2009). Triangles are those of the table; vertices go where they make good ones.

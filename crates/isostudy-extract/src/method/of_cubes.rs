@@ -1,10 +1,11 @@
 //! What all families of cubes have in common: samples at the corners of the cubes, and one driver for all that is made of them.
 
 use super::{ByWindow, Family, MethodError, Promises};
-use crate::box_grid::BoxGrid;
-use crate::cubes::{Rule, Way, cells_otherwise, table};
+use crate::cubes::{Rule, cells_otherwise, table};
 use crate::extraction::{Extraction, check};
 use crate::extractor::Extractor;
+use crate::extractor::Way;
+use crate::lattice::BoxGrid;
 use crate::lattice::{Arrangement, LatticeError};
 use crate::settings::{Clustering, Execution, ExtractSettings, Topology};
 use crate::source::Source;

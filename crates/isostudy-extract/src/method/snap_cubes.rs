@@ -2,10 +2,11 @@
 
 use super::of_cubes::OfCubes;
 use super::{MethodError, Promises};
-use crate::cubes::{Flat, Way};
+use crate::cubes::Flat;
+use crate::extractor::Way;
 
 /// Marching cubes whose crossings near a point of the lattice are drawn to it, so that triangles have bounded angles (Raman & Wenger
-/// 2008): from 12.7 to 144.2 degrees with the default, whatever the samples (`tests/snap.rs` tries every triangle of the table).
+/// 2008): from 12.7 to 144.2 degrees with the default, whatever the samples (`tests/it/snap.rs` tries every triangle of the table).
 ///
 /// A sample that equals the isovalue is on the surface where one of the cells at it has a corner inside, otherwise outside. On the box
 /// it is outside too, unless a neighbour there is inside: so a solid that ends at the box has walls. The bounds of angles do not hold

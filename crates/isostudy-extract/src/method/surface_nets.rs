@@ -2,7 +2,8 @@
 
 use super::of_cubes::OfCubes;
 use super::{MethodError, Promises};
-use crate::cubes::{Nets, Way};
+use crate::duals::{MOST_SMOOTHING, Nets};
+use crate::extractor::Way;
 use crate::settings::{Clustering, ExtractSettings, Topology};
 
 /// Surface nets, the dual of marching cubes: a vertex in each cube that the surface crosses, at the mean of the crossings of its edges,
@@ -26,9 +27,6 @@ pub struct SurfaceNets {
     /// How far crossings are kept from sample points, in lengths of a lattice edge: see [`ExtractSettings::edge_clamp`].
     pub edge_clamp: f32,
 }
-
-/// The most steps of [`SurfaceNets::smoothing`]: each needs one more cell round a chunk.
-pub(crate) const MOST_SMOOTHING: u32 = 64;
 
 impl OfCubes for SurfaceNets {
     fn way(&self) -> Way {

@@ -1,9 +1,9 @@
 //! Marching tetrahedra as a method.
 
 use super::{ByWindow, Family, MethodError, Promises};
-use crate::box_grid::BoxGrid;
 use crate::extraction::{Extraction, check};
 use crate::extractor::Extractor;
+use crate::lattice::BoxGrid;
 use crate::lattice::{Arrangement, LatticeError};
 use crate::settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 use crate::source::Source;
@@ -126,7 +126,7 @@ impl Family for Tetrahedra {
     }
 
     fn tables(&self) -> Vec<isostudy_cells::Table> {
-        crate::tetrahedra::tables(self.arrangement)
+        crate::lattice::tetrahedra::tables(self.arrangement)
     }
 
     /// A vertex of a cell is one of its neighbours' too, their other vertices give it its normal, and those depend on

@@ -5,9 +5,9 @@ use isostudy_mesh::Bounds;
 
 use super::curvature::Planes;
 use super::surroundings::Surroundings;
-use crate::bracket::Bracket;
 use crate::lattice::{DIRECTIONS, DirectionSet, Lattice, members};
-use crate::level::Level;
+use crate::sampling::bracket::Bracket;
+use crate::sampling::level::Level;
 use crate::settings::{ExtractSettings, Placement};
 
 /// Calls of the field for one crossing, at most.

@@ -3,20 +3,20 @@
 use std::collections::TryReserveError;
 
 use super::Map;
-use crate::cubes::grid::Grid;
+use crate::cubes::grid::CubeGrid;
 use crate::cubes::vertices::corner_of;
 use crate::source::Sampler;
 
 /// Samples by place. Of a field each is taken once.
 pub(super) struct Corners<'a> {
-    pub(super) grid: &'a Grid<'a>,
+    pub(super) grid: &'a CubeGrid<'a>,
     source: Sampler<'a>,
     pub(super) isovalue: f32,
     taken: Map<f32>,
 }
 
 impl<'a> Corners<'a> {
-    pub(super) fn new(grid: &'a Grid<'a>, source: Sampler<'a>, isovalue: f32) -> Self {
+    pub(super) fn new(grid: &'a CubeGrid<'a>, source: Sampler<'a>, isovalue: f32) -> Self {
         Self { grid, source, isovalue, taken: Map::default() }
     }
 

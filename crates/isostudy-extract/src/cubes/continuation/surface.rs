@@ -9,12 +9,12 @@ use super::corners::Corners;
 use super::seeds::ContinuedCells;
 use super::visit::Visited;
 use crate::cubes::Rule;
-use crate::cubes::grid::Grid;
+use crate::cubes::grid::CubeGrid;
 use crate::cubes::patches::{Patch, Patches};
 use crate::cubes::tubes::INNER;
 use crate::cubes::vertices::{Placer, corner_of};
+use crate::lattice::tetrahedra::{CASES, Case, EDGES};
 use crate::memory::push;
-use crate::tetrahedra::{CASES, Case, EDGES};
 
 /// The six tetrahedra of a cube, corners `x + 2 y + 4 z`: Bloomenthal's (1994). With `e1, e2, e3` from the first to the others,
 /// `det(e1, e2, e3) > 0`.
@@ -31,7 +31,7 @@ const CODES: u64 = 16;
 
 /// What vertices and triangles are made of.
 pub(super) struct Surface<'a> {
-    grid: &'a Grid<'a>,
+    grid: &'a CubeGrid<'a>,
     corners: &'a Corners<'a>,
     placer: &'a Placer<'a>,
     rule: Rule,
@@ -48,7 +48,7 @@ pub(super) struct Numbered {
 
 impl<'a> Surface<'a> {
     pub(super) fn new(
-        grid: &'a Grid<'a>,
+        grid: &'a CubeGrid<'a>,
         corners: &'a Corners<'a>,
         placer: &'a Placer<'a>,
         rule: Rule,

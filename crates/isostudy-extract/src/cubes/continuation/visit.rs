@@ -4,7 +4,7 @@ use std::collections::TryReserveError;
 
 use super::Map;
 use super::corners::Corners;
-use crate::control::Control;
+use crate::execution::control::Control;
 use crate::extraction::ExtractError;
 use crate::memory::with_room;
 

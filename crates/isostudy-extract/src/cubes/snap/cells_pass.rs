@@ -3,7 +3,7 @@
 use std::collections::TryReserveError;
 
 use super::super::Flat;
-use super::super::grid::Grid;
+use super::super::grid::CubeGrid;
 use super::super::records::Records;
 use super::super::rows::{Rows, next};
 use super::super::vertices::corner_of;
@@ -11,7 +11,7 @@ use super::labels::Labels;
 use super::table::{CORNER, MOST_TRIANGLES, Table};
 use super::vertices::Record;
 use crate::memory::reset;
-use crate::triangles::Triangulation;
+use crate::surface::triangulation::Triangulation;
 
 /// The patches of two layers of cells, and the points on the surface that they use.
 #[derive(Default)]
@@ -25,7 +25,7 @@ pub(super) struct Chosen {
 
 impl Chosen {
     /// Makes room, with none chosen.
-    pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), TryReserveError> {
+    pub(super) fn fit(&mut self, grid: &CubeGrid) -> Result<(), TryReserveError> {
         let [nx, ny, _] = grid.size;
         self.size = [nx, ny];
         self.live.fit(grid, 2)?;
@@ -45,7 +45,7 @@ impl Chosen {
     /// Chooses the patches of layer `z` of cells. Labels are known from the layer of points below to two above it.
     ///
     /// A patch in a face is the other cell's too, facing the other way, if that has no other corner inside or on the surface.
-    pub(super) fn layer(&mut self, grid: &Grid, labels: &Labels, table: &Table, flat: Flat, z: usize) {
+    pub(super) fn layer(&mut self, grid: &CubeGrid, labels: &Labels, table: &Table, flat: Flat, z: usize) {
         self.clear_used(z + 1);
         for y in 0..grid.size[1] - 1 {
             self.live.row_mut(y, z).fill(0);
@@ -92,7 +92,7 @@ impl Chosen {
     /// Adds the triangles of layer `z` of cells. Of the layers of points below and above it, records are known.
     pub(super) fn triangulate(
         &self,
-        grid: &Grid,
+        grid: &CubeGrid,
         table: &Table,
         records: &Records<Record>,
         z: usize,

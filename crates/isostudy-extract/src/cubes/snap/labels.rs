@@ -2,11 +2,11 @@
 
 use std::collections::TryReserveError;
 
-use super::super::grid::Grid;
+use super::super::grid::CubeGrid;
 use super::super::rows::{Rows, before, next};
 use super::super::sampling::{Near, Samples};
-use crate::in_sight::{State, Values};
 use crate::memory::reset;
+use crate::sampling::in_sight::{State, Values};
 
 /// Layers in sight: of a cell, the two of its corners, and one more on either side.
 const SLOTS: usize = 4;
@@ -28,7 +28,7 @@ pub(super) struct Labels {
 
 impl Labels {
     /// Makes room, with all points outside.
-    pub(super) fn fit(&mut self, grid: &Grid) -> Result<(), TryReserveError> {
+    pub(super) fn fit(&mut self, grid: &CubeGrid) -> Result<(), TryReserveError> {
         let [nx, ny, _] = grid.size;
         self.size = grid.size;
         self.inside.fit(grid, SLOTS)?;
@@ -66,7 +66,14 @@ impl Labels {
     }
 
     /// Labels a layer. Of the layers next to it, sides and samples are known.
-    pub(super) fn find(&mut self, grid: &Grid, samples: &Samples, values: Values, snap: Snap, layer: usize) {
+    pub(super) fn find(
+        &mut self,
+        grid: &CubeGrid,
+        samples: &Samples,
+        values: Values,
+        snap: Snap,
+        layer: usize,
+    ) {
         let [nx, ny, nz] = grid.size;
         let near_layers = [layer.saturating_sub(1), layer, (layer + 1).min(nz - 1)];
         let states = near_layers.map(|layer| samples.states(layer));
@@ -120,7 +127,7 @@ struct Around<'a> {
 }
 
 impl<'a> Around<'a> {
-    fn new(grid: &Grid, samples: &'a Samples, values: Values<'a>, [row, layer]: [usize; 2]) -> Self {
+    fn new(grid: &CubeGrid, samples: &'a Samples, values: Values<'a>, [row, layer]: [usize; 2]) -> Self {
         let at = |y, z| (samples.sides.row(y, z), values.row(y, z));
         let (sides, here) = at(row, layer);
         let others = WAYS.map(|(axis, is_next)| {
@@ -138,7 +145,7 @@ impl<'a> Around<'a> {
     }
 
     /// The points of a word from which an edge leads to the other side, by way.
-    fn crossed(&self, grid: &Grid, word: usize) -> [u64; WAYS.len()] {
+    fn crossed(&self, grid: &CubeGrid, word: usize) -> [u64; WAYS.len()] {
         let mut way = 0;
         self.others.map(|(sides, _)| {
             let there = match WAYS[way] {
@@ -210,7 +217,7 @@ impl Snap {
 /// Whether a point lies on a side of the box with nothing inside next to it on that side. A patch through it would lie in the side,
 /// where no cell has one, and a solid that ends there would be open.
 #[inline]
-fn is_wall(grid: &Grid, samples: &Samples, place: [usize; 3]) -> bool {
+fn is_wall(grid: &CubeGrid, samples: &Samples, place: [usize; 3]) -> bool {
     let is_side = |axis: usize| place[axis] == 0 || place[axis] + 1 == grid.size[axis];
     (0..3).any(is_side) && !has_inside_beside(grid, samples, place, is_side)
 }
@@ -218,7 +225,7 @@ fn is_wall(grid: &Grid, samples: &Samples, place: [usize; 3]) -> bool {
 /// Whether a point next to it, on one of the same sides, is inside.
 #[cold]
 fn has_inside_beside(
-    grid: &Grid,
+    grid: &CubeGrid,
     samples: &Samples,
     place: [usize; 3],
     is_side: impl Fn(usize) -> bool,

@@ -4,14 +4,15 @@ use std::collections::TryReserveError;
 
 use glam::Vec3;
 
-use super::super::grid::Grid;
+use super::super::grid::CubeGrid;
 use super::super::records::Records;
 use super::super::rows::{Rows, next};
-use super::super::vertices::{Placer, RANK, Vertices};
+use super::super::vertices::{Placer, RANK};
 use super::labels::Labels;
-use crate::bits::between;
-use crate::in_sight::Values;
 use crate::memory::push;
+use crate::sampling::bits::between;
+use crate::sampling::in_sight::Values;
+use crate::slabs::Vertices;
 
 /// The number in a key of a vertex that stands for a point. Those on edges have the edge's axis.
 const AT_POINT: usize = 3;
@@ -34,7 +35,7 @@ impl Record {
 
 /// What the pass reads.
 pub(super) struct VertexPass<'a> {
-    pub(super) grid: &'a Grid<'a>,
+    pub(super) grid: &'a CubeGrid<'a>,
     pub(super) labels: &'a Labels,
     pub(super) used: &'a Rows,
     pub(super) values: Values<'a>,
@@ -107,7 +108,7 @@ impl VertexPass<'_> {
             push(&mut vertices.positions, self.crossing(place, axis))?;
             vertices.name(self.grid.lattice, place, axis)?;
         }
-        vertices.crossings += u64::from(crossed.count_ones());
+        vertices.crossing_ends += 2 * u64::from(crossed.count_ones());
         Ok(())
     }
 

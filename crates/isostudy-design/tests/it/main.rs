@@ -1,0 +1,4 @@
+//! Studies, from outside.
+
+mod page;
+mod study_file;

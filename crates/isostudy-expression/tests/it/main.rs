@@ -1,0 +1,5 @@
+//! Formulas, from outside.
+
+mod formulas;
+mod gradients;
+mod noise;

@@ -1,0 +1,449 @@
+//! Surface nets of labels: the boundaries between every two of them.
+//!
+//! A cell with more than one label at its corners has one vertex, at the mean of the middles of its edges whose ends differ. Each such
+//! edge that four cells share has a quadrilateral round it (Gibson 1998; of many labels, Frisken 2022). So what is a net between two
+//! labels is the same net as that of samples 0 and 1, and where boundaries meet they share their vertices.
+//!
+//! Two layers of labels and the vertex numbers of two layers of cells are held at a time.
+
+use std::collections::{BTreeMap, TryReserveError};
+use std::error::Error;
+use std::fmt;
+
+use glam::Vec3;
+use isostudy_mesh::{LabelledMesh, TriangleMesh};
+
+use super::quads::{CORNERS, Quadrilateral};
+use super::relaxed::{MOST_SMOOTHING, relax_positions};
+use crate::execution::control::Control;
+use crate::extraction::ExtractError;
+use crate::memory::{filled, push};
+use crate::surface::space::Space;
+
+/// The label of what is outside of everything.
+const BACKGROUND: u32 = 0;
+/// More labels than any segmentation has: a volume of densities is none.
+const MOST_LABELS: usize = 1 << 16;
+/// Of a cell without a vertex.
+const NONE: u32 = u32::MAX;
+
+/// Labels on a regular grid that may be turned, mirrored, sheared and unequal in its steps. Label `(i, j, k)` lies at
+/// `origin + i * steps[0] + j * steps[1] + k * steps[2]`, the first axis fastest. Label 0 is the background.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LabelVolume<'a> {
+    /// Labels along each axis, two at least.
+    pub counts: [usize; 3],
+    /// All of them.
+    pub labels: &'a [u32],
+    /// Where the first one lies.
+    pub origin: [f64; 3],
+    /// From one to the next along each axis.
+    pub steps: [[f64; 3]; 3],
+}
+
+/// What decides the boundaries of labels. By default all labels, no smoothing, open where they leave the volume.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct LabelSettings<'a> {
+    /// The labels that count; all others are background. All count if there are none.
+    pub only: &'a [u32],
+    /// As [`SurfaceNets::smoothing`](crate::SurfaceNets::smoothing): a vertex of several boundaries is drawn to its neighbours on all.
+    pub smoothing: u32,
+    /// Whether there is background beyond the volume, so that boundaries are closed half a step beyond its last labels.
+    pub close: bool,
+}
+
+/// How many samples have a label.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LabelCount {
+    /// The label.
+    pub label: u32,
+    /// Its samples.
+    pub samples: u64,
+}
+
+/// The boundaries between labels.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct LabelSurface {
+    /// Inside is the larger label of each pair: so 0 is outside always, and triangles face the smaller label.
+    pub labelled: LabelledMesh,
+    /// The labels by which there are boundaries, the background among them, in ascending order.
+    pub counts: Vec<LabelCount>,
+    /// Edges between samples that have different labels.
+    pub crossings: u64,
+}
+
+/// Why labels have no boundaries.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum LabelError {
+    /// An axis with fewer than two labels.
+    Flat {
+        /// As given.
+        counts: [usize; 3],
+    },
+    /// Not as many labels as the counts say.
+    Count {
+        /// How many there are.
+        given: usize,
+        /// As given.
+        counts: [usize; 3],
+    },
+    /// The steps span no space, or are not finite.
+    Steps {
+        /// As given.
+        steps: [[f64; 3]; 3],
+        /// As given.
+        origin: [f64; 3],
+    },
+    /// Nothing to have a boundary with.
+    Alone {
+        /// The one label.
+        label: u32,
+    },
+    /// A volume of something else.
+    TooMany,
+    /// A label was chosen that no sample has.
+    Absent {
+        /// As chosen.
+        label: u32,
+        /// Those that there are.
+        known: Vec<u32>,
+    },
+    /// The background was chosen.
+    Background,
+    /// More steps than there may be.
+    Smoothing {
+        /// As given.
+        smoothing: u32,
+    },
+    /// The extraction fails.
+    Extract(ExtractError),
+}
+
+impl fmt::Display for LabelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flat { counts } => {
+                write!(f, "{counts:?} samples along the axes; there must be two or more along each")
+            }
+            Self::Count { given, counts } => {
+                write!(f, "{given} labels for {counts:?} samples along the axes")
+            }
+            Self::Steps { steps, origin } => {
+                write!(f, "the steps {steps:?} from sample to sample, from {origin:?}, span no space")
+            }
+            Self::Alone { label } => write!(f, "every sample has the label {label}: there is no boundary"),
+            Self::TooMany => write!(f, "more than {MOST_LABELS} different labels: are these densities?"),
+            Self::Absent { label, known } => {
+                write!(f, "no sample has the label {label}; labels are {}", few(known))
+            }
+            Self::Background => {
+                write!(f, "label {BACKGROUND} is the background, which is there always; choose others")
+            }
+            Self::Smoothing { smoothing } => {
+                write!(f, "smoothing = {smoothing}: must be from 0 to {MOST_SMOOTHING}, steps")
+            }
+            Self::Extract(error) => error.fmt(f),
+        }
+    }
+}
+
+impl Error for LabelError {}
+
+impl From<ExtractError> for LabelError {
+    fn from(error: ExtractError) -> Self {
+        Self::Extract(error)
+    }
+}
+
+/// The first of a list, for messages.
+fn few(labels: &[u32]) -> String {
+    const SHOWN: usize = 12;
+    let mut shown: Vec<String> = labels.iter().take(SHOWN).map(u32::to_string).collect();
+    if labels.len() > SHOWN {
+        shown.push(format!("{} more", labels.len() - SHOWN));
+    }
+    shown.join(", ")
+}
+
+impl LabelVolume<'_> {
+    /// Extracts the boundaries between labels. The same labels and settings give the same mesh to the byte, whatever `control` says; only
+    /// steps of smoothing are taken on several threads.
+    ///
+    /// The boundary of each label, [`LabelledMesh::boundary_of`], is closed where it stays clear of the volume's faces, and everywhere if
+    /// the settings say so. Where two of its sheets cross one cell they share a vertex, and an edge if they cross a face by turns.
+    ///
+    /// Vertices are placed in steps of the grid, then taken to space in double precision.
+    ///
+    /// # Errors
+    /// [`LabelError`].
+    pub fn extract<'c>(
+        &self,
+        settings: &LabelSettings,
+        control: impl Into<Control<'c>>,
+    ) -> Result<LabelSurface, LabelError> {
+        let Self { counts, labels, origin, steps } = *self;
+        let smoothing = settings.smoothing;
+        if smoothing > MOST_SMOOTHING {
+            return Err(LabelError::Smoothing { smoothing });
+        }
+        if counts.iter().any(|&n| n < 2) {
+            return Err(LabelError::Flat { counts });
+        }
+        if labels.len() != counts.iter().product::<usize>() {
+            return Err(LabelError::Count { given: labels.len(), counts });
+        }
+        let space = Space::try_new(origin, steps).ok_or(LabelError::Steps { steps, origin })?;
+        let counted = counted(labels, settings)?;
+        let control = control.into();
+        let mut net = Net::new(self, settings);
+        net.fill(&control)?;
+        let Net { positions, cells, triangles, sides, crossings, .. } = net;
+        let mut mesh = TriangleMesh { positions, triangles, normals: Vec::new() };
+        if smoothing > 0 {
+            let cell = |v: usize| {
+                let low = Vec3::from_array(cells[v].map(|i| i as f32));
+                [low, low + 1.0]
+            };
+            relax_positions(&control, smoothing, &mut mesh, cell)?;
+        }
+        space.place(&mut mesh);
+        Ok(LabelSurface { labelled: LabelledMesh { mesh, sides }, counts: counted, crossings })
+    }
+}
+
+/// The labels that count, and how many samples have each.
+fn counted(labels: &[u32], settings: &LabelSettings) -> Result<Vec<LabelCount>, LabelError> {
+    let mut found: BTreeMap<u32, u64> = BTreeMap::new();
+    for run in labels.chunk_by(|a, b| a == b) {
+        *found.entry(run[0]).or_default() += run.len() as u64;
+        if found.len() > MOST_LABELS {
+            return Err(LabelError::TooMany);
+        }
+    }
+    for &label in settings.only {
+        if label == BACKGROUND {
+            return Err(LabelError::Background);
+        }
+        if !found.contains_key(&label) {
+            return Err(LabelError::Absent { label, known: found.into_keys().collect() });
+        }
+    }
+    let mut counts: BTreeMap<u32, u64> = BTreeMap::new();
+    for (label, samples) in found {
+        *counts.entry(chosen(label, settings.only)).or_default() += samples;
+    }
+    let alone = counts.first_key_value().filter(|_| counts.len() == 1).map(|(&label, _)| label);
+    match alone {
+        Some(label) if label == BACKGROUND || !settings.close => Err(LabelError::Alone { label }),
+        _ => Ok(counts.into_iter().map(|(label, samples)| LabelCount { label, samples }).collect()),
+    }
+}
+
+/// A label, or the background if it does not count.
+fn chosen(label: u32, only: &[u32]) -> u32 {
+    if only.is_empty() || only.contains(&label) { label } else { BACKGROUND }
+}
+
+/// The net as it grows, in steps of the grid.
+struct Net<'a> {
+    volume: &'a LabelVolume<'a>,
+    only: &'a [u32],
+    /// Layers of background on either side.
+    border: usize,
+    /// Samples along each axis, those beyond the volume included.
+    size: [usize; 3],
+    positions: Vec<Vec3>,
+    /// The lowest corner of each vertex's cell; only where vertices will be moved.
+    cells: Vec<[i64; 3]>,
+    keeps_cells: bool,
+    triangles: Vec<[u32; 3]>,
+    sides: Vec<[u32; 2]>,
+    crossings: u64,
+}
+
+/// What is in sight of a layer of points: its labels and the next layer's, and the vertices of the cells below and above it.
+struct Sight {
+    here: Vec<u32>,
+    next: Vec<u32>,
+    below: Vec<u32>,
+    above: Vec<u32>,
+}
+
+/// The corner that each of a cube's edges begins at, and its axis.
+const EDGES: [(usize, usize); 12] = {
+    let mut edges = [(0, 0); 12];
+    let (mut count, mut corner) = (0, 0);
+    while corner < 8 {
+        let mut axis = 0;
+        while axis < 3 {
+            if corner >> axis & 1 == 0 {
+                edges[count] = (corner, axis);
+                count += 1;
+            }
+            axis += 1;
+        }
+        corner += 1;
+    }
+    edges
+};
+
+impl<'a> Net<'a> {
+    fn new(volume: &'a LabelVolume, settings: &LabelSettings<'a>) -> Self {
+        let border = usize::from(settings.close);
+        Self {
+            volume,
+            only: settings.only,
+            border,
+            size: volume.counts.map(|n| n + 2 * border),
+            positions: Vec::new(),
+            cells: Vec::new(),
+            keeps_cells: settings.smoothing > 0,
+            triangles: Vec::new(),
+            sides: Vec::new(),
+            crossings: 0,
+        }
+    }
+
+    fn fill(&mut self, control: &Control) -> Result<(), ExtractError> {
+        let [nx, ny, nz] = self.size;
+        let layer = || filled(nx * ny, NONE);
+        let mut sight = Sight { here: layer()?, next: layer()?, below: layer()?, above: layer()? };
+        self.read(0, &mut sight.next);
+        for z in 0..nz {
+            control.check()?;
+            std::mem::swap(&mut sight.here, &mut sight.next);
+            std::mem::swap(&mut sight.below, &mut sight.above);
+            if z + 1 < nz {
+                self.read(z + 1, &mut sight.next);
+                self.vertices(z, &mut sight)?;
+            }
+            self.quadrilaterals(z, &sight)?;
+            if let Some(progress) = control.progress {
+                progress(z + 1, nz);
+            }
+        }
+        Ok(())
+    }
+
+    /// The labels of a layer of points.
+    fn read(&self, z: usize, layer: &mut [u32]) {
+        let [nx, ..] = self.size;
+        let [cx, cy, cz] = self.volume.counts;
+        layer.fill(BACKGROUND);
+        let Some(z) = z.checked_sub(self.border).filter(|&z| z < cz) else { return };
+        for (y, row) in self.volume.labels[z * cx * cy..][..cx * cy].chunks_exact(cx).enumerate() {
+            let start = (y + self.border) * nx + self.border;
+            for (to, &label) in layer[start..start + cx].iter_mut().zip(row) {
+                *to = chosen(label, self.only);
+            }
+        }
+    }
+
+    /// Gives each cell of a layer a vertex that has more than one label and a quadrilateral.
+    fn vertices(&mut self, z: usize, sight: &mut Sight) -> Result<(), ExtractError> {
+        let [nx, ny, _] = self.size;
+        for y in 0..ny - 1 {
+            let rows = [
+                &sight.here[y * nx..],
+                &sight.here[(y + 1) * nx..],
+                &sight.next[y * nx..],
+                &sight.next[(y + 1) * nx..],
+            ];
+            for x in 0..nx - 1 {
+                let corners: [u32; 8] = std::array::from_fn(|c| rows[c >> 1][x + (c & 1)]);
+                let cell = [x, y, z];
+                sight.above[y * nx + x] = match self.mean(cell, &corners) {
+                    None => NONE,
+                    Some(place) => {
+                        let number = self.positions.len() as u32;
+                        if number == NONE {
+                            return Err(ExtractError::TooManyVertices { limit: NONE });
+                        }
+                        let low = cell.map(|i| i as i64 - self.border as i64);
+                        push(&mut self.positions, Vec3::from_array(low.map(|i| i as f32)) + place)?;
+                        if self.keeps_cells {
+                            push(&mut self.cells, low)?;
+                        }
+                        number
+                    }
+                };
+            }
+        }
+        Ok(())
+    }
+
+    /// Where in its cell the vertex lies, if there is one.
+    fn mean(&self, cell: [usize; 3], corners: &[u32; 8]) -> Option<Vec3> {
+        if corners.iter().all(|label| *label == corners[0]) {
+            return None;
+        }
+        // In halves of a step.
+        let (mut sum, mut count, mut is_used) = ([0; 3], 0, false);
+        for (corner, axis) in EDGES {
+            if corners[corner] == corners[corner | 1 << axis] {
+                continue;
+            }
+            count += 1;
+            for (a, sum) in sum.iter_mut().enumerate() {
+                *sum += if a == axis { 1 } else { 2 * (corner >> a & 1) };
+            }
+            let place = [0, 1, 2].map(|a| cell[a] + (corner >> a & 1));
+            is_used |= self.is_shared(place, axis);
+        }
+        is_used.then(|| Vec3::from_array(sum.map(|s| s as f32 * 0.5)) / count as f32)
+    }
+
+    /// Whether four cells share the edge that begins at a point.
+    fn is_shared(&self, place: [usize; 3], axis: usize) -> bool {
+        (0..3).all(|a| a == axis || (0 < place[a] && place[a] + 1 < self.size[a]))
+    }
+
+    /// The quadrilaterals round the edges that begin in a layer of points.
+    fn quadrilaterals(&mut self, z: usize, sight: &Sight) -> Result<(), TryReserveError> {
+        let [nx, ny, nz] = self.size;
+        for y in 0..ny {
+            for x in 0..nx {
+                let (place, at) = ([x, y, z], y * nx + x);
+                let here = sight.here[at];
+                for axis in 0..3 {
+                    if place[axis] + 1 == [nx, ny, nz][axis] {
+                        continue;
+                    }
+                    let there = if axis == 2 { sight.next[at] } else { sight.here[at + [1, nx][axis]] };
+                    if here == there {
+                        continue;
+                    }
+                    self.crossings += 1;
+                    if self.is_shared(place, axis) {
+                        self.quadrilateral(place, axis, here > there, sight)?;
+                        let sides = [here.max(there), here.min(there)];
+                        self.sides.try_reserve(2)?;
+                        self.sides.extend([sides; 2]);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn quadrilateral(
+        &mut self,
+        place: [usize; 3],
+        axis: usize,
+        leads_out: bool,
+        sight: &Sight,
+    ) -> Result<(), TryReserveError> {
+        let [nx, ..] = self.size;
+        let corners = std::array::from_fn(|cell| {
+            // As many steps back as the corner of the cell that the edge begins at is forward.
+            let corner = usize::from(CORNERS[axis][cell]);
+            let [x, y, z] = [0, 1, 2].map(|a| corner >> a & 1);
+            let layer = if z == 1 { &sight.below } else { &sight.above };
+            layer[(place[1] - y) * nx + place[0] - x]
+        });
+        self.triangles.try_reserve(2)?;
+        self.triangles.extend(Quadrilateral { corners, leads_out }.by_shorter_diagonal(&self.positions));
+        Ok(())
+    }
+}

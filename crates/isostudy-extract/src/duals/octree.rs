@@ -1,0 +1,57 @@
+//! Simplification: cells become cells of twice the size, again and again, where one vertex will do (Ju, Losasso, Schaefer & Warren 2002,
+//! sections 3 and 4).
+//!
+//! Eight cells become one where that changes no topology, and where one point is near enough to the tangent planes at all of their
+//! crossings. What is left is an octree, contoured round its minimal edges. No walk over the octree is needed for that: a minimal edge
+//! has one crossing at most, so its polygon is the quadrilateral of that crossing in the uniform net, with the vertices of merged cells
+//! in place of those that they had.
+
+mod hermite;
+mod merging;
+mod net;
+
+use self::hermite::Hermite;
+use self::merging::{Merging, merged_cells};
+use self::net::Net;
+use super::quads::Quadrilateral;
+use super::sharp::Sharp;
+use crate::clock::Moment;
+use crate::cubes::grid::CubeGrid;
+use crate::extraction::{ExtractError, Extraction};
+use crate::memory::collected;
+use crate::source::Request;
+use crate::surface::normals::vertex_normals;
+use crate::surface::trace::Trace;
+
+/// Merges cells of an extraction with tangent planes, whose trace is given. No vertex of a merged cell is farther than `tolerance` spacings from the
+/// tangent plane at a crossing of its cell.
+///
+/// # Errors
+/// [`ExtractError::NoMemoryForMesh`], [`ExtractError::Threads`], [`ExtractError::Cancelled`].
+pub(super) fn simplify(
+    request: &Request,
+    sharp: Sharp,
+    tolerance: f32,
+    trace: &mut Trace,
+    extraction: &mut Extraction,
+) -> Result<(), ExtractError> {
+    let Some(level) = request.level() else { return Ok(()) };
+    let start = Moment::now();
+    let grid = &CubeGrid::new(request.lattice)?;
+    let hermite = &Hermite::of(request, level, grid, trace)?;
+    let most = f64::from(tolerance) * f64::from(level.spacing);
+    let merged = merged_cells(request, &Merging { grid, hermite, sharp, most })?;
+    let mesh = &mut extraction.mesh;
+    let quadrilaterals = mesh.triangles.as_chunks::<2>().0.iter().map(|&pair| Quadrilateral::of(pair));
+    let net = Net { level, grid, hermite, merged: &merged, quadrilaterals: collected(quadrilaterals)? };
+    let triangles_before = mesh.triangles.len();
+    net.unfolded(request, &mesh.positions)?.write(&net, trace, mesh)?;
+    mesh.normals =
+        vertex_normals(&mesh.positions, &mesh.triangles).map_err(|_| ExtractError::NoMemoryForMesh)?;
+    let counts = &mut extraction.counts;
+    (counts.vertices, counts.triangles) = (mesh.positions.len() as u64, mesh.triangles.len() as u64);
+    (counts.vertex_bytes, counts.index_bytes) = (24 * counts.vertices, 12 * counts.triangles);
+    counts.discarded_triangles = triangles_before as u64 - counts.triangles;
+    extraction.times.vertex += start.elapsed();
+    Ok(())
+}

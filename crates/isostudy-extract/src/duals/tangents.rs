@@ -1,0 +1,86 @@
+//! Crossings as the field has them, with its normals there: each asked for once.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use crate::cubes::grid::CubeGrid;
+use crate::sampling::bracket::Bracket;
+use crate::sampling::level::Level;
+
+/// The root search may call the field so often; a crease between the ends takes most.
+const MOST_CALLS: usize = 24;
+/// And knows the root to this fraction of the edge.
+const TOLERANCE: f64 = 1e-6;
+
+/// A crossing, and the outward unit normal of the field there, if it has one.
+pub(super) type Tangent = (DVec3, Option<DVec3>);
+
+/// By layer, even or odd: by column, row and axis.
+pub(super) type Known = [HashMap<[usize; 3], Tangent>; 2];
+
+/// The crossings of two layers of points.
+pub(super) struct Tangents<'a> {
+    level: Level<'a>,
+    known: &'a mut Known,
+}
+
+impl<'a> Tangents<'a> {
+    /// None yet, in room that is there.
+    pub(super) fn new(level: Level<'a>, known: &'a mut Known) -> Self {
+        known.iter_mut().for_each(HashMap::clear);
+        Self { level, known }
+    }
+
+    /// Before the cells of layer `z`: the points above them are new.
+    pub(super) fn begin(&mut self, z: usize) {
+        self.known[(z + 1) % 2].clear();
+    }
+
+    /// The crossing of the edge that begins at a point, with the samples at its ends.
+    pub(super) fn at(&mut self, grid: &CubeGrid, from: [usize; 3], axis: usize, ends: [f32; 2]) -> Tangent {
+        let [x, y, z] = from;
+        let level = self.level;
+        *self.known[z % 2].entry([x, y, axis]).or_insert_with(|| tangent(level, grid, from, axis, ends))
+    }
+}
+
+/// The same, found anew.
+pub(super) fn tangent(
+    level: Level,
+    grid: &CubeGrid,
+    from: [usize; 3],
+    axis: usize,
+    ends: [f32; 2],
+) -> Tangent {
+    let start = grid.position(from);
+    let mut edge = DVec3::ZERO;
+    edge[axis] = f64::from(grid.at[axis][from[axis] + 1]) - f64::from(grid.at[axis][from[axis]]);
+    let at = |ratio: f64| start.as_dvec3() + edge * ratio;
+    let crossing = at(root(level, at, ends.map(|value| value - level.isovalue)));
+    let normal = level.normal(crossing.as_vec3()).map(|normal| normal.as_dvec3());
+    (crossing, normal.filter(|normal| normal.is_finite()))
+}
+
+/// Where between two points, 0 to 1, the field has the isovalue, if it is the differences from it that are given at the points; a half if
+/// one of them is not finite. A plane that is off by a little is an edge that is off by much, so this is found to the last bits.
+fn root(level: Level, at: impl Fn(f64) -> DVec3, ends: [f32; 2]) -> f64 {
+    if !ends.iter().all(|end| end.is_finite()) {
+        return 0.5;
+    }
+    let [low, high] = ends.map(f64::from);
+    let mut bracket = Bracket::new((0.0, low), (1.0, high));
+    let mut ratio = bracket.guess();
+    for _ in 0..MOST_CALLS {
+        let there = f64::from(level.difference(at(ratio).as_vec3()));
+        if !there.is_finite() {
+            break;
+        }
+        bracket.narrow(ratio, there);
+        let before = std::mem::replace(&mut ratio, bracket.guess());
+        if (ratio - before).abs() <= TOLERANCE || bracket.width() <= TOLERANCE {
+            break;
+        }
+    }
+    ratio
+}

@@ -1,0 +1,183 @@
+//! Vertex pass: the cells that the surface crosses, what their edges lead to, and where that is.
+
+use std::collections::TryReserveError;
+
+use glam::{DVec3, Vec3, Vec4};
+
+use super::plan::{EDGE_STARTS, EDGES, Mean, Plans};
+use super::sharp::Sharp;
+use super::tangents::{Tangent, Tangents};
+use crate::cubes::grid::CubeGrid;
+use crate::cubes::records::Records;
+use crate::cubes::rows::next;
+use crate::cubes::sampling::Samples;
+use crate::cubes::vertices::{Placer, corner_of};
+use crate::memory::push;
+use crate::sampling::in_sight::Values;
+use crate::slabs::Vertices;
+use crate::surface::trace::VertexKey;
+
+/// What is known of a crossed cell: its vertices are numbered from `first` on.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Record {
+    pub(super) first: u32,
+    pub(super) plan: u32,
+}
+
+/// What the pass reads.
+pub(super) struct VertexPass<'a> {
+    pub(super) grid: &'a CubeGrid<'a>,
+    pub(super) samples: &'a Samples,
+    pub(super) values: Values<'a>,
+    pub(super) placer: &'a Placer<'a>,
+}
+
+impl VertexPass<'_> {
+    /// Visits a layer of cells, and says how many have corners on both sides. Sides are known from the layer of points below to
+    /// the second above them.
+    pub(super) fn layer(
+        &self,
+        z: usize,
+        mut by_planes: Option<(Sharp, &mut Tangents)>,
+        plans: &mut Plans,
+        records: &mut Records<Record>,
+        vertices: &mut Vertices,
+    ) -> Result<u64, TryReserveError> {
+        let grid = self.grid;
+        let mut visited = 0;
+        if let Some((_, tangents)) = &mut by_planes {
+            tangents.begin(z);
+        }
+        for y in 0..grid.size[1] - 1 {
+            let rows = [[y, z], [y + 1, z], [y, z + 1], [y + 1, z + 1]];
+            if self.samples.is_uniform(grid, &rows) {
+                continue;
+            }
+            let lines = rows.map(|[y, z]| self.samples.sides.row(y, z));
+            let values = rows.map(|[y, z]| self.values.row(y, z));
+            let [ys, zs] = [[grid.at[1][y], grid.at[1][y + 1]], [grid.at[2][z], grid.at[2][z + 1]]];
+            let start = records.start(y, z);
+            for word in 0..grid.words {
+                let corners: [u64; 8] = std::array::from_fn(|c| {
+                    let line = lines[c >> 1];
+                    if c & 1 == 0 { line[word] } else { next(line, word) }
+                });
+                let any = corners.iter().fold(0, |any, bits| any | bits);
+                let all = corners.iter().fold(!0, |all, bits| all & bits);
+                let mut left = any & !all & grid.with_next(word);
+                visited += u64::from(left.count_ones());
+                while left != 0 {
+                    let bit = left.trailing_zeros();
+                    left &= left - 1;
+                    let cell = [64 * word + bit as usize, y, z];
+                    let inside = (0..8).fold(0, |set, c| set | ((corners[c] >> bit & 1) as u8) << c);
+                    let plan = plans.number(inside, self.joined(plans, cell, inside), self.at_box(cell));
+                    let place = start + cell[0];
+                    records.set(place, Record { first: vertices.positions.len() as u32, plan });
+                    for (number, mean) in plans.at(plan).means.iter().enumerate() {
+                        let position = match &mut by_planes {
+                            None => {
+                                let x = cell[0];
+                                let values = std::array::from_fn(|c| values[c >> 1][x + (c & 1)]);
+                                self.mean([[grid.at[0][x], grid.at[0][x + 1]], ys, zs], values, mean)
+                            }
+                            Some((sharp, tangents)) => self.meeting(plans, cell, mean.set, *sharp, tangents),
+                        };
+                        push(&mut vertices.positions, position)?;
+                        if let Some(keys) = &mut vertices.keys {
+                            let lattice = grid.lattice;
+                            let place = lattice.stored(cell);
+                            push(keys, VertexKey::new(lattice.arrangement(), place, number))?;
+                        }
+                    }
+                }
+            }
+        }
+        vertices.numbered = vertices.positions.len() as u64;
+        Ok(visited)
+    }
+
+    /// The face on which this cell and its neighbour both join their inside corners.
+    #[inline]
+    fn joined(&self, plans: &Plans, cell: [usize; 3], inside: u8) -> Option<u8> {
+        let face = plans.table.joinable(inside)?;
+        let (axis, is_high) = (usize::from(face / 2), face % 2 != 0);
+        let mut other = cell;
+        other[axis] = if is_high { cell[axis] + 1 } else { cell[axis].checked_sub(1)? };
+        if other[axis] + 1 >= self.grid.size[axis] {
+            return None;
+        }
+        let is_inside = |corner: u8| {
+            let [x, y, z] = corner_of(other, corner);
+            self.samples.sides.row(y, z)[x / 64] >> (x % 64) & 1 != 0
+        };
+        let inside = (0..8).fold(0, |set, corner| set | u8::from(is_inside(corner)) << corner);
+        (plans.table.joinable(inside) == Some(face ^ 1)).then_some(face)
+    }
+
+    /// The faces of a cell that lie on the box, one bit each: low and high along x, y and z.
+    #[inline(always)]
+    fn at_box(&self, cell: [usize; 3]) -> u8 {
+        let size = self.grid.size;
+        (0..3).fold(0, |set, axis| {
+            let [low, high] = [cell[axis] == 0, cell[axis] + 2 == size[axis]];
+            set | u8::from(low) << (2 * axis) | u8::from(high) << (2 * axis + 1)
+        })
+    }
+
+    /// The mean of the crossings of some edges of a cell between coordinates, with samples at its corners. In shares of its edges, so
+    /// that far from the origin no digits are lost.
+    #[inline]
+    fn mean(&self, ends: [[f32; 2]; 3], values: [f32; 8], of: &Mean) -> Vec3 {
+        let [low, high] = [0, 1].map(|end| Vec3::new(ends[0][end], ends[1][end], ends[2][end]));
+        let mut shares = of.at_high_ends;
+        for axis in 0..3 {
+            let corners = EDGE_STARTS[axis];
+            let here = Vec4::from_array(corners.map(|c| values[c]));
+            let there = Vec4::from_array(corners.map(|c| values[c | 1 << axis]));
+            let from = |edge: usize| {
+                let c = corners[edge];
+                Vec3::new(ends[0][c & 1], ends[1][c >> 1 & 1], ends[2][c >> 2])
+            };
+            let share = self.placer.shares(from, here, there);
+            let counted = Vec4::select(of.edges[axis], share, Vec4::ZERO);
+            shares[axis] += counted.element_sum();
+        }
+        (low + (high - low) * (shares / of.count)).max(low).min(high)
+    }
+
+    /// Where the tangent planes at the crossings of some edges meet.
+    fn meeting(
+        &self,
+        plans: &Plans,
+        cell: [usize; 3],
+        edges: u16,
+        sharp: Sharp,
+        tangents: &mut Tangents,
+    ) -> Vec3 {
+        let mut all: [Tangent; EDGES] = [(DVec3::ZERO, None); EDGES];
+        let mut count = 0;
+        for (from, axis, values) in self.crossed(plans, cell, edges) {
+            all[count] = tangents.at(self.grid, from, axis, values);
+            count += 1;
+        }
+        let [low, high] = [cell, cell.map(|i| i + 1)].map(|corner| self.grid.position(corner).as_dvec3());
+        sharp.vertex(&all[..count], low, high).as_vec3()
+    }
+
+    /// The points that some edges of a cell begin at, their axes, and the samples at their ends.
+    fn crossed(
+        &self,
+        plans: &Plans,
+        cell: [usize; 3],
+        edges: u16,
+    ) -> impl Iterator<Item = ([usize; 3], usize, [f32; 2])> {
+        (0..EDGES as u8).filter(move |edge| edges >> edge & 1 != 0).map(move |edge| {
+            let (corner, axis) = plans.table.edge(edge);
+            let (from, axis) = (corner_of(cell, corner), usize::from(axis));
+            let mut to = from;
+            to[axis] += 1;
+            (from, axis, [self.values.at(from), self.values.at(to)])
+        })
+    }
+}

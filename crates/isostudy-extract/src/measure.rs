@@ -1,0 +1,13 @@
+//! How near meshes are to the isosurface, and to each other.
+
+mod accuracy;
+mod distances;
+mod isosurface;
+mod normal_errors;
+mod sharp_edges;
+mod triangle_distances;
+
+pub use accuracy::{Accuracy, accuracy};
+pub use distances::{DistanceError, distances};
+pub use normal_errors::normal_errors_deg;
+pub use triangle_distances::triangle_distances;

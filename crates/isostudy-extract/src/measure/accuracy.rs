@@ -1,0 +1,140 @@
+//! How far a mesh is from the isosurface it stands for, and how far its normals are from the field's.
+
+use glam::{DVec3, Vec3};
+use isostudy_mesh::TriangleMesh;
+use isostudy_mesh::distribution::{Bins, Distribution};
+use isostudy_mesh::metro::{AreaSamples, Surface};
+
+use crate::execution::threads::{SHARE, mapped, on_threads};
+use crate::extraction::ExtractError;
+use crate::lattice::BoxGrid;
+use crate::measure::isosurface::{Isosurface, REACH};
+use crate::sampling::level::Level;
+use crate::settings::Execution;
+use isostudy_field::{FieldCache, StudyField};
+
+/// Points on a mesh, and on the isosurface.
+const POINTS: u64 = 8_192;
+/// Where they lie.
+const SEED: u64 = 1;
+/// Most vertices that are looked at; of more, every second, third and so on.
+const VERTICES: usize = 8_192;
+/// The histogram of distances, in spacings.
+const FAR: f64 = 0.1;
+
+/// The accuracy of a mesh. Lengths are in the unit of the coordinates.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Accuracy {
+    /// Distance from the mesh to the isosurface, never negative. Over the mesh's area: each point stands for the same
+    /// share of it. Root mean square and maximum are [`Distribution::rms`] and `max`.
+    pub distance: Distribution,
+    /// Distance from the isosurface to the mesh: what the mesh leaves out is far from it. Over the isosurface's area.
+    pub distance_to_mesh: Distribution,
+    /// Distance from points of the isosurface's sharp edges to the mesh: small where a mesh keeps them, and a good part of a spacing
+    /// where it rounds them. Empty where the isosurface has none.
+    pub sharp_edges: Distribution,
+    /// Angle between a vertex's normal and the field's outward direction at the vertex's foot on the isosurface, in
+    /// degrees, 0..=180. Over vertices.
+    pub normal_error_deg: Distribution,
+    /// Points of the mesh with no surface along the gradient within three spacings, or no gradient; they are in no
+    /// distribution. None where the field knows its isosurface.
+    pub lost_points: u64,
+    /// Vertices of that kind, or without a normal.
+    pub lost_vertices: u64,
+}
+
+impl Accuracy {
+    /// The larger of both maxima: the Hausdorff distance, as far as the points tell. 0 if there were none.
+    pub fn hausdorff(&self) -> f64 {
+        self.distance.max.max(self.distance_to_mesh.max)
+    }
+}
+
+/// Measures `mesh` against the isosurface of `field` in the box of the `grid` it was extracted on. The grid's
+/// spacing sets the width of differences (1/32) and how far a surface is looked for (3).
+///
+/// Distances are taken at 8,192 points that share the area evenly, as [`AreaSamples`] places them. The density is that
+/// number over the area.
+///
+/// To the isosurface, the distance is exact where the field knows it ([`StudyField::nearest_on_isosurface`]: a
+/// sphere, a mesh). Otherwise it is that along the gradient at the point, to a root that is known to 1e-5 spacings. This
+/// is never less than the distance to the nearest point; for a field with parallel isosurfaces they are equal, otherwise
+/// they differ by the cube of the distance.
+///
+/// From the isosurface, points are those of its triangles, if it has any ([`StudyField::isosurface_triangles`]: a
+/// mesh). Otherwise it is extracted on a body-centred lattice with three quarters of the spacing, and the points of that
+/// mesh are moved to the isosurface; what is too small for both lattices is not seen. Points outside the box are left
+/// out. The distance is that to the nearest triangle of `mesh`.
+///
+/// A sharp edge is one where the isosurface's normal, of the field's own gradient if it has one, turns by more than 30
+/// degrees within a sixteenth of a spacing; convex and concave ones count. It is found where an edge of that extraction passes from one
+/// of its sides to the other, in at most 32,768 places; its point is where the two tangent planes meet. Of a volume, which is
+/// interpolated, kinks between cells count if they are as sharp. Of a mesh, sharp edges are those of its triangles. Of
+/// more than 8,192 points, every second, third and so on is taken.
+///
+/// Vertices are taken as they come, or evenly from more than 8,192 of them.
+///
+/// The result does not depend on `execution`.
+///
+/// # Errors
+/// As [`crate::extract`].
+///
+/// # Panics
+/// If a triangle's index is out of range, or there are more normals than vertices.
+pub fn accuracy(
+    mesh: &TriangleMesh,
+    field: &dyn StudyField,
+    isovalue: f32,
+    grid: &BoxGrid,
+    execution: &Execution,
+) -> Result<Accuracy, ExtractError> {
+    let spacing = grid.spacing;
+    let triangles: Vec<[Vec3; 3]> = (0..mesh.triangles.len()).map(|t| mesh.corners(t)).collect();
+    let points: Vec<DVec3> = points_on(&triangles);
+    // Without an area there is nothing to be far from.
+    let surface = Surface::try_new(mesh).ok();
+
+    let mut kept = FieldCache::default();
+    let level = Level { field: field.prepared(&mut kept).unwrap_or(field), isovalue, spacing };
+    let isosurface = Isosurface::new(field, level, grid, execution)?;
+    let beyond = points_on(&isosurface.triangles);
+    let every = mesh.normals.len().div_ceil(VERTICES).max(1);
+    let vertices: Vec<usize> = (0..mesh.normals.len()).step_by(every).collect();
+    let to_surface = |p: DVec3| Some(surface.as_ref()?.nearest(p, f64::INFINITY).distance);
+    let most = (POINTS as usize).max(VERTICES) / SHARE;
+    let (there, back, sharp, angles): (Vec<_>, Vec<_>, Vec<_>, Vec<_>) = on_threads(execution, most, || {
+        let distance = |&p: &DVec3| isosurface.foot(p).map(|foot| foot.distance);
+        let to_mesh = |&p: &DVec3| to_surface(isosurface.point(p)?);
+        let sharp = isosurface.sharp_edges();
+        let sharp: Vec<DVec3> =
+            sharp.iter().copied().step_by(sharp.len().div_ceil(POINTS as usize).max(1)).collect();
+        let angle = |&v: &usize| normal_error_deg(&level, mesh.positions[v], mesh.normals[v]);
+        let sharp = mapped(&sharp, |&p| to_surface(p));
+        (mapped(&points, distance), mapped(&beyond, to_mesh), sharp, mapped(&vertices, angle))
+    })?;
+    let lost = |of: &[Option<f64>]| of.iter().filter(|value| value.is_none()).count() as u64;
+    let (lost_points, lost_vertices) = (lost(&there), lost(&angles));
+    let known = |of: Vec<Option<f64>>, bins| Distribution::of(of.into_iter().flatten().collect(), bins);
+    let near = Bins { low: 0.0, high: FAR * f64::from(spacing), count: 50 };
+    Ok(Accuracy {
+        distance: known(there, near),
+        distance_to_mesh: known(back, near),
+        sharp_edges: known(sharp, Bins { high: f64::from(spacing), ..near }),
+        normal_error_deg: known(angles, Bins { low: 0.0, high: 30.0, count: 60 }),
+        lost_points,
+        lost_vertices,
+    })
+}
+
+fn points_on(triangles: &[[Vec3; 3]]) -> Vec<DVec3> {
+    let samples = AreaSamples::new(triangles, POINTS, SEED);
+    samples.points(0..samples.count()).collect()
+}
+
+/// The angle between `normal` and the outward direction at the foot of `p`.
+pub(crate) fn normal_error_deg(level: &Level, p: Vec3, normal: Vec3) -> Option<f64> {
+    let normal = normal.as_dvec3().try_normalize()?;
+    let outward = level.outward(level.foot(p, REACH * level.spacing)?.position)?;
+    // Accurate near 0 and 180 degrees.
+    Some(normal.cross(outward).length().atan2(normal.dot(outward)).to_degrees())
+}

@@ -1,0 +1,4 @@
+//! Fields, from outside.
+
+mod gradients;
+mod terrain;

@@ -1,0 +1,7 @@
+//! Programs as extractors: real ones, and such with planted defects.
+
+mod adapters;
+mod commands;
+mod example;
+mod planted;
+mod programs;

@@ -1,0 +1,5 @@
+//! The server, from outside.
+
+#[path = "../../../../tests/http.rs"]
+mod http;
+mod server;

@@ -1,0 +1,4 @@
+//! The oracle, from outside.
+
+mod known;
+mod verify;

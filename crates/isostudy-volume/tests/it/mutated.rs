@@ -1,0 +1,113 @@
+//! Files damaged in every way: no panic, and what is read all the same is sound.
+
+use crate::files::*;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+/// What breaks readers.
+const TOKENS: [&[u8]; 26] = [
+    b"\0",
+    b"\n",
+    b"\r\n",
+    b"\n\n",
+    b":",
+    b"=",
+    b":=",
+    b"(",
+    b")",
+    b"none ",
+    b"-1",
+    b"0",
+    b"nan",
+    b"inf",
+    b"1e400",
+    b"99999999999999999999",
+    b"4294967296 4294967296 4294967296",
+    b"dimension: 4\n",
+    b"sizes: 1 1 1\n",
+    b"encoding: gzip\n",
+    b"byte skip: -1\n",
+    b"line skip: 18446744073709551615\n",
+    b"data file: .\n",
+    b"NDims = 4\n",
+    b"HeaderSize = -1\n",
+    b"CompressedData = True\n",
+];
+
+fn corpus() -> Vec<(&'static str, Vec<u8>)> {
+    let mut files = Vec::new();
+    for kind in ["u8", "i16", "f32", "f64"] {
+        for (encoding, big_endian) in [("raw", true), ("gzip", false), ("hex", true), ("text", false)] {
+            let data = encoded(&bytes(kind, big_endian), encoding, kind);
+            let header = nrrd_header(kind, encoding, big_endian);
+            files.push(("a.nrrd", [header.as_bytes(), b"\n", &data].concat()));
+        }
+        for (encoding, big_endian) in [("raw", false), ("zlib", true), ("text", false)] {
+            let data = encoded(&bytes(kind, big_endian), encoding, kind);
+            let header = meta_header(kind, encoding, big_endian);
+            files.push(("a.mha", [header.as_bytes(), b"ElementDataFile = LOCAL\n", &data].concat()));
+        }
+        files.push((
+            "a.toml",
+            format!("size = [4, 3, 2]\ntype = '{kind}'\nspacing = [1, 2, 3]\nfile = 'a.data'\n").into(),
+        ));
+    }
+    files
+}
+
+fn mutate(bytes: &mut Vec<u8>, random: &mut Pcg64) {
+    for _ in 0..random.random_range(1..=4) {
+        let at = random.random_range(0..=bytes.len());
+        let end = (at + random.random_range(0..=40)).min(bytes.len());
+        let token = TOKENS[random.random_range(0..TOKENS.len())];
+        match random.random_range(0..7) {
+            0 if at < bytes.len() => bytes[at] ^= 1 << random.random_range(0..8),
+            1 if at < bytes.len() => bytes[at] = random.random(),
+            2 => drop(bytes.drain(at..end)),
+            3 => drop(bytes.splice(at..at, token.iter().copied())),
+            4 => drop(bytes.splice(at..(at + token.len()).min(bytes.len()), token.iter().copied())),
+            5 => {
+                let copy = bytes[at..end].to_vec();
+                drop(bytes.splice(at..at, copy));
+            }
+            _ => bytes.truncate(at),
+        }
+    }
+}
+
+fn run(rounds: u64, seed: u64) {
+    let (folder, corpus) = (Folder::new(), corpus());
+    folder.write("a.data", bytes("u8", false));
+    let (mut read, mut refused) = (0, 0);
+    for round in 0..rounds {
+        let mut random = Pcg64::seed_from_u64(seed + round);
+        let (name, mut bytes) = corpus[round as usize % corpus.len()].clone();
+        mutate(&mut bytes, &mut random);
+        folder.write(name, &bytes);
+        match isostudy_volume::read(&folder.path(name), 1 << 20) {
+            Ok(volume) => {
+                let [x, y, z] = volume.counts;
+                assert_eq!(x * y * z, volume.values.len(), "round {round} of {seed}");
+                assert!(x * y * z > 0 && volume.origin.iter().all(|v| v.is_finite()));
+                assert!(volume.steps.as_flattened().iter().all(|v| v.is_finite()));
+                read += 1;
+            }
+            Err(error) => {
+                assert!(error.to_string().len() < 2000, "round {round} of {seed}: {error}");
+                refused += 1;
+            }
+        }
+    }
+    assert!(read > rounds / 20 && refused > rounds / 20, "{read} read, {refused} refused");
+}
+
+#[test]
+fn damaged_files_are_refused_or_sound() {
+    run(5_000, 1);
+}
+
+#[test]
+#[ignore = "minutes: run by make test-long"]
+fn many_more_damaged_files_are_refused_or_sound() {
+    run(500_000, 1_000_000);
+}
