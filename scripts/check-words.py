@@ -9,7 +9,7 @@ Markdown, HTML or text file, such as results/paper/report.html.
 
 A sentence has at most 25 words and is not a noun made of "what" or "who"; there is no ellipsis; a line of
 Markdown has at most 100 characters, without the addresses of links. Code and tables are free of the limits on
-lines and sentences. Each fault is printed with file and line; exit 1 if there is one, 2 for a wrong
+lines and sentences. Links and paths of files have to lead somewhere. Each fault is printed with file and line; exit 1 if there is one, 2 for a wrong
 argument. A page in NOT_YET may have as many faults as it says: --list prints them too. --self-test tries the rules on EXAMPLES.
 """
 
@@ -219,12 +219,40 @@ def faults_of_sentences(found):
                 yield paragraph.line, f'a noun made of "what" or "who": {sentence}'
 
 
+def slugs(text):
+    """The anchors of a Markdown page, as its headings make them."""
+    for paragraph in paragraphs(text.splitlines()):
+        if paragraph.kind == "heading":
+            heading = re.sub(r"[`*]", "", paragraph.text().lstrip("#").strip().lower())
+            yield re.sub(r"[^\w -]", "", heading).replace(" ", "-")
+
+
+def faults_of_places(path, text):
+    """Links and paths in code that lead nowhere. Placeholders are in capitals; results and caches are made."""
+    for paragraph in paragraphs(text.splitlines()):
+        shown = paragraph.text()
+        for address in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"`[^`]*`", "", shown) if "](" in shown else ""):
+            file, _, anchor = address.partition("#")
+            if re.match(r"\w+:", address) or file.startswith(("results/", "../results/")):
+                continue
+            there = (ROOT / path).parent / file if file else ROOT / path
+            if not there.exists():
+                yield paragraph.line, f"a link that leads nowhere: {address}"
+            elif anchor and there.suffix == ".md" and anchor not in slugs(there.read_text(encoding="utf-8")):
+                yield paragraph.line, f"a link to a heading that is not there: {address}"
+        for named in re.findall(r"`((?:crates|configs|docs|examples|scripts|study|tests)/[\w./-]*[\w/])`", shown):
+            if not re.search(r"\b[A-Z]{2,}\b", named.replace("README", "")) and not (ROOT / named).exists():
+                yield paragraph.line, f"no such file: {named}"
+
+
 def faults_of(path, text, list_of_words):
     found = paragraphs_of(path, text)
     faults = [*faults_of_words(found, list_of_words), *faults_of_sentences(found)]
     generated = "results" in path.parts
     if path.suffix == ".md" and not generated:
         faults += long_lines(text.splitlines())
+        # What a changelog names may be gone.
+        faults += faults_of_places(path, text) if path.name != "CHANGELOG.md" else []
     return sorted(faults)
 
 
