@@ -23,6 +23,7 @@ mod mesh_file;
 mod outcome;
 mod picture;
 mod pipeline;
+mod place;
 mod prepare;
 mod recipe;
 mod records;

@@ -2,6 +2,7 @@
 
 use crate::memory::Limit;
 use crate::mesh_file;
+use crate::place::place;
 use crate::seeds;
 use crate::terminal::tell_once;
 use anyhow::{Context, Result, bail};
@@ -339,8 +340,4 @@ impl Source {
             self.values
         )
     }
-}
-
-pub(crate) fn place(p: Vec3) -> String {
-    format!("[{:?}, {:?}, {:?}]", p.x, p.y, p.z)
 }

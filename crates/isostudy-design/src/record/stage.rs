@@ -1,6 +1,6 @@
 //! The six stages of an extraction.
 
-use crate::record::{BenchSample, StageCounts};
+use super::{BenchSample, StageCounts};
 use serde::{Deserialize, Serialize};
 
 /// A stage of an extraction, or all six together.
