@@ -3,6 +3,10 @@
 ISOSTUDY = cargo run --release --locked --quiet --package isostudy --bin isostudy --
 BUNNY ?=
 THREE ?=
+# Of the random tests in `make test-long`, another each time; those of `make test` have a fixed one (`.cargo/config.toml`).
+ifndef SEED
+SEED := $(shell od -An -N4 -tu4 /dev/urandom | tr -d ' ')
+endif
 
 .PHONY: help study test test-long quick terrain bench bench-sweep figures check bunny three viewer-library clean
 
@@ -18,8 +22,10 @@ test: bunny viewer-library ## run every test; those in a browser need Node and c
 	scripts/test-browser.sh || failed=1; \
 	exit $$failed
 
-test-long: bunny ## run the tests that take minutes: 74,640 volumes against the manifold guarantee, and more
-	cargo test --release --locked --workspace --no-fail-fast -- --ignored
+test-long: bunny ## run the tests that take minutes: 74,640 volumes against the manifold guarantee, and more; SEED=n repeats the draws of a run
+	@echo "random tests draw with the seed $(SEED); \`make test-long SEED=$(SEED)\` repeats them"
+	@PROPTEST_RNG_SEED=$(SEED) cargo test --release --locked --workspace --no-fail-fast -- --include-ignored || \
+	{ echo "failed with the seed $(SEED): repeat it by \`make test-long SEED=$(SEED)\`" >&2; exit 1; }
 
 quick: bunny viewer-library ## the same study made small, into results/quick/
 	$(ISOSTUDY) study configs/quick.toml

@@ -34,18 +34,28 @@ const MOST_STEPS: usize = 400;
 const LONGEST: f64 = 3.0;
 /// By how much of its size a sum of many logarithms may be lower through rounding alone.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// The least part of a step that is tried.
+const LEAST: f64 = 1e-9;
 /// The step, beside the parameter, from which one step more leaves rounding alone.
 const SHORT: f64 = 1e-6;
 
 /// Climbs from `start` until the gain left, g' H^-1 g, is below what the log-likelihood's size lets anyone see or below
 /// 1e-13, and the step is short; then takes one step more: the convergence being quadratic, what is left is rounding.
 ///
-/// A step is halved only while it makes the log-likelihood lower by more than rounding: close to the maximum of thousands
-/// of answers the gain left is less than one unit in the last place of the value, and no step can look like a gain.
+/// A step's part is chosen [by the value](by_value). Where numbers of answers are far apart, the value is a small difference of
+/// large sums: its rounding is more than its size tells, and hides that a step gains. Where that leads nowhere, the parts
+/// are chosen [by the slope](by_slope), whose sums are small close to the maximum.
 ///
 /// `None` if the information is singular or there is no maximum. Towards infinity the gain left falls as well, but every
 /// step stays as long as the last: it is the step that tells.
 pub(super) fn maximise(start: Vec<f64>, likelihood: impl Fn(&[f64]) -> Curvature) -> Option<Maximum> {
+    climb(start.clone(), &likelihood, by_value).or_else(|| climb(start, &likelihood, by_slope))
+}
+
+/// What part of a step to go, and the likelihood there; `None` if there is no such part.
+type Part = fn(&[f64], &Curvature, &dyn Fn(f64) -> Curvature) -> Option<(f64, Curvature)>;
+
+fn climb(start: Vec<f64>, likelihood: impl Fn(&[f64]) -> Curvature, part: Part) -> Option<Maximum> {
     let mut at = start;
     let mut here = likelihood(&at);
     for _ in 0..MOST_STEPS {
@@ -56,27 +66,42 @@ pub(super) fn maximise(start: Vec<f64>, likelihood: impl Fn(&[f64]) -> Curvature
         step.iter_mut().for_each(|s| *s /= (longest / LONGEST).max(1.0));
         let forward = |part: f64| -> Vec<f64> { at.iter().zip(&step).map(|(a, s)| a + part * s).collect() };
         let short = at.iter().zip(&step).all(|(a, s)| s.abs() <= SHORT * (1.0 + a.abs()));
-        let unseen = ROUNDING * here.value.abs();
-        if short && gain < unseen.max(1e-13) {
+        if short && gain < unseen(&here).max(1e-13) {
             at = forward(1.0);
             let covariance = inverse(&likelihood(&at).information)?;
             return Some(Maximum { at, covariance });
         }
-        let mut part = 1.0;
-        let next = loop {
-            let there = likelihood(&forward(part));
-            if there.value >= here.value - unseen {
-                break there;
-            }
-            part *= 0.5;
-            if part < 1e-9 {
-                return None;
-            }
-        };
+        let (part, next) = part(&step, &here, &|part| likelihood(&forward(part)))?;
         at = forward(part);
         here = next;
     }
     None
+}
+
+/// By how much the log-likelihood may be lower through rounding alone.
+fn unseen(here: &Curvature) -> f64 {
+    ROUNDING * here.value.abs()
+}
+
+/// 1, 1/2, 1/4 and so on.
+fn halves() -> impl Iterator<Item = f64> {
+    std::iter::successors(Some(1.0), |part| Some(0.5 * part)).take_while(|&part| part >= LEAST)
+}
+
+/// A step is halved only while it makes the log-likelihood lower by more than rounding: close to the maximum of thousands
+/// of answers the gain left is less than one unit in the last place of the value, and no step can look like a gain.
+fn by_value(_: &[f64], here: &Curvature, after: &dyn Fn(f64) -> Curvature) -> Option<(f64, Curvature)> {
+    let lowest = here.value - unseen(here);
+    halves().map(|part| (part, after(part))).find(|(_, there)| there.value >= lowest)
+}
+
+/// A step is halved only while the slope along it turns to less than minus half of what it was: the log-likelihood is concave,
+/// so that this is far beyond the maximum.
+fn by_slope(step: &[f64], here: &Curvature, after: &dyn Fn(f64) -> Curvature) -> Option<(f64, Curvature)> {
+    let slope = |of: &Curvature| step.iter().zip(&of.gradient).map(|(s, g)| s * g).sum::<f64>();
+    let lowest = -0.5 * slope(here);
+    let good = |there: &Curvature| there.value.is_finite() && slope(there) >= lowest;
+    halves().map(|part| (part, after(part))).find(|(_, there)| good(there))
 }
 
 /// The inverse of a symmetric positive definite matrix by Cholesky's factors; `None` if it is not one.

@@ -114,6 +114,27 @@ fn rao_kupper_as_a_direct_maximum_in_r() {
 }
 
 #[test]
+fn numbers_that_are_far_apart_do_not_hide_a_maximum() {
+    // Sums of 10^8 whose difference is 4 * 10^4: the log-likelihood's rounding hides that a step gains. Python, mpmath 1.4.1 with
+    // 40 digits: findroot of the gradient written out with 1 / (1 + exp(-z)), from (-1.5, -1.2, 8), and the log-likelihood
+    // there; SciPy 1.17.1's optimize.root(gradient, [-1.5, -1.2, 8]) finds the same to 1e-12.
+    let answers = [
+        [2e3, 0.0, 3.0],
+        [1e2, 5e5, 0.0],
+        [8e2, 2e2, 2e3],
+        [0.0, 5e2, 3.0],
+        [1.0, 4.0, 0.0],
+        [0.0, 6e6, 0.0],
+    ];
+    let fit = fit(Model::RaoKupper, &pairs_of(&answers, [0, 1, 2])).unwrap();
+    assert_eq!(fit.penalty, Penalty::None);
+    close(fit.log_worths[1], -1.493_532_906_598_190_9, 1e-10);
+    close(fit.log_worths[2], -1.195_033_440_885_634, 1e-10);
+    close(fit.ln_theta.unwrap(), 8.017_669_426_300_584, 1e-10);
+    close(fit.log_likelihood, -42_847.832_141_253_82, 1e-6);
+}
+
+#[test]
 fn two_items_in_closed_form() {
     // Davidson ln(36/10) = 1.2809, nu = 8 / sqrt(360) = 0.4216; Rao-Kupper, whose odds of winning are P / (1 - P):
     // ln(36 * 44 / (10 * 18)) / 2 = 1.0874, theta = sqrt(18 * 44 / (36 * 10)) = 1.4832.
@@ -198,111 +219,201 @@ fn any_answers() -> impl Strategy<Value = Vec<[f64; 3]>> {
     prop::collection::vec([1..9u8, 0..6u8, 1..9u8].prop_map(|a| a.map(f64::from)), 6)
 }
 
+fn few_answers() -> impl Strategy<Value = Vec<[f64; 3]>> {
+    prop::collection::vec([0..3u8, 0..3u8, 0..3u8].prop_map(|a| a.map(f64::from)), 6)
+}
+
+/// Up to eight times powers of ten up to 10^6.
+fn far_apart() -> impl Strategy<Value = Vec<[f64; 3]>> {
+    let number = || (0..9u8, 0..7i32).prop_map(|(n, power)| f64::from(n) * 10_f64.powi(power));
+    prop::collection::vec([number(), number(), number()], 6)
+}
+
 const ORDERED: [(usize, usize); 6] = [(0, 1), (1, 0), (0, 2), (2, 0), (1, 2), (2, 1)];
 
 fn pairs_of(answers: &[[f64; 3]], label: [usize; 3]) -> Pairs {
     Pairs::new(3, ORDERED.iter().zip(answers).map(|(&(l, r), &a)| (label[l], label[r], a)))
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
-
-    #[test]
-    fn labels_do_not_matter(answers in any_answers()) {
-        for model in Model::ALL {
-            let straight = fit(model, &pairs_of(&answers, [0, 1, 2])).unwrap();
-            let turned = fit(model, &pairs_of(&answers, [2, 0, 1])).unwrap();
-            prop_assert!((straight.log_likelihood - turned.log_likelihood).abs() < 1e-9);
-            for (i, j) in ORDERED {
-                let label = [2, 0, 1];
-                let a = straight.log_worths[i] - straight.log_worths[j];
-                let b = turned.log_worths[label[i]] - turned.log_worths[label[j]];
-                prop_assert!((a - b).abs() < 1e-8);
-                let error = |fit: &WorthFit, i, j| fit.standard_error(&fit.covariance, i, j);
-                prop_assert!((error(&straight, i, j) - error(&turned, label[i], label[j])).abs() < 1e-8);
-            }
+fn labels_do_not_matter(answers: &[[f64; 3]]) -> Result<(), TestCaseError> {
+    for model in Model::ALL {
+        let straight = fit(model, &pairs_of(answers, [0, 1, 2])).unwrap();
+        let turned = fit(model, &pairs_of(answers, [2, 0, 1])).unwrap();
+        prop_assert!((straight.log_likelihood - turned.log_likelihood).abs() < 1e-9);
+        for (i, j) in ORDERED {
+            let label = [2, 0, 1];
+            let a = straight.log_worths[i] - straight.log_worths[j];
+            let b = turned.log_worths[label[i]] - turned.log_worths[label[j]];
+            prop_assert!((a - b).abs() < 1e-8);
+            let error = |fit: &WorthFit, i, j| fit.standard_error(&fit.covariance, i, j);
+            prop_assert!((error(&straight, i, j) - error(&turned, label[i], label[j])).abs() < 1e-8);
         }
     }
+    Ok(())
+}
 
-    #[test]
-    fn swapping_sides_turns_the_side_effect_alone(answers in any_answers()) {
-        let swapped = Pairs::new(3, ORDERED.iter().zip(&answers).map(|(&(l, r), &[a, t, b])| (r, l, [b, t, a])));
-        for model in Model::ALL {
-            let straight = fit(model, &pairs_of(&answers, [0, 1, 2])).unwrap();
-            let turned = fit(model, &swapped).unwrap();
-            prop_assert!(straight.log_worths.iter().zip(&turned.log_worths).all(|(a, b)| (a - b).abs() < 1e-8));
-            prop_assert!((straight.side.unwrap_or(0.0) + turned.side.unwrap_or(0.0)).abs() < 1e-8);
-        }
+fn swapping_sides_turns_the_side_effect_alone(answers: &[[f64; 3]]) -> Result<(), TestCaseError> {
+    let swapped = Pairs::new(3, ORDERED.iter().zip(answers).map(|(&(l, r), &[a, t, b])| (r, l, [b, t, a])));
+    for model in Model::ALL {
+        let straight = fit(model, &pairs_of(answers, [0, 1, 2])).unwrap();
+        let turned = fit(model, &swapped).unwrap();
+        prop_assert!(straight.log_worths.iter().zip(&turned.log_worths).all(|(a, b)| (a - b).abs() < 1e-8));
+        prop_assert!((straight.side.unwrap_or(0.0) + turned.side.unwrap_or(0.0)).abs() < 1e-8);
     }
+    Ok(())
+}
 
-    #[test]
-    fn a_win_more_raises_the_winner(answers in any_answers(), pair in 0..6usize) {
-        let mut more = answers.clone();
-        more[pair][0] += 1.0;
-        let (left, right) = ORDERED[pair];
-        for model in [Model::Davidson, Model::RaoKupper, Model::BradleyTerry] {
-            let difference = |answers: &[[f64; 3]]| {
-                let fit = fit(model, &pairs_of(answers, [0, 1, 2])).unwrap();
-                fit.log_worths[left] - fit.log_worths[right]
-            };
-            prop_assert!(difference(&more) > difference(&answers));
-        }
+fn a_win_more_raises_the_winner(answers: &[[f64; 3]], pair: usize) -> Result<(), TestCaseError> {
+    let mut more = answers.to_vec();
+    more[pair][0] += 1.0;
+    let (left, right) = ORDERED[pair];
+    for model in [Model::Davidson, Model::RaoKupper, Model::BradleyTerry] {
+        let difference = |answers: &[[f64; 3]]| {
+            let fit = fit(model, &pairs_of(answers, [0, 1, 2])).unwrap();
+            fit.log_worths[left] - fit.log_worths[right]
+        };
+        prop_assert!(difference(&more) > difference(answers));
     }
+    Ok(())
+}
 
-    #[test]
-    fn separation_is_judged_as_the_climb_finds_it(
-        answers in prop::collection::vec([0..3u8, 0..3u8, 0..3u8].prop_map(|a| a.map(f64::from)), 6),
-        sparse in 1..4usize,
-    ) {
-        let kept: Vec<[f64; 3]> =
-            answers.iter().enumerate().map(|(i, &a)| if i % sparse == 0 { a } else { [0.0; 3] }).collect();
-        let pairs = pairs_of(&kept, [0, 1, 2]);
-        let judged = separation(&pairs);
-        prop_assume!(judged != Separation::Disconnected && pairs.ties() < pairs.answers());
-        for model in [Model::Davidson, Model::RaoKupper] {
-            let found = estimate(Layout::of(model, &pairs, 0.0), &pairs, &pairs, Penalty::None).is_some();
-            prop_assert_eq!(found, judged != Separation::Separated, "{:?} {:?}", model, judged);
-        }
-        if side_design(&pairs).objection().is_none() {
-            let found = estimate(Layout::of(Model::DavidsonSide, &pairs, 0.0), &pairs, &pairs, Penalty::None).is_some();
-            let side = side_separation(&pairs);
-            prop_assert_eq!(found, judged != Separation::Separated && side.is_none(), "{:?} {:?}", side, judged);
-        }
+fn separation_is_judged_as_the_climb_finds_it(
+    answers: &[[f64; 3]],
+    sparse: usize,
+) -> Result<(), TestCaseError> {
+    let kept: Vec<[f64; 3]> =
+        answers.iter().enumerate().map(|(i, &a)| if i % sparse == 0 { a } else { [0.0; 3] }).collect();
+    let pairs = pairs_of(&kept, [0, 1, 2]);
+    let judged = separation(&pairs);
+    prop_assume!(judged != Separation::Disconnected && pairs.ties() < pairs.answers());
+    for model in [Model::Davidson, Model::RaoKupper] {
+        let found = estimate(Layout::of(model, &pairs, 0.0), &pairs, &pairs, Penalty::None).is_some();
+        prop_assert_eq!(found, judged != Separation::Separated, "{:?} {:?}", model, judged);
     }
-
-    #[test]
-    fn only_separation_is_penalised_whatever_the_numbers(
-        answers in prop::collection::vec([(0..9u8, 0..7i32), (0..9u8, 0..7i32), (0..9u8, 0..7i32)], 6),
-    ) {
-        let counts: Vec<[f64; 3]> =
-            answers.iter().map(|a| a.map(|(n, power)| f64::from(n) * 10_f64.powi(power))).collect();
-        let pairs = pairs_of(&counts, [0, 1, 2]);
-        let judged = separation(&pairs);
-        prop_assume!(judged != Separation::Disconnected && pairs.ties() < pairs.answers());
-        for model in [Model::Davidson, Model::RaoKupper] {
-            let fit = fit(model, &pairs);
-            let items = judged == Separation::Separated;
-            prop_assert_eq!(fit.as_ref().map(|fit| fit.penalised()), Ok(items), "{:?} {:?}", model, fit);
-        }
-        for left in [-5.0, 0.3, 5.0] {
-            let given = fit_given_side(&pairs, left).map(|fit| fit.penalised());
-            prop_assert_eq!(given, Ok(judged == Separation::Separated), "{}", left);
-        }
-        if side_design(&pairs).objection().is_none() {
-            prop_assert!(fit(Model::DavidsonSide, &pairs).is_ok());
-        }
+    if side_design(&pairs).objection().is_none() {
+        let found =
+            estimate(Layout::of(Model::DavidsonSide, &pairs, 0.0), &pairs, &pairs, Penalty::None).is_some();
+        let side = side_separation(&pairs);
+        prop_assert_eq!(found, judged != Separation::Separated && side.is_none(), "{:?} {:?}", side, judged);
     }
+    Ok(())
+}
 
-    #[test]
-    fn parameters_match_the_sufficient_statistics(answers in any_answers()) {
-        // At Davidson's maximum the expected number of ties is the number of ties.
-        let pairs = pairs_of(&answers, [0, 1, 2]);
-        let fit = fit(Model::Davidson, &pairs).unwrap();
-        let expected: f64 = pairs.pairs.iter().map(|pair| {
+fn only_separation_is_penalised_whatever_the_numbers(answers: &[[f64; 3]]) -> Result<(), TestCaseError> {
+    let pairs = pairs_of(answers, [0, 1, 2]);
+    let judged = separation(&pairs);
+    prop_assume!(judged != Separation::Disconnected && pairs.ties() < pairs.answers());
+    for model in [Model::Davidson, Model::RaoKupper] {
+        let fit = fit(model, &pairs);
+        let items = judged == Separation::Separated;
+        prop_assert_eq!(fit.as_ref().map(|fit| fit.penalised()), Ok(items), "{:?} {:?}", model, fit);
+    }
+    for left in [-5.0, 0.3, 5.0] {
+        let given = fit_given_side(&pairs, left).map(|fit| fit.penalised());
+        prop_assert_eq!(given, Ok(judged == Separation::Separated), "{}", left);
+    }
+    if side_design(&pairs).objection().is_none() {
+        prop_assert!(fit(Model::DavidsonSide, &pairs).is_ok());
+    }
+    Ok(())
+}
+
+fn parameters_match_the_sufficient_statistics(answers: &[[f64; 3]]) -> Result<(), TestCaseError> {
+    // At Davidson's maximum the expected number of ties is the number of ties.
+    let pairs = pairs_of(answers, [0, 1, 2]);
+    let fit = fit(Model::Davidson, &pairs).unwrap();
+    let expected: f64 = pairs
+        .pairs
+        .iter()
+        .map(|pair| {
             let half = 0.5 * (fit.log_worths[pair.left] - fit.log_worths[pair.right]);
             let nu = fit.ln_nu.unwrap().exp();
             pair.answers.iter().sum::<f64>() * nu / (half.exp() + nu + (-half).exp())
-        }).sum();
-        prop_assert!((expected - pairs.ties()).abs() < 1e-8);
+        })
+        .sum();
+    prop_assert!((expected - pairs.ties()).abs() < 1e-8);
+    Ok(())
+}
+
+mod drawn {
+    use super::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(200))]
+
+        #[test]
+        fn labels_do_not_matter(answers in any_answers()) {
+            super::labels_do_not_matter(&answers)?;
+        }
+
+        #[test]
+        fn swapping_sides_turns_the_side_effect_alone(answers in any_answers()) {
+            super::swapping_sides_turns_the_side_effect_alone(&answers)?;
+        }
+
+        #[test]
+        fn a_win_more_raises_the_winner(answers in any_answers(), pair in 0..6usize) {
+            super::a_win_more_raises_the_winner(&answers, pair)?;
+        }
+
+        #[test]
+        fn separation_is_judged_as_the_climb_finds_it(answers in few_answers(), sparse in 1..4usize) {
+            super::separation_is_judged_as_the_climb_finds_it(&answers, sparse)?;
+        }
+
+        #[test]
+        fn only_separation_is_penalised_whatever_the_numbers(answers in far_apart()) {
+            super::only_separation_is_penalised_whatever_the_numbers(&answers)?;
+        }
+
+        #[test]
+        fn parameters_match_the_sufficient_statistics(answers in any_answers()) {
+            super::parameters_match_the_sufficient_statistics(&answers)?;
+        }
+    }
+}
+
+/// `make test-long`, with another seed each time.
+mod drawn_at_length {
+    use super::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { max_global_rejects: u32::MAX, ..ProptestConfig::with_cases(100_000) })]
+
+        #[test]
+        #[ignore = "100,000 draws: seconds to minutes"]
+        fn labels_do_not_matter(answers in any_answers()) {
+            super::labels_do_not_matter(&answers)?;
+        }
+
+        #[test]
+        #[ignore = "100,000 draws: seconds to minutes"]
+        fn swapping_sides_turns_the_side_effect_alone(answers in any_answers()) {
+            super::swapping_sides_turns_the_side_effect_alone(&answers)?;
+        }
+
+        #[test]
+        #[ignore = "100,000 draws: seconds to minutes"]
+        fn a_win_more_raises_the_winner(answers in any_answers(), pair in 0..6usize) {
+            super::a_win_more_raises_the_winner(&answers, pair)?;
+        }
+
+        #[test]
+        #[ignore = "100,000 draws: seconds to minutes"]
+        fn separation_is_judged_as_the_climb_finds_it(answers in few_answers(), sparse in 1..4usize) {
+            super::separation_is_judged_as_the_climb_finds_it(&answers, sparse)?;
+        }
+
+        #[test]
+        #[ignore = "100,000 draws: seconds to minutes"]
+        fn only_separation_is_penalised_whatever_the_numbers(answers in far_apart()) {
+            super::only_separation_is_penalised_whatever_the_numbers(&answers)?;
+        }
+
+        #[test]
+        #[ignore = "100,000 draws: seconds to minutes"]
+        fn parameters_match_the_sufficient_statistics(answers in any_answers()) {
+            super::parameters_match_the_sufficient_statistics(&answers)?;
+        }
     }
 }
