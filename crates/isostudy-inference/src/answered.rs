@@ -19,11 +19,13 @@ pub struct Answered {
     pub responses: Responses,
     /// Who is left out of everything below, by a rule that the study declares.
     pub excluded: BTreeSet<usize>,
+    /// Their counts.
     pub tally: Tally,
     /// Answers to comparisons by question, on the sides that people saw.
     pub shown: Vec<ShownBallot>,
     /// The same answers in the same order, as the study declares its comparisons.
     pub declared: Vec<DeclaredBallot>,
+    /// The items that are compared with one another, and the answers about them.
     pub groups: Vec<BallotGroup>,
     /// Every contrast, then every question.
     pub hypotheses: Vec<Hypothesis>,

@@ -68,6 +68,7 @@ pub fn method_of_item(study: &Study, answers: &Responses) -> Vec<usize> {
     study.configurations.iter().map(|c| study.place(c.id.method)).collect()
 }
 
+/// What a choice says of left and right.
 pub fn outcome(choice: Choice) -> Outcome {
     match choice {
         Choice::Left => Outcome::Left,

@@ -18,6 +18,7 @@ pub struct Row {
     pub place: String,
     /// Whether it is the difference of two shares, not a share.
     pub is_difference: bool,
+    /// Its verdict.
     pub standing: Standing,
     /// Answers for the first, without preference, for the second; a difference has none.
     pub answers: Option<[u64; 3]>,
@@ -28,6 +29,7 @@ pub struct Row {
     pub share: f64,
     /// Its 95 % interval over people.
     pub interval: Option<Interval>,
+    /// The sign-flip p, adjusted within its family.
     pub adjusted: f64,
 }
 

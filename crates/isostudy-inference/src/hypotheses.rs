@@ -6,6 +6,9 @@ use isostudy_design::Level;
 use isostudy_design::Study;
 use isostudy_design::config::AnalysisSection;
 use isostudy_design::contrast::{Contrast, Over, PRIMARY, contrasts, families};
+use isostudy_statistics::bootstrap::Resampling;
+use isostudy_statistics::interval::Interval;
+use isostudy_statistics::sign_test;
 use isostudy_statistics::{DeclaredBallot, MARGIN, ScoreTest, benjamini_hochberg, holm};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -20,6 +23,7 @@ pub enum Adjustment {
 }
 
 impl Adjustment {
+    /// For people.
     pub fn label(self) -> &'static str {
         match self {
             Self::Holm => "Holm",
@@ -27,6 +31,7 @@ impl Adjustment {
         }
     }
 
+    /// Whose correction it is.
     pub fn possessive(self) -> &'static str {
         match self {
             Self::Holm => "Holm's",
@@ -64,6 +69,7 @@ pub enum Conclusion {
 }
 
 impl Conclusion {
+    /// For people.
     pub fn label(self) -> &'static str {
         match self {
             Self::Differs => "differs",
@@ -107,11 +113,25 @@ impl Rules {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Target {
     /// A contrast of the study.
-    Contrast { levels: [Level; 2], over: Over },
+    Contrast {
+        /// What is compared.
+        levels: [Level; 2],
+        /// On which answers.
+        over: Over,
+    },
     /// One question of the study, by index.
     Question(usize),
     /// Two items of a group.
-    Items { group: String, first: String, second: String, on: On },
+    Items {
+        /// The name of the group.
+        group: String,
+        /// The one item.
+        first: String,
+        /// The other.
+        second: String,
+        /// On which objects.
+        on: On,
+    },
 }
 
 /// The objects on which two items of a group are compared.
@@ -134,7 +154,9 @@ pub struct Hypothesis {
     pub contrast: String,
     /// Over which answers, such as `within B`.
     pub scope: String,
+    /// What it is about.
     pub target: Target,
+    /// The test of it.
     pub test: ScoreTest,
     /// The sign-flip p, adjusted within the family.
     pub adjusted: f64,
@@ -143,12 +165,15 @@ pub struct Hypothesis {
     /// p of the test that the mean score lies within the margin of zero, adjusted within the family; `None` for one
     /// participant.
     pub equivalence: Option<f64>,
+    /// How p is adjusted.
     pub adjustment: Adjustment,
     /// The name of what p is corrected with, and how many hypotheses of that were tested.
     pub corrected_with: String,
+    /// How many hypotheses of that were tested.
     pub family_size: usize,
     /// Whether the same preference was shown to depend on the object.
     by_object: bool,
+    /// What decides its conclusion.
     pub rules: Rules,
 }
 
@@ -176,6 +201,7 @@ impl Hypothesis {
         self.test.participants() > 0
     }
 
+    /// What both adjusted p allow to say.
     pub fn conclusion(&self) -> Conclusion {
         let level = self.rules.level;
         match (self.adjusted <= level, self.equivalence.is_some_and(|p| p <= level)) {
@@ -219,6 +245,39 @@ impl Hypothesis {
     /// Whether two hypotheses are the same one, tested on different answers.
     pub fn is_about_the_same(&self, other: &Self) -> bool {
         (&self.family, &self.contrast, &self.scope) == (&other.family, &other.contrast, &other.scope)
+    }
+}
+
+/// What else is known of a test: for comparison, and how much hangs on one participant.
+#[derive(Debug, Clone, Copy)]
+pub struct Robustness {
+    /// Interval of the mean score by resampling participants, cut at what scores can be; not of single questions.
+    pub studentised: Option<Interval>,
+    /// Smallest and largest p when each participant in turn is left out.
+    pub without_one: Option<[f64; 2]>,
+    /// p of the binomial test, as if all answers were independent.
+    pub binomial: Option<f64>,
+    /// p of the trinomial test of a single question.
+    pub trinomial: Option<f64>,
+}
+
+impl Robustness {
+    /// Of each hypothesis, in their order.
+    pub fn of(hypotheses: &[Hypothesis]) -> Vec<Self> {
+        let of_one = |hypothesis: &Hypothesis| {
+            let (test, question) = (&hypothesis.test, hypothesis.is_question());
+            let studentised = if question { None } else { test.studentised(Resampling::default()) };
+            let without = test.leave_one_out();
+            let least = without.iter().copied().min_by(f64::total_cmp);
+            let most = without.iter().copied().max_by(f64::total_cmp);
+            Self {
+                studentised: studentised.map(|of| of.interval.cut(-test.reach, test.reach)),
+                without_one: least.zip(most).map(|(least, most)| [least, most]),
+                binomial: test.counts.map(|[first, _, second]| sign_test::binomial(first, second)),
+                trinomial: test.counts.filter(|_| question).map(|[a, t, b]| sign_test::trinomial(a, t, b)),
+            }
+        };
+        hypotheses.par_iter().map(of_one).collect()
     }
 }
 

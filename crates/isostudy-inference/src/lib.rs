@@ -12,6 +12,7 @@
 //! Tests and models of preference are in the crate [`isostudy_statistics`], over plain ballots; [`audit`] looks for defects of a
 //! study, [`isostudy_statistics::simulation`] makes studies whose truth is known, and [`self_test`] tries the ones on the others.
 
+pub mod agreement;
 pub mod answered;
 pub mod audit;
 pub mod ballots;
@@ -22,6 +23,7 @@ pub mod hypotheses;
 pub mod inputs;
 pub mod leave_one_out;
 pub mod mesh_set;
+pub mod models;
 pub mod omnibus;
 pub mod open_groups;
 pub mod power;
@@ -29,7 +31,9 @@ pub mod prediction;
 pub mod preference;
 pub mod published_ratio;
 pub mod recorded;
+pub mod results;
 pub mod scale;
+pub mod screened;
 pub mod screens;
 pub mod self_test;
 pub mod standing;
@@ -44,5 +48,6 @@ pub use fraction::Fraction;
 pub use inputs::Inputs;
 pub use open_groups::open_groups;
 pub use recorded::Recorded;
+pub use results::{Preferences, Results};
 pub use standing::Standing;
 pub use tally::{QuestionCount, Tally};

@@ -12,11 +12,13 @@ pub struct MeshSet<'a> {
 }
 
 impl<'a> MeshSet<'a> {
+    /// The meshes of a purpose.
     pub fn of(inputs: &Inputs<'a>, purpose: Purpose) -> Self {
         let records = inputs.meshes.iter().filter(|mesh| mesh.purpose == purpose).collect();
         Self { study: inputs.study, records }
     }
 
+    /// The record of a configuration.
     pub fn get(&self, id: &ConfigurationId) -> Option<&'a MeshRecord> {
         self.records.iter().copied().find(|mesh| mesh.id == *id)
     }
@@ -31,6 +33,7 @@ impl<'a> MeshSet<'a> {
         self.study.configurations.iter().filter_map(|c| self.get(&c.id).map(|mesh| (c, mesh)))
     }
 
+    /// Whether no configuration has a record.
     pub fn is_empty(&self) -> bool {
         self.in_order().next().is_none()
     }

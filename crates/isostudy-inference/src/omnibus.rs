@@ -18,7 +18,9 @@ pub enum Asked {
 /// One test.
 #[derive(Debug, Clone)]
 pub struct Omnibus {
+    /// What is asked.
     pub asked: Asked,
+    /// The test.
     pub test: ChiSquareTest,
     /// p by Holm over the tests that ask the same of other levels.
     pub adjusted: f64,

@@ -22,6 +22,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// One metric over the study's questions.
 #[derive(Debug, Clone)]
 pub struct MetricPrediction {
+    /// The metric.
     pub metric: &'static Metric,
     /// The advantage of each question's first item, which the study lists on the left, see [`Metric::advantage`]; `None`
     /// without values or answers.

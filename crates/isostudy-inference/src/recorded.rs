@@ -25,18 +25,22 @@ pub struct Recorded<'a> {
 }
 
 impl<'a> Recorded<'a> {
-    /// A study's answers; items are methods. `ballots` are [`ballots`](crate::ballots()) of the same.
+    /// A study's answers; items are methods. `ballots` are [`ballots`](crate::ballots::ballots()) of the same.
     ///
     /// A question's showing lasts as long as a turntable, or as declared.
     ///
     /// # Panics
     /// If the answers were read for another study.
-    pub fn of_study(study: &'a Study, answers: &'a Responses, ballots: &'a [ShownBallot]) -> Self {
+    pub fn of_study(
+        study: &'a Study,
+        answers: &'a Responses,
+        ballots: impl Into<Cow<'a, [ShownBallot]>>,
+    ) -> Self {
         let mut order: Vec<&Answer> = answers.answers.iter().collect();
         order.sort_by_key(|answer| answer.question);
         let items = method_of_item(study, answers);
         let ballots = match order.iter().all(|answer| is_asked(study, answer)) {
-            true => Cow::Borrowed(ballots),
+            true => ballots.into(),
             false => order.iter().map(|answer| ballot(answer, |item| items[item as usize])).collect(),
         };
         let object = |item: u32| {

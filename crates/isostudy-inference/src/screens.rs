@@ -92,6 +92,7 @@ pub enum Measure {
 }
 
 impl Measure {
+    /// Both.
     pub const ALL: [Self; 2] = [Self::Ties, Self::Agreement];
 
     /// Its name in tables.
@@ -106,7 +107,9 @@ impl Measure {
 /// One test.
 #[derive(Debug, Clone)]
 pub struct Compared {
+    /// What divides the answers.
     pub condition: Condition,
+    /// What is compared.
     pub measure: Measure,
     /// People of each part; where answers of each person are divided, people with answers of that part.
     pub people: [usize; 2],

@@ -14,8 +14,8 @@ use isostudy_design::forms::{KeyEntry, Questionnaire, Role};
 use isostudy_design::record::{Distribution, MeshRecord, Purpose};
 use isostudy_inference::answered::Answered;
 use isostudy_inference::ballots::BallotGroup;
-use isostudy_inference::inputs::Inputs;
 use isostudy_inference::self_test::allowance;
+use isostudy_inference::{Inputs, Results};
 use isostudy_responses::Plan;
 use isostudy_statistics::{Outcome, ShownBallot};
 use isostudy_table::{Cell, Table};
@@ -142,7 +142,14 @@ fn printed(
     let read = route.read(study, plan, given).expect("a file that is right");
     let answered = Answered::of(study, read).expect("answers to the study's questions");
     (
-        tables(&Inputs { study, meshes, bench: None, chunks: &[], answers: Some(&answered), left_out: &[] }),
+        tables(&Results::of(&Inputs {
+            study,
+            meshes,
+            bench: None,
+            chunks: &[],
+            answers: Some(&answered),
+            left_out: &[],
+        })),
         answered.groups,
     )
 }

@@ -12,7 +12,8 @@ mod people;
 mod routes;
 mod sentences;
 
-use isostudy_inference::Inputs;
+use isostudy_inference::Results;
+use isostudy_paper::Paper;
 use isostudy_table::{Cell, Table};
 use matrix::Outcome;
 
@@ -20,9 +21,9 @@ use matrix::Outcome;
 const PEOPLE: usize = 36;
 
 /// Every table of a study, with those of the paper.
-fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
-    let mut tables = isostudy_report::tables(inputs);
-    isostudy_paper::add_tables(&mut tables, inputs);
+fn tables(results: &Results<'_>) -> Vec<Table> {
+    let mut tables = isostudy_report::tables(results);
+    Paper::of(results).add_tables(&mut tables);
     tables
 }
 
@@ -77,7 +78,7 @@ pub mod fixture;
 
 // The fixture makes these.
 #[cfg(test)]
-use isostudy_inference::Answered;
+use isostudy_inference::{Answered, Inputs};
 #[cfg(test)]
 mod coverage;
 #[cfg(test)]

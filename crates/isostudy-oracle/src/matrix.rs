@@ -10,7 +10,8 @@ use crate::tables;
 use isostudy_design::Study;
 use isostudy_design::forms::Role;
 use isostudy_inference::answered::Answered;
-use isostudy_inference::inputs::Inputs;
+use isostudy_inference::{Inputs, Results};
+use isostudy_paper::Paper;
 use isostudy_report::report::{Report, report};
 use isostudy_responses::{Choice, Plan, Responses};
 use isostudy_table::Table;
@@ -97,8 +98,9 @@ impl Made {
         let answered = Answered::of(study, answers)?;
         let inputs =
             Inputs { study, meshes: &[], bench: None, chunks: &[], answers: Some(&answered), left_out: &[] };
-        let tables = tables(&inputs);
-        let report = report(&inputs, &tables, &[], isostudy_paper::published(&inputs, &tables));
+        let results = Results::of(&inputs);
+        let tables = tables(&results);
+        let report = report(&results, &tables, &[], Paper::of(&results).published(&tables));
         Some(Self { people, tables, report })
     }
 

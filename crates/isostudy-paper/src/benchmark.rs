@@ -39,12 +39,11 @@ const RADIUS_RATIO: Measure =
 const ALL: [Clustering; 3] = [Unclustered, Integrated, EdgeCollapse];
 
 /// Nothing if no benchmark was published.
-pub(super) fn findings(inputs: &Inputs<'_>) -> Vec<Block> {
+pub(super) fn findings(inputs: &Inputs<'_>, claims: &[(&Claim, claims::Finding)]) -> Vec<Block> {
     if inputs.study.published.benchmark.is_empty() {
         return Vec::new();
     }
     let numbers = Numbers::of(inputs);
-    let claims = claims::all(inputs, None);
     let mut found = Vec::new();
     found.extend(sampling_share(inputs, &numbers));
     for (what, pairs) in [
@@ -58,9 +57,9 @@ pub(super) fn findings(inputs: &Inputs<'_>) -> Vec<Block> {
     found.extend(reduction(&numbers, Integrated));
     found.extend(reduction(&numbers, EdgeCollapse));
     found.extend(triangles_left(inputs, &numbers));
-    found.extend(triangles_of_arrangements(&claims));
+    found.extend(triangles_of_arrangements(claims));
     found.extend(regularity(inputs, &numbers));
-    found.extend(ratio_ranges(&claims));
+    found.extend(ratio_ranges(claims));
     let mut blocks = Vec::new();
     if let (Some(run), false) = (inputs.bench, found.is_empty()) {
         let model = run.machine.model.as_deref().unwrap_or("an unnamed CPU");
@@ -328,6 +327,10 @@ fn regularity(inputs: &Inputs<'_>, numbers: &Numbers<'_>) -> Option<Finding> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn of(inputs: &Inputs<'_>) -> Vec<Block> {
+        findings(inputs, &claims::all(inputs))
+    }
     use crate::fixture::{self, Everything};
 
     #[test]
@@ -337,7 +340,7 @@ mod tests {
             let integrated = crate::fixture::crossed(mesh.id.method).clustering == Integrated;
             mesh.quality.radius_ratio.mean = if integrated { 0.92 } else { 0.89 };
         }
-        let blocks = findings(&everything.inputs());
+        let blocks = of(&everything.inputs());
         let found: Vec<(Standing, String)> = blocks
             .into_iter()
             .filter_map(|b| if let Block::Finding(f) = b { Some((f.standing, f.text)) } else { None })
@@ -414,6 +417,6 @@ mod tests {
     fn without_a_published_benchmark_nothing_is_checked() {
         let mut everything = Everything::of(fixture::study());
         everything.study.published.benchmark.clear();
-        assert!(findings(&everything.inputs()).is_empty());
+        assert!(of(&everything.inputs()).is_empty());
     }
 }

@@ -14,8 +14,8 @@ pub(crate) mod times;
 use crate::verdict::{Verdict, prints_alike, relative_difference};
 use isostudy_design::published::Claim;
 use isostudy_inference::inputs::Inputs;
-use isostudy_inference::tally::Tally;
 use isostudy_table::{Cell, Table};
+use numbers::Numbers;
 
 /// What a claim comes to.
 #[derive(Debug, Clone)]
@@ -36,11 +36,12 @@ pub(crate) struct Finding {
 const OTHER_OBJECTS: &str = "on other objects than the text's";
 
 /// The claims that can be computed and what they come to, in the order they are listed.
-pub(crate) fn all<'a>(inputs: &Inputs<'a>, tally: Option<&Tally>) -> Vec<(&'a Claim, Finding)> {
+pub(crate) fn all<'a>(inputs: &Inputs<'a>) -> Vec<(&'a Claim, Finding)> {
+    let (numbers, tally) = (Numbers::of(inputs), inputs.answers.map(|answers| &answers.tally));
     let find = |claim| {
-        let found = meshes::find(inputs, claim)
-            .or_else(|| times::find(inputs, claim))
-            .or_else(|| shapes::find(inputs, claim))
+        let found = meshes::find(&numbers, claim)
+            .or_else(|| times::find(inputs, &numbers, claim))
+            .or_else(|| shapes::find(&numbers, claim))
             .or_else(|| tally.and_then(|tally| preferences::find(inputs.study, tally, claim)))
             .or_else(|| setup::find(inputs.study, claim));
         let mut found = found?;
@@ -59,10 +60,10 @@ fn joined<const N: usize>(parts: [&str; N]) -> String {
 }
 
 /// The claims and what they come to, in the order they are listed.
-pub(crate) fn table(inputs: &Inputs<'_>, tally: Option<&Tally>) -> Option<Table> {
+pub(crate) fn table(source: &str, claims: &[(&Claim, Finding)]) -> Option<Table> {
     let mut table = Table::new(
         "claims",
-        format!("Claims of the text, {}", inputs.study.published.source),
+        format!("Claims of the text, {}", source),
         &[
             ("id", "Id"),
             ("statement", "Claim"),
@@ -75,7 +76,7 @@ pub(crate) fn table(inputs: &Inputs<'_>, tally: Option<&Tally>) -> Option<Table>
             ("reason", "Reason"),
         ],
     );
-    for (claim, found) in all(inputs, tally) {
+    for (claim, found) in claims {
         table.push(vec![
             Cell::text(&claim.id),
             Cell::text(&claim.statement),

@@ -6,7 +6,6 @@ mod preferences;
 
 use crate::verdict::Verdict;
 use isostudy_inference::inputs::Inputs;
-use isostudy_inference::tally::Tally;
 use isostudy_table::{Cell, Table};
 
 /// One published number beside ours.
@@ -26,19 +25,17 @@ pub(crate) struct Compared {
 }
 
 /// Every comparison, the benchmark's first.
-pub(crate) fn all(inputs: &Inputs<'_>, tally: Option<&Tally>) -> Vec<Compared> {
+pub(crate) fn all(inputs: &Inputs<'_>) -> Vec<Compared> {
     let mut all = benchmark::compare(inputs);
-    all.extend(tally.into_iter().flat_map(|tally| preferences::compare(inputs.study, tally)));
+    all.extend(inputs.answers.into_iter().flat_map(|of| preferences::compare(inputs.study, &of.tally)));
     all
 }
 
 /// The comparison number by number, and a summary by quantity; nothing if nothing was published.
-pub(crate) fn tables(inputs: &Inputs<'_>, tally: Option<&Tally>) -> Vec<Table> {
-    let all = all(inputs, tally);
+pub(crate) fn tables(source: &str, all: &[Compared]) -> Vec<Table> {
     if all.is_empty() {
         return Vec::new();
     }
-    let source = &inputs.study.published.source;
     let mut table = Table::new(
         "comparison",
         format!("Published numbers, {source}, beside ours"),
@@ -52,7 +49,7 @@ pub(crate) fn tables(inputs: &Inputs<'_>, tally: Option<&Tally>) -> Vec<Table> {
             ("reason", "Reason"),
         ],
     );
-    for compared in &all {
+    for compared in all {
         table.push(vec![
             Cell::text(compared.source),
             Cell::text(&compared.row),
@@ -67,8 +64,8 @@ pub(crate) fn tables(inputs: &Inputs<'_>, tally: Option<&Tally>) -> Vec<Table> {
         "Equal: alike in every printed digit. A tolerance in per cent is relative to the published number."
             .into(),
     );
-    let mut tables = vec![summary(&all), table];
-    tables.extend(beside::table(source, &all));
+    let mut tables = vec![summary(all), table];
+    tables.extend(beside::table(source, all));
     tables
 }
 

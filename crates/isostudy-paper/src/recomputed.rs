@@ -1,17 +1,17 @@
 //! Published numbers and claims beside ours, counted by verdict.
 
 use crate::claims;
-use crate::comparison;
+use crate::comparison::Compared;
 use crate::verdict::Verdict;
-use isostudy_inference::inputs::Inputs;
+use isostudy_design::published::Claim;
 use isostudy_report::statement::{Block, Finding, Standing};
 use isostudy_report::words::{counted, list, number};
 
-pub(super) fn findings(inputs: &Inputs<'_>) -> Vec<Block> {
-    let tally = inputs.answers.map(|answers| &answers.tally);
-    let source = &inputs.study.published.source;
-    let numbers = comparison::all(inputs, tally);
-    let claims = claims::all(inputs, tally);
+pub(super) fn findings(
+    source: &str,
+    numbers: &[Compared],
+    claims: &[(&Claim, claims::Finding)],
+) -> Vec<Block> {
     let mut found = Vec::new();
     if !numbers.is_empty() {
         let tallied = tallied(numbers.iter().map(|c| &c.verdict));
@@ -25,10 +25,9 @@ pub(super) fn findings(inputs: &Inputs<'_>) -> Vec<Block> {
 }
 
 /// Each claim of the text that differs here, and why.
-pub(super) fn failing(inputs: &Inputs<'_>) -> Vec<Block> {
-    let tally = inputs.answers.map(|answers| &answers.tally);
+pub(super) fn failing(claims: &[(&Claim, claims::Finding)]) -> Vec<Block> {
     let mut found = Vec::new();
-    for (claim, finding) in claims::all(inputs, tally) {
+    for (claim, finding) in claims {
         if let Verdict::Differs { reason } = &finding.verdict {
             let numbers = match (claim.value, finding.ours) {
                 (Some(published), Some(ours)) => {

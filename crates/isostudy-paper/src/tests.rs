@@ -6,8 +6,12 @@ use isostudy_report::Report;
 use isostudy_table::Cell;
 
 fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
-    let mut tables = isostudy_report::tables(inputs);
-    add_tables(&mut tables, inputs);
+    of_results(&Results::of(inputs))
+}
+
+fn of_results(results: &Results<'_>) -> Vec<Table> {
+    let mut tables = isostudy_report::tables(results);
+    Paper::of(results).add_tables(&mut tables);
     tables
 }
 
@@ -156,7 +160,7 @@ fn statistics_of_nothing_are_missing() {
     }
     // Benchmark: 4; quality: 9 of 6 at two spacings; positions: 2 twice; comparison: 6; side by side: 6 and 2 put right.
     assert_eq!(missing, 4 + 2 * 9 * 6 + 2 * 2 + 6 + 8);
-    assert!(crate::unexplained_differences(&all.inputs()).is_empty());
+    assert!(Paper::of(&Results::of(&all.inputs())).unexplained_differences().is_empty());
 }
 
 #[test]
@@ -242,16 +246,18 @@ fn another_study_works_as_well() {
     assert!(!tables.iter().any(|table| ["comparison", "claims", "asteroid"].contains(&table.name.as_str())));
     assert_eq!(named(&tables, "benchmark").rows.len(), 4);
     assert!(tables.iter().all(|table| !table.rows.is_empty()));
-    assert_eq!(isostudy_report::figures(&inputs).unwrap().len(), 14);
+    assert_eq!(isostudy_report::figures(&Results::of(&inputs)).unwrap().len(), 14);
 }
 
 #[test]
 fn the_papers_answers() {
     let all = Everything::of(fixture::study());
-    let tables = tables(&all.inputs());
-    let figures = isostudy_report::figures(&all.inputs()).unwrap();
-    let published = published(&all.inputs(), &tables);
-    let report = isostudy_report::report(&all.inputs(), &tables, &figures, published);
+    let inputs = all.inputs();
+    let results = Results::of(&inputs);
+    let tables = of_results(&results);
+    let figures = isostudy_report::figures(&results).unwrap();
+    let published = Paper::of(&results).published(&tables);
+    let report = isostudy_report::report(&results, &tables, &figures, published);
     let ids: Vec<&str> = report.sections.iter().map(|s| s.id).collect();
     let want = [
         "decision",

@@ -29,10 +29,7 @@ use canvas::Canvas;
 pub use edge_groups::{KindShare, TableQuality, edge_groups_figure};
 pub use error::FigureError;
 pub use history::history_figure;
-use isostudy_inference::answered::Answered;
-use isostudy_inference::ballots::BallotGroup;
-use isostudy_inference::inputs::Inputs;
-use isostudy_statistics::ShownBallot;
+use isostudy_inference::{Preferences, Results};
 use legend::Swatch;
 pub use power::power_figure;
 use rayon::prelude::*;
@@ -43,23 +40,25 @@ pub use sweep::sweep_figures;
 ///
 /// # Errors
 /// If drawing fails, which is not to be expected.
-pub fn figures(inputs: &Inputs<'_>) -> Result<Vec<Figure>, FigureError> {
-    drafts(inputs).into_par_iter().map(Unfinished::finish).collect()
+pub fn figures(results: &Results<'_>) -> Result<Vec<Figure>, FigureError> {
+    drafts(results).into_par_iter().map(Unfinished::finish).collect()
 }
 
 /// The figures that need nothing but answers: contrasts, worths and respondents.
 ///
 /// # Errors
 /// If drawing fails, which is not to be expected.
-pub fn figures_of_groups(groups: &[BallotGroup]) -> Result<Vec<Figure>, FigureError> {
-    let ballots: Vec<ShownBallot> = groups.iter().flat_map(|group| group.ballots.iter().copied()).collect();
-    let hypotheses = isostudy_inference::hypotheses::of_groups(groups);
-    let drafts =
-        [glance::contrasts(None, &hypotheses), worths::draft(None, groups), respondents::draft(&ballots)];
+pub fn figures_of_groups(preferences: &Preferences<'_>) -> Result<Vec<Figure>, FigureError> {
+    let drafts = [
+        glance::contrasts(&preferences.contrasts),
+        worths::draft(None, preferences.groups),
+        respondents::draft(&preferences.shown),
+    ];
     drafts.into_iter().flatten().map(Unfinished::finish).collect()
 }
 
-fn drafts(inputs: &Inputs<'_>) -> Vec<Unfinished> {
+fn drafts(results: &Results<'_>) -> Vec<Unfinished> {
+    let inputs = &results.inputs;
     let mut drafts = Vec::new();
     drafts.extend(meshes::triangles(inputs));
     drafts.extend(meshes::pass_times(inputs));
@@ -67,7 +66,7 @@ fn drafts(inputs: &Inputs<'_>) -> Vec<Unfinished> {
     drafts.extend(meshes::aspect_ratios(inputs));
     drafts.extend(stages::stage_times(inputs));
     drafts.extend(distributions::aspect_ratios(inputs));
-    drafts.extend(fronts::draft(inputs));
+    drafts.extend(fronts::draft(inputs.study, &results.decision));
     if style::has_codes(inputs.study) {
         let found = " The table of methods says what the codes stand for.";
         drafts.iter_mut().for_each(|draft| draft.caption += found);
@@ -75,15 +74,16 @@ fn drafts(inputs: &Inputs<'_>) -> Vec<Unfinished> {
     if let Some(found) = crate::tables::design::budgets(inputs) {
         drafts.iter_mut().for_each(|draft| draft.caption += &format!(" {found}"));
     }
-    if let Some(answered) = inputs.answers {
-        let Answered { tally, shown, declared, groups, hypotheses, .. } = answered;
-        drafts.extend(glance::contrasts(Some(inputs.study), hypotheses));
+    if let Some((answered, preferences)) = inputs.answers.zip(results.preferences.as_ref()) {
+        let tally = &answered.tally;
+        drafts.extend(glance::contrasts(&preferences.contrasts));
         drafts.push(answers::per_question(inputs.study, tally, answered.sides_differ()));
         drafts.push(preferences::per_object(inputs.study, tally));
         drafts.push(preferences::overall(inputs.study, tally));
-        drafts.extend(worths::draft(Some(inputs.study), groups));
-        drafts.extend(respondents::draft(shown));
-        drafts.extend(prediction::draft(inputs, shown, declared));
+        drafts.extend(worths::draft(Some(inputs.study), preferences.groups));
+        drafts.extend(respondents::draft(&preferences.shown));
+        let prediction = results.prediction.as_ref();
+        drafts.extend(prediction.map(|found| prediction::draft(inputs.study, found, &answered.declared)));
     }
     drafts
 }

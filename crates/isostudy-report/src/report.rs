@@ -28,19 +28,16 @@ pub use crate::statement::{Block, Finding, Published, Section, Standing};
 use crate::figure::Figure;
 use crate::words::{capital, counted, list};
 use isostudy_design::Study;
-use isostudy_inference::answered::Answered;
 use isostudy_inference::ballots::BallotGroup;
-use isostudy_inference::hypotheses::{self, Hypothesis, Rules};
+use isostudy_inference::glance::Row;
+use isostudy_inference::hypotheses::{Hypothesis, Rules};
 use isostudy_inference::inputs::Inputs;
-use isostudy_inference::omnibus::{self, Omnibus};
-use isostudy_inference::prediction::Prediction;
-use isostudy_inference::recorded::Recorded;
-use isostudy_inference::scale::{self, GroupScale};
-use isostudy_responses::Responses;
-use isostudy_statistics::DeclaredBallot;
-use isostudy_statistics::ShownBallot;
+use isostudy_inference::omnibus::Omnibus;
+use isostudy_inference::results::Decision;
+use isostudy_inference::scale::GroupScale;
+use isostudy_inference::{Preferences, Results, audit};
+use isostudy_statistics::{DeclaredBallot, ShownBallot};
 use isostudy_table::Table;
-use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 /// A report.
@@ -72,12 +69,12 @@ pub struct SummaryLine {
 /// What sentences are made from.
 struct Evidence<'a> {
     study: Option<&'a Study>,
+    /// What the answers say; none without answers.
+    preferences: Option<&'a Preferences<'a>>,
     /// Answers to comparisons, by the sides that people saw.
     shown: &'a [ShownBallot],
     /// The same answers, about items.
-    declared: Cow<'a, [DeclaredBallot]>,
-    /// By question, what it shows its items on.
-    scenes: Vec<usize>,
+    declared: &'a [DeclaredBallot],
     /// How many answers were asked for: what stands on people's forms.
     asked: usize,
     /// How many people are left out, by a rule that the study declares.
@@ -94,20 +91,30 @@ struct Evidence<'a> {
     assumptions: Vec<String>,
     groups: &'a [BallotGroup],
     hypotheses: &'a [Hypothesis],
-    omnibus: Vec<Omnibus>,
-    /// Whether the probes found that people favour a side.
-    side_favoured: bool,
+    omnibus: &'a [Omnibus],
+    /// Every contrast in a row.
+    contrasts: &'a [Row],
     /// The items of each group on one scale.
-    scales: Vec<GroupScale<'a>>,
+    scales: &'a [GroupScale<'a>],
 }
 
 impl<'a> Evidence<'a> {
-    fn of_study(study: &'a Study, answers: Option<&'a Answered>) -> Self {
-        let nothing = Self {
+    fn of_study(results: &'a Results<'a>) -> Self {
+        let Inputs { study, answers, left_out, .. } = results.inputs;
+        Self {
             study: Some(study),
+            asked: answers.map_or(0, |answered| asked::asked(study, answered)),
+            left_out: left_out.iter().map(|(id, _)| id.to_string()).collect(),
+            ..results.preferences.as_ref().map_or_else(Self::of_nothing, Self::of)
+        }
+    }
+
+    fn of_nothing() -> Self {
+        Self {
+            study: None,
+            preferences: None,
             shown: &[],
-            declared: Cow::Borrowed(&[]),
-            scenes: Vec::new(),
+            declared: &[],
             asked: 0,
             excluded: 0,
             sides_recorded: true,
@@ -117,29 +124,43 @@ impl<'a> Evidence<'a> {
             assumptions: Vec::new(),
             groups: &[],
             hypotheses: &[],
-            omnibus: Vec::new(),
-            side_favoured: false,
-            scales: Vec::new(),
-        };
-        let Some(answered) = answers else { return nothing };
-        let everyone = answered.everyone(study);
-        let recorded = Recorded::of_study(study, &answered.responses, &everyone);
-        Self {
-            shown: &answered.shown,
-            declared: Cow::Borrowed(&answered.declared),
-            scenes: recorded.protocol().scenes.to_vec(),
-            asked: asked::asked(study, answered),
-            excluded: answered.excluded.len(),
-            sides_recorded: answered.responses.sides_recorded,
-            screens_recorded: !answered.responses.screens.is_empty(),
-            order_recorded: answered.responses.answers.iter().any(|answer| answer.order.is_some()),
-            assumptions: answered.responses.assumptions(),
-            groups: &answered.groups,
-            hypotheses: &answered.hypotheses,
-            omnibus: omnibus::tests(study, &answered.declared),
-            scales: scale::scales(&answered.groups),
-            ..nothing
+            omnibus: &[],
+            contrasts: &[],
+            scales: &[],
         }
+    }
+
+    fn of(preferences: &'a Preferences<'a>) -> Self {
+        let responses = preferences.responses;
+        Self {
+            study: preferences.study,
+            preferences: Some(preferences),
+            shown: &preferences.shown,
+            declared: &preferences.declared,
+            // Without a study nobody knows what was asked for.
+            asked: preferences.shown.len(),
+            excluded: preferences.excluded,
+            sides_recorded: responses.sides_recorded,
+            screens_recorded: !responses.screens.is_empty(),
+            order_recorded: responses.answers.iter().any(|answer| answer.order.is_some()),
+            left_out: Vec::new(),
+            assumptions: responses.assumptions(),
+            groups: preferences.groups,
+            hypotheses: &preferences.hypotheses,
+            omnibus: &preferences.omnibus,
+            contrasts: &preferences.contrasts,
+            scales: &preferences.scales,
+        }
+    }
+
+    /// What the probes found.
+    fn audit(&self) -> &'a [audit::Report] {
+        self.preferences.map_or(&[], |of| &of.audit)
+    }
+
+    /// Whether the probes found that people favour a side.
+    fn is_side_favoured(&self) -> bool {
+        self.preferences.is_some_and(Preferences::is_side_favoured)
     }
 
     /// What decides conclusions.
@@ -153,24 +174,6 @@ impl<'a> Evidence<'a> {
 
     fn questions(&self) -> usize {
         self.shown.iter().map(|b| b.question()).collect::<BTreeSet<_>>().len()
-    }
-
-    /// Every hypothesis on the answers of those whom `keep` picks.
-    fn tested(&self, keep: impl Fn(usize) -> bool) -> Vec<Hypothesis> {
-        match self.study {
-            Some(study) => {
-                let kept: Vec<DeclaredBallot> =
-                    self.declared.iter().filter(|b| keep(b.participant())).copied().collect();
-                hypotheses::of_study(study, &kept)
-            }
-            None => {
-                let some = |group: &BallotGroup| BallotGroup {
-                    ballots: group.ballots.iter().filter(|b| keep(b.participant())).copied().collect(),
-                    ..group.clone()
-                };
-                hypotheses::of_groups(&self.groups.iter().map(some).collect::<Vec<_>>())
-            }
-        }
     }
 }
 
@@ -186,18 +189,14 @@ const PAPER: [(&str, bool); 8] = [
     ("comparison_summary", false),
 ];
 
-/// The report of a study. `tables` and `figures` are those made from the same inputs; each is printed once. What was published is
-/// held against it in sections of their own.
-pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure], published: Published) -> Report {
-    let study = inputs.study;
-    let evidence = Evidence {
-        side_favoured: sides::is_favoured(tables),
-        left_out: inputs.left_out.iter().map(|(id, _)| id.to_string()).collect(),
-        ..Evidence::of_study(study, inputs.answers)
-    };
+/// The report of a study. `tables` and `figures` are those made from the same results; each is printed once. What was published
+/// is held against it in sections of their own.
+pub fn report(results: &Results<'_>, tables: &[Table], figures: &[Figure], published: Published) -> Report {
+    let (inputs, study) = (&results.inputs, results.inputs.study);
+    let evidence = Evidence::of_study(results);
     let mut builder = Builder::new(tables, figures);
     let methods = builder.table("methods");
-    builder.decision(inputs);
+    builder.decision(&results.decision);
     let Published { fails, sections } = published;
     if inputs.answers.is_some() {
         builder.preferences(&evidence, fails);
@@ -205,14 +204,14 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure], publish
         builder.section("fails", "What does not hold", fails);
     }
     builder.add_sections(sections);
-    if let Some(Answered { tally, shown, declared, .. }) = inputs.answers {
-        builder.section("factors", "What the sums hide", factors::findings(study, tally, &evidence));
+    if let Some(answered) = inputs.answers {
+        let found = factors::findings(study, &answered.tally, &evidence);
+        builder.section("factors", "What the sums hide", found);
         builder.add_figures(&["preference_objects"]);
-        let predicted = Prediction::of(inputs, shown, declared);
         builder.section(
             "prediction",
             "What predicts preference",
-            prediction::findings(study, predicted.as_ref()),
+            prediction::findings(study, results.prediction.as_ref()),
         );
         builder.add_figures(&["prediction"]);
         builder.add_tables(&["prediction", "prediction_objects", "prediction_correlations"]);
@@ -227,46 +226,25 @@ pub fn report(inputs: &Inputs<'_>, tables: &[Table], figures: &[Figure], publish
     builder.section("machine", "Machine and timing", machine::described(inputs));
     builder.add_figures(&["pass_times", "stage_times"]);
     let title = study.file.study.title.clone();
-    builder.finish(title, &evidence, Some(inputs), methods)
+    builder.finish(title, &evidence, Some(results), methods)
 }
 
-/// The report of answers without a study, as [`report`]; `groups` are their [`open_groups`](isostudy_inference::open_groups).
+/// The report of answers without a study, as [`report`].
 pub fn report_of_groups(
     title: &str,
-    answers: &Responses,
-    groups: &[BallotGroup],
+    preferences: &Preferences<'_>,
     tables: &[Table],
     figures: &[Figure],
 ) -> Report {
-    let shown: Vec<ShownBallot> = groups.iter().flat_map(|group| group.ballots.iter().copied()).collect();
-    let hypotheses = hypotheses::of_groups(groups);
-    let recorded = Recorded::without_study(answers, None);
-    let evidence = Evidence {
-        study: None,
-        declared: shown.iter().map(ShownBallot::by_item).collect(),
-        scenes: recorded.protocol().scenes.to_vec(),
-        asked: 0,
-        excluded: 0,
-        sides_recorded: answers.sides_recorded,
-        screens_recorded: !answers.screens.is_empty(),
-        order_recorded: answers.answers.iter().any(|answer| answer.order.is_some()),
-        left_out: Vec::new(),
-        assumptions: answers.assumptions(),
-        shown: &shown,
-        groups,
-        hypotheses: &hypotheses,
-        omnibus: Vec::new(),
-        side_favoured: sides::is_favoured(tables),
-        scales: scale::scales(groups),
-    };
+    let evidence = Evidence::of(preferences);
     let mut builder = Builder::new(tables, figures);
     builder.preferences(&evidence, Vec::new());
     builder.reliance(&evidence);
     builder.finish(title.into(), &evidence, None, None)
 }
 
-/// `respondents` is that table, if there is one.
-fn lead(evidence: &Evidence<'_>, respondents: Option<&Table>) -> Vec<String> {
+/// What was asked of whom.
+fn lead(evidence: &Evidence<'_>) -> Vec<String> {
     let (people, questions) = (evidence.participants(), evidence.questions());
     let answers = evidence.shown.len();
     if answers == 0 && evidence.excluded > 0 {
@@ -276,7 +254,7 @@ fn lead(evidence: &Evidence<'_>, respondents: Option<&Table>) -> Vec<String> {
         )];
     }
     if answers == 0 {
-        let controls = respondents.map_or(0, checks::controls);
+        let controls = evidence.preferences.map_or(0, checks::controls);
         return vec![match controls {
             0 => "No answers were given, so nothing is said about preference.".into(),
             _ => format!(
@@ -295,8 +273,7 @@ fn lead(evidence: &Evidence<'_>, respondents: Option<&Table>) -> Vec<String> {
         counted(answers, "answer"),
         counted(questions, "question"),
     )];
-    // Without a study nobody knows what was asked for.
-    let asked = if evidence.study.is_some() { evidence.asked } else { answers };
+    let asked = evidence.asked;
     let missing = asked.saturating_sub(answers);
     if missing > 0 {
         lead[0].push_str(&format!(
@@ -331,8 +308,6 @@ fn lead(evidence: &Evidence<'_>, respondents: Option<&Table>) -> Vec<String> {
 
 /// Puts sections together, and knows which tables and figures have not been printed.
 struct Builder {
-    /// The table of people, wherever it is printed.
-    respondents: Option<Table>,
     tables: Vec<Table>,
     figures: Vec<Figure>,
     sections: Vec<Section>,
@@ -340,8 +315,7 @@ struct Builder {
 
 impl Builder {
     fn new(tables: &[Table], figures: &[Figure]) -> Self {
-        let respondents = tables.iter().find(|table| table.name == "respondents").cloned();
-        Self { respondents, tables: tables.to_vec(), figures: figures.to_vec(), sections: Vec::new() }
+        Self { tables: tables.to_vec(), figures: figures.to_vec(), sections: Vec::new() }
     }
 
     fn table(&mut self, name: &str) -> Option<Table> {
@@ -389,11 +363,11 @@ impl Builder {
     }
 
     /// Which method to take; nothing where there are none to choose from.
-    fn decision(&mut self, inputs: &Inputs<'_>) {
+    fn decision(&mut self, found: &Decision<'_>) {
         let tables = ["choices", "decision"].map(|name| self.table(name).map(Block::Table));
         let mut blocks: Vec<Block> = tables.into_iter().flatten().collect();
         blocks.extend(self.figures(&["fronts"]));
-        blocks.extend(decision::fronts_in_words(inputs));
+        blocks.extend(decision::fronts_in_words(found));
         blocks.extend(self.table("fronts").map(Block::Folded));
         self.section("decision", "Which method to take", blocks);
     }
@@ -427,9 +401,7 @@ impl Builder {
         if evidence.shown.is_empty() {
             return;
         }
-        let audit = self.tables.iter().find(|table| table.name == "audit");
-        let sides = sides::findings(evidence, audit);
-        self.section("unanswerable", "What cannot be answered here", sides);
+        self.section("unanswerable", "What cannot be answered here", sides::findings(evidence));
         self.section(
             "declared",
             "What was fixed beforehand, and what was not",
@@ -438,10 +410,7 @@ impl Builder {
         self.section("bearing", "How far the answers can be relied on", reliability::findings(evidence));
         self.add_figures(&["respondents"]);
         self.add_tables(&["tests", "omnibus", "agreement", "answer_counts"]);
-        let checks = checks::findings(evidence, |name| self.tables.iter().find(|table| table.name == name));
-        let of_screens = self.tables.iter().find(|table| table.name == "screens");
-        let of_screens = screens::findings(of_screens, evidence.rules().level);
-        self.section("checks", "Checks of the answers", [checks, of_screens].concat());
+        self.section("checks", "Checks of the answers", checks::findings(evidence));
         self.add_tables(&["audit", "screened", "screens", "respondents"]);
     }
 
@@ -449,17 +418,17 @@ impl Builder {
         mut self,
         title: String,
         evidence: &Evidence<'_>,
-        inputs: Option<&Inputs<'_>>,
+        results: Option<&Results<'_>>,
         methods: Option<Table>,
     ) -> Report {
-        let lead = lead(evidence, self.respondents.as_ref());
+        let lead = lead(evidence);
         let rest = self.figures.drain(..).map(Block::Figure);
         let rest: Vec<Block> = rest.chain(self.tables.drain(..).map(Block::Folded)).collect();
         self.section("appendix", "All other figures and tables", rest);
         self.sections.retain(|section| !section.blocks.is_empty());
         Report {
             title,
-            summary: summary::lines(evidence, inputs),
+            summary: summary::lines(evidence, results),
             methods,
             lead,
             limits: limits::all(evidence),

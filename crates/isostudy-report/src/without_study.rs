@@ -1,31 +1,19 @@
 //! Tables of answers that no study file explains: items, groups and questions are what the answers name.
 
 use crate::tables;
-use isostudy_inference::ballots::{BallotGroup, outcome};
-use isostudy_inference::hypotheses;
+use isostudy_inference::Preferences;
+use isostudy_inference::ballots::outcome;
 use isostudy_inference::open_groups::group_of_question;
-use isostudy_inference::recorded::Recorded;
-use isostudy_inference::{audit, glance};
 use isostudy_responses::Responses;
 use isostudy_statistics::interval;
 use isostudy_table::{Cell, Table};
 
 /// Every table about answers that no study explains: `answer_counts`, `tests`, `worths`, `models`, `respondents`, `screened`,
-/// `audit` and `screens`, as far as they have rows. `groups` are [`open_groups`](isostudy_inference::open_groups()) of the same answers; `shown_s` is how long what a
-/// question shows lasts, in seconds.
-pub fn answer_tables(answers: &Responses, groups: &[BallotGroup], shown_s: Option<f64>) -> Vec<Table> {
-    let hypotheses = hypotheses::of_groups(groups);
-    let mut tables = vec![counts(answers)];
-    tables.extend(tables::glance::contrasts(&glance::rows(None, &hypotheses)));
-    tables.push(tables::contrasts::pair_tests(groups));
-    tables.extend(tables::models::model_tables(groups, answers.sides_recorded));
-    tables.extend(tables::scale::tables(&isostudy_inference::scale::scales(groups)));
-    let recorded = Recorded::without_study(answers, shown_s);
-    tables.push(tables::agreement::respondents(recorded.ballots(), &recorded.protocol(), 0));
-    tables.push(tables::screened::screened_pair_tests(groups, &recorded));
-    tables.push(tables::audit::audit_table(&audit::audit(&recorded.audited(groups))));
-    tables.push(tables::screens::screens(answers));
+/// `audit` and `screens`, as far as they have rows.
+pub fn answer_tables(preferences: &Preferences<'_>) -> Vec<Table> {
+    let mut tables = vec![counts(preferences.responses)];
     tables.retain(|table| !table.rows.is_empty());
+    tables.extend(tables::of_preferences(preferences));
     tables
 }
 

@@ -20,13 +20,17 @@ pub const LEAST_ERROR: f64 = 1e-4;
 
 /// An object and the methods that can be taken for it, in the study's order.
 pub struct ObjectCandidates<'a> {
+    /// The object.
     pub object: &'a ObjectSection,
+    /// The methods on it.
     pub candidates: Vec<Candidate<'a>>,
 }
 
 /// A method on one object, at the benchmark spacing or what its budget made of it.
 pub struct Candidate<'a> {
+    /// The method.
     pub method: &'a Method,
+    /// Its mesh.
     pub mesh: &'a MeshRecord,
     /// Median seconds from the field to the mesh, normals left out.
     pub time_s: Option<Estimate>,
@@ -48,6 +52,7 @@ pub struct Candidate<'a> {
 /// Times of the same pieces of work, one after the other, and their median.
 pub struct Each {
     times_s: Vec<f64>,
+    /// Median in seconds.
     pub median_s: Estimate,
 }
 
@@ -78,10 +83,12 @@ impl ObjectCandidates<'_> {
 }
 
 impl Candidate<'_> {
+    /// The code of the method.
     pub fn id(&self) -> MethodId {
         self.method.id
     }
 
+    /// The number of triangles.
     pub fn triangles(&self) -> Estimate {
         Estimate::exact(self.mesh.counts.triangles as f64)
     }

@@ -5,8 +5,11 @@ use isostudy_statistics::interval::Interval;
 /// A value with its interval at 95 %; of a value that is counted, both ends are the value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
+    /// The value.
     pub value: f64,
+    /// The lower end.
     pub low: f64,
+    /// The upper end.
     pub high: f64,
 }
 

@@ -15,6 +15,7 @@ pub enum Axes {
 }
 
 impl Axes {
+    /// All of them.
     pub const ALL: [Self; 3] = [Self::TimeError, Self::TrianglesError, Self::TimePreference];
 
     /// In words.
@@ -49,14 +50,19 @@ pub enum Standing {
 
 /// The methods of an object in two quantities, in the study's order.
 pub struct Front {
+    /// The two quantities.
     pub axes: Axes,
+    /// Every method that has both.
     pub points: Vec<FrontPoint>,
 }
 
 /// A method on a front or behind it.
 pub struct FrontPoint {
+    /// The method.
     pub method: MethodId,
+    /// Both quantities.
     pub at: [Estimate; 2],
+    /// Whether another is better in both.
     pub standing: Standing,
 }
 

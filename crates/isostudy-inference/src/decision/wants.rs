@@ -174,8 +174,11 @@ fn milliseconds(seconds: Estimate) -> Estimate {
 
 /// The best at a want, and the objects on which it is.
 pub struct Pick<'a> {
+    /// What is wanted.
     pub want: &'static Want,
+    /// The best at it.
     pub method: &'a Method,
+    /// Where.
     pub on: Vec<Best<'a>>,
 }
 

@@ -22,6 +22,7 @@ pub struct Metric {
     /// The better value in words: `higher`, `lower`, `fewer`.
     pub better: &'static str,
     larger_is_better: bool,
+    /// How two values are compared.
     pub scale: Scale,
     /// The value; `None` if the mesh has none.
     pub value: fn(&MeshRecord) -> Option<f64>,

@@ -5,7 +5,6 @@ use super::{Finding, judge};
 use crate::comparison::benchmark::double_count;
 use isostudy_design::published::Claim;
 use isostudy_design::{Arrangement, Clustering, Crossed};
-use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{self, discarded_as_published, of_tetrahedra};
 
 use Clustering::{EdgeCollapse, Integrated};
@@ -30,13 +29,12 @@ const EDGES_STORED: Measure = Measure {
     ours: Ours::Mesh(|m| of_tetrahedra(m, |t| t.stored_edges) / of_tetrahedra(m, |t| t.needed_edges)),
 };
 
-pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
-    let numbers = Numbers::of(inputs);
+pub(super) fn find(numbers: &Numbers<'_>, claim: &Claim) -> Option<Finding> {
     let value = claim.value?;
     match claim.id.as_str() {
-        "discard_integrated" => discarded(&numbers, value, Integrated),
-        "discard_edge_collapse" => discarded(&numbers, value, EdgeCollapse),
-        "arrangement_triangles" => more_triangles(&numbers, value),
+        "discard_integrated" => discarded(numbers, value, Integrated),
+        "discard_edge_collapse" => discarded(numbers, value, EdgeCollapse),
+        "arrangement_triangles" => more_triangles(numbers, value),
         "arrangement_samples" => {
             let ratio = |side| mean(&numbers.over_arrangement(side, SAMPLES, &[Integrated]));
             let ours = ratio(Side::Ours)?;
@@ -53,8 +51,8 @@ pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
                 },
             })
         }
-        "simple_samples_stored" => stored(&numbers, value, SAMPLES_STORED),
-        "simple_edges_stored" => stored(&numbers, value, EDGES_STORED),
+        "simple_samples_stored" => stored(numbers, value, SAMPLES_STORED),
+        "simple_edges_stored" => stored(numbers, value, EDGES_STORED),
         _ => None,
     }
 }

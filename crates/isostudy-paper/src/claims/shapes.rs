@@ -6,7 +6,6 @@ use crate::comparison::benchmark::zero_ratios;
 use crate::verdict::{UNEXPLAINED, Verdict, prints_alike};
 use isostudy_design::Clustering::{self, EdgeCollapse, Integrated};
 use isostudy_design::published::Claim;
-use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::known;
 use isostudy_inference::published_ratio;
 
@@ -29,11 +28,10 @@ const DEGENERATE: Measure = Measure { published: |_| 0.0, ours: Ours::Mesh(|m| m
 const TRIANGLES: Measure =
     Measure { published: |p| p.triangles as f64, ours: Ours::Mesh(|m| m.counts.triangles as f64) };
 
-pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
-    let numbers = Numbers::of(inputs);
+pub(super) fn find(numbers: &Numbers<'_>, claim: &Claim) -> Option<Finding> {
     match claim.id.as_str() {
-        "less_uniform" => less_uniform(&numbers),
-        "fewer_triangles" => fewer_triangles(&numbers),
+        "less_uniform" => less_uniform(numbers),
+        "fewer_triangles" => fewer_triangles(numbers),
         id => {
             let rest = id.strip_prefix("ratio_")?;
             let (measures, rest) = match rest.split_once('_')? {
@@ -48,7 +46,7 @@ pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
                 "edge_collapse" => EdgeCollapse,
                 _ => return None,
             };
-            extreme_of(&numbers, claim.value?, measures, clustering, extreme == "max")
+            extreme_of(numbers, claim.value?, measures, clustering, extreme == "max")
         }
     }
 }

@@ -127,8 +127,7 @@ impl Change {
     }
 }
 
-pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
-    let numbers = Numbers::of(inputs);
+pub(super) fn find(inputs: &Inputs<'_>, numbers: &Numbers<'_>, claim: &Claim) -> Option<Finding> {
     let against_none = |clustering| numbers.clustering_pairs(clustering, Clustering::None);
     let (pass, pairs) = match claim.id.as_str() {
         "vertex_integrated" => (VERTEX, against_none(Integrated)),
@@ -140,7 +139,7 @@ pub(super) fn find(inputs: &Inputs<'_>, claim: &Claim) -> Option<Finding> {
         _ => return None,
     };
     let (value, run) = (claim.value?, inputs.bench?);
-    let found = Change::of(inputs, &numbers, pass, &pairs)?;
+    let found = Change::of(inputs, numbers, pass, &pairs)?;
     let from_published = found.published;
     // The text is what is checked, whatever its tables come to.
     let found = Change { published: Some(value), ..found };

@@ -6,8 +6,7 @@ fn find<'a>(all: &'a [Compared], row: &str, quantity: &str) -> &'a Compared {
 }
 
 fn compared(everything: &Everything) -> Vec<Compared> {
-    let tally = everything.answers.tally.clone();
-    all(&everything.inputs(), Some(&tally))
+    all(&everything.inputs())
 }
 
 #[test]
@@ -73,7 +72,9 @@ fn an_unknown_difference_is_not_explained_away() {
 #[test]
 fn what_is_not_explained_is_listed() {
     let mut everything = Everything::of(fixture::study());
-    let listed = |everything: &Everything| crate::unexplained_differences(&everything.inputs());
+    let listed = |everything: &Everything| {
+        crate::Paper::of(&isostudy_inference::Results::of(&everything.inputs())).unexplained_differences()
+    };
     assert_eq!(listed(&everything), Vec::<String>::new());
     everything.meshes[0].counts.vertices += 100;
     let claims = &mut everything.study.published.claims;
@@ -101,8 +102,7 @@ fn another_resolution_is_not_compared() {
 #[test]
 fn the_summary_adds_up() {
     let everything = Everything::of(fixture::study());
-    let tally = everything.answers.tally.clone();
-    let tables = tables(&everything.inputs(), Some(&tally));
+    let tables = tables("Costen", &all(&everything.inputs()));
     let counted: i64 = tables[0]
         .rows
         .iter()

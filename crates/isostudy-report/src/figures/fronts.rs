@@ -7,18 +7,15 @@ use super::marks::Mark;
 use super::scatter::Scatter;
 use super::{Unfinished, WIDTH, canvas_with_legend, style};
 use isostudy_design::{Method, MethodId, Study};
-use isostudy_inference::decision::{
-    Axes, Front, FrontPoint, LEAST_ERROR, ObjectCandidates, Standing, candidates, fronts,
-};
-use isostudy_inference::inputs::Inputs;
+use isostudy_inference::decision::{Axes, Front, FrontPoint, LEAST_ERROR, ObjectCandidates, Standing};
+use isostudy_inference::results::Decision;
 
 const ROW: f64 = 330.0;
 
 /// Nothing where no object has two methods to choose from.
-pub(super) fn draft(inputs: &Inputs<'_>) -> Option<Unfinished> {
-    let objects = candidates(inputs);
-    let rows: Vec<(&str, Vec<Front>)> =
-        objects.iter().map(|of| (of.object.name.as_str(), fronts(&of.candidates))).collect();
+pub(super) fn draft(study: &Study, decision: &Decision<'_>) -> Option<Unfinished> {
+    let rows: Vec<(&str, &[Front])> =
+        decision.each().map(|(of, fronts)| (of.object.name.as_str(), fronts)).collect();
     let shown: Vec<Axes> = Axes::ALL
         .into_iter()
         .filter(|axes| rows.iter().any(|(_, fronts)| fronts.iter().any(|front| front.axes == *axes)))
@@ -26,20 +23,20 @@ pub(super) fn draft(inputs: &Inputs<'_>) -> Option<Unfinished> {
     if shown.is_empty() {
         return None;
     }
-    let (mut canvas, top) = canvas_with_legend(&legend(inputs.study, &objects), ROW * rows.len() as f64);
+    let (mut canvas, top) = canvas_with_legend(&legend(study, &decision.objects), ROW * rows.len() as f64);
     let width = WIDTH / shown.len() as f64;
     for (r, (object, fronts)) in rows.iter().enumerate() {
         for (column, axes) in shown.iter().enumerate() {
             let Some(front) = fronts.iter().find(|front| front.axes == *axes) else { continue };
             let (x, y) = (width * column as f64, top + ROW * r as f64);
-            panel(inputs.study, object, front).draw(&mut canvas, (x, y), (x + width, y + ROW));
+            panel(study, object, front).draw(&mut canvas, (x, y), (x + width, y + ROW));
         }
     }
     let mut caption: String = "Each method on each object, two quantities at a time; better is to the left, and down for error, up for preference. Nobody is \
                    better in both than the methods on the line, whose codes stand beside them. Thin lines are intervals at 95 %. The \
                    table of fronts has every value, and says who beats whom."
         .into();
-    if objects.iter().any(ObjectCandidates::has_least_error) {
+    if decision.objects.iter().any(ObjectCandidates::has_least_error) {
         caption.push_str(&format!(" A mean error below {LEAST_ERROR} is drawn there."));
     }
     Some(Unfinished { name: "fronts", caption, canvas })

@@ -7,22 +7,19 @@ use super::marks::Mark;
 use super::{Unfinished, canvas_with_legend};
 use crate::statement::Standing;
 use crate::words::capital;
-use isostudy_design::Study;
-use isostudy_inference::glance::{self, rows};
-use isostudy_inference::hypotheses::Hypothesis;
+use isostudy_inference::glance;
 
 /// More rows than this are read in the table alone.
 const MOST: usize = 120;
 /// Between the two panels.
 const GAP: f64 = 34.0;
 
-/// `study` is none of answers that no study explains.
-pub(super) fn contrasts(study: Option<&Study>, hypotheses: &[Hypothesis]) -> Option<Unfinished> {
-    let rows = rows(study, hypotheses);
+/// Nothing if nothing was tested, or too much.
+pub(super) fn contrasts(rows: &[glance::Row]) -> Option<Unfinished> {
     if rows.is_empty() || rows.len() > MOST {
         return None;
     }
-    let [shares, differences] = [false, true].map(|differences| blocks(&rows, differences));
+    let [shares, differences] = [false, true].map(|differences| blocks(rows, differences));
     let legend = [
         (Swatch::Mark(Mark::nth(0, true)), "a preference, or a difference, holds".to_owned()),
         (Swatch::Mark(Mark::nth(0, false)), "open, equal or too few".to_owned()),

@@ -8,20 +8,14 @@ use super::scatter::Scatter;
 use super::style::object_colour;
 use super::{Unfinished, WIDTH, canvas_with_legend};
 use isostudy_design::{Comparison, Study};
-use isostudy_inference::inputs::Inputs;
 use isostudy_inference::prediction::{MetricPrediction, Prediction, Scale};
 use isostudy_inference::preference;
-use isostudy_statistics::{DeclaredBallot, ShownBallot, outcome_counts};
+use isostudy_statistics::{DeclaredBallot, outcome_counts};
 
 const ROW: f64 = 320.0;
 const PER_ROW: usize = 3;
 
-pub(super) fn draft(
-    inputs: &Inputs<'_>,
-    shown: &[ShownBallot],
-    declared: &[DeclaredBallot],
-) -> Option<Unfinished> {
-    let (study, prediction) = (inputs.study, Prediction::of(inputs, shown, declared)?);
+pub(super) fn draft(study: &Study, prediction: &Prediction, declared: &[DeclaredBallot]) -> Unfinished {
     let counts = outcome_counts(declared);
     let mut legend: Vec<(Swatch, String)> = Vec::new();
     for (o, object) in study.file.objects.iter().enumerate() {
@@ -50,7 +44,7 @@ pub(super) fn draft(
                    alone expects. Pairs without a decided answer or a difference are left out. Marks are moved up or down by at most \
                    0.015, so that no two lie on each other."
         .into();
-    Some(Unfinished { name: "prediction", caption, canvas })
+    Unfinished { name: "prediction", caption, canvas }
 }
 
 /// By how much a mark is moved, by the number of its question: spread evenly by the golden section, and the same each time.

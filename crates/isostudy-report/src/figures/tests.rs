@@ -46,7 +46,7 @@ fn the_check_itself_can_fail() {
 #[test]
 fn every_figure_is_there_and_sound() {
     let all = Everything::of(fixture::study());
-    let figures = figures(&all.inputs()).unwrap();
+    let figures = figures(&Results::of(&all.inputs())).unwrap();
     let expected = [
         ("triangles", vec!["triangles", "120,000", "sphere", "asteroid", "bunny", "published"]),
         (
@@ -105,15 +105,15 @@ fn every_figure_is_there_and_sound() {
 #[test]
 fn the_same_inputs_give_the_same_bytes() {
     let mut all = Everything::of(fixture::study());
-    let before = figures(&all.inputs()).unwrap();
+    let before = figures(&Results::of(&all.inputs())).unwrap();
     all.meshes.reverse();
-    assert!(figures(&all.inputs()).unwrap() == before);
+    assert!(figures(&Results::of(&all.inputs())).unwrap() == before);
 }
 
 #[test]
 fn no_text_leaves_the_drawing() {
     let all = Everything::of(fixture::study());
-    for draft in drafts(&all.inputs()) {
+    for draft in drafts(&Results::of(&all.inputs())) {
         assert_eq!(draft.canvas.texts_outside(), Vec::<String>::new(), "{}", draft.name);
     }
 }
@@ -127,7 +127,7 @@ fn captions_say_what_is_left_out() {
         "{caption}"
     );
     assert!(caption.contains("ss_bu 775.93, ss_su 1207.37"), "{caption}");
-    let all_figures = figures(&all.inputs()).unwrap();
+    let all_figures = figures(&Results::of(&all.inputs())).unwrap();
     let caption = &all_figures.iter().find(|f| f.name == "preference_overall").unwrap().caption;
     let want = "A factor of an arrangement group can reach 1, one of a clustering group 2/3, so the sum weighs the \
                 arrangement half more.";

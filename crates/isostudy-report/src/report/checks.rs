@@ -1,53 +1,56 @@
-//! Checks of the answers: who broke a rule of screening and what the tests are without them, and what probes found. Said from
-//! the tables, which hold both.
+//! Checks of the answers: who broke a rule of screening and what the tests are without them, what probes found, and whether
+//! screens mattered.
 
-use super::{Block, Evidence, names};
+use super::{Block, Evidence, names, screens};
 use crate::statement::{Finding, Standing};
+use crate::tables::screened::numbers;
 use crate::words::{counted, list, p as p_value};
-use isostudy_inference::audit::Finding as Probed;
-use isostudy_statistics::{Flag, screening};
-use isostudy_table::{Cell, Table};
-use std::collections::BTreeMap;
+use isostudy_inference::Preferences;
+use isostudy_inference::audit::{Finding as Probed, Report};
+use isostudy_inference::hypotheses::Hypothesis;
+use isostudy_inference::screened::{Respondent, WithoutBreakers};
+use isostudy_statistics::{Flag, Screening, screening};
 
 /// Tests named at most.
 const NAMED: usize = 6;
 
-pub(super) fn findings<'t>(evidence: &Evidence<'_>, table: impl Fn(&str) -> Option<&'t Table>) -> Vec<Block> {
+pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
+    let Some(preferences) = evidence.preferences else { return Vec::new() };
     let mut found = Vec::new();
-    if let Some(respondents) = table("respondents") {
-        found.push(screened(evidence, respondents));
+    if !preferences.respondents.is_empty() {
+        found.push(screened(evidence, &preferences.respondents));
     }
-    found.extend(table("screened").map(|screened| without(evidence, screened)).unwrap_or_default());
-    found.extend(table("audit").map(probed).unwrap_or_default());
+    let without = preferences.screened.iter().filter(|of| !of.tests.is_empty());
+    found.extend(without.map(|of| without_breakers(evidence, of)));
+    found.extend(preferences.audit.iter().map(probed));
+    found.extend(screens::finding(&preferences.screens, evidence.rules().level));
     found.into_iter().map(Block::Finding).collect()
 }
 
-/// The column of this name in every row.
-fn column<'t>(table: &'t Table, name: &str) -> impl Iterator<Item = &'t Cell> + use<'t> {
-    let place = table.columns.iter().position(|column| column.name == name).expect("a column of this table");
-    table.rows.iter().map(move |row| &row[place])
-}
-
-fn sum(table: &Table, name: &str) -> u64 {
-    column(table, name).filter_map(|cell| cell.in_full().parse::<u64>().ok()).sum()
+fn sum(respondents: &[Respondent], count: fn(&Screening) -> u64) -> u64 {
+    respondents.iter().map(|of| count(&of.seen)).sum()
 }
 
 /// Answers to controls.
-pub(super) fn controls(respondents: &Table) -> u64 {
-    sum(respondents, "controls")
+pub(super) fn controls(preferences: &Preferences<'_>) -> u64 {
+    sum(&preferences.respondents, |seen| seen.controls)
 }
 
 /// How many broke which rule, and what was there to judge.
-fn screened(evidence: &Evidence<'_>, respondents: &Table) -> Finding {
-    let people = respondents.rows.len();
-    let flags: Vec<String> = column(respondents, "flags").map(Cell::in_full).collect();
-    let broken = flags.iter().filter(|flags| !flags.is_empty()).count();
+fn screened(evidence: &Evidence<'_>, respondents: &[Respondent]) -> Finding {
+    let people = respondents.len();
+    let broken = respondents.iter().filter(|of| !of.flags.is_empty()).count();
+    let breakers = |rule: Flag| respondents.iter().filter(|of| of.flags.contains(&rule)).count();
     let rule = |flag: &Flag| {
-        let own = flags.iter().filter(|flags| flags.split(' ').any(|code| code == flag.code())).count();
+        let own = breakers(*flag);
         (own > 0).then(|| format!("{own} by {}", broken_by(*flag)))
     };
     let rules: Vec<String> = Flag::ALL.iter().filter_map(rule).collect();
-    let kinds = [("controls", "control"), ("repeats", "repeat"), ("timed", "timed answer")];
+    let kinds: [(&str, &str, fn(&Screening) -> u64); 3] = [
+        ("controls", "control", |seen| seen.controls),
+        ("repeats", "repeat", |seen| seen.repeats),
+        ("times", "timed answer", |seen| seen.timed),
+    ];
     let (mut judged, mut absent) = (Vec::new(), Vec::new());
     let seen = screening(evidence.shown);
     let of = |rule: &str, number: usize| match number {
@@ -55,9 +58,8 @@ fn screened(evidence: &Evidence<'_>, respondents: &Table) -> Finding {
         n => format!("{rule} of {}", counted(n, "participant")),
     };
     // The rule sees repeats and controls as well, and so may judge people whom comparisons alone do not.
-    let one_sided = flags.iter().filter(|flags| flags.split(' ').any(|code| code == Flag::OneSided.code()));
     let by_comparisons = seen.iter().filter(|of| of.tells_sides() && of.answers[0] + of.answers[2] >= 10);
-    match by_comparisons.count().max(one_sided.count()) {
+    match by_comparisons.count().max(breakers(Flag::OneSided)) {
         0 => absent.push("one-sidedness"),
         n => judged.push(of("one-sidedness", n)),
     }
@@ -65,9 +67,9 @@ fn screened(evidence: &Evidence<'_>, respondents: &Table) -> Finding {
         0 => absent.push("agreement"),
         n => judged.push(of("agreement", n)),
     }
-    for (name, noun) in kinds {
-        match sum(respondents, name) {
-            0 => absent.push(if name == "timed" { "times" } else { name }),
+    for (name, noun, count) in kinds {
+        match sum(respondents, count) {
+            0 => absent.push(name),
             n => judged.push(counted(n as usize, noun)),
         }
     }
@@ -108,69 +110,47 @@ fn broken_by(flag: Flag) -> &'static str {
     }
 }
 
-/// Rule by rule, the tests that come out otherwise without those who broke it.
-fn without(evidence: &Evidence<'_>, screened: &Table) -> Vec<Finding> {
-    let in_words: BTreeMap<[&str; 3], String> = evidence
-        .hypotheses
-        .iter()
-        .map(|h| ([&*h.family, &*h.contrast, &*h.scope], names::hypothesis(evidence, h)))
-        .collect();
-    let keys = [
-        "rule",
-        "left_out",
-        "respondents",
-        "family",
-        "contrast",
-        "scope",
-        "conclusion",
-        "conclusion_without",
-    ];
-    let columns: Vec<Vec<String>> =
-        keys.iter().map(|name| column(screened, name).map(Cell::in_full).collect()).collect();
-    let rows: Vec<usize> = (0..screened.rows.len()).collect();
-    let of_rule = |rows: &[usize]| {
-        let [rule, left_out, people] = [0, 1, 2].map(|c| columns[c][rows[0]].as_str());
-        let changed: Vec<usize> = rows.iter().copied().filter(|&r| columns[6][r] != columns[7][r]).collect();
-        let tests = counted(rows.len(), "test");
-        let outcome = match changed.len() {
-            0 => format!("none of {tests} comes out otherwise"),
-            n => {
-                let name = |&r: &usize| {
-                    let [family, contrast, scope, with, without] = [3, 4, 5, 6, 7].map(|c| &*columns[c][r]);
-                    let tested = in_words.get(&[family, contrast, scope]).map_or(contrast, String::as_str);
-                    format!("{tested} ({with}, then {without})")
-                };
-                let mut named: Vec<String> = changed.iter().take(NAMED).map(name).collect();
-                if n > NAMED {
-                    named.push(format!("{} more", n - NAMED));
-                }
-                let comes = if n == 1 { "comes" } else { "come" };
-                format!("{n} of {tests} {comes} out otherwise: {}", list(&named))
-            }
-        };
-        let noun = if left_out == "1" { "Participant" } else { "Participants" };
-        let people = people.replace(' ', ", ").replace(", and, ", " and ").replace(", more", " more");
-        let own = Flag::ALL.into_iter().find(|flag| flag.code() == rule);
-        let rule = own.map_or("some rule".into(), |flag| format!("a rule by {}", broken_by(flag)));
-        Finding::new(Standing::Noted, format!("{noun} {people} broke {rule}: without them, {outcome}."))
+/// The tests that come out otherwise without those who broke a rule.
+fn without_breakers(evidence: &Evidence<'_>, of: &WithoutBreakers) -> Finding {
+    let label = |without: &Option<Hypothesis>| {
+        without.as_ref().map_or("nobody left", |other| other.conclusion().label())
     };
-    rows.chunk_by(|&a, &b| columns[0][a] == columns[0][b]).map(of_rule).collect()
+    let changed = of.tests.iter().filter(|(with, without)| with.conclusion().label() != label(without));
+    let changed: Vec<&(Hypothesis, Option<Hypothesis>)> = changed.collect();
+    let tests = counted(of.tests.len(), "test");
+    let outcome = match changed.len() {
+        0 => format!("none of {tests} comes out otherwise"),
+        n => {
+            let name = |(with, without): &&(Hypothesis, Option<Hypothesis>)| {
+                let tested = names::hypothesis(evidence, with);
+                format!("{tested} ({}, then {})", with.conclusion().label(), label(without))
+            };
+            let mut named: Vec<String> = changed.iter().take(NAMED).map(name).collect();
+            if n > NAMED {
+                named.push(format!("{} more", n - NAMED));
+            }
+            let comes = if n == 1 { "comes" } else { "come" };
+            format!("{n} of {tests} {comes} out otherwise: {}", list(&named))
+        }
+    };
+    let noun = if of.people.len() == 1 { "Participant" } else { "Participants" };
+    let people = numbers(&of.people, ", ");
+    let rule = of.rule.map_or("some rule".into(), |flag| format!("a rule by {}", broken_by(flag)));
+    Finding::new(Standing::Noted, format!("{noun} {people} broke {rule}: without them, {outcome}."))
 }
 
-/// What each probe found.
-fn probed(audit: &Table) -> Vec<Finding> {
-    let texts = |name| column(audit, name).map(Cell::in_full).collect::<Vec<String>>();
-    let (questions, found, evidence) = (texts("question"), texts("finding"), texts("evidence"));
-    let one = |(i, p): (usize, &Cell)| {
-        let (question, evidence) = (&questions[i], &evidence[i]);
-        let p = if let Cell::P(p, _) = p { format!(" ({})", p_value(*p)) } else { String::new() };
-        if found[i] == Probed::NotAnswerable.label() {
+/// What a probe found.
+fn probed(report: &Report) -> Finding {
+    let Report { probe, finding, p, evidence } = report;
+    let (question, p) = (probe.question(), p.map_or(String::new(), |p| format!(" ({})", p_value(p))));
+    let word = match finding {
+        Probed::NotAnswerable => {
             let because = evidence.trim_start_matches("not answerable here, ");
             let text = format!("{question} Not answerable here, {because}.");
             return Finding::new(Standing::NotAnswerable, text);
         }
-        let word = if found[i] == Probed::Found.label() { "Found" } else { "Not found" };
-        Finding::new(Standing::Noted, format!("{question} {word}: {evidence}{p}."))
+        Probed::Found => "Found",
+        Probed::NotFound => "Not found",
     };
-    column(audit, "p").enumerate().map(one).collect()
+    Finding::new(Standing::Noted, format!("{question} {word}: {evidence}{p}."))
 }

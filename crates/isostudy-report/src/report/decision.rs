@@ -3,18 +3,18 @@
 use crate::statement::Block;
 use crate::words::{capital, list};
 use isostudy_design::MethodId;
-use isostudy_inference::decision::{Front, Standing, candidates, fronts};
-use isostudy_inference::inputs::Inputs;
+use isostudy_inference::decision::{Front, ObjectCandidates, Standing};
+use isostudy_inference::results::Decision;
 use isostudy_table::digits::counted;
 
 /// A paragraph an object, by code; the table says who beats whom.
-pub(super) fn fronts_in_words(inputs: &Inputs<'_>) -> Vec<Block> {
-    let paragraph = |of: &isostudy_inference::decision::ObjectCandidates<'_>| {
-        let sentences: Vec<String> = fronts(&of.candidates).iter().map(sentence).collect();
+pub(super) fn fronts_in_words(found: &Decision<'_>) -> Vec<Block> {
+    let paragraph = |(of, fronts): (&ObjectCandidates<'_>, &[Front])| {
+        let sentences: Vec<String> = fronts.iter().map(sentence).collect();
         let text = format!("{}: {}", capital(&of.object.name), sentences.join(" "));
         (!sentences.is_empty()).then_some(Block::Text(text))
     };
-    candidates(inputs).iter().filter_map(paragraph).collect()
+    found.each().filter_map(paragraph).collect()
 }
 
 fn sentence(front: &Front) -> String {

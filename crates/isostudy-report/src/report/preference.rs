@@ -168,7 +168,7 @@ fn preference(
     let mut finding = Finding::of_preference(hypothesis, first, second, scope);
     match finding.standing {
         Standing::Holds => finding.text.push_str(&tipping::sentence(evidence, hypothesis)),
-        Standing::Equal if evidence.side_favoured => {
+        Standing::Equal if evidence.is_side_favoured() => {
             finding.standing = Standing::Open;
             finding.text = finding.text.replace(" are liked alike, within", " average out within");
             finding.text.push_str(

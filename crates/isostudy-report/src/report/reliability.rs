@@ -3,14 +3,11 @@
 use super::{Block, Evidence, names};
 use crate::statement::{Finding, Standing};
 use crate::words::{counted, interval, list, number, p, percent};
+use isostudy_inference::agreement::Agreement;
 use isostudy_inference::hypotheses::Hypothesis;
 use isostudy_inference::leave_one_out::WithoutOne;
-use isostudy_statistics::{
-    DeclaredBallot, Metric, Screening, Triads, agreement, alpha_with_interval, outcome_counts, screening,
-    sign_test, triads,
-};
+use isostudy_statistics::{Alpha, Screening, Triads, screening, sign_test};
 use statrs::distribution::{Binomial, DiscreteCDF};
-use std::collections::BTreeMap;
 
 /// Fewer comparable answers than this say nothing about a person.
 const COMPARABLE: u64 = 6;
@@ -18,24 +15,23 @@ const COMPARABLE: u64 = 6;
 const NAMED: usize = 8;
 
 pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
-    let mut found = vec![unanimity(evidence)];
-    found.extend(consistency(evidence));
+    let agreement = evidence.preferences.and_then(|of| of.agreement.first());
+    let mut found: Vec<Finding> =
+        agreement.map(|of| unanimity(of, evidence.rules().level)).into_iter().collect();
+    found.extend(agreement.and_then(|of| consistency(&of.triads, evidence.rules().level)));
     found.extend(one_by_one(evidence));
     found.extend(outlying(evidence));
     found.extend(single_questions(evidence));
     found.into_iter().map(Block::Finding).collect()
 }
 
-fn unanimity(evidence: &Evidence<'_>) -> Finding {
-    let counts: Vec<[u64; 3]> =
-        outcome_counts(&evidence.declared).into_iter().filter(|c| c.iter().sum::<u64>() > 0).collect();
-    let of = |metric| {
-        let alpha = alpha_with_interval(&evidence.declared, metric)?;
-        let within = alpha.interval.map_or(String::new(), |i| format!(" ({})", interval(i, 2)));
-        Some(format!("{}{within}", number(alpha.value, 2)))
+fn unanimity(agreement: &Agreement, level: f64) -> Finding {
+    let of = |alpha: Option<Alpha>| {
+        let within = alpha?.interval.map_or(String::new(), |i| format!(" ({})", interval(i, 2)));
+        Some(format!("{}{within}", number(alpha?.value, 2)))
     };
-    let over = counted(counts.len(), "question");
-    let mut text = match (of(Metric::Nominal), of(Metric::Ordinal)) {
+    let over = counted(agreement.questions, "question");
+    let mut text = match (of(agreement.nominal), of(agreement.ordinal)) {
         (Some(nominal), Some(ordinal)) => format!(
             "Krippendorff's alpha over {over} is {nominal} nominal and {ordinal} ordinal; 1 is full agreement, 0 what chance gives. In brackets: \
              95 % intervals over participants.",
@@ -44,9 +40,9 @@ fn unanimity(evidence: &Evidence<'_>) -> Finding {
             "Krippendorff's alpha over {over} has no value: nobody answered what another did, or all answers are the same.",
         ),
     };
-    let kendall = agreement(&counts).and_then(|found| found.test.map(|test| (found.u, test)));
+    let kendall = agreement.kendall.and_then(|found| found.test.map(|test| (found.u, test)));
     let Some((u, test)) = kendall else { return Finding::new(Standing::Noted, text) };
-    let verdict = match test.p <= evidence.rules().level {
+    let verdict = match test.p <= level {
         true => "People agree more than chance would have it",
         false => "That people agree more than chance would have it is not shown",
     };
@@ -60,32 +56,13 @@ fn unanimity(evidence: &Evidence<'_>) -> Finding {
     Finding::new(Standing::Noted, text)
 }
 
-fn consistency(evidence: &Evidence<'_>) -> Option<Finding> {
-    // One person's answers about different objects are no tournament.
-    let mut tournaments: BTreeMap<(usize, usize), Vec<DeclaredBallot>> = BTreeMap::new();
-    match evidence.study {
-        Some(study) => {
-            for ballot in evidence.declared.iter() {
-                let comparison = &study.comparisons[ballot.question()];
-                tournaments.entry((comparison.group, comparison.object)).or_default().push(*ballot);
-            }
-        }
-        None => {
-            for (g, group) in evidence.groups.iter().enumerate() {
-                for ballot in &group.ballots {
-                    let scene = evidence.scenes[ballot.question()];
-                    tournaments.entry((g, scene)).or_default().push(ballot.by_item());
-                }
-            }
-        }
-    }
-    let sum = tournaments.values().fold(Triads::default(), |sum, own| sum.and(triads(own)));
+fn consistency(sum: &Triads, level: f64) -> Option<Finding> {
     if sum.decided == 0 {
         return None;
     }
     let chance = Binomial::new(0.25, sum.decided).expect("a chance and a number").cdf(sum.strict_cycles);
     // One person's triads hang together, so that this is no result about people.
-    let verdict = match chance <= evidence.rules().level {
+    let verdict = match chance <= level {
         true => "People contradict themselves less than answers by chance would",
         false => "That people contradict themselves less than answers by chance would is not shown",
     };
@@ -222,7 +199,8 @@ fn outlying(evidence: &Evidence<'_>) -> Vec<Finding> {
 
 /// `left_out` in order.
 fn without(evidence: &Evidence<'_>, left_out: &[usize]) -> Finding {
-    let again = evidence.tested(|person| left_out.binary_search(&person).is_err());
+    let keep = |person: usize| left_out.binary_search(&person).is_err();
+    let again = evidence.preferences.map_or_else(Vec::new, |of| of.tested(keep));
     let own: Vec<&Hypothesis> = tests(evidence.hypotheses).collect();
     let pairs: Vec<(&Hypothesis, &Hypothesis)> = own
         .iter()

@@ -1,62 +1,37 @@
-//! Whether it mattered on what screens people answered. Said from the table.
+//! Whether it mattered on what screens people answered.
 
-use super::Block;
 use crate::statement::{Finding, Standing};
 use crate::words::{counted, list, p as p_value};
-use isostudy_table::{Cell, Table};
+use isostudy_inference::screens::Compared;
 
 /// `level` is that of tests, after correction.
-pub(super) fn findings(table: Option<&Table>, level: f64) -> Vec<Block> {
-    let Some(table) = table.filter(|table| !table.rows.is_empty()) else { return Vec::new() };
-    let place = |name: &str| {
-        table.columns.iter().position(|column| column.name == name).expect("a column of this table")
-    };
-    let text = |row: &[Cell], name: &str| row[place(name)].in_full();
-    let number = |row: &[Cell], name: &str| match row[place(name)] {
-        Cell::P(value, _) | Cell::Number(value, _) => Some(value),
-        _ => None,
-    };
-    let tested: Vec<&Vec<Cell>> = table.rows.iter().filter(|row| number(row, "p").is_some()).collect();
-    let mut alike: Vec<String> = Vec::new();
-    for row in table.rows.iter().filter(|row| number(row, "p").is_none()) {
-        let name = text(row, "condition");
-        if !alike.contains(&name) {
-            alike.push(name);
-        }
+pub(super) fn finding(compared: &[Compared], level: f64) -> Option<Finding> {
+    if compared.is_empty() {
+        return None;
     }
-    let adjusted = |row: &[Cell]| number(row, "p_adjusted").unwrap_or(1.0);
+    let (tested, others): (Vec<&Compared>, Vec<&Compared>) = compared.iter().partition(|of| of.p.is_some());
+    let mut alike: Vec<&str> = others.iter().map(|of| of.condition.name).collect();
+    alike.dedup();
+    let adjusted = |of: &Compared| of.adjusted.unwrap_or(1.0);
     let percent =
         |share: Option<f64>| share.map_or_else(String::new, |share| format!("{:.0} %", 100.0 * share));
-    let mut said = match tested.iter().map(|row| adjusted(row)).min_by(f64::total_cmp) {
+    let mut said = match tested.iter().map(|of| adjusted(of)).min_by(f64::total_cmp) {
         None => {
             "Everybody answered on the same kind of screen, as far as was recorded, so nothing is compared."
                 .to_owned()
         }
         Some(least) => {
-            let differ: Vec<String> = tested
-                .iter()
-                .filter(|row| adjusted(row) <= level)
-                .map(|row| {
-                    format!(
-                        "{} ({}: {} against {}: {}; \"{}\" {} against {}, {})",
-                        text(row, "condition"),
-                        text(row, "measure"),
-                        text(row, "first"),
-                        text(row, "second"),
-                        counted(
-                            ["people_first", "people_second"]
-                                .map(|n| text(row, n).parse::<usize>().unwrap_or(0))
-                                .iter()
-                                .sum(),
-                            "participant"
-                        ),
-                        text(row, "measure"),
-                        percent(number(row, "share_first")),
-                        percent(number(row, "share_second")),
-                        p_value(adjusted(row)),
-                    )
-                })
-                .collect();
+            let one = |of: &&Compared| {
+                let ([first, second], measure) = (of.condition.parts, of.measure.name());
+                let [share, other] = of.shares.map(percent);
+                format!(
+                    "{} ({measure}: {first} against {second}: {}; \"{measure}\" {share} against {other}, {})",
+                    of.condition.name,
+                    counted(of.people.iter().sum(), "participant"),
+                    p_value(adjusted(of)),
+                )
+            };
+            let differ: Vec<String> = tested.iter().filter(|of| adjusted(of) <= level).map(one).collect();
             let tests = counted(tested.len(), "test");
             match differ.is_empty() {
                 true => format!(
@@ -69,22 +44,21 @@ pub(super) fn findings(table: Option<&Table>, level: f64) -> Vec<Block> {
                     "Answers differ by the screen that they were given on, in {} of {tests} after correction: {}. Screens were \
                      not assigned: people who have them may differ in other things.",
                     differ.len(),
-                    list(&differ.iter().map(String::as_str).collect::<Vec<_>>())
+                    list(&differ)
                 ),
             }
         }
     };
     if !alike.is_empty() && !tested.is_empty() {
-        let names: Vec<&str> = alike.iter().map(String::as_str).collect();
-        said.push_str(&format!(" Not tested, since all answers are of one part: {}.", list(&names)));
+        said.push_str(&format!(" Not tested, since all answers are of one part: {}.", list(&alike)));
     }
-    vec![Block::Finding(Finding::new(Standing::Noted, said))]
+    Some(Finding::new(Standing::Noted, said))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tables::screens::screens;
+    use isostudy_inference::screens::compared;
 
     /// Ten people, half of them on phones, who decide or do not by their number.
     fn said(undecided: impl Fn(usize) -> bool) -> String {
@@ -100,10 +74,7 @@ mod tests {
         let read =
             isostudy_responses::parse(text.as_bytes(), path, None, &isostudy_responses::Mapping::default())
                 .unwrap();
-        match &findings(Some(&screens(&read.responses)), 0.05)[..] {
-            [Block::Finding(finding)] => finding.text.clone(),
-            _ => panic!("one finding"),
-        }
+        finding(&compared(&read.responses), 0.05).unwrap().text
     }
 
     #[test]
@@ -117,6 +88,6 @@ mod tests {
         assert!(differs.contains("Not tested, since all answers are of one part: input."), "{differs}");
         let alike = said(|person| person % 2 == 0);
         assert!(alike.contains("none of 2 tests") && alike.contains("no proof"), "{alike}");
-        assert!(findings(None, 0.05).is_empty());
+        assert!(finding(&[], 0.05).is_none());
     }
 }

@@ -5,15 +5,14 @@ use crate::statement::{Finding, Standing};
 use crate::words::{capital, counted, interval, list, number, p as p_value};
 use isostudy_design::Level;
 use isostudy_design::contrast::{Over, contrasts};
-use isostudy_inference::audit::{Finding as Verdict, Probe};
+use isostudy_inference::audit::{Finding as Verdict, Probe, Report};
 use isostudy_statistics::{
     Model, Pairs, Participants, Separation, ShownBallot, Side, SideBound, SideDesign, clustered_covariance,
     fit, has_spread, separation, side_bound, side_design,
 };
-use isostudy_table::Table;
 use std::collections::BTreeMap;
 
-/// What the probe for a side says, from the table of probes.
+/// What the probe for a side says.
 struct Probed {
     found: bool,
     evidence: String,
@@ -21,24 +20,12 @@ struct Probed {
 
 impl Probed {
     /// `None` where the probe could not look.
-    fn of(audit: Option<&Table>) -> Option<Self> {
-        let audit = audit?;
-        let place = |name: &str| audit.columns.iter().position(|column| column.name == name);
-        let (probe, finding, evidence) = (place("probe")?, place("finding")?, place("evidence")?);
-        let row = audit.rows.iter().find(|row| row[probe].in_full() == Probe::Side.code())?;
-        let finding = row[finding].in_full();
-        let p = place("p").map(|p| row[p].in_full()).filter(|p| !p.is_empty());
-        let p = p.and_then(|p| p.parse::<f64>().ok()).map_or(String::new(), |p| format!(" ({})", p_value(p)));
-        (finding != Verdict::NotAnswerable.label()).then(|| Self {
-            found: finding == Verdict::Found.label(),
-            evidence: format!("{}{p}", row[evidence].in_full()),
-        })
+    fn of(audit: &[Report]) -> Option<Self> {
+        let of_side = |of: &&Report| of.probe == Probe::Side && of.finding != Verdict::NotAnswerable;
+        let report = audit.iter().find(of_side)?;
+        let p = report.p.map_or(String::new(), |p| format!(" ({})", p_value(p)));
+        Some(Self { found: report.finding == Verdict::Found, evidence: format!("{}{p}", report.evidence) })
     }
-}
-
-/// Whether the probes found that people favour a side.
-pub(super) fn is_favoured(tables: &[Table]) -> bool {
-    Probed::of(tables.iter().find(|table| table.name == "audit")).is_some_and(|probe| probe.found)
 }
 
 /// What stands before results: what people were asked, and that sides and methods go together where they do.
@@ -68,9 +55,8 @@ pub(super) fn sides_and_methods(evidence: &Evidence<'_>) -> Vec<Block> {
     vec![Block::Text(text.into())]
 }
 
-/// `audit` is the table of probes.
-pub(super) fn findings(evidence: &Evidence<'_>, audit: Option<&Table>) -> Vec<Block> {
-    let mut found = side(evidence, Probed::of(audit));
+pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
+    let mut found = side(evidence, Probed::of(evidence.audit()));
     if let Some(study) = evidence.study {
         let names: Vec<&str> = study.file.objects.iter().map(|o| o.name.as_str()).collect();
         found.push(Finding::new(

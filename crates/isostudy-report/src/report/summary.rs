@@ -7,31 +7,31 @@ use crate::words::{capital, counted, list, number, percent};
 use isostudy_design::contrast::Over;
 use isostudy_design::record::Purpose;
 use isostudy_design::{Factor, Method, Study};
-use isostudy_inference::decision::{candidates, picks};
-use isostudy_inference::glance::{self, Row};
+use isostudy_inference::glance::Row;
 use isostudy_inference::hypotheses;
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{MeshSet, known};
 use isostudy_inference::preference::{group_factors, two_factors};
+use isostudy_inference::results::{Decision, Results};
 
 /// Names in one line at most; the tables have all.
 const NAMED: usize = 6;
 
 /// `inputs` are those of a study.
-pub(super) fn lines(evidence: &Evidence<'_>, inputs: Option<&Inputs<'_>>) -> Vec<SummaryLine> {
-    let rows = glance::rows(evidence.study, evidence.hypotheses);
-    let of_meshes = match inputs.map(best) {
+pub(super) fn lines(evidence: &Evidence<'_>, results: Option<&Results<'_>>) -> Vec<SummaryLine> {
+    let (rows, inputs) = (evidence.contrasts, results.map(|of| &of.inputs));
+    let of_meshes = match results.map(|of| best(&of.decision)) {
         Some(best) if evidence.shown.is_empty() && !best.is_empty() => best,
         _ => inputs.and_then(regular).into_iter().collect(),
     };
-    let found: Vec<String> = found(evidence, &rows, inputs).into_iter().chain(of_meshes).collect();
+    let found: Vec<String> = found(evidence, rows, inputs).into_iter().chain(of_meshes).collect();
     let lines = [
         ("Compared", Some(compared(evidence))),
         ("By whom", Some(people(evidence))),
         ("Found", (!found.is_empty()).then(|| found.join(" "))),
         ("How sure", sure(evidence)),
         ("Limits", Some(limits::short(evidence))),
-        ("Next", Some(next(evidence, &rows))),
+        ("Next", Some(next(evidence, rows))),
     ];
     let line = |(label, text): (&'static str, Option<String>)| text.map(|text| SummaryLine { label, text });
     lines.into_iter().filter_map(line).collect()
@@ -151,10 +151,8 @@ fn favourite(inputs: &Inputs<'_>) -> Option<String> {
 }
 
 /// Who is the best at what most want of a mesh, a sentence a want.
-fn best(inputs: &Inputs<'_>) -> Vec<String> {
+fn best(Decision { objects, picks, .. }: &Decision<'_>) -> Vec<String> {
     const WANTS: [&str; 4] = ["fastest", "closest", "edges", "regular"];
-    let objects = candidates(inputs);
-    let picks = picks(&objects);
     let sentence = |name: &&str| {
         let own: Vec<_> = picks.iter().filter(|pick| pick.want.name == *name).collect();
         let want = own.first()?.want;

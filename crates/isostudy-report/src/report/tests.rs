@@ -1,5 +1,7 @@
 use super::*;
 use crate::fixture;
+use isostudy_inference::Answered;
+use isostudy_inference::hypotheses;
 use isostudy_responses::{Answer, Choice, Question, Responses};
 use isostudy_statistics::Outcome::{self, Left, Right, Tie};
 
@@ -12,7 +14,16 @@ fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'stati
         of.choice = choice(answer(of.participant as usize, of.question as usize));
     }
     let answered = Answered::of(&study, answers).unwrap();
-    let evidence = Evidence::of_study(&study, Some(&answered));
+    let inputs = Inputs {
+        study: &study,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        answers: Some(&answered),
+        left_out: &[],
+    };
+    let results = Results::of(&inputs);
+    let evidence = Evidence::of_study(&results);
     let mut builder = Builder::new(&[], &[]);
     builder.preferences(&evidence, Vec::new());
     builder.reliance(&evidence);
@@ -46,8 +57,8 @@ fn choice(outcome: Outcome) -> Choice {
     }
 }
 
-/// The report of these groups' answers, which are about one object.
-fn report_of(title: &str, groups: &[BallotGroup], tables: &[Table]) -> Report {
+/// The report of these groups' answers, which are about one object; `change` is done to what they say.
+fn report_with(title: &str, groups: &[BallotGroup], change: impl Fn(&mut Preferences<'_>)) -> Report {
     let mut answers = Responses { sides_recorded: true, ..Responses::default() };
     for group in groups {
         answers.items.extend(group.items.iter().cloned());
@@ -61,7 +72,13 @@ fn report_of(title: &str, groups: &[BallotGroup], tables: &[Table]) -> Report {
             answers.answers.push(Answer::new(person, question, sides, choice(ballot.outcome())));
         }
     }
-    report_of_groups(title, &answers, groups, tables, &[])
+    let mut preferences = Preferences::without_study(&answers, groups, None);
+    change(&mut preferences);
+    report_of_groups(title, &preferences, &[], &[])
+}
+
+fn report_of(title: &str, groups: &[BallotGroup]) -> Report {
+    report_with(title, groups, |_| ())
 }
 
 fn texts(report: &Report, id: &str) -> Vec<String> {
@@ -106,7 +123,7 @@ fn nobody_leaning_is_said_so() {
     assert!(said.iter().all(|(id, _)| *id != "holds"), "{said:#?}");
     of(&said, "open", "13 of 13 comparisons are not decided: ");
     let answers: Vec<_> = (0..18).map(|person| (person, 0, 1, Tie)).collect();
-    let report = report_of("Trees", &groups(&answers), &[]);
+    let report = report_of("Trees", &groups(&answers));
     assert_eq!(
         texts(&report, "open"),
         [
@@ -145,7 +162,7 @@ fn equal_counts_stand_in_the_order_of_the_names() {
     let one = |p: usize| {
         (0..40).map(move |q| (p, 0, 1, if q < if p < 12 { 18 } else { 22 } { Left } else { Right }))
     };
-    let report = report_of("Trees", &groups(&(0..20).flat_map(one).collect::<Vec<_>>()), &[]);
+    let report = report_of("Trees", &groups(&(0..20).flat_map(one).collect::<Vec<_>>()));
     let text = &texts(&report, "holds")[0];
     assert!(
         text.contains(
@@ -170,7 +187,7 @@ fn too_few_people_are_told_what_they_could_have_shown() {
     );
     // A few are told one by one.
     let answers: Vec<_> = (0..3).map(|person| (person, 0, 1, Left)).collect();
-    let report = report_of("Trees", &groups(&answers), &[]);
+    let report = report_of("Trees", &groups(&answers));
     assert_eq!(
         texts(&report, "open"),
         [
@@ -193,7 +210,7 @@ fn answers_without_a_study() {
             });
         }
     }
-    let report = report_of("Trees", &groups(&answers), &[]);
+    let report = report_of("Trees", &groups(&answers));
     assert_eq!(report.lead[0], "10 participants gave 30 answers to 3 questions.");
     assert_eq!(
         texts(&report, "holds")[0],
@@ -204,7 +221,7 @@ fn answers_without_a_study() {
     let side = texts(&report, "unanswerable");
     assert_eq!(side, ["Over all questions 15 answers went left, 12 right and 3 to neither."]);
     assert!(report.to_markdown().starts_with("# Trees\n\n- **Compared:** 3 items: ash, elm and oak.\n"));
-    let titled = report_of("<b> [x](y) *\n# z", &groups(&answers), &[]);
+    let titled = report_of("<b> [x](y) *\n# z", &groups(&answers));
     assert!(
         titled.to_markdown().starts_with("# &lt;b> \\[x\\](y) \\* # z\n\n- **Compared:**"),
         "a title is no mark-up"
@@ -217,20 +234,21 @@ fn names_of_items_stay_as_they_are() {
     let answers: Vec<_> = (0..8).map(|person| (person, 0, 1, Left)).collect();
     let mut groups = groups(&answers);
     groups[0].items = ["\u{e9}clair", "\u{c9}clair"].map(String::from).into();
-    let report = report_of("Cakes", &groups, &[]);
+    let report = report_of("Cakes", &groups);
     let text = &texts(&report, "holds")[0];
     assert!(text.starts_with("\u{e9}clair was preferred to \u{c9}clair: 8 answers against 0"), "{text}");
 }
 
 #[test]
 fn no_answers_at_all() {
-    let report = report_of("Nothing", &[], &[]);
+    let report = report_of("Nothing", &[]);
     assert_eq!(report.lead, ["No answers were given, so nothing is said about preference."]);
     assert!(report.sections.is_empty());
-    let control = |participant| ShownBallot::new(participant, 0, [0, 0], Left);
-    let protocol = isostudy_statistics::Protocol::default();
-    let respondents = crate::tables::agreement::respondents(&[control(0), control(1)], &protocol, 0);
-    let report = report_of("Controls", &[], &[respondents]);
+    let mut answers = Responses { items: vec!["oak".into()], ..Responses::default() };
+    answers.questions.push(Question::new("C1", "garden", "trees", [0, 0]));
+    answers.answers = (0..2).map(|person| Answer::new(person, 0, [0, 0], Choice::Left)).collect();
+    let preferences = Preferences::without_study(&answers, &[], None);
+    let report = report_of_groups("Controls", &preferences, &[], &[]);
     assert_eq!(
         report.lead,
         [
@@ -240,8 +258,8 @@ fn no_answers_at_all() {
     let small = fixture::small_study();
     let inputs =
         Inputs { study: &small, meshes: &[], bench: None, chunks: &[], answers: None, left_out: &[] };
-    let tables = crate::tables(&inputs);
-    let report = super::report(&inputs, &tables, &[], Published::default());
+    let results = Results::of(&inputs);
+    let report = super::report(&results, &crate::tables(&results), &[], Published::default());
     assert_eq!(report.sections.iter().map(|s| s.id).collect::<Vec<_>>(), ["tables"]);
 }
 
@@ -264,7 +282,7 @@ fn opposite_on_two_objects() -> Vec<BallotGroup> {
 #[test]
 fn opposite_preferences_are_not_liked_alike_without_a_study_either() {
     let groups = opposite_on_two_objects();
-    let report = report_of("Trees", &groups, &[]);
+    let report = report_of("Trees", &groups);
     // 38 people score 0 and two -1/2: the mean is -0.025.
     let all =
         texts(&report, "holds").into_iter().chain(texts(&report, "open")).collect::<Vec<_>>().join("\n");
@@ -279,7 +297,8 @@ fn opposite_preferences_are_not_liked_alike_without_a_study_either() {
     for (text, start) in depends.iter().zip(starts) {
         assert!(text.starts_with(start), "{depends:#?}");
     }
-    let table = crate::tables::contrasts::pair_tests(&groups);
+    let tested = hypotheses::of_groups(&groups);
+    let table = crate::tables::contrasts::tests(&tested, &hypotheses::Robustness::of(&tested));
     let rows: Vec<String> = table.shown_rows().iter().map(|row| row[..3].join(" ")).collect();
     let want = [
         "trees oak-elm all",
@@ -297,7 +316,7 @@ fn items_that_differ_by_rounding_stand_alike() {
         .flat_map(|person| [(0, 1), (1, 2), (0, 2)].map(|pair| (person, pair)))
         .flat_map(|(person, (a, b))| [(person, a, b, Left), (person, b, a, Left)])
         .collect();
-    let report = report_of("Trees", &groups(&answers), &[]);
+    let report = report_of("Trees", &groups(&answers));
     let worths = texts(&report, "worths").join("\n");
     assert!(worths.contains("All stand alike.") && !worths.contains("highest"), "{worths}");
 }
@@ -313,10 +332,9 @@ fn a_liking_for_a_side_is_no_equality() {
         }
     }
     let groups = groups(&answers);
-    let tables = [a_side_was_found()];
-    let without = texts(&report_of("Trees", &groups, &[]), "holds").join("\n");
+    let without = texts(&report_of("Trees", &groups), "holds").join("\n");
     assert!(without.contains("liked alike, within the margin"), "{without}");
-    let report = report_of("Trees", &groups, &tables);
+    let report = report_with("Trees", &groups, |of| of.audit = vec![a_side_was_found()]);
     assert!(!texts(&report, "holds").join("\n").contains("liked alike"));
     let open = texts(&report, "open").join("\n");
     assert!(
@@ -325,15 +343,14 @@ fn a_liking_for_a_side_is_no_equality() {
     );
 }
 
-/// A table of probes in which a side was found.
-fn a_side_was_found() -> Table {
-    let report = isostudy_inference::audit::Report {
-        probe: isostudy_inference::audit::Probe::Side,
-        finding: isostudy_inference::audit::Finding::Found,
+/// What the probe for a side says if it finds one.
+fn a_side_was_found() -> audit::Report {
+    audit::Report {
+        probe: audit::Probe::Side,
+        finding: audit::Finding::Found,
         p: Some(0.001),
         evidence: "controls: 20 left, 1 none, 2 right".into(),
-    };
-    crate::tables::audit::audit_table(&[report])
+    }
 }
 
 #[test]
@@ -349,14 +366,15 @@ fn who_is_left_out_is_left_out_everywhere() {
         answers: Some(&answered),
         left_out: &[],
     };
-    let (tables, figures) = (crate::tables(&inputs), crate::figures(&inputs).unwrap());
+    let results = Results::of(&inputs);
+    let (tables, figures) = (crate::tables(&results), crate::figures(&results).unwrap());
     let named = |name: &str| tables.iter().find(|table| table.name == name).unwrap();
     let columns: Vec<&str> = named("answers").columns.iter().map(|column| column.name.as_str()).collect();
     assert!(columns.len() == 18 && !columns.contains(&"respondent_16"), "{columns:?}");
     assert_eq!(named("respondents").rows.len(), 18);
     let answers = figures.iter().find(|figure| figure.name == "answers").unwrap();
     assert!(answers.caption.starts_with("Answers of 17 participants"), "{}", answers.caption);
-    let text = report(&inputs, &tables, &figures, Published::default()).to_markdown();
+    let text = report(&results, &tables, &figures, Published::default()).to_markdown();
     for wrong in ["nobody is left out", "Nobody is left out", "is with everybody", "18 participants gave"] {
         assert!(!text.contains(wrong), "{wrong}");
     }
@@ -374,7 +392,8 @@ fn who_is_left_out_is_left_out_everywhere() {
         answers: Some(&answered),
         left_out: &[],
     };
-    let lead = report(&inputs, &crate::tables(&inputs), &[], Published::default()).lead;
+    let results = Results::of(&inputs);
+    let lead = report(&results, &crate::tables(&results), &[], Published::default()).lead;
     assert_eq!(
         lead,
         [

@@ -4,7 +4,7 @@ use super::{Block, Evidence};
 use crate::statement::{Finding, Standing};
 use crate::words::{counted, interval, list, number, p};
 use isostudy_inference::scale::GroupScale;
-use isostudy_statistics::{Difference, Model, Pairs, Scale, fit, goodness};
+use isostudy_statistics::{Difference, Model, Scale};
 
 /// Log-odds that differ by less differ by rounding.
 const ALIKE: f64 = 1e-9;
@@ -139,10 +139,9 @@ fn corrected(of: &GroupScale<'_>, alone: f64) -> String {
 /// Groups whose answers Davidson's model does not reproduce, and the pair that it misses most.
 fn misfits(evidence: &Evidence<'_>, level: f64) -> Vec<Finding> {
     let mut found = Vec::new();
-    for of in &evidence.scales {
-        let pairs = Pairs::of(of.group.items.len(), &of.group.ballots);
-        let Ok(model) = fit(Model::Davidson, &pairs) else { continue };
-        let Some(test) = goodness(&model, &pairs) else { continue };
+    for of in evidence.scales {
+        let davidson = of.fits.iter().find(|fit| fit.model.model == Model::Davidson);
+        let Some(test) = davidson.map(|fit| &fit.goodness) else { continue };
         let Some(p_value) = test.p.filter(|p| *p <= level) else { continue };
         let miss = |i: usize| {
             let pair = &test.pairs[i];

@@ -1,14 +1,12 @@
 //! Agreement of participants with each other and with themselves.
 
 use isostudy_design::Study;
-use isostudy_statistics::{
-    DeclaredBallot, Metric, Protocol, ShownBallot, Triads, agreement as kendall, alpha_with_interval,
-    outcome_counts, screening_with, triads, zetas,
-};
+use isostudy_inference::agreement::Agreement;
+use isostudy_inference::screened::Respondent;
 use isostudy_table::{Cell, Table};
 
 /// All questions, then each comparison group: agreement between participants, and circular triads within.
-pub(super) fn agreement(study: &Study, ballots: &[DeclaredBallot]) -> Table {
+pub(super) fn agreement(study: &Study, agreement: &[Agreement]) -> Table {
     let mut table = Table::new(
         "agreement",
         "Agreement between participants, and consistency of each",
@@ -34,30 +32,21 @@ pub(super) fn agreement(study: &Study, ballots: &[DeclaredBallot]) -> Table {
             ("mean_zeta", "mean zeta"),
         ],
     );
-    for group in std::iter::once(None).chain((0..study.groups.len()).map(Some)) {
-        let inside = |b: &&DeclaredBallot| group.is_none_or(|g| study.comparisons[b.question()].group == g);
-        let own: Vec<DeclaredBallot> = ballots.iter().filter(inside).copied().collect();
-        let counts: Vec<[u64; 3]> =
-            outcome_counts(&own).into_iter().filter(|counts| counts.iter().sum::<u64>() > 0).collect();
-        if counts.is_empty() {
-            continue;
-        }
-        let [nominal, ordinal] =
-            [Metric::Nominal, Metric::Ordinal].map(|metric| alpha_with_interval(&own, metric));
-        let found = kendall(&counts);
-        let test = found.and_then(|found| found.test);
-        let (circles, (tournaments, zetas)) = consistency(study, &own);
+    for of in agreement.iter().filter(|of| of.questions > 0) {
+        let [nominal, ordinal] = [of.nominal, of.ordinal];
+        let test = of.kendall.and_then(|found| found.test);
+        let (circles, tournaments) = (of.triads, of.tournaments);
         let circle = |count: u64| if circles.all > 0 { Cell::count(count) } else { Cell::Missing };
         table.push(vec![
-            Cell::text(group.map_or("all", |g| &study.groups[g].id)),
-            Cell::count(counts.len() as u64),
+            Cell::text(of.group.map_or("all", |g| &study.groups[g].id)),
+            Cell::count(of.questions as u64),
             Cell::number(nominal.map(|alpha| alpha.value), 4),
             Cell::number(nominal.and_then(|alpha| alpha.interval).map(|i| i.low), 4),
             Cell::number(nominal.and_then(|alpha| alpha.interval).map(|i| i.high), 4),
             Cell::number(ordinal.map(|alpha| alpha.value), 4),
             Cell::number(ordinal.and_then(|alpha| alpha.interval).map(|i| i.low), 4),
             Cell::number(ordinal.and_then(|alpha| alpha.interval).map(|i| i.high), 4),
-            Cell::number(found.map(|found| found.u), 4),
+            Cell::number(of.kendall.map(|found| found.u), 4),
             Cell::number(test.map(|test| test.statistic), 2),
             Cell::number(test.map(|test| test.degrees), 2),
             Cell::p(test.map(|test| test.p), 5),
@@ -67,7 +56,7 @@ pub(super) fn agreement(study: &Study, ballots: &[DeclaredBallot]) -> Table {
             circle(circles.weak_cycles),
             Cell::number((circles.all > 0).then(|| circles.cycles_by_chance()), 1),
             circle(tournaments),
-            Cell::number((tournaments > 0).then(|| zetas / tournaments as f64), 3),
+            Cell::number((tournaments > 0).then(|| of.zetas / tournaments as f64), 3),
         ]);
     }
     table.notes.push(
@@ -82,28 +71,13 @@ pub(super) fn agreement(study: &Study, ballots: &[DeclaredBallot]) -> Table {
     table
 }
 
-/// Triads within one object and group, and Kendall's zeta of whoever decided all pairs there: how many, and their sum.
-fn consistency(study: &Study, ballots: &[DeclaredBallot]) -> (Triads, (u64, f64)) {
-    let scope = |b: &DeclaredBallot| {
-        let comparison = &study.comparisons[b.question()];
-        comparison.object * study.groups.len() + comparison.group
-    };
-    let mut scopes: Vec<Vec<DeclaredBallot>> =
-        vec![Vec::new(); study.file.objects.len() * study.groups.len()];
-    ballots.iter().for_each(|b| scopes[scope(b)].push(*b));
-    scopes.iter().fold((Triads::default(), (0, 0.0)), |(sum, (n, total)), own| {
-        let (tournaments, zetas) = zetas(own);
-        (sum.and(triads(own)), (n + tournaments, total + zetas))
-    })
-}
-
 /// Answers beyond which a table of participants is printed for those alone who break a rule.
 const MANY: usize = 200;
 
 /// One row a participant: what careless answering would show in.
 ///
-/// So many of them are `excluded` from every other table.
-pub(crate) fn respondents(ballots: &[ShownBallot], protocol: &Protocol<'_>, excluded: usize) -> Table {
+/// So many of them are `excluded` from every other table; what a question shows lasts `shown_ms`.
+pub(super) fn respondents(found: &[Respondent], excluded: usize, shown_ms: Option<f64>) -> Table {
     let mut table = Table::new(
         "respondents",
         match excluded {
@@ -131,9 +105,8 @@ pub(crate) fn respondents(ballots: &[ShownBallot], protocol: &Protocol<'_>, excl
         ],
     );
     let mut flagged = table.clone();
-    for seen in screening_with(ballots, protocol) {
+    for Respondent { seen, flags } in found {
         let [left, none, right] = seen.answers;
-        let flags = seen.flags(protocol);
         let row = vec![
             Cell::count(seen.participant as u64 + 1),
             Cell::count(left),
@@ -174,7 +147,7 @@ pub(crate) fn respondents(ballots: &[ShownBallot], protocol: &Protocol<'_>, excl
          repeats (two or more for the other item, and more than half), time (all timed answers together took less than what they show lasts{}), outlying (agrees on \
          less than half, and so much less than the others that p, with Bonferroni's correction and an allowance of 5, is \
          below 0.01). Only the last has seen what was preferred: a reason to look, not to exclude.",
-        protocol.shown_ms.map_or(", which nobody has said: shown_s".into(), |ms| format!(", {} s each", ms / 1000.0))
+        shown_ms.map_or(", which nobody has said: shown_s".into(), |ms| format!(", {} s each", ms / 1000.0))
     ));
     table
 }

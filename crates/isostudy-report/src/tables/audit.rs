@@ -4,7 +4,7 @@ use isostudy_inference::audit::Report;
 use isostudy_table::{Cell, Table};
 
 /// One row a probe: its finding and the evidence.
-pub fn audit_table(reports: &[Report]) -> Table {
+pub(super) fn audit_table(reports: &[Report]) -> Table {
     let mut table = Table::new(
         "audit",
         "Probes for defects",

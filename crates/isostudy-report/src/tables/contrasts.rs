@@ -1,26 +1,10 @@
 //! Tests of preference, by family.
 
-use isostudy_inference::ballots::BallotGroup;
-use isostudy_inference::hypotheses::{self, Hypothesis, Target};
-use isostudy_statistics::bootstrap::Resampling;
-use isostudy_statistics::interval::Interval;
-use isostudy_statistics::sign_test;
+use isostudy_inference::hypotheses::{Hypothesis, Robustness};
 use isostudy_table::{Cell, Table};
-use rayon::prelude::*;
 
-/// Every contrast of a study, then every question.
-pub(super) fn study_tests(hypotheses: &[Hypothesis]) -> Table {
-    table(hypotheses)
-}
-
-/// Every pair of items that was compared, group by group; the group is the family.
-///
-/// Nothing but ballots is needed, so that answers without a study file have the same table.
-pub fn pair_tests(groups: &[BallotGroup]) -> Table {
-    table(&hypotheses::of_groups(groups))
-}
-
-fn table(rows: &[Hypothesis]) -> Table {
+/// Every hypothesis, family by family.
+pub(crate) fn tests(hypotheses: &[Hypothesis], robustness: &[Robustness]) -> Table {
     let mut table = Table::new(
         "tests",
         "Tests of preference",
@@ -50,8 +34,9 @@ fn table(rows: &[Hypothesis]) -> Table {
             ("p_trinomial", "p trinomial"),
         ],
     );
-    let cells: Vec<Vec<Cell>> = rows.par_iter().map(cells).collect();
-    cells.into_iter().for_each(|cells| table.push(cells));
+    for (row, robustness) in hypotheses.iter().zip(robustness) {
+        table.push(cells(row, robustness));
+    }
     let blocks: [(&str, &[&str]); 3] = [
         (
             "Answers, and tests of no preference",
@@ -115,17 +100,11 @@ fn table(rows: &[Hypothesis]) -> Table {
     table
 }
 
-fn cells(row: &Hypothesis) -> Vec<Cell> {
-    let (test, question) = (&row.test, matches!(row.target, Target::Question(_)));
-    let cut = |i: Interval| i.cut(-test.reach, test.reach);
-    let resampling = Resampling::default();
-    let of_studentised = if question { None } else { test.studentised(resampling) };
-    let interval = test.interval.map(cut);
-    let studentised = of_studentised.map(|of| cut(of.interval));
-    let without = test.leave_one_out();
+fn cells(row: &Hypothesis, robustness: &Robustness) -> Vec<Cell> {
+    let test = &row.test;
+    let interval = test.interval.map(|i| i.cut(-test.reach, test.reach));
+    let Robustness { studentised, without_one, binomial, trinomial } = robustness;
     let count = |o: usize| test.counts.map_or(Cell::Missing, |counts| Cell::count(counts[o]));
-    let binomial = test.counts.map(|[first, _, second]| sign_test::binomial(first, second));
-    let trinomial = test.counts.filter(|_| question).map(|[a, t, b]| sign_test::trinomial(a, t, b));
     vec![
         Cell::text(&row.family),
         Cell::text(&row.contrast),
@@ -146,10 +125,10 @@ fn cells(row: &Hypothesis) -> Vec<Cell> {
         Cell::of_sum(studentised.map(|i| i.high), 3),
         Cell::p(row.equivalence, 4),
         Cell::text(row.conclusion().label()),
-        Cell::p(without.iter().copied().min_by(f64::total_cmp), 4),
-        Cell::p(without.iter().copied().max_by(f64::total_cmp), 4),
-        Cell::p(binomial, 4),
-        Cell::p(trinomial, 4),
+        Cell::p(without_one.map(|[least, _]| least), 4),
+        Cell::p(without_one.map(|[_, most]| most), 4),
+        Cell::p(*binomial, 4),
+        Cell::p(*trinomial, 4),
     ]
 }
 

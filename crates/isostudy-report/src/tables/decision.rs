@@ -3,9 +3,10 @@
 use crate::words::{list, whole};
 use isostudy_design::MethodId;
 use isostudy_inference::decision::{
-    Axes, Cost, Estimate, LEAST_ERROR, ObjectCandidates, Pick, Standing, Want, candidates, fronts, picks,
+    Axes, Cost, Estimate, LEAST_ERROR, ObjectCandidates, Pick, Standing, Want,
 };
 use isostudy_inference::inputs::Inputs;
+use isostudy_inference::results::{Decision, Results};
 use isostudy_table::digits::number;
 use isostudy_table::{Cell, Table};
 use isostudy_timing::stage_times::measured;
@@ -14,10 +15,10 @@ use isostudy_timing::stage_times::measured;
 const MORE: f64 = 1.05;
 
 /// The picks and the fronts, where there is anything to choose from.
-pub(super) fn tables(inputs: &Inputs<'_>) -> Vec<Table> {
-    let objects = candidates(inputs);
-    let picks = picks(&objects);
-    let tables = [choices(inputs, &objects, &picks), decision(&objects, &picks), standings(&objects)];
+pub(super) fn tables(results: &Results<'_>) -> Vec<Table> {
+    let (inputs, found) = (&results.inputs, &results.decision);
+    let Decision { objects, picks, .. } = found;
+    let tables = [choices(inputs, objects, picks), decision(objects, picks), standings(found)];
     tables.into_iter().filter(|table| !table.rows.is_empty()).collect()
 }
 
@@ -207,7 +208,7 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
 }
 
 /// Every method in every front: both values, and who beats it in both.
-fn standings(objects: &[ObjectCandidates<'_>]) -> Table {
+fn standings(found: &Decision<'_>) -> Table {
     let columns = [
         ("object", "Object"),
         ("front", "In"),
@@ -222,8 +223,8 @@ fn standings(objects: &[ObjectCandidates<'_>]) -> Table {
         ("y_high", "to"),
     ];
     let mut table = Table::new("fronts", "Who is beaten in two quantities at once", &columns);
-    for ObjectCandidates { object, candidates } in objects {
-        for front in fronts(candidates) {
+    for (of, fronts) in found.each() {
+        for front in fronts {
             for point in &front.points {
                 let (standing, by) = match &point.standing {
                     Standing::OnFront => ("on the front", Vec::new()),
@@ -233,7 +234,7 @@ fn standings(objects: &[ObjectCandidates<'_>]) -> Table {
                 let by: Vec<String> = by.iter().map(MethodId::to_string).collect();
                 let by = if by.is_empty() { Cell::Missing } else { Cell::text(list(&by)) };
                 let mut row = vec![
-                    Cell::text(&object.name),
+                    Cell::text(&of.object.name),
                     Cell::text(front.axes.label()),
                     Cell::text(point.method),
                     Cell::text(standing),

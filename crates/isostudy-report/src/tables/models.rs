@@ -1,38 +1,22 @@
 //! Models of preference: worths with their errors, and what each model says about ties and sides.
 
-use isostudy_inference::ballots::BallotGroup;
-use isostudy_statistics::{
-    FitError, Model, Pairs, Participants, Penalty, Separation, SideDesign, WorthFit, clustered_covariance,
-    fit, separation, side_design,
-};
+use isostudy_inference::models::GroupModel;
+use isostudy_statistics::Penalty;
 use isostudy_table::{Cell, Table};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// `worths` and `models` of every group, with every model.
 ///
-/// What a model cannot estimate has no row in `worths`, and its reason in `models`. Nothing but ballots is needed, so that
-/// answers without a study file have the same tables.
-///
-/// Without `sides_recorded` nobody knows what stood on which side, and there is no model with a side.
-pub fn model_tables(groups: &[BallotGroup], sides_recorded: bool) -> [Table; 2] {
+/// What a model cannot estimate has no row in `worths`, and its reason in `models`.
+pub(super) fn model_tables(found: &[GroupModel<'_>], sides_recorded: bool) -> [Table; 2] {
     let (mut worths, mut models) = (empty_worths(), empty_models());
     if !sides_recorded {
         let note = "Side: not answerable here, because the file does not say which item was on which side.";
         worths.notes.push(note.into());
         models.notes.push(note.into());
     }
-    for group in groups {
-        let items = group.items.len();
-        let pairs = Pairs::of(items, &group.ballots);
-        let participants = Participants::of(items, &group.ballots);
-        let plain = fit(Model::Davidson, &pairs).ok();
-        for model in Model::ALL.into_iter().filter(|&model| sides_recorded || model != Model::DavidsonSide) {
-            let fitted = fit(model, &pairs);
-            models.push(model_row(group, &pairs, model, fitted.as_ref(), plain.as_ref()));
-            if let Ok(fitted) = &fitted {
-                add_worths(&mut worths, group, fitted, &participants);
-            }
-        }
+    for of in found {
+        models.push(model_row(of));
+        add_worths(&mut worths, of);
     }
     [worths, models]
 }
@@ -62,22 +46,17 @@ fn empty_worths() -> Table {
     table
 }
 
-fn add_worths(table: &mut Table, group: &BallotGroup, fitted: &WorthFit, participants: &Participants) {
-    let clustered = clustered_covariance(fitted, participants);
-    for (item, name) in group.items.iter().enumerate() {
-        let estimated = item > 0;
-        let sandwich = clustered.as_ref().filter(|_| estimated);
-        let found = sandwich.and_then(|s| fitted.clustered_error(s, participants.number(), item));
-        let error = if estimated { found.map(|(error, _)| error) } else { Some(0.0) };
+fn add_worths(table: &mut Table, of: &GroupModel<'_>) {
+    for (name, worth) in of.group.items.iter().zip(&of.worths) {
         table.push(vec![
-            Cell::text(&group.name),
+            Cell::text(&of.group.name),
             Cell::text(name),
-            Cell::text(fitted.model.code()),
-            Cell::of_sum(Some(fitted.log_worths[item]), 3),
-            Cell::Number(fitted.standard_error(&fitted.covariance, item, 0), 3),
-            Cell::number(clustered.as_ref().and(error), 3),
-            Cell::of_sum(found.map(|(_, i)| i.low), 3),
-            Cell::of_sum(found.map(|(_, i)| i.high), 3),
+            Cell::text(of.model.code()),
+            Cell::of_sum(Some(worth.log_worth), 3),
+            Cell::Number(worth.independent_error, 3),
+            Cell::number(worth.clustered_error, 3),
+            Cell::of_sum(worth.interval.map(|i| i.low), 3),
+            Cell::of_sum(worth.interval.map(|i| i.high), 3),
         ]);
     }
 }
@@ -110,45 +89,29 @@ fn empty_models() -> Table {
     table
 }
 
-fn model_row(
-    group: &BallotGroup,
-    pairs: &Pairs,
-    model: Model,
-    fitted: Result<&WorthFit, &FitError>,
-    plain: Option<&WorthFit>,
-) -> Vec<Cell> {
-    let of = fitted.ok();
-    // Without a bound there is nothing to estimate, whatever half a win makes of it.
-    let side = of.filter(|fit| fit.penalty != Penalty::SideSeparated);
-    let side_index = |fit: &WorthFit| fit.side.map(|_| fit.parameters.len() - 1);
-    let side_error = side.and_then(|fit| side_index(fit).map(|i| fit.covariance[i][i].sqrt()));
-    let ratio = match (of, plain) {
-        (Some(fit), Some(plain)) if fit.side.is_some() && !fit.penalised() && !plain.penalised() => {
-            Some(2.0 * (fit.log_likelihood - plain.log_likelihood).max(0.0))
-        }
-        _ => None,
-    };
-    let one = ChiSquared::new(1.0).expect("one degree of freedom");
-    let remark = match fitted {
-        Err(error) => error.to_string(),
-        Ok(fit) => remark(fit, pairs),
-    };
+fn model_row(of: &GroupModel<'_>) -> Vec<Cell> {
+    let fitted = of.fitted.as_ref().ok();
+    let [side, side_error] = of.side;
     vec![
-        Cell::text(&group.name),
-        Cell::text(model.code()),
-        Cell::number(of.map(|fit| fit.log_likelihood), 4),
-        Cell::number(of.and_then(|fit| fit.ln_nu).filter(|nu| nu.is_finite()), 4),
-        Cell::number(side.and_then(|fit| fit.side), 4),
+        Cell::text(&of.group.name),
+        Cell::text(of.model.code()),
+        Cell::number(fitted.map(|fit| fit.log_likelihood), 4),
+        Cell::number(fitted.and_then(|fit| fit.ln_nu).filter(|nu| nu.is_finite()), 4),
+        Cell::number(side, 4),
         Cell::number(side_error, 4),
-        Cell::p(ratio.map(|ratio| one.sf(ratio)), 4),
-        Cell::number(of.and_then(|fit| fit.ln_theta), 4),
-        Cell::count(pairs.answers() as u64),
-        Cell::text(of.map_or("", |fit| if fit.penalised() { "yes" } else { "no" })),
-        Cell::text(remark),
+        Cell::p(of.side_p, 4),
+        Cell::number(fitted.and_then(|fit| fit.ln_theta), 4),
+        Cell::count(of.answers as u64),
+        Cell::text(fitted.map_or("", |fit| if fit.penalised() { "yes" } else { "no" })),
+        Cell::text(remark(of)),
     ]
 }
 
-fn remark(fit: &WorthFit, pairs: &Pairs) -> String {
+fn remark(of: &GroupModel<'_>) -> String {
+    let fit = match &of.fitted {
+        Err(error) => return error.to_string(),
+        Ok(fit) => fit,
+    };
     let mut remarks = Vec::new();
     match fit.penalty {
         Penalty::ItemsSeparated => {
@@ -157,7 +120,7 @@ fn remark(fit: &WorthFit, pairs: &Pairs) -> String {
         Penalty::SideSeparated => {
             remarks.push("the answers put no bound on the liking for a side: half a win each way added");
         }
-        Penalty::None if separation(pairs) == Separation::HeldByTies => {
+        Penalty::None if of.held_by_ties => {
             remarks.push("some items never won against the others: ties alone keep the estimates finite");
         }
         Penalty::None => {}
@@ -165,7 +128,7 @@ fn remark(fit: &WorthFit, pairs: &Pairs) -> String {
     if fit.ln_nu == Some(f64::NEG_INFINITY) || fit.ln_theta == Some(0.0) {
         remarks.push("no ties");
     }
-    if fit.model == Model::DavidsonSide && side_design(pairs) == SideDesign::ThroughAdditivity {
+    if of.through_additivity {
         remarks.push("no pair was shown in both orders: side is told from worth only if worths are additive");
     }
     remarks.join("; ")

@@ -1,12 +1,11 @@
 //! The table of Friedman's tests.
 
 use isostudy_design::{Level, Study};
-use isostudy_inference::omnibus::{Asked, Omnibus, tests};
-use isostudy_statistics::DeclaredBallot;
+use isostudy_inference::omnibus::{Asked, Omnibus};
 use isostudy_table::{Cell, Table};
 
 /// Friedman's tests: does anything differ at all?
-pub(super) fn omnibus(study: &Study, ballots: &[DeclaredBallot]) -> Table {
+pub(super) fn omnibus(study: &Study, tests: &[Omnibus]) -> Table {
     let mut table = Table::new(
         "omnibus",
         "Does anything differ? Friedman's tests over participants",
@@ -20,10 +19,10 @@ pub(super) fn omnibus(study: &Study, ballots: &[DeclaredBallot]) -> Table {
             ("participants", "Participants"),
         ],
     );
-    for Omnibus { asked, test, adjusted, participants } in tests(study, ballots) {
+    for Omnibus { asked, test, adjusted, participants } in tests {
         let minus = |[a, b]: [Level; 2]| format!("{} minus {}", study.level(a).label, study.level(b).label);
         let name = |levels: [Level; 2]| study.factor(levels[0].factor).name.as_str();
-        let (question, scores) = match asked {
+        let (question, scores) = match *asked {
             Asked::Levels(factor) => {
                 let name = &study.factor(factor).name;
                 (name.clone(), format!("wins minus losses of each {name}"))
@@ -42,8 +41,8 @@ pub(super) fn omnibus(study: &Study, ballots: &[DeclaredBallot]) -> Table {
             Cell::Number(test.statistic, 3),
             Cell::Number(test.degrees, 0),
             Cell::P(test.p, 5),
-            Cell::P(adjusted, 5),
-            Cell::count(participants as u64),
+            Cell::P(*adjusted, 5),
+            Cell::count(*participants as u64),
         ]);
     }
     table.notes.push(
@@ -62,7 +61,8 @@ mod tests_of_the_paper {
     #[test]
     fn does_anything_differ() {
         let study = fixture::study();
-        let table = omnibus(&study, &fixture::answered(&study).declared);
+        let table =
+            omnibus(&study, &isostudy_inference::omnibus::tests(&study, &fixture::answered(&study).declared));
         // SciPy 1.17.1 friedmanchisquare on the same sums: Q = 23.690; 9.9692, p 0.006842; 19.9062, p 0.00004758.
         let shown: Vec<String> = table
             .shown_rows()

@@ -1,9 +1,7 @@
 //! All items of a group on one scale: where each stands, every difference, and how well the model fits.
 
-use isostudy_inference::scale::GroupScale;
-use isostudy_statistics::{
-    Difference, Model, Omnibus, Pairs, Scale, closeness, fit, goodness, jod, preferred,
-};
+use isostudy_inference::scale::{GroupFit, GroupScale};
+use isostudy_statistics::{Difference, Omnibus, Scale, jod, preferred};
 use isostudy_table::{Cell, Table};
 
 /// `scale`, `differences` and `fit`: positions of items, differences of every two, and what the models miss.
@@ -155,25 +153,17 @@ fn fits(scales: &[GroupScale<'_>]) -> Table {
             ("gain_p", "p of gain"),
         ],
     );
-    for GroupScale { group, participants, .. } in scales {
-        let pairs = Pairs::of(group.items.len(), &group.ballots);
-        let fitted = [Model::Davidson, Model::RaoKupper].map(|model| fit(model, &pairs).ok());
-        for (place, fitted_model) in fitted.iter().enumerate() {
-            let Some(model) = fitted_model else { continue };
-            let Some(found) = goodness(model, &pairs) else { continue };
-            let gain = match &fitted {
-                [Some(davidson), Some(rao)] if place == 1 => closeness(rao, davidson, participants),
-                _ => None,
-            };
-            for (row, pair) in found.pairs.iter().enumerate() {
+    for GroupScale { group, fits, .. } in scales {
+        for GroupFit { model, goodness, gain } in fits {
+            for (row, pair) in goodness.pairs.iter().enumerate() {
                 let once = |cell: Cell| if row == 0 { cell } else { Cell::Missing };
                 let mut cells = vec![
                     Cell::text(&group.name),
                     Cell::text(model.model.code()),
                     once(Cell::Number(model.log_likelihood, 4)),
-                    once(Cell::Number(found.deviance, 2)),
-                    once(Cell::count(found.degrees as u64)),
-                    once(Cell::p(found.p, 5)),
+                    once(Cell::Number(goodness.deviance, 2)),
+                    once(Cell::count(goodness.degrees as u64)),
+                    once(Cell::p(goodness.p, 5)),
                     Cell::text(&group.items[pair.left]),
                     Cell::text(&group.items[pair.right]),
                 ];

@@ -1,47 +1,12 @@
 //! The tests with everybody, and without those who broke a rule: nobody is left out silently.
 
-use isostudy_design::Study;
-use isostudy_inference::answered::Answered;
-use isostudy_inference::ballots::{BallotGroup, declared};
-use isostudy_inference::hypotheses::{self, Hypothesis};
-use isostudy_inference::recorded::Recorded;
-use isostudy_statistics::{DeclaredBallot, Flag, screening_with};
+use isostudy_inference::screened::WithoutBreakers;
+use isostudy_statistics::Flag;
 use isostudy_table::{Cell, Table};
-use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-/// Every contrast of a study with everybody, those included whom the study leaves out; single questions are left out.
-/// `recorded` is what is screened.
-pub(super) fn of_study(study: &Study, answers: &Answered, recorded: &Recorded<'_>) -> Table {
-    let everyone = match answers.excluded.is_empty() {
-        true => Cow::Borrowed(&answers.declared),
-        false => Cow::Owned(declared(study, &answers.everyone(study))),
-    };
-    let own = hypotheses::of_contrasts(study, &everyone);
-    screened(recorded, &own.iter().collect::<Vec<_>>(), |keep| {
-        let kept: Vec<DeclaredBallot> = everyone.iter().filter(|b| keep(b.participant())).copied().collect();
-        hypotheses::of_contrasts(study, &kept)
-    })
-}
-
-/// Every pair of items, group by group: [`pair_tests`](crate::pair_tests) with everybody and without. `recorded` is what is
-/// screened.
-pub fn screened_pair_tests(groups: &[BallotGroup], recorded: &Recorded<'_>) -> Table {
-    let hypotheses = hypotheses::of_groups(groups);
-    screened(recorded, &hypotheses.iter().collect::<Vec<_>>(), |keep| {
-        let kept = |group: &BallotGroup| BallotGroup {
-            ballots: group.ballots.iter().filter(|b| keep(b.participant())).copied().collect(),
-            ..group.clone()
-        };
-        hypotheses::of_groups(&groups.iter().map(kept).collect::<Vec<_>>())
-    })
-}
-
-fn screened(
-    recorded: &Recorded<'_>,
-    all: &[&Hypothesis],
-    tested: impl Fn(&dyn Fn(usize) -> bool) -> Vec<Hypothesis>,
-) -> Table {
+/// Each rule that somebody broke, with every test.
+pub(super) fn screened(screened: &[WithoutBreakers]) -> Table {
     let mut table = Table::new(
         "screened",
         "Tests with everybody, and without those who broke a rule",
@@ -61,29 +26,13 @@ fn screened(
             ("conclusion_without", "Conclusion"),
         ],
     );
-    let mut broken: BTreeMap<Option<Flag>, BTreeSet<usize>> = BTreeMap::new();
-    let protocol = recorded.protocol();
-    for seen in screening_with(recorded.ballots(), &protocol) {
-        let flags = seen.flags(&protocol);
-        let any = (!flags.is_empty()).then_some(None);
-        for rule in flags.into_iter().map(Some).chain(any) {
-            broken.entry(rule).or_default().insert(seen.participant);
-        }
-    }
-    // One rule alone says what "any" would.
-    if broken.len() == 2 {
-        broken.remove(&None);
-    }
-    for (rule, people) in broken {
-        let others = tested(&|participant| !people.contains(&participant));
-        // What nobody answered at all does not come out otherwise without anybody.
-        for &with in all.iter().filter(|with| with.is_tested()) {
-            let without = others.iter().find(|other| with.is_about_the_same(other));
-            let answered = without.filter(|other| other.is_tested());
+    for WithoutBreakers { rule, people, tests } in screened {
+        for (with, without) in tests {
+            let answered = without.as_ref();
             table.push(vec![
                 Cell::text(rule.map_or("any", Flag::code)),
                 Cell::count(people.len() as u64),
-                Cell::text(numbers(&people)),
+                Cell::text(numbers(people, " ")),
                 Cell::text(&with.family),
                 Cell::text(&with.contrast),
                 Cell::text(&with.scope),
@@ -136,11 +85,11 @@ fn screened(
 }
 
 /// Numbers from 1, the first ten of them.
-fn numbers(people: &BTreeSet<usize>) -> String {
+pub(crate) fn numbers(people: &BTreeSet<usize>, between: &str) -> String {
     const MOST: usize = 10;
     let first: Vec<String> = people.iter().take(MOST).map(|p| (p + 1).to_string()).collect();
     let more = people.len().saturating_sub(MOST);
-    if more > 0 { format!("{} and {more} more", first.join(" ")) } else { first.join(" ") }
+    if more > 0 { format!("{} and {more} more", first.join(between)) } else { first.join(between) }
 }
 
 #[cfg(test)]
@@ -148,6 +97,9 @@ mod tests {
     use super::*;
     use crate::fixture;
     use isostudy_inference::ballots::ballot_groups;
+    use isostudy_inference::screened::{Respondent, of_groups};
+    use isostudy_inference::{Answered, Preferences, Recorded, hypotheses};
+    use isostudy_statistics::{DeclaredBallot, screening_with};
 
     fn cell(table: &Table, keys: &[&str], column: &str) -> Cell {
         let place = |name: &str| table.columns.iter().position(|c| c.name == name).unwrap();
@@ -166,9 +118,7 @@ mod tests {
     fn the_papers_tests_without_respondent_sixteen() {
         let study = fixture::study();
         let answered = fixture::answered(&study);
-        let ballots = &answered.shown;
-        let recorded = Recorded::of_study(&study, &answered.responses, ballots);
-        let table = of_study(&study, &answered, &recorded);
+        let table = screened(&Preferences::of_study(&study, &answered).screened);
         assert_eq!(table.rows.len(), 4 + 9 + 3 + 9 + 6 + 3 + 9);
         let of = |column| cell(&table, &["outlying", "B-S", "all"], column).shown();
         assert_eq!(
@@ -183,7 +133,10 @@ mod tests {
         let alone = hypotheses::of_study(&study, &kept);
         let same = alone.iter().find(|h| h.contrast == "B-S" && h.scope == "all").unwrap();
         assert_eq!(p, same.test.sign_flip.p());
-        let pairs = screened_pair_tests(&ballot_groups(&study, ballots), &recorded);
+        let recorded = Recorded::of_study(&study, &answered.responses, &answered.shown);
+        let protocol = recorded.protocol();
+        let respondents = Respondent::all(screening_with(recorded.ballots(), &protocol), &protocol);
+        let pairs = screened(&of_groups(&ballot_groups(&study, &answered.shown), &respondents));
         assert!(pairs.rows.iter().any(|row| row[4].in_full() == "bu-bi"));
     }
 
@@ -193,7 +146,6 @@ mod tests {
         let mut answers = fixture::answers(&study);
         answers.answers.retain(|answer| answer.participant != 15);
         let answered = Answered::of(&study, answers).unwrap();
-        let recorded = Recorded::of_study(&study, &answered.responses, &answered.shown);
-        assert!(of_study(&study, &answered, &recorded).rows.is_empty());
+        assert!(screened(&Preferences::of_study(&study, &answered).screened).rows.is_empty());
     }
 }

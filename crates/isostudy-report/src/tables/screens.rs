@@ -1,11 +1,10 @@
 //! On what screens people answered, and whether it matters.
 
-use isostudy_inference::screens::compared;
-use isostudy_responses::Responses;
+use isostudy_inference::screens::Compared;
 use isostudy_table::{Cell, Table};
 
 /// Every test that the recorded screens allow; no rows where none was recorded.
-pub(crate) fn screens(answers: &Responses) -> Table {
+pub(crate) fn screens(compared: &[Compared]) -> Table {
     let mut table = Table::new(
         "screens",
         "Answers by the screen that they were given on",
@@ -24,7 +23,7 @@ pub(crate) fn screens(answers: &Responses) -> Table {
             ("p_adjusted", "p adjusted"),
         ],
     );
-    for of in compared(answers) {
+    for of in compared {
         let [first, second] = of.condition.parts;
         let count = |count: usize| Cell::count(count as u64);
         table.push(vec![

@@ -1,12 +1,17 @@
 use super::*;
 use crate::fixture;
+use isostudy_inference::Preferences;
 use isostudy_inference::ballots::ballots;
-use isostudy_statistics::Outcome;
+use isostudy_statistics::{Outcome, Protocol, ShownBallot, screening};
+
+fn table_of(ballots: &[ShownBallot]) -> Table {
+    respondents(&Respondent::all(screening(ballots), &Protocol::default()), 0, None)
+}
 
 #[test]
 fn the_papers_participants() {
     let study = fixture::study();
-    let table = agreement(&study, &fixture::answered(&study).declared);
+    let table = agreement(&study, &Preferences::of_study(&study, &fixture::answered(&study)).agreement);
     let shown = table.shown_rows();
     let scopes: Vec<&str> = shown.iter().map(|row| row[0].as_str()).collect();
     assert_eq!(scopes, ["all", "B", "S", "U", "I", "P"]);
@@ -27,7 +32,7 @@ fn the_papers_participants() {
 fn respondent_sixteen_stands_out() {
     // Counted apart from this program.
     let study = fixture::study();
-    let table = respondents(&ballots(&study, &fixture::answers(&study)), &Protocol::default(), 0);
+    let table = table_of(&ballots(&study, &fixture::answers(&study)));
     assert_eq!(table.rows.len(), 18);
     let row = &table.shown_rows()[15];
     assert_eq!(row[..4], ["16", "19", "0", "8"]);
@@ -57,7 +62,7 @@ fn of_many_participants_those_who_break_a_rule_are_printed() {
         })
     };
     let ballots: Vec<ShownBallot> = (0..201).flat_map(of).collect();
-    let table = respondents(&ballots, &Protocol::default(), 0);
+    let table = table_of(&ballots);
     assert_eq!((table.rows.len(), table.printed()[0].rows.len()), (201, 1));
     assert_eq!(table.printed()[0].shown_rows()[0][0], "8");
     assert!(table.rows[7].last().unwrap().in_full().contains("one-sided"));

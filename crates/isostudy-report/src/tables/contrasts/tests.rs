@@ -1,7 +1,13 @@
 use super::*;
 use crate::fixture;
+use isostudy_inference::BallotGroup;
+use isostudy_inference::hypotheses;
 use isostudy_inference::omnibus::{self, Asked};
 use isostudy_statistics::{DeclaredBallot, Outcome, ShownBallot};
+
+fn table_of(hypotheses: &[Hypothesis]) -> Table {
+    tests(hypotheses, &Robustness::of(hypotheses))
+}
 
 fn rows(table: &Table, start: &str) -> Vec<String> {
     table.to_csv().lines().filter(|line| line.starts_with(start)).map(str::to_owned).collect()
@@ -10,7 +16,7 @@ fn rows(table: &Table, start: &str) -> Vec<String> {
 #[test]
 fn the_papers_tests() {
     let study = fixture::study();
-    let table = study_tests(&fixture::answered(&study).hypotheses);
+    let table = table_of(&fixture::answered(&study).hypotheses);
     assert_eq!(table.rows.len(), 4 + 9 + 3 + 9 + 6 + 3 + 9 + 27);
     let header = table.columns.iter().map(|c| c.name.as_str()).collect::<Vec<_>>();
     let header = &header;
@@ -95,7 +101,7 @@ fn every_compared_pair_is_tested_whatever_the_side() {
         ],
         objects: Vec::new(),
     };
-    let table = pair_tests(&[group]);
+    let table = table_of(&hypotheses::of_groups(&[group]));
     // Differences 1, 1, 0, 1: two of eight patterns. scipy.stats.t.interval(.95, 3, mean, sem) of them: -0.0456, 1.5456, which no mean score reaches.
     let row = table.shown_rows().into_iter().next().unwrap();
     let want = [
@@ -118,5 +124,5 @@ fn every_compared_pair_is_tested_whatever_the_side() {
     assert_eq!(row[..15], want);
     assert_eq!(rows(&table, "g,b-c").len(), 1);
     assert!(rows(&table, "g,a-c").is_empty());
-    assert!(pair_tests(&[]).rows.is_empty());
+    assert!(table_of(&[]).rows.is_empty());
 }

@@ -1,5 +1,10 @@
 use super::*;
+use isostudy_inference::{BallotGroup, models};
 use isostudy_statistics::{Outcome, ShownBallot};
+
+fn tables_of(groups: &[BallotGroup]) -> [Table; 2] {
+    model_tables(&models::of_groups(groups, true), true)
+}
 
 fn cell(table: &Table, keys: &[(&str, &str)], column: &str) -> Cell {
     let index = |name: &str| table.columns.iter().position(|c| c.name == name).unwrap();
@@ -33,7 +38,7 @@ fn two_items(rows: &[&str]) -> BallotGroup {
 
 #[test]
 fn what_is_not_answerable_is_said_and_not_numbered() {
-    let [worths, models] = model_tables(&[two_items(&["LLN", "LRN", "RLL"])], true);
+    let [worths, models] = tables_of(&[two_items(&["LLN", "LRN", "RLL"])]);
     let side = [("model", "davidson-side")];
     assert_eq!(cell(&models, &side, "side"), Cell::Missing);
     let remark = cell(&models, &side, "remark").in_full();
@@ -44,7 +49,7 @@ fn what_is_not_answerable_is_said_and_not_numbered() {
 
 #[test]
 fn separated_answers_are_marked_and_have_no_interval() {
-    let [worths, models] = model_tables(&[two_items(&["LLL", "LLN"])], true);
+    let [worths, models] = tables_of(&[two_items(&["LLL", "LLN"])]);
     let davidson = [("model", "davidson")];
     assert_eq!(cell(&models, &davidson, "penalised"), Cell::text("yes"));
     let b = [("item", "b"), ("model", "davidson")];
@@ -55,14 +60,14 @@ fn separated_answers_are_marked_and_have_no_interval() {
 
 #[test]
 fn degenerate_groups_are_stated_results() {
-    let all_ties = model_tables(&[two_items(&["NN", "N"])], true);
+    let all_ties = tables_of(&[two_items(&["NN", "N"])]);
     assert!(all_ties[0].rows.is_empty());
     assert!(all_ties[1].rows.iter().all(|row| row[10].in_full().contains("every answer was no preference")));
-    let one_person = model_tables(&[two_items(&["LRN"])], true);
+    let one_person = tables_of(&[two_items(&["LRN"])]);
     let b = [("item", "b"), ("model", "davidson")];
     close(cell(&one_person[0], &b, "log_worth"), 0.0);
     assert_eq!(cell(&one_person[0], &b, "clustered_se"), Cell::Missing);
-    assert!(model_tables(&[], true).iter().all(|table| table.rows.is_empty()));
+    assert!(tables_of(&[]).iter().all(|table| table.rows.is_empty()));
 }
 
 #[test]
@@ -70,7 +75,7 @@ fn a_worth_that_rests_on_one_tie_has_no_error_of_clusters() {
     let mut group = two_items(&["L", "R", "", "L"]);
     group.items.push("c".into());
     group.ballots.push(ShownBallot::new(2, 1, [0, 2], Outcome::Tie));
-    let [worths, _] = model_tables(&[group], true);
+    let [worths, _] = tables_of(&[group]);
     let of = |item: &str, column: &str| cell(&worths, &[("item", item), ("model", "davidson")], column);
     for column in ["clustered_se", "low", "high"] {
         assert_eq!(of("c", column), Cell::Missing, "{column}");
