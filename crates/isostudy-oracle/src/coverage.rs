@@ -1,7 +1,7 @@
 //! How often what is printed is right, counted over simulated studies that go through files: dealt forms, answers, a file,
 //! every table.
 //!
-//! `cargo test --release --locked --workspace --lib coverage_through_files -- --ignored --nocapture` prints what
+//! `cargo test --release --locked -p isostudy-oracle --lib coverage_through_files -- --ignored --nocapture` prints what
 //! docs/self-test.md sums up; `STUDIES=3000` before it counts more closely.
 
 use super::designs::{self, Design};

@@ -1,4 +1,4 @@
-//! The report as a page and as Markdown. What it says comes from `analysis`; here it is only set.
+//! The report as a page and as Markdown. What it says comes from `isostudy-report`; here it is only set.
 
 use super::glossary;
 use super::templates::{Picture, caption, environment, fits};
