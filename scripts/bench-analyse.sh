@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 respondents=${1:-100000}
 export RAYON_NUM_THREADS="${2:-2}"
 cargo build --release --locked --quiet --package isostudy --bin isostudy
-cargo build --release --locked --quiet --package isostudy-analysis --example simulate
+cargo build --release --locked --quiet --package isostudy-inference --example simulate
 target=$(cargo metadata --format-version 1 --no-deps --locked | sed -E 's/.*"target_directory":"([^"]*)".*/\1/')
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

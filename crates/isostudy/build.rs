@@ -7,7 +7,7 @@ use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const CRATES: [&str; 18] = [
+const CRATES: [&str; 20] = [
     "mesh",
     "cells",
     "design",
@@ -23,7 +23,9 @@ const CRATES: [&str; 18] = [
     "statistics",
     "table",
     "timing",
-    "analysis",
+    "inference",
+    "report",
+    "paper",
     "serve",
     "cli",
 ];

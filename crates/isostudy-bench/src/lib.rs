@@ -12,7 +12,7 @@
 //! minute of the machine falls on all configurations alike and no configuration always follows the same other. A
 //! *invocation* is a process and the rounds measured in it. The *A/A block* is rounds of the same plan measured again in
 //! invocations of their own: how far it lies from the rest is how far two runs of one build may lie apart. What follows from
-//! the samples is worked out in `analysis`.
+//! the samples is worked out in `isostudy-timing`.
 //!
 //! # Guaranteed
 //!

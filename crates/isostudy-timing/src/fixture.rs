@@ -1,21 +1,22 @@
-//! Runs of a benchmark, made up from the paper's published one. Tests of `analysis` include this file.
+//! Runs of a benchmark, made up from the paper's published one. Tests of `isostudy-inference` and what follows it include this file.
 
 use isostudy_design::Study;
 use isostudy_design::machine::{Machine, ProfileDifference};
 use isostudy_design::record::{BenchRun, BenchSample, Counters, PeakMemory, SweepMesh};
 use std::path::{Path, PathBuf};
 
-pub(crate) fn paper_path() -> PathBuf {
+/// The paper's study file.
+pub fn paper_path() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/paper.toml")
 }
 
 /// The paper's study; its bunny is any file that is always there.
-pub(crate) fn study() -> Study {
+pub fn study() -> Study {
     study_with(&[])
 }
 
 /// The paper's study with passages of its file replaced.
-pub(crate) fn study_with(replacements: &[(&str, &str)]) -> Study {
+pub fn study_with(replacements: &[(&str, &str)]) -> Study {
     let path = paper_path();
     let mut text = std::fs::read_to_string(&path).unwrap().replace("../cache/bunny.ply", "paper.toml");
     for (from, to) in replacements {
@@ -26,17 +27,17 @@ pub(crate) fn study_with(replacements: &[(&str, &str)]) -> Study {
 }
 
 /// The two letters of a published method.
-pub(crate) fn crossed(method: isostudy_design::MethodId) -> isostudy_design::Crossed {
+pub fn crossed(method: isostudy_design::MethodId) -> isostudy_design::Crossed {
     isostudy_design::Crossed::of(method).expect("two letters")
 }
 
 /// Five rounds with a little deterministic unrest, on another machine than the paper's.
-pub(crate) fn bench(study: &Study) -> BenchRun {
+pub fn bench(study: &Study) -> BenchRun {
     bench_of(study, 5)
 }
 
 /// The same of so many rounds.
-pub(crate) fn bench_of(study: &Study, rounds: u32) -> BenchRun {
+pub fn bench_of(study: &Study, rounds: u32) -> BenchRun {
     let mut samples = Vec::new();
     for iteration in 0..rounds {
         for (place, row) in study.published.benchmark.iter().enumerate() {
@@ -101,7 +102,7 @@ pub(crate) fn bench_of(study: &Study, rounds: u32) -> BenchRun {
 
 /// Runs by cells per axis and threads, and meshes, whose law is known: every stage of every configuration grows as the square of the cells, twice the threads halve
 /// the time, memory grows as the cube; integrated clustering is the more regular and has a quarter of the triangles.
-pub(crate) fn sweep_levels(study: &Study) -> (Vec<(u32, u32, BenchRun)>, Vec<SweepMesh>) {
+pub fn sweep_levels(study: &Study) -> (Vec<(u32, u32, BenchRun)>, Vec<SweepMesh>) {
     let base = bench_of(study, 9);
     let (mut levels, mut meshes) = (Vec::new(), Vec::new());
     for cells in [16_u32, 32, 64, 128] {

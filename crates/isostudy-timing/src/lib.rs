@@ -43,7 +43,7 @@ pub mod sweep;
 mod tables;
 
 #[cfg(test)]
-mod fixture;
+pub mod fixture;
 
 #[cfg(test)]
 mod simulation;

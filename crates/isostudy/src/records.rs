@@ -1,4 +1,4 @@
-//! From what `extract` and `mesh` measured to the records that `analysis` reads. Field by field, on purpose: the
+//! From what `extract` and `mesh` measured to the records that `isostudy-inference` reads. Field by field, on purpose: the
 //! geometry crates know nothing of studies, and the statistics know nothing of geometry.
 
 use isostudy_design::ConfigurationId;

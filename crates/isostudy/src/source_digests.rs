@@ -15,7 +15,9 @@ const TABLE: &str = env!("ISOSTUDY_SOURCES_TABLE");
 const TIMING: &str = env!("ISOSTUDY_SOURCES_TIMING");
 const RASTER: &str = env!("ISOSTUDY_SOURCES_RASTER");
 const BENCH: &str = env!("ISOSTUDY_SOURCES_BENCH");
-const ANALYSIS: &str = env!("ISOSTUDY_SOURCES_ANALYSIS");
+const INFERENCE: &str = env!("ISOSTUDY_SOURCES_INFERENCE");
+const REPORT: &str = env!("ISOSTUDY_SOURCES_REPORT");
+const PAPER: &str = env!("ISOSTUDY_SOURCES_PAPER");
 const SERVE: &str = env!("ISOSTUDY_SOURCES_SERVE");
 const PAGE: &str = env!("ISOSTUDY_SOURCES_PAGE");
 const CLI: &str = env!("ISOSTUDY_SOURCES_CLI");
@@ -28,7 +30,8 @@ pub(crate) const PICTURES: &[&str] = &[MESH, RASTER, CLI];
 /// What makes timings.
 pub(crate) const TIMINGS: &[&str] = &[MESH, FIELD, EXPRESSION, VOLUME, CELLS, EXTRACT, PROGRAM, BENCH, CLI];
 /// What makes tables, figures and the report.
-pub(crate) const TABLES: &[&str] = &[DESIGN, RESPONSES, STATISTICS, TABLE, TIMING, ANALYSIS, CLI, PAGE];
+pub(crate) const TABLES: &[&str] =
+    &[DESIGN, RESPONSES, STATISTICS, TABLE, TIMING, INFERENCE, REPORT, PAPER, CLI, PAGE];
 /// What makes the key.
 pub(crate) const KEYS: &[&str] = &[DESIGN, CLI];
 /// What makes the bundle for participants.

@@ -13,12 +13,12 @@ use crate::terminal::say;
 use crate::{input, machine};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
-use isostudy_analysis::Panel;
 use isostudy_bench::Measured;
 use isostudy_design::machine::CpuProfile;
 use isostudy_design::record::{BenchSample, Purpose};
 use isostudy_design::{ConfigurationId, Study};
 use isostudy_extract::{Execution, Extractor};
+use isostudy_report::Panel;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]

@@ -2,7 +2,7 @@
 
 use crate::store::Writer;
 use anyhow::Result;
-use isostudy_analysis::Figure;
+use isostudy_report::Figure;
 use isostudy_table::Table;
 
 /// Writes a table as CSV, Markdown and LaTeX into a folder.

@@ -58,7 +58,7 @@ impl Pipeline<'_> {
             for table in &tables {
                 write_table(writer, "bench/sweep", table)?;
             }
-            for figure in isostudy_analysis::sweep_figures(self.study, &found)? {
+            for figure in isostudy_report::sweep_figures(self.study, &found)? {
                 write_figure(writer, "bench/sweep", &figure)?;
             }
             Ok(())

@@ -7,9 +7,11 @@ use crate::source_digests;
 use crate::store::{Inputs, Stamp, Store, Writer, sha256};
 use crate::terminal::progress::Step;
 use anyhow::{Context, Result};
-use isostudy_analysis::{Answered, Figure, LongFrame};
 use isostudy_design::Study;
 use isostudy_design::config::ResponsesSection;
+use isostudy_inference::{Answered, Preferences, Results};
+use isostudy_paper::Paper;
+use isostudy_report::{Figure, LongFrame};
 use isostudy_responses::Reading;
 use isostudy_table::Table;
 use serde::{Deserialize, Serialize};
@@ -37,7 +39,7 @@ impl Pipeline<'_> {
             let chunks = self.chunk_records(chunks)?;
             let answers = crate::answer_files::of_study(self.study)?;
             let answers = answers.and_then(|reading| Answered::of(self.study, reading.responses));
-            let inputs = isostudy_analysis::Inputs {
+            let inputs = isostudy_inference::Inputs {
                 study: self.study,
                 meshes: &records,
                 bench: Some(&run),
@@ -45,8 +47,10 @@ impl Pipeline<'_> {
                 answers: answers.as_ref(),
                 left_out: &left_out,
             };
-            write(writer, &inputs, &self.read_pictures()?, true)?;
-            writer.write_json(UNEXPLAINED, &isostudy_analysis::unexplained_differences(&inputs))
+            let results = Results::of(&inputs);
+            let paper = Paper::of(&results);
+            write(writer, &results, &paper, &self.read_pictures()?, true)?;
+            writer.write_json(UNEXPLAINED, &paper.unexplained_differences())
         })?;
         step.count(stamp.redone);
         step.end();
@@ -67,7 +71,7 @@ impl Pipeline<'_> {
 /// If the files cannot be written.
 pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store) -> Result<Vec<Table>> {
     let answers = Answered::of(study, reading.responses);
-    let inputs = isostudy_analysis::Inputs {
+    let inputs = isostudy_inference::Inputs {
         study,
         meshes: &[],
         bench: None,
@@ -78,10 +82,14 @@ pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store)
     let mut made = None;
     store.stage("answers", study_inputs(study)?, |writer| {
         writer.write(READING, reading.report.to_csv().as_bytes())?;
-        made = Some(write(writer, &inputs, &[], false)?);
+        let results = Results::of(&inputs);
+        made = Some(write(writer, &results, &Paper::of(&results), &[], false)?);
         Ok(())
     })?;
-    Ok(made.unwrap_or_else(|| isostudy_analysis::tables(&inputs)))
+    Ok(made.unwrap_or_else(|| {
+        let results = Results::of(&inputs);
+        all_tables(&results, &Paper::of(&results))
+    }))
 }
 
 /// Tables, figures and report of answers without a study, into a folder of their own, with how the answers were read.
@@ -102,18 +110,19 @@ pub(crate) fn write_without_study(
     if let Some(reference) = section.reference.as_ref().filter(|reference| !items.contains(reference)) {
         anyhow::bail!("reference = {reference:?}: no item has this name; there are {}", items.join(", "));
     }
-    let groups = isostudy_analysis::open_groups(&reading.responses, section.reference.as_deref());
-    let tables = isostudy_analysis::answer_tables(&reading.responses, &groups, section.shown_s);
+    let groups = isostudy_inference::open_groups(&reading.responses, section.reference.as_deref());
+    let preferences = Preferences::without_study(&reading.responses, &groups, section.shown_s);
+    let tables = isostudy_report::answer_tables(&preferences);
     let title = path.file_name().unwrap_or_default().to_string_lossy();
     store.stage("answers", inputs, |writer| {
         writer.write(READING, reading.report.to_csv().as_bytes())?;
         write_tables(writer, &tables)?;
-        let figures = isostudy_analysis::figures_of_groups(&groups).context("figures")?;
+        let figures = isostudy_report::figures_of_groups(&preferences).context("figures")?;
         write_figures(writer, &figures)?;
-        write_frames(writer, &[isostudy_analysis::answers_frame(&reading.responses)])?;
+        write_frames(writer, &[isostudy_report::answers_frame(&reading.responses)])?;
         write_report(
             writer,
-            &isostudy_analysis::report_of_groups(&title, &reading.responses, &groups, &tables, &figures),
+            &isostudy_report::report_of_groups(&title, &preferences, &tables, &figures),
             &[],
             false,
         )
@@ -152,21 +161,29 @@ pub(super) const FIGURE_CONTENTS: &str = "figures/contents.json";
 /// The tables that were written. `gallery` says whether an `index.html` will stand beside the report.
 fn write(
     writer: &mut Writer<'_>,
-    inputs: &isostudy_analysis::Inputs<'_>,
+    results: &Results<'_>,
+    paper: &Paper<'_>,
     pictures: &[PictureData],
     gallery: bool,
 ) -> Result<Vec<Table>> {
-    let tables = isostudy_analysis::tables(inputs);
+    let tables = all_tables(results, paper);
     write_tables(writer, &tables)?;
-    let figures = isostudy_analysis::figures(inputs).context("figures")?;
+    let figures = isostudy_report::figures(results).context("figures")?;
     write_figures(writer, &figures)?;
-    let report = isostudy_analysis::report(inputs, &tables, &figures);
+    let report = isostudy_report::report(results, &tables, &figures, paper.published(&tables));
     write_report(writer, &report, pictures, gallery)?;
     if gallery {
         writer.write_json(ABSTRACT, &Abstract::of(&report))?;
     }
-    write_frames(writer, &isostudy_analysis::frames(inputs))?;
+    write_frames(writer, &isostudy_report::frames(&results.inputs))?;
     Ok(tables)
+}
+
+/// The tables of a study, with those of the paper among them.
+fn all_tables(results: &Results<'_>, paper: &Paper<'_>) -> Vec<Table> {
+    let mut tables = isostudy_report::tables(results);
+    paper.add_tables(&mut tables);
+    tables
 }
 
 /// What tables summarise, row by row, for other programs.

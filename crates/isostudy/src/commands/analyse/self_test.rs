@@ -32,7 +32,7 @@ pub(super) fn run(settings: &SelfTest, out: Option<&Path>) -> Result<Outcome> {
     if settings.threads > 0 {
         rayon::ThreadPoolBuilder::new().num_threads(settings.threads as usize).build_global()?;
     }
-    let (tables, passed) = isostudy_analysis::self_test::self_test(settings.studies, settings.seed);
+    let (tables, passed) = isostudy_report::self_test_tables(settings.studies, settings.seed);
     for table in &tables {
         say(&table.to_markdown())?;
         if let Some(out) = out {

@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let table = history_table(&steps);
     let folder = arguments.folder.join("bench");
     write_whole(&folder.join("history.csv"), table.to_csv().as_bytes())?;
-    if let Some(figure) = isostudy_analysis::history_figure(&steps)? {
+    if let Some(figure) = isostudy_report::history_figure(&steps)? {
         write_whole(&folder.join("history.svg"), figure.svg.as_bytes())?;
         write_whole(&folder.join("history.png"), &figure.png)?;
     }

@@ -1,4 +1,4 @@
-//! `isostudy design power`: how likely a study is to find a preference. It is simulated in `isostudy_analysis::power`.
+//! `isostudy design power`: how likely a study is to find a preference. It is simulated in `isostudy_inference::power`.
 
 use super::forms_section;
 use crate::outcome::Outcome;
@@ -7,7 +7,7 @@ use crate::terminal::say;
 use crate::{input, store};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use isostudy_analysis::power::{Assumptions, power as simulated};
+use isostudy_inference::power::{Assumptions, power as simulated};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -80,8 +80,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     step.end();
     ensure!(!found.is_empty(), "{}: there is no comparison to simulate", study.path.display());
 
-    let tables = isostudy_analysis::power_tables(&assumptions, &found);
-    let figure = isostudy_analysis::power_figure(&assumptions, &found)?;
+    let tables = isostudy_report::power_tables(&assumptions, &found);
+    let figure = isostudy_report::power_figure(&assumptions, &found)?;
     let folder = || Path::new("results").join(format!("{}-power", study.file.study.id));
     let out = arguments.out.clone().unwrap_or_else(folder);
     std::fs::create_dir_all(&out).with_context(|| out.display().to_string())?;

@@ -7,11 +7,11 @@ use crate::source::{Inside, Options, Source};
 use crate::store;
 use anyhow::{Context, Result, bail};
 use glam::Vec3;
-use isostudy_analysis::{KindShare, TableQuality, edge_groups_figure};
 use isostudy_cells::{EdgeGroups, radius_ratio};
 use isostudy_extract::{BoxGrid, Execution, Extractor, presets};
 use isostudy_field::{Asteroid, Terrain, TerrainCharacter};
 use isostudy_mesh::Bounds;
+use isostudy_report::{KindShare, TableQuality, edge_groups_figure};
 use std::path::Path;
 
 /// Cubes along the longest side of the surfaces that are looked at where none is given.

@@ -1,12 +1,12 @@
-//! The report as a page and as Markdown. What it says comes from `analysis`; here it is only set.
+//! The report as a page and as Markdown. What it says comes from `isostudy-report`; here it is only set.
 
 use super::glossary;
 use super::templates::{Picture, caption, environment, fits};
 use crate::store::Writer;
 use anyhow::Result;
 use base64::Engine;
-use isostudy_analysis::report::{Block, Finding};
-use isostudy_analysis::{Figure, Report};
+use isostudy_report::report::{Block, Finding};
+use isostudy_report::{Figure, Report};
 use isostudy_table::Table;
 use minijinja::context;
 use minijinja::value::Serde;
@@ -27,7 +27,7 @@ pub(in crate::pipeline) struct Line {
 
 impl Abstract {
     pub(in crate::pipeline) fn of(report: &Report) -> Self {
-        let line = |of: &isostudy_analysis::report::SummaryLine| Line {
+        let line = |of: &isostudy_report::report::SummaryLine| Line {
             label: of.label.into(),
             text: unbroken(&of.text),
         };
@@ -115,7 +115,7 @@ pub(in crate::pipeline) fn write(
     writer.write("report.md", report.to_markdown().as_bytes())
 }
 
-fn part(section: &isostudy_analysis::report::Section, glance: bool) -> Part<'_> {
+fn part(section: &isostudy_report::report::Section, glance: bool) -> Part<'_> {
     let findings = section.blocks.iter().filter(|block| matches!(block, Block::Finding(_))).count();
     let folded = (glance && ONE_BY_ONE.contains(&section.id) && findings > 0).then(|| match findings {
         1 => "The result in a sentence".to_owned(),

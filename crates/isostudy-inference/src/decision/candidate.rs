@@ -1,0 +1,199 @@
+//! The methods of each object, with what is known of them.
+
+use super::Estimate;
+use crate::answered::Answered;
+use crate::inputs::Inputs;
+use crate::mesh_set::{MeshSet, known};
+use isostudy_design::config::ObjectSection;
+use isostudy_design::record::{BenchRun, ChunkTimes, Distribution, MeshRecord, Purpose};
+use isostudy_design::{ConfigurationId, Method, MethodId, Study};
+use isostudy_statistics::interval::{Interval, LEVEL, of_mean_score};
+use isostudy_statistics::median;
+use std::collections::BTreeMap;
+
+/// How many standard errors a mean may be off at 95 %.
+const NORMAL_QUANTILE: f64 = 1.959_963_984_540_054;
+
+/// The least error that is told apart, in cube edges. A method that is exact but for rounding would be a million times as good as the
+/// next, and an error of 0 has no place on a logarithmic axis.
+pub const LEAST_ERROR: f64 = 1e-4;
+
+/// An object and the methods that can be taken for it, in the study's order.
+pub struct ObjectCandidates<'a> {
+    /// The object.
+    pub object: &'a ObjectSection,
+    /// The methods on it.
+    pub candidates: Vec<Candidate<'a>>,
+}
+
+/// A method on one object, at the benchmark spacing or what its budget made of it.
+pub struct Candidate<'a> {
+    /// The method.
+    pub method: &'a Method,
+    /// Its mesh.
+    pub mesh: &'a MeshRecord,
+    /// Median seconds from the field to the mesh, normals left out.
+    pub time_s: Option<Estimate>,
+    /// Seconds to extract each chunk.
+    pub chunks: Option<Each>,
+    /// Seconds to extract again what each edit touches.
+    pub edits: Option<Each>,
+    /// Bytes that extraction takes beside the field.
+    pub memory: Option<u64>,
+    /// Mean distance from the mesh to the isosurface or back, whichever is larger, in edges of the object's benchmark cubes: one
+    /// unit for all methods of the object. At least [`LEAST_ERROR`].
+    pub error: Option<Estimate>,
+    /// Mean distance from the isosurface's sharp edges to the mesh, in the same unit; `None` if it has none.
+    pub sharp_edges: Option<Estimate>,
+    /// Mean over people of the answers for it less those against it, per answer that showed it on this object: 1 is always chosen.
+    pub preference: Option<Estimate>,
+}
+
+/// Times of the same pieces of work, one after the other, and their median.
+pub struct Each {
+    times_s: Vec<f64>,
+    /// Median in seconds.
+    pub median_s: Estimate,
+}
+
+impl Each {
+    fn of(times_s: Vec<f64>) -> Option<Self> {
+        let found = median(times_s.clone(), LEVEL)?;
+        Some(Self { times_s, median_s: Estimate::within(found.median, found.interval) })
+    }
+
+    /// Whether the median ratio of a piece's two times may be 1; `None` where there are more pieces of one than of the other, so that they
+    /// are not the same.
+    pub fn may_equal(&self, other: &Self) -> Option<bool> {
+        if self.times_s.len() != other.times_s.len() {
+            return None;
+        }
+        let ratios = self.times_s.iter().zip(&other.times_s).map(|(a, b)| a / b).collect();
+        let found = median(ratios, LEVEL)?;
+        let of = Estimate::within(found.median, found.interval);
+        Some(of.low <= 1.0 && 1.0 <= of.high)
+    }
+}
+
+impl ObjectCandidates<'_> {
+    /// Whether the error of a method is the least that is told apart.
+    pub fn has_least_error(&self) -> bool {
+        self.candidates.iter().any(|of| of.error.is_some_and(|error| error.value <= LEAST_ERROR))
+    }
+}
+
+impl Candidate<'_> {
+    /// The code of the method.
+    pub fn id(&self) -> MethodId {
+        self.method.id
+    }
+
+    /// The number of triangles.
+    pub fn triangles(&self) -> Estimate {
+        Estimate::exact(self.mesh.counts.triangles as f64)
+    }
+
+    /// Whether the mesh has the components and the Euler characteristic of the trilinear interpolant of its samples, as far as that was
+    /// counted.
+    pub fn has_right_topology(&self) -> bool {
+        let own = &self.mesh.topology;
+        self.mesh.trilinear.as_ref().is_some_and(|truth| {
+            own.components == truth.components && own.euler_characteristic == truth.euler_characteristic
+        })
+    }
+
+    /// Whether nothing is wrong with the mesh as a surface: no edge or vertex at which it is no manifold, no folded or doubled
+    /// triangle, no two that pass through each other, as far as all of that was counted. A border is no fault here: the object may
+    /// end at its box.
+    pub fn is_faultless(&self) -> bool {
+        let t = &self.mesh.topology;
+        let counts = [t.non_manifold_edges, t.non_manifold_vertices, t.folded_faces, t.duplicate_faces];
+        counts == [0; 4] && t.self_intersections == Some(0)
+    }
+}
+
+/// The candidates of every object that has any. A method that differs from an earlier one in its look alone is none.
+pub fn candidates<'a>(inputs: &Inputs<'a>) -> Vec<ObjectCandidates<'a>> {
+    let study = inputs.study;
+    let meshes = MeshSet::of(inputs, Purpose::Benchmark);
+    let methods: Vec<&Method> = study.methods.iter().filter(|method| !is_repeated(study, method)).collect();
+    let of_object = |(place, object): (usize, &'a ObjectSection)| {
+        let candidate = |method: &&'a Method| {
+            let mesh = meshes.at(place, method.id)?;
+            let unit = object.benchmark_spacing;
+            let id = ConfigurationId { object: object.id.clone(), method: method.id };
+            let chunks = inputs.chunks.iter().find(|times| times.id == id);
+            Some(Candidate {
+                method,
+                mesh,
+                time_s: inputs.bench.and_then(|run| time(run, &id)),
+                chunks: chunks.and_then(|times| Each::of(per_chunk(times))),
+                edits: chunks.and_then(|times| Each::of(times.edit_s.clone())),
+                memory: inputs
+                    .bench
+                    .and_then(|run| run.memory.iter().find(|peak| peak.id == id)?.of_extraction()),
+                error: error(mesh, unit),
+                sharp_edges: mesh.accuracy.sharp_edges.as_ref().and_then(mean).map(|mean| mean.per(unit)),
+                preference: inputs.answers.and_then(|answers| preference(study, answers, place, method.id)),
+            })
+        };
+        ObjectCandidates { object, candidates: methods.iter().filter_map(candidate).collect() }
+    };
+    let all = study.file.objects.iter().enumerate().map(of_object);
+    all.filter(|of| !of.candidates.is_empty()).collect()
+}
+
+fn is_repeated(study: &Study, method: &Method) -> bool {
+    let earlier = study.methods.iter().take_while(|other| other.id != method.id);
+    earlier.into_iter().any(|other| other.recipe == method.recipe && other.budget == method.budget)
+}
+
+fn time(run: &BenchRun, id: &ConfigurationId) -> Option<Estimate> {
+    let own = run.samples.iter().filter(|sample| sample.id == *id);
+    let found = median(own.map(|sample| sample.total_s - sample.normals_s).collect(), LEVEL)?;
+    Some(Estimate::within(found.median, found.interval))
+}
+
+/// Of each chunk the median of its rounds.
+fn per_chunk(times: &ChunkTimes) -> Vec<f64> {
+    let count = times.timed as usize;
+    let of = |chunk| median(times.chunk_s.iter().copied().skip(chunk).step_by(count).collect(), LEVEL);
+    (0..count).filter_map(of).map(|of| of.median).collect()
+}
+
+fn error(mesh: &MeshRecord, unit: f64) -> Option<Estimate> {
+    let there = mean(&mesh.accuracy.distance)?;
+    let back = mean(mesh.accuracy.distance_to_mesh.as_ref()?)?;
+    let larger = if back.value > there.value { back } else { there };
+    Some(larger.per(unit).at_least(LEAST_ERROR))
+}
+
+fn mean(of: &Distribution) -> Option<Estimate> {
+    let mean = known(of, |of| of.mean)?;
+    let half = NORMAL_QUANTILE * of.sd / (of.count as f64).sqrt();
+    Some(Estimate { value: mean, low: mean - half, high: mean + half })
+}
+
+fn preference(study: &Study, answers: &Answered, object: usize, method: MethodId) -> Option<Estimate> {
+    let place = study.place(method);
+    let mut people: BTreeMap<usize, (i64, i64)> = BTreeMap::new();
+    for ballot in &answers.declared {
+        if study.comparisons[ballot.question()].object != object {
+            continue;
+        }
+        let sign = match place {
+            place if place == ballot.first() => ballot.preference().sign(),
+            place if place == ballot.second() => -ballot.preference().sign(),
+            _ => continue,
+        };
+        let (sum, shown) = people.entry(ballot.participant()).or_default();
+        (*sum, *shown) = (*sum + sign, *shown + 1);
+    }
+    let mut scores: Vec<f64> = people.values().map(|&(sum, shown)| sum as f64 / shown as f64).collect();
+    // Sums of doubles depend on their order, and people come in any.
+    scores.sort_by(f64::total_cmp);
+    let mean = scores.iter().sum::<f64>() / scores.len() as f64;
+    let interval = of_mean_score(&scores, 1.0)
+        .map(|Interval { low, high }| Interval { low: low.max(-1.0), high: high.min(1.0) });
+    (!scores.is_empty()).then(|| Estimate::within(mean, interval))
+}

@@ -1,0 +1,93 @@
+//! The groups of answers that no study explains: items, groups and questions are what the answers name.
+
+use crate::ballots::{BallotGroup, outcome, turned};
+use isostudy_responses::{Answer, Responses};
+use isostudy_statistics::ShownBallot;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The answers by the group that their question names, groups by name. Answers that name none are in groups of items that
+/// were compared with one another, directly or through others: `all`, or the object, or a number.
+///
+/// Items stand in the order of the [`Responses`], so that no order of rows changes anything. The first is the reference of
+/// every worth: `reference`, where the group has it.
+pub fn open_groups(answers: &Responses, reference: Option<&str>) -> Vec<BallotGroup> {
+    let names = group_of_question(answers);
+    let asked = |answer: &&Answer| answers.questions[answer.question as usize].is_comparison();
+    let mut members: BTreeMap<&str, BTreeSet<u32>> = BTreeMap::new();
+    for answer in answers.answers.iter().filter(asked) {
+        members.entry(&names[answer.question as usize]).or_default().extend([answer.left, answer.right]);
+    }
+    let name = |&item: &u32| answers.items[item as usize].clone();
+    let objects: Vec<String> = answers.questions.iter().map(|question| question.object.clone()).collect();
+    let mut places: BTreeMap<&str, BTreeMap<u32, usize>> = BTreeMap::new();
+    let mut groups: BTreeMap<&str, BallotGroup> = BTreeMap::new();
+    for (group, items) in members {
+        let mut items: Vec<u32> = items.into_iter().collect();
+        // Stable: the others keep their order.
+        items.sort_by_key(|item| Some(name(item).as_str()) != reference);
+        places.insert(group, items.iter().enumerate().map(|(place, &item)| (item, place)).collect());
+        let items = items.iter().map(name).collect();
+        groups.insert(
+            group,
+            BallotGroup { name: group.into(), items, ballots: Vec::new(), objects: objects.clone() },
+        );
+    }
+    for answer in answers.answers.iter().filter(asked) {
+        let group = names[answer.question as usize].as_str();
+        let sides = [answer.left, answer.right].map(|item| places[group][&item]);
+        let (participant, question) = (answer.participant as usize, answer.question as usize);
+        let ballot = ShownBallot::new(participant, question, sides, outcome(answer.choice));
+        let ordered = answers.sides_recorded || sides[0] < sides[1];
+        let ballot = if ordered { ballot } else { turned(&ballot) };
+        groups.get_mut(group).expect("a member's group").ballots.push(ballot);
+    }
+    groups.into_values().collect()
+}
+
+/// By question, the name of its group.
+pub fn group_of_question(answers: &Responses) -> Vec<String> {
+    let own = |group: &str| !group.is_empty();
+    // Items joined by questions without a group; each leads to the first of its kind.
+    let mut first: Vec<u32> = (0..answers.items.len() as u32).collect();
+    fn root(first: &mut [u32], item: u32) -> u32 {
+        let mut item = item;
+        while first[item as usize] != item {
+            first[item as usize] = first[first[item as usize] as usize];
+            item = first[item as usize];
+        }
+        item
+    }
+    let compared = answers.questions.iter().filter(|q| !own(&q.group) && q.is_comparison());
+    for question in compared.clone() {
+        let (a, b) = (root(&mut first, question.left), root(&mut first, question.right));
+        first[a.max(b) as usize] = a.min(b);
+    }
+    let mut objects: BTreeMap<u32, Vec<&str>> = BTreeMap::new();
+    for question in compared {
+        let of = objects.entry(root(&mut first, question.left)).or_default();
+        if !of.contains(&question.object.as_str()) {
+            of.push(&question.object);
+        }
+    }
+    let single = |of: &Vec<&str>| of.len() == 1 && own(of[0]);
+    let distinct = objects.values().all(single)
+        && objects.values().map(|of| of[0]).collect::<std::collections::BTreeSet<_>>().len() == objects.len();
+    let name = |place: usize, of: &[&str]| match (objects.len(), distinct) {
+        (1, _) => "all".to_owned(),
+        (_, true) => of[0].to_owned(),
+        _ => (place + 1).to_string(),
+    };
+    let names: BTreeMap<u32, String> =
+        objects.iter().enumerate().map(|(place, (&root, of))| (root, name(place, of))).collect();
+    answers
+        .questions
+        .iter()
+        .map(|question| match own(&question.group) {
+            true => question.group.clone(),
+            false => names.get(&root(&mut first, question.left)).cloned().unwrap_or_default(),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,181 @@
+//! What predicts preference? People's choices against measures of the meshes that they were shown.
+//!
+//! For each [`Metric`]: how often the item with the better value was chosen, and a model of choice on the difference,
+//! judged on objects that it was not fitted to. Everything is clustered on participants, so intervals speak of other
+//! people before the same pairs; nothing here speaks of other objects beyond what leaving one out shows.
+
+mod better;
+mod held_out;
+mod metric;
+
+pub use better::Better;
+pub use held_out::HeldOut;
+pub use metric::{METRICS, Metric, Scale};
+
+use crate::inputs::Inputs;
+use crate::mesh_set::MeshSet;
+use isostudy_design::Study;
+use isostudy_design::record::Purpose;
+use isostudy_statistics::{Coefficient, DeclaredBallot, FitError, ShownBallot, holm, regression, spearman};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// One metric over the study's questions.
+#[derive(Debug, Clone)]
+pub struct MetricPrediction {
+    /// The metric.
+    pub metric: &'static Metric,
+    /// The advantage of each question's first item, which the study lists on the left, see [`Metric::advantage`]; `None`
+    /// without values or answers.
+    pub advantages: Vec<Option<f64>>,
+    /// Root mean square of the advantages: the unit of the coefficient.
+    pub unit: f64,
+    /// How often the better item was chosen.
+    pub better: Better,
+    /// Of the answers to pairs with a better and a worse value, how many were given with the better one on the right.
+    pub better_right: u64,
+    /// How many such answers there are.
+    pub showings: u64,
+    /// The sign-flip p, adjusted by Holm over the metrics.
+    pub adjusted: f64,
+    /// Log-odds of being chosen for one `unit` of advantage.
+    pub coefficient: Result<Coefficient, FitError>,
+    /// Predictions of each object from the others.
+    pub held_out: Option<HeldOut>,
+}
+
+/// All metrics, and what they have to be read against.
+#[derive(Debug, Clone)]
+pub struct Prediction {
+    /// Metrics with a difference in at least one question.
+    pub metrics: Vec<MetricPrediction>,
+    /// Spearman's correlation of the metrics' advantages, each pair taken in both orders; by the order of `metrics`.
+    pub correlations: Vec<Vec<Option<f64>>>,
+    /// All metrics in one model, by the order of `metrics`.
+    pub joint: Result<Vec<Coefficient>, FitError>,
+    /// The joint model, each object from the others.
+    pub joint_held_out: Option<HeldOut>,
+    /// No metric: which side something stood on, and nothing else.
+    pub side_held_out: Option<HeldOut>,
+    /// Questions with answers and values.
+    pub pairs: usize,
+    /// Meshes in these.
+    pub meshes: usize,
+    /// Differences between them that do not follow from others: meshes less connected sets of them.
+    pub independent: usize,
+    /// Objects in these.
+    pub objects: usize,
+}
+
+impl Prediction {
+    /// From the same answers, as they were shown and as the study declares them. `None` without answers to questions whose
+    /// meshes were measured.
+    pub fn of(inputs: &Inputs<'_>, shown: &[ShownBallot], declared: &[DeclaredBallot]) -> Option<Self> {
+        let study = inputs.study;
+        let meshes = MeshSet::of(inputs, Purpose::Stimulus);
+        let answered: BTreeSet<usize> = declared.iter().map(|ballot| ballot.question()).collect();
+        let mut metrics = Vec::new();
+        for metric in METRICS {
+            let advantage = |(q, c): (usize, &isostudy_design::Comparison)| {
+                let value = |id| meshes.get(id).and_then(metric.value);
+                let known = metric.advantage(value(&c.left)?, value(&c.right)?)?;
+                answered.contains(&q).then_some(known)
+            };
+            let advantages: Vec<Option<f64>> = study.comparisons.iter().enumerate().map(advantage).collect();
+            if advantages.iter().flatten().any(|advantage| *advantage != 0.0) {
+                metrics.push(MetricPrediction::of(metric, advantages, study, (shown, declared)));
+            }
+        }
+        let p: Vec<f64> = metrics.iter().map(|m| m.better.test.sign_flip.p()).collect();
+        metrics.iter_mut().zip(holm(&p)).for_each(|(metric, p)| metric.adjusted = p);
+        let complete = |q: usize| {
+            metrics.iter().map(|m| m.advantages[q].map(|a| a / m.unit)).collect::<Option<Vec<f64>>>()
+        };
+        let joint: Vec<Option<Vec<f64>>> = (0..study.comparisons.len()).map(complete).collect();
+        let side: Vec<Option<Vec<f64>>> = joint.iter().map(|x| x.as_ref().map(|_| vec![1.0])).collect();
+        let coefficients = regression(&joint, declared).and_then(|fit| {
+            (0..metrics.len())
+                .map(|i| fit.coefficient(i))
+                .collect::<Option<Vec<_>>>()
+                .ok_or(FitError::Nothing)
+        });
+        let used: Vec<usize> = (0..joint.len()).filter(|&q| joint[q].is_some()).collect();
+        let (meshes, independent) = independent_differences(study, &used);
+        let objects: BTreeSet<usize> = used.iter().map(|&q| study.comparisons[q].object).collect();
+        (!metrics.is_empty()).then(|| Self {
+            correlations: correlations(&metrics),
+            joint: coefficients,
+            joint_held_out: HeldOut::of(study, &joint, declared),
+            side_held_out: HeldOut::of(study, &side, shown),
+            pairs: used.len(),
+            meshes,
+            independent,
+            objects: objects.len(),
+            metrics,
+        })
+    }
+}
+
+impl MetricPrediction {
+    fn of(
+        metric: &'static Metric,
+        advantages: Vec<Option<f64>>,
+        study: &Study,
+        (shown, declared): (&[ShownBallot], &[DeclaredBallot]),
+    ) -> Self {
+        let known: Vec<f64> = advantages.iter().flatten().copied().collect();
+        let unit = (known.iter().map(|a| a * a).sum::<f64>() / known.len() as f64).sqrt();
+        let x: Vec<Option<Vec<f64>>> = advantages.iter().map(|a| a.map(|a| vec![a / unit])).collect();
+        let coefficient =
+            regression(&x, declared).and_then(|fit| fit.coefficient(0).ok_or(FitError::Nothing));
+        // Whether the better one stood on the right, of each answer to a pair with a better one.
+        let right: Vec<bool> = shown
+            .iter()
+            .zip(declared)
+            .filter_map(|(shown, declared)| {
+                let advantage = advantages[shown.question()].filter(|advantage| *advantage != 0.0)?;
+                Some((advantage > 0.0) == (declared.first() == shown.right()))
+            })
+            .collect();
+        Self {
+            better: Better::of(&advantages, declared),
+            better_right: right.iter().filter(|right| **right).count() as u64,
+            showings: right.len() as u64,
+            held_out: HeldOut::of(study, &x, declared),
+            adjusted: 1.0,
+            metric,
+            unit,
+            advantages,
+            coefficient,
+        }
+    }
+}
+
+/// Taken in both orders, so that what happened to be on the left does not matter.
+fn correlations(metrics: &[MetricPrediction]) -> Vec<Vec<Option<f64>>> {
+    let between = |a: &MetricPrediction, b: &MetricPrediction| {
+        let both = a.advantages.iter().zip(&b.advantages).filter_map(|(a, b)| a.zip(*b));
+        let (a, b): (Vec<f64>, Vec<f64>) = both.flat_map(|(a, b)| [(a, b), (-a, -b)]).unzip();
+        spearman(&a, &b)
+    };
+    metrics.iter().map(|a| metrics.iter().map(|b| between(a, b)).collect()).collect()
+}
+
+/// How many meshes the questions show, and how many of their differences do not follow from others.
+fn independent_differences(study: &Study, questions: &[usize]) -> (usize, usize) {
+    let mut set: BTreeMap<String, usize> = BTreeMap::new();
+    let mut joined = 0;
+    for &q in questions {
+        let [left, right] = [&study.comparisons[q].left, &study.comparisons[q].right].map(|id| {
+            let next = set.len();
+            *set.entry(id.to_string()).or_insert(next)
+        });
+        if left != right {
+            joined += 1;
+            set.values_mut().filter(|of| **of == right).for_each(|of| *of = left);
+        }
+    }
+    (set.len(), joined)
+}
+
+#[cfg(test)]
+mod tests;

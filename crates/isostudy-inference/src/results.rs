@@ -1,0 +1,267 @@
+//! Everything that is said of a study or of answers, computed once.
+
+use crate::agreement::Agreement;
+use crate::answered::Answered;
+use crate::audit::{self, audit};
+use crate::ballots::{ALL_METHODS, BallotGroup};
+use crate::decision::{Front, ObjectCandidates, Pick, candidates, fronts, picks};
+use crate::glance;
+use crate::hypotheses::{self, Hypothesis, Robustness, Rules};
+use crate::inputs::Inputs;
+use crate::models::{self, GroupModel};
+use crate::omnibus::{self, Omnibus};
+use crate::prediction::Prediction;
+use crate::recorded::Recorded;
+use crate::scale::{GroupScale, scales};
+use crate::screened::{self, Respondent, WithoutBreakers};
+use crate::screens::{self, Compared};
+use isostudy_design::Study;
+use isostudy_responses::Responses;
+use isostudy_statistics::{DeclaredBallot, ShownBallot, screening_with};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+/// What a study's answers, meshes and times show.
+pub struct Results<'a> {
+    /// What they were made from.
+    pub inputs: Inputs<'a>,
+    /// What the answers say; `None` without answers.
+    pub preferences: Option<Preferences<'a>>,
+    /// What predicts preference, where answers and meshes tell it.
+    pub prediction: Option<Prediction>,
+    /// Which method to take.
+    pub decision: Decision<'a>,
+}
+
+impl<'a> Results<'a> {
+    /// Computes everything once.
+    pub fn of(inputs: &Inputs<'a>) -> Self {
+        let of_answers = || {
+            let answered = inputs.answers?;
+            let prediction = || Prediction::of(inputs, &answered.shown, &answered.declared);
+            Some(rayon::join(|| Preferences::of_study(inputs.study, answered), prediction))
+        };
+        let (answers, decision) = rayon::join(of_answers, || Decision::of(inputs));
+        let (preferences, prediction) = answers.unzip();
+        Self { inputs: *inputs, preferences, prediction: prediction.flatten(), decision }
+    }
+}
+
+/// What each method costs and gives on each object, who is beaten, and who is the best at what is wanted.
+pub struct Decision<'a> {
+    /// The methods on each object that there is anything to choose on.
+    pub objects: Vec<ObjectCandidates<'a>>,
+    /// The fronts of each of these objects.
+    pub fronts: Vec<Vec<Front>>,
+    /// The best at each want.
+    pub picks: Vec<Pick<'a>>,
+}
+
+impl<'a> Decision<'a> {
+    fn of(inputs: &Inputs<'a>) -> Self {
+        let objects = candidates(inputs);
+        let fronts = objects.iter().map(|of| fronts(&of.candidates)).collect();
+        Self { picks: picks(&objects), fronts, objects }
+    }
+
+    /// Each object with its fronts.
+    pub fn each(&self) -> impl Iterator<Item = (&ObjectCandidates<'a>, &[Front])> {
+        self.objects.iter().zip(self.fronts.iter().map(Vec::as_slice))
+    }
+}
+
+/// What answers alone say, with a study or without one.
+pub struct Preferences<'a> {
+    /// The study, if there is one.
+    pub study: Option<&'a Study>,
+    /// Every answer as it was read.
+    pub responses: &'a Responses,
+    /// How many people are left out, by a rule that the study declares.
+    pub excluded: usize,
+    /// Answers to comparisons on the sides that people saw.
+    pub shown: Cow<'a, [ShownBallot]>,
+    /// The same answers, about items.
+    pub declared: Cow<'a, [DeclaredBallot]>,
+    /// The items that are compared with one another.
+    pub groups: &'a [BallotGroup],
+    /// Every contrast, then every question.
+    pub hypotheses: Cow<'a, [Hypothesis]>,
+    /// What else is known of each hypothesis.
+    pub robustness: Vec<Robustness>,
+    /// Every contrast in a row.
+    pub contrasts: Vec<glance::Row>,
+    /// Friedman's tests; none without a study.
+    pub omnibus: Vec<Omnibus>,
+    /// Every model of every group.
+    pub models: Vec<GroupModel<'a>>,
+    /// The items of each group on one scale.
+    pub scales: Vec<GroupScale<'a>>,
+    /// How far people agree about all questions, then about each group of a study's.
+    pub agreement: Vec<Agreement>,
+    /// Everything that was answered, and how.
+    pub recorded: Recorded<'a>,
+    /// What was seen of everybody.
+    pub respondents: Vec<Respondent>,
+    /// The tests without those who broke a rule.
+    pub screened: Vec<WithoutBreakers>,
+    /// What the probes found.
+    pub audit: Vec<audit::Report>,
+    /// Answers by the screen that they were given on.
+    pub screens: Vec<Compared>,
+}
+
+impl<'a> Preferences<'a> {
+    /// Of a study's answers.
+    pub fn of_study(study: &'a Study, answered: &'a Answered) -> Self {
+        // What the groups compare, all methods compare again.
+        let groups = &answered.groups[..];
+        let probed = match groups.split_last() {
+            Some((last, others)) if last.name == ALL_METHODS => others,
+            _ => groups,
+        };
+        let base = Base {
+            study: Some(study),
+            responses: &answered.responses,
+            excluded: answered.excluded.len(),
+            shown: Cow::Borrowed(&answered.shown),
+            declared: Cow::Borrowed(&answered.declared),
+            groups,
+            hypotheses: Cow::Borrowed(&answered.hypotheses),
+            recorded: Recorded::of_study(study, &answered.responses, answered.everyone(study)),
+        };
+        base.computed(probed, |respondents| screened::of_study(study, answered, respondents))
+    }
+
+    /// Of answers that no study explains; `groups` are their [`open_groups`](crate::open_groups()), `shown_s` is how long what a
+    /// question shows lasts, in seconds.
+    pub fn without_study(responses: &'a Responses, groups: &'a [BallotGroup], shown_s: Option<f64>) -> Self {
+        let shown: Vec<ShownBallot> = groups.iter().flat_map(|group| group.ballots.iter().copied()).collect();
+        let base = Base {
+            study: None,
+            responses,
+            excluded: 0,
+            declared: shown.iter().map(ShownBallot::by_item).collect(),
+            shown: Cow::Owned(shown),
+            groups,
+            hypotheses: Cow::Owned(hypotheses::of_groups(groups)),
+            recorded: Recorded::without_study(responses, shown_s),
+        };
+        base.computed(groups, |respondents| screened::of_groups(groups, respondents))
+    }
+
+    /// What decides conclusions.
+    pub fn rules(&self) -> Rules {
+        self.study.map_or_else(Rules::default, |study| Rules::of(&study.file.analysis))
+    }
+
+    /// Whether the probes found that people favour a side.
+    pub fn is_side_favoured(&self) -> bool {
+        let found =
+            |of: &audit::Report| (of.probe, of.finding) == (audit::Probe::Side, audit::Finding::Found);
+        self.audit.iter().any(found)
+    }
+
+    /// Every hypothesis on the answers of those whom `keep` picks.
+    pub fn tested(&self, keep: impl Fn(usize) -> bool) -> Vec<Hypothesis> {
+        match self.study {
+            Some(study) => {
+                let kept = self.declared.iter().filter(|b| keep(b.participant()));
+                hypotheses::of_study(study, &kept.copied().collect::<Vec<_>>())
+            }
+            None => {
+                let some = |group: &BallotGroup| BallotGroup {
+                    ballots: group.ballots.iter().filter(|b| keep(b.participant())).copied().collect(),
+                    ..group.clone()
+                };
+                hypotheses::of_groups(&self.groups.iter().map(some).collect::<Vec<_>>())
+            }
+        }
+    }
+}
+
+/// What the rest is computed from.
+struct Base<'a> {
+    study: Option<&'a Study>,
+    responses: &'a Responses,
+    excluded: usize,
+    shown: Cow<'a, [ShownBallot]>,
+    declared: Cow<'a, [DeclaredBallot]>,
+    groups: &'a [BallotGroup],
+    hypotheses: Cow<'a, [Hypothesis]>,
+    recorded: Recorded<'a>,
+}
+
+impl<'a> Base<'a> {
+    /// `probed` are the groups that probes look at.
+    fn computed(
+        self,
+        probed: &[BallotGroup],
+        without: impl Fn(&[Respondent]) -> Vec<WithoutBreakers> + Sync,
+    ) -> Preferences<'a> {
+        let Self { study, responses, excluded, shown, declared, groups, hypotheses, recorded } = self;
+        let people = || {
+            let protocol = recorded.protocol();
+            let seen = screening_with(recorded.ballots(), &protocol);
+            let respondents = Respondent::all(seen, &protocol);
+            let screened = without(&respondents);
+            (respondents, screened)
+        };
+        let ((models, scales), ((respondents, screened), (audit, robustness))) = rayon::join(
+            || rayon::join(|| models::of_groups(groups, responses.sides_recorded), || scales(groups)),
+            || {
+                rayon::join(people, || {
+                    rayon::join(|| audit(&recorded.audited(probed)), || Robustness::of(&hypotheses))
+                })
+            },
+        );
+        let agreement = match study {
+            Some(study) => of_study(study, &declared),
+            None => vec![of_groups(groups, &recorded, &declared)],
+        };
+        Preferences {
+            contrasts: glance::rows(study, &hypotheses),
+            omnibus: study.map_or_else(Vec::new, |study| omnibus::tests(study, &declared)),
+            screens: screens::compared(responses),
+            study,
+            responses,
+            excluded,
+            shown,
+            declared,
+            groups,
+            hypotheses,
+            robustness,
+            models,
+            scales,
+            agreement,
+            recorded,
+            respondents,
+            screened,
+            audit,
+        }
+    }
+}
+
+/// All questions, then each comparison group.
+fn of_study(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Agreement> {
+    let scope = |question: usize| {
+        let comparison = &study.comparisons[question];
+        comparison.object * study.groups.len() + comparison.group
+    };
+    let of_group = |group: Option<usize>| {
+        let inside = |b: &&DeclaredBallot| group.is_none_or(|g| study.comparisons[b.question()].group == g);
+        let own: Vec<DeclaredBallot> = ballots.iter().filter(inside).copied().collect();
+        Agreement::of(&own, group, scope)
+    };
+    std::iter::once(None).chain((0..study.groups.len()).map(Some)).map(of_group).collect()
+}
+
+/// All questions; one person's answers about different objects are no tournament.
+fn of_groups(groups: &[BallotGroup], recorded: &Recorded<'_>, ballots: &[DeclaredBallot]) -> Agreement {
+    let protocol = recorded.protocol();
+    let mut group_of: BTreeMap<usize, usize> = BTreeMap::new();
+    for (g, group) in groups.iter().enumerate() {
+        group_of.extend(group.ballots.iter().map(|ballot| (ballot.question(), g)));
+    }
+    let scope = |question: usize| protocol.scenes[question] * groups.len() + group_of[&question];
+    Agreement::of(ballots, None, scope)
+}

@@ -1,0 +1,100 @@
+//! The tests with everybody, and without those who broke a rule: nobody is left out silently.
+
+use crate::answered::Answered;
+use crate::ballots::{BallotGroup, declared};
+use crate::hypotheses::{self, Hypothesis};
+use isostudy_design::Study;
+use isostudy_statistics::{DeclaredBallot, Flag, Protocol, Screening};
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What careless answering would show in of one participant, and the rules that are broken.
+#[derive(Debug, Clone)]
+pub struct Respondent {
+    /// What was seen.
+    pub seen: Screening,
+    /// The rules that the answers break.
+    pub flags: Vec<Flag>,
+}
+
+impl Respondent {
+    /// Everybody of whom something was seen, by what screening can use.
+    pub fn all(seen: Vec<Screening>, protocol: &Protocol<'_>) -> Vec<Self> {
+        seen.into_iter().map(|seen| Self { flags: seen.flags(protocol), seen }).collect()
+    }
+}
+
+/// The tests without those who broke one rule.
+#[derive(Debug, Clone)]
+pub struct WithoutBreakers {
+    /// The rule; `None` is any of them.
+    pub rule: Option<Flag>,
+    /// Who broke it.
+    pub people: BTreeSet<usize>,
+    /// Every test that somebody has a score in, with everybody; and without them, if anybody is left.
+    pub tests: Vec<(Hypothesis, Option<Hypothesis>)>,
+}
+
+/// Every contrast of a study with everybody, those included whom the study leaves out; single questions are left out.
+pub fn of_study(study: &Study, answers: &Answered, respondents: &[Respondent]) -> Vec<WithoutBreakers> {
+    let everyone = match answers.excluded.is_empty() {
+        true => Cow::Borrowed(&answers.declared),
+        false => Cow::Owned(declared(study, &answers.everyone(study))),
+    };
+    screened(
+        respondents,
+        || hypotheses::of_contrasts(study, &everyone),
+        |keep| {
+            let kept: Vec<DeclaredBallot> =
+                everyone.iter().filter(|b| keep(b.participant())).copied().collect();
+            hypotheses::of_contrasts(study, &kept)
+        },
+    )
+}
+
+/// Every pair of items, group by group.
+pub fn of_groups(groups: &[BallotGroup], respondents: &[Respondent]) -> Vec<WithoutBreakers> {
+    screened(
+        respondents,
+        || hypotheses::of_groups(groups),
+        |keep| {
+            let kept = |group: &BallotGroup| BallotGroup {
+                ballots: group.ballots.iter().filter(|b| keep(b.participant())).copied().collect(),
+                ..group.clone()
+            };
+            hypotheses::of_groups(&groups.iter().map(kept).collect::<Vec<_>>())
+        },
+    )
+}
+
+fn screened(
+    respondents: &[Respondent],
+    all: impl Fn() -> Vec<Hypothesis>,
+    tested: impl Fn(&dyn Fn(usize) -> bool) -> Vec<Hypothesis>,
+) -> Vec<WithoutBreakers> {
+    let mut broken: BTreeMap<Option<Flag>, BTreeSet<usize>> = BTreeMap::new();
+    for Respondent { seen, flags } in respondents {
+        let any = (!flags.is_empty()).then_some(None);
+        for rule in flags.iter().copied().map(Some).chain(any) {
+            broken.entry(rule).or_default().insert(seen.participant);
+        }
+    }
+    // One rule alone says what "any" would.
+    if broken.len() == 2 {
+        broken.remove(&None);
+    }
+    if broken.is_empty() {
+        return Vec::new();
+    }
+    let all = all();
+    let without = |(rule, people): (Option<Flag>, BTreeSet<usize>)| {
+        let others = tested(&|participant| !people.contains(&participant));
+        // What nobody answered at all does not come out otherwise without anybody.
+        let tests = all.iter().filter(|with| with.is_tested()).map(|with| {
+            let without = others.iter().find(|other| with.is_about_the_same(other));
+            (with.clone(), without.filter(|other| other.is_tested()).cloned())
+        });
+        WithoutBreakers { rule, tests: tests.collect(), people }
+    };
+    broken.into_iter().map(without).collect()
+}

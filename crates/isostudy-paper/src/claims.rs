@@ -1,0 +1,125 @@
+//! The claims of the published text, computed again.
+//!
+//! A claim is found by its id; ids that are not known here, and claims about configurations that the study lacks, are
+//! left out. Each is computed three times where that makes sense: from the published tables (does the text follow
+//! from its own numbers?), from ours as the text defines it, and from ours with the definition put right.
+
+mod meshes;
+pub(crate) mod numbers;
+mod preferences;
+mod setup;
+mod shapes;
+pub(crate) mod times;
+
+use crate::verdict::{Verdict, prints_alike, relative_difference};
+use isostudy_design::published::Claim;
+use isostudy_inference::inputs::Inputs;
+use isostudy_table::{Cell, Table};
+use numbers::Numbers;
+
+/// What a claim comes to.
+#[derive(Debug, Clone)]
+pub(crate) struct Finding {
+    /// From the published tables, by the published definition.
+    pub(crate) from_published: Option<f64>,
+    /// From our numbers, by the published definition.
+    pub(crate) as_published: Option<f64>,
+    /// From our numbers, by the right definition; the same unless the reason says otherwise.
+    pub(crate) ours: Option<f64>,
+    pub(crate) decimals: usize,
+    /// What the verdict does not say; may be empty.
+    pub(crate) remark: String,
+    pub(crate) verdict: Verdict,
+}
+
+/// Why numbers differ where nothing is published of the study's objects.
+const OTHER_OBJECTS: &str = "on other objects than the text's";
+
+/// The claims that can be computed and what they come to, in the order they are listed.
+pub(crate) fn all<'a>(inputs: &Inputs<'a>) -> Vec<(&'a Claim, Finding)> {
+    let (numbers, tally) = (Numbers::of(inputs), inputs.answers.map(|answers| &answers.tally));
+    let find = |claim| {
+        let found = meshes::find(&numbers, claim)
+            .or_else(|| times::find(inputs, &numbers, claim))
+            .or_else(|| shapes::find(&numbers, claim))
+            .or_else(|| tally.and_then(|tally| preferences::find(inputs.study, tally, claim)))
+            .or_else(|| setup::find(inputs.study, claim));
+        let mut found = found?;
+        // The text speaks of its own objects.
+        if found.verdict.is_unexplained() && inputs.study.published.benchmark.is_empty() {
+            found.verdict = Verdict::differs(OTHER_OBJECTS);
+        }
+        Some((claim, found))
+    };
+    inputs.study.published.claims.iter().filter_map(find).collect()
+}
+
+/// What is not empty, with semicolons between.
+fn joined<const N: usize>(parts: [&str; N]) -> String {
+    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ")
+}
+
+/// The claims and what they come to, in the order they are listed.
+pub(crate) fn table(source: &str, claims: &[(&Claim, Finding)]) -> Option<Table> {
+    let mut table = Table::new(
+        "claims",
+        format!("Claims of the text, {}", source),
+        &[
+            ("id", "Id"),
+            ("statement", "Claim"),
+            ("unit", "Unit"),
+            ("published", "Published"),
+            ("from_published_tables", "From its tables"),
+            ("ours_as_published", "Ours, as defined there"),
+            ("ours", "Ours"),
+            ("verdict", "Verdict"),
+            ("reason", "Reason"),
+        ],
+    );
+    for (claim, found) in claims {
+        table.push(vec![
+            Cell::text(&claim.id),
+            Cell::text(&claim.statement),
+            Cell::text(&claim.unit),
+            Cell::number(claim.value, found.decimals),
+            Cell::number(found.from_published, found.decimals),
+            Cell::number(found.as_published, found.decimals),
+            Cell::number(found.ours, found.decimals),
+            Cell::text(found.verdict.label()),
+            Cell::text(joined([found.verdict.reason(), &found.remark])),
+        ]);
+    }
+    table.notes.push(
+        "From its tables: computed from the published tables. Ours, as defined there: from our numbers by the \
+         published definition. Ours: by the right definition, where the reason names another."
+            .into(),
+    );
+    table.parts = vec![for_people(&table)];
+    (!table.rows.is_empty()).then_some(table)
+}
+
+/// Verdict first, the unit with the claim; ids and what follows from the published tables are in the CSV.
+fn for_people(table: &Table) -> Table {
+    let columns = ["verdict", "statement", "published", "ours", "reason"];
+    let mut part = table.block("", &columns);
+    part.caption.clone_from(&table.caption);
+    for (row, whole) in part.rows.iter_mut().zip(&table.rows) {
+        let unit = whole[2].in_full();
+        if !matches!(unit.as_str(), "" | "ratio") {
+            row[1] = Cell::text(format!("{} ({unit})", row[1].in_full()));
+        }
+    }
+    part
+}
+
+/// Equal as printed, else within 3 % for `near`'s reason if there is one, else different for `far`'s.
+fn judge(published: f64, ours: f64, decimals: usize, near: Option<&str>, far: &str) -> Verdict {
+    match near {
+        _ if prints_alike(published, ours, decimals) => Verdict::Equal,
+        Some(near) if relative_difference(published, ours) <= 0.03 => Verdict::within("3 %", near),
+        _ => Verdict::differs(far),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,117 @@
+//! What Costen (2026) printed: its tables, its claims, and what becomes of them here.
+//!
+//! This crate alone knows the paper's text. [`Paper::add_tables`] and [`Paper::published`] lead out of it, and give nothing for a study
+//! that has none of its objects, lattices and published numbers; [`Paper::unexplained_differences`] is for whoever checks.
+//!
+//! ```text
+//! verdict ── comparison ── claims ── benchmark, recomputed
+//! asteroid, lattices, positions: one table each
+//! ```
+
+mod asteroid;
+mod benchmark;
+mod claims;
+mod comparison;
+mod lattices;
+mod positions;
+mod recomputed;
+mod verdict;
+
+#[cfg(test)]
+#[path = "../../isostudy-inference/src/fixture.rs"]
+pub mod fixture;
+
+#[cfg(test)]
+use isostudy_inference::Answered;
+
+pub use verdict::Verdict;
+
+use comparison::Compared;
+use isostudy_design::published::Claim;
+use isostudy_inference::{Inputs, Results};
+use isostudy_report::statement::{Block, Published, Section};
+use isostudy_table::Table;
+
+/// The paper beside a study's results: its numbers and its claims, each compared once.
+pub struct Paper<'a> {
+    inputs: Inputs<'a>,
+    numbers: Vec<Compared>,
+    claims: Vec<(&'a Claim, claims::Finding)>,
+}
+
+impl<'a> Paper<'a> {
+    /// Compares everything.
+    pub fn of(results: &Results<'a>) -> Self {
+        let inputs = results.inputs;
+        Self { numbers: comparison::all(&inputs), claims: claims::all(&inputs), inputs }
+    }
+
+    /// Puts the tables of the paper and about the paper where it has them, among a study's other tables.
+    pub fn add_tables(&self, tables: &mut Vec<Table>) {
+        let (inputs, source) = (&self.inputs, &self.inputs.study.published.source);
+        let lattices = inputs.answers.and_then(|answers| lattices::table(inputs.study, &answers.tally));
+        insert(tables, "benchmark", asteroid::table(inputs));
+        insert(tables, "preference_objects", lattices);
+        tables.extend(positions::table(inputs));
+        tables.extend(comparison::tables(source, &self.numbers));
+        tables.extend(claims::table(source, &self.claims));
+    }
+
+    /// The sections of a report that hold the paper against our numbers, with those of `tables` that belong into them, and the
+    /// claims of which the opposite is here, or another number.
+    pub fn published(&self, tables: &[Table]) -> Published {
+        let section = |id, heading, mut blocks: Vec<Block>, name: &str| {
+            let table = tables.iter().find(|table| table.name == name).cloned();
+            blocks.extend(table.map(|table| match name {
+                // Its verdicts are what somebody came for.
+                "claims" => Block::Table(table),
+                _ => Block::Folded(table),
+            }));
+            Section { id, heading, blocks }
+        };
+        let checked = benchmark::findings(&self.inputs, &self.claims);
+        let source = &self.inputs.study.published.source;
+        let recomputed = recomputed::findings(source, &self.numbers, &self.claims);
+        Published {
+            fails: recomputed::failing(&self.claims),
+            sections: vec![
+                section("benchmark", "The published benchmark, checked", checked, "benchmark_beside"),
+                section("published", "Published and recomputed", recomputed, "claims"),
+            ],
+        }
+    }
+
+    /// Published numbers and claims of the text that ours differ from without a known reason: table, row and quantity of
+    /// each, both numbers, and what is known. A study is sound if there are none.
+    pub fn unexplained_differences(&self) -> Vec<String> {
+        let name =
+            |of: String, published: Option<f64>, ours: Option<f64>, decimals: usize, verdict: &Verdict| {
+                let [published, ours] = [published, ours].map(|value| match value {
+                    Some(value) => format!("{value:.decimals$}"),
+                    None => "nothing".into(),
+                });
+                let reason = verdict.reason();
+                verdict
+                    .is_unexplained()
+                    .then(|| format!("{of}: {published} published, {ours} here; {reason}"))
+            };
+        let numbers = self.numbers.iter().filter_map(|c| {
+            let of = format!("{}, {}, {}", c.source, c.row, c.quantity);
+            name(of, Some(c.published), c.ours, c.decimals, &c.verdict)
+        });
+        let claims = self.claims.iter().filter_map(|(claim, found)| {
+            let of = format!("claims, {}, {}", claim.id, claim.statement);
+            name(of, claim.value, found.ours, found.decimals, &found.verdict)
+        });
+        numbers.chain(claims).collect()
+    }
+}
+
+/// After the table of that name, or at the end.
+fn insert(tables: &mut Vec<Table>, after: &str, table: Option<Table>) {
+    let place = tables.iter().position(|table| table.name == after).map_or(tables.len(), |place| place + 1);
+    tables.splice(place..place, table);
+}
+
+#[cfg(test)]
+mod tests;

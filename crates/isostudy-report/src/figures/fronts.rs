@@ -1,0 +1,114 @@
+//! Pareto fronts: a row an object, a panel two quantities; who is beaten in both lies behind the line.
+
+use super::axis::Axis;
+use super::canvas::{BLACK, Colour};
+use super::legend::Swatch;
+use super::marks::Mark;
+use super::scatter::Scatter;
+use super::{Unfinished, WIDTH, canvas_with_legend, style};
+use isostudy_design::{Method, MethodId, Study};
+use isostudy_inference::decision::{Axes, Front, FrontPoint, LEAST_ERROR, ObjectCandidates, Standing};
+use isostudy_inference::results::Decision;
+
+const ROW: f64 = 330.0;
+
+/// Nothing where no object has two methods to choose from.
+pub(super) fn draft(study: &Study, decision: &Decision<'_>) -> Option<Unfinished> {
+    let rows: Vec<(&str, &[Front])> =
+        decision.each().map(|(of, fronts)| (of.object.name.as_str(), fronts)).collect();
+    let shown: Vec<Axes> = Axes::ALL
+        .into_iter()
+        .filter(|axes| rows.iter().any(|(_, fronts)| fronts.iter().any(|front| front.axes == *axes)))
+        .collect();
+    if shown.is_empty() {
+        return None;
+    }
+    let (mut canvas, top) = canvas_with_legend(&legend(study, &decision.objects), ROW * rows.len() as f64);
+    let width = WIDTH / shown.len() as f64;
+    for (r, (object, fronts)) in rows.iter().enumerate() {
+        for (column, axes) in shown.iter().enumerate() {
+            let Some(front) = fronts.iter().find(|front| front.axes == *axes) else { continue };
+            let (x, y) = (width * column as f64, top + ROW * r as f64);
+            panel(study, object, front).draw(&mut canvas, (x, y), (x + width, y + ROW));
+        }
+    }
+    let mut caption: String = "Each method on each object, two quantities at a time; better is to the left, and down for error, up for preference. Nobody is \
+                   better in both than the methods on the line, whose codes stand beside them. Thin lines are intervals at 95 %. The \
+                   table of fronts has every value, and says who beats whom."
+        .into();
+    if decision.objects.iter().any(ObjectCandidates::has_least_error) {
+        caption.push_str(&format!(" A mean error below {LEAST_ERROR} is drawn there."));
+    }
+    Some(Unfinished { name: "fronts", caption, canvas })
+}
+
+/// In its colour too, since marks lie close together.
+fn mark(study: &Study, method: MethodId) -> Mark {
+    style::mark(study, method).coloured(style::method(study, method).outline)
+}
+
+fn legend(study: &Study, objects: &[ObjectCandidates<'_>]) -> Vec<(Swatch, String)> {
+    let is_shown =
+        |method: &&Method| objects.iter().flat_map(|of| &of.candidates).any(|of| of.id() == method.id);
+    let entry =
+        |method: &Method| (Swatch::Mark(mark(study, method.id)), format!("{}: {}", method.id, method.label));
+    study.methods.iter().filter(is_shown).map(entry).collect()
+}
+
+fn panel(study: &Study, object: &str, front: &Front) -> Scatter {
+    let unit = if front.axes == Axes::TrianglesError { 1.0 } else { 1e3 };
+    let at = |point: &FrontPoint| (unit * point.at[0].value, point.at[1].value);
+    let ends = |of: usize, unit: f64| {
+        let values = front.points.iter().flat_map(|point| [point.at[of].low, point.at[of].high]);
+        let values = values.filter(|value| value.is_finite()).map(|value| unit * value);
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+    };
+    let ((x_low, x_high), (y_low, y_high)) = (ends(0, unit), ends(1, 1.0));
+    let x = match front.axes {
+        Axes::TrianglesError => Axis::spanning(0.95 * x_low, 1.02 * x_high),
+        _ => Axis::decades(x_low, x_high),
+    };
+    let y = match front.axes {
+        Axes::TimePreference => Axis::spanning(y_low - 0.1, y_high + 0.1),
+        _ => Axis::decades(y_low, y_high),
+    };
+    // Intervals, under the marks; the axis cuts those without an end.
+    let intervals = front.points.iter().flat_map(|point| {
+        let (colour, (x, y)) = (style::method(study, point.method).outline, at(point));
+        let [wide, high] = point.at;
+        [
+            (colour, vec![(unit * wide.low, y), (unit * wide.high, y)]),
+            (colour, vec![(x, high.low), (x, high.high)]),
+        ]
+    });
+    let mut lines: Vec<(Colour, Vec<(f64, f64)>)> =
+        intervals.filter(|(_, ends)| ends[0] != ends[1]).collect();
+    let mut line: Vec<&FrontPoint> =
+        front.points.iter().filter(|point| point.standing == Standing::OnFront).collect();
+    line.sort_by(|a, b| {
+        a.at[0].value.total_cmp(&b.at[0].value).then(a.at[1].value.total_cmp(&b.at[1].value))
+    });
+    let [x_label, y_label] = match front.axes {
+        Axes::TimeError => ["ms from field to mesh", "mean error, cube edges"],
+        Axes::TrianglesError => ["triangles", "mean error, cube edges"],
+        Axes::TimePreference => ["ms from field to mesh", "mean score"],
+    };
+    // A step: between two methods nothing was measured.
+    let mut steps = Vec::new();
+    for point in &line {
+        let (x, y) = at(point);
+        steps.extend(steps.last().map(|&(_, before)| (x, before)));
+        steps.push((x, y));
+    }
+    lines.push((BLACK, steps));
+    Scatter {
+        heading: format!("{object}: {}", front.axes.label()),
+        labels: (x_label.into(), y_label.into()),
+        x,
+        y,
+        lines,
+        dashed: None,
+        marks: front.points.iter().map(|point| (at(point), mark(study, point.method))).collect(),
+        names: line.iter().map(|point| (at(point), point.method.to_string())).collect(),
+    }
+}

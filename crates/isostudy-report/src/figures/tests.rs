@@ -1,0 +1,147 @@
+use super::*;
+use crate::fixture::{self, Everything};
+
+/// Every tag is closed in order, attributes are quoted, and no bare `&` or `<` is left in text.
+fn is_well_formed(svg: &str) -> bool {
+    let mut open: Vec<&str> = Vec::new();
+    let mut rest = svg;
+    while let Some(start) = rest.find('<') {
+        let text = &rest[..start];
+        if text
+            .replace("&amp;", "")
+            .replace("&lt;", "")
+            .replace("&gt;", "")
+            .replace("&quot;", "")
+            .replace("&apos;", "")
+            .contains('&')
+        {
+            return false;
+        }
+        let Some(end) = rest.find('>') else { return false };
+        let tag = &rest[start + 1..end];
+        if tag.contains('<') || tag.matches('"').count() % 2 == 1 {
+            return false;
+        }
+        let name = tag.trim_start_matches('/').split([' ', '/']).next().unwrap_or_default();
+        if tag.starts_with('/') {
+            if open.pop() != Some(name) {
+                return false;
+            }
+        } else if !tag.ends_with('/') {
+            open.push(name);
+        }
+        rest = &rest[end + 1..];
+    }
+    open.is_empty() && rest.trim().is_empty()
+}
+
+#[test]
+fn the_check_itself_can_fail() {
+    assert!(is_well_formed("<a b=\"c\"><d/>x &amp; y</a>"));
+    for bad in ["<a>", "<a></b>", "<a b=\"c></a>", "<a>x & y</a>", "<a/>x"] {
+        assert!(!is_well_formed(bad), "{bad}");
+    }
+}
+
+#[test]
+fn every_figure_is_there_and_sound() {
+    let all = Everything::of(fixture::study());
+    let figures = figures(&Results::of(&all.inputs())).unwrap();
+    let expected = [
+        ("triangles", vec!["triangles", "120,000", "sphere", "asteroid", "bunny", "published"]),
+        (
+            "pass_times",
+            vec!["median time, ms", "share of the whole", "published share", "body-centred, edge collapse"],
+        ),
+        ("radius_ratio", vec!["mean radius ratio", "simple cubic, integrated"]),
+        ("aspect_ratio", vec!["mean aspect ratio", "10", "777", "simple cubic, edge collapse"]),
+        ("stage_times", vec!["sampling", "bunny, without sampling", "median time, s"]),
+        ("aspect_ratio_distributions", vec!["longest / shortest edge", "published ratio", "1.5"]),
+        (
+            "fronts",
+            vec![
+                "sphere: time and error",
+                "bunny: time and preference",
+                "ms from field to mesh",
+                "mean score",
+            ],
+        ),
+        ("contrasts", vec!["The body-centred lattice over the simple cubic lattice", "44:5:5", "84:22:56"]),
+        ("answers", vec!["Q1", "Q27", "as_sp", "left of the row preferred", "18"]),
+        ("preference_objects", vec!["B: clustering within body-centred", "largest possible"]),
+        (
+            "preference_overall",
+            vec!["73 %", "wins / showings", "0.340", "1.062", "from arrangement groups", "published"],
+        ),
+        (
+            "worths",
+            vec!["Clustering within body-centred", "no clustering", "simple cubic, integrated", "log worth"],
+        ),
+        ("respondents", vec!["respondent 16", "10 of 27; left 19, none 0, right 8"]),
+        ("prediction", vec!["ratio; fewer is better", "sphere", "share for the better"]),
+    ];
+    assert_eq!(figures.len(), expected.len());
+    for (figure, (name, labels)) in figures.iter().zip(expected) {
+        assert_eq!(figure.name, name);
+        assert!(is_well_formed(&figure.svg), "{name}");
+        for label in labels {
+            assert!(figure.svg.contains(&format!(">\n{label}\n</text>")), "{name}: {label}");
+        }
+        assert!(figure.svg.contains("DejaVu Sans, Verdana, Helvetica, Arial, sans-serif"), "{name}");
+        assert!(figure.caption.ends_with('.'), "{name}");
+
+        let reader = png::Decoder::new(std::io::Cursor::new(&figure.png)).read_info();
+        let mut reader = reader.unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut pixels).unwrap();
+        assert_eq!(info.width, 2000, "{name}");
+        let dark = pixels.chunks_exact(3).filter(|p| p.iter().all(|&c| c < 0x60)).count();
+        assert!(dark > 2000, "{name} has text and axes");
+        let viewbox = format!("viewBox=\"0 0 {} {}\"", info.width, info.height);
+        assert!(figure.svg.contains(&viewbox), "{name}");
+    }
+}
+
+#[test]
+fn the_same_inputs_give_the_same_bytes() {
+    let mut all = Everything::of(fixture::study());
+    let before = figures(&Results::of(&all.inputs())).unwrap();
+    all.meshes.reverse();
+    assert!(figures(&Results::of(&all.inputs())).unwrap() == before);
+}
+
+#[test]
+fn no_text_leaves_the_drawing() {
+    let all = Everything::of(fixture::study());
+    for draft in drafts(&Results::of(&all.inputs())) {
+        assert_eq!(draft.canvas.texts_outside(), Vec::<String>::new(), "{}", draft.name);
+    }
+}
+
+#[test]
+fn captions_say_what_is_left_out() {
+    let all = Everything::of(fixture::study());
+    let caption = meshes::aspect_ratios(&all.inputs()).unwrap().caption;
+    assert!(
+        caption.contains("192 degenerate triangles, whose ratio is infinite, are left out."),
+        "{caption}"
+    );
+    assert!(caption.contains("ss_bu 775.93, ss_su 1207.37"), "{caption}");
+    let all_figures = figures(&Results::of(&all.inputs())).unwrap();
+    let caption = &all_figures.iter().find(|f| f.name == "preference_overall").unwrap().caption;
+    let want = "A factor of an arrangement group can reach 1, one of a clustering group 2/3, so the sum weighs the \
+                arrangement half more.";
+    assert!(caption.ends_with(want), "{caption}");
+    let caption = meshes::pass_times(&all.inputs()).unwrap().caption;
+    assert!(caption.contains("Published times are from another machine"), "{caption}");
+}
+
+#[test]
+fn objects_stand_in_rows_of_three_at_most_as_evenly_as_they_go() {
+    let lengths = |objects: usize| -> Vec<usize> {
+        in_rows(&(0..objects).collect::<Vec<_>>()).iter().map(|row| row.len()).collect()
+    };
+    assert_eq!([1, 2, 3].map(lengths), [vec![1], vec![2], vec![3]]);
+    assert_eq!([4, 5, 6].map(lengths), [vec![2, 2], vec![3, 2], vec![3, 3]]);
+    assert_eq!(in_rows(&[4, 7, 1, 0]).concat(), [4, 7, 1, 0]);
+}

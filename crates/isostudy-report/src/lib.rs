@@ -1,0 +1,43 @@
+//! Results as tables, figures, sentences and frames.
+//!
+//! Each is a renderer of what [`isostudy_inference`] computed, and none reads another: [`isostudy_table::Table`]s print themselves as
+//! CSV, Markdown, LaTeX and HTML, [`Figure`]s are SVG and PNG from one drawing, a [`Report`] is sections of sentences, tables and
+//! figures, and a [`LongFrame`] is what tables summarise, row by row. Knows nothing of files to write or of command lines.
+//!
+//! # Guarantees
+//! - The same results give the same bytes.
+
+mod data;
+mod figure;
+mod figures;
+mod frames;
+mod panel;
+pub mod report;
+mod self_test;
+pub mod statement;
+mod tables;
+mod without_study;
+pub mod words;
+
+#[cfg(test)]
+#[path = "../../isostudy-inference/src/fixture.rs"]
+pub mod fixture;
+
+// The fixture makes these.
+#[cfg(test)]
+use isostudy_inference::{Answered, Inputs};
+
+pub use data::frames;
+pub use figure::Figure;
+pub use figures::{
+    FigureError, KindShare, TableQuality, edge_groups_figure, figures, figures_of_groups, history_figure,
+    power_figure, sweep_figures,
+};
+pub use frames::{FrameError, LongFrame, answers_frame};
+pub use panel::{PANEL_SCHEMA, Panel, StageTime};
+pub use report::{Report, report, report_of_groups};
+pub use self_test::self_test_tables;
+pub use tables::benchmark::of_objects as benchmark_of_objects;
+pub use tables::power::power_tables;
+pub use tables::tables;
+pub use without_study::answer_tables;

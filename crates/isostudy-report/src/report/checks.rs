@@ -1,0 +1,156 @@
+//! Checks of the answers: who broke a rule of screening and what the tests are without them, what probes found, and whether
+//! screens mattered.
+
+use super::{Block, Evidence, names, screens};
+use crate::statement::{Finding, Standing};
+use crate::tables::screened::numbers;
+use crate::words::{counted, list, p as p_value};
+use isostudy_inference::Preferences;
+use isostudy_inference::audit::{Finding as Probed, Report};
+use isostudy_inference::hypotheses::Hypothesis;
+use isostudy_inference::screened::{Respondent, WithoutBreakers};
+use isostudy_statistics::{Flag, Screening, screening};
+
+/// Tests named at most.
+const NAMED: usize = 6;
+
+pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
+    let Some(preferences) = evidence.preferences else { return Vec::new() };
+    let mut found = Vec::new();
+    if !preferences.respondents.is_empty() {
+        found.push(screened(evidence, &preferences.respondents));
+    }
+    let without = preferences.screened.iter().filter(|of| !of.tests.is_empty());
+    found.extend(without.map(|of| without_breakers(evidence, of)));
+    found.extend(preferences.audit.iter().map(probed));
+    found.extend(screens::finding(&preferences.screens, evidence.rules().level));
+    found.into_iter().map(Block::Finding).collect()
+}
+
+fn sum(respondents: &[Respondent], count: fn(&Screening) -> u64) -> u64 {
+    respondents.iter().map(|of| count(&of.seen)).sum()
+}
+
+/// Answers to controls.
+pub(super) fn controls(preferences: &Preferences<'_>) -> u64 {
+    sum(&preferences.respondents, |seen| seen.controls)
+}
+
+/// How many broke which rule, and what was there to judge.
+fn screened(evidence: &Evidence<'_>, respondents: &[Respondent]) -> Finding {
+    let people = respondents.len();
+    let broken = respondents.iter().filter(|of| !of.flags.is_empty()).count();
+    let breakers = |rule: Flag| respondents.iter().filter(|of| of.flags.contains(&rule)).count();
+    let rule = |flag: &Flag| {
+        let own = breakers(*flag);
+        (own > 0).then(|| format!("{own} by {}", broken_by(*flag)))
+    };
+    let rules: Vec<String> = Flag::ALL.iter().filter_map(rule).collect();
+    let kinds: [(&str, &str, fn(&Screening) -> u64); 3] = [
+        ("controls", "control", |seen| seen.controls),
+        ("repeats", "repeat", |seen| seen.repeats),
+        ("times", "timed answer", |seen| seen.timed),
+    ];
+    let (mut judged, mut absent) = (Vec::new(), Vec::new());
+    let seen = screening(evidence.shown);
+    let of = |rule: &str, number: usize| match number {
+        n if n == seen.len() => rule.to_owned(),
+        n => format!("{rule} of {}", counted(n, "participant")),
+    };
+    // The rule sees repeats and controls as well, and so may judge people whom comparisons alone do not.
+    let by_comparisons = seen.iter().filter(|of| of.tells_sides() && of.answers[0] + of.answers[2] >= 10);
+    match by_comparisons.count().max(breakers(Flag::OneSided)) {
+        0 => absent.push("one-sidedness"),
+        n => judged.push(of("one-sidedness", n)),
+    }
+    match seen.iter().filter(|of| of.outlying_p.is_some()).count() {
+        0 => absent.push("agreement"),
+        n => judged.push(of("agreement", n)),
+    }
+    for (name, noun, count) in kinds {
+        match sum(respondents, count) {
+            0 => absent.push(name),
+            n => judged.push(counted(n as usize, noun)),
+        }
+    }
+    // Who answered controls alone is no participant of any other section.
+    let others = match people.saturating_sub(seen.len()) {
+        0 => String::new(),
+        1 => ", 1 of whom compared nothing,".into(),
+        n => format!(", {n} of whom compared nothing,"),
+    };
+    let who = match broken {
+        0 => format!("None of {}{others} broke", counted(people, "participant")),
+        _ => format!("{broken} of {}{others} broke", counted(people, "participant")),
+    };
+    let which = if rules.is_empty() { String::new() } else { format!(" ({})", list(&rules)) };
+    let mut text = format!(
+        "{who} a rule of screening{which}. {}.{}",
+        match evidence.excluded {
+            0 => "Nobody is left out of any other part of this report".to_owned(),
+            1 => "1 of them is left out of every other part of this report".to_owned(),
+            n => format!("{n} of them are left out of every other part of this report"),
+        },
+        if judged.is_empty() { String::new() } else { format!(" Judged: {}.", list(&judged)) }
+    );
+    if !absent.is_empty() {
+        text.push_str(&format!(" Not judged, because the answers do not tell: {}.", list(&absent)));
+    }
+    Finding::new(Standing::Noted, text)
+}
+
+/// How a rule is broken.
+fn broken_by(flag: Flag) -> &'static str {
+    match flag {
+        Flag::OneSided => "choosing one side throughout",
+        Flag::Controls => "deciding between equals",
+        Flag::Repeats => "choosing otherwise when asked again",
+        Flag::Time => "answering faster than anybody can look",
+        Flag::Outlying => "answering against the others",
+    }
+}
+
+/// The tests that come out otherwise without those who broke a rule.
+fn without_breakers(evidence: &Evidence<'_>, of: &WithoutBreakers) -> Finding {
+    let label = |without: &Option<Hypothesis>| {
+        without.as_ref().map_or("nobody left", |other| other.conclusion().label())
+    };
+    let changed = of.tests.iter().filter(|(with, without)| with.conclusion().label() != label(without));
+    let changed: Vec<&(Hypothesis, Option<Hypothesis>)> = changed.collect();
+    let tests = counted(of.tests.len(), "test");
+    let outcome = match changed.len() {
+        0 => format!("none of {tests} comes out otherwise"),
+        n => {
+            let name = |(with, without): &&(Hypothesis, Option<Hypothesis>)| {
+                let tested = names::hypothesis(evidence, with);
+                format!("{tested} ({}, then {})", with.conclusion().label(), label(without))
+            };
+            let mut named: Vec<String> = changed.iter().take(NAMED).map(name).collect();
+            if n > NAMED {
+                named.push(format!("{} more", n - NAMED));
+            }
+            let comes = if n == 1 { "comes" } else { "come" };
+            format!("{n} of {tests} {comes} out otherwise: {}", list(&named))
+        }
+    };
+    let noun = if of.people.len() == 1 { "Participant" } else { "Participants" };
+    let people = numbers(&of.people, ", ");
+    let rule = of.rule.map_or("some rule".into(), |flag| format!("a rule by {}", broken_by(flag)));
+    Finding::new(Standing::Noted, format!("{noun} {people} broke {rule}: without them, {outcome}."))
+}
+
+/// What a probe found.
+fn probed(report: &Report) -> Finding {
+    let Report { probe, finding, p, evidence } = report;
+    let (question, p) = (probe.question(), p.map_or(String::new(), |p| format!(" ({})", p_value(p))));
+    let word = match finding {
+        Probed::NotAnswerable => {
+            let because = evidence.trim_start_matches("not answerable here, ");
+            let text = format!("{question} Not answerable here, {because}.");
+            return Finding::new(Standing::NotAnswerable, text);
+        }
+        Probed::Found => "Found",
+        Probed::NotFound => "Not found",
+    };
+    Finding::new(Standing::Noted, format!("{question} {word}: {evidence}{p}."))
+}

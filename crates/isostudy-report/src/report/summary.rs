@@ -1,0 +1,235 @@
+//! The abstract: six lines that say what was compared, by whom, what came out, how sure it is, what limits it, and what
+//! to do next.
+
+use super::{Evidence, SummaryLine, asked, limits, preference};
+use crate::statement::Standing;
+use crate::words::{capital, counted, list, number, percent};
+use isostudy_design::contrast::Over;
+use isostudy_design::record::Purpose;
+use isostudy_design::{Factor, Method, Study};
+use isostudy_inference::glance::Row;
+use isostudy_inference::hypotheses;
+use isostudy_inference::inputs::Inputs;
+use isostudy_inference::mesh_set::{MeshSet, known};
+use isostudy_inference::preference::{group_factors, two_factors};
+use isostudy_inference::results::{Decision, Results};
+
+/// Names in one line at most; the tables have all.
+const NAMED: usize = 6;
+
+/// `inputs` are those of a study.
+pub(super) fn lines(evidence: &Evidence<'_>, results: Option<&Results<'_>>) -> Vec<SummaryLine> {
+    let (rows, inputs) = (evidence.contrasts, results.map(|of| &of.inputs));
+    let of_meshes = match results.map(|of| best(&of.decision)) {
+        Some(best) if evidence.shown.is_empty() && !best.is_empty() => best,
+        _ => inputs.and_then(regular).into_iter().collect(),
+    };
+    let found: Vec<String> = found(evidence, rows, inputs).into_iter().chain(of_meshes).collect();
+    let lines = [
+        ("Compared", Some(compared(evidence))),
+        ("By whom", Some(people(evidence))),
+        ("Found", (!found.is_empty()).then(|| found.join(" "))),
+        ("How sure", sure(evidence)),
+        ("Limits", Some(limits::short(evidence))),
+        ("Next", Some(next(evidence, rows))),
+    ];
+    let line = |(label, text): (&'static str, Option<String>)| text.map(|text| SummaryLine { label, text });
+    lines.into_iter().filter_map(line).collect()
+}
+
+fn compared(evidence: &Evidence<'_>) -> String {
+    let Some(study) = evidence.study else {
+        let mut items: Vec<&str> =
+            evidence.groups.iter().flat_map(|group| &group.items).map(String::as_str).collect();
+        items.sort_unstable();
+        items.dedup();
+        return format!("{}: {}.", capital(&counted(items.len(), "item")), named(&items));
+    };
+    let objects: Vec<&str> = study.file.objects.iter().map(|object| object.name.as_str()).collect();
+    let on = format!("{} ({})", counted(objects.len(), "object"), named(&objects));
+    let methods = match study.methods.len() {
+        1 => "1 method of isosurface extraction".into(),
+        n => format!("{n} methods of isosurface extraction"),
+    };
+    format!("{methods} on {on}: {}.", which(study))
+}
+
+/// The methods in words: crossed factors by their levels, others by their labels.
+fn which(study: &Study) -> String {
+    let phrases = |factor: Factor| -> Vec<&str> {
+        study.levels(factor).into_iter().map(|level| study.level(level).phrase.as_str()).collect()
+    };
+    if let Some([outer, inner]) = two_factors(study) {
+        let [outer, inner] = [phrases(outer), phrases(inner)];
+        if outer.len() * inner.len() == study.methods.len() {
+            return format!("{}, each on {}", list(&inner), list(&outer));
+        }
+    }
+    let labels: Vec<&str> = study.methods.iter().map(|method: &Method| method.label.as_str()).collect();
+    named(&labels)
+}
+
+/// Some of the names, and how many more there are.
+fn named(names: &[&str]) -> String {
+    if names.len() <= NAMED {
+        return list(names);
+    }
+    let more = format!("{} more", names.len() - NAMED);
+    list(&names[..NAMED].iter().copied().chain([more.as_str()]).collect::<Vec<_>>())
+}
+
+fn people(evidence: &Evidence<'_>) -> String {
+    let answers = evidence.shown.len();
+    if answers == 0 {
+        return "Nobody's answers are analysed.".into();
+    }
+    let mut text = format!(
+        "{} gave {} to {} about pairs.",
+        capital(&counted(evidence.participants(), "participant")),
+        counted(answers, "answer"),
+        counted(evidence.questions(), "question")
+    );
+    match evidence.study.and_then(asked::instruction) {
+        Some(asked) => text.push_str(&format!(" They were asked: {}", asked::ended(asked))),
+        None => text.push_str(" The source files do not say what they were asked."),
+    }
+    text
+}
+
+/// The preferences over all answers that hold, and who wins most of its showings.
+fn found(evidence: &Evidence<'_>, rows: &[Row], inputs: Option<&Inputs<'_>>) -> Option<String> {
+    if evidence.shown.is_empty() {
+        return None;
+    }
+    let whole = |row: &&Row| !row.is_difference && (row.place.is_empty() || row.place.starts_with("group "));
+    let holding: Vec<&Row> =
+        rows.iter().filter(whole).filter(|row| row.standing == Standing::Holds).collect();
+    let mut text = match holding.len() {
+        0 => "No preference over all answers holds.".to_owned(),
+        _ => {
+            let names: Vec<String> =
+                holding.iter().map(|row| format!("{} ({})", row.pair, percent(row.share))).collect();
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            format!("People preferred {}.", named(&names))
+        }
+    };
+    if let Some(study) = evidence.study {
+        let depends: Vec<String> = hypotheses::contrasts_of(evidence.hypotheses)
+            .filter(|(_, levels, over)| {
+                *over == Over::All && preference::depends_on_object(evidence, *levels).is_some()
+            })
+            .map(|(_, levels, _)| {
+                let [first, second] = levels.map(|level| study.level(level).phrase.as_str());
+                format!("{first} against {second}")
+            })
+            .collect();
+        if !depends.is_empty() {
+            let depends: Vec<&str> = depends.iter().map(String::as_str).collect();
+            text.push_str(&format!(" This depends on the object: {}.", named(&depends)));
+        }
+    }
+    text.extend(inputs.and_then(favourite));
+    Some(text)
+}
+
+/// The method that was chosen in the largest share of the answers that showed it.
+fn favourite(inputs: &Inputs<'_>) -> Option<String> {
+    let (study, tally) = (inputs.study, &inputs.answers?.tally);
+    let factors = group_factors(study, tally, |_| true);
+    let share = |method: &Method| {
+        let own = factors.iter().filter(|f| f.method == method.id);
+        let (wins, shown) = own.fold((0, 0), |(w, n), f| (w + f.share.wins, n + f.appearances));
+        (shown > 0).then(|| wins as f64 / shown as f64)
+    };
+    let mut shares: Vec<(f64, &Method)> =
+        study.methods.iter().filter_map(|method| Some((share(method)?, method))).collect();
+    shares.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let [(first, method), (second, _), ..] = shares[..] else { return None };
+    (first > second).then(|| {
+        format!(" {} was chosen most: in {} of its showings.", capital(&method.label), percent(first))
+    })
+}
+
+/// Who is the best at what most want of a mesh, a sentence a want.
+fn best(Decision { objects, picks, .. }: &Decision<'_>) -> Vec<String> {
+    const WANTS: [&str; 4] = ["fastest", "closest", "edges", "regular"];
+    let sentence = |name: &&str| {
+        let own: Vec<_> = picks.iter().filter(|pick| pick.want.name == *name).collect();
+        let want = own.first()?.want;
+        let is_everywhere = own[0].on.len() == objects.len() && objects.len() > 1;
+        let each = own.iter().map(|pick| {
+            let on: Vec<&str> = pick.on.iter().map(|best| best.object.name.as_str()).collect();
+            let on = if is_everywhere { "every object".into() } else { list(&on) };
+            format!("{} on {on}", pick.method.label)
+        });
+        Some(format!("{}: {}.", capital(want.heading), each.collect::<Vec<_>>().join("; ")))
+    };
+    let mut found: Vec<String> = WANTS.iter().filter_map(sentence).collect();
+    let told = picks.iter().filter(|pick| WANTS.contains(&pick.want.name));
+    if told.flat_map(|pick| &pick.on).any(|best| !best.alike.is_empty()) {
+        found.push("From some of these others are not told apart: the first table marks them.".into());
+    }
+    found
+}
+
+/// The method whose triangles are the most regular, over all objects.
+fn regular(inputs: &Inputs<'_>) -> Option<String> {
+    let study = inputs.study;
+    let meshes = MeshSet::of(inputs, Purpose::Benchmark);
+    let mean = |method: &Method| {
+        let ratio = |object| known(&meshes.at(object, method.id)?.quality.radius_ratio, |d| d.mean);
+        let all: Option<Vec<f64>> = (0..study.file.objects.len()).map(ratio).collect();
+        all.map(|all| all.iter().sum::<f64>() / all.len() as f64)
+    };
+    let means: Vec<(f64, &Method)> =
+        study.methods.iter().filter_map(|method| Some((mean(method)?, method))).collect();
+    if means.len() < 2 {
+        return None;
+    }
+    let best = means.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let worst = means.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(format!(
+        "{} has the most regular triangles: its mean radius ratio is {}, and that of {} is {} (1 is equilateral).",
+        capital(&best.1.label),
+        number(best.0, 2),
+        worst.1.label,
+        number(worst.0, 2)
+    ))
+}
+
+/// What the results survive.
+fn sure(evidence: &Evidence<'_>) -> Option<String> {
+    let tested = || evidence.hypotheses.iter().filter(|h| h.is_tested() && !h.is_question());
+    tested().next()?;
+    let holding: Vec<_> = tested().filter(|h| h.differs()).collect();
+    let survive = holding.iter().filter(|h| h.adjusted_over_all.is_none_or(|p| p <= h.rules.level)).count();
+    Some(format!(
+        "{} of {} hold at the level of {}, with the person as the unit and p adjusted within families. {survive} of these \
+         also hold with one correction over all tests.",
+        holding.len(),
+        counted(tested().count(), "contrast"),
+        evidence.rules().level
+    ))
+}
+
+fn next(evidence: &Evidence<'_>, rows: &[Row]) -> String {
+    let undecided =
+        rows.iter().filter(|row| matches!(row.standing, Standing::Open | Standing::TooFew)).count();
+    if evidence.shown.is_empty() {
+        return "Ask people: isostudy design power says how many, and isostudy bundle makes what they see."
+            .into();
+    }
+    if limits::sides_are_confounded(evidence) {
+        return "Ask new people with the sides of each pair exchanged for half of them: configs/balanced.toml is such a \
+                study."
+            .into();
+    }
+    if undecided > 0 {
+        return format!(
+            "{} {} undecided: isostudy design power says how many people would decide them.",
+            capital(&counted(undecided, "contrast")),
+            if undecided == 1 { "stays" } else { "stay" }
+        );
+    }
+    "Ask about other objects: these results are about the ones that were shown.".into()
+}

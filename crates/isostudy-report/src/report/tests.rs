@@ -1,0 +1,403 @@
+use super::*;
+use crate::fixture;
+use isostudy_inference::Answered;
+use isostudy_inference::hypotheses;
+use isostudy_responses::{Answer, Choice, Question, Responses};
+use isostudy_statistics::Outcome::{self, Left, Right, Tie};
+
+/// What the paper's study says if people answered like this; the argument is participant and question.
+fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'static str, Vec<Finding>)> {
+    let study = fixture::study();
+    let mut answers = fixture::answers(&study);
+    answers.answers.retain(|answer| (answer.participant as usize) < people);
+    for of in &mut answers.answers {
+        of.choice = choice(answer(of.participant as usize, of.question as usize));
+    }
+    let answered = Answered::of(&study, answers).unwrap();
+    let inputs = Inputs {
+        study: &study,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        answers: Some(&answered),
+        left_out: &[],
+    };
+    let results = Results::of(&inputs);
+    let evidence = Evidence::of_study(&results);
+    let mut builder = Builder::new(&[], &[]);
+    builder.preferences(&evidence, Vec::new());
+    builder.reliance(&evidence);
+    let report = builder.finish("A test".into(), &evidence, None, None);
+    let findings = |s: &Section| {
+        let of =
+            s.blocks.iter().filter_map(|b| if let Block::Finding(f) = b { Some(f.clone()) } else { None });
+        (s.id, of.collect())
+    };
+    report.sections.iter().map(findings).collect()
+}
+
+fn groups(answers: &[(usize, usize, usize, Outcome)]) -> Vec<BallotGroup> {
+    let ballot = |&(participant, left, right, outcome)| {
+        ShownBallot::new(participant, left + right - 1, [left, right], outcome)
+    };
+    let items = ["oak", "elm", "ash"].map(String::from).into();
+    vec![BallotGroup {
+        name: "trees".into(),
+        items,
+        ballots: answers.iter().map(ballot).collect(),
+        objects: Vec::new(),
+    }]
+}
+
+fn choice(outcome: Outcome) -> Choice {
+    match outcome {
+        Left => Choice::Left,
+        Tie => Choice::NoPreference,
+        Right => Choice::Right,
+    }
+}
+
+/// The report of these groups' answers, which are about one object; `change` is done to what they say.
+fn report_with(title: &str, groups: &[BallotGroup], change: impl Fn(&mut Preferences<'_>)) -> Report {
+    let mut answers = Responses { sides_recorded: true, ..Responses::default() };
+    for group in groups {
+        answers.items.extend(group.items.iter().cloned());
+        for ballot in &group.ballots {
+            let sides = [ballot.left() as u32, ballot.right() as u32];
+            while answers.questions.len() <= ballot.question() {
+                let id = format!("Q{}", answers.questions.len() + 1);
+                answers.questions.push(Question::new(&id, "garden", &group.name, sides));
+            }
+            let (person, question) = (ballot.participant() as u32, ballot.question() as u32);
+            answers.answers.push(Answer::new(person, question, sides, choice(ballot.outcome())));
+        }
+    }
+    let mut preferences = Preferences::without_study(&answers, groups, None);
+    change(&mut preferences);
+    report_of_groups(title, &preferences, &[], &[])
+}
+
+fn report_of(title: &str, groups: &[BallotGroup]) -> Report {
+    report_with(title, groups, |_| ())
+}
+
+fn texts(report: &Report, id: &str) -> Vec<String> {
+    let section = report.sections.iter().find(|s| s.id == id);
+    let text = |b: &Block| if let Block::Finding(f) = b { Some(f.text.clone()) } else { None };
+    section.map(|s| s.blocks.iter().filter_map(text).collect()).unwrap_or_default()
+}
+
+fn of<'a>(said: &'a [(&str, Vec<Finding>)], id: &str, start: &str) -> &'a Finding {
+    let section = said.iter().find(|(name, _)| *name == id).unwrap_or_else(|| panic!("no section {id}"));
+    let found: Vec<&Finding> = section.1.iter().filter(|f| f.text.starts_with(start)).collect();
+    assert_eq!(found.len(), 1, "{start}: {:#?}", section.1);
+    found[0]
+}
+
+#[test]
+fn a_planted_effect_holds_whoever_stands_left() {
+    // Everybody takes the body-centred lattice, which stands on the left, and nobody decides on clusterings.
+    let said = said(18, |_, question| if question % 9 >= 6 { Left } else { Tie });
+    let found = of(&said, "holds", "The body-centred lattice was preferred to the simple cubic lattice:");
+    assert_eq!(found.standing, Standing::Holds);
+    assert_eq!(
+        found.text,
+        "The body-centred lattice was preferred to the simple cubic lattice: 162 answers against 0, none without preference. \
+         Mean score 1.00 (95 % interval 0.63 to 1.00, 18 participants); exact sign-flip test, p < 0.001, p < 0.001 \
+         after Holm's correction for 4 tests. How large a liking for a side would undo it cannot be said: no answer went \
+         the other way."
+    );
+    let found = of(&said, "open", "9 of 13 comparisons");
+    assert_eq!(found.standing, Standing::Open);
+    assert_eq!(
+        found.text,
+        "9 of 13 comparisons are not decided: no clustering against integrated clustering, no clustering against edge \
+         collapse, edge collapse against integrated clustering and 6 more. Nobody leans one way or the other on any of them. \
+         The table of tests has their counts."
+    );
+}
+
+#[test]
+fn nobody_leaning_is_said_so() {
+    let said = said(18, |_, _| Tie);
+    assert!(said.iter().all(|(id, _)| *id != "holds"), "{said:#?}");
+    of(&said, "open", "13 of 13 comparisons are not decided: ");
+    let answers: Vec<_> = (0..18).map(|person| (person, 0, 1, Tie)).collect();
+    let report = report_of("Trees", &groups(&answers));
+    assert_eq!(
+        texts(&report, "open"),
+        [
+            "oak against elm: nobody leans either way (0 answers against 0, 18 without preference), so no test has anything to \
+          work on."
+        ]
+    );
+}
+
+#[test]
+fn no_effect_is_open_and_says_what_remains_possible() {
+    // Nine people always left, nine always right: no net, and wide intervals.
+    let said = said(18, |participant, _| if participant % 2 == 0 { Left } else { Right });
+    let found = of(&said, "open", "The body-centred lattice and the simple cubic lattice cannot");
+    assert_eq!(
+        found.text,
+        "The body-centred lattice and the simple cubic lattice cannot be told apart here: 81 answers against 81, none without \
+         preference. Mean score 0.00 (95 % t interval \u{2212}0.51 to 0.51, 18 participants); exact sign-flip test, p = 1, p = 1 \
+         after Holm's correction for 4 tests. Not significant is not equal: a mean score of up to 0.51 for the one or 0.51 for \
+         the other remains possible."
+    );
+}
+
+#[test]
+fn small_differences_are_equal_within_the_margin() {
+    // Everybody splits each contrast as evenly as nine questions allow: +1 for half the people, -1 for the other half.
+    let said = said(18, |p, q| if (q + q / 9 + p) % 2 == 0 { Left } else { Right });
+    let found = of(&said, "holds", "The body-centred lattice and the simple cubic lattice are liked alike");
+    assert_eq!(found.standing, Standing::Equal);
+    assert!(found.text.contains("within the margin of 0.2: 81 answers against 81"), "{}", found.text);
+}
+
+#[test]
+fn equal_counts_stand_in_the_order_of_the_names() {
+    // Elm, the second, is ahead by a little: of forty answers, twelve people give 18 for oak, eight 22.
+    let one = |p: usize| {
+        (0..40).map(move |q| (p, 0, 1, if q < if p < 12 { 18 } else { 22 } { Left } else { Right }))
+    };
+    let report = report_of("Trees", &groups(&(0..20).flat_map(one).collect::<Vec<_>>()));
+    let text = &texts(&report, "holds")[0];
+    assert!(
+        text.contains(
+            "liked alike, within the margin of 0.2: 392 answers against 408, none without preference."
+        ) && text.contains("Mean score \u{2212}0.02 (95 % t interval \u{2212}0.07 to 0.03, 20 participants)"),
+        "{text}"
+    );
+}
+
+#[test]
+fn too_few_people_are_told_what_they_could_have_shown() {
+    let said = said(3, |_, _| Left);
+    let found = of(&said, "open", "13 of 13 comparisons are not decided: ");
+    assert_eq!(found.standing, Standing::TooFew);
+    assert!(
+        found.text.ends_with(
+            "edge collapse against integrated clustering and 10 more. At most 3 participants lean one way or the other, and no \
+             outcome of so few is significant (exact sign-flip test; 6 would have to). The table of tests has their counts."
+        ),
+        "{}",
+        found.text
+    );
+    // A few are told one by one.
+    let answers: Vec<_> = (0..3).map(|person| (person, 0, 1, Left)).collect();
+    let report = report_of("Trees", &groups(&answers));
+    assert_eq!(
+        texts(&report, "open"),
+        [
+            "oak against elm is not decided: 3 answers against 0, none without preference. 3 participants lean one way or the \
+          other, and no outcome of so few is significant (exact sign-flip test, smallest possible p = 0.25)."
+        ]
+    );
+}
+
+#[test]
+fn answers_without_a_study() {
+    // Ten people, oak over elm over ash but for one who never chooses; sides exchanged for half of them.
+    let mut answers = Vec::new();
+    for person in 0..10 {
+        for (a, b) in [(0, 1), (1, 2), (0, 2)] {
+            let chosen = if person == 9 { Tie } else { Left };
+            answers.push(match person % 2 {
+                0 => (person, a, b, chosen),
+                _ => (person, b, a, chosen.swapped()),
+            });
+        }
+    }
+    let report = report_of("Trees", &groups(&answers));
+    assert_eq!(report.lead[0], "10 participants gave 30 answers to 3 questions.");
+    assert_eq!(
+        texts(&report, "holds")[0],
+        "oak was preferred to elm: 9 answers against 0, 1 without preference. Mean score 0.90 (95 % t interval 0.67 to 1.00, 10 \
+         participants); exact sign-flip test, p = 0.0039, p = 0.012 after Holm's correction for 3 tests."
+    );
+    // Pairs in both orders: the side can be asked about; but the answers separate the items, so nothing is estimated.
+    let side = texts(&report, "unanswerable");
+    assert_eq!(side, ["Over all questions 15 answers went left, 12 right and 3 to neither."]);
+    assert!(report.to_markdown().starts_with("# Trees\n\n- **Compared:** 3 items: ash, elm and oak.\n"));
+    let titled = report_of("<b> [x](y) *\n# z", &groups(&answers));
+    assert!(
+        titled.to_markdown().starts_with("# &lt;b> \\[x\\](y) \\* # z\n\n- **Compared:**"),
+        "a title is no mark-up"
+    );
+}
+
+#[test]
+fn names_of_items_stay_as_they_are() {
+    // Two items that differ in their first letter's case alone.
+    let answers: Vec<_> = (0..8).map(|person| (person, 0, 1, Left)).collect();
+    let mut groups = groups(&answers);
+    groups[0].items = ["\u{e9}clair", "\u{c9}clair"].map(String::from).into();
+    let report = report_of("Cakes", &groups);
+    let text = &texts(&report, "holds")[0];
+    assert!(text.starts_with("\u{e9}clair was preferred to \u{c9}clair: 8 answers against 0"), "{text}");
+}
+
+#[test]
+fn no_answers_at_all() {
+    let report = report_of("Nothing", &[]);
+    assert_eq!(report.lead, ["No answers were given, so nothing is said about preference."]);
+    assert!(report.sections.is_empty());
+    let mut answers = Responses { items: vec!["oak".into()], ..Responses::default() };
+    answers.questions.push(Question::new("C1", "garden", "trees", [0, 0]));
+    answers.answers = (0..2).map(|person| Answer::new(person, 0, [0, 0], Choice::Left)).collect();
+    let preferences = Preferences::without_study(&answers, &[], None);
+    let report = report_of_groups("Controls", &preferences, &[], &[]);
+    assert_eq!(
+        report.lead,
+        [
+            "Only controls were answered, which show an item beside itself: 2 answers. So nothing is said about preference."
+        ]
+    );
+    let small = fixture::small_study();
+    let inputs =
+        Inputs { study: &small, meshes: &[], bench: None, chunks: &[], answers: None, left_out: &[] };
+    let results = Results::of(&inputs);
+    let report = super::report(&results, &crate::tables(&results), &[], Published::default());
+    assert_eq!(report.sections.iter().map(|s| s.id).collect::<Vec<_>>(), ["tables"]);
+}
+
+/// Forty people, oak over elm on one object and elm over oak on the other.
+fn opposite_on_two_objects() -> Vec<BallotGroup> {
+    let ballot =
+        |person: usize, question: usize, outcome| ShownBallot::new(person, question, [0, 1], outcome);
+    let both = (0..40).flat_map(|person| [ballot(person, 0, Left), ballot(person, 1, Right)]);
+    // Two people are of another mind on one of them, so that scores differ.
+    let ballots = both
+        .map(|b| if b.participant() < 2 && b.question() == 0 { ballot(b.participant(), 0, Tie) } else { b });
+    vec![BallotGroup {
+        name: "trees".into(),
+        items: ["oak", "elm"].map(String::from).into(),
+        ballots: ballots.collect(),
+        objects: ["garden", "street"].map(String::from).into(),
+    }]
+}
+
+#[test]
+fn opposite_preferences_are_not_liked_alike_without_a_study_either() {
+    let groups = opposite_on_two_objects();
+    let report = report_of("Trees", &groups);
+    // 38 people score 0 and two -1/2: the mean is -0.025.
+    let all =
+        texts(&report, "holds").into_iter().chain(texts(&report, "open")).collect::<Vec<_>>().join("\n");
+    assert!(!all.contains("liked alike,") && all.contains("The preference depends on the object"), "{all}");
+    let depends = texts(&report, "depends");
+    let starts = [
+        "How much oak is preferred to elm differs. On garden: 38 answers against 0, 2 without preference, mean score 0.95. On \
+         street: 0 answers against 40",
+        "oak was preferred to elm on garden",
+        "elm was preferred to oak on street",
+    ];
+    for (text, start) in depends.iter().zip(starts) {
+        assert!(text.starts_with(start), "{depends:#?}");
+    }
+    let tested = hypotheses::of_groups(&groups);
+    let table = crate::tables::contrasts::tests(&tested, &hypotheses::Robustness::of(&tested));
+    let rows: Vec<String> = table.shown_rows().iter().map(|row| row[..3].join(" ")).collect();
+    let want = [
+        "trees oak-elm all",
+        "trees on objects oak-elm garden",
+        "trees on objects oak-elm street",
+        "trees between objects oak-elm garden \u{2212} street",
+    ];
+    assert_eq!(rows.iter().map(|row| row.replace(" - ", " \u{2212} ")).collect::<Vec<_>>(), want);
+}
+
+#[test]
+fn items_that_differ_by_rounding_stand_alike() {
+    // Everybody takes the left, and every pair is shown in both orders: nothing differs.
+    let answers: Vec<_> = (0..12)
+        .flat_map(|person| [(0, 1), (1, 2), (0, 2)].map(|pair| (person, pair)))
+        .flat_map(|(person, (a, b))| [(person, a, b, Left), (person, b, a, Left)])
+        .collect();
+    let report = report_of("Trees", &groups(&answers));
+    let worths = texts(&report, "worths").join("\n");
+    assert!(worths.contains("All stand alike.") && !worths.contains("highest"), "{worths}");
+}
+
+#[test]
+fn a_liking_for_a_side_is_no_equality() {
+    // Forty people take the left; ten of them are once undecided, so that somebody leans.
+    let mut answers = Vec::new();
+    for person in 0..40 {
+        for (question, (a, b)) in [(0, 1), (1, 0), (0, 1), (1, 0)].into_iter().enumerate() {
+            let chosen = if person % 4 == 0 && question == person / 4 % 4 { Tie } else { Left };
+            answers.push((person, a, b, chosen));
+        }
+    }
+    let groups = groups(&answers);
+    let without = texts(&report_of("Trees", &groups), "holds").join("\n");
+    assert!(without.contains("liked alike, within the margin"), "{without}");
+    let report = report_with("Trees", &groups, |of| of.audit = vec![a_side_was_found()]);
+    assert!(!texts(&report, "holds").join("\n").contains("liked alike"));
+    let open = texts(&report, "open").join("\n");
+    assert!(
+        open.contains("average out within the margin") && open.contains("People favour a side"),
+        "{open}"
+    );
+}
+
+/// What the probe for a side says if it finds one.
+fn a_side_was_found() -> audit::Report {
+    audit::Report {
+        probe: audit::Probe::Side,
+        finding: audit::Finding::Found,
+        p: Some(0.001),
+        evidence: "controls: 20 left, 1 none, 2 right".into(),
+    }
+}
+
+#[test]
+fn who_is_left_out_is_left_out_everywhere() {
+    let mut study = fixture::study();
+    study.file.analysis.exclude = vec![isostudy_design::config::Exclusion::Outlying];
+    let answered = Answered::of(&study, fixture::answers(&study)).unwrap();
+    let inputs = Inputs {
+        study: &study,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        answers: Some(&answered),
+        left_out: &[],
+    };
+    let results = Results::of(&inputs);
+    let (tables, figures) = (crate::tables(&results), crate::figures(&results).unwrap());
+    let named = |name: &str| tables.iter().find(|table| table.name == name).unwrap();
+    let columns: Vec<&str> = named("answers").columns.iter().map(|column| column.name.as_str()).collect();
+    assert!(columns.len() == 18 && !columns.contains(&"respondent_16"), "{columns:?}");
+    assert_eq!(named("respondents").rows.len(), 18);
+    let answers = figures.iter().find(|figure| figure.name == "answers").unwrap();
+    assert!(answers.caption.starts_with("Answers of 17 participants"), "{}", answers.caption);
+    let text = report(&results, &tables, &figures, Published::default()).to_markdown();
+    for wrong in ["nobody is left out", "Nobody is left out", "is with everybody", "18 participants gave"] {
+        assert!(!text.contains(wrong), "{wrong}");
+    }
+    assert!(text.contains("17 participants gave 459 answers"), "{text}");
+    // A rule that takes everybody.
+    study.file.analysis.exclude = vec![isostudy_design::config::Exclusion::Time];
+    let mut hasty = fixture::answers(&study);
+    hasty.answers.iter_mut().for_each(|answer| answer.rt_ms = Some(10.0));
+    let answered = Answered::of(&study, hasty).unwrap();
+    let inputs = Inputs {
+        study: &study,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        answers: Some(&answered),
+        left_out: &[],
+    };
+    let results = Results::of(&inputs);
+    let lead = report(&results, &crate::tables(&results), &[], Published::default()).lead;
+    assert_eq!(
+        lead,
+        [
+            "Nothing is said about preference: 18 participants answered, and all broke a rule whose breakers the study leaves out."
+        ]
+    );
+}

@@ -1,0 +1,98 @@
+//! The answers themselves, and how they fall on each question.
+
+use isostudy_design::Study;
+use isostudy_inference::ballots::is_asked;
+use isostudy_inference::tally::Tally;
+use isostudy_responses::Responses;
+use isostudy_statistics::interval;
+use isostudy_table::{Cell, Column, Table};
+use std::collections::BTreeSet;
+
+/// More respondents than this make no table that anybody reads; the answers are in their file.
+const MOST_COLUMNS: usize = 200;
+
+/// One row a question, one column a respondent (appendix D); what was not answered is missing. None for a crowd.
+///
+/// Who is `excluded` has no column.
+pub(super) fn answers(study: &Study, answers: &Responses, excluded: &BTreeSet<usize>) -> Option<Table> {
+    if answers.participants.len() > MOST_COLUMNS {
+        return None;
+    }
+    let mut table = Table::new(
+        "answers",
+        "Answers: L left, NP no preference, R right; one column a respondent",
+        &[("question", "Question")],
+    );
+    let counts = |participant: &usize| !excluded.contains(participant);
+    let respondents = (0..answers.participants.len()).filter(counts).map(|i| i + 1);
+    table
+        .columns
+        .extend(respondents.map(|i| Column { name: format!("respondent_{i}"), heading: i.to_string() }));
+    let mut said = vec![vec![String::new(); answers.participants.len()]; study.comparisons.len()];
+    for answer in answers.answers.iter().filter(|answer| is_asked(study, answer)) {
+        let cell = &mut said[answer.question as usize][answer.participant as usize];
+        let space = if cell.is_empty() { "" } else { " " };
+        *cell = format!("{cell}{space}{}", answers.declared_choice(answer).code());
+    }
+    for (comparison, said) in study.comparisons.iter().zip(said) {
+        let mut row = vec![Cell::text(&comparison.question)];
+        let own = said.into_iter().enumerate().filter(|(participant, _)| counts(participant));
+        row.extend(own.map(|(_, cell)| if cell.is_empty() { Cell::Missing } else { Cell::text(cell) }));
+        table.push(row);
+    }
+    let turned = |a: &isostudy_responses::Answer| a.left != answers.questions[a.question as usize].left;
+    if answers.answers.iter().any(|a| is_asked(study, a) && turned(a)) {
+        let note = "Sides are the questionnaire's; answers to a pair shown the other way round are turned.";
+        table.notes.push(note.into());
+    }
+    Some(table)
+}
+
+/// Left, none and right of every question, with the right side's share among decided answers.
+pub(super) fn counts(study: &Study, tally: &Tally, sides_differ: bool) -> Table {
+    let mut table = Table::new(
+        "answer_counts",
+        "Answers per question",
+        &[
+            ("question", "Question"),
+            ("object", "Object"),
+            ("left", "Left"),
+            ("right", "Right"),
+            ("left_answers", "Answers left"),
+            ("no_preference", "No preference"),
+            ("right_answers", "Answers right"),
+            ("right_share", "Right of all"),
+            ("right_share_low", "from"),
+            ("right_share_high", "to"),
+        ],
+    );
+    let mut sums = [0; 3];
+    for (comparison, count) in study.comparisons.iter().zip(&tally.questions) {
+        let all = count.answers();
+        let interval = interval::wilson(count.right, all);
+        for (sum, n) in sums.iter_mut().zip([count.left, count.none, count.right]) {
+            *sum += n;
+        }
+        table.push(vec![
+            Cell::text(&comparison.question),
+            Cell::text(&study.file.objects[comparison.object].name),
+            Cell::text(&comparison.left),
+            Cell::text(&comparison.right),
+            Cell::count(count.left),
+            Cell::count(count.none),
+            Cell::count(count.right),
+            Cell::number((all > 0).then(|| count.right as f64 / all as f64), 3),
+            Cell::number(interval.map(|i| i.low), 3),
+            Cell::number(interval.map(|i| i.high), 3),
+        ]);
+    }
+    table.notes.push(format!(
+        "All questions: {} for the one listed on the left, {} without preference, {} for the one listed on the right{}. From and to: Wilson's interval at 95 %, for one \
+         question at a time; it may not be pooled over questions, because the same people answer all of them.",
+        sums[0],
+        sums[1],
+        sums[2],
+        if sides_differ { "; people saw them on either side" } else { "" },
+    ));
+    table
+}

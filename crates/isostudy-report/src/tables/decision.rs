@@ -1,0 +1,293 @@
+//! Which method to take for what, and who is beaten in both time and error.
+
+use crate::words::{list, whole};
+use isostudy_design::MethodId;
+use isostudy_inference::decision::{
+    Axes, Cost, Estimate, LEAST_ERROR, ObjectCandidates, Pick, Standing, Want,
+};
+use isostudy_inference::inputs::Inputs;
+use isostudy_inference::results::{Decision, Results};
+use isostudy_table::digits::number;
+use isostudy_table::{Cell, Table};
+use isostudy_timing::stage_times::measured;
+
+/// A factor below which two are as good as each other.
+const MORE: f64 = 1.05;
+
+/// The picks and the fronts, where there is anything to choose from.
+pub(super) fn tables(results: &Results<'_>) -> Vec<Table> {
+    let (inputs, found) = (&results.inputs, &results.decision);
+    let Decision { objects, picks, .. } = found;
+    let tables = [choices(inputs, objects, picks), decision(objects, picks), standings(found)];
+    tables.into_iter().filter(|table| !table.rows.is_empty()).collect()
+}
+
+/// A row an object, a column a want: the best and its number.
+fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[Pick<'_>]) -> Table {
+    let mut wants: Vec<&'static Want> = Vec::new();
+    for pick in picks {
+        if wants.iter().all(|want| want.name != pick.want.name) {
+            wants.push(pick.want);
+        }
+    }
+    let mut columns = vec![("object", "On")];
+    columns.extend(wants.iter().map(|want| (want.name, want.heading)));
+    let mut table = Table::new("choices", "The best method for each object and purpose", &columns);
+    if wants.is_empty() {
+        return table;
+    }
+    for ObjectCandidates { object, .. } in objects {
+        let cell = |want: &&'static Want| {
+            let of_want = picks.iter().filter(|pick| pick.want.name == want.name);
+            let best = of_want.flat_map(|pick| pick.on.iter().map(move |best| (pick.method.id, best)));
+            let Some((id, best)) = best.into_iter().find(|(_, best)| best.object.id == object.id) else {
+                return Cell::Missing;
+            };
+            let sign = if best.alike.is_empty() { "" } else { " *" };
+            Cell::text(format!("{id}, {}{sign}", want.unit.replace("{}", &ranged(&[best.value.value]))))
+        };
+        let mut row = vec![Cell::text(&object.name)];
+        row.extend(wants.iter().map(cell));
+        table.push(row);
+    }
+    table.notes.push(
+        "*: others are not told apart from it; the next table names them, and says what each choice costs. Empty: no method \
+         qualifies."
+            .into(),
+    );
+    table.notes.push(conditions(inputs, objects));
+    table
+}
+
+/// What one wants, what to take, why, and what it costs.
+fn decision(objects: &[ObjectCandidates<'_>], picks: &[Pick<'_>]) -> Table {
+    let columns = [
+        ("want", "You want"),
+        ("objects", "On"),
+        ("take", "Take"),
+        ("why", "Why"),
+        ("cost", "What it costs"),
+    ];
+    let mut table = Table::new("decision", "Which method to take", &columns);
+    for pick in picks {
+        let on: Vec<&str> = pick.on.iter().map(|best| best.object.name.as_str()).collect();
+        let on = if on.len() == objects.len() && on.len() > 1 { "every object".into() } else { list(&on) };
+        let take = format!("{}: {}", pick.method.id, pick.method.label);
+        table.push(vec![
+            Cell::text(pick.want.phrase),
+            Cell::text(on),
+            Cell::text(take),
+            Cell::text(why(pick)),
+            Cell::text(cost(pick)),
+        ]);
+    }
+    if !picks.is_empty() {
+        table.notes.push(
+            "What it costs: beside the least of all methods with the object's own cubes. In the row \u{201c}as many triangles\u{201d} it is \
+             beside the least of those."
+                .into(),
+        );
+    }
+    table
+}
+
+/// The best's numbers, the next's, and whose interval meets it.
+fn why(pick: &Pick<'_>) -> String {
+    let range = |values: &mut dyn Iterator<Item = Estimate>| -> String {
+        pick.want.says.replace("{}", &ranged(&values.map(|of| of.value).collect::<Vec<_>>()))
+    };
+    let own = range(&mut pick.on.iter().map(|best| best.value));
+    let others: Vec<(MethodId, f64)> =
+        pick.on.iter().filter_map(|best| best.next.map(|(method, value)| (method.id, value.value))).collect();
+    let mut text = match others[..] {
+        [] => format!("{own}; no other qualifies"),
+        [(first, _), ..] => {
+            let same = others.iter().all(|(id, _)| *id == first);
+            let next = if same { first.to_string() } else { "the best other".into() };
+            let values: Vec<f64> = others.iter().map(|(_, value)| *value).collect();
+            format!("{own}; {next}: {}", ranged(&values))
+        }
+    };
+    let [everywhere, somewhere] = alike(pick);
+    match (everywhere.is_empty(), somewhere.is_empty()) {
+        (true, true) => {}
+        (false, true) => text.push_str(&format!(". Not told apart from {}", list(&everywhere))),
+        (true, false) => text.push_str(&format!(". On some not told apart from {}", list(&somewhere))),
+        (false, false) => text.push_str(&format!(
+            ". Not told apart from {}; on some, nor from {}",
+            list(&everywhere),
+            list(&somewhere)
+        )),
+    }
+    text
+}
+
+/// The codes of those that were not told apart from the best on each of its objects, and on some.
+fn alike(pick: &Pick<'_>) -> [Vec<String>; 2] {
+    let mut found: Vec<(MethodId, usize)> = Vec::new();
+    for id in pick.on.iter().flat_map(|best| &best.alike) {
+        match found.iter_mut().find(|(other, _)| other == id) {
+            Some((_, times)) => *times += 1,
+            None => found.push((*id, 1)),
+        }
+    }
+    let codes = |holds: &dyn Fn(usize) -> bool| -> Vec<String> {
+        found.iter().filter(|(_, times)| holds(*times)).map(|(id, _)| id.to_string()).collect()
+    };
+    let all = pick.on.len();
+    [codes(&|times| times == all), codes(&|times| times < all)]
+}
+
+/// What is more than the least of those compared, and what is wrong with the mesh.
+fn cost(pick: &Pick<'_>) -> String {
+    let mut parts = Vec::new();
+    let mut factor = |values: Vec<f64>, of: &str| {
+        if values.iter().any(|&value| value >= MORE) {
+            parts.push(format!("{} {of}", ranged(&values)));
+        }
+    };
+    let costs = || pick.on.iter().map(|best| &best.cost);
+    factor(costs().filter_map(|cost| cost.time).collect(), "times the shortest time");
+    factor(costs().map(|cost| cost.triangles).collect(), "times the fewest triangles");
+    factor(costs().filter_map(|cost| cost.error).collect(), "times the smallest error");
+    factor(costs().filter_map(|cost| cost.samples).collect(), "times the fewest samples");
+    factor(costs().filter_map(|cost| cost.memory).collect(), "times the least memory");
+    let most = |count: &dyn Fn(&Cost) -> u64| costs().map(count).max().unwrap_or(0);
+    let up_to = |most: u64, what: &str| {
+        let or = if pick.on.len() > 1 { "up to " } else { "" };
+        (most > 0).then(|| format!("{or}{} {what}", whole(most)))
+    };
+    parts.extend(up_to(most(&|cost| cost.crossing_triangles), "pairs of triangles that intersect"));
+    parts.extend(up_to(most(&|cost| cost.no_manifold), "edges or vertices where it is no manifold"));
+    if parts.is_empty() { "nothing of what is compared here".into() } else { parts.join("; ") }
+}
+
+/// How it was measured, and what is not compared.
+fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
+    let mut text = String::new();
+    if let Some(run) = inputs.bench.filter(|run| !run.samples.is_empty()) {
+        text.push_str(&format!(
+            "Time: median from the field to the mesh, without normals, over {}. ",
+            measured(run)
+        ));
+        if run.samples.iter().any(|sample| !sample.has_stages()) {
+            text.push_str("A program is given all samples, and their time is in its time. ");
+        }
+    }
+    text.push_str(
+        "Mean error: mean distance from mesh to isosurface or back, whichever is larger, in edges of the object's benchmark cubes. Sharp \
+         edges kept: mean distance from points of the object's sharp edges to the mesh, in that unit; where the object ends at walls, their \
+         edges are among them. Each column takes the best in its quantity, whatever else it costs. Those with the \
+         object's own cubes are compared, but for \u{201c}as many triangles\u{201d}. Not told apart: the intervals at 95 % meet; \
+         those of fewer than six times reach from the shortest to the longest. Of those not told apart, and within 5 % of \
+         the best, the one with the smallest mean error is named if time is wanted, the fastest if error is. ",
+    );
+    if objects.iter().any(ObjectCandidates::has_least_error) {
+        text.push_str(&format!("A mean error below {LEAST_ERROR} counts as {LEAST_ERROR}. "));
+    }
+    if inputs.chunks.iter().any(|times| !times.edit_s.is_empty()) {
+        text.push_str("Chunks and edits are compared one by one: the interval of the median ratio has 1 in it, or not. ");
+    }
+    let is_liked = objects.iter().flat_map(|of| &of.candidates).any(|of| of.preference.is_some());
+    if is_liked {
+        text.push_str(
+            "Most liked: a person's score is answers for a method less answers against it, per answer that showed it, whatever was beside it. ",
+        );
+    }
+    text.push_str("Not compared: ");
+    let mut not = vec!["other objects, resolutions and machines"];
+    if !is_liked {
+        not.push("what people like, since nobody's answers are here");
+    }
+    if !objects.iter().flat_map(|of| &of.candidates).any(|of| of.memory.is_some()) {
+        not.push("memory");
+    }
+    not.push("ease of use");
+    text.push_str(&format!("{}.", list(&not)));
+    text
+}
+
+/// Every method in every front: both values, and who beats it in both.
+fn standings(found: &Decision<'_>) -> Table {
+    let columns = [
+        ("object", "Object"),
+        ("front", "In"),
+        ("method", "Method"),
+        ("standing", "Standing"),
+        ("by", "Beaten by"),
+        ("x", "First"),
+        ("x_low", "from"),
+        ("x_high", "to"),
+        ("y", "Second"),
+        ("y_low", "from"),
+        ("y_high", "to"),
+    ];
+    let mut table = Table::new("fronts", "Who is beaten in two quantities at once", &columns);
+    for (of, fronts) in found.each() {
+        for front in fronts {
+            for point in &front.points {
+                let (standing, by) = match &point.standing {
+                    Standing::OnFront => ("on the front", Vec::new()),
+                    Standing::PerhapsBeaten(by) => ("perhaps beaten", by.clone()),
+                    Standing::Beaten(by) => ("beaten", by.clone()),
+                };
+                let by: Vec<String> = by.iter().map(MethodId::to_string).collect();
+                let by = if by.is_empty() { Cell::Missing } else { Cell::text(list(&by)) };
+                let mut row = vec![
+                    Cell::text(&of.object.name),
+                    Cell::text(front.axes.label()),
+                    Cell::text(point.method),
+                    Cell::text(standing),
+                    by,
+                ];
+                for (of, decimals) in point.at.iter().zip(decimals(front.axes)) {
+                    let end = |end: f64| Cell::number(Some(end).filter(|end| end.is_finite()), decimals);
+                    let ends = if of.is_exact() {
+                        [Cell::Missing, Cell::Missing]
+                    } else {
+                        [end(of.low), end(of.high)]
+                    };
+                    row.push(Cell::Number(of.value, decimals));
+                    row.extend(ends);
+                }
+                table.push(row);
+            }
+        }
+    }
+    table.notes.push(
+        "First and second: time in seconds or triangles, then mean error in edges of the object's benchmark cubes, or mean score of preference \
+         from \u{2212}1 to 1, with intervals at 95 %. Beaten: another method is better in one and as good in the other, beyond both intervals. \
+         Perhaps beaten: by the estimates alone. A time's interval tells samples of one run apart, not runs."
+            .into(),
+    );
+    table
+}
+
+/// Decimals of both quantities.
+fn decimals(axes: Axes) -> [usize; 2] {
+    match axes {
+        Axes::TimeError => [6, 4],
+        Axes::TrianglesError => [0, 4],
+        Axes::TimePreference => [6, 3],
+    }
+}
+
+/// `0.12 to 0.67`, or one number where both are printed alike: about two digits that count.
+fn ranged(values: &[f64]) -> String {
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let shown = |value: f64| {
+        let decimals = match value.abs() {
+            size if size >= 10.0 => 0,
+            size if size >= 1.0 => 1,
+            size if size >= 0.1 => 2,
+            _ => 3,
+        };
+        match decimals {
+            0 => whole(value.round() as u64),
+            _ => number(value, decimals),
+        }
+    };
+    let (low, high) = (shown(low), shown(high));
+    if low == high { low } else { format!("{low} to {high}") }
+}
