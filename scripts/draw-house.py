@@ -14,6 +14,7 @@ at the files. Test modules and development dependencies are left out.
 
 import re
 import sys
+import tempfile
 import tomllib
 from pathlib import Path
 from xml.sax.saxutils import escape
@@ -259,6 +260,33 @@ def faults_of_files(root, crates):
     return faults
 
 
+# Small crates, and the files of each that are in a circle.
+EXAMPLES = [
+    ({"lib": "mod a; mod b; pub use a::A; pub use b::B;", "a": "use crate::B; pub struct A;", "b": "use crate::A; pub struct B;"}, ["a", "b"]),
+    ({"lib": "mod a; mod b;", "a": "use crate::b::B; pub struct A;", "b": "pub struct B; #[cfg(test)] mod tests { use crate::a::A; }"}, []),
+    ({"lib": "mod a; mod b;", "a": "use crate::b::B; pub struct A;", "b": "/* use crate::a::A; */ pub struct B; const C: &str = \"crate::a::A\";"}, []),
+    ({"lib": "mod a;", "a": "mod c; pub struct A; use c::C;", "a/c": "use super::A; pub struct C;"}, []),
+    ({"lib": "mod a;", "a": "mod c; mod e;", "a/c": "use super::e::E; pub struct C;", "a/e": "use super::c::C; pub struct E;"}, ["a/c", "a/e"]),
+    ({"lib": "mod a; mod b;", "a": "pub mod c; fn f() { crate::b::g(); c::h() }", "a/c": "use super::A; pub struct C;", "b": "use crate::a::c::C; pub fn g() {}"}, ["a", "a/c", "b"]),
+]
+
+
+def self_test():
+    """Examples in which other circles are found than there are."""
+    wrong = []
+    for files, expected in EXAMPLES:
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in files.items():
+                path = Path(folder) / f"{name}.rs"
+                path.parent.mkdir(exist_ok=True)
+                path.write_text(text, encoding="utf-8")
+            groups = circles_of_files(read_modules(Path(folder) / "lib.rs"))
+            found = sorted(str(Path(file).relative_to(folder))[:-3] for group in groups for file in group)
+        if found != expected:
+            wrong.append(f"in {files} the files {found} are in a circle, not {expected}")
+    return wrong
+
+
 # --- drawing -----------------------------------------------------------------------------------
 
 WIDTH, MARGIN = 1000, 10
@@ -479,7 +507,7 @@ def main(arguments):
         return 2
     root = Path(folders[0]).resolve() if folders else Path(__file__).resolve().parent.parent
     crates = read_crates(root)
-    faults = faults_of_files(root, crates)
+    faults = self_test() + faults_of_files(root, crates)
     if "--circles" not in options:
         faults += faults_of_crates(crates)
         if not any("crates in a circle" in fault for fault in faults):
