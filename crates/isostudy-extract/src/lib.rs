@@ -222,9 +222,9 @@ pub use isostudy_field::{Aabb, Bound, FieldFault, FromFn, ScalarField, StudyFiel
 pub use lattice::{Arrangement, BoxGrid, CellBox, Grid, GridError, Lattice, LatticeError};
 pub use levels::{LevelError, LevelExtractor, LevelSettings, Neighbours};
 pub use measure::{Accuracy, DistanceError, accuracy, distances, normal_errors_deg, triangle_distances};
+pub use method::families::*;
 pub use method::{
-    Continuation, CornerSamples, Cubes, DualContouring, Macet, Method, MethodError, Preset, Promises,
-    SnapCubes, SurfaceNets, Tetrahedra, VolumeCells, VolumeCellsError, presets,
+    CornerSamples, Kind, Method, MethodError, Preset, Promises, VolumeCells, VolumeCellsError, kinds, presets,
 };
 pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
 pub use source::Source;

@@ -1,24 +1,10 @@
 //! A method as plain data: everything that decides a mesh, but for the field, the grid and the isovalue.
 
-mod continuation;
-mod cubes;
-mod dual_contouring;
-mod macet;
 mod of_cubes;
 mod presets;
-mod snap_cubes;
-mod surface_nets;
-mod tetrahedra;
 mod volume_cells;
 
-pub use continuation::Continuation;
-pub use cubes::Cubes;
-pub use dual_contouring::DualContouring;
-pub use macet::Macet;
 pub use presets::{Preset, presets};
-pub use snap_cubes::SnapCubes;
-pub use surface_nets::SurfaceNets;
-pub use tetrahedra::Tetrahedra;
 pub use volume_cells::{VolumeCells, VolumeCellsError};
 
 use std::error::Error;
@@ -33,48 +19,100 @@ use crate::settings::{Execution, ExtractSettings};
 use crate::source::Source;
 use isostudy_field::StudyField;
 
-/// A way to make a mesh. The same method, field, grid and isovalue give the same mesh to the byte, on any number of
-/// threads.
-///
-/// With the feature `serde` it is read and written as a table that says its `kind`, with keys left out for defaults:
-/// `{ kind = "tetrahedra", arrangement = "body-centred", placement = "relaxed" }`, `{ kind = "cubes", faces = "trilinear" }`.
-/// Unknown keys are refused.
-///
-/// ```
-/// use isostudy_extract::{Arrangement, BoxGrid, Execution, Extractor, Method, Placement, Tetrahedra};
-/// use isostudy_field::{StudyField, Sphere};
-/// # use glam::Vec3;
-/// # use isostudy_mesh::Bounds;
-///
-/// let relaxed = Tetrahedra { placement: Placement::Relaxed, ..Tetrahedra::new(Arrangement::BodyCentred) };
-/// let method = Method::Tetrahedra(relaxed);
-/// let grid = BoxGrid { bounds: Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) }, spacing: 0.1 };
-/// let sphere: &dyn StudyField = &Sphere { radius: 1.0 };
-/// let (mut extractor, execution) = (Extractor::new(), Execution::default());
-/// let extraction = method.extract(&mut extractor, sphere.into(), &grid, 0.0, &execution)?;
-/// assert!(method.promises().manifold);
-/// assert_eq!(extraction.counts.vertices * 2, extraction.counts.triangles + 4, "genus 0");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[non_exhaustive]
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "kebab-case"))]
-pub enum Method {
+/// Names every family once: its settings, what files call its kind, and the file that has both, with its presets.
+macro_rules! families {
+    ($(#[$about:meta])* Method: $($(#[$of:meta])* $family:ident = $kind:literal in $file:ident,)*) => {
+        $(mod $file;)*
+
+        /// The settings of each family.
+        pub(crate) mod families {
+            $(pub use super::$file::$family;)*
+        }
+        pub(crate) use families::*;
+
+        $(#[$about])*
+        #[non_exhaustive]
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        #[cfg_attr(feature = "serde", serde(tag = "kind"))]
+        pub enum Method {
+            $($(#[$of])* #[cfg_attr(feature = "serde", serde(rename = $kind))] $family($family),)*
+        }
+
+        /// The kinds there are, in the order of their presets.
+        static KINDS: &[Kind] = &[$(Kind { name: $kind, presets: $file::PRESETS },)*];
+
+        impl Method {
+            fn family(&self) -> &dyn Family {
+                match self {
+                    $(Self::$family(of) => of,)*
+                }
+            }
+
+            /// What a file calls the method's [kind](kinds).
+            pub fn kind(&self) -> &'static str {
+                match self {
+                    $(Self::$family(_) => $kind,)*
+                }
+            }
+        }
+    };
+}
+
+families! {
+    /// A way to make a mesh. The same method, field, grid and isovalue give the same mesh to the byte, on any number of
+    /// threads.
+    ///
+    /// With the feature `serde` it is read and written as a table that says its `kind`, with keys left out for defaults:
+    /// `{ kind = "tetrahedra", arrangement = "body-centred", placement = "relaxed" }`, `{ kind = "cubes", faces = "trilinear" }`.
+    /// Unknown keys are refused.
+    ///
+    /// ```
+    /// use isostudy_extract::{Arrangement, BoxGrid, Execution, Extractor, Method, Placement, Tetrahedra};
+    /// use isostudy_field::{StudyField, Sphere};
+    /// # use glam::Vec3;
+    /// # use isostudy_mesh::Bounds;
+    ///
+    /// let relaxed = Tetrahedra { placement: Placement::Relaxed, ..Tetrahedra::new(Arrangement::BodyCentred) };
+    /// let method = Method::Tetrahedra(relaxed);
+    /// let grid = BoxGrid { bounds: Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) }, spacing: 0.1 };
+    /// let sphere: &dyn StudyField = &Sphere { radius: 1.0 };
+    /// let (mut extractor, execution) = (Extractor::new(), Execution::default());
+    /// let extraction = method.extract(&mut extractor, sphere.into(), &grid, 0.0, &execution)?;
+    /// assert!(method.promises().manifold);
+    /// assert_eq!(extraction.counts.vertices * 2, extraction.counts.triangles + 4, "genus 0");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    Method:
     /// Regularised marching tetrahedra.
-    Tetrahedra(Tetrahedra),
+    Tetrahedra = "tetrahedra" in tetrahedra,
     /// Marching cubes.
-    Cubes(Cubes),
+    Cubes = "cubes" in cubes,
     /// Marching cubes with crossings drawn to lattice points.
-    SnapCubes(SnapCubes),
+    SnapCubes = "snap-cubes" in snap_cubes,
     /// Marching cubes with edges turned square to the surface.
-    Macet(Macet),
+    Macet = "macet" in macet,
     /// Surface nets, the dual of marching cubes.
-    SurfaceNets(SurfaceNets),
+    SurfaceNets = "surface-nets" in surface_nets,
     /// Dual contouring: surface nets with vertices where tangent planes meet.
-    DualContouring(DualContouring),
+    DualContouring = "dual-contouring" in dual_contouring,
     /// Marching cubes, or tetrahedra, from cube to cube beginning at seeds.
-    Continuation(Continuation),
+    Continuation = "continuation" in continuation,
+}
+
+/// A family of methods, as files name it.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct Kind {
+    /// What a table's `kind` says.
+    pub name: &'static str,
+    /// Its methods that have a name.
+    pub presets: &'static [Preset],
+}
+
+/// All kinds of methods, each with its presets.
+pub fn kinds() -> &'static [Kind] {
+    KINDS
 }
 
 /// What a method promises of every mesh, whatever the field. A promise that is not made may still hold for a field.
@@ -109,39 +147,14 @@ pub struct CornerSamples {
 pub enum MethodError {
     /// The grid is not one for this method.
     Grid(LatticeError),
-    /// A distance to snap from that is none.
-    Gamma {
+    /// A setting of the family's own that is out of its range.
+    Setting {
+        /// What files call it.
+        key: &'static str,
         /// As given.
-        gamma: f32,
-    },
-    /// A share of the largest eigenvalue that is none.
-    Truncation {
-        /// As given.
-        truncation: f32,
-    },
-    /// A tolerance that is none.
-    Tolerance {
-        /// As given.
-        tolerance: f32,
-    },
-    /// More steps than there may be.
-    Smoothing {
-        /// As given.
-        smoothing: u32,
-    },
-    /// Lines to search for seeds on that are no cells apart.
-    Search {
-        /// As given.
-        search: u32,
-    },
-    /// Moves that are none.
-    Macet {
-        /// As given.
-        pull: f32,
-        /// As given.
-        steps: u32,
-        /// As given.
-        share: f32,
+        value: String,
+        /// What it must be.
+        allowed: &'static str,
     },
     /// There are samples, and the method calls the field between them.
     NeedsField,
@@ -153,24 +166,7 @@ impl fmt::Display for MethodError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Grid(error) => error.fmt(f),
-            Self::Gamma { gamma } => {
-                write!(f, "gamma = {gamma:?}: must be from 0 to 0.5, in lengths of a lattice edge")
-            }
-            Self::Truncation { truncation } => write!(
-                f,
-                "truncation = {truncation:?}: must be from 0 to 1, a share of the largest eigenvalue"
-            ),
-            Self::Tolerance { tolerance } => {
-                write!(f, "tolerance = {tolerance:?}: must be 0 or more, in lengths of a lattice edge")
-            }
-            Self::Smoothing { smoothing } => {
-                write!(f, "smoothing = {smoothing}: must be from 0 to 64, steps")
-            }
-            Self::Search { search } => write!(f, "search = {search}: must be 1 or more, cells"),
-            Self::Macet { pull, steps, share } => write!(
-                f,
-                "pull = {pull:?}, steps = {steps}, share = {share:?}: pull and share must be from 0 to 1, steps at most 64"
-            ),
+            Self::Setting { key, value, allowed } => write!(f, "{key} = {value}: {allowed}"),
             Self::NeedsField => f.write_str("the method calls the field; samples alone do not suffice"),
             Self::Extract(error) => error.fmt(f),
         }
@@ -178,6 +174,19 @@ impl fmt::Display for MethodError {
 }
 
 impl Error for MethodError {}
+
+impl MethodError {
+    /// Refuses a setting that is not what it must be.
+    fn unless(
+        is_allowed: bool,
+        key: &'static str,
+        value: impl fmt::Debug,
+        allowed: &'static str,
+    ) -> Result<(), Self> {
+        let refused = || Self::Setting { key, value: format!("{value:?}"), allowed };
+        if is_allowed { Ok(()) } else { Err(refused()) }
+    }
+}
 
 impl From<LatticeError> for MethodError {
     fn from(error: LatticeError) -> Self {
@@ -274,6 +283,12 @@ impl Method {
         self.family().promises()
     }
 
+    /// Whether it is there to be compared with, not to be chosen: the published rules as they were, edges collapsed after the
+    /// fact, which the paper compares clustering with, and arrangements that make more triangles of the same cubes.
+    pub fn is_for_comparison(&self) -> bool {
+        self.family().is_for_comparison()
+    }
+
     /// Extracts the surface where `source` has the isovalue into `extraction`, whose vectors are used again. After an error
     /// it is empty. `execution` changes nothing about the mesh.
     ///
@@ -310,18 +325,6 @@ impl Method {
         let mut extraction = Extraction::default();
         self.extract_into(extractor, source, grid, isovalue, execution, &mut extraction)?;
         Ok(extraction)
-    }
-
-    fn family(&self) -> &dyn Family {
-        match self {
-            Self::Tetrahedra(tetrahedra) => tetrahedra,
-            Self::Cubes(cubes) => cubes,
-            Self::SnapCubes(cubes) => cubes,
-            Self::Macet(macet) => macet,
-            Self::SurfaceNets(nets) => nets,
-            Self::DualContouring(nets) => nets,
-            Self::Continuation(continuation) => continuation,
-        }
     }
 }
 
@@ -378,6 +381,9 @@ trait Family {
     fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError>;
     fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError>;
     fn promises(&self) -> Promises;
+    fn is_for_comparison(&self) -> bool {
+        false
+    }
     fn is_of_cubes(&self) -> bool;
     /// Whether the sample points are the corners of cubes, wherever else the field is called.
     fn has_corners(&self) -> bool;

@@ -1,9 +1,22 @@
 //! Continuation as a method.
 
 use super::of_cubes::OfCubes;
-use super::{MethodError, Promises};
+use super::{Method, MethodError, Preset, Promises};
 use crate::cubes::{Continued, ContinuedCells, Seeds};
 use crate::extractor::Way;
+
+const CONTINUED: &str = "Wyvill, McPheeters & Wyvill 1986; Bloomenthal 1994";
+
+/// By name.
+pub(super) const PRESETS: &[Preset] = &[
+    named("continued", "continuation, cubes", ContinuedCells::Cubes),
+    named("continued-tetra", "continuation, tetrahedra", ContinuedCells::Tetrahedra),
+];
+
+const fn named(id: &'static str, label: &'static str, cells: ContinuedCells) -> Preset {
+    let method = Continuation { cells, seeds: Seeds::FOUND, search: 8 };
+    Preset { id, label, method: Method::Continuation(method), source: CONTINUED }
+}
 
 /// Marching cubes from cube to cube: from seeds on, across faces with corners on both sides (Wyvill, McPheeters & Wyvill 1986; Bloomenthal
 /// 1994). It takes about two samples for each vertex, however large the box is, and none between the surface and the box.
@@ -50,7 +63,6 @@ impl OfCubes for Continuation {
     }
 
     fn check_settings(&self) -> Result<(), MethodError> {
-        let search = self.search;
-        if search > 0 { Ok(()) } else { Err(MethodError::Search { search }) }
+        MethodError::unless(self.search > 0, "search", self.search, "must be 1 or more, cells")
     }
 }

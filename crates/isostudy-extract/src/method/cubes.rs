@@ -1,10 +1,41 @@
 //! Marching cubes as a method.
 
-use super::Promises;
+use super::{Method, Preset, Promises};
 use super::of_cubes::OfCubes;
 use crate::cubes::{Diagonals, Faces, Rule};
 use crate::extractor::Way;
 use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topology};
+
+const CUBES: &str = "Lorensen & Cline 1987, with faces that agree";
+const TRILINEAR: &str = "Chernyaev 1995, with every case decided by the interpolant's saddles";
+const EDGE_GROUPS: &str = "Lorensen & Cline 1987; Dietrich et al. 2008";
+const BEST: &str = "Lorensen & Cline 1987; diagonals by radius ratios, see isostudy_extract::Diagonals";
+
+/// By name.
+pub(super) const PRESETS: &[Preset] = &[
+    named("mc", "marching cubes", Faces::SeparateInside, Diagonals::Fan, CUBES),
+    named("mc33", "marching cubes, trilinear", Faces::Trilinear, Diagonals::Fan, TRILINEAR),
+    named(
+        "mc-edge-groups",
+        "marching cubes, edge groups",
+        Faces::SeparateInside,
+        Diagonals::EdgeGroups,
+        EDGE_GROUPS,
+    ),
+    named("mc-quality", "marching cubes, best diagonals", Faces::SeparateInside, Diagonals::Quality, BEST),
+];
+
+const fn named(
+    id: &'static str,
+    label: &'static str,
+    faces: Faces,
+    diagonals: Diagonals,
+    source: &'static str,
+) -> Preset {
+    let placement = Placement::MeanOfCrossings;
+    let method = Cubes { faces, diagonals, placement, refine_crossings: false, edge_clamp: 0.0 };
+    Preset { id, label, method: Method::Cubes(method), source }
+}
 
 /// Marching cubes: cubes that are not cut any further, a polygon for each loop of surface round one (Lorensen & Cline 1987), and
 /// what others made of them.

@@ -1,9 +1,29 @@
 //! Dual contouring as a method.
 
 use super::of_cubes::OfCubes;
-use super::{MethodError, Promises};
+use super::{Method, MethodError, Preset, Promises};
 use crate::duals::{Nets, Sharp};
 use crate::extractor::Way;
+
+const PLANES: &str = "Ju, Losasso, Schaefer & Warren 2002, on a uniform grid";
+const PLANES_OF_PATCHES: &str = "Schaefer, Ju & Warren 2007, on a uniform grid; Wenger 2013";
+
+/// By name.
+pub(super) const PRESETS: &[Preset] = &[
+    named("dc", "dual contouring", [false, false], PLANES),
+    named("dc-manifold", "dual contouring (manifold)", [true, false], PLANES_OF_PATCHES),
+    named("dc-in-cell", "dual contouring in cells", [true, true], PLANES_OF_PATCHES),
+];
+
+const fn named(
+    id: &'static str,
+    label: &'static str,
+    [patches, in_cell]: [bool; 2],
+    source: &'static str,
+) -> Preset {
+    let method = DualContouring { patches, truncation: 1e-3, in_cell, tolerance: 0.0 };
+    Preset { id, label, method: Method::DualContouring(method), source }
+}
 
 /// Dual contouring (Ju, Losasso, Schaefer & Warren 2002) on a uniform grid, or an octree made of one: the connections of [surface nets](super::SurfaceNets), with
 /// each vertex where the field's tangent planes at the crossings of its cube meet, so that edges and corners are kept.
@@ -57,10 +77,10 @@ impl OfCubes for DualContouring {
 
     fn check_settings(&self) -> Result<(), MethodError> {
         let Self { truncation, tolerance, .. } = *self;
-        if !(0.0..=1.0).contains(&truncation) {
-            return Err(MethodError::Truncation { truncation });
-        }
-        if tolerance >= 0.0 { Ok(()) } else { Err(MethodError::Tolerance { tolerance }) }
+        let share = "must be from 0 to 1, a share of the largest eigenvalue";
+        MethodError::unless((0.0..=1.0).contains(&truncation), "truncation", truncation, share)?;
+        let length = "must be 0 or more, in lengths of a lattice edge";
+        MethodError::unless(tolerance >= 0.0, "tolerance", tolerance, length)
     }
 
     fn calls_the_field(&self) -> bool {

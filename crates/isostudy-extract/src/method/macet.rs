@@ -1,9 +1,27 @@
 //! Macet as a method: our reading of it.
 
 use super::of_cubes::OfCubes;
-use super::{MethodError, Promises};
+use super::{Method, MethodError, Preset, Promises};
 use crate::cubes::{Diagonals, EdgeMoves, Faces, Rule};
 use crate::extractor::Way;
+
+const TURNED: &str = "our reading of Macet, Dietrich et al. 2009; table of Dietrich et al. 2008";
+
+/// By name.
+pub(super) const PRESETS: &[Preset] = &[
+    Preset {
+        id: "macet",
+        label: "marching cubes, edges turned",
+        method: Method::Macet(Macet {
+            faces: Faces::SeparateInside,
+            diagonals: Diagonals::EdgeGroups,
+            pull: 1.0,
+            steps: 4,
+            share: 1.0,
+        }),
+        source: TURNED,
+    },
+];
 
 /// Marching cubes whose edges are turned square to the surface before they are cut (Macet: Dietrich, Scheidegger, Schreiner, Comba,
 /// Nedel & Silva 2009). Triangles are those of the table; vertices go where they make good ones.
@@ -69,11 +87,14 @@ impl OfCubes for Macet {
 
     fn check_settings(&self) -> Result<(), MethodError> {
         let is_share = |value: f32| (0.0..=1.0).contains(&value);
-        if is_share(self.pull) && is_share(self.share) && self.steps <= MOST_STEPS {
+        let Self { pull, steps, share, .. } = *self;
+        if is_share(pull) && is_share(share) && steps <= MOST_STEPS {
             return Ok(());
         }
-        let Self { pull, steps, share, .. } = *self;
-        Err(MethodError::Macet { pull, steps, share })
+        // They are one setting in three numbers: how vertices go.
+        let value = format!("{pull:?}, steps = {steps}, share = {share:?}");
+        let allowed = "pull and share must be from 0 to 1, steps at most 64";
+        Err(MethodError::Setting { key: "pull", value, allowed })
     }
 
     fn rule(&self) -> Option<Rule> {

@@ -1,9 +1,21 @@
 //! SnapMC as a method.
 
 use super::of_cubes::OfCubes;
-use super::{MethodError, Promises};
+use super::{Method, MethodError, Preset, Promises};
 use crate::cubes::Flat;
 use crate::extractor::Way;
+
+const SNAPPED: &str = "Raman & Wenger 2008; table by hulls, Bhaniramka et al. 2004";
+
+/// By name.
+pub(super) const PRESETS: &[Preset] = &[
+    Preset {
+        id: "snapmc",
+        label: "marching cubes, snapped",
+        method: Method::SnapCubes(SnapCubes { gamma: 0.3, flat: Flat::Both }),
+        source: SNAPPED,
+    },
+];
 
 /// Marching cubes whose crossings near a point of the lattice are drawn to it, so that triangles have bounded angles (Raman & Wenger
 /// 2008): from 12.7 to 144.2 degrees with the default, whatever the samples (`tests/it/snap.rs` tries every triangle of the table).
@@ -49,8 +61,8 @@ impl OfCubes for SnapCubes {
     }
 
     fn check_settings(&self) -> Result<(), MethodError> {
-        let gamma = self.gamma;
-        if (0.0..=0.5).contains(&gamma) { Ok(()) } else { Err(MethodError::Gamma { gamma }) }
+        let allowed = "must be from 0 to 0.5, in lengths of a lattice edge";
+        MethodError::unless((0.0..=0.5).contains(&self.gamma), "gamma", self.gamma, allowed)
     }
 
     fn layers(&self) -> u64 {

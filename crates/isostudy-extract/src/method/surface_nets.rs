@@ -1,10 +1,23 @@
 //! Surface nets as a method.
 
 use super::of_cubes::OfCubes;
-use super::{MethodError, Promises};
+use super::{Method, MethodError, Preset, Promises};
 use crate::duals::{MOST_SMOOTHING, Nets};
 use crate::extractor::Way;
 use crate::settings::{Clustering, ExtractSettings, Topology};
+
+const NETS: &str = "Gibson 1998, by values and without relaxation";
+const PATCHES: &str = "Nielson 2004; Wenger 2013";
+
+/// By name.
+pub(super) const PRESETS: &[Preset] = &[
+    named("nets", "surface nets", false, NETS),
+    named("nets-manifold", "surface nets (manifold)", true, PATCHES),
+];
+
+const fn named(id: &'static str, label: &'static str, patches: bool, source: &'static str) -> Preset {
+    Preset { id, label, method: Method::SurfaceNets(SurfaceNets { patches, smoothing: 0, edge_clamp: 0.0 }), source }
+}
 
 /// Surface nets, the dual of marching cubes: a vertex in each cube that the surface crosses, at the mean of the crossings of its edges,
 /// and a quadrilateral round each crossed edge (Gibson 1998). Each is two triangles, on either side of its
@@ -54,8 +67,8 @@ impl OfCubes for SurfaceNets {
     }
 
     fn check_settings(&self) -> Result<(), MethodError> {
-        let smoothing = self.smoothing;
-        if smoothing <= MOST_SMOOTHING { Ok(()) } else { Err(MethodError::Smoothing { smoothing }) }
+        let allowed = "must be from 0 to 64, steps";
+        MethodError::unless(self.smoothing <= MOST_SMOOTHING, "smoothing", self.smoothing, allowed)
     }
 
     /// A triangle has vertices of the next lower cells, whose triangles give them normals; how such a cell is cut may be for the

@@ -1,12 +1,93 @@
 //! Marching tetrahedra as a method.
 
-use super::{ByWindow, Family, MethodError, Promises};
+use super::{ByWindow, Family, Method, MethodError, Preset, Promises};
 use crate::extraction::{Extraction, check};
 use crate::extractor::Extractor;
 use crate::lattice::BoxGrid;
-use crate::lattice::{Arrangement, LatticeError};
-use crate::settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
+use crate::lattice::Arrangement::{self, BodyCentred, FaceCentred, FiveTetrahedra, SimpleCubic};
+use crate::lattice::LatticeError;
+use crate::settings::Clustering::{self, EdgeCollapse, Integrated, IntegratedCollapse, None as Unclustered};
+use crate::settings::{Execution, ExtractSettings, Placement, Positions, Topology};
 use crate::source::Source;
+
+const COSTEN: &str = "Costen 2026";
+const TREECE: &str = "Treece, Prager & Gee 1999; Costen 2026";
+const COLLAPSED: &str = "Costen 2026; Dey, Edelsbrunner, Guha & Nekhayev 1999";
+const OWN: &str = "not in the paper; see isostudy_extract::Arrangement and isostudy_extract::Clustering";
+const WARPED: &str = "Labelle & Shewchuk 2007, the warp and the boundary";
+const PLACED: &str = "Treece, Prager & Gee 1999; for the placement see isostudy_extract::Placement";
+
+/// By name.
+pub(super) const PRESETS: &[Preset] = &[
+    plain("bu", "body-centred, none", BodyCentred, Unclustered, COSTEN),
+    plain("bi", "body-centred, integrated", BodyCentred, Integrated, TREECE),
+    plain("bp", "body-centred, edge collapse", BodyCentred, EdgeCollapse, COLLAPSED),
+    plain("bc", "body-centred, integrated + collapse", BodyCentred, IntegratedCollapse, OWN),
+    plain("su", "simple cubic, none", SimpleCubic, Unclustered, COSTEN),
+    plain("si", "simple cubic, integrated", SimpleCubic, Integrated, TREECE),
+    plain("sp", "simple cubic, edge collapse", SimpleCubic, EdgeCollapse, COLLAPSED),
+    plain("sc", "simple cubic, integrated + collapse", SimpleCubic, IntegratedCollapse, OWN),
+    plain("mu", "five tetrahedra, none", FiveTetrahedra, Unclustered, OWN),
+    plain("mp", "five tetrahedra, edge collapse", FiveTetrahedra, EdgeCollapse, OWN),
+    plain("fu", "face-centred, none", FaceCentred, Unclustered, OWN),
+    plain("fp", "face-centred, edge collapse", FaceCentred, EdgeCollapse, OWN),
+    placed("bi-projected", "body-centred, integrated, projected", BodyCentred, Placement::Projected),
+    placed("bi-relaxed", "body-centred, integrated, relaxed", BodyCentred, Placement::Relaxed),
+    placed("si-projected", "simple cubic, integrated, projected", SimpleCubic, Placement::Projected),
+    placed("si-relaxed", "simple cubic, integrated, relaxed", SimpleCubic, Placement::Relaxed),
+    Preset { source: WARPED, ..plain("bw", "body-centred, warp", BodyCentred, Clustering::Warp, OWN) },
+    published("bu-published", "body-centred, none, as published", BodyCentred, Unclustered),
+    published("bi-published", "body-centred, integrated, as published", BodyCentred, Integrated),
+    published("bp-published", "body-centred, edge collapse, as published", BodyCentred, EdgeCollapse),
+    published("su-published", "simple cubic, none, as published", SimpleCubic, Unclustered),
+    published("si-published", "simple cubic, integrated, as published", SimpleCubic, Integrated),
+    published("sp-published", "simple cubic, edge collapse, as published", SimpleCubic, EdgeCollapse),
+];
+
+/// With the library's defaults, which `defaults_are_those_of_the_library` holds to.
+const fn settings(arrangement: Arrangement, clustering: Clustering) -> Tetrahedra {
+    Tetrahedra {
+        arrangement,
+        clustering,
+        topology: Topology::Guarded,
+        positions: Positions::Indexed,
+        placement: Placement::MeanOfCrossings,
+        refine_crossings: false,
+        edge_clamp: 0.0,
+    }
+}
+
+const fn plain(
+    id: &'static str,
+    label: &'static str,
+    arrangement: Arrangement,
+    clustering: Clustering,
+    source: &'static str,
+) -> Preset {
+    Preset { id, label, method: Method::Tetrahedra(settings(arrangement, clustering)), source }
+}
+
+const fn placed(
+    id: &'static str,
+    label: &'static str,
+    arrangement: Arrangement,
+    placement: Placement,
+) -> Preset {
+    let method = Tetrahedra { placement, ..settings(arrangement, Integrated) };
+    Preset { id, label, method: Method::Tetrahedra(method), source: PLACED }
+}
+
+/// The original's rules, and its sums as its benchmark makes them.
+const fn published(
+    id: &'static str,
+    label: &'static str,
+    arrangement: Arrangement,
+    clustering: Clustering,
+) -> Preset {
+    let (topology, positions) = (Topology::Published, Positions::Accumulated { chunks: 16 });
+    let method = Tetrahedra { topology, positions, ..settings(arrangement, clustering) };
+    Preset { id, label, method: Method::Tetrahedra(method), source: COSTEN }
+}
 
 /// Regularised marching tetrahedra: an arrangement of sample points, and what [`ExtractSettings`] have beside the isovalue.
 ///
@@ -109,6 +190,12 @@ impl Family for Tetrahedra {
             chunks: indexed && !self.refine_crossings && moved_in_chunks,
             samples_suffice: indexed && !self.refine_crossings && !self.placement.calls_the_field(),
         }
+    }
+
+    fn is_for_comparison(&self) -> bool {
+        self.topology == Topology::Published
+            || matches!(self.arrangement, Arrangement::FiveTetrahedra | Arrangement::FaceCentred)
+            || matches!(self.clustering, Clustering::EdgeCollapse | Clustering::IntegratedCollapse)
     }
 
     fn is_of_cubes(&self) -> bool {
@@ -241,6 +328,18 @@ mod keys {
             let Keys { arrangement, clustering, topology, placement, refine_crossings, edge_clamp, .. } =
                 keys;
             Self { arrangement, clustering, topology, positions, placement, refine_crossings, edge_clamp }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn defaults_are_those_of_the_library() {
+        for arrangement in Arrangement::ALL {
+            assert_eq!(settings(arrangement, Integrated), Tetrahedra::new(arrangement));
         }
     }
 }

@@ -423,6 +423,8 @@ fn what_cannot_be_is_refused() {
         "{error}"
     );
     let method = Method::Continuation(Continuation { search: 0, ..Continuation::default() });
-    assert_eq!(method.check(&GRID), Err(MethodError::Search { search: 0 }));
+    let error = method.check(&GRID).unwrap_err();
+    assert!(matches!(error, MethodError::Setting { key: "search", .. }));
+    assert_eq!(error.to_string(), "search = 0: must be 1 or more, cells");
     assert_eq!(Seeds::try_new(&[[1.0; 3], [2.0; 3]]).unwrap().points(), [[1.0; 3], [2.0; 3]]);
 }

@@ -130,7 +130,8 @@ fn what_is_no_way_to_move_is_refused() {
     ] {
         let error = Method::Macet(bad).check(&grid).unwrap_err();
         assert!(
-            matches!(error, MethodError::Macet { .. }) && error.to_string().contains("from 0 to 1"),
+            matches!(error, MethodError::Setting { key: "pull", .. })
+                && error.to_string().contains("from 0 to 1"),
             "{error}"
         );
     }

@@ -6,7 +6,7 @@ use glam::Vec3;
 use isostudy_extract::{
     Arrangement, BoxGrid, ChunkExtractor, ChunkSettings, Clustering, ContinuedCells, Cubes, Execution,
     ExtractError, ExtractSettings, Extraction, Extractor, Lattice, LatticeError, Method, MethodError,
-    Placement, Positions, Source, Tetrahedra, Topology, extract, presets, weld_chunks,
+    Placement, Positions, Source, Tetrahedra, Topology, extract, kinds, presets, weld_chunks,
 };
 use isostudy_field::{Sphere, StudyField};
 use isostudy_mesh::{Bounds, TriangleMesh};
@@ -135,13 +135,8 @@ fn presets_keep_the_promise_of_a_manifold_whatever_the_samples() {
         promised += 1;
         let arrangement = match preset.method {
             Method::Tetrahedra(Tetrahedra { arrangement, .. }) => arrangement,
-            Method::Cubes(_)
-            | Method::SnapCubes(_)
-            | Method::Macet(_)
-            | Method::SurfaceNets(_)
-            | Method::DualContouring(_)
-            | Method::Continuation(_) => Arrangement::SimpleCubic,
-            _ => panic!("a new family"),
+            // The others are of cubes.
+            _ => Arrangement::SimpleCubic,
         };
         let mut extractor = Extractor::new();
         for (family, seed) in FAMILIES.into_iter().flat_map(|family| [(family, 1), (family, 2)]) {
@@ -174,24 +169,12 @@ fn presets_keep_their_other_promises() {
         let placed = |placement| match preset.method {
             Method::Tetrahedra(tetrahedra) => Method::Tetrahedra(Tetrahedra { placement, ..tetrahedra }),
             Method::Cubes(cubes) => Method::Cubes(Cubes { placement, ..cubes }),
-            Method::SnapCubes(_)
-            | Method::Macet(_)
-            | Method::SurfaceNets(_)
-            | Method::DualContouring(_)
-            | Method::Continuation(_) => {
-                panic!("it has no placements")
-            }
-            _ => panic!("a new family"),
+            _ => panic!("it has no placements"),
         };
         let arrangement = match preset.method {
             Method::Tetrahedra(Tetrahedra { arrangement, .. }) => arrangement,
-            Method::Cubes(_)
-            | Method::SnapCubes(_)
-            | Method::Macet(_)
-            | Method::SurfaceNets(_)
-            | Method::DualContouring(_)
-            | Method::Continuation(_) => Arrangement::SimpleCubic,
-            _ => panic!("a new family"),
+            // The others are of cubes.
+            _ => Arrangement::SimpleCubic,
         };
         let lattice = GRID.lattice(arrangement).unwrap();
 
@@ -271,7 +254,8 @@ fn presets_have_names_of_their_own() {
                 assert!(id.starts_with("macet") && preset.label.starts_with("marching cubes, edges"), "{id}");
                 continue;
             }
-            _ => panic!("a new family"),
+            // What every kind has, `every_kind_names_its_presets` asks.
+            _ => continue,
         };
         let mut letters = id.chars();
         let arrangement = match letters.next() {
@@ -302,6 +286,29 @@ fn presets_have_names_of_their_own() {
     let is_plain = |id: &str| id.len() == 2 && !["mc", "dc"].contains(&id);
     let plain = presets().iter().filter(|preset| is_plain(preset.id)).count();
     assert_eq!(plain, Arrangement::ALL.iter().map(|&a| supported(a)).sum::<usize>());
+}
+
+/// Presets stand kind by kind, those for comparison last; those of a kind begin alike, in name and in words.
+#[test]
+fn every_kind_names_its_presets() {
+    let mut names = Vec::new();
+    for kind in kinds() {
+        assert!(!names.contains(&kind.name), "{}", kind.name);
+        names.push(kind.name);
+        let first = kind.presets.first().expect("a kind has a preset");
+        let word = |label: &str| label.split([' ', ',']).next().map(str::to_owned);
+        for preset in kind.presets {
+            assert_eq!(preset.method.kind(), kind.name, "{}", preset.id);
+            assert!(kind.name == "tetrahedra" || preset.id.starts_with(first.id), "{}", preset.id);
+            assert!(kind.name == "tetrahedra" || word(preset.label) == word(first.label), "{}", preset.label);
+        }
+    }
+    let in_order = |compared: bool| {
+        let all = kinds().iter().flat_map(|kind| kind.presets);
+        all.filter(move |preset| preset.method.is_for_comparison() == compared).map(|preset| preset.id)
+    };
+    let listed: Vec<&str> = presets().iter().map(|preset| preset.id).collect();
+    assert_eq!(listed, in_order(false).chain(in_order(true)).collect::<Vec<_>>());
 }
 
 fn supported(arrangement: Arrangement) -> usize {

@@ -2,7 +2,7 @@
 
 use isostudy_extract::{
     Arrangement, Clustering, Continuation, ContinuedCells, Cubes, Diagonals, DualContouring, Faces, Flat,
-    Macet, Method, Placement, Positions, Seeds, SnapCubes, SurfaceNets, Tetrahedra, Topology,
+    Macet, Method, Placement, Positions, Seeds, SnapCubes, SurfaceNets, Tetrahedra, Topology, kinds,
 };
 use toml::Table;
 
@@ -225,5 +225,29 @@ fn cubes_are_read_and_written() {
         for name in names {
             assert!(error.lines().last().is_some_and(|line| line.contains(name)), "{text}: {error}");
         }
+    }
+}
+
+/// Whatever the family: its kind is the registry's, its keys are written out, each may be left out but for `arrangement`, and no
+/// other is known.
+#[test]
+fn every_kind_is_read_by_its_name_and_refuses_keys_of_others() {
+    for kind in kinds() {
+        for preset in kind.presets {
+            let written = Table::try_from(preset.method).unwrap();
+            assert_eq!(written["kind"].as_str(), Some(kind.name), "{}", preset.id);
+            assert_eq!(written.clone().try_into(), Ok(preset.method), "{}", preset.id);
+            for key in written.keys().filter(|key| !["kind", "arrangement"].contains(&key.as_str())) {
+                let mut without = written.clone();
+                without.remove(key);
+                assert!(without.try_into::<Method>().is_ok(), "{} without {key}", preset.id);
+            }
+            let mut with = written.clone();
+            with.insert("colour".into(), 1.into());
+            let error = with.try_into::<Method>().unwrap_err().to_string();
+            assert!(error.contains("colour"), "{}: {error}", preset.id);
+        }
+        let unknown = read("recipe = { kind = \"octahedra\" }").unwrap_err();
+        assert!(unknown.contains(&format!("`{}`", kind.name)), "{unknown}");
     }
 }

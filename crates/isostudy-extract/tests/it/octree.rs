@@ -252,7 +252,7 @@ fn threads_do_not_show_and_chunks_are_refused() {
     }
     for tolerance in [-0.1, f32::NAN] {
         let error = method(false, tolerance).check(&grid(8)).unwrap_err();
-        assert!(matches!(error, MethodError::Tolerance { .. }));
+        assert!(matches!(error, MethodError::Setting { key: "tolerance", .. }));
         assert!(error.to_string().contains("must be 0 or more"), "{error}");
     }
 }

@@ -382,7 +382,7 @@ fn walls_on_the_box_are_closed() {
 fn a_distance_that_is_none_is_refused() {
     for gamma in [-0.1, 0.51, f32::NAN, f32::INFINITY] {
         let error = snapped(gamma, Flat::Both).check(&grid([3; 3])).unwrap_err();
-        assert!(matches!(error, MethodError::Gamma { .. }));
+        assert!(matches!(error, MethodError::Setting { key: "gamma", .. }));
         assert!(error.to_string().contains("from 0 to 0.5"), "{error}");
         let values = [0.0; 27];
         let made = snapped(gamma, Flat::Both).extract(

@@ -107,14 +107,14 @@ impl Entry {
             recipe: preset.method,
             promises: PROMISES.iter().map(|of| (of.key, (of.is_made)(&made))).collect(),
             source: preset.source,
-            for_comparison: preset.is_for_comparison(),
+            for_comparison: preset.method.is_for_comparison(),
         }
     }
 }
 
 fn text(all: bool) -> String {
     let mut lines = Vec::new();
-    for preset in presets().iter().filter(|preset| all || !preset.is_for_comparison()) {
+    for preset in presets().iter().filter(|preset| all || !preset.method.is_for_comparison()) {
         let made = preset.method.promises();
         let words: Vec<&str> = PROMISES.iter().filter(|of| (of.is_made)(&made)).map(|of| of.word).collect();
         let words = if words.is_empty() { "nothing".to_owned() } else { words.join(", ") };
@@ -123,7 +123,7 @@ fn text(all: bool) -> String {
         lines.push(format!("{:<INDENT$}source   {}", "", preset.source));
     }
     let others: Vec<&str> =
-        presets().iter().filter(|preset| preset.is_for_comparison()).map(|preset| preset.id).collect();
+        presets().iter().filter(|preset| preset.method.is_for_comparison()).map(|preset| preset.id).collect();
     if !all {
         lines.push("\n`isostudy methods --all` lists those that are there for comparison alone:".into());
         lines.extend(others.chunks(8).map(|ids| format!("  {}", ids.join(", "))));
@@ -157,7 +157,7 @@ mod tests {
         for preset in presets() {
             let entry = format!("{:<INDENT$}{}\n", preset.id, preset.label);
             assert_eq!(all.matches(&entry).count(), 1, "{}", preset.id);
-            assert_eq!(some.contains(&entry), !preset.is_for_comparison(), "{}", preset.id);
+            assert_eq!(some.contains(&entry), !preset.method.is_for_comparison(), "{}", preset.id);
         }
         // Those that README and the terrain study recommend.
         for id in ["mc", "mc33", "bi", "bi-relaxed", "si", "nets", "dc-in-cell"] {
