@@ -2,9 +2,10 @@
 
 use glam::{DVec3, Vec3};
 
-use super::asteroid_table::AsteroidTable;
-use super::sine::sin;
-use super::{FieldCache, StudyField};
+use crate::sine::sin;
+
+mod field;
+mod table;
 
 /// A lumpy ball: `f(p) = radius - |p/k| + amplitude * fbm(frequency * ((p/|p|)/k))`, `/k` by component.
 ///
@@ -47,8 +48,9 @@ impl Default for Asteroid {
     }
 }
 
-impl StudyField for Asteroid {
-    fn sample(&self, p: Vec3) -> f32 {
+impl Asteroid {
+    /// The formula at `p`.
+    fn value(&self, p: Vec3) -> f32 {
         let distance = p.length();
         if distance == 0.0 {
             return self.radius;
@@ -58,7 +60,7 @@ impl StudyField for Asteroid {
     }
 
     /// By the chain rule, in double precision but for the hashes.
-    fn gradient(&self, p: Vec3) -> Option<Vec3> {
+    fn gradient_at(&self, p: Vec3) -> Option<Vec3> {
         let (p, stretch) = (p.as_dvec3(), self.stretch.as_dvec3());
         let distance = p.length();
         let direction = p / distance;
@@ -70,15 +72,6 @@ impl StudyField for Asteroid {
         Some((across * f64::from(self.amplitude) - ball).as_vec3()).filter(|gradient| gradient.is_finite())
     }
 
-    /// With the hashes in tables, and bounds.
-    fn prepared<'a>(&self, kept: &'a mut FieldCache) -> Option<&'a dyn StudyField> {
-        let table =
-            kept.get_or_make(|table: &AsteroidTable| table.is_of(self), || AsteroidTable::new(self))?;
-        Some(table)
-    }
-}
-
-impl Asteroid {
     /// Octaves of value noise at `q`, as their weighted mean: within [-1, 1].
     fn noise(&self, q: Vec3) -> f32 {
         let (mut sum, mut weights) = (0.0, 0.0);
@@ -147,13 +140,13 @@ fn value_noise_gradient(q: Vec3) -> DVec3 {
 }
 
 /// A fraction in [0, 1) for a whole-number point.
-pub(super) fn hash(point: Vec3) -> f32 {
+fn hash(point: Vec3) -> f32 {
     let scaled = sin(point.dot(Vec3::new(12.98, 78.23, 35.63))) * 43758.5;
     scaled - libm::floorf(scaled)
 }
 
 #[inline(always)]
-pub(super) fn blend(a: f32, b: f32, weight: f32) -> f32 {
+fn blend(a: f32, b: f32, weight: f32) -> f32 {
     a + (b - a) * weight
 }
 
@@ -163,7 +156,7 @@ mod tests {
 
     #[test]
     fn origin_has_the_plain_radius() {
-        assert_eq!(Asteroid::default().sample(Vec3::ZERO), 0.65);
+        assert_eq!(Asteroid::default().value(Vec3::ZERO), 0.65);
     }
 
     #[test]
@@ -180,7 +173,7 @@ mod tests {
         for i in 0..500 {
             let angle = i as f32 * 0.7;
             let p = Vec3::new(angle.cos(), angle.sin(), (i as f32 - 250.0) / 100.0);
-            let bump = asteroid.sample(p) - (asteroid.radius - p.length());
+            let bump = asteroid.value(p) - (asteroid.radius - p.length());
             assert!(bump.abs() <= asteroid.amplitude + 1e-5, "{bump} at {p}");
         }
     }
@@ -189,12 +182,12 @@ mod tests {
     fn octaves_without_weight_are_left_out() {
         let asteroid = |octaves| Asteroid { octaves, lacunarity: 1.0, ..Asteroid::default() };
         let p = Vec3::new(0.3, -0.4, 0.2);
-        assert_eq!(asteroid(u32::MAX).sample(p), asteroid(100).sample(p));
+        assert_eq!(asteroid(u32::MAX).value(p), asteroid(100).value(p));
     }
 
     #[test]
     fn no_octaves_leave_the_plain_ball() {
         let ball = Asteroid { octaves: 0, stretch: Vec3::ONE, ..Asteroid::default() };
-        assert_eq!(ball.sample(Vec3::X), 0.65 - 1.0);
+        assert_eq!(ball.value(Vec3::X), 0.65 - 1.0);
     }
 }

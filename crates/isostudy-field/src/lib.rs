@@ -18,8 +18,6 @@
 mod aabb;
 #[cfg(feature = "shapes")]
 mod asteroid;
-#[cfg(feature = "shapes")]
-mod asteroid_table;
 mod check;
 mod counted;
 mod fractal;

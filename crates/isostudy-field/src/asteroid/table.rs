@@ -3,8 +3,8 @@
 use glam::{Vec3, Vec3A, Vec4};
 use isostudy_mesh::Bounds;
 
-use super::asteroid::{Asteroid, blend, hash};
-use super::{SAFE, StudyField, has_sound_lengths};
+use super::{Asteroid, blend, hash};
+use crate::{SAFE, StudyField, has_sound_lengths};
 
 /// The most whole-number points of all octaves together: 8 MiB of hashes and slopes.
 const MOST_POINTS: usize = 1 << 20;
@@ -179,7 +179,7 @@ impl StudyField for AsteroidTable {
                 (asteroid.radius - Vec3::from(Vec3A::from(p) / self.stretch).length())
                     + asteroid.amplitude * noise
             }
-            None => asteroid.sample(p),
+            None => asteroid.value(p),
         }
     }
 
@@ -197,7 +197,7 @@ impl StudyField for AsteroidTable {
     }
 
     fn gradient(&self, p: Vec3) -> Option<Vec3> {
-        self.asteroid.gradient(p)
+        self.asteroid.gradient_at(p)
     }
 
     fn slope(&self, bounds: Bounds) -> Option<f32> {
