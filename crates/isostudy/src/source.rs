@@ -7,7 +7,6 @@ use crate::seeds;
 use crate::terminal::tell_once;
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
-use glam::Vec3;
 use isostudy_expression::{Expression, ExpressionError};
 use isostudy_extract::{BoxGrid, Method};
 use isostudy_field::{Beyond, Holes, MeshDistance, MeshFieldError, Negated, StudyField, VolumeField, Walled};
