@@ -22,6 +22,7 @@ mod mesh_file;
 mod outcome;
 mod picture;
 mod pipeline;
+mod place;
 mod prepare;
 mod recipe;
 mod records;

@@ -2,9 +2,9 @@
 
 use crate::fields::{self, Fields};
 use crate::memory::Limit;
+use crate::place::place;
 use crate::recipe::{self, Recipe, recipe};
 use crate::seeds;
-use crate::source::place;
 use anyhow::{Context, Result, bail};
 use isostudy_design::config::{ObjectSection, SweepSection};
 use isostudy_design::record::Purpose;

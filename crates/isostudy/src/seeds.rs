@@ -1,6 +1,6 @@
 //! The seeds of continuation that somebody gave: whether they lie where a surface is looked for, and what is said if they meet none.
 
-use crate::source::place;
+use crate::place::place;
 use anyhow::{Result, bail};
 use glam::{DMat3, DVec3, Vec3};
 use isostudy_extract::{Method, Seeds};

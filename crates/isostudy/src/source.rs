@@ -2,11 +2,11 @@
 
 use crate::memory::Limit;
 use crate::mesh_file;
+use crate::place::place;
 use crate::seeds;
 use crate::terminal::tell_once;
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
-use glam::Vec3;
 use isostudy_expression::{Expression, ExpressionError};
 use isostudy_extract::{BoxGrid, Method};
 use isostudy_field::{Beyond, Holes, MeshDistance, MeshFieldError, Negated, StudyField, VolumeField, Walled};
@@ -339,8 +339,4 @@ impl Source {
             self.values
         )
     }
-}
-
-pub(crate) fn place(p: Vec3) -> String {
-    format!("[{:?}, {:?}, {:?}]", p.x, p.y, p.z)
 }
