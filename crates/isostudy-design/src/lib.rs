@@ -21,7 +21,6 @@ mod method;
 pub mod published;
 mod read;
 pub mod record;
-mod stage;
 mod study;
 
 pub use check::ConfigError;
@@ -30,5 +29,5 @@ pub use method::{
     Arrangement, Clustering, ConfigurationId, Crossed, Factor, FactorSpec, Level, LevelSpec, Method,
     MethodId, ParseIdError, Recipe, TETRAHEDRA,
 };
-pub use stage::Stage;
+pub use record::Stage;
 pub use study::{Comparison, Configuration, Group, METHOD, Published, Study};

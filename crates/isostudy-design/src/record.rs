@@ -6,9 +6,11 @@ use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
 mod pairs;
+mod stage;
 mod validate;
 
 pub use pairs::{AbPair, AbProgram, AbRun, InvalidPair};
+pub use stage::Stage;
 pub use validate::{InvalidRun, InvalidSample};
 
 /// What a mesh was extracted for; each purpose has its own spacing.

@@ -1,8 +1,8 @@
 //! Whether a run that was read from a file can have been measured.
 
+use super::stage::Stage;
 use super::{BenchRun, BenchSample, LoadWindow};
 use crate::method::ConfigurationId;
-use crate::stage::Stage;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Share by which a total may be off the sum of its stages: a tool that rewrote the file may have rounded.
