@@ -1,8 +1,8 @@
-//! A point in space, for people.
+//! Points of space, as text.
 
 use glam::Vec3;
 
-/// As lists of a study file have it: `[7.0, 7.0, 7.0]`.
+/// As a study file has it: `[7.0, 7.0, 7.0]`.
 pub(crate) fn place(p: Vec3) -> String {
     format!("[{:?}, {:?}, {:?}]", p.x, p.y, p.z)
 }
