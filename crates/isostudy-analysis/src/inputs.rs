@@ -23,6 +23,7 @@ pub struct Inputs<'a> {
 
 /// Why figures could not be made.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum AnalysisError {
     /// A figure could not be drawn.
     #[error("figure {figure}: {message}")]

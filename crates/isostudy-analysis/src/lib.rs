@@ -10,7 +10,7 @@
 //! - Nothing is indexed by the paper's ids: any objects, methods and groups will do. Parts that are not there (no
 //!   benchmark, no answers, nothing published) leave out their tables and figures.
 //!
-//! Tests and models of preference are in the crate [`statistics`], over plain ballots; [`audit`] looks for defects of a study,
+//! Tests and models of preference are in the crate [`isostudy_statistics`], over plain ballots; [`audit`] looks for defects of a study,
 //! [`isostudy_statistics::simulation`] makes studies whose truth is known, and [`self_test`] tries the ones on the others.
 
 mod answered;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 /// Why a study file is refused. Every variant names the file, and the key where there is one.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ConfigError {
     /// The file cannot be read.
     #[error("{}: cannot be read", file.display())]

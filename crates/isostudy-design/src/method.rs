@@ -50,6 +50,7 @@ impl fmt::Debug for MethodId {
 
 /// Why a text is not an id.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ParseIdError {
     /// Not a method's id.
     #[error(

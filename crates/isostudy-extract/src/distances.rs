@@ -17,6 +17,7 @@ use isostudy_field::{FieldCache, StudyField};
 
 /// Why a mesh and an isosurface cannot be measured against each other.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum DistanceError {
     /// The isosurface cannot be extracted.
     Extract(ExtractError),

@@ -28,6 +28,7 @@ const THINNEST: f64 = 1e-5;
 
 /// Why a mesh has no inside to measure from.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum MeshFieldError {
     /// The mesh cannot be computed with.
     Mesh(MeshError),

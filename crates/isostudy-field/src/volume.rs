@@ -38,6 +38,7 @@ enum Fall {
 
 /// Why samples make no field.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum VolumeFieldError {
     /// An axis has no samples, or the counts do not make the number of samples.
     Counts {

@@ -70,6 +70,7 @@ const SHARE: u64 = 4096;
 
 /// Why a surface cannot be measured.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum MetroError {
     /// The mesh cannot be computed with.
     Mesh(MeshError),

@@ -12,6 +12,7 @@ pub const COORDINATE_LIMIT: f32 = 1e18;
 
 /// Why a mesh cannot be computed with.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum MeshError {
     /// There are no triangles.
     Empty,

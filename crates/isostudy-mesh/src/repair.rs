@@ -11,6 +11,7 @@ use crate::corner_fans::{DisjointSets, corner_fans};
 
 /// Why a hole cannot be closed.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RepairError {
     /// An edge with three or more triangles has no inside to close.
     NonManifoldEdge {

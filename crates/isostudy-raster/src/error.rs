@@ -2,6 +2,7 @@
 
 /// Why nothing could be drawn.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RasterError {
     /// A setting of the turntable, camera or viewport is outside its range.
     #[error("{setting} is {value}, allowed is {allowed}")]
@@ -61,6 +62,7 @@ pub enum RasterError {
 
 /// Why an animation could not be put together, read or written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum AnimationError {
     /// Two halves of a pair do not fit.
     #[error("the halves differ in {what}: {left} against {right}")]
@@ -96,6 +98,7 @@ pub enum AnimationError {
 
 /// Why a sheet or picture file could not be made.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PanelError {
     /// There is nothing to put on the sheet, or no column to put it in.
     #[error("{panels} panels in {columns} columns")]

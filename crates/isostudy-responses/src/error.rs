@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 /// Why a file of answers is refused.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReadError {
     /// The file cannot be read.
     #[error("{}: cannot be read", file.display())]
@@ -29,6 +30,7 @@ pub enum ReadError {
 /// What is wrong with the content of a file. Rows and columns are counted from 1, as a spreadsheet counts them; JSON is
 /// counted as the table that jsPsych makes of it, a trial a row and a header on top.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Fault {
     /// There is nothing in it.
     #[error("row 1: empty; expected a header and answers")]

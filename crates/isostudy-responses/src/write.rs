@@ -34,6 +34,7 @@ pub struct Written {
 
 /// Why nothing, or not everything, was written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum WriteError {
     /// The format has no ties.
     #[error(

@@ -66,6 +66,7 @@ struct File {
 
 /// Why a download cannot be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum DownloadError {
     /// Not CSV with the page's columns.
     #[error("{0}")]

@@ -44,6 +44,7 @@ const MOST: usize = 100_000;
 
 /// Why the journal cannot be used.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum JournalError {
     /// The folder cannot be made.
     #[error("{path}: {source}")]

@@ -52,6 +52,7 @@ pub struct Answer {
 
 /// Why something that was sent is refused; nothing has changed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Refusal {
     /// No participant has this token.
     #[error("this questionnaire is not known here; reload the page")]

@@ -64,6 +64,7 @@ pub struct Settings {
 
 /// Why the server did not run, or stopped.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ServeError {
     /// The answers.
     #[error(transparent)]

@@ -92,6 +92,7 @@ pub struct Omnibus {
 
 /// Why there is no omnibus test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NoOmnibus {
     /// As many items as participants, or more.
     #[error("not answerable here, because {participants} participants are fewer than the {items} items need")]

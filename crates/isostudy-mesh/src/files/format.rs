@@ -25,6 +25,7 @@ pub enum MeshFormat {
 
 /// Why a mesh cannot be read.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum ReadError {
     /// See [`ObjError`].
     Obj(ObjError),

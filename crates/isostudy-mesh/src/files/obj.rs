@@ -11,6 +11,7 @@ use crate::TriangleMesh;
 
 /// What is wrong with an OBJ file; lines count from 1.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum ObjError {
     /// The input cannot be read.
     Io(io::Error),

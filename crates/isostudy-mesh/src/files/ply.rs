@@ -11,6 +11,7 @@ use crate::TriangleMesh;
 
 /// What is wrong with a PLY file. Lines count from 1, rows from 0, offsets in bytes from the start of the file.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum PlyError {
     /// The input cannot be read.
     Io(io::Error),

@@ -19,6 +19,7 @@ const TRIANGLE_BYTES: usize = 50;
 
 /// What is wrong with an STL file. Lines count from 1, triangles from 0.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum StlError {
     /// The input cannot be read.
     Io(io::Error),

@@ -26,6 +26,7 @@ enum Work {
 
 /// Why something was not done; nothing was changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Unsaved {
     /// What is written now nobody will find again.
     #[error("the folder of answers was removed or replaced, so nothing can be saved until it is back")]
