@@ -2,6 +2,7 @@
 
 /// Why figures could not be made.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum FigureError {
     /// A figure could not be drawn.
     #[error("figure {figure}: {message}")]
