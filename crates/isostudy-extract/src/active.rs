@@ -3,21 +3,12 @@
 //! A cell is *active* at an isovalue where some of its eight samples are above it and some are not. A sample that equals the isovalue
 //! is not above it, and neither is `NaN`: the extractor's own rule, so these are the cells that marching cubes, surface nets and dual
 //! contouring have something in. With `NaN` as minus infinity, the cell whose samples run from `least` to `greatest` is active where
-//! `least <= isovalue < greatest`. So each cell is a half-open interval, and all structures answer the same question: which intervals
-//! hold this number?
+//! `least <= isovalue < greatest`.
 //!
-//! | structure | looks at | source |
-//! |---|---|---|
-//! | [`Scan`] | every cell | |
-//! | [`Bricks`] | every brick of 8 x 8 x 8 cells, and the cells of those that are crossed | |
-//! | [`Octree`] | nodes whose range holds the isovalue, from the root on | Wilhelms & Van Gelder 1992 |
-//! | [`SpanSpace`] | the lists of cells in rows of span space | Shen, Hansen, Livnat & Johnson 1996 |
-//! | [`KdTree`] | a tree over span space, halved along both axes by turns | Livnat, Shen & Johnson 1996 |
-//! | [`IntervalTree`] | two sorted lists for each node on one way down | Cignoni et al. 1997 |
-//! | [`SeedSet`] | an interval tree of a few cells, and their neighbours from there on | Bajaj, Pascucci & Schikore 1996 |
-//!
-//! Each gives exactly the cells of [`Scan`], for any samples and any isovalue, infinite ones and `NaN` included. `docs/isovalues.md` has
-//! times. The extractor works with [`Bricks`] ([`Source::Bricks`](crate::Source::Bricks)), since it walks cells in their order.
+//! [`Bricks`] keep the range of each 8 x 8 x 8 cells, and look into those that are crossed. They give the active cells exactly, for any
+//! samples and any isovalue, infinite ones and `NaN` included. The extractor works with them
+//! ([`Source::Bricks`](crate::Source::Bricks)), since it walks cells in their order. What else was published is compared with them by the
+//! benchmark `isovalues` of the crate `volume`: see `docs/isovalues.md`.
 //!
 //! ```
 //! use isostudy_extract::active::{ActiveCells, Bricks, GridSamples};
@@ -31,12 +22,6 @@
 //! ```
 
 mod bricks;
-mod interval_tree;
-mod kd_tree;
-mod octree;
-mod scan;
-mod seed_set;
-mod span_space;
 mod spans;
 
 use std::collections::TryReserveError;
@@ -44,12 +29,6 @@ use std::error::Error;
 use std::fmt;
 
 pub use bricks::Bricks;
-pub use interval_tree::IntervalTree;
-pub use kd_tree::KdTree;
-pub use octree::Octree;
-pub use scan::Scan;
-pub use seed_set::SeedSet;
-pub use span_space::SpanSpace;
 
 /// What tells the active cells of a volume.
 pub trait ActiveCells {
@@ -156,11 +135,5 @@ impl<'a> GridSamples<'a> {
     fn cell(&self, [x, y, z]: [usize; 3]) -> u32 {
         let [nx, ny, _] = self.cells();
         (x + nx * (y + ny * z)) as u32
-    }
-
-    /// The cell of a number.
-    fn place(&self, cell: u32) -> [usize; 3] {
-        let ([nx, ny, _], cell) = (self.cells(), cell as usize);
-        [cell % nx, cell / nx % ny, cell / nx / ny]
     }
 }

@@ -3,7 +3,7 @@
 //! Like [`crate::tetrahedra::streamed`] it streams: a few layers in memory, samples only where the field does not rule the surface out, slabs of
 //! cells on several threads. A vertex is a crossing, numbered by the lower end of its lattice edge, then by axis; after them come
 //! the few vertices in the cell whose lowest corner that point is. Triangles go cell by cell. Which triangles a cell has is a
-//! [`patches::Patch`], made by rule from [`cells`] at first use.
+//! [`patches::Patch`], made by rule from [`isostudy_cells`] at first use.
 
 mod cells_pass;
 pub(crate) mod continuation;

@@ -1,23 +1,36 @@
-//! Isosurfaces from scalar fields by regularised marching tetrahedra and by marching cubes.
+//! Isosurfaces from scalar fields, by one of the families of methods:
 //!
-//! A [`StudyField`] is sampled on a [`Lattice`], in one of four [`Arrangement`]s. Lattice edges whose ends lie on
-//! different sides of the isovalue cross the surface; crossings become vertices, merged or not
-//! ([`Clustering`]), and every tetrahedron that is crossed adds one or two triangles.
+//! | family | settings | what it does |
+//! |---|---|---|
+//! | marching tetrahedra | [`Tetrahedra`] | a triangle or two in each tetrahedron of a lattice; vertices merged or not ([`Clustering`]) |
+//! | marching cubes | [`Cubes`] | a polygon for each loop of surface round a cube |
+//! | snapped cubes | [`SnapCubes`] | the same, with crossings drawn to lattice points: no thin triangles |
+//! | Macet | [`Macet`] | the same, with vertices moved to where edges stand square on the surface |
+//! | surface nets | [`SurfaceNets`] | the dual: a vertex in each cube, a quadrilateral round each crossed edge |
+//! | dual contouring | [`DualContouring`] | the same, with vertices where tangent planes meet: sharp edges |
+//! | continuation | [`Continuation`] | cubes or tetrahedra, from cube to cube, beginning at seeds |
+//! | labels | [`LabelVolume`] | surface nets between the regions of a volume of whole numbers |
+//! | levels | [`LevelExtractor`] | chunks of several levels of detail, of cubes, nets or dual contouring |
+//!
+//! A [`Method`] is a family with its settings, as plain data; [`presets`] have names. It takes a field or samples on a [`BoxGrid`]:
 //!
 //! ```
-//! use isostudy_extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
-//! use isostudy_field::Sphere;
 //! use glam::Vec3;
+//! use isostudy_extract::{Arrangement, BoxGrid, Execution, Extractor, Method, Source, Tetrahedra};
+//! use isostudy_field::Sphere;
 //! use isostudy_mesh::Bounds;
 //!
-//! let bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) };
-//! let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.1)?;
-//! let sphere = Sphere { radius: 1.0 };
-//! let extraction = extract(&sphere, &lattice, &ExtractSettings::default(), &Execution::default())?;
+//! let method = Method::Tetrahedra(Tetrahedra::new(Arrangement::BodyCentred));
+//! let grid = BoxGrid { bounds: Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) }, spacing: 0.1 };
+//! let (sphere, isovalue) = (Sphere { radius: 1.0 }, 0.0);
+//! let (mut extractor, execution) = (Extractor::new(), Execution::default());
+//! let extraction = method.extract(&mut extractor, Source::Study(&sphere), &grid, isovalue, &execution)?;
 //! assert_eq!(extraction.counts.vertices * 2, extraction.counts.triangles + 4, "genus 0");
 //! assert!((extraction.mesh.volume() - 4.18879).abs() < 0.03);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! Tetrahedra can also be had of a [`Lattice`] of one's own: see [`by_lattice`].
 //!
 //! # Guaranteed
 //!
@@ -66,9 +79,8 @@
 //!
 //! | to have | take |
 //! |---|---|
-//! | one mesh | [`extract`] |
-//! | a method that somebody else chose | a [`Method`]: read from a file (feature `serde`), or one of the [`presets`] |
-//! | meshes, one after the other | an [`Extractor`], which keeps its buffers |
+//! | a mesh | a [`Method`]: written down, read from a file (feature `serde`), or one of the [`presets`] |
+//! | meshes, one after the other | the same [`Extractor`], which keeps its buffers |
 //! | the samples' own topology | [`Cubes`] with [`Faces::Trilinear`], preset `mc33` |
 //! | counts to compare with other programs | [`VolumeCells`], preset `mc` |
 //! | as few calls of a slow field as can be, of a surface whose parts are known | [`Continuation`] |
@@ -78,6 +90,7 @@
 //! | the same with coarse chunks far away | a [`LevelExtractor`]; `examples/lod.rs` |
 //! | regular triangles | [`Arrangement::BodyCentred`], [`Clustering::Integrated`], [`Placement::Relaxed`] |
 //! | few samples | [`Arrangement::SimpleCubic`], [`Clustering::Integrated`] |
+//! | a lattice of one's own, its samples and its memory | [`by_lattice`] |
 //! | published numbers | [`Topology::Published`], [`Positions::Accumulated`] |
 //! | how near the mesh is to the surface | [`accuracy`] |
 //!
@@ -186,6 +199,7 @@ mod survey;
 pub mod engine {}
 
 pub mod active;
+pub mod by_lattice;
 mod chunks;
 mod clock;
 mod clustering;

@@ -1,6 +1,7 @@
 //! Bricks: the least and the greatest sample of each 8 x 8 x 8 cells.
 
-use super::scan::add_active;
+use std::ops::Range;
+
 use super::spans::{NONE, Span, holds, union, with};
 use super::{ActiveCells, ActiveError, GridSamples};
 use crate::memory::filled;
@@ -107,5 +108,29 @@ impl ActiveCells for Bricks<'_> {
 
     fn bytes(&self) -> usize {
         size_of::<Span>() * (self.spans.capacity() + self.rows.capacity())
+    }
+}
+
+/// Adds the active cells of a box, in storage order.
+fn add_active(
+    samples: GridSamples,
+    isovalue: f32,
+    [columns, rows, layers]: [Range<usize>; 3],
+    cells: &mut Vec<u32>,
+) {
+    for z in layers {
+        for y in rows.clone() {
+            let lines = samples.rows_of_cells(y, z).map(|row| &row[columns.start..=columns.end]);
+            let first = samples.cell([columns.start, y, z]);
+            let inside = |x: usize| lines.iter().fold(0, |count, line| count + u8::from(line[x] > isovalue));
+            let mut before = inside(0);
+            for x in 0..columns.len() {
+                let after = inside(x + 1);
+                if !matches!(before + after, 0 | 8) {
+                    cells.push(first + x as u32);
+                }
+                before = after;
+            }
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! The triangles of a transition cell: of 512 patterns of signs and what ambiguous squares join, derived by the rules of [`cells`].
+//! The triangles of a transition cell: of 512 patterns of signs and what ambiguous squares join, derived by the rules of [`isostudy_cells`].
 
 use std::collections::HashMap;
 use std::ops::Range;

@@ -1,12 +1,13 @@
 //! Structures that find the cells of a surface, against the rule itself; and extractions that leave bricks out, against those that do
 //! not.
 
+#[path = "../../isostudy-volume/benches/isovalues/structures/mod.rs"]
+mod structures;
+
 use std::collections::BTreeSet;
 
 use glam::Vec3;
-use isostudy_extract::active::{
-    ActiveCells, ActiveError, Bricks, GridSamples, IntervalTree, KdTree, Octree, Scan, SeedSet, SpanSpace,
-};
+use isostudy_extract::active::{ActiveCells, ActiveError, Bricks, GridSamples};
 use isostudy_extract::{
     BoxGrid, Execution, ExtractError, Extractor, Method, MethodError, Source, VolumeCells, VolumeCellsError,
     presets,
@@ -14,6 +15,7 @@ use isostudy_extract::{
 use isostudy_mesh::Bounds;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use structures::{IntervalTree, KdTree, Octree, Scan, SeedSet, SpanSpace};
 
 /// By corners, one by one.
 fn by_the_rule(counts: [usize; 3], values: &[f32], isovalue: f32) -> BTreeSet<u32> {

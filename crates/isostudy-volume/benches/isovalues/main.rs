@@ -1,30 +1,33 @@
-//! How long it takes to find the cells of 100 isovalues of a volume, by every structure of `isostudy_extract::active`, and to make their triangles.
+//! How long it takes to find the cells of 100 isovalues of a volume, by bricks and by every structure that was published for it, and to make their triangles.
 //!
 //! ```sh
-//! cargo run --release --locked -p isostudy-volume --example isovalues -- FILE       # a volume
-//! cargo run --release --locked -p isostudy-volume --example isovalues -- head 256   # made up, of so many samples a side
+//! cargo bench --locked -p isostudy-volume --bench isovalues -- FILE       # a volume
+//! cargo bench --locked -p isostudy-volume --bench isovalues -- head 256   # made up, of so many samples a side
 //! ```
 //!
 //! Isovalues are spread evenly between the least and the greatest sample. Each search is done twice, on one thread; the shorter
 //! of both sums counts. Prints a table for docs/isovalues.md.
 
+mod structures;
+
 use std::error::Error;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use isostudy_extract::active::{
-    ActiveCells, Bricks, GridSamples, IntervalTree, KdTree, Octree, Scan, SeedSet, SpanSpace,
-};
+use isostudy_extract::active::{ActiveCells, Bricks, GridSamples};
 use isostudy_extract::{Execution, Extractor, VolumeCells, presets};
 use isostudy_volume::{NO_LIMIT, Volume};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use structures::{IntervalTree, KdTree, Octree, Scan, SeedSet, SpanSpace};
 
 const ISOVALUES: usize = 100;
 const TIMES: usize = 2;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<String> =
+        // Cargo says `--bench` to every benchmark.
+        std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
     let volume = match &arguments[..] {
         [word, n] if word == "head" => head(n.parse()?),
         [file] => isostudy_volume::read(Path::new(file), NO_LIMIT)?,
@@ -51,7 +54,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     ] {
         assert_eq!(found, scan, "active cells");
     }
-    println!("\nactive cells of all isovalues: {scan}\n");
+    println!("\nactive cells of all isovalues: {scan}");
+    println!("nodes of the octree: {}", Octree::try_new(samples)?.nodes());
+    println!("seeds: {}\n", SeedSet::try_new(samples)?.seeds());
 
     println!("| extraction | sides of samples | triangles, normals included | triangles |");
     println!("|---|---:|---:|---:|");

@@ -1,15 +1,15 @@
 //! The octree of ranges that branches on need.
 
+use super::memory::with_room;
 use super::scan::add_active;
 use super::spans::{NONE, Span, holds, union, with};
-use super::{ActiveCells, ActiveError, GridSamples};
-use crate::memory::with_room;
+use isostudy_extract::active::{ActiveCells, ActiveError, GridSamples};
 
 /// An octree of ranges over 2 x 2 x 2 cells (Wilhelms & Van Gelder 1992). It branches on need: a level has half as many nodes along each
 /// axis as the one below, rounded up, so that it has about one node for seven cells whatever the sizes are. Ranges lie level by
 /// level and row by row; a node's place says where its children are.
 #[derive(Debug, Clone)]
-pub struct Octree<'a> {
+pub(crate) struct Octree<'a> {
     samples: GridSamples<'a>,
     /// From the lowest, whose nodes have cells, to the root.
     levels: Vec<Level>,
@@ -26,7 +26,7 @@ impl<'a> Octree<'a> {
     ///
     /// # Errors
     /// [`ActiveError::OutOfMemory`].
-    pub fn try_new(samples: GridSamples<'a>) -> Result<Self, ActiveError> {
+    pub(crate) fn try_new(samples: GridSamples<'a>) -> Result<Self, ActiveError> {
         let [nx, ny, _] = samples.counts();
         // Three samples along each axis, of which the last are the next node's too.
         let of_samples = |at: [usize; 3]| with(NONE, samples.values()[(at[2] * ny + at[1]) * nx + at[0]]);
@@ -39,7 +39,7 @@ impl<'a> Octree<'a> {
     }
 
     /// How many nodes it has.
-    pub fn nodes(&self) -> usize {
+    pub(crate) fn nodes(&self) -> usize {
         self.levels.iter().map(|level| level.spans.len()).sum()
     }
 

@@ -1,14 +1,14 @@
 //! A tree of intervals.
 
+use super::memory::{collected, copied, filled};
 use super::spans::{Spanned, spanned_cells};
-use super::{ActiveCells, ActiveError, GridSamples};
-use crate::memory::{collected, copied, filled};
+use isostudy_extract::active::{ActiveCells, ActiveError, GridSamples};
 
 /// A balanced tree over the least samples of cells (Cignoni, Marino, Montani, Puppo & Scopigno 1997). A cell is with the first node from the
 /// root on whose value it is active at. Each node has its cells in two lists, by rising least and by falling greatest sample: of
 /// each node on the way down, the beginning of one list is active, and nothing else is looked at. Cells with equal samples are in none.
 #[derive(Debug, Clone)]
-pub struct IntervalTree {
+pub(crate) struct IntervalTree {
     /// The values of the nodes, rising. The middle of a part is its root.
     values: Vec<f32>,
     /// Where the lists of each node start, and where the last end.
@@ -29,7 +29,7 @@ impl IntervalTree {
     ///
     /// # Errors
     /// [`ActiveError::OutOfMemory`].
-    pub fn try_new(samples: GridSamples) -> Result<Self, ActiveError> {
+    pub(crate) fn try_new(samples: GridSamples) -> Result<Self, ActiveError> {
         Self::of(&spanned_cells(samples)?)
     }
 

@@ -1,8 +1,8 @@
 //! Rows of span space.
 
+use super::memory::{collected, with_room};
 use super::spans::{Spanned, spanned_cells};
-use super::{ActiveCells, ActiveError, GridSamples};
-use crate::memory::{collected, with_room};
+use isostudy_extract::active::{ActiveCells, ActiveError, GridSamples};
 
 /// The most rows.
 const ROWS: usize = 256;
@@ -14,7 +14,7 @@ const ROWS: usize = 256;
 /// The published lattice divides rows by greatest samples as well. Here a row is sorted by them, which does the same for all its
 /// elements. Rows have about as many cells each, by quantiles of least samples. Cells with equal samples are in none.
 #[derive(Debug, Clone)]
-pub struct SpanSpace {
+pub(crate) struct SpanSpace {
     /// Row `i` has the least samples from `bounds[i - 1]` up to `bounds[i]`, itself left out.
     bounds: Vec<f32>,
     /// Where each row starts, and where the last ends.
@@ -28,7 +28,7 @@ impl SpanSpace {
     ///
     /// # Errors
     /// [`ActiveError::OutOfMemory`].
-    pub fn try_new(samples: GridSamples) -> Result<Self, ActiveError> {
+    pub(crate) fn try_new(samples: GridSamples) -> Result<Self, ActiveError> {
         let mut cells = spanned_cells(samples)?;
         let least = |cell: &Spanned| cell.span[0];
         cells.sort_unstable_by(|a, b| least(a).total_cmp(&least(b)).then(a.cell.cmp(&b.cell)));

@@ -3,13 +3,13 @@
 use std::cmp::Ordering;
 
 use super::spans::{Spanned, spanned_cells};
-use super::{ActiveCells, ActiveError, GridSamples};
+use isostudy_extract::active::{ActiveCells, ActiveError, GridSamples};
 
 /// Cells as points of the plane of least and greatest sample, in a balanced tree that is halved by both in turns (Livnat, Shen & Johnson
 /// 1996). It lies in one list without pointers: the middle of a part is its root, what is before it the lower half. What a part's place
 /// says of its cells is not asked again. Cells with equal samples are not in it.
 #[derive(Debug, Clone)]
-pub struct KdTree {
+pub(crate) struct KdTree {
     cells: Vec<Spanned>,
 }
 
@@ -27,7 +27,7 @@ impl KdTree {
     ///
     /// # Errors
     /// [`ActiveError::OutOfMemory`].
-    pub fn try_new(samples: GridSamples) -> Result<Self, ActiveError> {
+    pub(crate) fn try_new(samples: GridSamples) -> Result<Self, ActiveError> {
         let mut cells = spanned_cells(samples)?;
         halve(&mut cells, 0);
         Ok(Self { cells })

@@ -1,8 +1,10 @@
 //! A few cells from which all others are reached.
 
+use super::IntervalTree;
+use super::OfCells;
+use super::memory::push;
 use super::spans::{NONE, Span, Spanned, spanned_cells, with};
-use super::{ActiveCells, ActiveError, GridSamples, IntervalTree};
-use crate::memory::push;
+use isostudy_extract::active::{ActiveCells, ActiveError, GridSamples};
 
 /// A set of seeds (after Bajaj, Pascucci & Schikore 1996): cells, each with isovalues that it answers for, in an [`IntervalTree`]. From
 /// there the active cells are found by going through faces whose samples are not all on one side.
@@ -12,7 +14,7 @@ use crate::memory::push;
 /// next cell, since that would be active, of the same piece, and of greater number. So every piece has a seed, on plateaus, at the border
 /// and between samples that are no numbers too.
 #[derive(Debug, Clone)]
-pub struct SeedSet<'a> {
+pub(crate) struct SeedSet<'a> {
     samples: GridSamples<'a>,
     tree: IntervalTree,
     seeds: usize,
@@ -26,7 +28,7 @@ impl<'a> SeedSet<'a> {
     ///
     /// # Errors
     /// [`ActiveError::OutOfMemory`].
-    pub fn try_new(samples: GridSamples<'a>) -> Result<Self, ActiveError> {
+    pub(crate) fn try_new(samples: GridSamples<'a>) -> Result<Self, ActiveError> {
         let all = samples.cells();
         let mut seeds = Vec::new();
         for Spanned { span, cell } in spanned_cells(samples)? {
@@ -45,7 +47,7 @@ impl<'a> SeedSet<'a> {
     }
 
     /// How many there are; a cell may be more than one.
-    pub fn seeds(&self) -> usize {
+    pub(crate) fn seeds(&self) -> usize {
         self.seeds
     }
 }

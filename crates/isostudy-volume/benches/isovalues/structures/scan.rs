@@ -2,17 +2,18 @@
 
 use std::ops::Range;
 
-use super::{ActiveCells, GridSamples};
+use super::OfCells;
+use isostudy_extract::active::{ActiveCells, GridSamples};
 
 /// Looks at every cell. It decides by the rule itself, value by value above the isovalue or not, and knows no ranges.
 #[derive(Debug, Clone, Copy)]
-pub struct Scan<'a> {
+pub(crate) struct Scan<'a> {
     samples: GridSamples<'a>,
 }
 
 impl<'a> Scan<'a> {
     /// Nothing is made ready.
-    pub fn new(samples: GridSamples<'a>) -> Self {
+    pub(crate) fn new(samples: GridSamples<'a>) -> Self {
         Self { samples }
     }
 }
