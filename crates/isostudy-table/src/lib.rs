@@ -1,12 +1,15 @@
 //! A table that prints itself as CSV, Markdown, LaTeX and HTML.
 
 pub mod digits;
+mod fields;
 pub mod formula;
 mod html;
 mod latex;
 pub mod markdown;
 
 use crate::digits::{number, signed};
+
+pub use fields::{Field, field, field_in};
 
 /// One cell.
 #[derive(Debug, Clone, PartialEq)]
