@@ -2,6 +2,7 @@
 
 mod columns;
 pub mod digits;
+mod fields;
 pub mod formula;
 mod html;
 mod latex;
@@ -10,6 +11,8 @@ pub mod markdown;
 pub use crate::columns::Columns;
 
 use crate::digits::{number, signed};
+
+pub use fields::{Field, field, field_in};
 
 /// One cell.
 #[derive(Debug, Clone, PartialEq)]

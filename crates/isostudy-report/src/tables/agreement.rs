@@ -3,62 +3,53 @@
 use isostudy_design::Study;
 use isostudy_inference::agreement::Agreement;
 use isostudy_inference::screened::Respondent;
-use isostudy_table::{Cell, Table};
+use isostudy_statistics::interval::Interval;
+use isostudy_statistics::{Alpha, ChiSquareTest};
+use isostudy_table::{Cell, Table, field};
+
+type Row<'a> = (&'a Study, &'a Agreement);
 
 /// All questions, then each comparison group: agreement between participants, and circular triads within.
 pub(super) fn agreement(study: &Study, agreement: &[Agreement]) -> Table {
-    let mut table = Table::new(
-        "agreement",
-        "Agreement between participants, and consistency of each",
-        &[
-            ("scope", "Questions"),
-            ("questions", "Number"),
-            ("alpha_nominal", "Alpha, nominal"),
-            ("alpha_nominal_low", "from"),
-            ("alpha_nominal_high", "to"),
-            ("alpha_ordinal", "Alpha, ordinal"),
-            ("alpha_ordinal_low", "from"),
-            ("alpha_ordinal_high", "to"),
-            ("kendall_u", "Kendall's u"),
-            ("chi_square", "Chi-square"),
-            ("degrees", "Degrees"),
-            ("p", "p"),
-            ("triads", "Triads"),
-            ("decided_triads", "all three decided"),
-            ("strict_cycles", "strict cycles"),
-            ("weak_cycles", "weak cycles"),
-            ("cycles_by_chance", "strict by chance"),
-            ("tournaments", "All decided"),
-            ("mean_zeta", "mean zeta"),
-        ],
-    );
-    for of in agreement.iter().filter(|of| of.questions > 0) {
-        let [nominal, ordinal] = [of.nominal, of.ordinal];
-        let test = of.kendall.and_then(|found| found.test);
-        let (circles, tournaments) = (of.triads, of.tournaments);
-        let circle = |count: u64| if circles.all > 0 { Cell::count(count) } else { Cell::Missing };
-        table.push(vec![
-            Cell::text(of.group.map_or("all", |g| &study.groups[g].id)),
-            Cell::count(of.questions as u64),
-            Cell::number(nominal.map(|alpha| alpha.value), 4),
-            Cell::number(nominal.and_then(|alpha| alpha.interval).map(|i| i.low), 4),
-            Cell::number(nominal.and_then(|alpha| alpha.interval).map(|i| i.high), 4),
-            Cell::number(ordinal.map(|alpha| alpha.value), 4),
-            Cell::number(ordinal.and_then(|alpha| alpha.interval).map(|i| i.low), 4),
-            Cell::number(ordinal.and_then(|alpha| alpha.interval).map(|i| i.high), 4),
-            Cell::number(of.kendall.map(|found| found.u), 4),
-            Cell::number(test.map(|test| test.statistic), 2),
-            Cell::number(test.map(|test| test.degrees), 2),
-            Cell::p(test.map(|test| test.p), 5),
-            circle(circles.all),
-            circle(circles.decided),
-            circle(circles.strict_cycles),
-            circle(circles.weak_cycles),
-            Cell::number((circles.all > 0).then(|| circles.cycles_by_chance()), 1),
-            circle(tournaments),
-            Cell::number((tournaments > 0).then(|| of.zetas / tournaments as f64), 3),
-        ]);
+    fn circle((_, of): &Row<'_>, count: u64) -> Cell {
+        if of.triads.all > 0 { Cell::count(count) } else { Cell::Missing }
     }
+    fn test(row: &Row<'_>) -> Option<ChiSquareTest> {
+        row.1.kendall.and_then(|found| found.test)
+    }
+    fn end(alpha: Option<Alpha>, end: fn(Interval) -> f64) -> Cell {
+        Cell::number(alpha.and_then(|alpha| alpha.interval).map(end), 4)
+    }
+    let fields = [
+        field("scope", "Questions", |(study, of): &Row<'_>| {
+            Cell::text(of.group.map_or("all", |g| &study.groups[g].id))
+        }),
+        field("questions", "Number", |(_, of)| Cell::count(of.questions as u64)),
+        field("alpha_nominal", "Alpha, nominal", |(_, of)| Cell::number(of.nominal.map(|a| a.value), 4)),
+        field("alpha_nominal_low", "from", |(_, of)| end(of.nominal, |i| i.low)),
+        field("alpha_nominal_high", "to", |(_, of)| end(of.nominal, |i| i.high)),
+        field("alpha_ordinal", "Alpha, ordinal", |(_, of)| Cell::number(of.ordinal.map(|a| a.value), 4)),
+        field("alpha_ordinal_low", "from", |(_, of)| end(of.ordinal, |i| i.low)),
+        field("alpha_ordinal_high", "to", |(_, of)| end(of.ordinal, |i| i.high)),
+        field("kendall_u", "Kendall's u", |(_, of)| Cell::number(of.kendall.map(|found| found.u), 4)),
+        field("chi_square", "Chi-square", |row| Cell::number(test(row).map(|test| test.statistic), 2)),
+        field("degrees", "Degrees", |row| Cell::number(test(row).map(|test| test.degrees), 2)),
+        field("p", "p", |row| Cell::p(test(row).map(|test| test.p), 5)),
+        field("triads", "Triads", |row| circle(row, row.1.triads.all)),
+        field("decided_triads", "all three decided", |row| circle(row, row.1.triads.decided)),
+        field("strict_cycles", "strict cycles", |row| circle(row, row.1.triads.strict_cycles)),
+        field("weak_cycles", "weak cycles", |row| circle(row, row.1.triads.weak_cycles)),
+        field("cycles_by_chance", "strict by chance", |(_, of)| {
+            Cell::number((of.triads.all > 0).then(|| of.triads.cycles_by_chance()), 1)
+        }),
+        field("tournaments", "All decided", |row| circle(row, row.1.tournaments)),
+        field("mean_zeta", "mean zeta", |(_, of)| {
+            Cell::number((of.tournaments > 0).then(|| of.zetas / of.tournaments as f64), 3)
+        }),
+    ];
+    let caption = "Agreement between participants, and consistency of each";
+    let rows = agreement.iter().filter(|of| of.questions > 0).map(|of| (study, of));
+    let mut table = Table::of("agreement", caption, &fields, rows);
     table.notes.push(
         "Alpha: Krippendorff's, each question counted in both orientations, so that sides do not matter; 1 is full agreement, 0 \
          chance; from and to: interval at 95 % over participants, of all values that a test does not reject. No interval of alpha below four \
@@ -78,66 +69,42 @@ const MANY: usize = 200;
 ///
 /// So many of them are `excluded` from every other table; what a question shows lasts `shown_ms`.
 pub(super) fn respondents(found: &[Respondent], excluded: usize, shown_ms: Option<f64>) -> Table {
-    let mut table = Table::new(
-        "respondents",
-        match excluded {
-            0 => "Screening of participants; nobody is left out",
-            _ => "Screening of all participants, those who are left out included",
-        },
-        &[
-            ("respondent", "Respondent"),
-            ("left", "Left"),
-            ("no_preference", "None"),
-            ("right", "Right"),
-            ("one_sidedness", "(L \u{2212} R) / (L + R)"),
-            ("longest_run", "Longest run"),
-            ("comparable", "Comparable"),
-            ("agreeing", "Agreeing"),
-            ("agreement", "Agreement"),
-            ("outlying_p", "p of outlying"),
-            ("controls", "Controls"),
-            ("controls_decided", "decided"),
-            ("repeats", "Repeats"),
-            ("repeats_opposite", "opposite"),
-            ("timed", "Timed"),
-            ("time_s", "Time in s"),
-            ("flags", "Rules broken"),
-        ],
-    );
-    let mut flagged = table.clone();
-    for Respondent { seen, flags } in found {
-        let [left, none, right] = seen.answers;
-        let row = vec![
-            Cell::count(seen.participant as u64 + 1),
-            Cell::count(left),
-            Cell::count(none),
-            Cell::count(right),
-            Cell::number(seen.one_sidedness(), 3),
-            Cell::count(seen.longest_run),
-            Cell::count(seen.comparable),
-            Cell::count(seen.agreeing),
-            Cell::number(seen.agreement(), 3),
-            Cell::p(seen.outlying_p, 4),
-            Cell::count(seen.controls),
-            Cell::count(seen.controls_decided),
-            Cell::count(seen.repeats),
-            Cell::count(seen.repeats_opposite),
-            Cell::count(seen.timed),
-            Cell::number((seen.timed > 0).then(|| seen.time_ms / 1000.0), 1),
-            Cell::text(flags.iter().map(|flag| flag.code()).collect::<Vec<_>>().join(" ")),
-        ];
-        if !flags.is_empty() {
-            flagged.push(row.clone());
-        }
-        table.push(row);
-    }
+    let fields = [
+        field("respondent", "Respondent", |of: &&Respondent| Cell::count(of.seen.participant as u64 + 1)),
+        field("left", "Left", |of| Cell::count(of.seen.answers[0])),
+        field("no_preference", "None", |of| Cell::count(of.seen.answers[1])),
+        field("right", "Right", |of| Cell::count(of.seen.answers[2])),
+        field("one_sidedness", "(L \u{2212} R) / (L + R)", |of| Cell::number(of.seen.one_sidedness(), 3)),
+        field("longest_run", "Longest run", |of| Cell::count(of.seen.longest_run)),
+        field("comparable", "Comparable", |of| Cell::count(of.seen.comparable)),
+        field("agreeing", "Agreeing", |of| Cell::count(of.seen.agreeing)),
+        field("agreement", "Agreement", |of| Cell::number(of.seen.agreement(), 3)),
+        field("outlying_p", "p of outlying", |of| Cell::p(of.seen.outlying_p, 4)),
+        field("controls", "Controls", |of| Cell::count(of.seen.controls)),
+        field("controls_decided", "decided", |of| Cell::count(of.seen.controls_decided)),
+        field("repeats", "Repeats", |of| Cell::count(of.seen.repeats)),
+        field("repeats_opposite", "opposite", |of| Cell::count(of.seen.repeats_opposite)),
+        field("timed", "Timed", |of| Cell::count(of.seen.timed)),
+        field("time_s", "Time in s", |of| {
+            Cell::number((of.seen.timed > 0).then(|| of.seen.time_ms / 1000.0), 1)
+        }),
+        field("flags", "Rules broken", |of| {
+            Cell::text(of.flags.iter().map(|flag| flag.code()).collect::<Vec<_>>().join(" "))
+        }),
+    ];
+    let caption = match excluded {
+        0 => "Screening of participants; nobody is left out",
+        _ => "Screening of all participants, those who are left out included",
+    };
+    let mut table = Table::of("respondents", caption, &fields, found);
     if table.rows.len() > MANY {
+        let flagged = found.iter().filter(|of| !of.flags.is_empty());
+        let flagged = Table::of("respondents", "", &fields, flagged);
         table.notes.push(format!(
             "Of {} participants those who break a rule are printed, {}; the CSV has all.",
             table.rows.len(),
             flagged.rows.len()
         ));
-        flagged.caption = String::new();
         table.parts = vec![flagged];
     }
     table.notes.push(format!(

@@ -1,89 +1,69 @@
 //! Tests of preference, by family.
 
 use isostudy_inference::hypotheses::{Hypothesis, Robustness};
-use isostudy_table::{Cell, Table};
+use isostudy_statistics::interval::Interval;
+use isostudy_table::{Cell, Field, Table, field_in};
+
+/// A test, and what else is known of it.
+type Row<'a> = (&'a Hypothesis, &'a Robustness);
+
+fn fields<'a>() -> [Field<Row<'a>>; 23] {
+    [
+        field_in(&[0, 1, 2], "family", "Family", |row: &Row<'a>| Cell::text(&row.0.family)),
+        field_in(&[0, 1, 2], "contrast", "Contrast", |row| Cell::text(&row.0.contrast)),
+        field_in(&[0, 1, 2], "scope", "Scope", |row| Cell::text(&row.0.scope)),
+        field_in(&[0], "first", "First", |row| answers(row, 0)),
+        field_in(&[0], "no_preference", "None", |row| answers(row, 1)),
+        field_in(&[0], "second", "Second", |row| answers(row, 2)),
+        field_in(&[0], "net", "Net", |row| {
+            let net = row.0.test.counts.map(|[first, _, second]| first as i64 - second as i64);
+            net.map_or(Cell::Missing, Cell::Count)
+        }),
+        field_in(&[0], "participants", "Participants", |row| Cell::count(row.0.test.participants() as u64)),
+        field_in(&[0], "p_sign_flip", "p", |row| Cell::P(row.0.test.sign_flip.p(), 5)),
+        field_in(&[0], "p_adjusted", "p adjusted", |row| Cell::P(row.0.adjusted, 4)),
+        field_in(&[0], "adjustment", "Adjustment", |row| Cell::text(row.0.adjustment.label())),
+        field_in(&[0], "p_adjusted_over_all", "p over all", |row| Cell::p(row.0.adjusted_over_all, 4)),
+        field_in(&[1], "mean", "Mean score", |row| Cell::of_sum(Some(row.0.test.mean), 3)),
+        field_in(&[1], "low", "from", |row| Cell::of_sum(interval(row).map(|i| i.low), 3)),
+        field_in(&[1], "high", "to", |row| Cell::of_sum(interval(row).map(|i| i.high), 3)),
+        field_in(&[1], "studentised_low", "studentised from", |row| {
+            Cell::of_sum(row.1.studentised.map(|i| i.low), 3)
+        }),
+        field_in(&[1], "studentised_high", "studentised to", |row| {
+            Cell::of_sum(row.1.studentised.map(|i| i.high), 3)
+        }),
+        field_in(&[1], "p_equivalence", "p of equivalence", |row| Cell::p(row.0.equivalence, 4)),
+        field_in(&[0], "conclusion", "Conclusion", |row| Cell::text(row.0.conclusion().label())),
+        field_in(&[2], "p_without_one_low", "p without one: from", |row| {
+            Cell::p(row.1.without_one.map(|[least, _]| least), 4)
+        }),
+        field_in(&[2], "p_without_one_high", "to", |row| Cell::p(row.1.without_one.map(|[_, most]| most), 4)),
+        field_in(&[2], "p_binomial", "p binomial", |row| Cell::p(row.1.binomial, 4)),
+        field_in(&[2], "p_trinomial", "p trinomial", |row| Cell::p(row.1.trinomial, 4)),
+    ]
+}
+
+fn answers((row, _): &Row<'_>, outcome: usize) -> Cell {
+    row.test.counts.map_or(Cell::Missing, |counts| Cell::count(counts[outcome]))
+}
+
+fn interval((row, _): &Row<'_>) -> Option<Interval> {
+    row.test.interval.map(|i| i.cut(-row.test.reach, row.test.reach))
+}
 
 /// Every hypothesis, family by family.
 pub(crate) fn tests(hypotheses: &[Hypothesis], robustness: &[Robustness]) -> Table {
-    let mut table = Table::new(
-        "tests",
-        "Tests of preference",
+    let fields = fields();
+    let mut table = Table::of("tests", "Tests of preference", &fields, hypotheses.iter().zip(robustness));
+    table.show_in_blocks(
+        &fields,
         &[
-            ("family", "Family"),
-            ("contrast", "Contrast"),
-            ("scope", "Scope"),
-            ("first", "First"),
-            ("no_preference", "None"),
-            ("second", "Second"),
-            ("net", "Net"),
-            ("participants", "Participants"),
-            ("p_sign_flip", "p"),
-            ("p_adjusted", "p adjusted"),
-            ("adjustment", "Adjustment"),
-            ("p_adjusted_over_all", "p over all"),
-            ("mean", "Mean score"),
-            ("low", "from"),
-            ("high", "to"),
-            ("studentised_low", "studentised from"),
-            ("studentised_high", "studentised to"),
-            ("p_equivalence", "p of equivalence"),
-            ("conclusion", "Conclusion"),
-            ("p_without_one_low", "p without one: from"),
-            ("p_without_one_high", "to"),
-            ("p_binomial", "p binomial"),
-            ("p_trinomial", "p trinomial"),
+            "Answers, and tests of no preference",
+            "Mean scores, and tests of equivalence",
+            "With one participant left out, and as if answers were independent",
         ],
     );
-    for (row, robustness) in hypotheses.iter().zip(robustness) {
-        table.push(cells(row, robustness));
-    }
-    let blocks: [(&str, &[&str]); 3] = [
-        (
-            "Answers, and tests of no preference",
-            &[
-                "family",
-                "contrast",
-                "scope",
-                "first",
-                "no_preference",
-                "second",
-                "net",
-                "participants",
-                "p_sign_flip",
-                "p_adjusted",
-                "adjustment",
-                "p_adjusted_over_all",
-                "conclusion",
-            ],
-        ),
-        (
-            "Mean scores, and tests of equivalence",
-            &[
-                "family",
-                "contrast",
-                "scope",
-                "mean",
-                "low",
-                "high",
-                "studentised_low",
-                "studentised_high",
-                "p_equivalence",
-            ],
-        ),
-        (
-            "With one participant left out, and as if answers were independent",
-            &[
-                "family",
-                "contrast",
-                "scope",
-                "p_without_one_low",
-                "p_without_one_high",
-                "p_binomial",
-                "p_trinomial",
-            ],
-        ),
-    ];
-    table.print_in_blocks(&blocks);
     table.notes.push(
         "p: exact sign-flip test of participants' scores, two-sided. A score is the mean of a participant's answers, 1 for the \
          first and \u{2212}1 for the second; of differences it is the mean over one part less the mean over the other, \u{2212}2 to 2, \
@@ -98,38 +78,6 @@ pub(crate) fn tests(hypotheses: &[Hypothesis], robustness: &[Robustness]) -> Tab
             .into(),
     );
     table
-}
-
-fn cells(row: &Hypothesis, robustness: &Robustness) -> Vec<Cell> {
-    let test = &row.test;
-    let interval = test.interval.map(|i| i.cut(-test.reach, test.reach));
-    let Robustness { studentised, without_one, binomial, trinomial } = robustness;
-    let count = |o: usize| test.counts.map_or(Cell::Missing, |counts| Cell::count(counts[o]));
-    vec![
-        Cell::text(&row.family),
-        Cell::text(&row.contrast),
-        Cell::text(&row.scope),
-        count(0),
-        count(1),
-        count(2),
-        test.counts.map_or(Cell::Missing, |[first, _, second]| Cell::Count(first as i64 - second as i64)),
-        Cell::count(test.participants() as u64),
-        Cell::P(test.sign_flip.p(), 5),
-        Cell::P(row.adjusted, 4),
-        Cell::text(row.adjustment.label()),
-        Cell::p(row.adjusted_over_all, 4),
-        Cell::of_sum(Some(test.mean), 3),
-        Cell::of_sum(interval.map(|i| i.low), 3),
-        Cell::of_sum(interval.map(|i| i.high), 3),
-        Cell::of_sum(studentised.map(|i| i.low), 3),
-        Cell::of_sum(studentised.map(|i| i.high), 3),
-        Cell::p(row.equivalence, 4),
-        Cell::text(row.conclusion().label()),
-        Cell::p(without_one.map(|[least, _]| least), 4),
-        Cell::p(without_one.map(|[_, most]| most), 4),
-        Cell::p(*binomial, 4),
-        Cell::p(*trinomial, 4),
-    ]
 }
 
 #[cfg(test)]

@@ -1,41 +1,40 @@
 //! Models of preference: worths with their errors, and what each model says about ties and sides.
 
-use isostudy_inference::models::GroupModel;
-use isostudy_statistics::Penalty;
-use isostudy_table::{Cell, Table};
+use isostudy_inference::models::{GroupModel, Worth};
+use isostudy_statistics::{Penalty, WorthFit};
+use isostudy_table::{Cell, Table, field};
 
 /// `worths` and `models` of every group, with every model.
 ///
 /// What a model cannot estimate has no row in `worths`, and its reason in `models`.
 pub(super) fn model_tables(found: &[GroupModel<'_>], sides_recorded: bool) -> [Table; 2] {
-    let (mut worths, mut models) = (empty_worths(), empty_models());
+    let mut tables = [worths(found), models(found)];
     if !sides_recorded {
         let note = "Side: not answerable here, because the file does not say which item was on which side.";
-        worths.notes.push(note.into());
-        models.notes.push(note.into());
+        tables.iter_mut().for_each(|table| table.notes.insert(1, note.into()));
     }
-    for of in found {
-        models.push(model_row(of));
-        add_worths(&mut worths, of);
-    }
-    [worths, models]
+    tables
 }
 
-fn empty_worths() -> Table {
-    let mut table = Table::new(
-        "worths",
-        "Worths: log-odds of being preferred to the group's first item",
-        &[
-            ("group", "Group"),
-            ("item", "Item"),
-            ("model", "Model"),
-            ("log_worth", "Log worth"),
-            ("se", "SE, answers independent"),
-            ("clustered_se", "SE, participants"),
-            ("low", "from"),
-            ("high", "to"),
-        ],
-    );
+/// A model, an item's name, and its worth.
+type Row<'a> = (&'a GroupModel<'a>, &'a str, &'a Worth);
+
+fn worths(found: &[GroupModel<'_>]) -> Table {
+    let fields = [
+        field("group", "Group", |(of, ..): &Row<'_>| Cell::text(&of.group.name)),
+        field("item", "Item", |(_, item, _)| Cell::text(item)),
+        field("model", "Model", |(of, ..)| Cell::text(of.model.code())),
+        field("log_worth", "Log worth", |(.., worth)| Cell::of_sum(Some(worth.log_worth), 3)),
+        field("se", "SE, answers independent", |(.., worth)| Cell::Number(worth.independent_error, 3)),
+        field("clustered_se", "SE, participants", |(.., worth)| Cell::number(worth.clustered_error, 3)),
+        field("low", "from", |(.., worth)| Cell::of_sum(worth.interval.map(|i| i.low), 3)),
+        field("high", "to", |(.., worth)| Cell::of_sum(worth.interval.map(|i| i.high), 3)),
+    ];
+    let rows = found.iter().flat_map(|of| {
+        of.group.items.iter().zip(&of.worths).map(move |(item, worth)| (of, item.as_str(), worth))
+    });
+    let caption = "Worths: log-odds of being preferred to the group's first item";
+    let mut table = Table::of("worths", caption, &fields, rows);
     table.notes.push(
         "SE, answers independent: from the exact information, for comparison with other programs; too small, because one \
          person's answers hang together. SE, participants: sandwich with m/(m \u{2212} 1); from and to: its t interval at 95 % on \
@@ -46,39 +45,30 @@ fn empty_worths() -> Table {
     table
 }
 
-fn add_worths(table: &mut Table, of: &GroupModel<'_>) {
-    for (name, worth) in of.group.items.iter().zip(&of.worths) {
-        table.push(vec![
-            Cell::text(&of.group.name),
-            Cell::text(name),
-            Cell::text(of.model.code()),
-            Cell::of_sum(Some(worth.log_worth), 3),
-            Cell::Number(worth.independent_error, 3),
-            Cell::number(worth.clustered_error, 3),
-            Cell::of_sum(worth.interval.map(|i| i.low), 3),
-            Cell::of_sum(worth.interval.map(|i| i.high), 3),
-        ]);
+fn models(found: &[GroupModel<'_>]) -> Table {
+    fn fit<'a>(of: &'a GroupModel<'_>) -> Option<&'a WorthFit> {
+        of.fitted.as_ref().ok()
     }
-}
-
-fn empty_models() -> Table {
-    let mut table = Table::new(
-        "models",
-        "Models of preference",
-        &[
-            ("group", "Group"),
-            ("model", "Model"),
-            ("log_likelihood", "Log-likelihood"),
-            ("ln_nu", "ln nu"),
-            ("side", "Side"),
-            ("side_se", "SE of side"),
-            ("side_p", "p of side"),
-            ("ln_theta", "ln theta"),
-            ("answers", "Answers"),
-            ("penalised", "Penalised"),
-            ("remark", "Remark"),
-        ],
-    );
+    let fields = [
+        field("group", "Group", |of: &&GroupModel<'_>| Cell::text(&of.group.name)),
+        field("model", "Model", |of| Cell::text(of.model.code())),
+        field("log_likelihood", "Log-likelihood", |of| {
+            Cell::number(fit(of).map(|fit| fit.log_likelihood), 4)
+        }),
+        field("ln_nu", "ln nu", |of| {
+            Cell::number(fit(of).and_then(|fit| fit.ln_nu).filter(|nu| nu.is_finite()), 4)
+        }),
+        field("side", "Side", |of| Cell::number(of.side[0], 4)),
+        field("side_se", "SE of side", |of| Cell::number(of.side[1], 4)),
+        field("side_p", "p of side", |of| Cell::p(of.side_p, 4)),
+        field("ln_theta", "ln theta", |of| Cell::number(fit(of).and_then(|fit| fit.ln_theta), 4)),
+        field("answers", "Answers", |of| Cell::count(of.answers as u64)),
+        field("penalised", "Penalised", |of| {
+            Cell::text(fit(of).map_or("", |fit| if fit.penalised() { "yes" } else { "no" }))
+        }),
+        field("remark", "Remark", |of| Cell::text(remark(of))),
+    ];
+    let mut table = Table::of("models", "Models of preference", &fields, found);
     table.notes.push(
         "Log-likelihood: of the answers, without multinomial constants; Bradley and Terry's counts a tie as half a win for \
          both and is not on the others' scale. ln nu: Davidson's tie parameter, symmetric form. Side: bonus of the left \
@@ -87,24 +77,6 @@ fn empty_models() -> Table {
             .into(),
     );
     table
-}
-
-fn model_row(of: &GroupModel<'_>) -> Vec<Cell> {
-    let fitted = of.fitted.as_ref().ok();
-    let [side, side_error] = of.side;
-    vec![
-        Cell::text(&of.group.name),
-        Cell::text(of.model.code()),
-        Cell::number(fitted.map(|fit| fit.log_likelihood), 4),
-        Cell::number(fitted.and_then(|fit| fit.ln_nu).filter(|nu| nu.is_finite()), 4),
-        Cell::number(side, 4),
-        Cell::number(side_error, 4),
-        Cell::p(of.side_p, 4),
-        Cell::number(fitted.and_then(|fit| fit.ln_theta), 4),
-        Cell::count(of.answers as u64),
-        Cell::text(fitted.map_or("", |fit| if fit.penalised() { "yes" } else { "no" })),
-        Cell::text(remark(of)),
-    ]
 }
 
 fn remark(of: &GroupModel<'_>) -> String {

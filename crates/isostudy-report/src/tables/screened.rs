@@ -1,81 +1,43 @@
 //! The tests with everybody, and without those who broke a rule: nobody is left out silently.
 
+use isostudy_inference::hypotheses::Hypothesis;
 use isostudy_inference::screened::WithoutBreakers;
 use isostudy_statistics::Flag;
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Field, Table, field_in};
 use std::collections::BTreeSet;
+
+/// A rule and its breakers, a test with everybody, and without them.
+type Row<'a> = (&'a WithoutBreakers, &'a Hypothesis, Option<&'a Hypothesis>);
+
+fn fields<'a>() -> [Field<Row<'a>>; 13] {
+    [
+        field_in(&[0, 1], "rule", "Rule", |row: &Row<'a>| Cell::text(row.0.rule.map_or("any", Flag::code))),
+        field_in(&[0], "left_out", "Left out", |row| Cell::count(row.0.people.len() as u64)),
+        field_in(&[0], "respondents", "Respondents", |row| Cell::text(numbers(&row.0.people, " "))),
+        field_in(&[0, 1], "family", "Family", |row| Cell::text(&row.1.family)),
+        field_in(&[0, 1], "contrast", "Contrast", |row| Cell::text(&row.1.contrast)),
+        field_in(&[0, 1], "scope", "Scope", |row| Cell::text(&row.1.scope)),
+        field_in(&[0], "mean", "Mean score", |row| Cell::of_sum(Some(row.1.test.mean), 3)),
+        field_in(&[0], "p_adjusted", "p adjusted", |row| Cell::P(row.1.adjusted, 4)),
+        field_in(&[0], "conclusion", "Conclusion", |row| Cell::text(row.1.conclusion().label())),
+        field_in(&[1], "mean_without", "Mean score", |row| Cell::of_sum(row.2.map(|of| of.test.mean), 3)),
+        field_in(&[1], "p_without", "p", |row| Cell::p(row.2.map(|of| of.test.sign_flip.p()), 5)),
+        field_in(&[1], "p_adjusted_without", "p adjusted", |row| Cell::p(row.2.map(|of| of.adjusted), 4)),
+        field_in(&[1], "conclusion_without", "Conclusion", |row| {
+            Cell::text(row.2.map_or("nobody left", |of| of.conclusion().label()))
+        }),
+    ]
+}
 
 /// Each rule that somebody broke, with every test.
 pub(super) fn screened(screened: &[WithoutBreakers]) -> Table {
-    let mut table = Table::new(
-        "screened",
-        "Tests with everybody, and without those who broke a rule",
-        &[
-            ("rule", "Rule"),
-            ("left_out", "Left out"),
-            ("respondents", "Respondents"),
-            ("family", "Family"),
-            ("contrast", "Contrast"),
-            ("scope", "Scope"),
-            ("mean", "Mean score"),
-            ("p_adjusted", "p adjusted"),
-            ("conclusion", "Conclusion"),
-            ("mean_without", "Mean score"),
-            ("p_without", "p"),
-            ("p_adjusted_without", "p adjusted"),
-            ("conclusion_without", "Conclusion"),
-        ],
-    );
-    for WithoutBreakers { rule, people, tests } in screened {
-        for (with, without) in tests {
-            let answered = without.as_ref();
-            table.push(vec![
-                Cell::text(rule.map_or("any", Flag::code)),
-                Cell::count(people.len() as u64),
-                Cell::text(numbers(people, " ")),
-                Cell::text(&with.family),
-                Cell::text(&with.contrast),
-                Cell::text(&with.scope),
-                Cell::of_sum(Some(with.test.mean), 3),
-                Cell::P(with.adjusted, 4),
-                Cell::text(with.conclusion().label()),
-                Cell::of_sum(answered.map(|other| other.test.mean), 3),
-                Cell::p(answered.map(|other| other.test.sign_flip.p()), 5),
-                Cell::p(answered.map(|other| other.adjusted), 4),
-                Cell::text(answered.map_or("nobody left", |other| other.conclusion().label())),
-            ]);
-        }
-    }
-    let blocks: [(&str, &[&str]); 2] = [
-        (
-            "With everybody",
-            &[
-                "rule",
-                "left_out",
-                "respondents",
-                "family",
-                "contrast",
-                "scope",
-                "mean",
-                "p_adjusted",
-                "conclusion",
-            ],
-        ),
-        (
-            "Without them",
-            &[
-                "rule",
-                "family",
-                "contrast",
-                "scope",
-                "mean_without",
-                "p_without",
-                "p_adjusted_without",
-                "conclusion_without",
-            ],
-        ),
-    ];
-    table.print_in_blocks(&blocks);
+    let caption = "Tests with everybody, and without those who broke a rule";
+    let rows = screened
+        .iter()
+        .flat_map(|of| of.tests.iter().map(move |(with, without)| (of, with, without.as_ref())));
+    let fields = fields();
+    let mut table = Table::of("screened", caption, &fields, rows);
+    table.show_in_blocks(&fields, &["With everybody", "Without them"]);
     table.notes.push(
         "For each rule that somebody broke, the same tests without them; the rules are under the table of respondents. Both \
          halves are about all participants, also where other tables leave some out."
