@@ -1,10 +1,13 @@
 //! A table that prints itself as CSV, Markdown, LaTeX and HTML.
 
+mod columns;
 pub mod digits;
 pub mod formula;
 mod html;
 mod latex;
 pub mod markdown;
+
+pub use crate::columns::Columns;
 
 use crate::digits::{number, signed};
 

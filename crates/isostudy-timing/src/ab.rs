@@ -10,7 +10,7 @@ use isostudy_design::ConfigurationId;
 use isostudy_design::record::{AbPair, AbRun, BenchSample, Failure};
 use isostudy_statistics::interval::Interval;
 use isostudy_table::digits::counted;
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Columns, Table};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
@@ -227,30 +227,19 @@ impl AbComparison {
 
     /// Every row.
     pub fn table(&self) -> Table {
-        let columns = [
-            ("quantity", "Quantity"),
-            ("id", "Id"),
-            ("pairs", "Pairs"),
-            ("ratio", "New / old"),
-            ("low", "from"),
-            ("high", "to"),
-            ("smallest_detectable", "Smallest detectable"),
-            ("verdict", "New is"),
-        ];
-        let mut table = Table::new("bench_ab", "New against old", &columns);
-        for row in &self.rows {
-            let end = |end: fn(Interval) -> f64| Cell::number(row.interval.map(end), 3);
-            table.push(vec![
-                Cell::text(row.quantity.label()),
-                row.id.as_ref().map_or_else(|| Cell::text("all"), Cell::text),
-                Cell::count(row.pairs as u64),
-                Cell::Number(row.ratio, 3),
-                end(|i| i.low),
-                end(|i| i.high),
-                Cell::number(row.smallest_detectable, 3),
-                Cell::text(row.verdict.label()),
-            ]);
-        }
+        let end = |row: &AbRow, end: fn(Interval) -> f64| Cell::number(row.interval.map(end), 3);
+        let mut table = Columns::over(&self.rows)
+            .column("quantity", "Quantity", |row| Cell::text(row.quantity.label()))
+            .column("id", "Id", |row| row.id.as_ref().map_or_else(|| Cell::text("all"), Cell::text))
+            .column("pairs", "Pairs", |row| Cell::count(row.pairs as u64))
+            .column("ratio", "New / old", |row| Cell::Number(row.ratio, 3))
+            .column("low", "from", |row| end(row, |i| i.low))
+            .column("high", "to", |row| end(row, |i| i.high))
+            .column("smallest_detectable", "Smallest detectable", |row| {
+                Cell::number(row.smallest_detectable, 3)
+            })
+            .column("verdict", "New is", |row| Cell::text(row.verdict.label()))
+            .into_table("bench_ab", "New against old");
         let said = |failure: &Failure| format!("{} failed and is left out: {}", failure.id, failure.reason);
         table.notes.extend(self.failed.iter().map(said));
         table

@@ -3,9 +3,9 @@
 use super::series::by_configuration;
 use isostudy_design::record::{Allocations, BenchRun};
 use isostudy_design::{ConfigurationId, Stage};
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Columns, Table};
 
-const MIB: f64 = (1_u64 << 20) as f64;
+pub(super) const MIB: f64 = (1_u64 << 20) as f64;
 
 /// What one configuration asks for.
 pub(super) fn allocations_of<'a>(run: &'a BenchRun, id: &ConfigurationId) -> Option<&'a Allocations> {
@@ -14,24 +14,19 @@ pub(super) fn allocations_of<'a>(run: &'a BenchRun, id: &ConfigurationId) -> Opt
 
 /// Calls and bytes of every stage that asks for anything; no row where nobody counted.
 pub(super) fn allocations_table(run: &BenchRun) -> Table {
-    let columns = [
-        ("id", "Id"),
-        ("stage", "Stage"),
-        ("allocations", "Allocations"),
-        ("allocated_mib", "Allocated, MiB"),
-    ];
-    let mut table = Table::new("bench_allocations", "What was asked of the allocator", &columns);
-    for (id, _) in by_configuration(run) {
-        let Some(of) = allocations_of(run, id) else { continue };
-        for stage in Stage::ALL.into_iter().filter(|stage| stage.count(&of.calls) > 0) {
-            table.push(vec![
-                Cell::text(id),
-                Cell::text(stage.label()),
-                Cell::count(stage.count(&of.calls)),
-                Cell::Number(stage.count(&of.bytes) as f64 / MIB, 3),
-            ]);
-        }
-    }
+    let allocations = by_configuration(run).into_iter().filter_map(|(id, _)| allocations_of(run, id));
+    let asked = allocations.flat_map(|of| {
+        let stages = Stage::ALL.into_iter().filter(|stage| stage.count(&of.calls) > 0);
+        stages.map(move |stage| (of, stage))
+    });
+    let mut table = Columns::over(&asked.collect::<Vec<_>>())
+        .column("id", "Id", |(of, _)| Cell::text(&of.id))
+        .column("stage", "Stage", |(_, stage)| Cell::text(stage.label()))
+        .column("allocations", "Allocations", |(of, stage)| Cell::count(stage.count(&of.calls)))
+        .column("allocated_mib", "Allocated, MiB", |(of, stage)| {
+            Cell::Number(stage.count(&of.bytes) as f64 / MIB, 3)
+        })
+        .into_table("bench_allocations", "What was asked of the allocator");
     if !table.rows.is_empty() {
         table.notes.push(NOTE.into());
     }

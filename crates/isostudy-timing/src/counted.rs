@@ -1,12 +1,12 @@
 //! What was counted beside time: medians within a run, and instructions as a verdict of their own between two.
 
-use super::allocated::{self, allocations_of};
+use super::allocated::{self, MIB, allocations_of};
 use super::series::{Verdict, by_configuration, middle, of};
 use isostudy_design::ConfigurationId;
-use isostudy_design::record::{BenchRun, BenchSample, Counters};
+use isostudy_design::record::{Allocations, BenchRun, BenchSample, Counters};
 use isostudy_statistics::interval::Interval;
 use isostudy_statistics::median;
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Columns, Table};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -35,31 +35,30 @@ pub(super) fn counted_table(run: &BenchRun) -> Table {
     let series = by_configuration(run);
     let told = |column: &&Column| series.iter().any(|(_, samples)| median(samples, column.4).is_some());
     let (there, missing): (Vec<&Column>, Vec<&Column>) = COLUMNS.iter().partition(told);
-    let mut columns = vec![("id", "Id")];
-    columns.extend(there.iter().map(|column| (column.0, column.1)));
     let has_allocations = !run.allocations.is_empty();
+    let mut columns = Columns::over(&series).column("id", "Id", |(id, _)| Cell::text(id));
+    for &&(name, heading, unit, decimals, of) in &there {
+        columns = columns.column(name, heading, |(_, samples)| {
+            Cell::number(median(samples, of).map(|median| unit * median), decimals)
+        });
+    }
     if has_allocations {
-        columns.extend([
-            ("allocations", "Allocations"),
-            ("allocated_mib", "Allocated, MiB"),
-            ("peak_mib", "Peak of extraction, MiB"),
-        ]);
+        let asked = |id: &ConfigurationId, of: fn(&Allocations) -> f64| allocations_of(run, id).map(of);
+        columns = columns
+            .column("allocations", "Allocations", |(id, _)| {
+                Cell::number(asked(id, |of| of.calls.total as f64), 0)
+            })
+            .column("allocated_mib", "Allocated, MiB", |(id, _)| {
+                Cell::number(asked(id, |of| of.bytes.total as f64 / MIB), 3)
+            })
+            .column("peak_mib", "Peak of extraction, MiB", |(id, _)| {
+                Cell::number(peak_of_extraction(run, id).map(|bytes| bytes as f64 / MIB), 1)
+            });
     }
-    let mut table = Table::new("bench_counters", "What was counted beside time", &columns);
+    let mut table = columns.into_table("bench_counters", "What was counted beside time");
     if there.is_empty() && !has_allocations {
+        table.rows.clear();
         return table;
-    }
-    for (id, samples) in &series {
-        let cell = |column: &&Column| Cell::number(median(samples, column.4).map(|m| column.2 * m), column.3);
-        let mut row: Vec<Cell> = [Cell::text(id)].into_iter().chain(there.iter().map(cell)).collect();
-        if has_allocations {
-            let of = allocations_of(run, id);
-            let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
-            row.push(Cell::number(of.map(|of| of.calls.total as f64), 0));
-            row.push(Cell::number(of.map(|of| mib(of.bytes.total)), 3));
-            row.push(Cell::number(peak_of_extraction(run, id).map(mib), 1));
-        }
-        table.push(row);
     }
     if !there.is_empty() {
         table.notes.push(
@@ -82,8 +81,7 @@ pub(super) fn counted_table(run: &BenchRun) -> Table {
 /// The most that was resident in a process that extracts a configuration once, without what was resident before; `None` where making
 /// the field had taken more than that.
 fn peak_of_extraction(run: &BenchRun, id: &ConfigurationId) -> Option<u64> {
-    let memory = run.memory.iter().find(|memory| memory.id == *id)?;
-    (memory.peak_bytes > memory.peak_before_bytes).then(|| memory.peak_bytes - memory.before_bytes)
+    run.memory.iter().find(|memory| memory.id == *id)?.of_extraction()
 }
 
 /// Instructions of one configuration in both runs.

@@ -4,7 +4,7 @@ use super::differences::commit;
 use super::series::{by_configuration, middle, values};
 use isostudy_design::record::BenchRun;
 use isostudy_design::{ConfigurationId, Stage};
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Columns, Table};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -85,33 +85,20 @@ pub fn history(kept: &[Kept]) -> Vec<Step> {
 
 /// A line for each step.
 pub fn history_table(steps: &[Step]) -> Table {
-    let columns = [
-        ("number", "Number"),
-        ("name", "Name"),
-        ("commit", "Commit"),
-        ("rounds", "Rounds"),
-        ("mean", "Totals, over the first"),
-        ("least", "from"),
-        ("most", "to"),
-        ("slowest", "on"),
-        ("reference", "Reference work, over the first"),
-    ];
-    let mut table = Table::new("history", "Runs that were kept", &columns);
-    for (number, step) in (1_u64..).zip(steps) {
-        let by_ratio = |a: &(&ConfigurationId, &f64), b: &(&ConfigurationId, &f64)| a.1.total_cmp(b.1);
-        let most = step.ratios.iter().max_by(by_ratio);
-        table.push(vec![
-            Cell::count(number),
-            Cell::text(&step.kept.name),
-            Cell::text(step.kept.commit.as_deref().unwrap_or("unknown")),
-            Cell::count(u64::from(step.kept.rounds)),
-            Cell::number(step.mean, 3),
-            Cell::number(step.ratios.values().copied().reduce(f64::min), 3),
-            Cell::number(most.map(|(_, ratio)| *ratio), 3),
-            Cell::text(most.map_or_else(String::new, |(id, _)| id.to_string())),
-            Cell::number(step.reference, 3),
-        ]);
-    }
+    let numbered: Vec<(u64, &Step)> = (1..).zip(steps).collect();
+    let by_ratio = |a: &(&ConfigurationId, &f64), b: &(&ConfigurationId, &f64)| a.1.total_cmp(b.1);
+    let most = |step: &Step| step.ratios.iter().max_by(by_ratio).map(|(id, ratio)| (id.to_string(), *ratio));
+    let mut table = Columns::over(&numbered)
+        .column("number", "Number", |(number, _)| Cell::count(*number))
+        .column("name", "Name", |(_, step)| Cell::text(&step.kept.name))
+        .column("commit", "Commit", |(_, step)| Cell::text(step.kept.commit.as_deref().unwrap_or("unknown")))
+        .column("rounds", "Rounds", |(_, step)| Cell::count(u64::from(step.kept.rounds)))
+        .column("mean", "Totals, over the first", |(_, step)| Cell::number(step.mean, 3))
+        .column("least", "from", |(_, step)| Cell::number(step.ratios.values().copied().reduce(f64::min), 3))
+        .column("most", "to", |(_, step)| Cell::number(most(step).map(|(_, ratio)| ratio), 3))
+        .column("slowest", "on", |(_, step)| Cell::text(most(step).map(|(id, _)| id).unwrap_or_default()))
+        .column("reference", "Reference work, over the first", |(_, step)| Cell::number(step.reference, 3))
+        .into_table("history", "Runs that were kept");
     table.notes.push(
         "Median totals over those of the first run that asked for the same extraction: geometric mean of the configurations, \
          the least and the most. These are no verdicts; `isostudy bench compare` gives those."

@@ -37,6 +37,7 @@ mod outliers;
 mod quiet;
 mod ratios;
 mod series;
+mod stage_columns;
 pub mod stage_times;
 mod statements;
 pub mod sweep;

@@ -1,18 +1,20 @@
 //! Statements and comparisons as tables.
 
-use super::allocated::allocations_table;
+use super::allocated::{MIB, allocations_table};
 use super::compare::{Comparison, Row};
-use super::counted::counted_table;
+use super::counted::{InstructionRow, counted_table};
 use super::differences::{commit, sources};
 use super::quiet::warnings;
+use super::ratios::Ratio;
 use super::series::{Verdict, by_configuration};
+use super::stage_columns::with_stages;
 use super::statements::Statements;
 use crate::stage_times::{circumstances, measured, target};
-use isostudy_design::Stage;
 use isostudy_design::record::{BenchRun, PeakMemory};
+use isostudy_design::{ConfigurationId, Stage};
 use isostudy_statistics::interval::Interval;
 use isostudy_table::digits::MINUS;
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Columns, Table};
 
 const MS: f64 = 1e3;
 
@@ -41,46 +43,29 @@ fn tables(run: &BenchRun, statements: &Statements, with_ratios_of: fn(Stage) -> 
 }
 
 fn medians(run: &BenchRun, statements: &Statements) -> Table {
-    let mut columns = vec![
-        ("id", "Id"),
-        ("samples", "Samples"),
-        ("total_ms", "Total, ms"),
-        ("total_low_ms", "from"),
-        ("total_high_ms", "to"),
-    ];
-    columns.extend([
-        ("allocation_ms", "Allocation"),
-        ("sampling_ms", "Sampling"),
-        ("vertex_ms", "Vertex"),
-        ("geometry_ms", "Geometry"),
-        ("clustering_ms", "Clustering"),
-        ("normals_ms", "Normals"),
-        ("peak_mib", "Peak memory, MiB"),
-        ("extraction_mib", "of it extraction"),
-    ]);
-    let mut table = Table::new("bench_medians", "Median times", &columns);
-    for (id, _) in by_configuration(run) {
-        let of = |stage: Stage| {
-            let found = statements.medians.iter().find(|median| median.id == *id && median.stage == stage);
-            found.expect("every stage of every configuration has a median")
-        };
-        let total = of(Stage::Total);
-        let end = |end: fn(Interval) -> f64| Cell::number(total.seconds.interval.map(|i| MS * end(i)), 3);
-        let mut row = vec![
-            Cell::text(id),
-            Cell::count(total.samples as u64),
-            Cell::Number(MS * total.seconds.median, 3),
-            end(|i| i.low),
-            end(|i| i.high),
-        ];
-        row.extend(Stage::ALL[..6].iter().map(|stage| Cell::Number(MS * of(*stage).seconds.median, 3)));
-        let memory = statements.memory.iter().find(|memory| memory.id == *id);
-        let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
-        row.push(Cell::number(memory.map(|m| mib(m.peak_bytes)), 1));
+    let of = |id: &ConfigurationId, stage: Stage| {
+        let found = statements.medians.iter().find(|median| median.id == *id && median.stage == stage);
+        found.expect("every stage of every configuration has a median")
+    };
+    let end = |id: &ConfigurationId, end: fn(Interval) -> f64| {
+        Cell::number(of(id, Stage::Total).seconds.interval.map(|i| MS * end(i)), 3)
+    };
+    let memory = |id: &ConfigurationId, bytes: fn(&PeakMemory) -> Option<u64>| {
+        let found = statements.memory.iter().find(|memory| memory.id == *id);
+        Cell::number(found.and_then(bytes).map(|bytes| bytes as f64 / MIB), 1)
+    };
+    let ids: Vec<&ConfigurationId> = by_configuration(run).into_iter().map(|(id, _)| id).collect();
+    let columns = Columns::over(&ids)
+        .column("id", "Id", |id| Cell::text(id))
+        .column("samples", "Samples", |id| Cell::count(of(id, Stage::Total).samples as u64))
+        .column("total_ms", "Total, ms", |id| Cell::Number(MS * of(id, Stage::Total).seconds.median, 3))
+        .column("total_low_ms", "from", |id| end(id, |i| i.low))
+        .column("total_high_ms", "to", |id| end(id, |i| i.high));
+    let mut table = with_stages(columns, |id, stage| of(id, Stage::ALL[stage]).seconds.median)
+        .column("peak_mib", "Peak memory, MiB", |id| memory(id, |memory| Some(memory.peak_bytes)))
         // Below what making the field had taken before, extraction's own peak is not seen.
-        row.push(Cell::number(memory.and_then(PeakMemory::of_extraction).map(mib), 1));
-        table.push(row);
-    }
+        .column("extraction_mib", "of it extraction", |id| memory(id, PeakMemory::of_extraction))
+        .into_table("bench_medians", "Median times");
     table.notes.push(format!(
         "Over {} Medians with their order-statistic intervals of {:.1} %; medians of stages need not add up to that of the \
          total. Clustering is the edge collapse; integrated clustering is part of the vertex stage.",
@@ -110,32 +95,19 @@ fn medians(run: &BenchRun, statements: &Statements) -> Table {
 }
 
 fn ratios(statements: &Statements, of: fn(Stage) -> bool) -> Table {
-    let columns = [
-        ("stage", "Stage"),
-        ("first", "First"),
-        ("second", "Second"),
-        ("ratio", "second / first"),
-        ("low", "from"),
-        ("high", "to"),
-        ("floor", "Noise up to"),
-        ("verdict", "Second is"),
-        ("reason", "Why not more"),
-    ];
-    let mut table = Table::new("bench_ratios", "Configurations against each other", &columns);
-    for ratio in statements.ratios.iter().filter(|ratio| of(ratio.stage)) {
-        let end = |end: fn(Interval) -> f64| Cell::number(ratio.interval.map(end), 3);
-        table.push(vec![
-            Cell::text(ratio.stage.label()),
-            Cell::text(&ratio.first),
-            Cell::text(&ratio.second),
-            Cell::Number(ratio.ratio, 3),
-            end(|i| i.low),
-            end(|i| i.high),
-            Cell::number(ratio.floor, 3),
-            Cell::text(ratio.judgement.verdict.label()),
-            Cell::text(ratio.judgement.reason),
-        ]);
-    }
+    let end = |ratio: &Ratio, end: fn(Interval) -> f64| Cell::number(ratio.interval.map(end), 3);
+    let rows: Vec<&Ratio> = statements.ratios.iter().filter(|ratio| of(ratio.stage)).collect();
+    let mut table = Columns::over(&rows)
+        .column("stage", "Stage", |ratio| Cell::text(ratio.stage.label()))
+        .column("first", "First", |ratio| Cell::text(&ratio.first))
+        .column("second", "Second", |ratio| Cell::text(&ratio.second))
+        .column("ratio", "second / first", |ratio| Cell::Number(ratio.ratio, 3))
+        .column("low", "from", |ratio| end(ratio, |i| i.low))
+        .column("high", "to", |ratio| end(ratio, |i| i.high))
+        .column("floor", "Noise up to", |ratio| Cell::number(ratio.floor, 3))
+        .column("verdict", "Second is", |ratio| Cell::text(ratio.judgement.verdict.label()))
+        .column("reason", "Why not more", |ratio| Cell::text(ratio.judgement.reason))
+        .into_table("bench_ratios", "Configurations against each other");
     table.notes.push(
         "Medians over rounds of the ratio within a round; 95 % percentile intervals of 2,000 bootstrap resamples of \
          whole rounds; a verdict where the interval lies beyond the stage's noise floor and each third of the run has \
@@ -146,23 +118,15 @@ fn ratios(statements: &Statements, of: fn(Stage) -> bool) -> Table {
 }
 
 fn outliers(statements: &Statements) -> Table {
-    let columns = [
-        ("id", "Id"),
-        ("outliers", "Outliers"),
-        ("median_ms", "Median, ms"),
-        ("median_without_ms", "without them"),
-        ("change_percent", "change, %"),
-    ];
-    let mut table = Table::new("bench_outliers", "What outliers do to medians", &columns);
-    for effect in &statements.outlier_effects {
-        table.push(vec![
-            Cell::text(&effect.id),
-            Cell::count(effect.outliers as u64),
-            Cell::Number(MS * effect.median_s, 3),
-            Cell::Number(MS * effect.median_without_s, 3),
-            Cell::Number(100.0 * (effect.median_without_s / effect.median_s - 1.0), 2),
-        ]);
-    }
+    let mut table = Columns::over(&statements.outlier_effects)
+        .column("id", "Id", |effect| Cell::text(&effect.id))
+        .column("outliers", "Outliers", |effect| Cell::count(effect.outliers as u64))
+        .column("median_ms", "Median, ms", |effect| Cell::Number(MS * effect.median_s, 3))
+        .column("median_without_ms", "without them", |effect| Cell::Number(MS * effect.median_without_s, 3))
+        .column("change_percent", "change, %", |effect| {
+            Cell::Number(100.0 * (effect.median_without_s / effect.median_s - 1.0), 2)
+        })
+        .into_table("bench_outliers", "What outliers do to medians");
     table.notes.push(format!(
         "Totals further than {} scaled median absolute deviations from the median. They stay in every statement.",
         super::MAD_LIMIT
@@ -176,15 +140,13 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
         true => String::new(),
         false => " (NOT MEASURED ALIKE)".to_owned(),
     };
-    let mut with_cpu = columns(&[]);
-    with_cpu.insert(4, ("cpu_ratio", "CPU time, B / A"));
-    let mut totals = Table::new("bench_comparison", format!("B against A{across}"), &with_cpu);
-    for row in comparison.of_stage(Stage::Total) {
-        let mut cells = cells(row, false, &across);
-        let cpu_ratio = row.cpu_s.filter(|[a, _]| *a > 0.0).map(|[a, b]| b / a);
-        cells.insert(4, Cell::number(cpu_ratio, 3));
-        totals.push(cells);
-    }
+    let rows: Vec<&Row> = comparison.of_stage(Stage::Total).collect();
+    let times = of_times(Columns::over(&rows).column("id", "Id", |row| Cell::text(&row.id)))
+        .column("ratio", "B / A", |row| Cell::number(row.ratio, 3))
+        .column("cpu_ratio", "CPU time, B / A", |row| {
+            Cell::number(row.cpu_s.filter(|[a, _]| *a > 0.0).map(|[a, b]| b / a), 3)
+        });
+    let mut totals = judged(times, &across).into_table("bench_comparison", format!("B against A{across}"));
     totals.notes.extend(how(a, b));
     totals.notes.push(builds(a, comparison));
     if !comparison.across.is_empty() {
@@ -226,14 +188,15 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
          that would have got one; what is smaller cannot be seen in these runs."
             .into(),
     );
-    let mut stages = Table::new(
-        "bench_comparison_stages",
-        format!("B against A, stage by stage{across}"),
-        &columns(&[("stage", "Stage")]),
+    let rows: Vec<&Row> = comparison.rows.iter().filter(|row| row.stage != Stage::Total).collect();
+    let columns = Columns::over(&rows).column("stage", "Stage", |row| Cell::text(row.stage.label())).column(
+        "id",
+        "Id",
+        |row| Cell::text(&row.id),
     );
-    for row in comparison.rows.iter().filter(|row| row.stage != Stage::Total) {
-        stages.push(cells(row, true, &across));
-    }
+    let times = of_times(columns).column("ratio", "B / A", |row| Cell::number(row.ratio, 3));
+    let stages = judged(times, &across)
+        .into_table("bench_comparison_stages", format!("B against A, stage by stage{across}"));
     let mut tables = vec![totals, stages];
     if !comparison.instructions.is_empty() {
         tables.push(instructions(comparison, &across));
@@ -242,36 +205,22 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
 }
 
 fn instructions(comparison: &Comparison, across: &str) -> Table {
-    let columns = [
-        ("id", "Id"),
-        ("a_m", "A, millions"),
-        ("b_m", "B, millions"),
-        ("ratio", "B / A"),
-        ("low", "from"),
-        ("high", "to"),
-        ("floor", "Noise up to"),
-        ("verdict", "B has"),
-    ];
-    let mut table =
-        Table::new("bench_instructions", format!("Instructions of B against A{across}"), &columns);
-    for row in &comparison.instructions {
-        let end = |end: fn(Interval) -> f64| Cell::number(row.interval.map(end), 5);
-        let verdict = match row.verdict {
-            Verdict::Slower => "more",
-            Verdict::Faster => "fewer",
-            Verdict::CannotSay => "cannot say",
-        };
-        table.push(vec![
-            Cell::text(&row.id),
-            Cell::Number(1e-6 * row.counts[0], 3),
-            Cell::Number(1e-6 * row.counts[1], 3),
-            Cell::Number(row.ratio, 5),
-            end(|i| i.low),
-            end(|i| i.high),
-            Cell::Number(row.floor, 5),
-            Cell::text(verdict),
-        ]);
-    }
+    let end = |row: &InstructionRow, end: fn(Interval) -> f64| Cell::number(row.interval.map(end), 5);
+    let verdict = |verdict: Verdict| match verdict {
+        Verdict::Slower => "more",
+        Verdict::Faster => "fewer",
+        Verdict::CannotSay => "cannot say",
+    };
+    let mut table = Columns::over(&comparison.instructions)
+        .column("id", "Id", |row| Cell::text(&row.id))
+        .column("a_m", "A, millions", |row| Cell::Number(1e-6 * row.counts[0], 3))
+        .column("b_m", "B, millions", |row| Cell::Number(1e-6 * row.counts[1], 3))
+        .column("ratio", "B / A", |row| Cell::Number(row.ratio, 5))
+        .column("low", "from", |row| end(row, |i| i.low))
+        .column("high", "to", |row| end(row, |i| i.high))
+        .column("floor", "Noise up to", |row| Cell::Number(row.floor, 5))
+        .column("verdict", "B has", |row| Cell::text(verdict(row.verdict)))
+        .into_table("bench_instructions", format!("Instructions of B against A{across}"));
     table.notes.push("A verdict of its own; how the command ends is decided by times alone.".into());
     table
 }
@@ -314,40 +263,24 @@ fn builds(a: &BenchRun, comparison: &Comparison) -> String {
     }
 }
 
-fn columns(before: &[(&'static str, &'static str)]) -> Vec<(&'static str, &'static str)> {
-    let rest = [
-        ("id", "Id"),
-        ("a_ms", "A, ms"),
-        ("b_ms", "B, ms"),
-        ("ratio", "B / A"),
-        ("low", "from"),
-        ("high", "to"),
-        ("floor", "Noise up to"),
-        ("smallest_detectable", "Smallest detectable"),
-        ("verdict", "B is"),
-        ("reason", "Why not more"),
-    ];
-    [before, &rest].concat()
+/// Both times of a row.
+fn of_times<'a>(columns: Columns<'a, &'a Row>) -> Columns<'a, &'a Row> {
+    columns
+        .column("a_ms", "A, ms", |row| Cell::Number(MS * row.a_s, 3))
+        .column("b_ms", "B, ms", |row| Cell::Number(MS * row.b_s, 3))
 }
 
-fn cells(row: &Row, with_stage: bool, across: &str) -> Vec<Cell> {
-    let end = |end: fn(Interval) -> f64| Cell::number(row.interval.map(end), 3);
-    let mut cells = vec![
-        Cell::text(&row.id),
-        Cell::Number(MS * row.a_s, 3),
-        Cell::Number(MS * row.b_s, 3),
-        Cell::number(row.ratio, 3),
-        end(|i| i.low),
-        end(|i| i.high),
-        Cell::number(row.floor, 3),
-        Cell::number(row.smallest_detectable, 3),
-        Cell::text(format!("{}{}", row.judgement.verdict.label(), across.to_lowercase())),
-        Cell::text(row.judgement.reason),
-    ];
-    if with_stage {
-        cells.insert(0, Cell::text(row.stage.label()));
-    }
-    cells
+/// What can be said of a ratio. Where runs were not measured alike, the verdict says so too.
+fn judged<'a>(columns: Columns<'a, &'a Row>, across: &str) -> Columns<'a, &'a Row> {
+    let end = |row: &Row, end: fn(Interval) -> f64| Cell::number(row.interval.map(end), 3);
+    let across = across.to_lowercase();
+    columns
+        .column("low", "from", |row| end(row, |i| i.low))
+        .column("high", "to", |row| end(row, |i| i.high))
+        .column("floor", "Noise up to", |row| Cell::number(row.floor, 3))
+        .column("smallest_detectable", "Smallest detectable", |row| Cell::number(row.smallest_detectable, 3))
+        .column("verdict", "B is", |row| Cell::text(format!("{}{across}", row.judgement.verdict.label())))
+        .column("reason", "Why not more", |row| Cell::text(row.judgement.reason))
 }
 
 fn percent(log_ratio: f64) -> f64 {

@@ -1,9 +1,11 @@
 //! A sweep as tables.
 
 use super::budgets::Cost;
-use super::{FIT_FROM, Growth, Quantity, Sweep};
+use super::{FIT_FROM, Growth, Point, Quantity, SpeedUp, Sweep};
 use crate::BUSY;
-use isostudy_table::{Cell, Table};
+use crate::stage_columns::with_stages;
+use isostudy_statistics::interval::Interval;
+use isostudy_table::{Cell, Columns, Table};
 
 const MS: f64 = 1e3;
 
@@ -24,30 +26,16 @@ fn name(quantity: Quantity) -> String {
 }
 
 fn exponents(sweep: &Sweep) -> Table {
-    let columns = [
-        ("id", "Id"),
-        ("threads", "Threads"),
-        ("quantity", "Quantity"),
-        ("exponent", "Exponent"),
-        ("low", "from"),
-        ("high", "to"),
-        ("points", "Points"),
-    ];
-    let mut table = Table::new("sweep_exponents", "How cost grows with the cells per axis", &columns);
-    for growth in &sweep.growth {
-        let end = |end: fn(isostudy_statistics::interval::Interval) -> f64| {
-            Cell::number(growth.law.interval.map(end), 3)
-        };
-        table.push(vec![
-            Cell::text(&growth.id),
-            Cell::count(growth.threads.into()),
-            Cell::text(name(growth.quantity)),
-            Cell::Number(growth.law.exponent, 3),
-            end(|i| i.low),
-            end(|i| i.high),
-            Cell::count(growth.law.points as u64),
-        ]);
-    }
+    let end = |growth: &Growth, end: fn(Interval) -> f64| Cell::number(growth.law.interval.map(end), 3);
+    let mut table = Columns::over(&sweep.growth)
+        .column("id", "Id", |growth| Cell::text(&growth.id))
+        .column("threads", "Threads", |growth| Cell::count(growth.threads.into()))
+        .column("quantity", "Quantity", |growth| Cell::text(name(growth.quantity)))
+        .column("exponent", "Exponent", |growth| Cell::Number(growth.law.exponent, 3))
+        .column("low", "from", |growth| end(growth, |i| i.low))
+        .column("high", "to", |growth| end(growth, |i| i.high))
+        .column("points", "Points", |growth| Cell::count(growth.law.points as u64))
+        .into_table("sweep_exponents", "How cost grows with the cells per axis");
     let mut threads: Vec<u32> = sweep.growth.iter().map(|growth| growth.threads).collect();
     threads.dedup();
     threads.sort_unstable();
@@ -80,53 +68,36 @@ fn exponents_of(threads: u32, own: &[&Growth]) -> Table {
             quantities.push(name);
         }
     }
-    let mut columns = vec![("id", "Id")];
-    columns.extend(quantities.iter().map(|name| (name.as_str(), name.as_str())));
-    let noun = if threads == 1 { "thread" } else { "threads" };
-    let mut table = Table::new("sweep_exponents", format!("On {threads} {noun}"), &columns);
     let mut ids: Vec<_> = own.iter().map(|growth| &growth.id).collect();
     ids.dedup();
-    for id in ids {
-        let mut row = vec![Cell::text(id)];
-        row.extend(quantities.iter().map(|wanted| {
-            let found = own.iter().find(|growth| growth.id == *id && name(growth.quantity) == *wanted);
+    let mut columns = Columns::over(&ids).column("id", "Id", |id| Cell::text(id));
+    for quantity in &quantities {
+        columns = columns.column(quantity, quantity, |id| {
+            let found = own.iter().find(|growth| growth.id == **id && name(growth.quantity) == *quantity);
             found.map_or(Cell::Missing, |growth| {
                 let half = growth.law.interval.map(|i| (i.high - i.low) / 2.0);
                 let spread = half.map_or(String::new(), |half| format!(" \u{b1} {half:.2}"));
                 Cell::text(format!("{:.2}{spread}", growth.law.exponent))
             })
-        }));
-        table.push(row);
+        });
     }
-    table
+    let noun = if threads == 1 { "thread" } else { "threads" };
+    columns.into_table("sweep_exponents", format!("On {threads} {noun}"))
 }
 
 fn speed_ups(sweep: &Sweep) -> Table {
-    let columns = [
-        ("id", "Id"),
-        ("cells", "Cells"),
-        ("threads", "Threads"),
-        ("speed_up", "Speed-up"),
-        ("low", "from"),
-        ("high", "to"),
-        ("efficiency", "Efficiency"),
-    ];
-    let mut table = Table::new("sweep_speed_up", "What more threads are worth", &columns);
     let fewest = sweep.points.iter().map(|point| point.threads).min().unwrap_or(1);
-    for found in &sweep.speed_ups {
-        let end = |end: fn(isostudy_statistics::interval::Interval) -> f64| {
-            Cell::number(found.interval.map(end), 2)
-        };
-        table.push(vec![
-            Cell::text(&found.id),
-            Cell::count(found.cells.into()),
-            Cell::count(found.threads.into()),
-            Cell::Number(found.ratio, 2),
-            end(|i| i.low),
-            end(|i| i.high),
-            Cell::Number(found.ratio * f64::from(fewest) / f64::from(found.threads), 2),
-        ]);
-    }
+    let end = |found: &SpeedUp, end: fn(Interval) -> f64| Cell::number(found.interval.map(end), 2);
+    let efficiency = |found: &SpeedUp| found.ratio * f64::from(fewest) / f64::from(found.threads);
+    let mut table = Columns::over(&sweep.speed_ups)
+        .column("id", "Id", |found| Cell::text(&found.id))
+        .column("cells", "Cells", |found| Cell::count(found.cells.into()))
+        .column("threads", "Threads", |found| Cell::count(found.threads.into()))
+        .column("speed_up", "Speed-up", |found| Cell::Number(found.ratio, 2))
+        .column("low", "from", |found| end(found, |i| i.low))
+        .column("high", "to", |found| end(found, |i| i.high))
+        .column("efficiency", "Efficiency", |found| Cell::Number(efficiency(found), 2))
+        .into_table("sweep_speed_up", "What more threads are worth");
     table.notes.push(format!(
         "Median time on {fewest} over median time on so many threads; intervals from both medians' order statistics, at 95 % for all \
          configurations of a resolution together, where the rounds suffice for that. Efficiency is the speed-up over the share of threads."
@@ -135,33 +106,23 @@ fn speed_ups(sweep: &Sweep) -> Table {
 }
 
 fn budgets(sweep: &Sweep) -> Table {
-    let columns = [
-        ("object", "Object"),
-        ("cost", "For"),
-        ("rank", "Rank"),
-        ("method", "Method"),
-        ("radius_ratio_mean", "Mean radius ratio"),
-        ("cells", "Cells"),
-        ("triangles", "Triangles"),
-    ];
-    let mut table = Table::new("sweep_quality", "The most regular triangles for a cost", &columns);
-    for budget in &sweep.budgets {
-        let cost = match budget.cost {
-            Cost::Triangles(triangles) => format!("{triangles:.0} triangles"),
-            Cost::Seconds(seconds) => format!("{:.2} ms", MS * seconds),
-        };
-        for (rank, best) in (1..).zip(&budget.methods) {
-            table.push(vec![
-                Cell::text(&budget.object),
-                Cell::text(&cost),
-                Cell::count(rank),
-                Cell::text(best.method),
-                Cell::Number(best.radius_ratio, 4),
-                Cell::Number(best.cells, 0),
-                Cell::Number(best.triangles, 0),
-            ]);
-        }
-    }
+    let cost = |cost: Cost| match cost {
+        Cost::Triangles(triangles) => format!("{triangles:.0} triangles"),
+        Cost::Seconds(seconds) => format!("{:.2} ms", MS * seconds),
+    };
+    let ranked = sweep
+        .budgets
+        .iter()
+        .flat_map(|budget| (1..).zip(&budget.methods).map(move |(rank, best)| (budget, rank, best)));
+    let mut table = Columns::over(&ranked.collect::<Vec<_>>())
+        .column("object", "Object", |(budget, ..)| Cell::text(&budget.object))
+        .column("cost", "For", |(budget, ..)| Cell::text(cost(budget.cost)))
+        .column("rank", "Rank", |(_, rank, _)| Cell::count(*rank))
+        .column("method", "Method", |(.., best)| Cell::text(best.method))
+        .column("radius_ratio_mean", "Mean radius ratio", |(.., best)| Cell::Number(best.radius_ratio, 4))
+        .column("cells", "Cells", |(.., best)| Cell::Number(best.cells, 0))
+        .column("triangles", "Triangles", |(.., best)| Cell::Number(best.triangles, 0))
+        .into_table("sweep_quality", "The most regular triangles for a cost");
     table.notes.push(
         "Each method at the resolution that the cost buys it, interpolated between measured ones; the cost is the middle, on \
          logarithms, of what all methods of the object reach. Times are those on the fewest threads."
@@ -171,52 +132,28 @@ fn budgets(sweep: &Sweep) -> Table {
 }
 
 fn points(sweep: &Sweep) -> Table {
-    let mut columns = vec![
-        ("id", "Id"),
-        ("cells", "Cells"),
-        ("threads", "Threads"),
-        ("samples", "Sample points"),
-        ("vertices", "Vertices"),
-        ("triangles", "Triangles"),
-        ("radius_ratio_mean", "Mean radius ratio"),
-        ("total_ms", "Total, ms"),
-        ("total_low_ms", "from"),
-        ("total_high_ms", "to"),
-    ];
-    columns.extend([
-        ("allocation_ms", "Allocation"),
-        ("sampling_ms", "Sampling"),
-        ("vertex_ms", "Vertex"),
-        ("geometry_ms", "Geometry"),
-        ("clustering_ms", "Clustering"),
-        ("normals_ms", "Normals"),
-        ("ns_per_sample", "ns a sample point"),
-        ("ns_per_triangle", "ns a triangle"),
-        ("memory_mib", "Memory, MiB"),
-    ]);
-    let mut table = Table::new("sweep", "Every resolution and thread count", &columns);
-    for point in &sweep.points {
-        let total = point.total_s;
-        let end = |end: fn(isostudy_statistics::interval::Interval) -> f64| {
-            Cell::number(total.interval.map(|i| MS * end(i)), 3)
-        };
-        let each = |count: u64| Cell::number((count > 0).then(|| 1e9 * total.median / count as f64), 1);
-        let mut row = vec![
-            Cell::text(&point.id),
-            Cell::count(point.cells.into()),
-            Cell::count(point.threads.into()),
-            Cell::count(point.samples),
-            Cell::count(point.vertices),
-            Cell::count(point.triangles),
-            Cell::number(point.radius_ratio, 4),
-            Cell::Number(MS * total.median, 3),
-            end(|i| i.low),
-            end(|i| i.high),
-        ];
-        row.extend(point.stages_s.map(|seconds| Cell::Number(MS * seconds, 3)));
-        row.extend([each(point.samples), each(point.triangles)]);
-        row.push(Cell::number(point.memory_bytes.map(|bytes| bytes as f64 / f64::from(1 << 20)), 2));
-        table.push(row);
-    }
-    table
+    let end = |point: &Point, end: fn(Interval) -> f64| {
+        Cell::number(point.total_s.interval.map(|i| MS * end(i)), 3)
+    };
+    let each = |point: &Point, count: u64| {
+        Cell::number((count > 0).then(|| 1e9 * point.total_s.median / count as f64), 1)
+    };
+    let columns = Columns::over(&sweep.points)
+        .column("id", "Id", |point| Cell::text(&point.id))
+        .column("cells", "Cells", |point| Cell::count(point.cells.into()))
+        .column("threads", "Threads", |point| Cell::count(point.threads.into()))
+        .column("samples", "Sample points", |point| Cell::count(point.samples))
+        .column("vertices", "Vertices", |point| Cell::count(point.vertices))
+        .column("triangles", "Triangles", |point| Cell::count(point.triangles))
+        .column("radius_ratio_mean", "Mean radius ratio", |point| Cell::number(point.radius_ratio, 4))
+        .column("total_ms", "Total, ms", |point| Cell::Number(MS * point.total_s.median, 3))
+        .column("total_low_ms", "from", |point| end(point, |i| i.low))
+        .column("total_high_ms", "to", |point| end(point, |i| i.high));
+    with_stages(columns, |point, stage| point.stages_s[stage])
+        .column("ns_per_sample", "ns a sample point", |point| each(point, point.samples))
+        .column("ns_per_triangle", "ns a triangle", |point| each(point, point.triangles))
+        .column("memory_mib", "Memory, MiB", |point| {
+            Cell::number(point.memory_bytes.map(|bytes| bytes as f64 / f64::from(1 << 20)), 2)
+        })
+        .into_table("sweep", "Every resolution and thread count")
 }
