@@ -98,23 +98,6 @@ pub fn components(mesh: &TriangleMesh) -> Vec<u32> {
     mesh.triangles.iter().map(&mut number).collect()
 }
 
-/// The component with the most triangles, the earliest of equals, without the vertices of the others. Components
-/// are connected through shared vertices.
-///
-/// # Panics
-/// If a triangle's index is out of range.
-pub fn largest_component(mesh: &TriangleMesh) -> TriangleMesh {
-    let numbers = components(mesh);
-    let mut sizes = vec![0u32; numbers.iter().max().map_or(0, |&last| last as usize + 1)];
-    for &number in &numbers {
-        sizes[number as usize] += 1;
-    }
-    // `max_by_key` keeps the last of equals, hence the reversal.
-    let largest = numbers.iter().copied().rev().max_by_key(|&number| sizes[number as usize]);
-    let triangles = mesh.triangles.iter().zip(&numbers).filter(|(_, number)| Some(**number) == largest);
-    drop_unused_vertices(&TriangleMesh { triangles: triangles.map(|(t, _)| *t).collect(), ..mesh.clone() })
-}
-
 /// The mesh with every triangle turned round, normals with it.
 pub fn flip(mesh: &TriangleMesh) -> TriangleMesh {
     TriangleMesh {

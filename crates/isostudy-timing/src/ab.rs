@@ -5,6 +5,7 @@
 //! gives a process stays with it and is in all of its rounds alike. Half of the 5 % that intervals may miss is the mean's over all
 //! configurations, the other half is shared by the configurations (Bonferroni).
 
+use super::brief::{change, listed};
 use super::series::{Verdict, middle};
 use isostudy_design::ConfigurationId;
 use isostudy_design::record::{AbPair, AbRun, BenchSample, Failure};
@@ -19,8 +20,6 @@ use std::collections::BTreeMap;
 pub const AB_SCHEMA: u32 = 1;
 /// The chance that any interval of a quantity misses.
 const MISSES: f64 = 0.05;
-/// How many verdicts are written out in short.
-const LISTED: usize = 4;
 
 /// What of an extraction is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -201,9 +200,7 @@ impl AbComparison {
                     .filter_map(|row| Some(format!("{} {}", row.id.as_ref()?, change(row.ratio))))
                     .collect();
                 if quantity == Quantity::Time && !found.is_empty() {
-                    let more = found.len().saturating_sub(LISTED);
-                    let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
-                    lines.push(format!("{word}: {}{rest}.", found[..found.len() - more].join(", ")));
+                    lines.push(format!("{word}: {}.", listed(found)));
                 }
             }
         }
@@ -217,10 +214,8 @@ impl AbComparison {
             ));
         }
         if !self.failed.is_empty() {
-            let ids: Vec<String> = self.failed.iter().map(|failure| failure.id.to_string()).collect();
-            let more = ids.len().saturating_sub(LISTED);
-            let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
-            lines.push(format!("Failed and left out: {}{rest}.", ids[..ids.len() - more].join(", ")));
+            let ids = listed(self.failed.iter().map(|failure| failure.id.to_string()));
+            lines.push(format!("Failed and left out: {ids}."));
         }
         lines
     }
@@ -255,10 +250,6 @@ fn told(row: &AbRow) -> String {
         Verdict::CannotSay => format!("cannot say; {detectable}"),
         verdict => format!("{} by {}; {detectable}", verdict.label(), change(row.ratio)),
     }
-}
-
-fn change(ratio: f64) -> String {
-    format!("{:+.1} %", 100.0 * (ratio - 1.0))
 }
 
 #[cfg(test)]

@@ -116,8 +116,9 @@ fn undecided(totals: &[&Row]) -> Option<String> {
     })
 }
 
-fn listed(words: impl Iterator<Item = String>) -> String {
-    let mut words: Vec<String> = words.collect();
+/// The first of them, and how many more there are.
+pub(super) fn listed(words: impl IntoIterator<Item = String>) -> String {
+    let mut words: Vec<String> = words.into_iter().collect();
     let more = words.len().saturating_sub(LISTED);
     words.truncate(LISTED);
     let list = words.join(", ");
@@ -135,6 +136,7 @@ fn percent(share: f64) -> String {
     format!("{percent:.decimals$} %")
 }
 
-fn change(ratio: f64) -> String {
+/// By how much a ratio is off 1.
+pub(super) fn change(ratio: f64) -> String {
     format!("{:+.1} %", 100.0 * (ratio - 1.0))
 }

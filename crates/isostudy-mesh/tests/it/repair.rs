@@ -21,19 +21,6 @@ fn unused_vertices_go_and_normals_move_along() {
 }
 
 #[test]
-fn the_largest_component_stays() {
-    let both = joined(&joined(&tetrahedron(), &cube()), &tetrahedron());
-    let largest = largest_component(&both);
-    assert_eq!(largest.triangles, cube().triangles);
-    assert_eq!(
-        largest_component(&joined(&cube(), &cube())).positions,
-        cube().positions,
-        "the first of equals"
-    );
-    assert_eq!(largest_component(&TriangleMesh::default()), TriangleMesh::default());
-}
-
-#[test]
 fn a_missing_cube_face_is_closed_where_it_was() {
     let mut open = cube();
     open.triangles.drain(..2);
