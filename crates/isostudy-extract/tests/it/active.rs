@@ -1,7 +1,7 @@
 //! Structures that find the cells of a surface, against the rule itself; and extractions that leave bricks out, against those that do
 //! not.
 
-#[path = "../../isostudy-volume/benches/isovalues/structures/mod.rs"]
+#[path = "../../../isostudy-volume/benches/isovalues/structures/mod.rs"]
 mod structures;
 
 use std::collections::BTreeSet;
