@@ -6,8 +6,9 @@
 //! The overall factor of a method is the sum of its group factors, and mixes these scales.
 
 use crate::fraction::Fraction;
-use crate::tally::Tally;
+use crate::tally::{Tally, TallyRow};
 use isostudy_design::{Factor, Group, Level, MethodId, Study};
+use isostudy_statistics::interval::{Interval, t_over_respondents, wilson};
 
 /// Answers that chose something, ties, and all answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,6 +116,36 @@ pub fn shared(study: &Study, group: &Group, factor: Factor) -> Option<Level> {
 /// "a" or "an".
 pub fn article(noun: &str) -> &'static str {
     if noun.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }
+}
+
+/// The interval of a method's factor in a group on one object, over respondents: Wilson's where each of them gave one answer,
+/// which is one in so many for the method; else the t interval of their own factors, cut at 0 and at its cap. `None` for
+/// fewer than two respondents.
+pub fn interval(tally: &Tally, factor: &GroupFactor, object: usize) -> Option<Interval> {
+    let own = wins_of_answers(tally, factor, object);
+    if own.len() > 1 && own.iter().all(|&[_, answers]| answers == 1) {
+        return wilson(own.iter().map(|&[wins, _]| u64::from(wins)).sum(), own.len() as u64);
+    }
+    let mut scores: Vec<f64> =
+        own.into_iter().map(|[wins, answers]| f64::from(wins) / f64::from(answers)).collect();
+    // Sums of doubles depend on their order, and people come in any.
+    scores.sort_by(f64::total_cmp);
+    t_over_respondents(&scores).map(|interval| interval.cut(0.0, factor.cap().value()))
+}
+
+/// By respondent who answered any of a group's questions on one object: answers for a method, and answers.
+fn wins_of_answers(tally: &Tally, factor: &GroupFactor, object: usize) -> Vec<[u32; 2]> {
+    let mut own = vec![[0; 2]; tally.respondents];
+    let asked = |row: &&TallyRow| (row.group as usize, row.object as usize) == (factor.group, object);
+    for row in tally.rows.iter().filter(asked) {
+        let [wins, answers] = &mut own[row.respondent as usize];
+        *answers += row.answers;
+        if row.chosen == Some(factor.method) {
+            *wins += row.answers;
+        }
+    }
+    own.retain(|&[_, answers]| answers > 0);
+    own
 }
 
 #[cfg(test)]

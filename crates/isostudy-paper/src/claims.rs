@@ -14,7 +14,7 @@ pub(crate) mod times;
 use crate::verdict::{Verdict, prints_alike, relative_difference};
 use isostudy_design::published::Claim;
 use isostudy_inference::inputs::Inputs;
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Table, field};
 use numbers::Numbers;
 
 /// What a claim comes to.
@@ -61,34 +61,22 @@ fn joined<const N: usize>(parts: [&str; N]) -> String {
 
 /// The claims and what they come to, in the order they are listed.
 pub(crate) fn table(source: &str, claims: &[(&Claim, Finding)]) -> Option<Table> {
-    let mut table = Table::new(
-        "claims",
-        format!("Claims of the text, {}", source),
-        &[
-            ("id", "Id"),
-            ("statement", "Claim"),
-            ("unit", "Unit"),
-            ("published", "Published"),
-            ("from_published_tables", "From its tables"),
-            ("ours_as_published", "Ours, as defined there"),
-            ("ours", "Ours"),
-            ("verdict", "Verdict"),
-            ("reason", "Reason"),
-        ],
-    );
-    for (claim, found) in claims {
-        table.push(vec![
-            Cell::text(&claim.id),
-            Cell::text(&claim.statement),
-            Cell::text(&claim.unit),
-            Cell::number(claim.value, found.decimals),
-            Cell::number(found.from_published, found.decimals),
-            Cell::number(found.as_published, found.decimals),
-            Cell::number(found.ours, found.decimals),
-            Cell::text(found.verdict.label()),
-            Cell::text(joined([found.verdict.reason(), &found.remark])),
-        ]);
-    }
+    let fields = [
+        field("id", "Id", |(claim, _): &&(&Claim, Finding)| Cell::text(&claim.id)),
+        field("statement", "Claim", |(claim, _)| Cell::text(&claim.statement)),
+        field("unit", "Unit", |(claim, _)| Cell::text(&claim.unit)),
+        field("published", "Published", |(claim, found)| Cell::number(claim.value, found.decimals)),
+        field("from_published_tables", "From its tables", |(_, found)| {
+            Cell::number(found.from_published, found.decimals)
+        }),
+        field("ours_as_published", "Ours, as defined there", |(_, found)| {
+            Cell::number(found.as_published, found.decimals)
+        }),
+        field("ours", "Ours", |(_, found)| Cell::number(found.ours, found.decimals)),
+        field("verdict", "Verdict", |(_, found)| Cell::text(found.verdict.label())),
+        field("reason", "Reason", |(_, found)| Cell::text(joined([found.verdict.reason(), &found.remark]))),
+    ];
+    let mut table = Table::of("claims", format!("Claims of the text, {source}"), &fields, claims);
     table.notes.push(
         "From its tables: computed from the published tables. Ours, as defined there: from our numbers by the \
          published definition. Ours: by the right definition, where the reason names another."

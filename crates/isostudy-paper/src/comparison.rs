@@ -6,7 +6,7 @@ mod preferences;
 
 use crate::verdict::Verdict;
 use isostudy_inference::inputs::Inputs;
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Table, field};
 
 /// One published number beside ours.
 #[derive(Debug, Clone)]
@@ -36,30 +36,17 @@ pub(crate) fn tables(source: &str, all: &[Compared]) -> Vec<Table> {
     if all.is_empty() {
         return Vec::new();
     }
-    let mut table = Table::new(
-        "comparison",
-        format!("Published numbers, {source}, beside ours"),
-        &[
-            ("table", "Table"),
-            ("row", "Row"),
-            ("quantity", "Quantity"),
-            ("published", "Published"),
-            ("ours", "Ours"),
-            ("verdict", "Verdict"),
-            ("reason", "Reason"),
-        ],
-    );
-    for compared in all {
-        table.push(vec![
-            Cell::text(compared.source),
-            Cell::text(&compared.row),
-            Cell::text(&compared.quantity),
-            Cell::Number(compared.published, compared.decimals),
-            Cell::number(compared.ours, compared.decimals),
-            Cell::text(compared.verdict.label()),
-            Cell::text(compared.verdict.reason()),
-        ]);
-    }
+    let fields = [
+        field("table", "Table", |of: &&Compared| Cell::text(of.source)),
+        field("row", "Row", |of| Cell::text(&of.row)),
+        field("quantity", "Quantity", |of| Cell::text(&of.quantity)),
+        field("published", "Published", |of| Cell::Number(of.published, of.decimals)),
+        field("ours", "Ours", |of| Cell::number(of.ours, of.decimals)),
+        field("verdict", "Verdict", |of| Cell::text(of.verdict.label())),
+        field("reason", "Reason", |of| Cell::text(of.verdict.reason())),
+    ];
+    let caption = format!("Published numbers, {source}, beside ours");
+    let mut table = Table::of("comparison", caption, &fields, all);
     table.notes.push(
         "Equal: alike in every printed digit. A tolerance in per cent is relative to the published number."
             .into(),

@@ -5,6 +5,7 @@ mod axis;
 mod bars;
 mod canvas;
 mod distributions;
+mod draft;
 mod edge_groups;
 mod error;
 mod forest;
@@ -25,12 +26,11 @@ mod sweep;
 mod worths;
 
 use crate::figure::Figure;
-use canvas::Canvas;
+use draft::Unfinished;
 pub use edge_groups::{KindShare, TableQuality, edge_groups_figure};
 pub use error::FigureError;
 pub use history::history_figure;
 use isostudy_inference::{Preferences, Results};
-use legend::Swatch;
 pub use power::power_figure;
 use rayon::prelude::*;
 
@@ -71,7 +71,7 @@ fn drafts(results: &Results<'_>) -> Vec<Unfinished> {
         let found = " The table of methods says what the codes stand for.";
         drafts.iter_mut().for_each(|draft| draft.caption += found);
     }
-    if let Some(found) = crate::tables::design::budgets(inputs) {
+    if let Some(found) = crate::budgets::budgets(inputs) {
         drafts.iter_mut().for_each(|draft| draft.caption += &format!(" {found}"));
     }
     if let Some((answered, preferences)) = inputs.answers.zip(results.preferences.as_ref()) {
@@ -86,44 +86,6 @@ fn drafts(results: &Results<'_>) -> Vec<Unfinished> {
         drafts.extend(prediction.map(|found| prediction::draft(inputs.study, found, &answered.declared)));
     }
     drafts
-}
-
-/// Width of every figure in units.
-const WIDTH: f64 = 1000.0;
-
-/// Objects in rows of three panels at most, as evenly as they go.
-fn in_rows(objects: &[usize]) -> Vec<&[usize]> {
-    const MOST: usize = 3;
-    let rows = objects.len().div_ceil(MOST).max(1);
-    objects.chunks(objects.len().div_ceil(rows).max(1)).collect()
-}
-
-/// A figure before it is painted.
-struct Unfinished {
-    name: &'static str,
-    caption: String,
-    canvas: Canvas,
-}
-
-impl Unfinished {
-    fn finish(self) -> Result<Figure, FigureError> {
-        Ok(Figure {
-            svg: self.canvas.to_svg(self.name)?,
-            png: self.canvas.to_png(self.name)?,
-            name: self.name.into(),
-            caption: self.caption,
-        })
-    }
-}
-
-/// A canvas with its legend drawn, and where the space under the legend begins.
-fn canvas_with_legend(entries: &[(Swatch, String)], content_height: f64) -> (Canvas, f64) {
-    const MARGIN: f64 = 10.0;
-    const LEFT: f64 = 80.0;
-    let top = MARGIN + legend::height(entries, WIDTH - LEFT);
-    let mut canvas = Canvas::new(WIDTH, top + content_height + MARGIN);
-    legend::draw(&mut canvas, entries, LEFT, MARGIN);
-    (canvas, top)
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 //! # Guarantees
 //! - The same results give the same bytes.
 
+mod budgets;
 mod data;
 mod figure;
 mod figures;

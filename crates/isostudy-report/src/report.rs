@@ -8,6 +8,7 @@ mod asked;
 mod checks;
 mod decision;
 mod declaration;
+mod evidence;
 mod factors;
 mod finding;
 mod limits;
@@ -27,18 +28,10 @@ pub use crate::statement::{Block, Finding, Published, Section, Standing};
 
 use crate::figure::Figure;
 use crate::words::{capital, counted, list};
-use isostudy_design::Study;
-use isostudy_inference::ballots::BallotGroup;
-use isostudy_inference::glance::Row;
-use isostudy_inference::hypotheses::{Hypothesis, Rules};
-use isostudy_inference::inputs::Inputs;
-use isostudy_inference::omnibus::Omnibus;
+use evidence::Evidence;
 use isostudy_inference::results::Decision;
-use isostudy_inference::scale::GroupScale;
-use isostudy_inference::{Preferences, Results, audit};
-use isostudy_statistics::{DeclaredBallot, ShownBallot};
+use isostudy_inference::{Preferences, Results};
 use isostudy_table::Table;
-use std::collections::BTreeSet;
 
 /// A report.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,117 +57,6 @@ pub struct SummaryLine {
     pub label: &'static str,
     /// The line.
     pub text: String,
-}
-
-/// What sentences are made from.
-struct Evidence<'a> {
-    study: Option<&'a Study>,
-    /// What the answers say; none without answers.
-    preferences: Option<&'a Preferences<'a>>,
-    /// Answers to comparisons, by the sides that people saw.
-    shown: &'a [ShownBallot],
-    /// The same answers, about items.
-    declared: &'a [DeclaredBallot],
-    /// How many answers were asked for: what stands on people's forms.
-    asked: usize,
-    /// How many people are left out, by a rule that the study declares.
-    excluded: usize,
-    /// Whether the file says which item was on which side.
-    sides_recorded: bool,
-    /// Whether it says on what screens people looked.
-    screens_recorded: bool,
-    /// Whether it says at which place a question was shown.
-    order_recorded: bool,
-    /// The configurations that failed.
-    left_out: Vec<String>,
-    /// What was assumed of the answers' file, in sentences.
-    assumptions: Vec<String>,
-    groups: &'a [BallotGroup],
-    hypotheses: &'a [Hypothesis],
-    omnibus: &'a [Omnibus],
-    /// Every contrast in a row.
-    contrasts: &'a [Row],
-    /// The items of each group on one scale.
-    scales: &'a [GroupScale<'a>],
-}
-
-impl<'a> Evidence<'a> {
-    fn of_study(results: &'a Results<'a>) -> Self {
-        let Inputs { study, answers, left_out, .. } = results.inputs;
-        Self {
-            study: Some(study),
-            asked: answers.map_or(0, |answered| asked::asked(study, answered)),
-            left_out: left_out.iter().map(|(id, _)| id.to_string()).collect(),
-            ..results.preferences.as_ref().map_or_else(Self::of_nothing, Self::of)
-        }
-    }
-
-    fn of_nothing() -> Self {
-        Self {
-            study: None,
-            preferences: None,
-            shown: &[],
-            declared: &[],
-            asked: 0,
-            excluded: 0,
-            sides_recorded: true,
-            screens_recorded: false,
-            order_recorded: false,
-            left_out: Vec::new(),
-            assumptions: Vec::new(),
-            groups: &[],
-            hypotheses: &[],
-            omnibus: &[],
-            contrasts: &[],
-            scales: &[],
-        }
-    }
-
-    fn of(preferences: &'a Preferences<'a>) -> Self {
-        let responses = preferences.responses;
-        Self {
-            study: preferences.study,
-            preferences: Some(preferences),
-            shown: &preferences.shown,
-            declared: &preferences.declared,
-            // Without a study nobody knows what was asked for.
-            asked: preferences.shown.len(),
-            excluded: preferences.excluded,
-            sides_recorded: responses.sides_recorded,
-            screens_recorded: !responses.screens.is_empty(),
-            order_recorded: responses.answers.iter().any(|answer| answer.order.is_some()),
-            left_out: Vec::new(),
-            assumptions: responses.assumptions(),
-            groups: preferences.groups,
-            hypotheses: &preferences.hypotheses,
-            omnibus: &preferences.omnibus,
-            contrasts: &preferences.contrasts,
-            scales: &preferences.scales,
-        }
-    }
-
-    /// What the probes found.
-    fn audit(&self) -> &'a [audit::Report] {
-        self.preferences.map_or(&[], |of| &of.audit)
-    }
-
-    /// Whether the probes found that people favour a side.
-    fn is_side_favoured(&self) -> bool {
-        self.preferences.is_some_and(Preferences::is_side_favoured)
-    }
-
-    /// What decides conclusions.
-    fn rules(&self) -> Rules {
-        self.study.map_or_else(Rules::default, |study| Rules::of(&study.file.analysis))
-    }
-
-    fn participants(&self) -> usize {
-        self.shown.iter().map(|b| b.participant()).collect::<BTreeSet<_>>().len()
-    }
-
-    fn questions(&self) -> usize {
-        self.shown.iter().map(|b| b.question()).collect::<BTreeSet<_>>().len()
-    }
 }
 
 /// The tables that the published text prints, in its order; the first ones are read at once.

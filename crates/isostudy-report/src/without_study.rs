@@ -4,9 +4,9 @@ use crate::tables;
 use isostudy_inference::Preferences;
 use isostudy_inference::ballots::outcome;
 use isostudy_inference::open_groups::group_of_question;
-use isostudy_responses::Responses;
-use isostudy_statistics::interval;
-use isostudy_table::{Cell, Table};
+use isostudy_responses::{Question, Responses};
+use isostudy_statistics::interval::{self, Interval};
+use isostudy_table::{Cell, Table, field};
 
 /// Every table about answers that no study explains: `answer_counts`, `tests`, `worths`, `models`, `respondents`, `screened`,
 /// `audit` and `screens`, as far as they have rows.
@@ -17,25 +17,30 @@ pub fn answer_tables(preferences: &Preferences<'_>) -> Vec<Table> {
     tables
 }
 
+/// A question, and how often the item with the lower place, neither and the other were chosen.
+struct Row<'a> {
+    answers: &'a Responses,
+    question: &'a Question,
+    group: &'a str,
+    counts: [u64; 3],
+}
+
+impl Row<'_> {
+    fn item(&self, item: u32) -> &str {
+        &self.answers.items[item as usize]
+    }
+
+    fn all(&self) -> u64 {
+        self.counts.iter().sum()
+    }
+
+    fn interval(&self) -> Option<Interval> {
+        interval::wilson(self.counts[2], self.all())
+    }
+}
+
 /// How every question was answered, the item with the lower place in the [`Responses`] on the left.
 fn counts(answers: &Responses) -> Table {
-    let mut table = Table::new(
-        "answer_counts",
-        "Answers per question",
-        &[
-            ("group", "Group"),
-            ("object", "Object"),
-            ("question", "Question"),
-            ("left", "Left"),
-            ("right", "Right"),
-            ("left_answers", "Answers left"),
-            ("no_preference", "No preference"),
-            ("right_answers", "Answers right"),
-            ("right_share", "Right of all"),
-            ("right_share_low", "from"),
-            ("right_share_high", "to"),
-        ],
-    );
     let mut counts = vec![[0_u64; 3]; answers.questions.len()];
     for answer in &answers.answers {
         let straight = answer.left <= answer.right;
@@ -46,24 +51,24 @@ fn counts(answers: &Responses) -> Table {
         counts[answer.question as usize][place] += 1;
     }
     let groups = group_of_question(answers);
-    for ((question, group), [left, none, right]) in answers.questions.iter().zip(groups).zip(counts) {
-        let [first, second] = [question.left.min(question.right), question.left.max(question.right)];
-        let all = left + none + right;
-        let interval = interval::wilson(right, all);
-        table.push(vec![
-            Cell::text(group),
-            Cell::text(&question.object),
-            Cell::text(&question.id),
-            Cell::text(&answers.items[first as usize]),
-            Cell::text(&answers.items[second as usize]),
-            Cell::count(left),
-            Cell::count(none),
-            Cell::count(right),
-            Cell::number((all > 0).then(|| right as f64 / all as f64), 3),
-            Cell::number(interval.map(|i| i.low), 3),
-            Cell::number(interval.map(|i| i.high), 3),
-        ]);
-    }
+    let rows = answers.questions.iter().zip(&groups).zip(counts);
+    let rows = rows.map(|((question, group), counts)| Row { answers, question, group, counts });
+    let fields = [
+        field("group", "Group", |of: &Row<'_>| Cell::text(of.group)),
+        field("object", "Object", |of| Cell::text(&of.question.object)),
+        field("question", "Question", |of| Cell::text(&of.question.id)),
+        field("left", "Left", |of| Cell::text(of.item(of.question.left.min(of.question.right)))),
+        field("right", "Right", |of| Cell::text(of.item(of.question.left.max(of.question.right)))),
+        field("left_answers", "Answers left", |of| Cell::count(of.counts[0])),
+        field("no_preference", "No preference", |of| Cell::count(of.counts[1])),
+        field("right_answers", "Answers right", |of| Cell::count(of.counts[2])),
+        field("right_share", "Right of all", |of| {
+            Cell::number((of.all() > 0).then(|| of.counts[2] as f64 / of.all() as f64), 3)
+        }),
+        field("right_share_low", "from", |of| Cell::number(of.interval().map(|i| i.low), 3)),
+        field("right_share_high", "to", |of| Cell::number(of.interval().map(|i| i.high), 3)),
+    ];
+    let mut table = Table::of("answer_counts", "Answers per question", &fields, rows);
     table.notes.push(
         "Left and right are the order of names, not the sides that people saw. From and to: Wilson's \
          interval at 95 %, for one question at a time."

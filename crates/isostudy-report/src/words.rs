@@ -2,6 +2,7 @@
 
 use isostudy_statistics::interval::Interval;
 pub use isostudy_table::digits::{counted, number};
+use std::collections::BTreeSet;
 
 /// Below this a p value is not printed in digits; the tables have them.
 const LEAST_P: f64 = 1e-3;
@@ -71,6 +72,14 @@ pub fn against([first, ties, second]: [u64; 3]) -> String {
     let ties = if ties == 0 { "none".into() } else { ties.to_string() };
     let answers = if first == 1 { "answer" } else { "answers" };
     format!("{first} {answers} against {second}, {ties} without preference")
+}
+
+/// Numbers from 1, the first ten of them.
+pub fn numbers(people: &BTreeSet<usize>, between: &str) -> String {
+    const MOST: usize = 10;
+    let first: Vec<String> = people.iter().take(MOST).map(|p| (p + 1).to_string()).collect();
+    let more = people.len().saturating_sub(MOST);
+    if more > 0 { format!("{} and {more} more", first.join(between)) } else { first.join(between) }
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! Answers per question: left, none and right, stacked and centred on none.
 
 use super::canvas::{Align, BLACK, Canvas};
+use super::draft::{Unfinished, WIDTH, canvas_with_legend};
 use super::legend::Swatch;
 use super::style::{Fill, LEFT, NONE, RIGHT};
-use super::{Unfinished, WIDTH, canvas_with_legend};
 use isostudy_design::Study;
 use isostudy_inference::tally::{QuestionCount, Tally};
 

@@ -4,7 +4,7 @@
 //! plotters backends do not agree on text: what a font size means and where the baseline falls differ, and neither is
 //! what a layout needs. Shapes therefore give the em and the baseline, and the painter translates.
 
-use crate::figures::FigureError;
+use super::error::FigureError;
 use plotters::backend::{BitMapBackend, SVGBackend};
 use plotters::coord::Shift;
 use plotters::prelude::*;

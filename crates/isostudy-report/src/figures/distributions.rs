@@ -3,8 +3,9 @@
 use super::axis::Axis;
 use super::bars::frame;
 use super::canvas::{Align, BLACK, Canvas, text_width};
+use super::draft::{Unfinished, WIDTH, canvas_with_legend, in_rows};
+use super::style;
 use super::style::Fill;
-use super::{Unfinished, WIDTH, canvas_with_legend, in_rows, style};
 use isostudy_design::record::{Distribution, MeshRecord, Purpose};
 use isostudy_design::{MethodId, Study};
 use isostudy_inference::inputs::Inputs;

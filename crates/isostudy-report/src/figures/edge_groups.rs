@@ -4,11 +4,11 @@ use super::axis::Axis;
 use super::bars::frame;
 use super::canvas::{Align, BLACK, Canvas, text_width};
 use super::distributions::draw_box;
+use super::draft::{Unfinished, WIDTH, canvas_with_legend};
+use super::error::FigureError;
 use super::legend::Swatch;
 use super::style::{Fill, LEFT, RIGHT};
-use super::{Unfinished, WIDTH, canvas_with_legend};
 use crate::figure::Figure;
-use crate::figures::FigureError;
 
 const ROW: f64 = 360.0;
 const PER_ROW: usize = 3;

@@ -2,9 +2,10 @@
 
 use super::axis::Axis;
 use super::canvas::{Align, BLACK, Canvas};
+use super::draft::WIDTH;
+use super::legend;
 use super::marks::Mark;
 use super::style::GRID;
-use super::{WIDTH, legend};
 use isostudy_statistics::interval::Interval;
 
 const ROW: f64 = 21.0;

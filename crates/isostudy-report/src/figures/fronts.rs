@@ -2,10 +2,11 @@
 
 use super::axis::Axis;
 use super::canvas::{BLACK, Colour};
+use super::draft::{Unfinished, WIDTH, canvas_with_legend};
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
-use super::{Unfinished, WIDTH, canvas_with_legend, style};
+use super::style;
 use isostudy_design::{Method, MethodId, Study};
 use isostudy_inference::decision::{Axes, Front, FrontPoint, LEAST_ERROR, ObjectCandidates, Standing};
 use isostudy_inference::results::Decision;

@@ -1,10 +1,10 @@
 //! All contrasts in one forest plot: two things a block, a row for all answers and for each part of them.
 
 use super::axis::Axis;
+use super::draft::{Unfinished, canvas_with_legend};
 use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
-use super::{Unfinished, canvas_with_legend};
 use crate::statement::Standing;
 use crate::words::capital;
 use isostudy_inference::glance;

@@ -1,11 +1,13 @@
 //! Runs that were kept: totals from one to the next.
 
 use super::axis::Axis;
+use super::draft::{Unfinished, WIDTH, canvas_with_legend};
+use super::error::FigureError;
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
-use super::{Figure, Unfinished, WIDTH, canvas_with_legend, style};
-use crate::figures::FigureError;
+use super::style;
+use crate::figure::Figure;
 use isostudy_timing::history::Step;
 
 const HEIGHT: f64 = 380.0;

@@ -2,8 +2,9 @@
 
 use super::axis::Axis;
 use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
+use super::draft::{Unfinished, WIDTH, canvas_with_legend};
 use super::legend::Swatch;
-use super::{Unfinished, WIDTH, canvas_with_legend, style};
+use super::style;
 use isostudy_design::ConfigurationId;
 use isostudy_design::published::BenchmarkRow;
 use isostudy_design::record::{BenchRun, BenchSample, MeshRecord, Purpose};

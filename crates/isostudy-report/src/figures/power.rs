@@ -2,11 +2,12 @@
 
 use super::axis::Axis;
 use super::canvas::BLACK;
+use super::draft::{Unfinished, WIDTH, canvas_with_legend};
+use super::error::FigureError;
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
-use super::{Figure, Unfinished, WIDTH, canvas_with_legend};
-use crate::figures::FigureError;
+use crate::figure::Figure;
 use isostudy_inference::power::{Assumptions, Power};
 
 const ROW: f64 = 320.0;

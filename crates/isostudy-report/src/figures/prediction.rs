@@ -2,11 +2,11 @@
 
 use super::axis::Axis;
 use super::canvas::BLACK;
+use super::draft::{Unfinished, WIDTH, canvas_with_legend};
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
 use super::style::object_colour;
-use super::{Unfinished, WIDTH, canvas_with_legend};
 use isostudy_design::{Comparison, Study};
 use isostudy_inference::prediction::{MetricPrediction, Prediction, Scale};
 use isostudy_inference::preference;

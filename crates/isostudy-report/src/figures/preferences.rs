@@ -3,14 +3,13 @@
 use super::axis::Axis;
 use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
 use super::canvas::{BLACK, WHITE};
+use super::draft::{Unfinished, WIDTH, canvas_with_legend};
 use super::legend::Swatch;
 use super::style::{self, Fill};
-use super::{Unfinished, WIDTH, canvas_with_legend};
-use crate::tables::preferences::interval;
 use isostudy_design::published::PreferenceKind;
 use isostudy_design::{Method, MethodId, Study};
 use isostudy_inference::fraction::Fraction;
-use isostudy_inference::preference::{self, GroupFactor};
+use isostudy_inference::preference::{self, GroupFactor, interval};
 use isostudy_inference::tally::Tally;
 
 const ROW: f64 = 420.0;

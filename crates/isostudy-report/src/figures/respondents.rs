@@ -2,11 +2,11 @@
 
 use super::axis::Axis;
 use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
+use super::draft::{Unfinished, WIDTH, canvas_with_legend};
 use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::style::{Fill, LEFT};
-use super::{Unfinished, WIDTH, canvas_with_legend};
 use isostudy_statistics::{Screening, ShownBallot, screening};
 
 /// Up to so many people have a row of their own; more are counted in steps of a twentieth.

@@ -2,9 +2,10 @@
 
 use super::axis::Axis;
 use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
+use super::draft::{Unfinished, WIDTH, canvas_with_legend, in_rows};
 use super::legend::Swatch;
 use super::meshes::median_of;
-use super::{Unfinished, WIDTH, canvas_with_legend, in_rows, style};
+use super::style;
 use isostudy_design::ConfigurationId;
 use isostudy_design::record::BenchSample;
 use isostudy_inference::inputs::Inputs;

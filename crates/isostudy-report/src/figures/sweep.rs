@@ -1,10 +1,12 @@
 //! A sweep: time against samples, time per triangle, speed-up against threads, quality against cost.
 
 use super::axis::Axis;
+use super::draft::{Unfinished, WIDTH, canvas_with_legend};
+use super::error::FigureError;
 use super::legend::Swatch;
 use super::scatter::Scatter;
-use super::{Figure, Unfinished, WIDTH, canvas_with_legend, style};
-use crate::figures::FigureError;
+use super::style;
+use crate::figure::Figure;
 use isostudy_design::{MethodId, Study};
 use isostudy_timing::sweep::{Point, SpeedUp, Sweep};
 

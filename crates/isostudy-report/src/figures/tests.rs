@@ -1,3 +1,4 @@
+use super::draft::in_rows;
 use super::*;
 use crate::fixture::{self, Everything};
 

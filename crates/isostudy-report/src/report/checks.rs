@@ -1,10 +1,11 @@
 //! Checks of the answers: who broke a rule of screening and what the tests are without them, what probes found, and whether
 //! screens mattered.
 
-use super::{Block, Evidence, names, screens};
+use super::evidence::Evidence;
+use super::{names, screens};
+use crate::statement::Block;
 use crate::statement::{Finding, Standing};
-use crate::tables::screened::numbers;
-use crate::words::{counted, list, p as p_value};
+use crate::words::{counted, list, numbers, p as p_value};
 use isostudy_inference::Preferences;
 use isostudy_inference::audit::{Finding as Probed, Report};
 use isostudy_inference::hypotheses::Hypothesis;

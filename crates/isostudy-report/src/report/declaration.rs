@@ -1,6 +1,8 @@
 //! What of the analysis is a choice, who made it when, and what would come out under another choice.
 
-use super::{Block, Evidence, names};
+use super::evidence::Evidence;
+use super::names;
+use crate::statement::Block;
 use crate::statement::{Finding, Standing};
 use crate::words::{counted, list, p};
 use isostudy_design::Study;

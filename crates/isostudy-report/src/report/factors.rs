@@ -1,6 +1,8 @@
 //! What the published sums of preference factors hide.
 
-use super::{Block, Evidence, names};
+use super::evidence::Evidence;
+use super::names;
+use crate::statement::Block;
 use crate::statement::{Finding, Standing};
 use crate::words::{against, capital, counted, list, number};
 use isostudy_design::contrast::Over;

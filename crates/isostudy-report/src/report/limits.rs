@@ -1,6 +1,7 @@
 //! What limits the results: display, instruction, order, sides, objects; said also where the source is silent.
 
-use super::{Evidence, asked, sides};
+use super::evidence::Evidence;
+use super::{asked, sides};
 use crate::words::{counted, list};
 
 /// One line each.

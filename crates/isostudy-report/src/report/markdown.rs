@@ -1,6 +1,7 @@
 //! A report as Markdown.
 
-use super::{Block, Report};
+use super::Report;
+use crate::statement::Block;
 use isostudy_table::markdown::escape;
 
 impl Report {

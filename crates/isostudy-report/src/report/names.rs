@@ -1,6 +1,6 @@
 //! What things are called in a sentence.
 
-use super::Evidence;
+use super::evidence::Evidence;
 use isostudy_design::contrast::Over;
 use isostudy_design::{Level, Study};
 use isostudy_inference::hypotheses::{Hypothesis, On, Target};

@@ -1,7 +1,6 @@
 //! What predicts preference, what 27 pairs can show of it, and what they cannot.
 
-use super::Block;
-use crate::statement::{Finding, Standing};
+use crate::statement::{Block, Finding, Standing};
 use crate::words::{capital, counted, interval, list, number, p, percent, percents};
 use isostudy_design::Study;
 use isostudy_design::forms::Questionnaire;

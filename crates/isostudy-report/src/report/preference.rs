@@ -1,7 +1,9 @@
 //! What was preferred to what: sorted by what holds, what depends on something else, and what is open.
 
+use super::evidence::Evidence;
 use super::finding::{over_all, score, tested};
-use super::{Block, Evidence, names, tipping, worths};
+use super::{names, tipping, worths};
+use crate::statement::Block;
 use crate::statement::{Finding, Standing};
 use crate::words::{against, capital, counted, list, number, p};
 use isostudy_design::Level;

@@ -1,6 +1,8 @@
 //! How much the answers can bear: agreement, consistency, outlying respondents, single questions.
 
-use super::{Block, Evidence, names};
+use super::evidence::Evidence;
+use super::names;
+use crate::statement::Block;
 use crate::statement::{Finding, Standing};
 use crate::words::{counted, interval, list, number, p, percent};
 use isostudy_inference::agreement::Agreement;

@@ -1,6 +1,8 @@
 //! What the design cannot answer: sides, other objects, other people.
 
-use super::{Block, Evidence, asked, names};
+use super::evidence::Evidence;
+use super::{asked, names};
+use crate::statement::Block;
 use crate::statement::{Finding, Standing};
 use crate::words::{capital, counted, interval, list, number, p as p_value};
 use isostudy_design::Level;

@@ -1,7 +1,8 @@
 //! The abstract: six lines that say what was compared, by whom, what came out, how sure it is, what limits it, and what
 //! to do next.
 
-use super::{Evidence, SummaryLine, asked, limits, preference};
+use super::evidence::Evidence;
+use super::{SummaryLine, asked, limits, preference};
 use crate::statement::Standing;
 use crate::words::{capital, counted, list, number, percent};
 use isostudy_design::contrast::Over;

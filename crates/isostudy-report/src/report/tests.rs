@@ -1,9 +1,9 @@
 use super::*;
 use crate::fixture;
-use isostudy_inference::Answered;
-use isostudy_inference::hypotheses;
+use isostudy_inference::{Answered, BallotGroup, Inputs, audit, hypotheses};
 use isostudy_responses::{Answer, Choice, Question, Responses};
 use isostudy_statistics::Outcome::{self, Left, Right, Tie};
+use isostudy_statistics::ShownBallot;
 
 /// What the paper's study says if people answered like this; the argument is participant and question.
 fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'static str, Vec<Finding>)> {

@@ -1,6 +1,6 @@
 //! How large a liking for a side would undo a result, where methods and sides go together.
 
-use super::Evidence;
+use super::evidence::Evidence;
 use crate::words::number;
 use isostudy_design::contrast::Over;
 use isostudy_design::{Level, MethodId, Study};

@@ -1,7 +1,7 @@
 //! What the models say: all items on one scale, and how well the models fit.
 
-use super::{Block, Evidence};
-use crate::statement::{Finding, Standing};
+use super::evidence::Evidence;
+use crate::statement::{Block, Finding, Standing};
 use crate::words::{counted, interval, list, number, p};
 use isostudy_inference::scale::GroupScale;
 use isostudy_statistics::{Difference, Model, Scale};

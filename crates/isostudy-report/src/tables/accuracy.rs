@@ -1,55 +1,60 @@
 //! How well meshes stand for their isosurfaces.
 
 use super::mesh_quality::purpose_label;
-use isostudy_design::record::{Distribution, Purpose};
+use isostudy_design::record::{Distribution, MeshRecord, Purpose};
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{MeshSet, known};
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Table, field};
+
+/// A mesh, and what it is for.
+type Row<'a> = (Purpose, &'a MeshRecord);
+
+fn in_spacings((_, mesh): &Row<'_>, distance: Option<f64>) -> Cell {
+    Cell::number(distance.map(|d| d / mesh.spacing), 4)
+}
 
 /// Distances in units of the spacing, and errors of the vertices' normals, for meshes of every purpose.
 pub(super) fn accuracy(inputs: &Inputs<'_>) -> Option<Table> {
-    let mut table = Table::new(
-        "accuracy",
-        "Meshes against their isosurfaces",
-        &[
-            ("id", "Id"),
-            ("purpose", "Mesh"),
-            ("spacing", "Spacing"),
-            ("distance_mean", "Distance, mean"),
-            ("distance_q95", "95 %"),
-            ("distance_max", "max"),
-            ("distance_to_mesh_mean", "From the isosurface, mean"),
-            ("distance_to_mesh_q95", "95 %"),
-            ("distance_to_mesh_max", "max"),
-            ("hausdorff", "Hausdorff"),
-            ("sharp_edges_mean", "From sharp edges, mean"),
-            ("sharp_edges_q95", "95 %"),
-            ("sharp_edges_max", "max"),
-            ("normal_error_mean_deg", "Normal error, deg, mean"),
-            ("normal_error_q95_deg", "95 %"),
-            ("normal_error_max_deg", "max"),
-            ("lost_points", "Lost points"),
-            ("lost_vertices", "Lost vertices"),
-        ],
-    );
-    for purpose in [Purpose::Benchmark, Purpose::Stimulus, Purpose::Indexed] {
-        for (_, mesh) in MeshSet::of(inputs, purpose).in_order() {
-            let accuracy = &mesh.accuracy;
-            let mut row =
-                vec![Cell::text(&mesh.id), Cell::text(purpose_label(purpose)), Cell::Number(mesh.spacing, 3)];
-            let statistics: [fn(&Distribution) -> f64; 3] = [|d| d.mean, |d| d.q95, |d| d.max];
-            let in_spacings = |distance: Option<f64>| Cell::number(distance.map(|d| d / mesh.spacing), 4);
-            let back = accuracy.distance_to_mesh.as_ref();
-            row.extend(statistics.map(|of| in_spacings(known(&accuracy.distance, of))));
-            row.extend(statistics.map(|of| in_spacings(back.and_then(|back| known(back, of)))));
-            row.push(in_spacings(accuracy.hausdorff()));
-            let sharp = accuracy.sharp_edges.as_ref();
-            row.extend(statistics.map(|of| in_spacings(sharp.and_then(|sharp| known(sharp, of)))));
-            row.extend(statistics.map(|of| Cell::number(known(&accuracy.normal_error_deg, of), 2)));
-            row.extend([accuracy.lost_points, accuracy.lost_vertices].map(Cell::count));
-            table.push(row);
-        }
+    fn distance(of: &Row<'_>, statistic: fn(&Distribution) -> f64) -> Cell {
+        in_spacings(of, known(&of.1.accuracy.distance, statistic))
     }
+    fn back(of: &Row<'_>, statistic: fn(&Distribution) -> f64) -> Cell {
+        let back = of.1.accuracy.distance_to_mesh.as_ref();
+        in_spacings(of, back.and_then(|back| known(back, statistic)))
+    }
+    fn sharp(of: &Row<'_>, statistic: fn(&Distribution) -> f64) -> Cell {
+        let sharp = of.1.accuracy.sharp_edges.as_ref();
+        in_spacings(of, sharp.and_then(|sharp| known(sharp, statistic)))
+    }
+    fn normal(of: &Row<'_>, statistic: fn(&Distribution) -> f64) -> Cell {
+        Cell::number(known(&of.1.accuracy.normal_error_deg, statistic), 2)
+    }
+    let fields = [
+        field("id", "Id", |of: &Row<'_>| Cell::text(&of.1.id)),
+        field("purpose", "Mesh", |of| Cell::text(purpose_label(of.0))),
+        field("spacing", "Spacing", |of| Cell::Number(of.1.spacing, 3)),
+        field("distance_mean", "Distance, mean", |of| distance(of, |d| d.mean)),
+        field("distance_q95", "95 %", |of| distance(of, |d| d.q95)),
+        field("distance_max", "max", |of| distance(of, |d| d.max)),
+        field("distance_to_mesh_mean", "From the isosurface, mean", |of| back(of, |d| d.mean)),
+        field("distance_to_mesh_q95", "95 %", |of| back(of, |d| d.q95)),
+        field("distance_to_mesh_max", "max", |of| back(of, |d| d.max)),
+        field("hausdorff", "Hausdorff", |of| in_spacings(of, of.1.accuracy.hausdorff())),
+        field("sharp_edges_mean", "From sharp edges, mean", |of| sharp(of, |d| d.mean)),
+        field("sharp_edges_q95", "95 %", |of| sharp(of, |d| d.q95)),
+        field("sharp_edges_max", "max", |of| sharp(of, |d| d.max)),
+        field("normal_error_mean_deg", "Normal error, deg, mean", |of| normal(of, |d| d.mean)),
+        field("normal_error_q95_deg", "95 %", |of| normal(of, |d| d.q95)),
+        field("normal_error_max_deg", "max", |of| normal(of, |d| d.max)),
+        field("lost_points", "Lost points", |of| Cell::count(of.1.accuracy.lost_points)),
+        field("lost_vertices", "Lost vertices", |of| Cell::count(of.1.accuracy.lost_vertices)),
+    ];
+    let purposes = [Purpose::Benchmark, Purpose::Stimulus, Purpose::Indexed];
+    let rows = purposes.into_iter().flat_map(|purpose| {
+        let meshes = MeshSet::of(inputs, purpose);
+        meshes.in_order().map(|(_, mesh)| (purpose, mesh)).collect::<Vec<_>>()
+    });
+    let mut table = Table::of("accuracy", "Meshes against their isosurfaces", &fields, rows);
     table.notes.push(
         "Distance: from 8,192 points spread evenly over the mesh to the isosurface (exact for sphere and mesh, along the \
          gradient for other fields), and from as many of the isosurface (of a mesh: of its triangles) to the mesh, in units of \

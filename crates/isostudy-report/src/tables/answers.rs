@@ -1,11 +1,11 @@
 //! The answers themselves, and how they fall on each question.
 
-use isostudy_design::Study;
+use isostudy_design::{Comparison, Study};
 use isostudy_inference::ballots::is_asked;
-use isostudy_inference::tally::Tally;
+use isostudy_inference::tally::{QuestionCount, Tally};
 use isostudy_responses::Responses;
-use isostudy_statistics::interval;
-use isostudy_table::{Cell, Column, Table};
+use isostudy_statistics::interval::{self, Interval};
+use isostudy_table::{Cell, Column, Table, field};
 use std::collections::BTreeSet;
 
 /// More respondents than this make no table that anybody reads; the answers are in their file.
@@ -50,42 +50,28 @@ pub(super) fn answers(study: &Study, answers: &Responses, excluded: &BTreeSet<us
 
 /// Left, none and right of every question, with the right side's share among decided answers.
 pub(super) fn counts(study: &Study, tally: &Tally, sides_differ: bool) -> Table {
-    let mut table = Table::new(
-        "answer_counts",
-        "Answers per question",
-        &[
-            ("question", "Question"),
-            ("object", "Object"),
-            ("left", "Left"),
-            ("right", "Right"),
-            ("left_answers", "Answers left"),
-            ("no_preference", "No preference"),
-            ("right_answers", "Answers right"),
-            ("right_share", "Right of all"),
-            ("right_share_low", "from"),
-            ("right_share_high", "to"),
-        ],
-    );
-    let mut sums = [0; 3];
-    for (comparison, count) in study.comparisons.iter().zip(&tally.questions) {
-        let all = count.answers();
-        let interval = interval::wilson(count.right, all);
-        for (sum, n) in sums.iter_mut().zip([count.left, count.none, count.right]) {
-            *sum += n;
-        }
-        table.push(vec![
-            Cell::text(&comparison.question),
-            Cell::text(&study.file.objects[comparison.object].name),
-            Cell::text(&comparison.left),
-            Cell::text(&comparison.right),
-            Cell::count(count.left),
-            Cell::count(count.none),
-            Cell::count(count.right),
-            Cell::number((all > 0).then(|| count.right as f64 / all as f64), 3),
-            Cell::number(interval.map(|i| i.low), 3),
-            Cell::number(interval.map(|i| i.high), 3),
-        ]);
+    type Row<'a> = (&'a Study, &'a Comparison, &'a QuestionCount);
+    fn right((.., of): &Row<'_>) -> Option<Interval> {
+        interval::wilson(of.right, of.answers())
     }
+    let fields = [
+        field("question", "Question", |(_, asked, _): &Row<'_>| Cell::text(&asked.question)),
+        field("object", "Object", |(study, asked, _)| Cell::text(&study.file.objects[asked.object].name)),
+        field("left", "Left", |(_, asked, _)| Cell::text(&asked.left)),
+        field("right", "Right", |(_, asked, _)| Cell::text(&asked.right)),
+        field("left_answers", "Answers left", |(.., of)| Cell::count(of.left)),
+        field("no_preference", "No preference", |(.., of)| Cell::count(of.none)),
+        field("right_answers", "Answers right", |(.., of)| Cell::count(of.right)),
+        field("right_share", "Right of all", |(.., of)| {
+            Cell::number((of.answers() > 0).then(|| of.right as f64 / of.answers() as f64), 3)
+        }),
+        field("right_share_low", "from", |row| Cell::number(right(row).map(|i| i.low), 3)),
+        field("right_share_high", "to", |row| Cell::number(right(row).map(|i| i.high), 3)),
+    ];
+    let rows = study.comparisons.iter().zip(&tally.questions).map(|(asked, of)| (study, asked, of));
+    let mut table = Table::of("answer_counts", "Answers per question", &fields, rows);
+    let sum = |count: fn(&QuestionCount) -> u64| tally.questions.iter().map(count).sum::<u64>();
+    let sums = [sum(|of| of.left), sum(|of| of.none), sum(|of| of.right)];
     table.notes.push(format!(
         "All questions: {} for the one listed on the left, {} without preference, {} for the one listed on the right{}. From and to: Wilson's interval at 95 %, for one \
          question at a time; it may not be pooled over questions, because the same people answer all of them.",

@@ -1,6 +1,7 @@
 //! The benchmark: counts, times, memory and the published aspect ratio of every configuration (appendix B).
 
-use crate::tables::design::{budgets, level, method_columns};
+use crate::budgets::budgets;
+use crate::tables::design::{level, method_columns};
 use isostudy_design::record::{MeshRecord, PeakMemory, Purpose};
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{MeshSet, discard_fraction, known};

@@ -2,49 +2,41 @@
 
 use isostudy_design::{Level, Study};
 use isostudy_inference::omnibus::{Asked, Omnibus};
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Table, field};
+
+/// The question, and the scores that it is asked of.
+fn asked(study: &Study, asked: Asked) -> [String; 2] {
+    let minus = |[a, b]: [Level; 2]| format!("{} minus {}", study.level(a).label, study.level(b).label);
+    let name = |levels: [Level; 2]| study.factor(levels[0].factor).name.as_str();
+    match asked {
+        Asked::Levels(factor) => {
+            let name = &study.factor(factor).name;
+            [name.clone(), format!("wins minus losses of each {name}")]
+        }
+        Asked::ByOther(levels, other) => {
+            let other = &study.factor(other).name;
+            [format!("{} x {other}", name(levels)), format!("{}, by {other}", minus(levels))]
+        }
+        Asked::ByObject(levels) => {
+            [format!("object x {}", name(levels)), format!("{}, by object", minus(levels))]
+        }
+    }
+}
 
 /// Friedman's tests: does anything differ at all?
 pub(super) fn omnibus(study: &Study, tests: &[Omnibus]) -> Table {
-    let mut table = Table::new(
-        "omnibus",
-        "Does anything differ? Friedman's tests over participants",
-        &[
-            ("question", "Question"),
-            ("scores", "Scores"),
-            ("chi_square", "Chi-square"),
-            ("degrees", "Degrees"),
-            ("p", "p"),
-            ("p_adjusted", "p adjusted"),
-            ("participants", "Participants"),
-        ],
-    );
-    for Omnibus { asked, test, adjusted, participants } in tests {
-        let minus = |[a, b]: [Level; 2]| format!("{} minus {}", study.level(a).label, study.level(b).label);
-        let name = |levels: [Level; 2]| study.factor(levels[0].factor).name.as_str();
-        let (question, scores) = match *asked {
-            Asked::Levels(factor) => {
-                let name = &study.factor(factor).name;
-                (name.clone(), format!("wins minus losses of each {name}"))
-            }
-            Asked::ByOther(levels, other) => {
-                let other = &study.factor(other).name;
-                (format!("{} x {other}", name(levels)), format!("{}, by {other}", minus(levels)))
-            }
-            Asked::ByObject(levels) => {
-                (format!("object x {}", name(levels)), format!("{}, by object", minus(levels)))
-            }
-        };
-        table.push(vec![
-            Cell::text(question),
-            Cell::text(scores),
-            Cell::Number(test.statistic, 3),
-            Cell::Number(test.degrees, 0),
-            Cell::P(test.p, 5),
-            Cell::P(*adjusted, 5),
-            Cell::count(*participants as u64),
-        ]);
-    }
+    type Row<'a> = (&'a Study, &'a Omnibus);
+    let fields = [
+        field("question", "Question", |(study, of): &Row<'_>| Cell::text(asked(study, of.asked)[0].as_str())),
+        field("scores", "Scores", |(study, of)| Cell::text(asked(study, of.asked)[1].as_str())),
+        field("chi_square", "Chi-square", |(_, of)| Cell::Number(of.test.statistic, 3)),
+        field("degrees", "Degrees", |(_, of)| Cell::Number(of.test.degrees, 0)),
+        field("p", "p", |(_, of)| Cell::P(of.test.p, 5)),
+        field("p_adjusted", "p adjusted", |(_, of)| Cell::P(of.adjusted, 5)),
+        field("participants", "Participants", |(_, of)| Cell::count(of.participants as u64)),
+    ];
+    let caption = "Does anything differ? Friedman's tests over participants";
+    let mut table = Table::of("omnibus", caption, &fields, tests.iter().map(|of| (study, of)));
     table.notes.push(
         "Chi-square approximation with correction for ties. The blocks are the participants who answered something of each \
          column; a score is the mean of their answers there. p adjusted: Holm over the rows that ask the same of other pairs."

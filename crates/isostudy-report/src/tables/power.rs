@@ -1,7 +1,7 @@
 //! Power of a design: every number as a table for programs, contrasts by participants as one to read.
 
 use isostudy_inference::power::{Assumptions, Power, QUESTIONS};
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Table, field};
 
 /// The tables `power`, a row a number, and `power_by_participants`, a column a number of participants, of [`power`](isostudy_inference::power::power).
 pub fn power_tables(assumptions: &Assumptions, all: &[Power]) -> [Table; 2] {
@@ -9,35 +9,19 @@ pub fn power_tables(assumptions: &Assumptions, all: &[Power]) -> [Table; 2] {
 }
 
 fn in_full(all: &[Power]) -> Table {
-    let columns = [
-        ("family", "Family"),
-        ("contrast", "Contrast"),
-        ("scope", "Over"),
-        ("questions", "Questions"),
-        ("share", "Share of decided"),
-        ("participants", "Participants"),
-        ("power", "Power"),
-        ("power_error", "Monte-Carlo error"),
-        ("power_adjusted", "Power, adjusted"),
-        ("power_adjusted_error", "Monte-Carlo error"),
+    let fields = [
+        field("family", "Family", |of: &&Power| Cell::text(&of.family)),
+        field("contrast", "Contrast", |of| Cell::text(&of.contrast)),
+        field("scope", "Over", |of| Cell::text(&of.scope)),
+        field("questions", "Questions", |of| Cell::count(of.questions as u64)),
+        field("share", "Share of decided", |of| Cell::Number(of.share, 3)),
+        field("participants", "Participants", |of| Cell::count(of.participants as u64)),
+        field("power", "Power", |of| Cell::Number(of.power, 3)),
+        field("power_error", "Monte-Carlo error", |of| Cell::Number(of.errors()[0], 4)),
+        field("power_adjusted", "Power, adjusted", |of| Cell::Number(of.adjusted, 3)),
+        field("power_adjusted_error", "Monte-Carlo error", |of| Cell::Number(of.errors()[1], 4)),
     ];
-    let mut table = Table::new("power", "Power of every contrast and question", &columns);
-    for power in all {
-        let [error, adjusted_error] = power.errors();
-        table.push(vec![
-            Cell::text(&power.family),
-            Cell::text(&power.contrast),
-            Cell::text(&power.scope),
-            Cell::count(power.questions as u64),
-            Cell::number(Some(power.share), 3),
-            Cell::count(power.participants as u64),
-            Cell::number(Some(power.power), 3),
-            Cell::number(Some(error), 4),
-            Cell::number(Some(power.adjusted), 3),
-            Cell::number(Some(adjusted_error), 4),
-        ]);
-    }
-    table
+    Table::of("power", "Power of every contrast and question", &fields, all)
 }
 
 fn by_participants(assumptions: &Assumptions, all: &[Power]) -> Table {

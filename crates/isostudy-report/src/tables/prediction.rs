@@ -1,8 +1,10 @@
 //! What predicts preference: metric by metric, together, object by object.
 
 use isostudy_design::Study;
-use isostudy_inference::prediction::{HeldOut, Prediction};
-use isostudy_table::{Cell, Column, Table};
+use isostudy_inference::prediction::{MetricPrediction, Prediction};
+use isostudy_statistics::Coefficient;
+use isostudy_statistics::interval::Interval;
+use isostudy_table::{Cell, Column, Table, field, field_in};
 
 /// Metrics one by one, the model of all of them, predictions by object, and how the metrics hang together.
 pub(super) fn all(study: &Study, prediction: &Prediction) -> Vec<Table> {
@@ -10,71 +12,57 @@ pub(super) fn all(study: &Study, prediction: &Prediction) -> Vec<Table> {
 }
 
 fn metrics(prediction: &Prediction) -> Table {
-    let mut table = Table::new(
-        "prediction",
-        "What predicts preference? How often the better value was chosen",
-        &[
-            ("metric", "Metric"),
-            ("better", "Better is"),
-            ("chosen", "Answers for the better"),
-            ("no_preference", "None"),
-            ("not_chosen", "Answers for the worse"),
-            ("share", "Share of decided"),
-            ("share_low", "from"),
-            ("share_high", "to"),
-            ("p_sign_flip", "p"),
-            ("p_adjusted", "p adjusted"),
-            ("pairs", "Pairs"),
-            ("pairs_won", "won by the better"),
-            ("pairs_drawn", "drawn"),
-            ("pairs_won_share", "Share of decided pairs"),
-            ("better_right", "Answers with the better on the right"),
-            ("showings", "of"),
-            ("unit", "Unit"),
-            ("coefficient", "Log-odds a unit"),
-            ("coefficient_se", "SE"),
-            ("coefficient_low", "from"),
-            ("coefficient_high", "to"),
-            ("coefficient_p", "p"),
-            ("accuracy", "Left-out accuracy"),
-            ("log_loss", "Log loss"),
-            ("constant_log_loss", "of the constant"),
-            ("gain_p", "p of a gain"),
-        ],
-    );
-    for found in &prediction.metrics {
-        let better = &found.better;
-        let [chosen, none, not_chosen] = better.test.counts.unwrap_or_default();
-        let decided = better.pairs.better + better.pairs.worse;
-        let coefficient = found.coefficient.ok();
-        let share_interval = better.share.and_then(|s| s.interval).map(|i| i.cut(0.0, 1.0));
-        let mut row = vec![
-            Cell::text(found.metric.label),
-            Cell::text(found.metric.better),
-            Cell::count(chosen),
-            Cell::count(none),
-            Cell::count(not_chosen),
-            Cell::number(better.share.map(|s| s.share), 3),
-            Cell::number(share_interval.map(|i| i.low), 3),
-            Cell::number(share_interval.map(|i| i.high), 3),
-            Cell::P(better.test.sign_flip.p(), 5),
-            Cell::P(found.adjusted, 4),
-            Cell::count(better.pair_count() as u64),
-            Cell::count(better.pairs.better as u64),
-            Cell::count(better.pairs.drawn as u64),
-            Cell::number((decided > 0).then(|| better.pairs.better as f64 / decided as f64), 3),
-            Cell::count(found.better_right),
-            Cell::count(found.showings),
-            Cell::Number(found.unit, 4),
-            Cell::number(coefficient.map(|c| c.estimate), 3),
-            Cell::number(coefficient.map(|c| c.se), 3),
-            Cell::number(coefficient.map(|c| c.interval.low), 3),
-            Cell::number(coefficient.map(|c| c.interval.high), 3),
-            Cell::p(coefficient.map(|c| c.p), 5),
-        ];
-        row.extend(judged(found.held_out.as_ref()));
-        table.push(row);
+    type Row<'a> = &'a MetricPrediction;
+    fn chosen(of: Row<'_>, outcome: usize) -> Cell {
+        Cell::count(of.better.test.counts.unwrap_or_default()[outcome])
     }
+    fn share(of: Row<'_>) -> Option<Interval> {
+        of.better.share.and_then(|s| s.interval).map(|i| i.cut(0.0, 1.0))
+    }
+    fn coefficient(of: Row<'_>, number: fn(&Coefficient) -> f64) -> Cell {
+        Cell::number(of.coefficient.as_ref().ok().map(number), 3)
+    }
+    let fields = [
+        field_in(&[0, 1, 2], "metric", "Metric", |of: &Row<'_>| Cell::text(of.metric.label)),
+        field_in(&[0], "better", "Better is", |of| Cell::text(of.metric.better)),
+        field_in(&[0], "chosen", "Answers for the better", |of| chosen(of, 0)),
+        field_in(&[0], "no_preference", "None", |of| chosen(of, 1)),
+        field_in(&[0], "not_chosen", "Answers for the worse", |of| chosen(of, 2)),
+        field_in(&[0], "share", "Share of decided", |of| Cell::number(of.better.share.map(|s| s.share), 3)),
+        field_in(&[0], "share_low", "from", |of| Cell::number(share(of).map(|i| i.low), 3)),
+        field_in(&[0], "share_high", "to", |of| Cell::number(share(of).map(|i| i.high), 3)),
+        field_in(&[0], "p_sign_flip", "p", |of| Cell::P(of.better.test.sign_flip.p(), 5)),
+        field_in(&[0], "p_adjusted", "p adjusted", |of| Cell::P(of.adjusted, 4)),
+        field_in(&[1], "pairs", "Pairs", |of| Cell::count(of.better.pair_count() as u64)),
+        field_in(&[1], "pairs_won", "won by the better", |of| Cell::count(of.better.pairs.better as u64)),
+        field_in(&[1], "pairs_drawn", "drawn", |of| Cell::count(of.better.pairs.drawn as u64)),
+        field_in(&[1], "pairs_won_share", "Share of decided pairs", |of| {
+            let decided = of.better.pairs.better + of.better.pairs.worse;
+            Cell::number((decided > 0).then(|| of.better.pairs.better as f64 / decided as f64), 3)
+        }),
+        field_in(&[1], "better_right", "Answers with the better on the right", |of| {
+            Cell::count(of.better_right)
+        }),
+        field_in(&[1], "showings", "of", |of| Cell::count(of.showings)),
+        field_in(&[2], "unit", "Unit", |of| Cell::Number(of.unit, 4)),
+        field_in(&[2], "coefficient", "Log-odds a unit", |of| coefficient(of, |c| c.estimate)),
+        field_in(&[], "coefficient_se", "SE", |of| coefficient(of, |c| c.se)),
+        field_in(&[2], "coefficient_low", "from", |of| coefficient(of, |c| c.interval.low)),
+        field_in(&[2], "coefficient_high", "to", |of| coefficient(of, |c| c.interval.high)),
+        field_in(&[2], "coefficient_p", "p", |of| Cell::p(of.coefficient.as_ref().ok().map(|c| c.p), 5)),
+        field_in(&[2], "accuracy", "Left-out accuracy", |of| {
+            Cell::number(of.held_out.as_ref().map(|h| h.accuracy.share), 3)
+        }),
+        field_in(&[2], "log_loss", "Log loss", |of| {
+            Cell::number(of.held_out.as_ref().map(|h| h.log_loss), 4)
+        }),
+        field_in(&[2], "constant_log_loss", "of the constant", |of| {
+            Cell::number(of.held_out.as_ref().map(|h| h.constant_log_loss), 4)
+        }),
+        field_in(&[2], "gain_p", "p of a gain", |of| Cell::p(of.held_out.as_ref().and_then(|h| h.gain_p), 4)),
+    ];
+    let caption = "What predicts preference? How often the better value was chosen";
+    let mut table = Table::of("prediction", caption, &fields, &prediction.metrics);
     table.notes.push(
         "Metrics are of the meshes that were shown. Share of decided: answers for the side with the better value over all \
          answers but no preference; t interval at 95 % over participants. p: exact sign-flip test over participants, adjusted \
@@ -86,78 +74,24 @@ fn metrics(prediction: &Prediction) -> Table {
          more people would fit better and win other pairs, and no interval tried covers what they would show. Intervals of shares are cut at 0 and 1."
             .into(),
     );
-    let blocks: [(&str, &[&str]); 3] = [
-        (
-            "Answers",
-            &[
-                "metric",
-                "better",
-                "chosen",
-                "no_preference",
-                "not_chosen",
-                "share",
-                "share_low",
-                "share_high",
-                "p_sign_flip",
-                "p_adjusted",
-            ],
-        ),
-        (
-            "Pairs",
-            &["metric", "pairs", "pairs_won", "pairs_drawn", "pairs_won_share", "better_right", "showings"],
-        ),
-        (
-            "Model",
-            &[
-                "metric",
-                "unit",
-                "coefficient",
-                "coefficient_low",
-                "coefficient_high",
-                "coefficient_p",
-                "accuracy",
-                "log_loss",
-                "constant_log_loss",
-                "gain_p",
-            ],
-        ),
-    ];
-    table.print_in_blocks(&blocks);
+    table.show_in_blocks(&fields, &["Answers", "Pairs", "Model"]);
     table
 }
 
-/// Accuracy, log losses, and whether there is a gain.
-fn judged(held_out: Option<&HeldOut>) -> [Cell; 4] {
-    [
-        Cell::number(held_out.map(|h| h.accuracy.share), 3),
-        Cell::number(held_out.map(|h| h.log_loss), 4),
-        Cell::number(held_out.map(|h| h.constant_log_loss), 4),
-        Cell::p(held_out.and_then(|h| h.gain_p), 4),
-    ]
-}
-
 fn joint(prediction: &Prediction) -> Table {
-    let mut table = Table::new(
-        "prediction_joint",
-        "All metrics in one model",
-        &[
-            ("metric", "Metric"),
-            ("coefficient", "Log-odds a unit"),
-            ("se", "SE"),
-            ("low", "from"),
-            ("high", "to"),
-            ("p", "p"),
-        ],
-    );
-    match &prediction.joint {
-        Ok(coefficients) => {
-            for (found, c) in prediction.metrics.iter().zip(coefficients) {
-                let numbers = [c.estimate, c.se, c.interval.low, c.interval.high].map(|x| Cell::Number(x, 3));
-                let name = std::iter::once(Cell::text(found.metric.label));
-                table.push(name.chain(numbers).chain([Cell::P(c.p, 4)]).collect());
-            }
-        }
-        Err(reason) => table.notes.push(format!("No estimate: {reason}.")),
+    let fields = [
+        field("metric", "Metric", |(of, _): &(&MetricPrediction, &Coefficient)| Cell::text(of.metric.label)),
+        field("coefficient", "Log-odds a unit", |(_, c)| Cell::Number(c.estimate, 3)),
+        field("se", "SE", |(_, c)| Cell::Number(c.se, 3)),
+        field("low", "from", |(_, c)| Cell::Number(c.interval.low, 3)),
+        field("high", "to", |(_, c)| Cell::Number(c.interval.high, 3)),
+        field("p", "p", |(_, c)| Cell::P(c.p, 4)),
+    ];
+    let coefficients = prediction.joint.as_deref().unwrap_or_default();
+    let rows = prediction.metrics.iter().zip(coefficients);
+    let mut table = Table::of("prediction_joint", "All metrics in one model", &fields, rows);
+    if let Err(reason) = &prediction.joint {
+        table.notes.push(format!("No estimate: {reason}."));
     }
     table.notes.push(
         "Metrics that rise and fall together share their credit in ways that another study would share anew: a coefficient \

@@ -1,9 +1,8 @@
 //! The preference factors: per group, overall, margins, and per object.
 
 use isostudy_design::{Factor, Level, MethodId, Study};
-use isostudy_inference::preference::{self, GroupFactor};
-use isostudy_inference::tally::{Tally, TallyRow};
-use isostudy_statistics::interval::{Interval, t_over_respondents, wilson};
+use isostudy_inference::preference::{self, GroupFactor, interval};
+use isostudy_inference::tally::Tally;
 use isostudy_table::{Cell, Column, Table};
 
 pub(super) fn all(study: &Study, tally: &Tally) -> Vec<Table> {
@@ -163,34 +162,4 @@ fn objects(study: &Study, tally: &Tally) -> Table {
             .into(),
     );
     table
-}
-
-/// The interval of a method's factor in a group on one object, over respondents: Wilson's where each of them gave one answer,
-/// which is one in so many for the method; else the t interval of their own factors, cut at 0 and at its cap. `None` for
-/// fewer than two respondents.
-pub(crate) fn interval(tally: &Tally, factor: &GroupFactor, object: usize) -> Option<Interval> {
-    let own = wins_of_answers(tally, factor, object);
-    if own.len() > 1 && own.iter().all(|&[_, answers]| answers == 1) {
-        return wilson(own.iter().map(|&[wins, _]| u64::from(wins)).sum(), own.len() as u64);
-    }
-    let mut scores: Vec<f64> =
-        own.into_iter().map(|[wins, answers]| f64::from(wins) / f64::from(answers)).collect();
-    // Sums of doubles depend on their order, and people come in any.
-    scores.sort_by(f64::total_cmp);
-    t_over_respondents(&scores).map(|interval| interval.cut(0.0, factor.cap().value()))
-}
-
-/// By respondent who answered any of a group's questions on one object: answers for a method, and answers.
-fn wins_of_answers(tally: &Tally, factor: &GroupFactor, object: usize) -> Vec<[u32; 2]> {
-    let mut own = vec![[0; 2]; tally.respondents];
-    let asked = |row: &&TallyRow| (row.group as usize, row.object as usize) == (factor.group, object);
-    for row in tally.rows.iter().filter(asked) {
-        let [wins, answers] = &mut own[row.respondent as usize];
-        *answers += row.answers;
-        if row.chosen == Some(factor.method) {
-            *wins += row.answers;
-        }
-    }
-    own.retain(|&[_, answers]| answers > 0);
-    own
 }

@@ -1,59 +1,63 @@
 //! All items of a group on one scale: where each stands, every difference, and how well the model fits.
 
 use isostudy_inference::scale::{GroupFit, GroupScale};
-use isostudy_statistics::{Difference, Omnibus, Scale, jod, preferred};
-use isostudy_table::{Cell, Table};
+use isostudy_statistics::interval::Interval;
+use isostudy_statistics::{Difference, FittedPair, Omnibus, Scale, jod, preferred};
+use isostudy_table::{Cell, Table, field};
 
 /// `scale`, `differences` and `fit`: positions of items, differences of every two, and what the models miss.
 pub(crate) fn tables(scales: &[GroupScale<'_>]) -> [Table; 3] {
     [positions(scales), differences(scales), fits(scales)]
 }
 
+/// A difference in log-odds, as it is shown: itself, in JOD, and as a chance.
+const UNITS: [fn(f64) -> f64; 3] = [|log_odds| log_odds, jod, preferred];
+
+/// In one of the units.
+fn value(of: &Difference, unit: usize) -> Cell {
+    Cell::of_sum(Some(UNITS[unit](of.log_odds)), 3)
+}
+
+/// The lower end of its interval, or the upper one.
+fn end(of: &Difference, unit: usize, end: fn(Interval) -> f64) -> Cell {
+    Cell::of_sum(of.spread.map(|spread| UNITS[unit](end(spread.interval))), 3)
+}
+
 fn positions(scales: &[GroupScale<'_>]) -> Table {
-    let mut table = Table::new(
-        "scale",
-        "Items on one scale",
-        &[
-            ("group", "Group"),
-            ("item", "Item"),
-            ("reference", "Reference"),
-            ("log_worth", "Log worth"),
-            ("low", "from"),
-            ("high", "to"),
-            ("jod", "JOD"),
-            ("jod_low", "from"),
-            ("jod_high", "to"),
-            ("preferred", "Preferred"),
-            ("preferred_low", "from"),
-            ("preferred_high", "to"),
-            ("f", "F"),
-            ("degrees", "Degrees"),
-            ("p", "p of no difference"),
-            ("p_adjusted", "p adjusted"),
-            ("model", "Model"),
-        ],
-    );
-    for GroupScale { group, scale, omnibus_adjusted, .. } in scales {
-        let Ok(scale) = scale else { continue };
-        let omnibus = scale.omnibus.ok();
-        for (place, position) in scale.positions.iter().enumerate() {
-            let mut row = vec![
-                Cell::text(&group.name),
-                Cell::text(&group.items[place]),
-                Cell::text(&group.items[scale.reference]),
-            ];
-            row.extend(in_every_unit(position));
-            let of = omnibus.filter(|_| place == 0);
-            row.push(Cell::number(of.map(|of: Omnibus| of.f), 3));
-            row.push(
-                of.map_or(Cell::Missing, |of| Cell::text(format!("{}, {}", of.degrees[0], of.degrees[1]))),
-            );
-            row.push(Cell::p(of.map(|of| of.p), 5));
-            row.push(Cell::p(of.and(*omnibus_adjusted), 4));
-            row.push(Cell::text(model(scale)));
-            table.push(row);
-        }
+    /// A group, its scale, and the place of an item.
+    type Row<'a> = (&'a GroupScale<'a>, &'a Scale, usize);
+    fn at<'a>((_, scale, place): &Row<'a>) -> &'a Difference {
+        &scale.positions[*place]
     }
+    /// Stands in the first row alone.
+    fn omnibus((_, scale, place): &Row<'_>) -> Option<Omnibus> {
+        scale.omnibus.ok().filter(|_| *place == 0)
+    }
+    let fields = [
+        field("group", "Group", |(of, ..): &Row<'_>| Cell::text(&of.group.name)),
+        field("item", "Item", |(of, _, place)| Cell::text(&of.group.items[*place])),
+        field("reference", "Reference", |(of, scale, _)| Cell::text(&of.group.items[scale.reference])),
+        field("log_worth", "Log worth", |row| value(at(row), 0)),
+        field("low", "from", |row| end(at(row), 0, |i| i.low)),
+        field("high", "to", |row| end(at(row), 0, |i| i.high)),
+        field("jod", "JOD", |row| value(at(row), 1)),
+        field("jod_low", "from", |row| end(at(row), 1, |i| i.low)),
+        field("jod_high", "to", |row| end(at(row), 1, |i| i.high)),
+        field("preferred", "Preferred", |row| value(at(row), 2)),
+        field("preferred_low", "from", |row| end(at(row), 2, |i| i.low)),
+        field("preferred_high", "to", |row| end(at(row), 2, |i| i.high)),
+        field("f", "F", |row| Cell::number(omnibus(row).map(|of| of.f), 3)),
+        field("degrees", "Degrees", |row| {
+            omnibus(row)
+                .map_or(Cell::Missing, |of| Cell::text(format!("{}, {}", of.degrees[0], of.degrees[1])))
+        }),
+        field("p", "p of no difference", |row| Cell::p(omnibus(row).map(|of| of.p), 5)),
+        field("p_adjusted", "p adjusted", |row| Cell::p(omnibus(row).and(row.0.omnibus_adjusted), 4)),
+        field("model", "Model", |(_, scale, _)| Cell::text(model(scale))),
+    ];
+    let rows = scales.iter().filter_map(|of| Some((of, of.scale.as_ref().ok()?)));
+    let rows = rows.flat_map(|(of, scale)| (0..scale.positions.len()).map(move |place| (of, scale, place)));
+    let mut table = Table::of("scale", "Items on one scale", &fields, rows);
     table.notes.push(
         "Davidson's model on all answers of the group, with a bonus for a side where pairs were shown in both orders (davidson-side): \
          a liking for a side would else make worths too small. Half a win added: the answers separate items or a side, so that half a \
@@ -73,54 +77,28 @@ fn model(scale: &Scale) -> String {
     format!("{}{added}", scale.fit.model.code())
 }
 
-/// Log worth, JOD and chance, each with its interval.
-fn in_every_unit(of: &Difference) -> Vec<Cell> {
-    let units: [fn(f64) -> f64; 3] = [|log_odds| log_odds, jod, preferred];
-    let ends = of.spread.map(|spread| [spread.interval.low, spread.interval.high]);
-    let cells = |unit: fn(f64) -> f64| {
-        let [low, high] = [0, 1].map(|end| Cell::of_sum(ends.map(|ends| unit(ends[end])), 3));
-        [Cell::of_sum(Some(unit(of.log_odds)), 3), low, high]
-    };
-    units.into_iter().flat_map(cells).collect()
-}
-
 fn differences(scales: &[GroupScale<'_>]) -> Table {
-    let mut table = Table::new(
-        "differences",
-        "Differences of every two items on one scale",
-        &[
-            ("group", "Group"),
-            ("first", "First"),
-            ("second", "Second"),
-            ("log_odds", "Log-odds"),
-            ("low", "from"),
-            ("high", "to"),
-            ("jod", "JOD"),
-            ("jod_low", "from"),
-            ("jod_high", "to"),
-            ("preferred", "First preferred"),
-            ("preferred_low", "from"),
-            ("preferred_high", "to"),
-            ("p", "p"),
-            ("p_adjusted", "p adjusted"),
-            ("model", "Model"),
-        ],
-    );
-    for GroupScale { group, scale, .. } in scales {
-        let Ok(scale) = scale else { continue };
-        for of in &scale.differences {
-            let mut row = vec![
-                Cell::text(&group.name),
-                Cell::text(&group.items[of.first]),
-                Cell::text(&group.items[of.second]),
-            ];
-            row.extend(in_every_unit(of));
-            row.push(Cell::p(of.spread.map(|spread| spread.p), 5));
-            row.push(Cell::p(of.spread.map(|spread| spread.adjusted), 4));
-            row.push(Cell::text(model(scale)));
-            table.push(row);
-        }
-    }
+    type Row<'a> = (&'a GroupScale<'a>, &'a Scale, &'a Difference);
+    let fields = [
+        field("group", "Group", |(of, ..): &Row<'_>| Cell::text(&of.group.name)),
+        field("first", "First", |(of, _, pair)| Cell::text(&of.group.items[pair.first])),
+        field("second", "Second", |(of, _, pair)| Cell::text(&of.group.items[pair.second])),
+        field("log_odds", "Log-odds", |(.., of)| value(of, 0)),
+        field("low", "from", |(.., of)| end(of, 0, |i| i.low)),
+        field("high", "to", |(.., of)| end(of, 0, |i| i.high)),
+        field("jod", "JOD", |(.., of)| value(of, 1)),
+        field("jod_low", "from", |(.., of)| end(of, 1, |i| i.low)),
+        field("jod_high", "to", |(.., of)| end(of, 1, |i| i.high)),
+        field("preferred", "First preferred", |(.., of)| value(of, 2)),
+        field("preferred_low", "from", |(.., of)| end(of, 2, |i| i.low)),
+        field("preferred_high", "to", |(.., of)| end(of, 2, |i| i.high)),
+        field("p", "p", |(.., of)| Cell::p(of.spread.map(|spread| spread.p), 5)),
+        field("p_adjusted", "p adjusted", |(.., of)| Cell::p(of.spread.map(|spread| spread.adjusted), 4)),
+        field("model", "Model", |(_, scale, _)| Cell::text(model(scale))),
+    ];
+    let rows = scales.iter().filter_map(|of| Some((of, of.scale.as_ref().ok()?)));
+    let rows = rows.flat_map(|(of, scale)| scale.differences.iter().map(move |pair| (of, scale, pair)));
+    let mut table = Table::of("differences", "Differences of every two items on one scale", &fields, rows);
     table.notes.push(
         "From the model of the table of scales, on all answers of the group, those to other pairs included; the direct tests of a pair are in the \
          table of tests. p: t test with participants as clusters; adjusted by Holm over the pairs of the group. Intervals are \
@@ -131,52 +109,41 @@ fn differences(scales: &[GroupScale<'_>]) -> Table {
 }
 
 fn fits(scales: &[GroupScale<'_>]) -> Table {
-    let mut table = Table::new(
-        "fit",
-        "How well models of worths reproduce the answers",
-        &[
-            ("group", "Group"),
-            ("model", "Model"),
-            ("log_likelihood", "Log-likelihood"),
-            ("deviance", "Deviance"),
-            ("degrees", "Degrees"),
-            ("p", "p"),
-            ("first", "First"),
-            ("second", "Second"),
-            ("first_answers", "For the first"),
-            ("first_fitted", "fitted"),
-            ("no_preference", "None"),
-            ("no_preference_fitted", "fitted"),
-            ("second_answers", "For the second"),
-            ("second_fitted", "fitted"),
-            ("gain", "Gain of Rao-Kupper"),
-            ("gain_p", "p of gain"),
-        ],
-    );
-    for GroupScale { group, fits, .. } in scales {
-        for GroupFit { model, goodness, gain } in fits {
-            for (row, pair) in goodness.pairs.iter().enumerate() {
-                let once = |cell: Cell| if row == 0 { cell } else { Cell::Missing };
-                let mut cells = vec![
-                    Cell::text(&group.name),
-                    Cell::text(model.model.code()),
-                    once(Cell::Number(model.log_likelihood, 4)),
-                    once(Cell::Number(goodness.deviance, 2)),
-                    once(Cell::count(goodness.degrees as u64)),
-                    once(Cell::p(goodness.p, 5)),
-                    Cell::text(&group.items[pair.left]),
-                    Cell::text(&group.items[pair.right]),
-                ];
-                for (answers, expected) in pair.answers.iter().zip(pair.fitted) {
-                    cells.push(Cell::count(*answers as u64));
-                    cells.push(Cell::Number(expected, 1));
-                }
-                cells.push(once(Cell::number(gain.map(|gain| gain.gain), 3)));
-                cells.push(once(Cell::p(gain.and_then(|gain| gain.p), 4)));
-                table.push(cells);
-            }
-        }
+    /// A group, a model of it, and the place of a pair.
+    type Row<'a> = (&'a GroupScale<'a>, &'a GroupFit, usize);
+    fn pair<'a>((_, of, place): &Row<'a>) -> &'a FittedPair {
+        &of.goodness.pairs[*place]
     }
+    /// What is about the whole model stands in its first row.
+    fn once((_, of, place): &Row<'_>, cell: fn(&GroupFit) -> Cell) -> Cell {
+        if *place == 0 { cell(of) } else { Cell::Missing }
+    }
+    let fields = [
+        field("group", "Group", |(of, ..): &Row<'_>| Cell::text(&of.group.name)),
+        field("model", "Model", |(_, of, _)| Cell::text(of.model.model.code())),
+        field("log_likelihood", "Log-likelihood", |row| {
+            once(row, |of| Cell::Number(of.model.log_likelihood, 4))
+        }),
+        field("deviance", "Deviance", |row| once(row, |of| Cell::Number(of.goodness.deviance, 2))),
+        field("degrees", "Degrees", |row| once(row, |of| Cell::count(of.goodness.degrees as u64))),
+        field("p", "p", |row| once(row, |of| Cell::p(of.goodness.p, 5))),
+        field("first", "First", |row| Cell::text(&row.0.group.items[pair(row).left])),
+        field("second", "Second", |row| Cell::text(&row.0.group.items[pair(row).right])),
+        field("first_answers", "For the first", |row| Cell::count(pair(row).answers[0] as u64)),
+        field("first_fitted", "fitted", |row| Cell::Number(pair(row).fitted[0], 1)),
+        field("no_preference", "None", |row| Cell::count(pair(row).answers[1] as u64)),
+        field("no_preference_fitted", "fitted", |row| Cell::Number(pair(row).fitted[1], 1)),
+        field("second_answers", "For the second", |row| Cell::count(pair(row).answers[2] as u64)),
+        field("second_fitted", "fitted", |row| Cell::Number(pair(row).fitted[2], 1)),
+        field("gain", "Gain of Rao-Kupper", |row| {
+            once(row, |of| Cell::number(of.gain.map(|gain| gain.gain), 3))
+        }),
+        field("gain_p", "p of gain", |row| once(row, |of| Cell::p(of.gain.and_then(|gain| gain.p), 4))),
+    ];
+    let rows = scales.iter().flat_map(|of| of.fits.iter().map(move |fit| (of, fit)));
+    let rows = rows.flat_map(|(of, fit)| (0..fit.goodness.pairs.len()).map(move |place| (of, fit, place)));
+    let caption = "How well models of worths reproduce the answers";
+    let mut table = Table::of("fit", caption, &fields, rows);
     table.notes.push(
         "One row a pair; what is about the whole model stands in its first. Deviance: against a model with chances of its own \
          for every pair; its p takes all answers as independent, so it is too small where people differ. Gain: log-likelihood \

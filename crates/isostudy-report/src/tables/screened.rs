@@ -1,10 +1,10 @@
 //! The tests with everybody, and without those who broke a rule: nobody is left out silently.
 
+use crate::words::numbers;
 use isostudy_inference::hypotheses::Hypothesis;
 use isostudy_inference::screened::WithoutBreakers;
 use isostudy_statistics::Flag;
 use isostudy_table::{Cell, Field, Table, field_in};
-use std::collections::BTreeSet;
 
 /// A rule and its breakers, a test with everybody, and without them.
 type Row<'a> = (&'a WithoutBreakers, &'a Hypothesis, Option<&'a Hypothesis>);
@@ -44,14 +44,6 @@ pub(super) fn screened(screened: &[WithoutBreakers]) -> Table {
             .into(),
     );
     table
-}
-
-/// Numbers from 1, the first ten of them.
-pub(crate) fn numbers(people: &BTreeSet<usize>, between: &str) -> String {
-    const MOST: usize = 10;
-    let first: Vec<String> = people.iter().take(MOST).map(|p| (p + 1).to_string()).collect();
-    let more = people.len().saturating_sub(MOST);
-    if more > 0 { format!("{} and {more} more", first.join(between)) } else { first.join(between) }
 }
 
 #[cfg(test)]
