@@ -23,7 +23,7 @@
 //!
 //! - Inside is a value above the isovalue. A value equal to it is outside, and so is `NaN`.
 //! - Triangles are counter-clockwise seen from outside and have three different vertices; normals point outward.
-//! - The same field, lattice and settings give the same mesh to the byte, on any number of threads. The fields of [`field`]
+//! - The same field, lattice and settings give the same mesh to the byte, on any number of threads. The fields of [`isostudy_field`]
 //!   use no platform mathematics, so the mesh is also the same on every machine.
 //! - Vertices lie in the lattice's box. With [`Topology::Guarded`] and [`Positions::Indexed`], the defaults, so do all
 //!   sample points, and the tetrahedra fill the box and nothing else: outermost points lie on its faces, and where the
@@ -106,7 +106,7 @@
 //! # Marching cubes
 //!
 //! [`Cubes`] is a [`Method`] whose cells are not cut any further. What is guaranteed above with [`Topology::Guarded`] holds for it,
-//! with every choice of [`Faces`] and [`Diagonals`]. Its tables are made at first use by the rules of [`cells`].
+//! with every choice of [`Faces`] and [`Diagonals`]. Its tables are made at first use by the rules of [`isostudy_cells`].
 //!
 //! - With [`Faces::Trilinear`] the mesh has the components, tunnels and boundary loops of the trilinear interpolant of the samples,
 //!   at a level above the isovalue by less than any number: samples, saddles of faces and saddles of cells that equal it are

@@ -30,17 +30,17 @@ pub enum ChunkError {
         /// What is looked at.
         wanted: CellBox,
     },
-    /// [`Source::Samples`], all of them, of a grid without an end.
+    /// [`Source::Samples`](crate::Source::Samples), all of them, of a grid without an end.
     EndlessSamples,
     /// Edge collapse in a grid without an end: a piece of surface may have none either.
     EndlessCollapse,
-    /// [`Normals::Field`] of samples.
+    /// [`Normals::Field`](crate::Normals::Field) of samples.
     NormalsNeedField,
     /// A setting of the method is out of its range.
     Settings(MethodError),
     /// A method without chunks.
     Method,
-    /// [`Positions::Accumulated`]: a position depends on all before it.
+    /// [`Positions::Accumulated`](crate::Positions::Accumulated): a position depends on all before it.
     Accumulated,
     /// Vertices where chunks have none: refined crossings, weights by curvature, or moves after edges were collapsed.
     Placement {
