@@ -54,7 +54,7 @@ check: ## formatting, lints, licences, the English of README and docs, and that 
 	cargo fmt --all --check
 	scripts/draw-house.py --check
 	cargo clippy --release --locked --workspace --all-targets -- -D warnings
-	@if command -v cargo-deny >/dev/null; then cargo deny --locked check bans licenses sources; else echo "cargo-deny is not installed: licences and bans not checked"; fi
+	@if command -v cargo-deny >/dev/null; then cargo deny --locked check bans licenses sources; else echo "CARGO-DENY IS NOT INSTALLED: licences and bans were not checked" >&2; fi
 
 bunny: ## fetch and verify the Stanford bunny into cache/ (BUNNY=path takes a file of yours)
 	@scripts/fetch-bunny.sh $(BUNNY) >/dev/null
