@@ -283,8 +283,8 @@ impl Method {
         self.family().promises()
     }
 
-    /// Whether it is there to be compared with, not to be chosen: the published rules as they were, edges collapsed after the
-    /// fact, which the paper compares clustering with, and arrangements that make more triangles of the same cubes.
+    /// Whether it is there to be compared with, not to be chosen: the published rules as they were, clustering by edge
+    /// collapse alone, which the paper compares with, and five tetrahedra, which compare cuts of the cube.
     pub fn is_for_comparison(&self) -> bool {
         self.family().is_for_comparison()
     }

@@ -194,8 +194,8 @@ impl Family for Tetrahedra {
 
     fn is_for_comparison(&self) -> bool {
         self.topology == Topology::Published
-            || matches!(self.arrangement, Arrangement::FiveTetrahedra | Arrangement::FaceCentred)
-            || matches!(self.clustering, Clustering::EdgeCollapse | Clustering::IntegratedCollapse)
+            || self.arrangement == Arrangement::FiveTetrahedra
+            || self.clustering == Clustering::EdgeCollapse
     }
 
     fn is_of_cubes(&self) -> bool {
