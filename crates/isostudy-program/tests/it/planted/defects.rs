@@ -143,7 +143,7 @@ fn seconds_that_cannot_be_are_refused() {
         ("negative-seconds", "extraction_s", -0.001),
         ("milliseconds", "extraction_s", 20.0),
         // Each of them fits, both do not.
-        ("both-seconds", "callback_s", 0.02),
+        ("both-seconds", "callback_s", 0.5),
     ] {
         let (error, worker) = first_error(&planted(plan));
         let found = matches!(*error.problem, Problem::Seconds { key, value, .. } if key == expected && value == seconds);
