@@ -13,7 +13,6 @@ mod moved;
 pub(crate) mod patched;
 mod patches;
 pub(crate) mod records;
-pub(crate) mod rows;
 mod rule;
 pub(crate) mod sampling;
 pub(crate) mod snap;

@@ -183,19 +183,19 @@ struct Slab<'a> {
 
 impl Slab<'_> {
     fn find_sides(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        self.samples.find_sides(self.sampling, layer);
+        self.sampling.find_sides(self.samples, layer);
         Ok(())
     }
 
     fn fill(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        self.samples.fill(self.sampling, layer);
+        self.sampling.fill(self.samples, layer);
         Ok(())
     }
 
     fn place(&mut self, layer: usize, piece: &mut Piece) -> Result<(), ExtractError> {
         let Net { grid, request, sharp, placer, .. } = self.of;
         let samples = &*self.samples;
-        let pass = VertexPass { grid, samples, values: samples.values(grid, request.source), placer };
+        let pass = VertexPass { grid, samples, values: samples.values(*grid, request.source), placer };
         let by_planes = sharp.zip(self.tangents.as_mut());
         let cells = pass.layer(layer, by_planes, self.plans, self.records, &mut self.vertices)?;
         self.vertices.check(request.most_vertices)?;

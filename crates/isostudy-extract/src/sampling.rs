@@ -5,4 +5,6 @@ pub(crate) mod bracket;
 pub(crate) mod in_sight;
 pub(crate) mod level;
 pub(crate) mod line;
+pub(crate) mod rows;
 pub(crate) mod tiles;
+pub(crate) mod window;

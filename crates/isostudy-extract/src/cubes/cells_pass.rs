@@ -7,11 +7,11 @@ use isostudy_cells::{PolygonTriangles, radius_ratio};
 use super::grid::CubeGrid;
 use super::patches::{MOST_TRIANGLES, Patch, Patches};
 use super::records::Records;
-use super::rows::next;
 use super::sampling::Samples;
 use super::tubes::INNER;
 use super::vertices::{Placer, Record, corner_of};
 use crate::sampling::in_sight::Values;
+use crate::sampling::rows::next;
 use crate::surface::triangulation::Triangulation;
 
 /// The triangulation of a cell's polygons that was chosen last.
@@ -42,7 +42,7 @@ impl TrianglePass<'_> {
         let Self { grid, samples, patches, .. } = *self;
         for y in 0..grid.size[1] - 1 {
             let rows = [[y, z], [y + 1, z], [y, z + 1], [y + 1, z + 1]];
-            if samples.is_uniform(grid, &rows) {
+            if samples.is_uniform(&rows) {
                 continue;
             }
             let lines = rows.map(|[y, z]| samples.sides.row(y, z));

@@ -8,7 +8,9 @@ use isostudy_mesh::Bounds;
 use crate::lattice::{Border, Lattice};
 use crate::memory::refilled;
 use crate::sampling::bits::between;
+use crate::sampling::line::All;
 use crate::sampling::tiles::Points;
+use crate::sampling::window::PointRows;
 
 /// Columns, rows and layers of a tile.
 const TILE: usize = 2;
@@ -74,5 +76,22 @@ impl Points for CubeGrid<'_> {
     fn bounds(&self, columns: [usize; 2], rows: [usize; 2], layers: [usize; 2]) -> Bounds {
         let [min, max] = [0, 1].map(|end| self.position([columns[end], rows[end], layers[end]]));
         Bounds { min, max }
+    }
+}
+
+impl PointRows for CubeGrid<'_> {
+    type Columns = All;
+
+    fn words(&self) -> usize {
+        self.words
+    }
+
+    fn at(&self, axis: usize) -> &[f32] {
+        &self.at[axis]
+    }
+
+    #[inline]
+    fn columns(&self, _row: usize, _layer: usize) -> (All, &[f32], u64) {
+        (All, &self.at[0], !0)
     }
 }

@@ -105,19 +105,19 @@ struct Slab<'a> {
 
 impl Slab<'_> {
     fn find_sides(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        self.workspace.samples.find_sides(self.sampling, layer);
+        self.sampling.find_sides(&mut self.workspace.samples, layer);
         Ok(())
     }
 
     fn fill(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        self.workspace.samples.fill(self.sampling, layer);
+        self.sampling.fill(&mut self.workspace.samples, layer);
         Ok(())
     }
 
     fn place(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
         let Patched { grid, request, rule, patches, placer } = self.of;
         let Workspace { samples, records, .. } = &mut *self.workspace;
-        let (values, isovalue) = (samples.values(grid, request.source), request.settings.isovalue);
+        let (values, isovalue) = (samples.values(*grid, request.source), request.settings.isovalue);
         let pass = VertexPass { grid, samples, values, isovalue, rule: *rule, patches, placer };
         let is_own = layer < self.highest || layer + 1 == grid.size[2];
         pass.layer(layer, is_own, records, &mut self.vertices)?;
@@ -131,7 +131,7 @@ impl Slab<'_> {
             piece.tail = piece.surface.triangles.len();
         }
         let Workspace { samples, records, best } = &mut *self.workspace;
-        let values = samples.values(grid, request.source);
+        let values = samples.values(*grid, request.source);
         let pass = TrianglePass { grid, samples, values, patches, placer };
         pass.layer(layer, records, best, &mut piece.surface)?;
         (self.layer_done)();

@@ -130,19 +130,19 @@ struct Slab<'a> {
 
 impl Slab<'_> {
     fn find_sides(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        self.workspace.samples.find_sides(self.sampling, layer);
+        self.sampling.find_sides(&mut self.workspace.samples, layer);
         Ok(())
     }
 
     fn fill(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        self.workspace.samples.fill(self.sampling, layer);
+        self.sampling.fill(&mut self.workspace.samples, layer);
         Ok(())
     }
 
     fn label(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
         let Snapped { grid, request, snap, .. } = self.of;
         let Workspace { samples, labels, .. } = &mut *self.workspace;
-        labels.find(grid, samples, samples.values(grid, request.source), *snap, layer);
+        labels.find(grid, samples, samples.values(*grid, request.source), *snap, layer);
         Ok(())
     }
 
@@ -156,7 +156,7 @@ impl Slab<'_> {
     fn place(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
         let Snapped { grid, request, placer, .. } = self.of;
         let Workspace { samples, labels, chosen, records } = &mut *self.workspace;
-        let values = samples.values(grid, request.source);
+        let values = samples.values(*grid, request.source);
         let pass = VertexPass { grid, labels, used: &chosen.used, values, placer };
         let is_own = layer < self.highest || layer + 1 == grid.size[2];
         pass.layer(layer, is_own, records, &mut self.vertices)?;

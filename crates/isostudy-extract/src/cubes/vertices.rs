@@ -8,7 +8,6 @@ use super::Rule;
 use super::grid::CubeGrid;
 use super::patches::{Patch, Patches};
 use super::records::Records;
-use super::rows::next;
 use super::sampling::Samples;
 use crate::lattice::Lattice;
 use crate::memory::push;
@@ -17,6 +16,7 @@ use crate::placement::{clamped, crossing_ratio};
 use crate::sampling::bits::between;
 use crate::sampling::in_sight::Values;
 use crate::sampling::level::Level;
+use crate::sampling::rows::next;
 use crate::settings::{ExtractSettings, Placement, Topology};
 use crate::slabs::Vertices;
 
@@ -77,7 +77,7 @@ impl VertexPass<'_> {
             // The four rows of the cells that begin here; those beyond the lattice are this one.
             let (y, z) = (row + usize::from(beside), layer + usize::from(above));
             let rows = [[row, layer], [y, layer], [row, z], [y, z]];
-            if self.samples.is_uniform(grid, &rows) {
+            if self.samples.is_uniform(&rows) {
                 continue;
             }
             let lines = rows.map(|[y, z]| self.samples.sides.row(y, z));

@@ -9,10 +9,10 @@ use super::plan::Plans;
 use super::vertices::Record;
 use crate::cubes::grid::CubeGrid;
 use crate::cubes::records::Records;
-use crate::cubes::rows::next;
 use crate::cubes::sampling::Samples;
 use crate::sampling::bits::between;
 use crate::sampling::level::Level;
+use crate::sampling::rows::next;
 use crate::surface::triangulation::Triangulation;
 
 /// Of the four cells round an edge along x, y or z, how many cells back each is, along the two other axes in cyclic order; counter-clockwise
@@ -194,7 +194,7 @@ impl QuadPass<'_> {
         let [nx, ny, nz] = grid.size;
         // Where there is no next row or layer, this one: no edge leads there.
         let rows = [[y, z], [(y + 1).min(ny - 1), z], [y, (z + 1).min(nz - 1)]];
-        if self.samples.is_uniform(grid, &rows) {
+        if self.samples.is_uniform(&rows) {
             return None;
         }
         let lines = rows.map(|[y, z]| self.samples.sides.row(y, z));

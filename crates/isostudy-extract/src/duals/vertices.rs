@@ -9,11 +9,11 @@ use super::sharp::Sharp;
 use super::tangents::{Tangent, Tangents};
 use crate::cubes::grid::CubeGrid;
 use crate::cubes::records::Records;
-use crate::cubes::rows::next;
 use crate::cubes::sampling::Samples;
 use crate::cubes::vertices::{Placer, corner_of};
 use crate::memory::push;
 use crate::sampling::in_sight::Values;
+use crate::sampling::rows::next;
 use crate::slabs::Vertices;
 use crate::surface::trace::VertexKey;
 
@@ -50,7 +50,7 @@ impl VertexPass<'_> {
         }
         for y in 0..grid.size[1] - 1 {
             let rows = [[y, z], [y + 1, z], [y, z + 1], [y + 1, z + 1]];
-            if self.samples.is_uniform(grid, &rows) {
+            if self.samples.is_uniform(&rows) {
                 continue;
             }
             let lines = rows.map(|[y, z]| self.samples.sides.row(y, z));

@@ -1,6 +1,7 @@
 //! The samples of one row of points: those that sides need, and later those that crossings need.
 
 use std::collections::TryReserveError;
+use std::ops::Range;
 
 use glam::Vec3;
 use isostudy_field::StudyField;
@@ -16,6 +17,9 @@ const BATCH: usize = 4;
 pub(crate) trait Columns: Copy {
     /// Those from `first` up to `end`.
     fn points(self, first: usize, end: usize) -> impl Iterator<Item = usize> + use<Self>;
+
+    /// Where the same are among those with points.
+    fn places(self, first: usize, end: usize) -> Range<usize>;
 }
 
 /// All of them.
@@ -24,6 +28,10 @@ pub(crate) struct All;
 
 impl Columns for All {
     fn points(self, first: usize, end: usize) -> impl Iterator<Item = usize> + use<> {
+        first..end
+    }
+
+    fn places(self, first: usize, end: usize) -> Range<usize> {
         first..end
     }
 }
@@ -39,6 +47,11 @@ impl Columns for Every {
     fn points(self, first: usize, end: usize) -> impl Iterator<Item = usize> + use<> {
         let Self { offset, step } = self;
         (offset + first.saturating_sub(offset).next_multiple_of(step)..end).step_by(step)
+    }
+
+    fn places(self, first: usize, end: usize) -> Range<usize> {
+        let start = first.saturating_sub(self.offset).div_ceil(self.step);
+        start..start + self.points(first, end).count()
     }
 }
 

@@ -11,7 +11,6 @@ mod cut;
 mod dense;
 mod grid;
 mod points;
-mod rows;
 mod sampling;
 #[cfg(test)]
 mod tests;
@@ -142,7 +141,7 @@ impl Slab<'_> {
         let ByCell { grid, request, placer } = self.of;
         let Workspace { samples, records } = &mut *self.workspace;
         let (values, isovalue) = (samples.values(grid, request.source), request.settings.isovalue);
-        let (sides, active, ties) = (&samples.sides, &samples.active, Ties::of(request.settings.topology));
+        let (sides, active, ties) = (samples.sides(), &samples.active, Ties::of(request.settings.topology));
         let pass = PointPass { grid, values, sides, active, isovalue, ties, placer };
         let is_own = layer < self.highest || layer + 1 == grid.size[2];
         pass.layer(layer, is_own, records, &mut self.vertices)?;
@@ -163,7 +162,7 @@ impl Slab<'_> {
         let Workspace { samples, records } = &*self.workspace;
         triangulate_layer(
             grid,
-            &samples.sides,
+            samples.sides(),
             &samples.active,
             records,
             layer / steps - 1,

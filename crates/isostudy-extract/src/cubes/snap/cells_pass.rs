@@ -5,12 +5,12 @@ use std::collections::TryReserveError;
 use super::super::Flat;
 use super::super::grid::CubeGrid;
 use super::super::records::Records;
-use super::super::rows::{Rows, next};
 use super::super::vertices::corner_of;
 use super::labels::Labels;
 use super::table::{CORNER, MOST_TRIANGLES, Table};
 use super::vertices::Record;
 use crate::memory::reset;
+use crate::sampling::rows::{Rows, next};
 use crate::surface::triangulation::Triangulation;
 
 /// The patches of two layers of cells, and the points on the surface that they use.
@@ -28,9 +28,9 @@ impl Chosen {
     pub(super) fn fit(&mut self, grid: &CubeGrid) -> Result<(), TryReserveError> {
         let [nx, ny, _] = grid.size;
         self.size = [nx, ny];
-        self.live.fit(grid, 2)?;
+        self.live.fit(grid.words, ny, 2)?;
         reset(&mut self.numbers, 2 * nx * ny, 0)?;
-        self.used.fit(grid, 2)
+        self.used.fit(grid.words, ny, 2)
     }
 
     fn start(&self, row: usize, layer: usize) -> usize {

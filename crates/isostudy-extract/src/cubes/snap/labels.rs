@@ -3,10 +3,10 @@
 use std::collections::TryReserveError;
 
 use super::super::grid::CubeGrid;
-use super::super::rows::{Rows, before, next};
 use super::super::sampling::{Near, Samples};
 use crate::memory::reset;
 use crate::sampling::in_sight::{State, Values};
+use crate::sampling::rows::{Rows, before, next};
 
 /// Layers in sight: of a cell, the two of its corners, and one more on either side.
 const SLOTS: usize = 4;
@@ -31,8 +31,8 @@ impl Labels {
     pub(super) fn fit(&mut self, grid: &CubeGrid) -> Result<(), TryReserveError> {
         let [nx, ny, _] = grid.size;
         self.size = grid.size;
-        self.inside.fit(grid, SLOTS)?;
-        self.on.fit(grid, SLOTS)?;
+        self.inside.fit(grid.words, grid.size[1], SLOTS)?;
+        self.on.fit(grid.words, grid.size[1], SLOTS)?;
         reset(&mut self.ways, nx * ny * SLOTS, HERE)?;
         reset(&mut self.states, ny * SLOTS, State::Outside)
     }

@@ -6,12 +6,12 @@ use glam::Vec3;
 
 use super::super::grid::CubeGrid;
 use super::super::records::Records;
-use super::super::rows::{Rows, next};
 use super::super::vertices::{Placer, RANK};
 use super::labels::Labels;
 use crate::memory::push;
 use crate::sampling::bits::between;
 use crate::sampling::in_sight::Values;
+use crate::sampling::rows::{Rows, next};
 use crate::slabs::Vertices;
 
 /// The number in a key of a vertex that stands for a point. Those on edges have the edge's axis.

@@ -4,9 +4,10 @@ use std::collections::TryReserveError;
 
 use super::grid::{CORNERS, CutGrid};
 use super::points::{Record, Records};
-use super::rows::{BitRows, is_set, shifted};
+use super::sampling::BitRows;
 use crate::lattice::tetrahedra::{CASES, Case};
 use crate::sampling::bits::between;
+use crate::sampling::rows::{is_set, shifted};
 use crate::surface::triangulation::Triangulation;
 
 /// Two in each of 24 tetrahedra.

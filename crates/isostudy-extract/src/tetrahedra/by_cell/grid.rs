@@ -8,7 +8,9 @@ use isostudy_mesh::Bounds;
 use super::cut::{Cut, CutEdge, Directions, Step};
 use crate::lattice::{Border, Lattice};
 use crate::memory::refilled;
+use crate::sampling::line::Every;
 use crate::sampling::tiles::Points;
+use crate::sampling::window::PointRows;
 
 /// The points of a word in even and in odd columns.
 const EVEN: u64 = 0x5555_5555_5555_5555;
@@ -264,5 +266,24 @@ impl RowKind {
         };
         let edges = std::array::from_fn(|d| columns_of(&|edges| edges >> d & 1 != 0));
         Self { columns, used, edges, edges_of, lines }
+    }
+}
+
+impl PointRows for CutGrid {
+    type Columns = Every;
+
+    fn words(&self) -> usize {
+        self.words
+    }
+
+    fn at(&self, axis: usize) -> &[f32] {
+        let Coordinates { x, y, z } = &self.coordinates;
+        [x, y, z][axis]
+    }
+
+    fn columns(&self, row: usize, layer: usize) -> (Every, &[f32], u64) {
+        let RowKind { columns: [offset, step], used, .. } = *self.kind(row, layer);
+        let x = if step == 1 { &self.coordinates.x } else { &self.columns[offset] };
+        (Every { offset, step }, x, used)
     }
 }

@@ -6,13 +6,14 @@ use glam::{DVec3, Vec3};
 
 use super::cut::{Cut, Directions};
 use super::grid::{CutGrid, LINES};
-use super::rows::{BitRows, is_set};
+use super::sampling::BitRows;
 use crate::lattice::Lattice;
 use crate::memory::refill;
 use crate::placement::spot::{Apart, Company, linear_ratio};
 use crate::placement::{clamped, crossing_ratio};
 use crate::sampling::in_sight::Values;
 use crate::sampling::level::Level;
+use crate::sampling::rows::is_set;
 use crate::settings::{ExtractSettings, Placement};
 use crate::slabs::Vertices;
 use crate::tetrahedra::ties::Ties;

@@ -2,12 +2,11 @@
 
 use std::collections::TryReserveError;
 
-use super::grid::CubeGrid;
 use crate::memory::reset;
 
-/// A ring of layers of rows. Each row has a word of zeros at its end, so that the bit after each can be asked for.
-#[derive(Default)]
-pub(crate) struct Rows {
+/// A ring of layers of rows. Each row has a word of zeros after it, and so many `BEFORE` it, so that bits beyond it can be asked for.
+#[derive(Debug, Default)]
+pub(crate) struct Rows<const BEFORE: usize = 0> {
     words: Vec<u64>,
     stride: usize,
     rows: usize,
@@ -15,11 +14,11 @@ pub(crate) struct Rows {
     ring: usize,
 }
 
-impl Rows {
-    /// Makes room for so many layers at a time, all zeros.
-    pub(crate) fn fit(&mut self, grid: &CubeGrid, slots: usize) -> Result<(), TryReserveError> {
+impl<const BEFORE: usize> Rows<BEFORE> {
+    /// Makes room for so many layers of rows of so many words, all zeros.
+    pub(crate) fn fit(&mut self, words: usize, rows: usize, slots: usize) -> Result<(), TryReserveError> {
         let slots = slots.next_power_of_two();
-        (self.stride, self.rows, self.ring) = (grid.words + 1, grid.size[1], slots - 1);
+        (self.stride, self.rows, self.ring) = (BEFORE + words + 1, rows, slots - 1);
         reset(&mut self.words, self.stride * self.rows * slots, 0)
     }
 
@@ -27,7 +26,7 @@ impl Rows {
         ((layer & self.ring) * self.rows + row) * self.stride
     }
 
-    /// The words of a row, with the one after it.
+    /// The words of a row, with those before it and the one after it.
     #[inline]
     pub(crate) fn row(&self, row: usize, layer: usize) -> &[u64] {
         &self.words[self.start(row, layer)..][..self.stride]
@@ -36,7 +35,7 @@ impl Rows {
     /// The words of a row alone.
     pub(crate) fn row_mut(&mut self, row: usize, layer: usize) -> &mut [u64] {
         let start = self.start(row, layer);
-        &mut self.words[start..start + self.stride - 1]
+        &mut self.words[start + BEFORE..start + self.stride - 1]
     }
 }
 
@@ -50,4 +49,19 @@ pub(crate) fn next(row: &[u64], word: usize) -> u64 {
 #[inline(always)]
 pub(crate) fn before(row: &[u64], word: usize) -> u64 {
     row[word] << 1 | if word == 0 { row[0] & 1 } else { row[word - 1] >> 63 }
+}
+
+/// The bits `by` columns farther on, `by` at most 63 either way. `row` has a word more at either end.
+pub(crate) fn shifted(row: &[u64], word: usize, by: isize) -> u64 {
+    let [before, here, after] = [row[word], row[word + 1], row[word + 2]];
+    match by {
+        0 => here,
+        1.. => here >> by | after << (64 - by),
+        _ => here << -by | before >> (64 + by),
+    }
+}
+
+/// Whether the bit of a column is set. `row` has a word more at either end.
+pub(crate) fn is_set(row: &[u64], column: usize) -> bool {
+    row[column / 64 + 1] >> (column % 64) & 1 != 0
 }
