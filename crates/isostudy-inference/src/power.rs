@@ -1,6 +1,6 @@
 //! How likely a study is to find a preference that is there, before anyone is asked.
 //!
-//! The study's own forms are answered by simulated people, and each study is tested as [`statistics`](statistics)
+//! The study's own forms are answered by simulated people, and each study is tested as [`isostudy_statistics`]
 //! tests a real one: exact sign-flip over participants, two-sided at the study's level, with and without adjustment in its
 //! family. Contrasts and families are those of the analysis. What is found must be what was assumed: a rejection in favour of
 //! the wrong one is none.
