@@ -28,7 +28,10 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
     found.into_iter().map(Block::Finding).collect()
 }
 
-fn sum(respondents: &[Respondent], count: fn(&Screening) -> u64) -> u64 {
+/// Something that is counted of each participant.
+type Count = fn(&Screening) -> u64;
+
+fn sum(respondents: &[Respondent], count: Count) -> u64 {
     respondents.iter().map(|of| count(&of.seen)).sum()
 }
 
@@ -47,7 +50,7 @@ fn screened(evidence: &Evidence<'_>, respondents: &[Respondent]) -> Finding {
         (own > 0).then(|| format!("{own} by {}", broken_by(*flag)))
     };
     let rules: Vec<String> = Flag::ALL.iter().filter_map(rule).collect();
-    let kinds: [(&str, &str, fn(&Screening) -> u64); 3] = [
+    let kinds: [(&str, &str, Count); 3] = [
         ("controls", "control", |seen| seen.controls),
         ("repeats", "repeat", |seen| seen.repeats),
         ("times", "timed answer", |seen| seen.timed),

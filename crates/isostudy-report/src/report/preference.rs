@@ -191,7 +191,7 @@ fn contrasts_of<'a>(evidence: &'a Evidence<'_>) -> impl Iterator<Item = (&'a Hyp
 /// What shows that a preference depends on the object, in words; `None` if nothing does.
 pub(super) fn depends_on_object(evidence: &Evidence<'_>, levels: [Level; 2]) -> Option<String> {
     let level = evidence.rules().level;
-    if let Some(of) = omnibus::depends_on_object(&evidence.omnibus, levels, level) {
+    if let Some(of) = omnibus::depends_on_object(evidence.omnibus, levels, level) {
         return Some(format!("Friedman's test over objects, {} after Holm's correction", p(of.adjusted)));
     }
     let pairs = contrasts_of(evidence).filter(|(h, l, over)| {
