@@ -7,4 +7,3 @@ pub(crate) mod level;
 pub(crate) mod line;
 pub(crate) mod rows;
 pub(crate) mod tiles;
-pub(crate) mod window;

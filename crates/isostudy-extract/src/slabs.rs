@@ -8,6 +8,7 @@ mod assembling;
 pub(crate) mod finish;
 mod passes;
 mod piece;
+pub(crate) mod window;
 
 pub(crate) use passes::{Pass, Stage, stream};
 pub(crate) use piece::{Piece, Vertices};

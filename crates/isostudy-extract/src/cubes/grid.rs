@@ -10,7 +10,7 @@ use crate::memory::refilled;
 use crate::sampling::bits::between;
 use crate::sampling::line::All;
 use crate::sampling::tiles::Points;
-use crate::sampling::window::PointRows;
+use crate::slabs::window::PointRows;
 
 /// Columns, rows and layers of a tile.
 const TILE: usize = 2;

@@ -3,7 +3,7 @@
 use super::grid::CubeGrid;
 use crate::sampling::bits::between;
 use crate::sampling::rows::{Rows, before, next};
-use crate::sampling::window::Window;
+use crate::slabs::window::Window;
 use crate::source::Sampler;
 
 /// A few layers of samples and sides.

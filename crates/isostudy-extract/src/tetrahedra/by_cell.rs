@@ -152,7 +152,7 @@ impl Slab<'_> {
     fn triangulate(&mut self, layer: usize, piece: &mut Piece) -> Result<(), ExtractError> {
         let grid = self.of.grid;
         let steps = grid.cut.steps_a_cell;
-        if layer % steps != 0 {
+        if !layer.is_multiple_of(steps) {
             return Ok(());
         }
         if layer == self.highest {

@@ -10,7 +10,7 @@ use crate::lattice::{Border, Lattice};
 use crate::memory::refilled;
 use crate::sampling::line::Every;
 use crate::sampling::tiles::Points;
-use crate::sampling::window::PointRows;
+use crate::slabs::window::PointRows;
 
 /// The points of a word in even and in odd columns.
 const EVEN: u64 = 0x5555_5555_5555_5555;

@@ -7,7 +7,7 @@ use super::grid::{CutGrid, LINES};
 use crate::sampling::bits::between;
 use crate::sampling::in_sight::{State, Values};
 use crate::sampling::rows::{Rows, shifted};
-use crate::sampling::window::Window;
+use crate::slabs::window::Window;
 use crate::source::Sampler;
 
 /// A word of zeros before each row: edges lead either way.

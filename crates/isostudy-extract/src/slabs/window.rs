@@ -7,12 +7,12 @@ use std::collections::TryReserveError;
 
 use isostudy_field::StudyField;
 
-use super::bits::{set_above, set_range};
-use super::in_sight::{State, Values};
-use super::line::{Columns, Gaps, Line};
-use super::rows::Rows;
-use super::tiles::{Points, Span, Tile, Tiles};
 use crate::memory::reset;
+use crate::sampling::bits::{set_above, set_range};
+use crate::sampling::in_sight::{State, Values};
+use crate::sampling::line::{Columns, Gaps, Line};
+use crate::sampling::rows::Rows;
+use crate::sampling::tiles::{Points, Span, Tile, Tiles};
 use crate::source::Sampler;
 
 /// Points in rows, as many in one as in the next, some columns of which may have none.
