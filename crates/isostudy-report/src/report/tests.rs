@@ -332,7 +332,9 @@ fn a_liking_for_a_side_is_no_equality() {
         }
     }
     let groups = groups(&answers);
-    let without = texts(&report_of("Trees", &groups), "holds").join("\n");
+    // As if no probe had looked.
+    let without = report_with("Trees", &groups, |of| of.audit.clear());
+    let without = texts(&without, "holds").join("\n");
     assert!(without.contains("liked alike, within the margin"), "{without}");
     let report = report_with("Trees", &groups, |of| of.audit = vec![a_side_was_found()]);
     assert!(!texts(&report, "holds").join("\n").contains("liked alike"));
