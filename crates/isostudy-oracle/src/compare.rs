@@ -1,6 +1,6 @@
 //! Cells that are as they have to be, and those that are not.
 
-use super::oracle::Expected;
+use crate::expected::Expected;
 use isostudy_table::Table;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;

@@ -6,6 +6,8 @@
 
 mod compare;
 mod designs;
+mod exact;
+mod expected;
 mod matrix;
 mod oracle;
 mod people;

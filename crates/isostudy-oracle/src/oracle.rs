@@ -6,88 +6,19 @@
 
 mod agreement;
 mod counts;
-mod exact;
 mod hypotheses;
 mod omnibus;
 mod respondents;
 mod worths;
 
 pub(super) use agreement::triads;
-pub(super) use exact::Range;
 pub(super) use hypotheses::{Hypothesis, hypotheses};
 pub(super) use worths::{compare_scales, compare_worths};
 
-use super::people::Given;
+use crate::expected::{Expected, Want};
+use crate::people::Given;
 use isostudy_design::Study;
 use isostudy_design::forms::Role;
-
-/// What a cell has to say.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Want {
-    /// This text, or this whole number.
-    Is(String),
-    /// A number.
-    Near(f64),
-    /// A p, which may be rounded up to the second.
-    Between(Range),
-    /// These rules of screening, and perhaps `outlying`, which is not judged here.
-    Flags(String),
-    /// Nothing.
-    Empty,
-    /// Whatever it says.
-    Any,
-}
-
-impl Want {
-    fn count(count: u64) -> Self {
-        Self::Is(count.to_string())
-    }
-
-    fn number(value: Option<f64>) -> Self {
-        value.map_or(Self::Empty, Self::Near)
-    }
-
-    fn range(range: Option<Range>) -> Self {
-        range.map_or(Self::Empty, Self::Between)
-    }
-
-    fn p(p: f64) -> Self {
-        Self::Between(Range { low: p, high: p })
-    }
-
-    /// Whether a cell, as in CSV, says it.
-    pub(super) fn is_met(&self, cell: &str) -> bool {
-        let number = || cell.parse::<f64>().ok();
-        match self {
-            Self::Any => true,
-            Self::Empty => cell.is_empty(),
-            Self::Is(text) => cell == text,
-            Self::Flags(text) => cell == text || cell == format!("{text} outlying").trim_start(),
-            Self::Near(want) => number().is_some_and(|got| (got - want).abs() <= 1e-9 * want.abs().max(1.0)),
-            Self::Between(range) => number().is_some_and(|got| range.holds(got)),
-        }
-    }
-}
-
-/// What a table has to say: some of its columns, for rows that are known by others. Rows that are not here may not be there.
-#[derive(Debug, Clone)]
-pub(super) struct Expected {
-    pub(super) table: &'static str,
-    pub(super) keys: &'static [&'static str],
-    pub(super) columns: &'static [&'static str],
-    pub(super) rows: Vec<(Vec<String>, Vec<Want>)>,
-}
-
-impl Expected {
-    fn new(table: &'static str, keys: &'static [&'static str], columns: &'static [&'static str]) -> Self {
-        Self { table, keys, columns, rows: Vec::new() }
-    }
-
-    fn push<const N: usize>(&mut self, keys: [&str; N], cells: Vec<Want>) {
-        assert!(N == self.keys.len() && cells.len() == self.columns.len(), "{}", self.table);
-        self.rows.push((keys.map(str::to_owned).to_vec(), cells));
-    }
-}
 
 /// One question, by what its ids say.
 #[derive(Debug, Clone)]

@@ -4,8 +4,9 @@
 //! in the order in which they are counted, then where. Wording apart from these names does not matter.
 
 use super::compare::Compared;
-use super::oracle::{Hypothesis, Oracle, Range, triads};
+use super::oracle::{Hypothesis, Oracle, triads};
 use super::people::Pressed;
+use crate::exact::Range;
 use isostudy_report::report::{Block, Finding, Report};
 
 /// What values are called, longer names first, with their letter.

@@ -1,7 +1,7 @@
 //! Counts of answers, and the preference factors that are made from them.
 
-use super::exact::t_interval;
 use super::{Expected, Oracle, Question, Want};
+use crate::exact::t_interval;
 use crate::people::Given;
 
 /// The tables of counts and factors.

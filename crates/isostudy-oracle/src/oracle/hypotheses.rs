@@ -1,11 +1,11 @@
 //! Every contrast and every question, as the table of tests has to have them.
 
-use super::exact::{
+use super::omnibus::by_object;
+use super::{Compares, Expected, Oracle, Question, Want};
+use crate::exact::{
     Range, Ratio, add, benjamini_hochberg, binomial, common_divisor, equivalence, holm, interval, mean,
     minus, ratio, sign_flip, trinomial, value,
 };
-use super::omnibus::by_object;
-use super::{Compares, Expected, Oracle, Question, Want};
 use std::collections::BTreeMap;
 
 /// One hypothesis.

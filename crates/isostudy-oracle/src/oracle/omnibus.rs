@@ -1,7 +1,7 @@
 //! Friedman's tests: are the values of a factor liked alike, and does a preference depend on anything?
 
-use super::exact::{Ratio, holm, ratio};
 use super::{Expected, Given, Oracle, Want};
+use crate::exact::{Ratio, holm, ratio};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// By person, a score in each column; none where nothing of it was answered.

@@ -1,9 +1,9 @@
 //! Worths are not fitted again: the printed ones are put into the likelihood, which has to be what is printed and to be flat
 //! there.
 
-use super::exact::holm;
 use super::{Given, Oracle};
 use crate::compare::{Cells, Compared};
+use crate::exact::holm;
 use crate::people::Pressed;
 use isostudy_table::Table;
 use statrs::distribution::{ChiSquared, ContinuousCDF};

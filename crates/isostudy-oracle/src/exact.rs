@@ -11,13 +11,13 @@ pub(crate) struct Range {
 
 impl Range {
     /// Whether a printed p is that. What is too small for a double is printed as the least double.
-    pub(super) fn holds(&self, p: f64) -> bool {
+    pub(crate) fn holds(&self, p: f64) -> bool {
         let least = f64::MIN_POSITIVE;
         (self.low * (1.0 - 1e-7)..=self.high * (1.0 + 1e-7)).contains(&p) || (self.low < least && p < least)
     }
 
     /// Adjusts several at once, by a rule under which no p falls when another rises.
-    pub(super) fn adjusted(all: &[Self], rule: impl Fn(&[f64]) -> Vec<f64>) -> Vec<Self> {
+    pub(crate) fn adjusted(all: &[Self], rule: impl Fn(&[f64]) -> Vec<f64>) -> Vec<Self> {
         let [low, high] =
             [|p: &Self| p.low, |p: &Self| p.high].map(|end| rule(&all.iter().map(end).collect::<Vec<_>>()));
         low.into_iter().zip(high).map(|(low, high)| Self { low, high }).collect()
@@ -25,27 +25,27 @@ impl Range {
 }
 
 /// A fraction, in lowest terms, its denominator above zero.
-pub(super) type Ratio = (i128, i128);
+pub(crate) type Ratio = (i128, i128);
 
-pub(super) fn ratio(numerator: i128, denominator: i128) -> Ratio {
+pub(crate) fn ratio(numerator: i128, denominator: i128) -> Ratio {
     let divisor = common_divisor(numerator.abs(), denominator.abs());
     let sign = denominator.signum();
     (sign * numerator / divisor, sign * denominator / divisor)
 }
 
-pub(super) fn add(a: Ratio, b: Ratio) -> Ratio {
+pub(crate) fn add(a: Ratio, b: Ratio) -> Ratio {
     ratio(a.0 * b.1 + b.0 * a.1, a.1 * b.1)
 }
 
-pub(super) fn minus(a: Ratio, b: Ratio) -> Ratio {
+pub(crate) fn minus(a: Ratio, b: Ratio) -> Ratio {
     add(a, (-b.0, b.1))
 }
 
-pub(super) fn value(of: Ratio) -> f64 {
+pub(crate) fn value(of: Ratio) -> f64 {
     of.0 as f64 / of.1 as f64
 }
 
-pub(super) fn common_divisor(a: i128, b: i128) -> i128 {
+pub(crate) fn common_divisor(a: i128, b: i128) -> i128 {
     if b == 0 { a.max(1) } else { common_divisor(b, a % b) }
 }
 
@@ -53,7 +53,7 @@ pub(super) fn common_divisor(a: i128, b: i128) -> i128 {
 const COARSEST: i128 = 7_000;
 
 /// The sum of scores is at least as far from zero as the one that was seen, over every pattern of signs.
-pub(super) fn sign_flip(scores: &[Ratio]) -> Range {
+pub(crate) fn sign_flip(scores: &[Ratio]) -> Range {
     let unit = scores.iter().fold(1, |unit, score| unit / common_divisor(unit, score.1) * score.1);
     let whole: Vec<i128> = scores.iter().map(|score| score.0 * (unit / score.1)).collect();
     let seen: i128 = whole.iter().sum::<i128>().abs();
@@ -103,7 +103,7 @@ fn beyond(one: &[(i128, f64)], other: &[(i128, f64)], least: i128) -> f64 {
 }
 
 /// Each p times the number of those that are not smaller, and never less than a smaller one's.
-pub(super) fn holm(p: &[f64]) -> Vec<f64> {
+pub(crate) fn holm(p: &[f64]) -> Vec<f64> {
     let own = |of: f64| p.iter().filter(|other| **other >= of).count() as f64 * of;
     let adjusted = |of: &f64| {
         let smaller = p.iter().filter(|other| *other <= of);
@@ -113,7 +113,7 @@ pub(super) fn holm(p: &[f64]) -> Vec<f64> {
 }
 
 /// Each p times all of them over the number of those that are not larger, and never more than a larger one's.
-pub(super) fn benjamini_hochberg(p: &[f64]) -> Vec<f64> {
+pub(crate) fn benjamini_hochberg(p: &[f64]) -> Vec<f64> {
     let own = |of: f64| p.len() as f64 * of / p.iter().filter(|other| **other <= of).count() as f64;
     let adjusted = |of: &f64| {
         let larger = p.iter().filter(|other| *other >= of);
@@ -122,7 +122,7 @@ pub(super) fn benjamini_hochberg(p: &[f64]) -> Vec<f64> {
     p.iter().map(adjusted).collect()
 }
 
-pub(super) fn mean(scores: &[f64]) -> f64 {
+pub(crate) fn mean(scores: &[f64]) -> f64 {
     if scores.is_empty() { 0.0 } else { scores.iter().sum::<f64>() / scores.len() as f64 }
 }
 
@@ -141,7 +141,7 @@ fn are_alike(scores: &[f64]) -> bool {
 }
 
 /// The t interval at 95 %; none where there is no spread.
-pub(super) fn t_interval(scores: &[f64]) -> Option<[f64; 2]> {
+pub(crate) fn t_interval(scores: &[f64]) -> Option<[f64; 2]> {
     (scores.len() > 1 && !are_alike(scores)).then(|| {
         let half = t(scores.len()).inverse_cdf(0.975) * error(scores);
         [mean(scores) - half, mean(scores) + half]
@@ -150,7 +150,7 @@ pub(super) fn t_interval(scores: &[f64]) -> Option<[f64; 2]> {
 
 /// The same for scores between -`reach` and `reach`; where there is no spread, the means that would make so many equal scores
 /// at least 2.5 % probable.
-pub(super) fn interval(scores: &[f64], reach: f64) -> Option<[f64; 2]> {
+pub(crate) fn interval(scores: &[f64], reach: f64) -> Option<[f64; 2]> {
     if scores.len() < 2 {
         return None;
     }
@@ -162,7 +162,7 @@ pub(super) fn interval(scores: &[f64], reach: f64) -> Option<[f64; 2]> {
 }
 
 /// Two one-sided tests of a mean within `margin` of zero.
-pub(super) fn equivalence(scores: &[f64], margin: f64, reach: f64) -> Option<f64> {
+pub(crate) fn equivalence(scores: &[f64], margin: f64, reach: f64) -> Option<f64> {
     if scores.len() < 2 {
         return None;
     }
@@ -179,12 +179,12 @@ pub(super) fn equivalence(scores: &[f64], margin: f64, reach: f64) -> Option<f64
 }
 
 /// The sign test: fair coins that fall at least as unevenly.
-pub(super) fn binomial(wins: u64, losses: u64) -> f64 {
+pub(crate) fn binomial(wins: u64, losses: u64) -> f64 {
     steps(wins + losses, 0.0, wins.abs_diff(losses))
 }
 
 /// The same with ties as often as they were seen.
-pub(super) fn trinomial(wins: u64, ties: u64, losses: u64) -> f64 {
+pub(crate) fn trinomial(wins: u64, ties: u64, losses: u64) -> f64 {
     let all = wins + ties + losses;
     steps(all, ties as f64 / all.max(1) as f64, wins.abs_diff(losses))
 }
