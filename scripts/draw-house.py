@@ -453,13 +453,16 @@ def draw(crates):
         top[level] = y
         y += height[level] + BETWEEN
     total = y - BETWEEN + MARGIN
+    # A full floor may need more than the width.
+    left = min(0, min(centre[node] - node_width(node) / 2 for node in centre) - MARGIN)
+    width = max(WIDTH, max(centre[node] + node_width(node) / 2 for node in centre) + MARGIN) - left
     out = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {total:.0f}" width="{WIDTH}" height="{total:.0f}" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{left:.0f} 0 {width:.0f} {total:.0f}" width="{width:.0f}" height="{total:.0f}" '
         'font-family="DejaVu Sans, Verdana, sans-serif">',
         "<title>The crates of isostudy. An arrow leads from a crate to one that it uses.</title>",
         '<defs><marker id="head" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7" orient="auto">'
         '<path d="M0 0.5 8 4 0 7.5z" fill="#47586b"/></marker></defs>',
-        f'<rect width="{WIDTH}" height="{total:.0f}" fill="#ffffff"/>',
+        f'<rect x="{left:.0f}" width="{width:.0f}" height="{total:.0f}" fill="#ffffff"/>',
     ]
     # Where arrows leave and reach a box, they are spread over its side in the order of their other ends.
     ends = {}
