@@ -12,7 +12,7 @@ const GROUPS: [(&str, &[(&str, &str)]); 4] = [
             ("study", "isostudy study configs/quick.toml"),
             ("methods", "isostudy methods"),
             ("extract", "isostudy extract --volume head.nrrd --isovalue 300.5 -o head.glb"),
-            ("turntable", "isostudy turntable bunny.ply -o bunny.gif"),
+            ("turntable", "isostudy turntable cache/bunny.ply -o bunny.gif"),
         ],
     ),
     (
@@ -21,9 +21,9 @@ const GROUPS: [(&str, &[(&str, &str)]); 4] = [
             ("design", "isostudy design check configs/balanced.toml"),
             ("pairs", "isostudy pairs configs/paper.toml"),
             ("bundle", "isostudy bundle configs/balanced.toml"),
-            ("serve", "isostudy serve results/balanced/bundle --data answers"),
+            ("serve", "isostudy serve configs/balanced.toml"),
             ("collect", "isostudy collect configs/balanced.toml downloads -o answers.csv"),
-            ("deidentify", "isostudy deidentify answers -o public"),
+            ("deidentify", "isostudy deidentify configs/balanced.toml -o public"),
         ],
     ),
     (
@@ -38,7 +38,7 @@ const GROUPS: [(&str, &[(&str, &str)]); 4] = [
         "Measure: times, distances, topology",
         &[
             ("bench", "isostudy bench configs/paper.toml"),
-            ("inspect", "isostudy inspect configs/paper.toml ss_bi"),
+            ("inspect", "isostudy inspect ss_bi --study configs/paper.toml"),
             ("distance", "isostudy distance coarse.ply fine.ply"),
             ("verify", "isostudy verify head.ply --volume head.nrrd --isovalue 300.5"),
             ("table", "isostudy table mc --groups"),

@@ -53,8 +53,8 @@ const INPUT_ERROR: u8 = 2;
 #[derive(Debug, Parser)]
 #[command(name = "isostudy", version, arg_required_else_help = true, max_term_width = 100)]
 #[command(after_help = "\
-Exit codes: 0 done, 1 a check failed, 2 wrong usage or input, 3 a benchmark could
-not have told what it must.")]
+Exit codes: 0 done, 1 a check failed, 2 wrong usage or input, 3 a benchmark
+could not have told what it must.")]
 struct Cli {
     #[command(subcommand)]
     command: Command,

@@ -13,7 +13,7 @@ use crate::source::Source;
 const COSTEN: &str = "Costen 2026";
 const TREECE: &str = "Treece, Prager & Gee 1999; Costen 2026";
 const COLLAPSED: &str = "Costen 2026; Dey, Edelsbrunner, Guha & Nekhayev 1999";
-const OWN: &str = "not in the paper; see isostudy_extract::Arrangement and isostudy_extract::Clustering";
+const OWN: &str = "not in the paper; see Arrangement and Clustering of isostudy_extract";
 const WARPED: &str = "Labelle & Shewchuk 2007, the warp and the boundary";
 const PLACED: &str = "Treece, Prager & Gee 1999; for the placement see isostudy_extract::Placement";
 
