@@ -1,6 +1,6 @@
 //! One answer, freed of objects, files and pictures: who compared which two items, and how it came out.
 //!
-//! There are two orientations of an answer, and two types, so that one cannot be taken for the other. A [`ShownBallot`]
+//! There are two orientations of an answer, and two types of a [`Ballot`], so that one cannot be taken for the other. A [`ShownBallot`]
 //! speaks of the sides that the participant saw: `left`, `right`. A [`DeclaredBallot`] speaks of items: `first`, `second`,
 //! in the order in which somebody names them, whichever side they stood on. What is about sides (side models, probes,
 //! screening) takes the first; what is about items (contrasts, agreement, prediction) takes the second. The one way
@@ -81,27 +81,22 @@ impl Preference {
     }
 }
 
-/// One answer of one participant, as it was shown. A question that was not answered has no ballot.
+/// One answer of one participant about two items. A question that was not answered has no ballot.
 ///
-/// Kept in 20 bytes, since there may be millions. Ordered by participant, question, items and outcome.
+/// Kept in 20 bytes, since there may be millions. Ordered by participant, question, items and what was chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct ShownBallot {
+pub struct Ballot<Chosen> {
     participant: u32,
     question: u32,
     items: [u32; 2],
-    outcome: Outcome,
+    chosen: Chosen,
 }
 
-/// One answer of one participant about two items, whichever side they stood on.
-///
-/// Kept in 20 bytes. Ordered by participant, question, items and preference.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct DeclaredBallot {
-    participant: u32,
-    question: u32,
-    items: [u32; 2],
-    preference: Preference,
-}
+/// An answer as it was shown: its items are those on the left and on the right.
+pub type ShownBallot = Ballot<Outcome>;
+
+/// An answer about items, whichever side they stood on: the one that is named first, and the second.
+pub type DeclaredBallot = Ballot<Preference>;
 
 /// What both orientations have.
 pub trait Answer: Copy {
@@ -119,17 +114,17 @@ fn narrow(number: usize) -> u32 {
     u32::try_from(number).expect("four thousand million are not answered")
 }
 
-impl ShownBallot {
-    /// An answer to a question that shows `items` left and right; all are numbered from 0.
+impl<Chosen> Ballot<Chosen> {
+    /// An answer to a question about `items`, left and right or first and second; all are numbered from 0.
     ///
     /// # Panics
     /// If a number does not fit in 32 bits.
-    pub fn new(participant: usize, question: usize, items: [usize; 2], outcome: Outcome) -> Self {
+    pub fn new(participant: usize, question: usize, items: [usize; 2], chosen: Chosen) -> Self {
         Self {
             participant: narrow(participant),
             question: narrow(question),
             items: items.map(narrow),
-            outcome,
+            chosen,
         }
     }
 
@@ -142,7 +137,9 @@ impl ShownBallot {
     pub fn question(&self) -> usize {
         self.question as usize
     }
+}
 
+impl ShownBallot {
     /// The item on the left, from 0.
     pub fn left(&self) -> usize {
         self.items[0] as usize
@@ -155,7 +152,7 @@ impl ShownBallot {
 
     /// What was chosen.
     pub fn outcome(&self) -> Outcome {
-        self.outcome
+        self.chosen
     }
 
     /// The same answer about items, `first` named first.
@@ -165,16 +162,16 @@ impl ShownBallot {
     pub fn declared(&self, first: usize) -> DeclaredBallot {
         let [left, right] = self.items;
         assert!(first == self.left() || first == self.right(), "item {first} was not shown in {self:?}");
-        let preference = match self.outcome {
+        let preference = match self.chosen {
             Outcome::Left => Preference::First,
             Outcome::Tie => Preference::Neither,
             Outcome::Right => Preference::Second,
         };
-        let (items, preference) = match first == self.left() {
+        let (items, chosen) = match first == self.left() {
             true => ([left, right], preference),
             false => ([right, left], preference.reversed()),
         };
-        DeclaredBallot { participant: self.participant, question: self.question, items, preference }
+        DeclaredBallot { participant: self.participant, question: self.question, items, chosen }
     }
 
     /// The same answer about items, the one with the lower number named first.
@@ -194,40 +191,17 @@ impl ShownBallot {
 
     /// The same with another outcome.
     pub fn with_outcome(&self, outcome: Outcome) -> Self {
-        Self { outcome, ..*self }
+        Self { chosen: outcome, ..*self }
     }
 
     /// The same with items and outcome exchanged between the sides.
     pub fn turned(&self) -> Self {
         let [left, right] = self.items;
-        Self { items: [right, left], outcome: self.outcome.swapped(), ..*self }
+        Self { items: [right, left], chosen: self.chosen.swapped(), ..*self }
     }
 }
 
 impl DeclaredBallot {
-    /// An answer to a question about `items`, first and second; all are numbered from 0.
-    ///
-    /// # Panics
-    /// If a number does not fit in 32 bits.
-    pub fn new(participant: usize, question: usize, items: [usize; 2], preference: Preference) -> Self {
-        Self {
-            participant: narrow(participant),
-            question: narrow(question),
-            items: items.map(narrow),
-            preference,
-        }
-    }
-
-    /// The participant, from 0.
-    pub fn participant(&self) -> usize {
-        self.participant as usize
-    }
-
-    /// The question, from 0.
-    pub fn question(&self) -> usize {
-        self.question as usize
-    }
-
     /// The item named first, from 0.
     pub fn first(&self) -> usize {
         self.items[0] as usize
@@ -240,11 +214,14 @@ impl DeclaredBallot {
 
     /// What was chosen.
     pub fn preference(&self) -> Preference {
-        self.preference
+        self.chosen
     }
 }
 
-impl Answer for ShownBallot {
+impl<Chosen: Copy> Answer for Ballot<Chosen>
+where
+    usize: From<Chosen>,
+{
     fn participant(&self) -> usize {
         self.participant()
     }
@@ -254,21 +231,19 @@ impl Answer for ShownBallot {
     }
 
     fn place(&self) -> usize {
-        self.outcome.index()
+        self.chosen.into()
     }
 }
 
-impl Answer for DeclaredBallot {
-    fn participant(&self) -> usize {
-        self.participant()
+impl From<Outcome> for usize {
+    fn from(outcome: Outcome) -> Self {
+        outcome.index()
     }
+}
 
-    fn question(&self) -> usize {
-        self.question()
-    }
-
-    fn place(&self) -> usize {
-        self.preference.index()
+impl From<Preference> for usize {
+    fn from(preference: Preference) -> Self {
+        preference.index()
     }
 }
 

@@ -54,7 +54,7 @@ mod tipping;
 #[cfg(test)]
 mod golden;
 
-pub use ballot::{Answer, DeclaredBallot, Outcome, Preference, ShownBallot};
+pub use ballot::{Answer, Ballot, DeclaredBallot, Outcome, Preference, ShownBallot};
 pub use closeness::{Closeness, closeness};
 pub use equivalence::{Equivalence, MARGIN, equivalence};
 pub use exchange::{Split, exchange};

@@ -8,6 +8,13 @@ use isostudy_design::record::{
 use isostudy_field::Counted;
 use isostudy_mesh::TriangleMesh;
 
+/// A record with the fields of the same names; the others after `and`.
+macro_rules! same_fields {
+    ($from:expr => $record:ident { $($field:ident),* $(; and $($other:ident: $value:expr),*)? }) => {
+        $record { $($field: $from.$field,)* $($($other: $value,)*)? }
+    };
+}
+
 pub(crate) fn mesh_record(
     id: &ConfigurationId,
     purpose: Purpose,
@@ -57,15 +64,11 @@ pub(crate) fn counts(c: &isostudy_extract::Counts) -> Counts {
         gradients: None,
         vertex_bytes: c.vertex_bytes,
         index_bytes: c.index_bytes,
-        tetrahedra: c.tetrahedra.as_ref().map(|t| TetrahedraCounts {
-            stored_samples: t.stored_samples,
-            stored_edges: t.stored_edges,
-            needed_edges: t.needed_edges,
-            tetrahedra: t.tetrahedra,
-            tetrahedra_evaluated: t.tetrahedra_evaluated,
-            discarded_as_published: t.discarded_as_published,
-            sample_bytes: t.sample_bytes,
-            edge_bytes: t.edge_bytes,
+        tetrahedra: c.tetrahedra.as_ref().map(|t| {
+            same_fields!(t => TetrahedraCounts {
+                stored_samples, stored_edges, needed_edges, tetrahedra, tetrahedra_evaluated, discarded_as_published,
+                sample_bytes, edge_bytes
+            })
         }),
     }
 }
@@ -105,42 +108,17 @@ pub(crate) fn quality(q: &isostudy_mesh::quality::QualityReport) -> Quality {
 }
 
 fn distribution(d: &isostudy_mesh::distribution::Distribution) -> Distribution {
-    Distribution {
-        count: d.count,
-        mean: d.mean,
-        sd: d.sd,
-        min: d.min,
-        q05: d.q05,
-        q25: d.q25,
-        median: d.median,
-        q75: d.q75,
-        q95: d.q95,
-        max: d.max,
-        histogram: Histogram {
-            low: d.histogram.low,
-            high: d.histogram.high,
-            counts: d.histogram.counts.clone(),
-            below: d.histogram.below,
-            above: d.histogram.above,
-        },
-    }
+    let h = d.histogram.clone();
+    let histogram = same_fields!(h => Histogram { low, high, counts, below, above });
+    same_fields!(d => Distribution { count, mean, sd, min, q05, q25, median, q75, q95, max; and histogram: histogram })
 }
 
 /// `t` is the mesh's.
 pub(crate) fn topology(t: &isostudy_mesh::topology::TopologyReport, mesh: &TriangleMesh) -> Topology {
-    Topology {
-        vertices: t.vertices,
-        edges: t.edges,
-        triangles: t.triangles,
-        boundary_edges: t.boundary_edges,
-        non_manifold_edges: t.non_manifold_edges,
-        misoriented_edges: t.misoriented_edges,
-        non_manifold_vertices: t.non_manifold_vertices,
-        duplicate_faces: t.duplicate_faces,
-        folded_faces: t.folded_faces,
-        components: t.components,
-        euler_characteristic: t.euler_characteristic,
+    same_fields!(t => Topology {
+        vertices, edges, triangles, boundary_edges, non_manifold_edges, misoriented_edges, non_manifold_vertices,
+        duplicate_faces, folded_faces, components, euler_characteristic;
         // Of no triangles there is no such number.
-        self_intersections: isostudy_mesh::self_intersections(mesh).ok(),
-    }
+        and self_intersections: isostudy_mesh::self_intersections(mesh).ok()
+    })
 }

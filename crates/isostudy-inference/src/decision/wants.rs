@@ -44,18 +44,32 @@ enum Among {
     All,
 }
 
+impl Want {
+    /// A number without a unit, of those with the object's own cubes; less is better.
+    const PLAIN: Self = Self {
+        name: "",
+        heading: "",
+        unit: "{}",
+        phrase: "",
+        says: "{}",
+        among: Among::SameCells,
+        quantity: |_| None,
+        is_larger_better: false,
+        between: |_| None,
+        pairs: |_| None,
+    };
+}
+
 const WANTS: [Want; 10] = [
     Want {
         name: "preferred",
         heading: "most liked",
-        unit: "{}",
         phrase: "the look that people chose most",
         says: "mean score {}, from \u{2212}1 to 1",
         among: Among::All,
         quantity: |of| of.preference,
         is_larger_better: true,
-        between: |_| None,
-        pairs: |_| None,
+        ..Want::PLAIN
     },
     Want {
         name: "fastest",
@@ -63,11 +77,9 @@ const WANTS: [Want; 10] = [
         unit: "{} ms",
         phrase: "the shortest time",
         says: "{} ms",
-        among: Among::SameCells,
         quantity: |of| of.time_s.map(milliseconds),
-        is_larger_better: false,
         between: |of| of.error,
-        pairs: |_| None,
+        ..Want::PLAIN
     },
     Want {
         name: "chunk",
@@ -75,11 +87,10 @@ const WANTS: [Want; 10] = [
         unit: "{} ms",
         phrase: "the shortest time for a chunk",
         says: "{} ms",
-        among: Among::SameCells,
         quantity: |of| of.chunks.as_ref().map(|of| milliseconds(of.median_s)),
-        is_larger_better: false,
         between: |of| of.error,
         pairs: |of| of.chunks.as_ref(),
+        ..Want::PLAIN
     },
     Want {
         name: "edit",
@@ -87,59 +98,47 @@ const WANTS: [Want; 10] = [
         unit: "{} ms",
         phrase: "the shortest time for an edit, in chunks",
         says: "{} ms",
-        among: Among::SameCells,
         quantity: |of| of.edits.as_ref().map(|of| milliseconds(of.median_s)),
-        is_larger_better: false,
         between: |of| of.error,
         pairs: |of| of.edits.as_ref(),
+        ..Want::PLAIN
     },
     Want {
         name: "closest",
         heading: "smallest mean error",
-        unit: "{}",
         phrase: "the smallest mean error",
         says: "{} cube edges",
-        among: Among::SameCells,
         quantity: |of| of.error,
-        is_larger_better: false,
         between: |of| of.time_s,
-        pairs: |_| None,
+        ..Want::PLAIN
     },
     Want {
         name: "closest_per_triangle",
         heading: "the same with as many triangles",
-        unit: "{}",
         phrase: "the smallest mean error with as many triangles",
         says: "{} cube edges",
         among: Among::SameTriangles,
         quantity: |of| of.error,
-        is_larger_better: false,
         between: |of| of.time_s,
-        pairs: |_| None,
+        ..Want::PLAIN
     },
     Want {
         name: "edges",
         heading: "sharp edges kept",
-        unit: "{}",
         phrase: "sharp edges kept: the smallest mean error at them",
         says: "{} cube edges",
-        among: Among::SameCells,
         quantity: |of| of.sharp_edges,
-        is_larger_better: false,
         between: |of| of.time_s,
-        pairs: |_| None,
+        ..Want::PLAIN
     },
     Want {
         name: "regular",
         heading: "most regular triangles",
-        unit: "{}",
         phrase: "the most regular triangles",
         says: "mean radius ratio {}",
-        among: Among::SameCells,
         quantity: |of| known(&of.mesh.quality.radius_ratio, |ratio| ratio.mean).map(Estimate::exact),
         is_larger_better: true,
-        between: |_| None,
-        pairs: |_| None,
+        ..Want::PLAIN
     },
     Want {
         name: "faultless",
@@ -149,9 +148,8 @@ const WANTS: [Want; 10] = [
         says: "{} ms",
         among: Among::Faultless,
         quantity: |of| of.time_s.map(milliseconds),
-        is_larger_better: false,
         between: |of| of.error,
-        pairs: |_| None,
+        ..Want::PLAIN
     },
     Want {
         name: "topology",
@@ -161,9 +159,8 @@ const WANTS: [Want; 10] = [
         says: "{} ms",
         among: Among::RightTopology,
         quantity: |of| of.time_s.map(milliseconds),
-        is_larger_better: false,
         between: |of| of.error,
-        pairs: |_| None,
+        ..Want::PLAIN
     },
 ];
 

@@ -59,13 +59,6 @@ pub(crate) fn read(
         [list(["a", "model_a", "left"]), list(["tie", "draw", "tie"]), list(["b", "model_b", "right"])];
     own.words.declare(words.each_ref().map(|words| &words[..])).expect("no word twice");
     let ids = if question.is_some() { Ids::Scene } else { Ids::MadeUp };
-    let rule = long::Rule {
-        sides_recorded: true,
-        escaped: true,
-        every_row: true,
-        ordered: false,
-        split_ties: false,
-        ids,
-    };
+    let rule = long::Rule { ordered: false, ids, ..long::Rule::LONG };
     long::read_columns(source, (*row, header), columns, rule, plan, &own, report)
 }

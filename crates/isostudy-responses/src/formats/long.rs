@@ -42,8 +42,7 @@ pub(crate) fn read(
 ) -> Result<Responses, Fault> {
     let columns = Columns::of(header, header_row, plan.is_some(), report)?;
     let ids = if columns.question.is_some() { Ids::OnePair } else { Ids::MadeUp };
-    let rule =
-        Rule { sides_recorded: true, escaped: true, every_row: true, ordered: true, split_ties: false, ids };
+    let rule = Rule { ids, ..Rule::LONG };
     read_columns(source, (header_row, header), columns, rule, plan, mapping, report)
 }
 

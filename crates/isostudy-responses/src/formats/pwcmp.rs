@@ -81,11 +81,10 @@ pub(crate) fn read(
     own.words.declare([&first, &[], &second]).expect("two words");
     let rule = long::Rule {
         sides_recorded: false,
-        escaped: true,
-        every_row: true,
         ordered: false,
         split_ties: true,
         ids: Ids::MadeUp,
+        ..long::Rule::LONG
     };
     long::read_columns(source, (*row, header), columns, rule, plan, &own, report)
 }

@@ -1,6 +1,5 @@
 //! jsPsych's data, one row or JSON object a trial, and JATOS result text, which is one such array a participant.
 
-use crate::collect::Ids;
 use crate::decode::source::Source;
 use crate::error::{Fault, shorten};
 use crate::format::Format;
@@ -159,13 +158,6 @@ pub(crate) fn read_table(
     if sides.is_none() {
         report.row(Kind::Noted, *row, "trials do not say what was left and right: taken from the study");
     }
-    let rows = long::Rule {
-        sides_recorded: true,
-        escaped: false,
-        every_row: false,
-        ordered: true,
-        split_ties: false,
-        ids: Ids::OnePair,
-    };
+    let rows = long::Rule { escaped: false, every_row: false, ..long::Rule::LONG };
     long::read_columns(source, (*row, header), columns, rows, plan, mapping, report)
 }

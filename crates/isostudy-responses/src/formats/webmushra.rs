@@ -3,7 +3,6 @@
 //! Which of them was A, the left one, is drawn anew for every page and not written to the file: sides are not recorded. The answer is
 //! `correct` for the reference, `incorrect` for the other, `undecided`, or `unknown` if there was none.
 
-use crate::collect::Ids;
 use crate::decode::source::Source;
 use crate::error::{Fault, shorten};
 use crate::format::Format;
@@ -59,13 +58,6 @@ pub(crate) fn read(
     let words = [&list("correct"), &list("undecided"), &list("incorrect")];
     own.words.declare(words.map(Vec::as_slice)).expect("three words");
     own.words.declare_blank("unknown");
-    let rows = long::Rule {
-        sides_recorded: false,
-        escaped: false,
-        every_row: true,
-        ordered: false,
-        split_ties: false,
-        ids: Ids::OnePair,
-    };
+    let rows = long::Rule { sides_recorded: false, escaped: false, ordered: false, ..long::Rule::LONG };
     long::read_columns(source, (*row, header), columns, rows, plan, &own, report)
 }

@@ -99,6 +99,18 @@ pub(crate) struct Rule {
     pub(crate) ids: Ids,
 }
 
+impl Rule {
+    /// Of the long format where questions are named.
+    pub(crate) const LONG: Self = Self {
+        sides_recorded: true,
+        escaped: true,
+        every_row: true,
+        ordered: true,
+        split_ties: false,
+        ids: Ids::OnePair,
+    };
+}
+
 impl Columns {
     pub(super) fn of(
         header: &[String],
