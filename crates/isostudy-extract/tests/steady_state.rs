@@ -19,8 +19,12 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 const ONE: Execution = Execution { threads: 1 };
 const BOTH: [Arrangement; 2] = [Arrangement::BodyCentred, Arrangement::SimpleCubic];
 
-/// One test only: the allocator counts for the whole process.
-#[test]
+/// No harness: its thread allocates, and the allocator counts for the whole process.
+fn main() {
+    allocations();
+    println!("test allocations ... ok");
+}
+
 fn allocations() {
     the_second_volume_of_a_size_allocates_nothing();
     given_samples_allocate_nothing_either();
