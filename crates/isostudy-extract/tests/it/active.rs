@@ -1,11 +1,14 @@
 //! Structures that find the cells of a surface, against the rule itself; and extractions that leave bricks out, against those that do
 //! not.
 
-#[path = "../../../isostudy-volume/benches/isovalues/structures/mod.rs"]
-mod structures;
+#[path = "../../../isostudy-volume/benches/isovalues"]
+mod bench {
+    pub(super) mod structures;
+}
 
 use std::collections::BTreeSet;
 
+use bench::structures::{IntervalTree, KdTree, Octree, Scan, SeedSet, SpanSpace};
 use glam::Vec3;
 use isostudy_extract::active::{ActiveCells, ActiveError, Bricks, GridSamples};
 use isostudy_extract::{
@@ -15,7 +18,6 @@ use isostudy_extract::{
 use isostudy_mesh::Bounds;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use structures::{IntervalTree, KdTree, Octree, Scan, SeedSet, SpanSpace};
 
 /// By corners, one by one.
 fn by_the_rule(counts: [usize; 3], values: &[f32], isovalue: f32) -> BTreeSet<u32> {
