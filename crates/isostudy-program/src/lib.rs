@@ -5,7 +5,7 @@
 //! The protocol, with every line and field, is in `docs/programs.md`.
 //!
 //! ```no_run
-//! use program::{Program, Request, Samples, Worker};
+//! use isostudy_program::{Program, Request, Samples, Worker};
 //! use std::time::Duration;
 //!
 //! let program = Program {
@@ -28,7 +28,7 @@
 //! })?;
 //! println!("{} triangles in {:?}", answer.triangles, answer.wall);
 //! worker.finish()?;
-//! # Ok::<(), program::ProgramError>(())
+//! # Ok::<(), isostudy_program::ProgramError>(())
 //! ```
 //!
 //! # Samples and signs
