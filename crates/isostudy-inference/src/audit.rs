@@ -8,6 +8,7 @@
 
 mod copies;
 mod dealt;
+pub mod evidence;
 mod interaction;
 mod labels;
 mod side;
@@ -16,8 +17,10 @@ mod swapped;
 mod turned;
 
 pub use dealt::Dealt;
+pub use evidence::Evidence;
 
 use crate::ballots::BallotGroup;
+use evidence::{Agreement, Reason, Separations};
 use isostudy_statistics::{
     Circumstances, Pairs, Screening, Separation, ShownBallot, outlying_respondents, screening, separation,
 };
@@ -122,8 +125,8 @@ pub struct Report {
     pub finding: Finding,
     /// Its p, adjusted for all that it looked at; `None` if it needs none.
     pub p: Option<f64>,
-    /// What was seen, with numbers, or why nothing can be seen.
-    pub evidence: String,
+    /// What was seen, or why nothing can be seen.
+    pub evidence: Evidence,
 }
 
 /// What is audited.
@@ -147,9 +150,6 @@ pub struct Audited<'a> {
     pub dealt: Option<&'a Dealt<'a>>,
 }
 
-/// Why nothing about sides can be seen.
-const NO_SIDES: &str = "the file does not say which item was on which side";
-
 /// Runs every probe.
 ///
 /// # Panics
@@ -169,23 +169,19 @@ pub fn audit(audited: &Audited<'_>) -> Vec<Report> {
 }
 
 impl Report {
-    fn tested(probe: Probe, p: f64, evidence: String) -> Self {
+    fn tested(probe: Probe, p: f64, evidence: Evidence) -> Self {
         let finding = if p < ALARM { Finding::Found } else { Finding::NotFound };
         Self { probe, finding, p: Some(p), evidence }
     }
 
-    fn not_answerable(probe: Probe, reason: &str) -> Self {
-        let evidence = format!("not answerable here, because {reason}");
-        Self { probe, finding: Finding::NotAnswerable, p: None, evidence }
+    fn not_answerable(probe: Probe, reason: Reason) -> Self {
+        Self { probe, finding: Finding::NotAnswerable, p: None, evidence: Evidence::NotAnswerable(reason) }
     }
 }
 
-/// Of many names, the first few.
-fn list(names: &[String]) -> String {
-    const MOST: usize = 5;
-    match names.len() {
-        0..=MOST => names.join(", "),
-        n => format!("{} and {} more", names[..MOST].join(", "), n - MOST),
+impl Audited<'_> {
+    fn names(&self, questions: impl IntoIterator<Item = usize>) -> Vec<String> {
+        questions.into_iter().map(|question| self.questions[question].clone()).collect()
     }
 }
 
@@ -194,25 +190,12 @@ fn outlying_respondent(ballots: &[ShownBallot]) -> Report {
     let agreeing: Vec<_> = screening(ballots).iter().map(Screening::with_majority).collect();
     let judged = outlying_respondents(&agreeing);
     let Some(least) = judged.first() else {
-        let reason = "fewer than five people decided ten questions on which the others have a majority";
-        return Report::not_answerable(Probe::OutlyingRespondent, reason);
+        return Report::not_answerable(Probe::OutlyingRespondent, Reason::FewDeciders);
     };
-    let name = |outlying: &isostudy_statistics::Outlying| {
-        format!(
-            "respondent {} agrees with the others' majority on {:.0} %",
-            outlying.participant + 1,
-            100.0 * outlying.agreement
-        )
-    };
-    let outlying: Vec<_> = judged.iter().filter(|outlying| outlying.p < ALARM).collect();
-    let others: Vec<f64> =
-        judged.iter().filter(|outlying| outlying.p >= ALARM).map(|outlying| outlying.agreement).collect();
-    let (low, high) = others.iter().fold((1.0_f64, 0.0_f64), |(low, high), &a| (low.min(a), high.max(a)));
-    let range = format!("everybody else on {:.0} to {:.0} %", 100.0 * low, 100.0 * high);
-    let evidence = match outlying.is_empty() {
-        true => format!("agreement with the others' majority is {:.0} to {:.0} %", 100.0 * low, 100.0 * high),
-        false => format!("{}; {range}", list(&outlying.into_iter().map(name).collect::<Vec<_>>())),
-    };
+    let outlying = judged.iter().filter(|of| of.p < ALARM).map(|of| (of.participant, of.agreement)).collect();
+    let others = judged.iter().filter(|of| of.p >= ALARM).map(|of| of.agreement);
+    let (low, high) = others.fold((1.0_f64, 0.0_f64), |(low, high), a| (low.min(a), high.max(a)));
+    let evidence = Evidence::OutlyingRespondent(Agreement { outlying, low, high });
     Report::tested(Probe::OutlyingRespondent, least.p, evidence)
 }
 
@@ -221,13 +204,12 @@ fn separated(groups: &[BallotGroup]) -> Report {
     let shows_two = |group: &&BallotGroup| group.ballots.iter().any(|b| b.left() != b.right());
     let compared: Vec<&BallotGroup> = groups.iter().filter(shows_two).collect();
     if compared.is_empty() {
-        return Report::not_answerable(Probe::Separation, "nothing was compared");
+        return Report::not_answerable(Probe::Separation, Reason::NothingCompared);
     }
     let judged: Vec<(Separation, &str)> =
         compared.iter().filter_map(|group| Some((worths(group)?, group.name.as_str()))).collect();
     if judged.is_empty() {
-        let reason = "nobody ever decided between two items, so that there are no worths";
-        return Report::not_answerable(Probe::Separation, reason);
+        return Report::not_answerable(Probe::Separation, Reason::NothingDecided);
     }
     let names = |of: Separation| -> Vec<String> {
         judged
@@ -236,37 +218,15 @@ fn separated(groups: &[BallotGroup]) -> Report {
             .map(|(_, name)| (*name).to_owned())
             .collect()
     };
-    let (separated, apart) = (names(Separation::Separated), names(Separation::Disconnected));
-    let held = names(Separation::HeldByTies);
-    let mut evidence = Vec::new();
-    if !separated.is_empty() {
-        let items = "some items never won against the others: worths are penalised";
-        evidence.push(format!("{} {items}", within(&separated)));
-    }
-    if !apart.is_empty() {
-        let items = "some items were never compared with the others: there are no worths";
-        evidence.push(format!("{} {items}", within(&apart)));
-    }
-    if !held.is_empty() {
-        evidence.push(format!("{} ties alone keep the worths finite", within(&held)));
-    }
-    match judged.len() {
-        _ if !evidence.is_empty() => {}
-        1 => evidence.push("every item won against the others".into()),
-        all => evidence.push(format!("every item won against the others in all {all} groups")),
-    }
-    match compared.len() - judged.len() {
-        0 => {}
-        1 => evidence.push("in 1 group nobody ever decided".into()),
-        none => evidence.push(format!("in {none} groups nobody ever decided")),
-    }
-    let finding = if separated.is_empty() { Finding::NotFound } else { Finding::Found };
-    Report { probe: Probe::Separation, finding, p: None, evidence: evidence.join("; ") }
-}
-
-/// `in group trees`, `in groups trees, cakes`.
-fn within(groups: &[String]) -> String {
-    format!("in {} {}", if groups.len() == 1 { "group" } else { "groups" }, list(groups))
+    let separations = Separations {
+        separated: names(Separation::Separated),
+        disconnected: names(Separation::Disconnected),
+        held_by_ties: names(Separation::HeldByTies),
+        judged: judged.len(),
+        undecided: compared.len() - judged.len(),
+    };
+    let finding = if separations.separated.is_empty() { Finding::NotFound } else { Finding::Found };
+    Report { probe: Probe::Separation, finding, p: None, evidence: Evidence::Separation(separations) }
 }
 
 /// How a group's answers leave its worths; `None` if none of them decides anything.

@@ -9,6 +9,7 @@
 
 mod budgets;
 mod data;
+mod evidence_of_probes;
 mod figure;
 mod figures;
 mod frames;

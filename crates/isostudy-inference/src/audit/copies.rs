@@ -6,7 +6,8 @@
 
 mod times;
 
-use super::{Probe, Report, list};
+use super::evidence::{Copies, Reason, SameAnswers};
+use super::{Evidence, Probe, Report};
 use isostudy_statistics::{Circumstances, ShownBallot};
 use statrs::distribution::{DiscreteCDF, Poisson};
 use std::collections::BTreeMap;
@@ -38,21 +39,15 @@ pub(super) fn probe(ballots: &[ShownBallot], circumstances: &[Circumstances]) ->
     let rows = Rows::of(ballots, circumstances);
     let (answers, times) = (Seen::of(&rows), times::look(&rows));
     let mut p = Vec::new();
-    let mut evidence = Vec::new();
-    if let Some(times) = &times {
-        p.push(times.p);
-        evidence.push(times.evidence());
-    }
+    p.extend(times.as_ref().map(|times| times.p));
     if answers.judged > 0 {
         p.extend(answers.p());
-        evidence.push(answers.evidence());
     }
     let Some(least) = p.iter().copied().reduce(f64::min) else {
-        let reason =
-            "no five people answered the same ten questions on the same sides, and no times are recorded";
-        return Report::not_answerable(Probe::CopiedRows, reason);
+        return Report::not_answerable(Probe::CopiedRows, Reason::FewRowsAlike);
     };
-    Report::tested(Probe::CopiedRows, (p.len() as f64 * least).min(1.0), evidence.join("; "))
+    let copies = Copies { times: times.map(|times| times.same), answers: answers.same() };
+    Report::tested(Probe::CopiedRows, (p.len() as f64 * least).min(1.0), Evidence::CopiedRows(copies))
 }
 
 /// Everybody's answers, participant by participant, each by question.
@@ -84,8 +79,8 @@ impl Rows {
         Self { ballots: sorted, circumstances: own, ordered, people }
     }
 
-    fn number(&self, of: &Range<usize>) -> usize {
-        self.ballots[of.start].participant() + 1
+    fn participant(&self, of: &Range<usize>) -> usize {
+        self.ballots[of.start].participant()
     }
 
     /// At which place each question was seen.
@@ -110,7 +105,7 @@ struct Seen {
     /// if orders are not recorded.
     in_order: Option<(f64, Option<f64>)>,
     /// Who gave the same answers.
-    copies: Vec<String>,
+    copies: Vec<Vec<usize>>,
 }
 
 impl Seen {
@@ -150,8 +145,7 @@ impl Seen {
                 {
                     *of_order = least(*of_order);
                 }
-                let names: Vec<String> = twins.iter().map(|of| rows.number(of).to_string()).collect();
-                seen.copies.push(format!("respondents {}", list(&names)));
+                seen.copies.push(twins.iter().map(|of| rows.participant(of)).collect());
             }
         }
         seen
@@ -171,26 +165,11 @@ impl Seen {
         p
     }
 
-    fn evidence(&self) -> String {
-        let Self { judged, same, expected, copies, .. } = self;
-        let least = self.pairs * self.least.unwrap_or(1.0);
-        match same {
-            0 => format!(
-                "no two of {judged} people gave the same answers; by chance about {} would",
-                few(*expected)
-            ),
-            1 => format!(
-                "{} gave the same answers; by chance about {} pairs would give these",
-                copies[0],
-                few(least)
-            ),
-            same => format!(
-                "{same} pairs gave the same answers, by chance about {} would, and about {} the least probable of them: {}",
-                few(*expected),
-                few(least),
-                list(copies)
-            ),
-        }
+    /// `None` if nobody was compared.
+    fn same(self) -> Option<SameAnswers> {
+        let Self { judged: people, same, expected, copies, .. } = self;
+        let least_expected = self.pairs * self.least.unwrap_or(1.0);
+        (people > 0).then_some(SameAnswers { people, same, expected, least_expected, copies })
     }
 }
 
@@ -204,14 +183,6 @@ fn alike<K: Ord>(of: &[&Range<usize>], key: impl Fn(&Range<usize>) -> K) -> Vec<
     let mut people: BTreeMap<K, usize> = BTreeMap::new();
     of.iter().for_each(|of| *people.entry(key(of)).or_default() += 1);
     people.into_values().collect()
-}
-
-fn few(expected: f64) -> String {
-    match expected {
-        few if few < 0.001 => "none (below 0.001)".into(),
-        few if few < 10.0 => format!("{few:.3}"),
-        many => format!("{many:.0}"),
-    }
 }
 
 /// How probable rows of one form are: that they are at every question, people taken as independent, and more as far as

@@ -1,9 +1,9 @@
 //! Do preferences depend on the object?
 
-use super::{ALARM, Audited, Probe, Report, list};
+use super::evidence::{Difference, Differences, Reason};
+use super::{ALARM, Audited, Evidence, Probe, Report};
 use crate::ballots::BallotGroup;
 use isostudy_statistics::{Protocol, ShownBallot, Split, exchange, holm, screening_with};
-use isostudy_table::digits::{counted, number};
 use std::collections::BTreeSet;
 
 /// One person's answers are no sample of what people think.
@@ -11,11 +11,8 @@ const FEWEST_PEOPLE: usize = 2;
 /// So many decided answers are on one side by chance of 1 in 32.
 const FEWEST_DECIDED: u64 = 6;
 
-/// One pair of items in one group, on one object against the others.
 struct Comparison {
-    name: String,
-    /// Mean over participants for the first item, on the object and on the others.
-    means: [f64; 2],
+    difference: Difference,
     p: f64,
 }
 
@@ -38,36 +35,22 @@ pub(super) fn probe(audited: &Audited<'_>, suspects: &BTreeSet<usize>) -> Report
         }
     }
     if all.is_empty() {
-        let reason = "no two people were shown the same pair of items on more than one object";
-        return Report::not_answerable(Probe::ObjectInteraction, &format!("{reason}{}", left_out(&pressing)));
+        let reason = Reason::NoPairOnTwoObjects { pressing: pressing.len() };
+        return Report::not_answerable(Probe::ObjectInteraction, reason);
     }
     let adjusted = holm(&all.iter().map(|c| c.p).collect::<Vec<_>>());
     let mut order: Vec<usize> = (0..all.len()).collect();
     order.sort_by(|&a, &b| adjusted[a].total_cmp(&adjusted[b]));
-    let name = |&i: &usize| {
-        let Comparison { name, means: [own, others], .. } = &all[i];
-        format!("{name}: mean {} against {}", number(*own, 2), number(*others, 2))
+    let difference = |i: usize| all[i].difference.clone();
+    let found = order.iter().filter(|&&i| adjusted[i] < ALARM).map(|&i| difference(i)).collect();
+    let size = |&i: &usize| {
+        let [own, others] = all[i].difference.means;
+        (own - others).abs()
     };
-    let found: Vec<String> = order.iter().filter(|&&i| adjusted[i] < ALARM).map(name).collect();
-    let evidence = match found.is_empty() {
-        true => {
-            let size = |i: &usize| (all[*i].means[0] - all[*i].means[1]).abs();
-            let largest = (0..all.len()).max_by(|a, b| size(a).total_cmp(&size(b)).then(b.cmp(a)));
-            match largest.filter(|i| size(i) > 0.0) {
-                Some(largest) => {
-                    format!(
-                        "{}; the largest difference is {}",
-                        counted(all.len(), "comparison"),
-                        name(&largest)
-                    )
-                }
-                None => format!("{}; none differs", counted(all.len(), "comparison")),
-            }
-        }
-        false => list(&found),
-    };
-    let evidence = format!("{evidence}{}", left_out(&pressing));
-    Report::tested(Probe::ObjectInteraction, adjusted[order[0]], evidence)
+    let largest = (0..all.len()).max_by(|a, b| size(a).total_cmp(&size(b)).then(b.cmp(a)));
+    let largest = largest.filter(|i| size(i) > 0.0).map(difference);
+    let seen = Differences { compared: all.len(), found, largest, pressing: pressing.len() };
+    Report::tested(Probe::ObjectInteraction, adjusted[order[0]], Evidence::ObjectInteraction(seen))
 }
 
 /// Who decided on one side alone, whatever stood there; nobody where that may be what they prefer.
@@ -84,14 +67,6 @@ fn pressing_one_side(audited: &Audited<'_>) -> BTreeSet<usize> {
             .map(|of| of.participant)
             .collect(),
         false => BTreeSet::new(),
-    }
-}
-
-/// What is said of them.
-fn left_out(pressing: &BTreeSet<usize>) -> String {
-    match pressing.len() {
-        0 => String::new(),
-        n => format!("; without {} pressing one side throughout", counted(n, "respondent")),
     }
 }
 
@@ -141,9 +116,13 @@ fn compare(
             splits.iter().map(|of| mean(of.own)).sum::<f64>() / m,
             splits.iter().map(|of| mean(rest(of))).sum::<f64>() / m,
         ];
-        let items = [first, second].map(|item| group.items[item].as_str()).join("-");
-        let name = format!("{items} ({}) on {}", group.name, audited.objects[scene]);
-        (splits.len() >= FEWEST_PEOPLE).then(|| Comparison { name, means, p: exchange(&splits) })
+        let difference = || Difference {
+            items: [first, second].map(|item| group.items[item].clone()),
+            group: group.name.clone(),
+            object: audited.objects[scene].clone(),
+            means,
+        };
+        (splits.len() >= FEWEST_PEOPLE).then(|| Comparison { difference: difference(), p: exchange(&splits) })
     };
     let several = shown.iter().filter(|shown| !shown.is_empty()).count() > 1;
     (0..scenes).filter(|&scene| several && !shown[scene].is_empty()).filter_map(of_scene).collect()

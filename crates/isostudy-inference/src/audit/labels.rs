@@ -4,9 +4,9 @@
 //! Where the file of answers has code names, the study knows what they show. Where forms were dealt, each participant saw one
 //! of two ways round of a block, which all of the participant's other labels tell. Neither is a matter of chance.
 
+use super::Audited;
 use super::dealt::{Dealt, Shown};
-use super::{Audited, list};
-use isostudy_table::digits::counted;
+use super::evidence::{Contradiction, Remark, WrongFile};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Answers to a file below which it is not held against the forms.
@@ -20,9 +20,9 @@ const RARE: u64 = 50;
 #[derive(Debug, Default)]
 pub(super) struct Labels {
     /// What contradicts.
-    pub(super) found: Vec<String>,
+    pub(super) found: Vec<Contradiction>,
     /// What agrees, and what cannot be said.
-    pub(super) remarks: Vec<String>,
+    pub(super) remarks: Vec<Remark>,
     /// Whether labels were held against anything.
     pub(super) looked: bool,
     /// The questions whose labels contradict.
@@ -53,9 +53,9 @@ impl Counted {
         self.questions.insert(question);
     }
 
-    fn names(&self, audited: &Audited<'_>) -> String {
-        let names: Vec<String> = self.questions.iter().map(|&q| audited.questions[q].clone()).collect();
-        names.join("/")
+    fn wrong(&self, audited: &Audited<'_>) -> WrongFile {
+        let questions = audited.names(self.questions.iter().copied());
+        WrongFile { questions, contradicting: self.contradicting, answers: self.answers }
     }
 }
 
@@ -76,25 +76,11 @@ impl Labels {
         self.looked = true;
         let wrong: Vec<(&usize, &Counted)> = files.iter().filter(|(_, of)| of.contradicting > 0).collect();
         if wrong.is_empty() {
-            self.remarks
-                .push(format!("the code names of {} agree with the sides", counted(files.len(), "file")));
+            self.remarks.push(Remark::CodesAgree { files: files.len() });
             return;
         }
-        let name = |&(place, of): &(&usize, &Counted)| {
-            let (code, question) = (&dealt.names[*place], of.names(audited));
-            format!(
-                "{question}: {} of {} to file {code}",
-                of.contradicting,
-                counted(of.answers as usize, "answer")
-            )
-        };
-        let each: Vec<String> = wrong.iter().map(name).collect();
-        self.found.push(format!(
-            "the sides contradict what the code name shows in {} of {} ({})",
-            wrong.len(),
-            counted(files.len(), "file"),
-            list(&each)
-        ));
+        let each = wrong.iter().map(|&(&place, of)| (of.wrong(audited), dealt.names[place].clone()));
+        self.found.push(Contradiction::Codes { files: files.len(), wrong: each.collect() });
         self.suspects.extend(wrong.iter().flat_map(|(_, of)| of.questions.iter()));
     }
 
@@ -108,35 +94,23 @@ impl Labels {
             return;
         }
         if RARE * stray > agreeing || wrong.len() > most_wrong(wrong.len() + right.len()) {
-            self.remarks.push("the sides are not those of the forms that the study deals".into());
+            self.remarks.push(Remark::OtherStudysForms);
             return;
         }
         self.looked = true;
-        let name = |of: &&Counted| {
-            let answers = counted(of.answers as usize, "answer");
-            format!("{}: {} of {answers}", of.names(audited), of.contradicting)
-        };
         match wrong.is_empty() {
-            false => self.found.push(format!(
-                "answers are labelled in the other order of sides than their forms show ({})",
-                list(&wrong.iter().map(name).collect::<Vec<_>>())
-            )),
-            true if others.is_empty() => self.remarks.push("the sides are those of the forms".into()),
+            false => {
+                let each = wrong.iter().map(|of| of.wrong(audited));
+                self.found.push(Contradiction::Forms(each.collect()));
+            }
+            true if others.is_empty() => self.remarks.push(Remark::FormsAgree),
             true => {}
         }
         if !others.is_empty() {
-            let numbers: Vec<String> =
-                others.iter().map(|participant| (participant + 1).to_string()).collect();
-            self.found.push(format!(
-                "the sides are those of another form than the file names for {} {}",
-                if others.len() == 1 { "respondent" } else { "respondents" },
-                list(&numbers)
-            ));
+            self.found.push(Contradiction::OtherForm(others));
         }
         if stray > 0 {
-            let answers = counted(stray as usize, "single answer");
-            let contradict = if stray == 1 { "contradicts" } else { "contradict" };
-            self.remarks.push(format!("{answers} {contradict} the forms"));
+            self.remarks.push(Remark::Stray { answers: stray });
         }
         self.suspects.extend(wrong.iter().flat_map(|of| of.questions.iter()));
     }

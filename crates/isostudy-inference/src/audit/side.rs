@@ -1,9 +1,9 @@
 //! Is one side chosen whatever it shows?
 
+use super::evidence::{Pull, Pulls, Reason};
 use super::stimuli::{Stimuli, for_lower};
-use super::{ALARM, Audited, Probe, Report};
+use super::{ALARM, Audited, Evidence, Probe, Report};
 use isostudy_statistics::ScoreTest;
-use isostudy_table::digits::counted;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,54 +12,40 @@ use std::collections::{BTreeMap, BTreeSet};
 /// smaller p, doubled. Questions with a suspect key are left out.
 pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSet<usize>) -> Report {
     if !audited.sides_recorded {
-        return Report::not_answerable(Probe::Side, super::NO_SIDES);
+        return Report::not_answerable(Probe::Side, Reason::NoSides);
     }
     let controls = audited.ballots.iter().filter(|b| b.left() == b.right());
     let controls = ScoreTest::of(controls.map(|b| (b.participant(), b.outcome().sign())));
-    let of_pairs = pull(audited, stimuli, suspects);
-    let mut evidence = Vec::new();
+    let mut seen = Pulls { pairs: None, controls: None };
     let mut p = Vec::new();
-    if let Some((pairs, mean, of)) = of_pairs {
-        let towards = if mean >= 0.0 { "left" } else { "right" };
-        evidence.push(format!(
-            "{} seen in both orders {} {:.3} to the {towards}",
-            counted(pairs, "pair"),
-            if pairs == 1 { "pulls" } else { "pull" },
-            mean.abs()
-        ));
+    if let Some((pull, of)) = pull(audited, stimuli, suspects) {
+        seen.pairs = Some(pull);
         p.push(of);
     }
-    if let (Some([left, none, right]), false) = (controls.counts, controls.participants() == 0) {
-        evidence.push(format!("controls: {left} left, {none} none, {right} right"));
+    if let (Some(counts), false) = (controls.counts, controls.participants() == 0) {
+        seen.controls = Some(counts);
         // Fewer people could not show anything, whatever they chose.
         if 2.0_f64.powi(1 - controls.participants() as i32) < ALARM {
             p.push(controls.sign_flip.p());
         }
     }
     match p.len() {
-        0 if !evidence.is_empty() => Report::not_answerable(
-            Probe::Side,
-            &format!(
-                "too few people answered controls, and no pair was seen in both orders ({})",
-                evidence.join("; ")
-            ),
-        ),
-        0 => Report::not_answerable(
-            Probe::Side,
-            "no pair was seen in both orders of sides and there are no controls: side goes with what was shown on it",
-        ),
+        0 => {
+            let reason = seen.controls.map_or(Reason::NoPairInBothOrders, Reason::FewControls);
+            Report::not_answerable(Probe::Side, reason)
+        }
         n => {
             let least = p.iter().copied().fold(1.0, f64::min);
-            Report::tested(Probe::Side, (n as f64 * least).min(1.0), evidence.join("; "))
+            Report::tested(Probe::Side, (n as f64 * least).min(1.0), Evidence::Side(seen))
         }
     }
 }
 
-/// Number of pairs, mean pull to the left in -1..=1 and its p; `None` if no pair or fewer than four people can tell.
+/// The mean pull to the left and its p; `None` if no pair or fewer than four people can tell.
 ///
 /// A participant's score is the mean, over the answers, of (x - the stimulus's mean over both orders), counted for the
 /// left side. Two orders were fitted, hence m - 2 degrees of freedom.
-fn pull(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSet<usize>) -> Option<(usize, f64, f64)> {
+fn pull(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSet<usize>) -> Option<(Pull, f64)> {
     let middles: BTreeMap<usize, f64> = stimuli
         .in_both_orders()
         .map(|(place, s)| (place, 0.5 * (s.orders[0].mean() + s.orders[1].mean())))
@@ -91,5 +77,5 @@ fn pull(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSet<usize>) ->
     // People who do not differ tell no spread, and t is beyond all bounds: no p is below that of the exact sign-flip test of so many
     // who all lean one way.
     let p = p.max(2.0_f64.powi(1 - m as i32));
-    Some((middles.len(), mean, p))
+    Some((Pull { pairs: middles.len(), mean }, p))
 }

@@ -1,3 +1,4 @@
+use super::evidence::*;
 use super::*;
 use crate::fixture;
 use crate::self_test::{Defect, Design, Planted, planted};
@@ -11,6 +12,26 @@ fn report(reports: &[Report], probe: Probe) -> &Report {
     reports.iter().find(|report| report.probe == probe).unwrap()
 }
 
+fn agreement(of: &Report) -> &Agreement {
+    if let Evidence::OutlyingRespondent(seen) = &of.evidence { seen } else { panic!("{of:?}") }
+}
+
+fn copies(of: &Report) -> &Copies {
+    if let Evidence::CopiedRows(seen) = &of.evidence { seen } else { panic!("{of:?}") }
+}
+
+fn seen_of_key(of: &Report) -> &Key {
+    if let Evidence::SwappedKey(seen) = &of.evidence { seen } else { panic!("{of:?}") }
+}
+
+fn differences(of: &Report) -> &Differences {
+    if let Evidence::ObjectInteraction(seen) = &of.evidence { seen } else { panic!("{of:?}") }
+}
+
+fn separations(of: &Report) -> &Separations {
+    if let Evidence::Separation(seen) = &of.evidence { seen } else { panic!("{of:?}") }
+}
+
 #[test]
 fn the_papers_answers() {
     let study = fixture::study();
@@ -22,22 +43,24 @@ fn the_papers_answers() {
     assert_eq!(reports.len(), Probe::ALL.len());
     let side = found(Probe::Side);
     assert_eq!(side.finding, Finding::NotAnswerable);
-    assert!(
-        side.evidence.starts_with("not answerable here, because no pair was seen in both orders"),
-        "{side:?}"
-    );
+    assert_eq!(side.evidence, Evidence::NotAnswerable(Reason::NoPairInBothOrders));
     assert_eq!(found(Probe::SwappedKey).finding, Finding::NotAnswerable);
     let odd = found(Probe::OutlyingRespondent);
     assert_eq!(odd.finding, Finding::Found);
     // Counted apart from this program.
+    let Agreement { outlying, low, high } = agreement(odd);
+    let percent = |share: f64| (100.0 * share).round();
     assert_eq!(
-        odd.evidence,
-        "respondent 16 agrees with the others' majority on 37 %; everybody else on 64 to 95 %"
+        outlying.iter().map(|&(participant, share)| (participant, percent(share))).collect::<Vec<_>>(),
+        [(15, 37.0)]
     );
+    assert_eq!([*low, *high].map(percent), [64.0, 95.0]);
     let object = found(Probe::ObjectInteraction);
     assert_eq!(object.finding, Finding::Found);
     // Counted by hand: 44 against 5 of 54 on the sphere, 40 against 51 of 108 on the others.
-    assert!(object.evidence.contains("(arrangement) on sphere: mean"), "{object:?}");
+    let differing = &differences(object).found;
+    let place = |of: &Difference| (of.group == "arrangement").then(|| of.object.clone());
+    assert!(differing.iter().any(|of| place(of).as_deref() == Some("sphere")), "{object:?}");
     assert_eq!(found(Probe::CopiedRows).finding, Finding::NotFound);
     assert_eq!(found(Probe::Separation).finding, Finding::NotFound);
 }
@@ -48,19 +71,26 @@ fn planted_defects_are_found_with_their_place() {
         let reports = planted(defect, Design::Latin, 3, 0).audit();
         let report = report(&reports, probe).clone();
         assert_eq!(report.finding, Finding::Found, "{report:?}");
-        report.evidence
+        report
     };
-    assert!(evidence(Defect::None { preferences: false, side: 8 }, Probe::Side).contains("to the left"));
-    assert!(
-        evidence(Defect::OutlyingRespondent, Probe::OutlyingRespondent).starts_with("respondent 8 agrees")
-    );
-    assert!(evidence(Defect::CopiedRows, Probe::CopiedRows).starts_with("respondents 5, 17 gave the same"));
-    assert!(evidence(Defect::TurnedAnswers, Probe::SwappedKey).contains("Q2/Q2-r: mean"));
-    let times = evidence(Defect::CopiedTimes, Probe::CopiedRows);
-    let want = "to the millisecond, respondents 5 and 17 took the same time for 32 of 32 answers; no two of 36 people gave";
-    assert!(times.starts_with(want), "{times}");
-    assert!(evidence(Defect::ObjectInteraction, Probe::ObjectInteraction).contains("on object 1"));
-    assert!(evidence(Defect::Separation, Probe::Separation).contains("never won"));
+    let side = evidence(Defect::None { preferences: false, side: 8 }, Probe::Side);
+    let Evidence::Side(Pulls { pairs: Some(pull), .. }) = side.evidence else { panic!("{side:?}") };
+    assert!(pull.mean > 0.0, "{pull:?}");
+    assert_eq!(agreement(&evidence(Defect::OutlyingRespondent, Probe::OutlyingRespondent)).outlying[0].0, 7);
+    let copied = evidence(Defect::CopiedRows, Probe::CopiedRows);
+    let Copies { times: None, answers: Some(answers) } = copies(&copied) else { panic!("{copied:?}") };
+    assert_eq!((answers.same, answers.copies.as_slice()), (1, [vec![4, 16]].as_slice()));
+    let turned = evidence(Defect::TurnedAnswers, Probe::SwappedKey);
+    let Orders::Contradict(pairs) = &seen_of_key(&turned).orders else { panic!("{turned:?}") };
+    assert!(pairs.iter().any(|of| of.questions == ["Q2", "Q2-r"]), "{turned:?}");
+    let timed = evidence(Defect::CopiedTimes, Probe::CopiedRows);
+    let Copies { times: Some(times), answers: Some(answers) } = copies(&timed) else { panic!("{timed:?}") };
+    let twins = TimeTwins { people: [4, 16], common: 32, timed: 32 };
+    assert_eq!((times.copies.as_slice(), times.untimed), ([twins].as_slice(), 0));
+    assert_eq!((answers.people, answers.same), (36, 0));
+    let object = evidence(Defect::ObjectInteraction, Probe::ObjectInteraction);
+    assert!(differences(&object).found.iter().any(|of| of.object == "object 1"), "{object:?}");
+    assert!(!separations(&evidence(Defect::Separation, Probe::Separation)).separated.is_empty());
 }
 
 /// What is found of the key, and that no object is blamed for it.
@@ -75,24 +105,24 @@ fn a_wrong_key_is_named() {
     let evidence = |defect, design| {
         let found = of_key(&planted(defect, design, 4, 0));
         assert_eq!((found.finding, found.p), (Finding::Found, None), "{found:?}");
-        found.evidence
+        seen_of_key(&found).contradictions.clone()
     };
     // The pair is asked again: half of a file's answers are to the question, half to its repeat.
-    let file = |question| format!("{question}/{question}-r: 36 of 36 answers");
-    let labelled = "answers are labelled in the other order of sides than their forms show";
-    let one = format!("{labelled} ({})", file("Q2"));
-    assert!(evidence(Defect::OneFile, Design::Latin).starts_with(&one));
-    assert!(
-        evidence(Defect::OneFile, Design::TwoMethods).starts_with(&format!("{labelled} ({})", file("Q1")))
-    );
-    let both = format!("{labelled} ({}, {})", file("Q2"), file("Q2"));
-    assert!(evidence(Defect::BothFiles, Design::Latin).starts_with(&both));
-    let shuffled = evidence(Defect::OneFile, Design::Shuffled);
-    assert!(shuffled.starts_with(&one), "{shuffled}");
-    let coded =
-        "the sides contradict what the code name shows in 1 of 56 files (Q2/Q2-r: 36 of 36 answers to file ";
+    let file = |question: &str| WrongFile {
+        questions: vec![question.into(), format!("{question}-r")],
+        contradicting: 36,
+        answers: 36,
+    };
+    let one = Contradiction::Forms(vec![file("Q2")]);
+    assert_eq!(evidence(Defect::OneFile, Design::Latin)[0], one);
+    assert_eq!(evidence(Defect::OneFile, Design::TwoMethods)[0], Contradiction::Forms(vec![file("Q1")]));
+    let both = Contradiction::Forms(vec![file("Q2"), file("Q2")]);
+    assert_eq!(evidence(Defect::BothFiles, Design::Latin)[0], both);
+    assert_eq!(evidence(Defect::OneFile, Design::Shuffled)[0], one);
     let found = evidence(Defect::CodeName, Design::Latin);
-    assert!(found.starts_with(coded) && found.contains(&one), "{found}");
+    let Contradiction::Codes { files: 56, wrong } = &found[0] else { panic!("{found:?}") };
+    assert_eq!(wrong.iter().map(|(wrong, _)| wrong).collect::<Vec<_>>(), [&file("Q2")]);
+    assert!(found.contains(&one), "{found:?}");
 }
 
 #[test]
@@ -103,7 +133,12 @@ fn a_key_is_not_blamed_for_other_things() {
     };
     let agrees = of_key(&sound);
     assert_eq!(agrees.finding, Finding::NotFound);
-    assert_eq!(agrees.evidence, "the sides are those of the forms; the two orders of 27 pairs agree");
+    let sides = Key {
+        contradictions: Vec::new(),
+        remarks: vec![Remark::FormsAgree],
+        orders: Orders::Agree { pairs: 27 },
+    };
+    assert_eq!(*seen_of_key(&agrees), sides);
     // Sides that somebody else dealt, whatever the forms say.
     let mut dealt_anew = sound.clone();
     let by_chance = |place: usize| (place * 7919 + place / 7 * 104_729) % 11 < 5;
@@ -111,16 +146,13 @@ fn a_key_is_not_blamed_for_other_things() {
     answers.filter(|(place, _)| by_chance(*place)).for_each(|(_, answer)| turn(answer));
     let anew = of_key(&dealt_anew);
     assert_eq!(anew.finding, Finding::NotFound, "{anew:?}");
-    assert!(
-        anew.evidence.starts_with("the sides are not those of the forms that the study deals"),
-        "{anew:?}"
-    );
+    assert_eq!(seen_of_key(&anew).remarks, [Remark::OtherStudysForms], "{anew:?}");
     // One row that somebody typed.
     let mut typed = sound;
     typed.responses.answers.iter_mut().find(|a| a.question == 4).into_iter().for_each(turn);
     let one = of_key(&typed);
     assert_eq!(one.finding, Finding::NotFound);
-    assert!(one.evidence.contains("1 single answer contradicts the forms"), "{one:?}");
+    assert!(seen_of_key(&one).remarks.contains(&Remark::Stray { answers: 1 }), "{one:?}");
 }
 
 #[test]
@@ -131,9 +163,8 @@ fn a_form_that_the_file_misnames_is_found() {
     sound.responses.participants[2].form = Some("4".into());
     let found = of_key(&sound);
     assert_eq!((found.finding, found.p), (Finding::Found, None));
-    let want = "the sides are those of another form than the file names for respondent 3";
-    assert!(found.evidence.starts_with(want), "{found:?}");
-    assert!(!found.evidence.contains("the sides are those of the forms;"), "{found:?}");
+    assert_eq!(seen_of_key(&found).contradictions[0], Contradiction::OtherForm(vec![2]));
+    assert!(!seen_of_key(&found).remarks.contains(&Remark::FormsAgree), "{found:?}");
 }
 
 #[test]
@@ -151,7 +182,7 @@ fn who_presses_one_button_is_no_copy() {
     };
     let ballots: Vec<_> =
         (0..36).flat_map(|person| (0..27).map(move |question| ballot(person, question))).collect();
-    assert_eq!(copies::probe(&ballots, &[]).finding, Finding::NotFound);
+    assert_eq!(super::copies::probe(&ballots, &[]).finding, Finding::NotFound);
 }
 
 #[test]
@@ -207,12 +238,17 @@ fn a_wrong_key_is_found_in_the_file_that_people_have() {
         (report(&reports, Probe::SwappedKey).clone(), report(&reports, Probe::ObjectInteraction).finding)
     };
     let (sound, _) = found(&file(false));
-    let both = "the code names of 56 files agree with the sides; the sides are those of the forms; the two orders of 27 pairs agree";
-    assert_eq!((sound.finding, sound.evidence.as_str()), (Finding::NotFound, both));
+    let both = Key {
+        contradictions: Vec::new(),
+        remarks: vec![Remark::CodesAgree { files: 56 }, Remark::FormsAgree],
+        orders: Orders::Agree { pairs: 27 },
+    };
+    assert_eq!((sound.finding, seen_of_key(&sound)), (Finding::NotFound, &both));
     let rows = file(true);
     let (wrong, object) = found(&rows);
     assert_eq!((wrong.finding, object), (Finding::Found, Finding::NotFound), "{wrong:?}");
-    assert!(wrong.evidence.contains("show (Q1"), "{wrong:?}");
+    let by_forms = |of: &Contradiction| matches!(of, Contradiction::Forms(wrong) if wrong[0].questions[0].starts_with("Q1"));
+    assert!(seen_of_key(&wrong).contradictions.iter().any(by_forms), "{wrong:?}");
     let without_codes = rows.lines().map(|row| row.rsplit_once(',').unwrap().0.to_owned() + "\n");
     let (wrong, object) = found(&without_codes.collect::<String>());
     assert_eq!((wrong.finding, object), (Finding::Found, Finding::NotFound), "{wrong:?}");
@@ -221,18 +257,20 @@ fn a_wrong_key_is_found_in_the_file_that_people_have() {
 #[test]
 fn times_that_everybody_has_are_no_copies() {
     let sound = planted(Defect::None { preferences: true, side: 0 }, Design::FourMethods, 9, 0);
-    let copies = |change: &dyn Fn(&mut Answer)| {
+    let changed = |change: &dyn Fn(&mut Answer)| {
         let mut changed = sound.clone();
         changed.responses.answers.iter_mut().for_each(change);
         report(&changed.audit(), Probe::CopiedRows).clone()
     };
-    let own = copies(&|_| {});
-    assert!(own.evidence.starts_with("no two of 36 people took the same times; "), "{own:?}");
+    let own = changed(&|_| {});
+    let none = SameTimes { people: 36, untimed: 0, copies: Vec::new() };
+    assert_eq!(copies(&own).times.as_ref(), Some(&none));
+    assert!(copies(&own).answers.is_some(), "{own:?}");
     for found in [
         // Whole seconds; one time for all; half of the people without a time, written as 0.
-        copies(&|a| a.rt_ms = a.rt_ms.map(|t| 1000.0 * (t / 1000.0).round())),
-        copies(&|a| a.rt_ms = Some(1500.0)),
-        copies(&|a| a.rt_ms = a.rt_ms.filter(|_| a.participant % 2 == 0).or(Some(0.0))),
+        changed(&|a| a.rt_ms = a.rt_ms.map(|t| 1000.0 * (t / 1000.0).round())),
+        changed(&|a| a.rt_ms = Some(1500.0)),
+        changed(&|a| a.rt_ms = a.rt_ms.filter(|_| a.participant % 2 == 0).or(Some(0.0))),
     ] {
         assert_eq!(found.finding, Finding::NotFound, "{found:?}");
     }
@@ -248,10 +286,8 @@ fn nearly_all_times_make_a_copy() {
     };
     let found = with_others(3);
     assert_eq!(found.finding, Finding::Found);
-    assert!(
-        found.evidence.contains("respondents 5 and 17 took the same time for 13 of 16 answers"),
-        "{found:?}"
-    );
+    let twins = TimeTwins { people: [4, 16], common: 13, timed: 16 };
+    assert!(copies(&found).times.as_ref().is_some_and(|of| of.copies.contains(&twins)), "{found:?}");
     assert_eq!(with_others(4).finding, Finding::NotFound);
 }
 
@@ -261,12 +297,15 @@ fn one_hypothesis_is_tested_once() {
     let sound = Defect::None { preferences: true, side: 0 };
     let compared = |design| {
         let reports = planted(sound, design, 4, 0).audit();
-        report(&reports, Probe::ObjectInteraction).evidence.split(';').next().unwrap().to_owned()
+        let seen = differences(report(&reports, Probe::ObjectInteraction));
+        // Nothing is found, and so the number of comparisons is what is said.
+        assert!(seen.found.is_empty(), "{seen:?}");
+        seen.compared
     };
-    assert_eq!(compared(Design::FourMethods), "6 comparisons");
-    assert_eq!(compared(Design::TwoMethods), "1 comparison");
+    assert_eq!(compared(Design::FourMethods), 6);
+    assert_eq!(compared(Design::TwoMethods), 1);
     // Nine pairs in groups, three of clusterings and one of lattices over groups; three objects.
-    assert_eq!(compared(Design::Latin), "39 comparisons");
+    assert_eq!(compared(Design::Latin), 39);
 }
 
 #[test]
@@ -291,7 +330,7 @@ fn a_side_is_seen_in_controls_alone() {
     let reports = audit(&audited);
     let side = report(&reports, Probe::Side);
     assert_eq!((side.finding, side.p), (Finding::Found, Some(2.0 / 4096.0)));
-    assert_eq!(side.evidence, "controls: 0 left, 0 none, 12 right");
+    assert_eq!(side.evidence, Evidence::Side(Pulls { pairs: None, controls: Some([0, 0, 12]) }));
     // Nothing else can be said.
     assert!(reports.iter().filter(|r| r.probe != Probe::Side).all(|r| r.finding == Finding::NotAnswerable));
 }
@@ -352,14 +391,18 @@ fn without_a_decision_there_are_no_worths_to_be_penalised() {
     let (none, both) = (group("none", &[Outcome::Tie; 3]), group("both", &[Outcome::Left, Outcome::Right]));
     let found = separated(std::slice::from_ref(&none));
     assert_eq!(found.finding, Finding::NotAnswerable);
-    assert!(found.evidence.contains("nobody ever decided between two items"), "{found:?}");
+    assert_eq!(found.evidence, Evidence::NotAnswerable(Reason::NothingDecided));
     let found = separated(std::slice::from_ref(&both));
-    let found = (found.finding, found.evidence);
-    assert_eq!(found, (Finding::NotFound, "every item won against the others".into()));
+    let every_item_won = Separations {
+        separated: Vec::new(),
+        disconnected: Vec::new(),
+        held_by_ties: Vec::new(),
+        judged: 1,
+        undecided: 0,
+    };
+    assert_eq!((found.finding, separations(&found)), (Finding::NotFound, &every_item_won));
     let found = separated(&[none, both, group("one", &[Outcome::Left])]);
     assert_eq!(found.finding, Finding::Found);
-    assert_eq!(
-        found.evidence,
-        "in group one some items never won against the others: worths are penalised; in 1 group nobody ever decided"
-    );
+    let one = Separations { separated: vec!["one".into()], judged: 2, undecided: 1, ..every_item_won };
+    assert_eq!(*separations(&found), one);
 }

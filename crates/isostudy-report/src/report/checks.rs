@@ -3,11 +3,12 @@
 
 use super::evidence::Evidence;
 use super::{names, screens};
+use crate::evidence_of_probes;
 use crate::statement::Block;
 use crate::statement::{Finding, Standing};
 use crate::words::{counted, list, numbers, p as p_value};
 use isostudy_inference::Preferences;
-use isostudy_inference::audit::{Finding as Probed, Report};
+use isostudy_inference::audit::{Evidence as Seen, Finding as Probed, Report};
 use isostudy_inference::hypotheses::Hypothesis;
 use isostudy_inference::screened::{Respondent, WithoutBreakers};
 use isostudy_statistics::{Flag, Screening, screening};
@@ -146,15 +147,15 @@ fn without_breakers(evidence: &Evidence<'_>, of: &WithoutBreakers) -> Finding {
 /// What a probe found.
 fn probed(report: &Report) -> Finding {
     let Report { probe, finding, p, evidence } = report;
-    let (question, p) = (probe.question(), p.map_or(String::new(), |p| format!(" ({})", p_value(p))));
-    let word = match finding {
-        Probed::NotAnswerable => {
-            let because = evidence.trim_start_matches("not answerable here, ");
-            let text = format!("{question} Not answerable here, {because}.");
-            return Finding::new(Standing::NotAnswerable, text);
-        }
-        Probed::Found => "Found",
-        Probed::NotFound => "Not found",
-    };
-    Finding::new(Standing::Noted, format!("{question} {word}: {evidence}{p}."))
+    let question = probe.question();
+    if let Seen::NotAnswerable(why) = evidence {
+        let text = format!("{question} Not answerable here, because {}.", evidence_of_probes::reason(why));
+        return Finding::new(Standing::NotAnswerable, text);
+    }
+    let word = if *finding == Probed::Found { "Found" } else { "Not found" };
+    let p = p.map_or(String::new(), |p| format!(" ({})", p_value(p)));
+    Finding::new(
+        Standing::Noted,
+        format!("{question} {word}: {}{p}.", evidence_of_probes::evidence(evidence)),
+    )
 }

@@ -2,6 +2,7 @@
 
 use super::evidence::Evidence;
 use super::{asked, names};
+use crate::evidence_of_probes;
 use crate::statement::Block;
 use crate::statement::{Finding, Standing};
 use crate::words::{capital, counted, interval, list, number, p as p_value};
@@ -26,7 +27,8 @@ impl Probed {
         let of_side = |of: &&Report| of.probe == Probe::Side && of.finding != Verdict::NotAnswerable;
         let report = audit.iter().find(of_side)?;
         let p = report.p.map_or(String::new(), |p| format!(" ({})", p_value(p)));
-        Some(Self { found: report.finding == Verdict::Found, evidence: format!("{}{p}", report.evidence) })
+        let evidence = format!("{}{p}", evidence_of_probes::evidence(&report.evidence));
+        Some(Self { found: report.finding == Verdict::Found, evidence })
     }
 }
 

@@ -351,7 +351,7 @@ fn a_side_was_found() -> audit::Report {
         probe: audit::Probe::Side,
         finding: audit::Finding::Found,
         p: Some(0.001),
-        evidence: "controls: 20 left, 1 none, 2 right".into(),
+        evidence: audit::Evidence::Side(audit::evidence::Pulls { pairs: None, controls: Some([20, 1, 2]) }),
     }
 }
 

@@ -1,5 +1,6 @@
 //! What the probes found.
 
+use crate::evidence_of_probes::evidence;
 use isostudy_inference::audit::Report;
 use isostudy_table::{Cell, Table, field};
 
@@ -10,7 +11,7 @@ pub(super) fn audit_table(reports: &[Report]) -> Table {
         field("question", "Question", |of| Cell::text(of.probe.question())),
         field("finding", "Finding", |of| Cell::text(of.finding.label())),
         field("p", "p", |of| Cell::p(of.p, 4)),
-        field("evidence", "Evidence", |of| Cell::text(&of.evidence)),
+        field("evidence", "Evidence", |of| Cell::text(evidence(&of.evidence))),
     ];
     let mut table = Table::of("audit", "Probes for defects", &fields, reports);
     table.notes.push(

@@ -2,7 +2,8 @@
 //! twice do.
 
 use super::{ALLOWANCE, Rows, pairs};
-use crate::audit::{ALARM, list};
+use crate::audit::ALARM;
+use crate::audit::evidence::{SameTimes, TimeTwins};
 use rayon::prelude::*;
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
@@ -15,27 +16,10 @@ const NEARLY_ALL: f64 = 0.8;
 /// What was seen of times.
 #[derive(Debug)]
 pub(super) struct Seen {
-    /// People whose times were compared.
-    people: usize,
-    /// People with too few times to be compared.
-    untimed: usize,
     /// The least p of two rows, times the number of pairs and three times over; 1 if no two have nearly all times in common.
     pub(super) p: f64,
-    /// Who has times in common beyond chance.
-    pub(super) copies: Vec<String>,
-}
-
-impl Seen {
-    pub(super) fn evidence(&self) -> String {
-        let found = match self.copies.is_empty() {
-            true => format!("no two of {} people took the same times", self.people),
-            false => format!("to the millisecond, {}", list(&self.copies)),
-        };
-        match self.untimed {
-            0 => found,
-            untimed => format!("{found}; {untimed} of all have too few times to be compared"),
-        }
-    }
+    /// Who has times in common.
+    pub(super) same: SameTimes,
 }
 
 /// Two rows, by place among the people, with the questions that both timed and the times in common.
@@ -69,7 +53,8 @@ pub(super) fn look(rows: &Rows) -> Option<Seen> {
             shared.entry(*time).and_modify(|n| *n += 1);
         }
     }
-    let mut seen = Seen { people, untimed: timed.len() - people, p: 1.0, copies: Vec::new() };
+    let same = SameTimes { people, untimed: timed.len() - people, copies: Vec::new() };
+    let mut seen = Seen { p: 1.0, same };
     for Twins { people: [a, b], timed, common } in twins {
         let chance = |time: &Timed| (shared[time].saturating_sub(2) + 1) as f64 / people as f64;
         let row: f64 = common.iter().map(chance).product();
@@ -77,10 +62,8 @@ pub(super) fn look(rows: &Rows) -> Option<Seen> {
         let p = (ALLOWANCE * pairs(people) * which * row).min(1.0);
         seen.p = seen.p.min(p);
         if p < ALARM {
-            let [a, b] = [a, b].map(|of| rows.number(&rows.people[of as usize]));
-            let times = common.len();
-            seen.copies
-                .push(format!("respondents {a} and {b} took the same time for {times} of {timed} answers"));
+            let people = [a, b].map(|of| rows.participant(&rows.people[of as usize]));
+            seen.same.copies.push(TimeTwins { people, common: common.len(), timed });
         }
     }
     Some(seen)
