@@ -182,7 +182,7 @@ mod tests {
         let mut grouped = help::grouped(Cli::command());
         let help = grouped.render_help().to_string();
         assert!(help.lines().all(|line| line.chars().count() <= 80), "{help}");
-        for own in grouped.get_subcommands_mut() {
+        for own in grouped.get_subcommands_mut().filter(|own| own.get_name() != "help") {
             let help = own.render_long_help().to_string();
             assert!(help.contains("Example") && help.contains("  isostudy "), "{help}");
         }

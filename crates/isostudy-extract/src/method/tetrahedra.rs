@@ -15,7 +15,7 @@ const TREECE: &str = "Treece, Prager & Gee 1999; Costen 2026";
 const COLLAPSED: &str = "Costen 2026; Dey, Edelsbrunner, Guha & Nekhayev 1999";
 const OWN: &str = "not in the paper; see Arrangement and Clustering of isostudy_extract";
 const WARPED: &str = "Labelle & Shewchuk 2007, the warp and the boundary";
-const PLACED: &str = "Treece, Prager & Gee 1999; for the placement see isostudy_extract::Placement";
+const PLACED: &str = "Treece, Prager & Gee 1999; on placement see isostudy_extract::Placement";
 
 /// By name.
 pub(super) const PRESETS: &[Preset] = &[
