@@ -16,7 +16,7 @@ mod sentences;
 
 use isostudy_inference::Results;
 use isostudy_paper::Paper;
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Columns, Table};
 use matrix::Outcome;
 
 /// How many people a study has, unless a truth is about their number.
@@ -44,34 +44,22 @@ pub fn wrong_cells() -> Vec<String> {
 }
 
 fn table(all: &[Outcome]) -> Table {
-    let mut table = Table::new(
-        "self_test_truths",
-        "Planted truths: cells of tables and numbers in sentences that are right",
-        &[
-            ("design", "Design"),
-            ("truth", "Truth"),
-            ("routes", "Ways in"),
-            ("cells", "Compared"),
-            ("wrong", "Wrong"),
-            ("passed", "Passed"),
-        ],
-    );
-    for of in all {
-        table.push(vec![
-            Cell::text(of.design),
-            Cell::text(of.truth),
-            Cell::count(of.routes as u64),
-            Cell::count(of.cells),
-            Cell::count(of.wrong.len() as u64),
-            Cell::text(if of.wrong.is_empty() { "yes" } else { "NO" }),
-        ]);
-    }
-    table.notes.push(format!(
+    let table = Columns::over(all)
+        .column("design", "Design", |of| Cell::text(of.design))
+        .column("truth", "Truth", |of| Cell::text(of.truth))
+        .column("routes", "Ways in", |of| Cell::count(of.routes as u64))
+        .column("cells", "Compared", |of| Cell::count(of.cells))
+        .column("wrong", "Wrong", |of| Cell::count(of.wrong.len() as u64))
+        .column("passed", "Passed", |of| Cell::text(if of.wrong.is_empty() { "yes" } else { "NO" }))
+        .into_table(
+            "self_test_truths",
+            "Planted truths: cells of tables and numbers in sentences that are right",
+        );
+    table.with_note(format!(
         "{PEOPLE} people, but for one and 2000. Forms are dealt, answered by somebody of whom it is known what they prefer, written \
          as each kind of file, read and analysed. Compared with a second computation from what stood on the sides and what was \
          pressed: counts, factors, tests, worths, scales, agreement, screening, and numbers in sentences."
-    ));
-    table
+    ))
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ pub(crate) mod times;
 use crate::verdict::{Verdict, prints_alike, relative_difference};
 use isostudy_design::published::Claim;
 use isostudy_inference::inputs::Inputs;
-use isostudy_table::{Cell, Table, field};
+use isostudy_table::{Cell, Columns, Table};
 use numbers::Numbers;
 
 /// What a claim comes to.
@@ -61,43 +61,36 @@ fn joined<const N: usize>(parts: [&str; N]) -> String {
 
 /// The claims and what they come to, in the order they are listed.
 pub(crate) fn table(source: &str, claims: &[(&Claim, Finding)]) -> Option<Table> {
-    let fields = [
-        field("id", "Id", |(claim, _): &&(&Claim, Finding)| Cell::text(&claim.id)),
-        field("statement", "Claim", |(claim, _)| Cell::text(&claim.statement)),
-        field("unit", "Unit", |(claim, _)| Cell::text(&claim.unit)),
-        field("published", "Published", |(claim, found)| Cell::number(claim.value, found.decimals)),
-        field("from_published_tables", "From its tables", |(_, found)| {
+    let mut table = Columns::over(claims)
+        .column("id", "Id", |(claim, _)| Cell::text(&claim.id))
+        .column("statement", "Claim", |(claim, _)| Cell::text(&claim.statement))
+        .column("unit", "Unit", |(claim, _)| Cell::text(&claim.unit))
+        .column("published", "Published", |(claim, found)| Cell::number(claim.value, found.decimals))
+        .column("from_published_tables", "From its tables", |(_, found)| {
             Cell::number(found.from_published, found.decimals)
-        }),
-        field("ours_as_published", "Ours, as defined there", |(_, found)| {
+        })
+        .column("ours_as_published", "Ours, as defined there", |(_, found)| {
             Cell::number(found.as_published, found.decimals)
-        }),
-        field("ours", "Ours", |(_, found)| Cell::number(found.ours, found.decimals)),
-        field("verdict", "Verdict", |(_, found)| Cell::text(found.verdict.label())),
-        field("reason", "Reason", |(_, found)| Cell::text(joined([found.verdict.reason(), &found.remark]))),
-    ];
-    let mut table = Table::of("claims", format!("Claims of the text, {source}"), &fields, claims);
+        })
+        .column("ours", "Ours", |(_, found)| Cell::number(found.ours, found.decimals))
+        .column("verdict", "Verdict", |(_, found)| Cell::text(found.verdict.label()))
+        .column("reason", "Reason", |(_, found)| Cell::text(joined([found.verdict.reason(), &found.remark])))
+        .into_table("claims", format!("Claims of the text, {source}"));
     table.notes.push(
         "From its tables: computed from the published tables. Ours, as defined there: from our numbers by the \
          published definition. Ours: by the right definition, where the reason names another."
             .into(),
     );
-    table.parts = vec![for_people(&table)];
-    (!table.rows.is_empty()).then_some(table)
-}
-
-/// Verdict first, the unit with the claim; ids and what follows from the published tables are in the CSV.
-fn for_people(table: &Table) -> Table {
-    let columns = ["verdict", "statement", "published", "ours", "reason"];
-    let mut part = table.block("", &columns);
+    // Verdict first, the unit with the claim; ids and what follows from the published tables are in the CSV.
+    let mut part = table.block("", &["verdict", "statement", "published", "ours", "reason"]);
     part.caption.clone_from(&table.caption);
-    for (row, whole) in part.rows.iter_mut().zip(&table.rows) {
-        let unit = whole[2].in_full();
-        if !matches!(unit.as_str(), "" | "ratio") {
-            row[1] = Cell::text(format!("{} ({unit})", row[1].in_full()));
+    for (row, (claim, _)) in part.rows.iter_mut().zip(claims) {
+        if !matches!(claim.unit.as_str(), "" | "ratio") {
+            row[1] = Cell::text(format!("{} ({})", claim.statement, claim.unit));
         }
     }
-    part
+    table.parts = vec![part];
+    table.unless_empty()
 }
 
 /// Equal as printed, else within 3 % for `near`'s reason if there is one, else different for `far`'s.

@@ -6,7 +6,7 @@ mod preferences;
 
 use crate::verdict::Verdict;
 use isostudy_inference::inputs::Inputs;
-use isostudy_table::{Cell, Table, field};
+use isostudy_table::{Cell, Columns, Table};
 
 /// One published number beside ours.
 #[derive(Debug, Clone)]
@@ -36,17 +36,16 @@ pub(crate) fn tables(source: &str, all: &[Compared]) -> Vec<Table> {
     if all.is_empty() {
         return Vec::new();
     }
-    let fields = [
-        field("table", "Table", |of: &&Compared| Cell::text(of.source)),
-        field("row", "Row", |of| Cell::text(&of.row)),
-        field("quantity", "Quantity", |of| Cell::text(&of.quantity)),
-        field("published", "Published", |of| Cell::Number(of.published, of.decimals)),
-        field("ours", "Ours", |of| Cell::number(of.ours, of.decimals)),
-        field("verdict", "Verdict", |of| Cell::text(of.verdict.label())),
-        field("reason", "Reason", |of| Cell::text(of.verdict.reason())),
-    ];
     let caption = format!("Published numbers, {source}, beside ours");
-    let mut table = Table::of("comparison", caption, &fields, all);
+    let mut table = Columns::over(all)
+        .column("table", "Table", |of| Cell::text(of.source))
+        .column("row", "Row", |of| Cell::text(&of.row))
+        .column("quantity", "Quantity", |of| Cell::text(&of.quantity))
+        .column("published", "Published", |of| Cell::Number(of.published, of.decimals))
+        .column("ours", "Ours", |of| Cell::number(of.ours, of.decimals))
+        .column("verdict", "Verdict", |of| Cell::text(of.verdict.label()))
+        .column("reason", "Reason", |of| Cell::text(of.verdict.reason()))
+        .into_table("comparison", caption);
     table.notes.push(
         "Equal: alike in every printed digit. A tolerance in per cent is relative to the published number."
             .into(),
@@ -57,41 +56,29 @@ pub(crate) fn tables(source: &str, all: &[Compared]) -> Vec<Table> {
 }
 
 fn summary(all: &[Compared]) -> Table {
-    let mut table = Table::new(
-        "comparison_summary",
-        "Published numbers beside ours: verdicts per quantity",
-        &[
-            ("table", "Table"),
-            ("quantity", "Quantity"),
-            ("numbers", "Numbers"),
-            ("equal", "Equal"),
-            ("within_tolerance", "Within tolerance"),
-            ("differs", "Differs"),
-            ("not_comparable", "Not comparable"),
-        ],
-    );
-    let mut seen: Vec<(&str, &str)> = Vec::new();
+    let mut counts: Vec<((&str, &str), [u64; 4])> = Vec::new();
     for compared in all {
         let key = (compared.source, compared.quantity.as_str());
-        if !seen.contains(&key) {
-            seen.push(key);
-        }
+        let place = counts.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
+            counts.push((key, [0; 4]));
+            counts.len() - 1
+        });
+        counts[place].1[match compared.verdict {
+            Verdict::Equal => 0,
+            Verdict::WithinTolerance { .. } => 1,
+            Verdict::Differs { .. } => 2,
+            Verdict::NotComparable { .. } => 3,
+        }] += 1;
     }
-    for (source, quantity) in seen {
-        let mut counts = [0_u64; 4];
-        for compared in all.iter().filter(|c| c.source == source && c.quantity == quantity) {
-            counts[match compared.verdict {
-                Verdict::Equal => 0,
-                Verdict::WithinTolerance { .. } => 1,
-                Verdict::Differs { .. } => 2,
-                Verdict::NotComparable { .. } => 3,
-            }] += 1;
-        }
-        let mut row = vec![Cell::text(source), Cell::text(quantity), Cell::count(counts.iter().sum())];
-        row.extend(counts.map(Cell::count));
-        table.push(row);
-    }
-    table
+    Columns::over(counts)
+        .column("table", "Table", |((source, _), _)| Cell::text(source))
+        .column("quantity", "Quantity", |((_, quantity), _)| Cell::text(quantity))
+        .column("numbers", "Numbers", |(_, counts)| Cell::count(counts.iter().sum()))
+        .column("equal", "Equal", |(_, counts)| Cell::count(counts[0]))
+        .column("within_tolerance", "Within tolerance", |(_, counts)| Cell::count(counts[1]))
+        .column("differs", "Differs", |(_, counts)| Cell::count(counts[2]))
+        .column("not_comparable", "Not comparable", |(_, counts)| Cell::count(counts[3]))
+        .into_table("comparison_summary", "Published numbers beside ours: verdicts per quantity")
 }
 
 #[cfg(test)]

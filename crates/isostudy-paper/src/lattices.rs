@@ -3,7 +3,7 @@
 use isostudy_design::{Arrangement, Comparison, Crossed, Study};
 use isostudy_inference::tally::{QuestionCount, Tally};
 use isostudy_table::digits::counted;
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Columns, Table};
 
 /// One object's answers to the questions that differ in arrangement alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,33 +75,27 @@ pub(super) fn arrangement_contests(study: &Study, tally: &Tally) -> Vec<Arrangem
 }
 
 pub(super) fn table(study: &Study, tally: &Tally) -> Option<Table> {
-    let mut table = Table::new(
-        "preference_arrangements",
-        "Body-centred against simple cubic, where nothing else differs",
-        &[
-            ("object", "Object"),
-            ("group", "Group"),
-            ("body_centred", "Body-centred"),
-            ("no_preference", "No preference"),
-            ("simple_cubic", "Simple cubic"),
-        ],
-    );
-    for contest in arrangement_contests(study, tally) {
-        table.push(vec![
-            Cell::text(contest.object.map_or("all", |o| &study.file.objects[o].name)),
-            Cell::text(contest.group.map_or("all", |g| &study.groups[g].id)),
-            Cell::count(contest.body_centred),
-            Cell::count(contest.none),
-            Cell::count(contest.simple_cubic),
-        ]);
-    }
-    table.notes.push("Counts of answers; the direct evidence on arrangements.".into());
+    let of = |contest: &ArrangementContest| -> [&str; 2] {
+        let object = contest.object.map_or("all", |o| &study.file.objects[o].name);
+        [object, contest.group.map_or("all", |g| &study.groups[g].id)]
+    };
+    let mut table = Columns::over(arrangement_contests(study, tally))
+        .column("object", "Object", |contest| Cell::text(of(contest)[0]))
+        .column("group", "Group", |contest| Cell::text(of(contest)[1]))
+        .column("body_centred", "Body-centred", |contest| Cell::count(contest.body_centred))
+        .column("no_preference", "No preference", |contest| Cell::count(contest.none))
+        .column("simple_cubic", "Simple cubic", |contest| Cell::count(contest.simple_cubic))
+        .into_table(
+            "preference_arrangements",
+            "Body-centred against simple cubic, where nothing else differs",
+        )
+        .with_note("Counts of answers; the direct evidence on arrangements.");
     let others = other_arrangement_questions(study);
     if others > 0 {
         let noun = counted(others, "question");
         table.notes.push(format!("Left out: {noun} on other lattices. The table of tests has every pair."));
     }
-    (!table.rows.is_empty()).then_some(table)
+    table.unless_empty()
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use isostudy_inference::ballots::outcome;
 use isostudy_inference::open_groups::group_of_question;
 use isostudy_responses::{Question, Responses};
 use isostudy_statistics::interval::{self, Interval};
-use isostudy_table::{Cell, Table, field};
+use isostudy_table::{Cell, Columns, Table};
 
 /// Every table about answers that no study explains: `answer_counts`, `tests`, `worths`, `models`, `respondents`, `screened`,
 /// `audit` and `screens`, as far as they have rows.
@@ -53,26 +53,23 @@ fn counts(answers: &Responses) -> Table {
     let groups = group_of_question(answers);
     let rows = answers.questions.iter().zip(&groups).zip(counts);
     let rows = rows.map(|((question, group), counts)| Row { answers, question, group, counts });
-    let fields = [
-        field("group", "Group", |of: &Row<'_>| Cell::text(of.group)),
-        field("object", "Object", |of| Cell::text(&of.question.object)),
-        field("question", "Question", |of| Cell::text(&of.question.id)),
-        field("left", "Left", |of| Cell::text(of.item(of.question.left.min(of.question.right)))),
-        field("right", "Right", |of| Cell::text(of.item(of.question.left.max(of.question.right)))),
-        field("left_answers", "Answers left", |of| Cell::count(of.counts[0])),
-        field("no_preference", "No preference", |of| Cell::count(of.counts[1])),
-        field("right_answers", "Answers right", |of| Cell::count(of.counts[2])),
-        field("right_share", "Right of all", |of| {
+    let table = Columns::over(rows)
+        .column("group", "Group", |of| Cell::text(of.group))
+        .column("object", "Object", |of| Cell::text(&of.question.object))
+        .column("question", "Question", |of| Cell::text(&of.question.id))
+        .column("left", "Left", |of| Cell::text(of.item(of.question.left.min(of.question.right))))
+        .column("right", "Right", |of| Cell::text(of.item(of.question.left.max(of.question.right))))
+        .column("left_answers", "Answers left", |of| Cell::count(of.counts[0]))
+        .column("no_preference", "No preference", |of| Cell::count(of.counts[1]))
+        .column("right_answers", "Answers right", |of| Cell::count(of.counts[2]))
+        .column("right_share", "Right of all", |of| {
             Cell::number((of.all() > 0).then(|| of.counts[2] as f64 / of.all() as f64), 3)
-        }),
-        field("right_share_low", "from", |of| Cell::number(of.interval().map(|i| i.low), 3)),
-        field("right_share_high", "to", |of| Cell::number(of.interval().map(|i| i.high), 3)),
-    ];
-    let mut table = Table::of("answer_counts", "Answers per question", &fields, rows);
-    table.notes.push(
+        })
+        .column("right_share_low", "from", |of| Cell::number(of.interval().map(|i| i.low), 3))
+        .column("right_share_high", "to", |of| Cell::number(of.interval().map(|i| i.high), 3))
+        .into_table("answer_counts", "Answers per question");
+    table.with_note(
         "Left and right are the order of names, not the sides that people saw. From and to: Wilson's \
-         interval at 95 %, for one question at a time."
-            .into(),
-    );
-    table
+         interval at 95 %, for one question at a time.",
+    )
 }

@@ -2,7 +2,6 @@
 
 mod columns;
 pub mod digits;
-mod fields;
 pub mod formula;
 mod html;
 mod latex;
@@ -11,8 +10,6 @@ pub mod markdown;
 pub use crate::columns::Columns;
 
 use crate::digits::{number, signed};
-
-pub use fields::{Field, field, field_in};
 
 /// One cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,13 +26,15 @@ pub enum Cell {
     P(f64, usize),
 }
 
-/// A column's name in CSV and its heading elsewhere.
+/// A column's name in CSV, its heading elsewhere, and its unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
     /// Name in CSV: stable, for scripts.
     pub name: String,
     /// Heading in Markdown, LaTeX and HTML: for people.
     pub heading: String,
+    /// Unit of its numbers, said by the heading or not; empty where there is none.
+    pub unit: String,
 }
 
 /// A table: columns, rows, and how it is printed for people.
@@ -134,37 +133,26 @@ fn shortest(value: f64) -> String {
 }
 
 impl Table {
-    /// A table without rows; columns are `(name, heading)`.
-    pub fn new(name: &str, caption: impl Into<String>, columns: &[(&str, &str)]) -> Self {
-        let column = |&(name, heading): &(&str, &str)| Column { name: name.into(), heading: heading.into() };
-        Self {
-            name: name.into(),
-            caption: caption.into(),
-            columns: columns.iter().map(column).collect(),
-            rows: Vec::new(),
-            notes: Vec::new(),
-            parts: Vec::new(),
-        }
+    /// With one more note.
+    #[must_use]
+    pub fn with_note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
     }
 
-    /// One more row.
-    ///
-    /// # Panics
-    /// If the row is not as long as the header.
-    pub fn push(&mut self, row: Vec<Cell>) {
-        assert_eq!(row.len(), self.columns.len(), "table {}", self.name);
-        self.rows.push(row);
-    }
-
-    /// Prints the table as blocks of some of its columns, by name; names that are not there are skipped.
-    pub fn print_in_blocks(&mut self, blocks: &[(&str, &[&str])]) {
-        self.parts = blocks.iter().map(|(caption, columns)| self.block(caption, columns)).collect();
+    /// The table, or nothing if it has no row.
+    pub fn unless_empty(self) -> Option<Self> {
+        (!self.rows.is_empty()).then_some(self)
     }
 
     /// Some of the columns, by name, as a table without notes; names that are not there are skipped.
     pub fn block(&self, caption: &str, columns: &[&str]) -> Self {
         let index = |name: &&str| self.columns.iter().position(|column| column.name == *name);
-        let picked: Vec<usize> = columns.iter().filter_map(index).collect();
+        self.picked(caption, &columns.iter().filter_map(index).collect::<Vec<_>>())
+    }
+
+    /// Some of the columns, by place.
+    fn picked(&self, caption: &str, picked: &[usize]) -> Self {
         Self {
             name: self.name.clone(),
             caption: caption.into(),
@@ -212,20 +200,30 @@ impl Table {
 mod tests {
     use super::*;
 
+    /// Its cells in rows, by place.
+    fn table(name: &str, caption: &str, columns: &[(&str, &str)], rows: &[Vec<Cell>]) -> Table {
+        let places = columns.iter().enumerate();
+        Columns::over(rows)
+            .columns_of(places, |all, (i, &(name, heading))| {
+                all.column(name, heading, move |row| row[i].clone())
+            })
+            .into_table(name, caption)
+    }
+
     #[test]
     fn a_name_is_no_formula() {
-        let mut table = Table::new("t", "", &[("item", "Item"), ("net", "Net")]);
-        table.push(vec![Cell::text("=HYPERLINK(1)"), Cell::Count(-3)]);
+        let row = vec![Cell::text("=HYPERLINK(1)"), Cell::Count(-3)];
+        let table = table("t", "", &[("item", "Item"), ("net", "Net")], &[row]);
         assert_eq!(table.to_csv(), "item,net\n'=HYPERLINK(1),-3\n");
     }
 
     fn awkward() -> Table {
-        let mut table =
-            Table::new("awkward", "50 % of a_b & c", &[("id", "The id"), ("n_|x|", "|x|"), ("m", "mean")]);
-        table.push(vec![Cell::text("ss_bi, \"q\""), Cell::Count(-3), Cell::Number(1.0 / 3.0, 2)]);
-        table.push(vec![Cell::text("a|b\\c\n*d* <e> ~^{}"), Cell::Missing, Cell::Number(2.0, 2)]);
-        table.notes.push("100 % & more".into());
-        table
+        let columns = [("id", "The id"), ("n_|x|", "|x|"), ("m", "mean")];
+        let rows = [
+            vec![Cell::text("ss_bi, \"q\""), Cell::Count(-3), Cell::Number(1.0 / 3.0, 2)],
+            vec![Cell::text("a|b\\c\n*d* <e> ~^{}"), Cell::Missing, Cell::Number(2.0, 2)],
+        ];
+        table("awkward", "50 % of a_b & c", &columns, &rows).with_note("100 % & more")
     }
 
     #[test]
@@ -262,18 +260,18 @@ mod tests {
 
     #[test]
     fn latex_breaks_text_before_it_turns_the_page() {
-        let mut table = Table::new("wide", "", &[("id", "Id"), ("why", "Why"), ("n", "Of all cases")]);
+        let columns = [("id", "Id"), ("why", "Why"), ("n", "Of all cases")];
         let why =
             "a reason that takes more than a line of the page to tell, and then goes on for a while more";
-        table.push(vec![Cell::text("a"), Cell::text(why), Cell::Count(1)]);
-        let latex = table.to_latex();
+        let mut rows = vec![vec![Cell::text("a"), Cell::text(why), Cell::Count(1)]];
+        let latex = table("wide", "", &columns, &rows).to_latex();
         assert!(latex.starts_with("% needs \\usepackage{array}\n\\begin{table}"), "{latex}");
         assert!(latex.contains("{l>{\\raggedright\\arraybackslash}p{0."), "{latex}");
         assert!(latex.contains("Why & \\shortstack[r]{Of\\\\all\\\\cases} \\\\"), "{latex}");
         for _ in 0..35 {
-            table.push(vec![Cell::text("unbroken".repeat(12)), Cell::text(why), Cell::Count(1)]);
+            rows.push(vec![Cell::text("unbroken".repeat(12)), Cell::text(why), Cell::Count(1)]);
         }
-        let latex = table.to_latex();
+        let latex = table("wide", "", &columns, &rows).to_latex();
         assert!(
             latex.starts_with("% needs \\usepackage{array,longtable,lscape}\n\\begin{landscape}"),
             "{latex}"
@@ -286,11 +284,9 @@ mod tests {
         let columns: Vec<String> = (0..60).map(|i| format!("n{i}")).collect();
         let mut headings = vec![("id", "Id"), ("why", "Why")];
         headings.extend(columns.iter().map(|name| (name.as_str(), name.as_str())));
-        let mut table = Table::new("wide", "", &headings);
         let mut row = vec![Cell::text("a"), Cell::text("words that may be broken into lines")];
         row.extend((0..60).map(|_| Cell::Number(-1234.5, 2)));
-        table.push(row);
-        let latex = table.to_latex();
+        let latex = table("wide", "", &headings, &[row]).to_latex();
         assert!(latex.contains("{l>{\\raggedright\\arraybackslash}p{0."), "{latex}");
         assert!(latex.contains(&format!("\\linewidth}}{}}}\n", "r".repeat(60))), "{latex}");
         assert!(latex.contains("& $-$1234.50 &"), "{latex}");
@@ -314,8 +310,7 @@ mod tests {
         );
         let full = [0.04, 2e-5, 7.17e-6, 1e-300, 0.0].map(|p| Cell::P(p, 4).in_full());
         assert_eq!(full, ["0.04", "0.00002", "7.17e-6", "1e-300", "5e-324"]);
-        let mut table = Table::new("p", "", &[("p", "p")]);
-        table.push(vec![Cell::P(1e-9, 4)]);
+        let table = table("p", "", &[("p", "p")], &[vec![Cell::P(1e-9, 4)]]);
         assert!(table.to_markdown().contains("| &lt; 0.0001 |"), "{}", table.to_markdown());
         assert!(table.to_latex().contains("\\textless{} 0.0001"), "{}", table.to_latex());
         assert!(table.to_html().contains("<td class=\"number\">&lt; 0.001</td>"), "{}", table.to_html());
@@ -333,7 +328,8 @@ mod tests {
     #[test]
     fn blocks_print_apart_but_csv_stays_whole() {
         let mut table = awkward();
-        table.print_in_blocks(&[("First", &["id", "m"]), ("Second", &["id", "n_|x|", "absent"])]);
+        table.parts =
+            vec![table.block("First", &["id", "m"]), table.block("Second", &["id", "n_|x|", "absent"])];
         assert_eq!(table.to_csv(), awkward().to_csv());
         assert_eq!(table.printed()[1].headings(), ["The id", "|x|"]);
         let markdown = table.to_markdown();

@@ -19,11 +19,11 @@ pub(super) fn allocations_table(run: &BenchRun) -> Table {
         let stages = Stage::ALL.into_iter().filter(|stage| stage.count(&of.calls) > 0);
         stages.map(move |stage| (of, stage))
     });
-    let mut table = Columns::over(&asked.collect::<Vec<_>>())
+    let mut table = Columns::over(asked)
         .column("id", "Id", |(of, _)| Cell::text(&of.id))
         .column("stage", "Stage", |(_, stage)| Cell::text(stage.label()))
         .column("allocations", "Allocations", |(of, stage)| Cell::count(stage.count(&of.calls)))
-        .column("allocated_mib", "Allocated, MiB", |(of, stage)| {
+        .quantity("allocated_mib", "Allocated, {}", "MiB", |(of, stage)| {
             Cell::Number(stage.count(&of.bytes) as f64 / MIB, 3)
         })
         .into_table("bench_allocations", "What was asked of the allocator");

@@ -13,17 +13,17 @@ use std::collections::BTreeMap;
 /// The chance that any one interval misses, over all configurations together (Bonferroni).
 const MISSES: f64 = 0.05;
 
-/// Heading, unit's factor, decimals, and where it stands.
-type Column = (&'static str, &'static str, f64, usize, fn(&Counters) -> Option<f64>);
+/// Name, heading, unit, its factor, decimals, and where it stands.
+type Column = (&'static str, &'static str, &'static str, f64, usize, fn(&Counters) -> Option<f64>);
 
 const COLUMNS: [Column; 7] = [
-    ("cpu_ms", "CPU time, ms", 1e3, 3, |c| c.cpu_s),
-    ("page_faults", "Page faults", 1.0, 1, |c| c.page_faults.map(|n| n as f64)),
-    ("context_switches", "Context switches", 1.0, 1, |c| c.context_switches.map(|n| n as f64)),
-    ("instructions_m", "Instructions, millions", 1e-6, 3, |c| c.instructions.map(|n| n as f64)),
-    ("cache_misses_k", "Cache misses, thousands", 1e-3, 3, |c| c.cache_misses.map(|n| n as f64)),
-    ("branch_misses_k", "Wrong predictions, thousands", 1e-3, 3, |c| c.branch_misses.map(|n| n as f64)),
-    ("energy_mj", "Energy, mJ", 1e3, 3, |c| c.energy_j),
+    ("cpu_ms", "CPU time, {}", "ms", 1e3, 3, |c| c.cpu_s),
+    ("page_faults", "Page faults", "", 1.0, 1, |c| c.page_faults.map(|n| n as f64)),
+    ("context_switches", "Context switches", "", 1.0, 1, |c| c.context_switches.map(|n| n as f64)),
+    ("instructions_m", "Instructions, {}", "millions", 1e-6, 3, |c| c.instructions.map(|n| n as f64)),
+    ("cache_misses_k", "Cache misses, {}", "thousands", 1e-3, 3, |c| c.cache_misses.map(|n| n as f64)),
+    ("branch_misses_k", "Wrong predictions, {}", "thousands", 1e-3, 3, |c| c.branch_misses.map(|n| n as f64)),
+    ("energy_mj", "Energy, {}", "mJ", 1e3, 3, |c| c.energy_j),
 ];
 
 /// Medians of what was counted, by configuration; no row where nothing was.
@@ -33,29 +33,29 @@ pub(super) fn counted_table(run: &BenchRun) -> Table {
         counted.map(|counted| middle(&counted))
     };
     let series = by_configuration(run);
-    let told = |column: &&Column| series.iter().any(|(_, samples)| median(samples, column.4).is_some());
+    let told = |column: &&Column| series.iter().any(|(_, samples)| median(samples, column.5).is_some());
     let (there, missing): (Vec<&Column>, Vec<&Column>) = COLUMNS.iter().partition(told);
     let has_allocations = !run.allocations.is_empty();
-    let mut columns = Columns::over(&series).column("id", "Id", |(id, _)| Cell::text(id));
-    for &&(name, heading, unit, decimals, of) in &there {
-        columns = columns.column(name, heading, |(_, samples)| {
-            Cell::number(median(samples, of).map(|median| unit * median), decimals)
-        });
-    }
-    if has_allocations {
-        let asked = |id: &ConfigurationId, of: fn(&Allocations) -> f64| allocations_of(run, id).map(of);
-        columns = columns
-            .column("allocations", "Allocations", |(id, _)| {
+    let asked = |id: &ConfigurationId, of: fn(&Allocations) -> f64| allocations_of(run, id).map(of);
+    let mut table = Columns::over(&series)
+        .column("id", "Id", |(id, _)| Cell::text(id))
+        .columns_of(&there, |all, (name, heading, unit, factor, decimals, of)| {
+            all.quantity(*name, heading, unit, |(_, samples)| {
+                Cell::number(median(samples, *of).map(|median| factor * median), *decimals)
+            })
+        })
+        .columns_if(has_allocations, |all| {
+            all.column("allocations", "Allocations", |(id, _)| {
                 Cell::number(asked(id, |of| of.calls.total as f64), 0)
             })
-            .column("allocated_mib", "Allocated, MiB", |(id, _)| {
+            .quantity("allocated_mib", "Allocated, {}", "MiB", |(id, _)| {
                 Cell::number(asked(id, |of| of.bytes.total as f64 / MIB), 3)
             })
-            .column("peak_mib", "Peak of extraction, MiB", |(id, _)| {
+            .quantity("peak_mib", "Peak of extraction, {}", "MiB", |(id, _)| {
                 Cell::number(peak_of_extraction(run, id).map(|bytes| bytes as f64 / MIB), 1)
-            });
-    }
-    let mut table = columns.into_table("bench_counters", "What was counted beside time");
+            })
+        })
+        .into_table("bench_counters", "What was counted beside time");
     if there.is_empty() && !has_allocations {
         table.rows.clear();
         return table;

@@ -88,7 +88,7 @@ pub fn history_table(steps: &[Step]) -> Table {
     let numbered: Vec<(u64, &Step)> = (1..).zip(steps).collect();
     let by_ratio = |a: &(&ConfigurationId, &f64), b: &(&ConfigurationId, &f64)| a.1.total_cmp(b.1);
     let most = |step: &Step| step.ratios.iter().max_by(by_ratio).map(|(id, ratio)| (id.to_string(), *ratio));
-    let mut table = Columns::over(&numbered)
+    let table = Columns::over(&numbered)
         .column("number", "Number", |(number, _)| Cell::count(*number))
         .column("name", "Name", |(_, step)| Cell::text(&step.kept.name))
         .column("commit", "Commit", |(_, step)| Cell::text(step.kept.commit.as_deref().unwrap_or("unknown")))
@@ -99,12 +99,10 @@ pub fn history_table(steps: &[Step]) -> Table {
         .column("slowest", "on", |(_, step)| Cell::text(most(step).map(|(id, _)| id).unwrap_or_default()))
         .column("reference", "Reference work, over the first", |(_, step)| Cell::number(step.reference, 3))
         .into_table("history", "Runs that were kept");
-    table.notes.push(
+    table.with_note(
         "Median totals over those of the first run that asked for the same extraction: geometric mean of the configurations, \
-         the least and the most. These are no verdicts; `isostudy bench compare` gives those."
-            .into(),
-    );
-    table
+         the least and the most. These are no verdicts; `isostudy bench compare` gives those.",
+    )
 }
 
 #[cfg(test)]

@@ -54,17 +54,18 @@ fn medians(run: &BenchRun, statements: &Statements) -> Table {
         let found = statements.memory.iter().find(|memory| memory.id == *id);
         Cell::number(found.and_then(bytes).map(|bytes| bytes as f64 / MIB), 1)
     };
-    let ids: Vec<&ConfigurationId> = by_configuration(run).into_iter().map(|(id, _)| id).collect();
-    let columns = Columns::over(&ids)
+    let columns = Columns::over(by_configuration(run).into_iter().map(|(id, _)| id))
         .column("id", "Id", |id| Cell::text(id))
         .column("samples", "Samples", |id| Cell::count(of(id, Stage::Total).samples as u64))
-        .column("total_ms", "Total, ms", |id| Cell::Number(MS * of(id, Stage::Total).seconds.median, 3))
-        .column("total_low_ms", "from", |id| end(id, |i| i.low))
-        .column("total_high_ms", "to", |id| end(id, |i| i.high));
+        .quantity("total_ms", "Total, {}", "ms", |id| {
+            Cell::Number(MS * of(id, Stage::Total).seconds.median, 3)
+        })
+        .quantity("total_low_ms", "from", "ms", |id| end(id, |i| i.low))
+        .quantity("total_high_ms", "to", "ms", |id| end(id, |i| i.high));
     let mut table = with_stages(columns, |id, stage| of(id, Stage::ALL[stage]).seconds.median)
-        .column("peak_mib", "Peak memory, MiB", |id| memory(id, |memory| Some(memory.peak_bytes)))
+        .quantity("peak_mib", "Peak memory, {}", "MiB", |id| memory(id, |memory| Some(memory.peak_bytes)))
         // Below what making the field had taken before, extraction's own peak is not seen.
-        .column("extraction_mib", "of it extraction", |id| memory(id, PeakMemory::of_extraction))
+        .quantity("extraction_mib", "of it extraction", "MiB", |id| memory(id, PeakMemory::of_extraction))
         .into_table("bench_medians", "Median times");
     table.notes.push(format!(
         "Over {} Medians with their order-statistic intervals of {:.1} %; medians of stages need not add up to that of the \
@@ -97,7 +98,7 @@ fn medians(run: &BenchRun, statements: &Statements) -> Table {
 fn ratios(statements: &Statements, of: fn(Stage) -> bool) -> Table {
     let end = |ratio: &Ratio, end: fn(Interval) -> f64| Cell::number(ratio.interval.map(end), 3);
     let rows: Vec<&Ratio> = statements.ratios.iter().filter(|ratio| of(ratio.stage)).collect();
-    let mut table = Columns::over(&rows)
+    let table = Columns::over(&rows)
         .column("stage", "Stage", |ratio| Cell::text(ratio.stage.label()))
         .column("first", "First", |ratio| Cell::text(&ratio.first))
         .column("second", "Second", |ratio| Cell::text(&ratio.second))
@@ -108,30 +109,29 @@ fn ratios(statements: &Statements, of: fn(Stage) -> bool) -> Table {
         .column("verdict", "Second is", |ratio| Cell::text(ratio.judgement.verdict.label()))
         .column("reason", "Why not more", |ratio| Cell::text(ratio.judgement.reason))
         .into_table("bench_ratios", "Configurations against each other");
-    table.notes.push(
+    table.with_note(
         "Medians over rounds of the ratio within a round; 95 % percentile intervals of 2,000 bootstrap resamples of \
          whole rounds; a verdict where the interval lies beyond the stage's noise floor and each third of the run has \
-         the same direction."
-            .into(),
-    );
-    table
+         the same direction.",
+    )
 }
 
 fn outliers(statements: &Statements) -> Table {
-    let mut table = Columns::over(&statements.outlier_effects)
+    let table = Columns::over(&statements.outlier_effects)
         .column("id", "Id", |effect| Cell::text(&effect.id))
         .column("outliers", "Outliers", |effect| Cell::count(effect.outliers as u64))
-        .column("median_ms", "Median, ms", |effect| Cell::Number(MS * effect.median_s, 3))
-        .column("median_without_ms", "without them", |effect| Cell::Number(MS * effect.median_without_s, 3))
-        .column("change_percent", "change, %", |effect| {
+        .quantity("median_ms", "Median, {}", "ms", |effect| Cell::Number(MS * effect.median_s, 3))
+        .quantity("median_without_ms", "without them", "ms", |effect| {
+            Cell::Number(MS * effect.median_without_s, 3)
+        })
+        .quantity("change_percent", "change, {}", "%", |effect| {
             Cell::Number(100.0 * (effect.median_without_s / effect.median_s - 1.0), 2)
         })
         .into_table("bench_outliers", "What outliers do to medians");
-    table.notes.push(format!(
+    table.with_note(format!(
         "Totals further than {} scaled median absolute deviations from the median. They stay in every statement.",
         super::MAD_LIMIT
-    ));
-    table
+    ))
 }
 
 /// A comparison: totals with their verdicts, then every stage.
@@ -140,12 +140,13 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
         true => String::new(),
         false => " (NOT MEASURED ALIKE)".to_owned(),
     };
-    let rows: Vec<&Row> = comparison.of_stage(Stage::Total).collect();
-    let times = of_times(Columns::over(&rows).column("id", "Id", |row| Cell::text(&row.id)))
-        .column("ratio", "B / A", |row| Cell::number(row.ratio, 3))
-        .column("cpu_ratio", "CPU time, B / A", |row| {
-            Cell::number(row.cpu_s.filter(|[a, _]| *a > 0.0).map(|[a, b]| b / a), 3)
-        });
+    let times = of_times(
+        Columns::over(comparison.of_stage(Stage::Total)).column("id", "Id", |row| Cell::text(&row.id)),
+    )
+    .column("ratio", "B / A", |row| Cell::number(row.ratio, 3))
+    .column("cpu_ratio", "CPU time, B / A", |row| {
+        Cell::number(row.cpu_s.filter(|[a, _]| *a > 0.0).map(|[a, b]| b / a), 3)
+    });
     let mut totals = judged(times, &across).into_table("bench_comparison", format!("B against A{across}"));
     totals.notes.extend(how(a, b));
     totals.notes.push(builds(a, comparison));
@@ -188,8 +189,8 @@ pub fn comparison_tables(a: &BenchRun, b: &BenchRun, comparison: &Comparison) ->
          that would have got one; what is smaller cannot be seen in these runs."
             .into(),
     );
-    let rows: Vec<&Row> = comparison.rows.iter().filter(|row| row.stage != Stage::Total).collect();
-    let columns = Columns::over(&rows).column("stage", "Stage", |row| Cell::text(row.stage.label())).column(
+    let rows = comparison.rows.iter().filter(|row| row.stage != Stage::Total);
+    let columns = Columns::over(rows).column("stage", "Stage", |row| Cell::text(row.stage.label())).column(
         "id",
         "Id",
         |row| Cell::text(&row.id),
@@ -264,14 +265,17 @@ fn builds(a: &BenchRun, comparison: &Comparison) -> String {
 }
 
 /// Both times of a row.
-fn of_times<'a>(columns: Columns<'a, &'a Row>) -> Columns<'a, &'a Row> {
-    columns
-        .column("a_ms", "A, ms", |row| Cell::Number(MS * row.a_s, 3))
-        .column("b_ms", "B, ms", |row| Cell::Number(MS * row.b_s, 3))
+fn of_times(columns: Columns<&Row>) -> Columns<&Row> {
+    columns.quantity("a_ms", "A, {}", "ms", |row| Cell::Number(MS * row.a_s, 3)).quantity(
+        "b_ms",
+        "B, {}",
+        "ms",
+        |row| Cell::Number(MS * row.b_s, 3),
+    )
 }
 
 /// What can be said of a ratio. Where runs were not measured alike, the verdict says so too.
-fn judged<'a>(columns: Columns<'a, &'a Row>, across: &str) -> Columns<'a, &'a Row> {
+fn judged<'a>(columns: Columns<&'a Row>, across: &str) -> Columns<&'a Row> {
     let end = |row: &Row, end: fn(Interval) -> f64| Cell::number(row.interval.map(end), 3);
     let across = across.to_lowercase();
     columns

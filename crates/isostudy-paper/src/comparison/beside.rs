@@ -1,7 +1,7 @@
 //! The published benchmark with ours beside it: one row a configuration, two columns a quantity.
 
 use super::Compared;
-use isostudy_table::{Cell, Column, Table};
+use isostudy_table::{Cell, Columns, Table};
 
 /// The paper's four blocks, by quantity; in each, what is put right follows what is as published.
 const BLOCKS: [(&str, &[&str]); 4] = [
@@ -49,29 +49,33 @@ pub(super) fn table(source: &str, all: &[Compared]) -> Option<Table> {
         }
     }
     let caption = format!("The benchmark of {source}, row by row, and ours beside it");
-    let mut table = Table::new("benchmark_beside", caption, &[("id", "Id")]);
-    for quantity in &quantities {
-        let words = quantity.trim_end_matches("_s").replace('_', " ");
-        table.columns.push(Column { name: format!("published_{quantity}"), heading: words });
-        table.columns.push(Column { name: format!("ours_{quantity}"), heading: "ours".into() });
-    }
-    for row in &rows {
-        let mut cells = vec![Cell::text(row)];
-        for quantity in &quantities {
-            // What is put right is there only where it makes a difference.
-            let found = all.iter().find(|c| c.row == *row && c.quantity == *quantity);
-            let cell = |value: Option<f64>| match (found, value) {
-                (Some(compared), Some(value)) if compared.decimals == 0 => Cell::Count(value as i64),
-                (Some(compared), value) => {
-                    Cell::number(value, compared.decimals.min(4 + 2 * usize::from(quantity.ends_with("_s"))))
-                }
-                (None, _) => Cell::Missing,
-            };
-            cells.push(cell(found.map(|c| c.published)));
-            cells.push(cell(found.and_then(|c| c.ours)));
+    let find = |row: &str, quantity: &str| all.iter().find(|c| c.row == *row && c.quantity == quantity);
+    let cell = |compared: &Compared, value: Option<f64>| match value {
+        Some(value) if compared.decimals == 0 => Cell::Count(value as i64),
+        _ => {
+            let most = 4 + 2 * usize::from(compared.quantity.ends_with("_s"));
+            Cell::number(value, compared.decimals.min(most))
         }
-        table.push(cells);
-    }
+    };
+    let unit = |quantity: &str| match quantity {
+        quantity if quantity.ends_with("_s") => "s",
+        quantity if quantity.ends_with("_bytes") => "bytes",
+        _ => "",
+    };
+    let mut table = Columns::over(&rows)
+        .column("id", "Id", |row| Cell::text(row))
+        // What is put right is there only where it makes a difference.
+        .columns_of(&quantities, |all, quantity| {
+            let words = quantity.trim_end_matches("_s").replace('_', " ");
+            let [published, ours] = ["published", "ours"].map(|side| format!("{side}_{quantity}"));
+            all.quantity(published, &words, unit(quantity), |row| {
+                find(row, quantity).map_or(Cell::Missing, |c| cell(c, Some(c.published)))
+            })
+            .quantity(ours, "ours", unit(quantity), |row| {
+                find(row, quantity).map_or(Cell::Missing, |c| cell(c, c.ours))
+            })
+        })
+        .into_table("benchmark_beside", caption);
     let blocks = BLOCKS.map(|(caption, of)| {
         let pair = |quantity: &&str| [format!("published_{quantity}"), format!("ours_{quantity}")];
         let columns: Vec<String> = std::iter::once("id".into()).chain(of.iter().flat_map(pair)).collect();
@@ -79,11 +83,10 @@ pub(super) fn table(source: &str, all: &[Compared]) -> Option<Table> {
         table.block(caption, &columns)
     });
     table.parts = blocks.into_iter().filter(|part| part.columns.len() > 1).collect();
-    table.notes.push(
+    let table = table.with_note(
         "First of each pair: as published. Columns without \u{201c}as published\u{201d} in their name that have a twin with it are put \
          right: discards counted once, ratios without degenerate triangles; empty where that changes nothing. Geometry has the edge \
-         collapse in it, totals and fractions leave the normals out, as published."
-            .into(),
+         collapse in it, totals and fractions leave the normals out, as published.",
     );
-    (!rows.is_empty()).then_some(table)
+    table.unless_empty()
 }

@@ -5,7 +5,7 @@ use isostudy_inference::ballots::is_asked;
 use isostudy_inference::tally::{QuestionCount, Tally};
 use isostudy_responses::Responses;
 use isostudy_statistics::interval::{self, Interval};
-use isostudy_table::{Cell, Column, Table, field};
+use isostudy_table::{Cell, Columns, Table};
 use std::collections::BTreeSet;
 
 /// More respondents than this make no table that anybody reads; the answers are in their file.
@@ -18,28 +18,23 @@ pub(super) fn answers(study: &Study, answers: &Responses, excluded: &BTreeSet<us
     if answers.participants.len() > MOST_COLUMNS {
         return None;
     }
-    let mut table = Table::new(
-        "answers",
-        "Answers: L left, NP no preference, R right; one column a respondent",
-        &[("question", "Question")],
-    );
-    let counts = |participant: &usize| !excluded.contains(participant);
-    let respondents = (0..answers.participants.len()).filter(counts).map(|i| i + 1);
-    table
-        .columns
-        .extend(respondents.map(|i| Column { name: format!("respondent_{i}"), heading: i.to_string() }));
     let mut said = vec![vec![String::new(); answers.participants.len()]; study.comparisons.len()];
     for answer in answers.answers.iter().filter(|answer| is_asked(study, answer)) {
         let cell = &mut said[answer.question as usize][answer.participant as usize];
         let space = if cell.is_empty() { "" } else { " " };
         *cell = format!("{cell}{space}{}", answers.declared_choice(answer).code());
     }
-    for (comparison, said) in study.comparisons.iter().zip(said) {
-        let mut row = vec![Cell::text(&comparison.question)];
-        let own = said.into_iter().enumerate().filter(|(participant, _)| counts(participant));
-        row.extend(own.map(|(_, cell)| if cell.is_empty() { Cell::Missing } else { Cell::text(cell) }));
-        table.push(row);
-    }
+    let respondents = (0..answers.participants.len()).filter(|participant| !excluded.contains(participant));
+    let mut table = Columns::over(study.comparisons.iter().zip(&said))
+        .column("question", "Question", |(comparison, _)| Cell::text(&comparison.question))
+        .columns_of(respondents, |all, i| {
+            let (name, heading) = (format!("respondent_{}", i + 1), (i + 1).to_string());
+            all.column(name, heading, move |(_, said)| match said[i].as_str() {
+                "" => Cell::Missing,
+                said => Cell::text(said),
+            })
+        })
+        .into_table("answers", "Answers: L left, NP no preference, R right; one column a respondent");
     let turned = |a: &isostudy_responses::Answer| a.left != answers.questions[a.question as usize].left;
     if answers.answers.iter().any(|a| is_asked(study, a) && turned(a)) {
         let note = "Sides are the questionnaire's; answers to a pair shown the other way round are turned.";
@@ -54,31 +49,29 @@ pub(super) fn counts(study: &Study, tally: &Tally, sides_differ: bool) -> Table 
     fn right((.., of): &Row<'_>) -> Option<Interval> {
         interval::wilson(of.right, of.answers())
     }
-    let fields = [
-        field("question", "Question", |(_, asked, _): &Row<'_>| Cell::text(&asked.question)),
-        field("object", "Object", |(study, asked, _)| Cell::text(&study.file.objects[asked.object].name)),
-        field("left", "Left", |(_, asked, _)| Cell::text(&asked.left)),
-        field("right", "Right", |(_, asked, _)| Cell::text(&asked.right)),
-        field("left_answers", "Answers left", |(.., of)| Cell::count(of.left)),
-        field("no_preference", "No preference", |(.., of)| Cell::count(of.none)),
-        field("right_answers", "Answers right", |(.., of)| Cell::count(of.right)),
-        field("right_share", "Right of all", |(.., of)| {
-            Cell::number((of.answers() > 0).then(|| of.right as f64 / of.answers() as f64), 3)
-        }),
-        field("right_share_low", "from", |row| Cell::number(right(row).map(|i| i.low), 3)),
-        field("right_share_high", "to", |row| Cell::number(right(row).map(|i| i.high), 3)),
-    ];
     let rows = study.comparisons.iter().zip(&tally.questions).map(|(asked, of)| (study, asked, of));
-    let mut table = Table::of("answer_counts", "Answers per question", &fields, rows);
+    let table = Columns::over(rows)
+        .column("question", "Question", |(_, asked, _)| Cell::text(&asked.question))
+        .column("object", "Object", |(study, asked, _)| Cell::text(&study.file.objects[asked.object].name))
+        .column("left", "Left", |(_, asked, _)| Cell::text(&asked.left))
+        .column("right", "Right", |(_, asked, _)| Cell::text(&asked.right))
+        .column("left_answers", "Answers left", |(.., of)| Cell::count(of.left))
+        .column("no_preference", "No preference", |(.., of)| Cell::count(of.none))
+        .column("right_answers", "Answers right", |(.., of)| Cell::count(of.right))
+        .column("right_share", "Right of all", |(.., of)| {
+            Cell::number((of.answers() > 0).then(|| of.right as f64 / of.answers() as f64), 3)
+        })
+        .column("right_share_low", "from", |row| Cell::number(right(row).map(|i| i.low), 3))
+        .column("right_share_high", "to", |row| Cell::number(right(row).map(|i| i.high), 3))
+        .into_table("answer_counts", "Answers per question");
     let sum = |count: fn(&QuestionCount) -> u64| tally.questions.iter().map(count).sum::<u64>();
     let sums = [sum(|of| of.left), sum(|of| of.none), sum(|of| of.right)];
-    table.notes.push(format!(
+    table.with_note(format!(
         "All questions: {} for the one listed on the left, {} without preference, {} for the one listed on the right{}. From and to: Wilson's interval at 95 %, for one \
          question at a time; it may not be pooled over questions, because the same people answer all of them.",
         sums[0],
         sums[1],
         sums[2],
         if sides_differ { "; people saw them on either side" } else { "" },
-    ));
-    table
+    ))
 }

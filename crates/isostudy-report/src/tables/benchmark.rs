@@ -1,94 +1,113 @@
 //! The benchmark: counts, times, memory and the published aspect ratio of every configuration (appendix B).
 
 use crate::budgets::budgets;
-use crate::tables::design::{level, method_columns};
+use crate::tables::design::{method_columns, with_factors};
 use isostudy_design::record::{MeshRecord, PeakMemory, Purpose};
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{MeshSet, discard_fraction, known};
 use isostudy_inference::published_ratio;
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Columns, Table};
 use isostudy_timing::stage_times::{StageTimes, conditions};
 
-/// A column: name in CSV, heading, and its cell.
-type Entry = (&'static str, &'static str, fn(&MeshRecord) -> Cell);
+/// A mesh, its times, and what was resident when it was extracted.
+struct Row<'a> {
+    mesh: &'a MeshRecord,
+    times: Option<StageTimes>,
+    peak_bytes: Option<u64>,
+}
 
-/// What is known of a mesh; after the first come the columns that tell the method.
-const MESH_COLUMNS: &[Entry] = &[
-    ("resolution", "Cubes", |m| match m.has_grid() {
-        true => Cell::text(format!("{}x{}x{}", m.cells[0], m.cells[1], m.cells[2])),
-        false => Cell::Missing,
-    }),
-    ("tetrahedra", "Tetrahedra", |m| maybe(m.counts.of_tetrahedra(|t| t.tetrahedra))),
-    ("tetrahedra_evaluated", "Evaluated", |m| maybe(m.counts.of_tetrahedra(|t| t.tetrahedra_evaluated))),
-    ("evaluated_fraction", "Evaluated fraction", |m| {
-        let share = m.counts.tetrahedra.as_ref().and_then(|t| ratio(t.tetrahedra_evaluated, t.tetrahedra));
-        Cell::number(share, 4)
-    }),
-    ("vertices", "Vertices", |m| Cell::count(m.counts.vertices)),
-    ("triangles", "Triangles", |m| Cell::count(m.counts.triangles)),
-    ("discarded_triangles", "Discarded", |m| maybe(m.counts.discarded_triangles)),
-    ("discarded_as_published", "Discarded, as published", |m| {
-        maybe(m.counts.of_tetrahedra(|t| t.discarded_as_published))
-    }),
-    ("discard_fraction", "Discard fraction", |m| {
-        let discarded = m.counts.discarded_triangles;
-        Cell::number(discarded.map(|count| discard_fraction(count, m.counts.triangles)), 4)
-    }),
-    ("discard_fraction_as_published", "as published", |m| {
-        let discarded = m.counts.of_tetrahedra(|t| t.discarded_as_published);
-        Cell::number(discarded.map(|count| discard_fraction(count, m.counts.triangles)), 4)
-    }),
-    ("stored_samples", "Samples stored", |m| maybe(m.counts.of_tetrahedra(|t| t.stored_samples))),
-    ("needed_samples", "Samples needed", |m| maybe(m.counts.samples)),
-    ("evaluations", "Samples taken", |m| maybe(m.counts.evaluations)),
-    ("evaluations_per_vertex", "Samples taken per vertex", |m| {
-        Cell::number(m.counts.evaluations_per_vertex(), 2)
-    }),
-    ("gradients", "Gradients taken", |m| maybe(m.counts.gradients)),
-    ("stored_edges", "Edges stored", |m| maybe(m.counts.of_tetrahedra(|t| t.stored_edges))),
-    ("needed_edges", "Edges needed", |m| maybe(m.counts.of_tetrahedra(|t| t.needed_edges))),
-    ("sample_bytes", "Lattice bytes", |m| maybe(m.counts.of_tetrahedra(|t| t.sample_bytes))),
-    ("edge_bytes", "Edge bytes", |m| maybe(m.counts.of_tetrahedra(|t| t.edge_bytes))),
-    ("vertex_bytes", "Vertex bytes", |m| Cell::count(m.counts.vertex_bytes)),
-    ("index_bytes", "Index bytes", |m| Cell::count(m.counts.index_bytes)),
-    ("aspect_ratio_mean", "Aspect ratio mean", |m| {
-        Cell::number(known(&m.quality.published_aspect_ratio, |d| d.mean), 3)
-    }),
-    ("aspect_ratio_sd", "Aspect ratio SD", |m| {
-        Cell::number(known(&m.quality.published_aspect_ratio, |d| d.sd), 3)
-    }),
-    ("aspect_ratio_mean_as_published", "mean, as published", |m| {
-        Cell::number(published_ratio::mean(&m.quality), 3)
-    }),
-    ("aspect_ratio_sd_as_published", "SD, as published", |m| {
-        Cell::number(published_ratio::sd(&m.quality), 3)
-    }),
-    ("degenerate_triangles", "Degenerate", |m| Cell::count(m.quality.degenerate)),
-];
+/// What is known of a mesh; before stand the columns that tell the method.
+fn with_counts(columns: Columns<Row<'_>>) -> Columns<Row<'_>> {
+    columns
+        .column("tetrahedra", "Tetrahedra", |of| maybe(of.mesh.counts.of_tetrahedra(|t| t.tetrahedra)))
+        .column("tetrahedra_evaluated", "Evaluated", |of| {
+            maybe(of.mesh.counts.of_tetrahedra(|t| t.tetrahedra_evaluated))
+        })
+        .column("evaluated_fraction", "Evaluated fraction", |of| {
+            let share =
+                of.mesh.counts.tetrahedra.as_ref().and_then(|t| ratio(t.tetrahedra_evaluated, t.tetrahedra));
+            Cell::number(share, 4)
+        })
+        .column("vertices", "Vertices", |of| Cell::count(of.mesh.counts.vertices))
+        .column("triangles", "Triangles", |of| Cell::count(of.mesh.counts.triangles))
+        .column("discarded_triangles", "Discarded", |of| maybe(of.mesh.counts.discarded_triangles))
+        .column("discarded_as_published", "Discarded, as published", |of| {
+            maybe(of.mesh.counts.of_tetrahedra(|t| t.discarded_as_published))
+        })
+        .column("discard_fraction", "Discard fraction", |of| {
+            let discarded = of.mesh.counts.discarded_triangles;
+            Cell::number(discarded.map(|count| discard_fraction(count, of.mesh.counts.triangles)), 4)
+        })
+        .column("discard_fraction_as_published", "as published", |of| {
+            let discarded = of.mesh.counts.of_tetrahedra(|t| t.discarded_as_published);
+            Cell::number(discarded.map(|count| discard_fraction(count, of.mesh.counts.triangles)), 4)
+        })
+        .column("stored_samples", "Samples stored", |of| {
+            maybe(of.mesh.counts.of_tetrahedra(|t| t.stored_samples))
+        })
+        .column("needed_samples", "Samples needed", |of| maybe(of.mesh.counts.samples))
+        .column("evaluations", "Samples taken", |of| maybe(of.mesh.counts.evaluations))
+        .column("evaluations_per_vertex", "Samples taken per vertex", |of| {
+            Cell::number(of.mesh.counts.evaluations_per_vertex(), 2)
+        })
+        .column("gradients", "Gradients taken", |of| maybe(of.mesh.counts.gradients))
+        .column("stored_edges", "Edges stored", |of| maybe(of.mesh.counts.of_tetrahedra(|t| t.stored_edges)))
+        .column("needed_edges", "Edges needed", |of| maybe(of.mesh.counts.of_tetrahedra(|t| t.needed_edges)))
+        .quantity("sample_bytes", "Lattice bytes", "bytes", |of| {
+            maybe(of.mesh.counts.of_tetrahedra(|t| t.sample_bytes))
+        })
+        .quantity("edge_bytes", "Edge bytes", "bytes", |of| {
+            maybe(of.mesh.counts.of_tetrahedra(|t| t.edge_bytes))
+        })
+        .quantity("vertex_bytes", "Vertex bytes", "bytes", |of| Cell::count(of.mesh.counts.vertex_bytes))
+        .quantity("index_bytes", "Index bytes", "bytes", |of| Cell::count(of.mesh.counts.index_bytes))
+        .column("aspect_ratio_mean", "Aspect ratio mean", |of| {
+            Cell::number(known(&of.mesh.quality.published_aspect_ratio, |d| d.mean), 3)
+        })
+        .column("aspect_ratio_sd", "Aspect ratio SD", |of| {
+            Cell::number(known(&of.mesh.quality.published_aspect_ratio, |d| d.sd), 3)
+        })
+        .column("aspect_ratio_mean_as_published", "mean, as published", |of| {
+            Cell::number(published_ratio::mean(&of.mesh.quality), 3)
+        })
+        .column("aspect_ratio_sd_as_published", "SD, as published", |of| {
+            Cell::number(published_ratio::sd(&of.mesh.quality), 3)
+        })
+        .column("degenerate_triangles", "Degenerate", |of| Cell::count(of.mesh.quality.degenerate))
+}
 
-/// As for meshes; seconds in full in CSV, microseconds' precision for people.
-type TimeEntry = (&'static str, &'static str, fn(&StageTimes) -> Cell);
-
-const TIME_COLUMNS: &[TimeEntry] = &[
-    ("total_without_normals_s", "Total, s", |t| Cell::Number(t.total_without_normals_s(), 6)),
-    ("total_without_normals_median_s", "Median, s", |t| Cell::Number(t.median_without_normals_s, 6)),
-    ("allocation_s", "Allocation, s", |t| told_apart(t, t.allocation_s)),
-    ("sampling_s", "Sampling, s", |t| Cell::Number(t.sampling_s, 6)),
-    ("sampling_fraction", "Sampling fraction", |t| fraction(t, t.sampling_s)),
-    ("vertex_s", "Vertex, s", |t| told_apart(t, t.vertex_s)),
-    ("vertex_fraction", "Vertex fraction", |t| match t.has_stages {
-        true => fraction(t, t.vertex_s),
-        false => Cell::Missing,
-    }),
-    ("geometry_s", "Geometry, s", |t| Cell::Number(t.geometry_s, 6)),
-    ("clustering_s", "Edge collapse within it, s", |t| told_apart(t, t.clustering_s)),
-    ("geometry_fraction", "Geometry fraction", |t| fraction(t, t.geometry_s)),
-    ("normals_s", "Normals, s", |t| told_apart(t, t.normals_s)),
-];
-
-/// Seconds of a stage; empty where stages were not told apart.
-fn told_apart(times: &StageTimes, seconds: f64) -> Cell {
-    Cell::number(times.has_stages.then_some(seconds), 6)
+/// Seconds in full in CSV, microseconds' precision for people.
+fn with_times(columns: Columns<Row<'_>>) -> Columns<Row<'_>> {
+    fn seconds(of: &Row<'_>, seconds: fn(&StageTimes) -> f64) -> Cell {
+        Cell::number(of.times.as_ref().map(seconds), 6)
+    }
+    /// Empty where stages were not told apart.
+    fn told_apart(of: &Row<'_>, seconds: fn(&StageTimes) -> f64) -> Cell {
+        Cell::number(of.times.as_ref().filter(|times| times.has_stages).map(seconds), 6)
+    }
+    fn fraction(of: &Row<'_>, seconds: fn(&StageTimes) -> f64) -> Cell {
+        let times = of.times.as_ref().filter(|times| times.total_without_normals_s() > 0.0);
+        Cell::number(times.map(|times| seconds(times) / times.total_without_normals_s()), 3)
+    }
+    columns
+        .quantity("total_without_normals_s", "Total, {}", "s", |of| {
+            seconds(of, StageTimes::total_without_normals_s)
+        })
+        .quantity("total_without_normals_median_s", "Median, {}", "s", |of| {
+            seconds(of, |t| t.median_without_normals_s)
+        })
+        .quantity("allocation_s", "Allocation, {}", "s", |of| told_apart(of, |t| t.allocation_s))
+        .quantity("sampling_s", "Sampling, {}", "s", |of| seconds(of, |t| t.sampling_s))
+        .column("sampling_fraction", "Sampling fraction", |of| fraction(of, |t| t.sampling_s))
+        .quantity("vertex_s", "Vertex, {}", "s", |of| told_apart(of, |t| t.vertex_s))
+        .column("vertex_fraction", "Vertex fraction", |of| match &of.times {
+            Some(times) if times.has_stages => fraction(of, |t| t.vertex_s),
+            _ => Cell::Missing,
+        })
+        .quantity("geometry_s", "Geometry, {}", "s", |of| seconds(of, |t| t.geometry_s))
+        .quantity("clustering_s", "Edge collapse within it, {}", "s", |of| told_apart(of, |t| t.clustering_s))
+        .column("geometry_fraction", "Geometry fraction", |of| fraction(of, |t| t.geometry_s))
+        .quantity("normals_s", "Normals, {}", "s", |of| told_apart(of, |t| t.normals_s))
 }
 
 /// Stands for the columns that tell the method.
@@ -153,11 +172,6 @@ fn ratio(part: u64, whole: u64) -> Option<f64> {
     (whole > 0).then(|| part as f64 / whole as f64)
 }
 
-fn fraction(times: &StageTimes, stage_s: f64) -> Cell {
-    let total = times.total_without_normals_s();
-    Cell::number((total > 0.0).then(|| stage_s / total), 3)
-}
-
 /// The whole benchmark, one row a configuration.
 pub(super) fn benchmark(inputs: &Inputs<'_>) -> Option<Table> {
     let mut table = of_objects(inputs, |_| true)?;
@@ -168,17 +182,15 @@ pub(super) fn benchmark(inputs: &Inputs<'_>) -> Option<Table> {
         let of = |name: &&'static str| if *name == FACTORS { factors.clone() } else { vec![*name] };
         names.iter().flat_map(of).collect()
     };
-    let mut blocks: Vec<(&str, Vec<&str>)> = BLOCKS
-        .iter()
-        .filter(|(name, _)| inputs.bench.is_some() || *name != "Times")
-        .map(|(name, columns)| (*name, spelt(columns)))
-        .collect();
-    if study.file.benchmark.memory {
-        let of_memory = blocks.iter_mut().find(|(name, _)| *name == "Memory").expect("a block");
-        of_memory.1.push("extraction_memory_bytes");
-    }
-    let blocks: Vec<(&str, &[&str])> = blocks.iter().map(|(name, columns)| (*name, &columns[..])).collect();
-    table.print_in_blocks(&blocks);
+    let blocks = BLOCKS.iter().filter(|(name, _)| inputs.bench.is_some() || *name != "Times");
+    let parts = blocks.map(|(name, columns)| {
+        let mut columns = spelt(columns);
+        if study.file.benchmark.memory && *name == "Memory" {
+            columns.push("extraction_memory_bytes");
+        }
+        table.block(name, &columns)
+    });
+    table.parts = parts.collect();
     Some(table)
 }
 
@@ -186,41 +198,34 @@ pub(super) fn benchmark(inputs: &Inputs<'_>) -> Option<Table> {
 pub fn of_objects(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Option<Table> {
     let meshes = MeshSet::of(inputs, Purpose::Benchmark);
     let study = inputs.study;
-    let factors = method_columns(study);
-    let headings: Vec<String> = factors.iter().map(|&factor| study.factor(factor).heading()).collect();
-    let mut columns = vec![("id", "Id"), (MESH_COLUMNS[0].0, MESH_COLUMNS[0].1)];
+    let rows = meshes.in_order().filter(|(c, _)| holds(c.object)).map(|(configuration, mesh)| {
+        let (run, id) = (inputs.bench, &configuration.id);
+        let peak = run.and_then(|run| run.memory.iter().find(|peak| peak.id == *id));
+        let peak_bytes = peak.and_then(PeakMemory::of_extraction);
+        Row { mesh, times: run.and_then(|run| StageTimes::of(run, id)), peak_bytes }
+    });
     // Where the object's spacing does not hold for all.
     let matched = study.methods.iter().any(|method| method.budget.is_some());
-    if matched {
-        columns.push(("spacing", "Cube edge"));
-    }
-    columns.extend(factors.iter().zip(&headings).map(|(&f, heading)| (&*study.factor(f).name, &**heading)));
-    columns.extend(MESH_COLUMNS[1..].iter().map(|&(name, heading, _)| (name, heading)));
-    if inputs.bench.is_some() {
-        columns.extend(TIME_COLUMNS.iter().map(|&(name, heading, _)| (name, heading)));
-    }
-    let has_memory = study.file.benchmark.memory;
-    if has_memory {
-        columns.push(("extraction_memory_bytes", "Memory beside the field, bytes"));
-    }
-    let mut table = Table::new("benchmark", "Benchmark", &columns);
-    for (configuration, mesh) in meshes.in_order().filter(|(c, _)| holds(c.object)) {
-        let mut row = vec![Cell::text(&mesh.id), (MESH_COLUMNS[0].2)(mesh)];
-        row.extend(matched.then(|| Cell::number(mesh.has_grid().then_some(mesh.spacing), 5)));
-        row.extend(factors.iter().map(|&factor| level(study, mesh.id.method, factor)));
-        row.extend(MESH_COLUMNS[1..].iter().map(|(_, _, cell)| cell(mesh)));
-        if let Some(run) = inputs.bench {
-            let times = StageTimes::of(run, &configuration.id);
-            let cell = |entry: &TimeEntry| times.as_ref().map_or(Cell::Missing, entry.2);
-            row.extend(TIME_COLUMNS.iter().map(cell));
-        }
-        if has_memory {
-            let peak =
-                inputs.bench.and_then(|run| run.memory.iter().find(|peak| peak.id == configuration.id));
-            row.push(maybe(peak.and_then(PeakMemory::of_extraction)));
-        }
-        table.push(row);
-    }
+    let columns = Columns::over(rows)
+        .column("id", "Id", |of| Cell::text(&of.mesh.id))
+        .column("resolution", "Cubes", |of| match of.mesh.has_grid() {
+            true => Cell::text(format!("{}x{}x{}", of.mesh.cells[0], of.mesh.cells[1], of.mesh.cells[2])),
+            false => Cell::Missing,
+        })
+        .columns_if(matched, |all| {
+            all.column("spacing", "Cube edge", |of| {
+                Cell::number(of.mesh.has_grid().then_some(of.mesh.spacing), 5)
+            })
+        });
+    let columns = with_factors(columns, study, method_columns(study), |of| of.mesh.id.method);
+    let mut table = with_counts(columns)
+        .columns_if(inputs.bench.is_some(), with_times)
+        .columns_if(study.file.benchmark.memory, |all| {
+            all.quantity("extraction_memory_bytes", "Memory beside the field, {}", "bytes", |of| {
+                maybe(of.peak_bytes)
+            })
+        })
+        .into_table("benchmark", "Benchmark");
     if let Some(run) = inputs.bench {
         table
             .notes
@@ -243,5 +248,5 @@ pub fn of_objects(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Option<
             .into(),
     );
     table.notes.extend(budgets(inputs));
-    (!table.rows.is_empty()).then_some(table)
+    table.unless_empty()
 }

@@ -2,42 +2,32 @@
 
 use crate::words::list;
 use isostudy_design::Configuration;
+use isostudy_design::record::ChunkTimes;
 use isostudy_inference::inputs::Inputs;
 use isostudy_statistics::interval::LEVEL;
 use isostudy_statistics::median;
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Columns, Table};
 
 /// Times of chunks and edits; `None` where none were timed.
 pub(super) fn chunks(inputs: &Inputs<'_>) -> Option<Table> {
-    let columns = [
-        ("id", "Id"),
-        ("chunks", "Chunks"),
-        ("chunks_timed", "Timed"),
-        ("chunk_ms", "Chunk, ms"),
-        ("chunk_ms_low", "from"),
-        ("chunk_ms_high", "to"),
-        ("chunk_ms_longest", "longest"),
-        ("edit_chunks", "Chunks of an edit"),
-        ("edit_ms", "Edit, ms"),
-        ("edit_ms_low", "from"),
-        ("edit_ms_high", "to"),
-        ("edit_ms_longest", "longest"),
-        ("open_seam_edges", "Open edges at seams"),
-        ("is_whole", "The whole mesh"),
-    ];
-    let mut table = Table::new("chunks", "Chunk by chunk", &columns);
     let times = |of: &Configuration| inputs.chunks.iter().find(|times| times.id == of.id);
-    let in_order = inputs.study.configurations.iter().filter_map(times);
-    for times in in_order {
-        let mut row = vec![Cell::text(&times.id), Cell::count(times.chunks), Cell::count(times.timed)];
-        row.extend(milliseconds(&times.chunk_s));
-        let of_edit = median(times.edit_chunks.iter().map(|&count| count as f64).collect(), LEVEL);
-        row.push(Cell::number(of_edit.map(|of| of.median), 1));
-        row.extend(milliseconds(&times.edit_s));
-        row.push(Cell::text(times.open_seam_edges));
-        row.push(Cell::text(if times.is_whole { "yes" } else { "no" }));
-        table.push(row);
-    }
+    let of_edit = |of: &ChunkTimes| {
+        let chunks = median(of.edit_chunks.iter().map(|&count| count as f64).collect(), LEVEL);
+        Cell::number(chunks.map(|of| of.median), 1)
+    };
+    let columns = Columns::over(inputs.study.configurations.iter().filter_map(times))
+        .column("id", "Id", |of| Cell::text(&of.id))
+        .column("chunks", "Chunks", |of| Cell::count(of.chunks))
+        .column("chunks_timed", "Timed", |of| Cell::count(of.timed));
+    let columns = milliseconds(columns, "chunk_ms", "Chunk, {}", |of| &of.chunk_s).column(
+        "edit_chunks",
+        "Chunks of an edit",
+        |of| of_edit(of),
+    );
+    let mut table = milliseconds(columns, "edit_ms", "Edit, {}", |of| &of.edit_s)
+        .column("open_seam_edges", "Open edges at seams", |of| Cell::text(of.open_seam_edges))
+        .column("is_whole", "The whole mesh", |of| Cell::text(if of.is_whole { "yes" } else { "no" }))
+        .into_table("chunks", "Chunk by chunk");
     let cells = inputs.chunks.first()?.cells;
     table.notes.push(format!(
         "One thread, from the field, with chunks of {cells} cells per side. Timed: chunks of full size that have triangles. An edit is a change within 5 cube \
@@ -53,14 +43,24 @@ pub(super) fn chunks(inputs: &Inputs<'_>) -> Option<Table> {
     if !none.is_empty() {
         table.notes.push(format!("No chunks are made by {}.", list(&none)));
     }
-    (!table.rows.is_empty()).then_some(table)
+    table.unless_empty()
 }
 
 /// Median, both ends and the longest.
-fn milliseconds(seconds: &[f64]) -> [Cell; 4] {
-    let found = median(seconds.to_vec(), LEVEL);
-    let ends = found.and_then(|of| of.interval);
-    let longest = seconds.iter().copied().max_by(f64::total_cmp);
-    [found.map(|of| of.median), ends.map(|of| of.low), ends.map(|of| of.high), longest]
-        .map(|seconds| Cell::number(seconds.map(|seconds| 1e3 * seconds), 3))
+fn milliseconds<'a>(
+    columns: Columns<&'a ChunkTimes>,
+    name: &str,
+    heading: &str,
+    seconds: fn(&ChunkTimes) -> &Vec<f64>,
+) -> Columns<&'a ChunkTimes> {
+    let found = |of: &ChunkTimes| median(seconds(of).clone(), LEVEL);
+    let ends = |of: &ChunkTimes| found(of).and_then(|of| of.interval);
+    let shown = |seconds: Option<f64>| Cell::number(seconds.map(|seconds| 1e3 * seconds), 3);
+    columns
+        .quantity(name, heading, "ms", |of| shown(found(of).map(|of| of.median)))
+        .quantity(format!("{name}_low"), "from", "ms", |of| shown(ends(of).map(|i| i.low)))
+        .quantity(format!("{name}_high"), "to", "ms", |of| shown(ends(of).map(|i| i.high)))
+        .quantity(format!("{name}_longest"), "longest", "ms", |of| {
+            shown(seconds(of).iter().copied().max_by(f64::total_cmp))
+        })
 }

@@ -3,12 +3,12 @@
 use crate::words::{list, whole};
 use isostudy_design::MethodId;
 use isostudy_inference::decision::{
-    Axes, Cost, Estimate, LEAST_ERROR, ObjectCandidates, Pick, Standing, Want,
+    Axes, Cost, Estimate, Front, FrontPoint, LEAST_ERROR, ObjectCandidates, Pick, Standing, Want,
 };
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::results::{Decision, Results};
 use isostudy_table::digits::number;
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Columns, Table};
 use isostudy_timing::stage_times::measured;
 
 /// A factor below which two are as good as each other.
@@ -30,26 +30,20 @@ fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[Pick<
             wants.push(pick.want);
         }
     }
-    let mut columns = vec![("object", "On")];
-    columns.extend(wants.iter().map(|want| (want.name, want.heading)));
-    let mut table = Table::new("choices", "The best method for each object and purpose", &columns);
-    if wants.is_empty() {
-        return table;
-    }
-    for ObjectCandidates { object, .. } in objects {
-        let cell = |want: &&'static Want| {
-            let of_want = picks.iter().filter(|pick| pick.want.name == want.name);
-            let best = of_want.flat_map(|pick| pick.on.iter().map(move |best| (pick.method.id, best)));
-            let Some((id, best)) = best.into_iter().find(|(_, best)| best.object.id == object.id) else {
-                return Cell::Missing;
-            };
-            let sign = if best.alike.is_empty() { "" } else { " *" };
-            Cell::text(format!("{id}, {}{sign}", want.unit.replace("{}", &ranged(&[best.value.value]))))
+    let cell = |object: &ObjectCandidates<'_>, want: &Want| {
+        let of_want = picks.iter().filter(|pick| pick.want.name == want.name);
+        let mut best = of_want.flat_map(|pick| pick.on.iter().map(move |best| (pick.method.id, best)));
+        let Some((id, best)) = best.find(|(_, best)| best.object.id == object.object.id) else {
+            return Cell::Missing;
         };
-        let mut row = vec![Cell::text(&object.name)];
-        row.extend(wants.iter().map(cell));
-        table.push(row);
-    }
+        let sign = if best.alike.is_empty() { "" } else { " *" };
+        Cell::text(format!("{id}, {}{sign}", want.unit.replace("{}", &ranged(&[best.value.value]))))
+    };
+    let rows = objects.iter().filter(|_| !wants.is_empty());
+    let mut table = Columns::over(rows)
+        .column("object", "On", |of| Cell::text(&of.object.name))
+        .columns_of(&wants, |all, want| all.column(want.name, want.heading, |of| cell(of, want)))
+        .into_table("choices", "The best method for each object and purpose");
     table.notes.push(
         "*: others are not told apart from it; the next table names them, and says what each choice costs. Empty: no method \
          qualifies."
@@ -61,26 +55,17 @@ fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[Pick<
 
 /// What one wants, what to take, why, and what it costs.
 fn decision(objects: &[ObjectCandidates<'_>], picks: &[Pick<'_>]) -> Table {
-    let columns = [
-        ("want", "You want"),
-        ("objects", "On"),
-        ("take", "Take"),
-        ("why", "Why"),
-        ("cost", "What it costs"),
-    ];
-    let mut table = Table::new("decision", "Which method to take", &columns);
-    for pick in picks {
+    let on = |pick: &Pick<'_>| {
         let on: Vec<&str> = pick.on.iter().map(|best| best.object.name.as_str()).collect();
-        let on = if on.len() == objects.len() && on.len() > 1 { "every object".into() } else { list(&on) };
-        let take = format!("{}: {}", pick.method.id, pick.method.label);
-        table.push(vec![
-            Cell::text(pick.want.phrase),
-            Cell::text(on),
-            Cell::text(take),
-            Cell::text(why(pick)),
-            Cell::text(cost(pick)),
-        ]);
-    }
+        if on.len() == objects.len() && on.len() > 1 { "every object".into() } else { list(&on) }
+    };
+    let mut table = Columns::over(picks)
+        .column("want", "You want", |pick| Cell::text(pick.want.phrase))
+        .column("objects", "On", |pick| Cell::text(on(pick)))
+        .column("take", "Take", |pick| Cell::text(format!("{}: {}", pick.method.id, pick.method.label)))
+        .column("why", "Why", |pick| Cell::text(why(pick)))
+        .column("cost", "What it costs", |pick| Cell::text(cost(pick)))
+        .into_table("decision", "Which method to take");
     if !picks.is_empty() {
         table.notes.push(
             "What it costs: beside the least of all methods with the object's own cubes. In the row \u{201c}as many triangles\u{201d} it is \
@@ -208,59 +193,44 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
 }
 
 /// Every method in every front: both values, and who beats it in both.
-fn standings(found: &Decision<'_>) -> Table {
-    let columns = [
-        ("object", "Object"),
-        ("front", "In"),
-        ("method", "Method"),
-        ("standing", "Standing"),
-        ("by", "Beaten by"),
-        ("x", "First"),
-        ("x_low", "from"),
-        ("x_high", "to"),
-        ("y", "Second"),
-        ("y_low", "from"),
-        ("y_high", "to"),
-    ];
-    let mut table = Table::new("fronts", "Who is beaten in two quantities at once", &columns);
-    for (of, fronts) in found.each() {
-        for front in fronts {
-            for point in &front.points {
-                let (standing, by) = match &point.standing {
-                    Standing::OnFront => ("on the front", Vec::new()),
-                    Standing::PerhapsBeaten(by) => ("perhaps beaten", by.clone()),
-                    Standing::Beaten(by) => ("beaten", by.clone()),
-                };
-                let by: Vec<String> = by.iter().map(MethodId::to_string).collect();
-                let by = if by.is_empty() { Cell::Missing } else { Cell::text(list(&by)) };
-                let mut row = vec![
-                    Cell::text(&of.object.name),
-                    Cell::text(front.axes.label()),
-                    Cell::text(point.method),
-                    Cell::text(standing),
-                    by,
-                ];
-                for (of, decimals) in point.at.iter().zip(decimals(front.axes)) {
-                    let end = |end: f64| Cell::number(Some(end).filter(|end| end.is_finite()), decimals);
-                    let ends = if of.is_exact() {
-                        [Cell::Missing, Cell::Missing]
-                    } else {
-                        [end(of.low), end(of.high)]
-                    };
-                    row.push(Cell::Number(of.value, decimals));
-                    row.extend(ends);
-                }
-                table.push(row);
-            }
-        }
-    }
-    table.notes.push(
+fn standings<'a>(found: &'a Decision<'a>) -> Table {
+    let rows = found.each().flat_map(|(of, fronts)| {
+        let of_front = move |front: &'a Front| front.points.iter().map(move |point| (of, front.axes, point));
+        fronts.iter().flat_map(of_front)
+    });
+    let table = Columns::over(rows)
+        .column("object", "Object", |(of, ..)| Cell::text(&of.object.name))
+        .column("front", "In", |(_, axes, _)| Cell::text(axes.label()))
+        .column("method", "Method", |(.., point)| Cell::text(point.method))
+        .column("standing", "Standing", |(.., point)| Cell::text(standing(point).0))
+        .column("by", "Beaten by", |(.., point)| match standing(point).1 {
+            [] => Cell::Missing,
+            by => Cell::text(list(&by.iter().map(MethodId::to_string).collect::<Vec<_>>())),
+        })
+        .columns_of([("x", "First"), ("y", "Second")].into_iter().enumerate(), |all, (i, (name, heading))| {
+            let end = |(_, axes, point): &(_, Axes, &FrontPoint), end: fn(&Estimate) -> f64| {
+                let end = Some(end(&point.at[i])).filter(|end| !point.at[i].is_exact() && end.is_finite());
+                Cell::number(end, decimals(*axes)[i])
+            };
+            all.column(name, heading, |(_, axes, point)| Cell::Number(point.at[i].value, decimals(*axes)[i]))
+                .column(format!("{name}_low"), "from", |row| end(row, |of| of.low))
+                .column(format!("{name}_high"), "to", |row| end(row, |of| of.high))
+        })
+        .into_table("fronts", "Who is beaten in two quantities at once");
+    table.with_note(
         "First and second: time in seconds or triangles, then mean error in edges of the object's benchmark cubes, or mean score of preference \
          from \u{2212}1 to 1, with intervals at 95 %. Beaten: another method is better in one and as good in the other, beyond both intervals. \
-         Perhaps beaten: by the estimates alone. A time's interval tells samples of one run apart, not runs."
-            .into(),
-    );
-    table
+         Perhaps beaten: by the estimates alone. A time's interval tells samples of one run apart, not runs.",
+    )
+}
+
+/// In words, and who beats it.
+fn standing(point: &FrontPoint) -> (&'static str, &[MethodId]) {
+    match &point.standing {
+        Standing::OnFront => ("on the front", &[]),
+        Standing::PerhapsBeaten(by) => ("perhaps beaten", by),
+        Standing::Beaten(by) => ("beaten", by),
+    }
 }
 
 /// Decimals of both quantities.

@@ -1,49 +1,30 @@
 //! Every contrast in a row, verdict first.
 
 use isostudy_inference::glance::Row;
+use isostudy_statistics::interval::Interval;
 use isostudy_table::digits::number;
-use isostudy_table::{Cell, Table};
+use isostudy_table::{Cell, Columns, Table};
 
 /// Nothing if nothing was tested.
 pub(crate) fn contrasts(rows: &[Row]) -> Option<Table> {
     if rows.is_empty() {
         return None;
     }
-    let mut table = Table::new(
-        "contrasts",
-        "Every contrast at a glance",
-        &[
-            ("verdict", "Verdict"),
-            ("contrast", "Preference"),
-            ("share", "Share for the first"),
-            ("low", "from"),
-            ("high", "to"),
-            ("answers_first", "Answers for"),
-            ("answers_none", "Neither"),
-            ("answers_second", "Answers against"),
-            ("people_first", "People for"),
-            ("people_undecided", "Undecided"),
-            ("people_second", "People against"),
-            ("p_adjusted", "p adjusted"),
-        ],
-    );
-    for row in rows {
-        let answers = |place: usize| row.answers.map_or(Cell::Missing, |counts| Cell::count(counts[place]));
-        table.push(vec![
-            Cell::text(row.standing.label()),
-            Cell::text(row.name()),
-            Cell::Number(row.share, 3),
-            Cell::number(row.interval.map(|i| i.low), 3),
-            Cell::number(row.interval.map(|i| i.high), 3),
-            answers(0),
-            answers(1),
-            answers(2),
-            Cell::count(row.people[0]),
-            Cell::count(row.people[1]),
-            Cell::count(row.people[2]),
-            Cell::P(row.adjusted, 4),
-        ]);
-    }
+    let answers = |row: &Row, place: usize| row.answers.map_or(Cell::Missing, |of| Cell::count(of[place]));
+    let mut table = Columns::over(rows)
+        .column("verdict", "Verdict", |row| Cell::text(row.standing.label()))
+        .column("contrast", "Preference", |row| Cell::text(row.name()))
+        .column("share", "Share for the first", |row| Cell::Number(row.share, 3))
+        .column("low", "from", |row| Cell::number(row.interval.map(|i| i.low), 3))
+        .column("high", "to", |row| Cell::number(row.interval.map(|i| i.high), 3))
+        .column("answers_first", "Answers for", |row| answers(row, 0))
+        .column("answers_none", "Neither", |row| answers(row, 1))
+        .column("answers_second", "Answers against", |row| answers(row, 2))
+        .column("people_first", "People for", |row| Cell::count(row.people[0]))
+        .column("people_undecided", "Undecided", |row| Cell::count(row.people[1]))
+        .column("people_second", "People against", |row| Cell::count(row.people[2]))
+        .column("p_adjusted", "p adjusted", |row| Cell::P(row.adjusted, 4))
+        .into_table("contrasts", "Every contrast at a glance");
     let [shares, differences] = [false, true].map(|differences| part(rows, differences));
     table.parts = [shares, differences].into_iter().filter(|part| !part.rows.is_empty()).collect();
     if let [only] = &mut table.parts[..] {
@@ -63,29 +44,22 @@ pub(crate) fn contrasts(rows: &[Row]) -> Option<Table> {
 fn part(rows: &[Row], differences: bool) -> Table {
     let caption = if differences { "How much a preference depends on something else" } else { "Preferences" };
     let share = if differences { "Difference of shares" } else { "Share for the first" };
-    let mut columns = vec![("verdict", "Verdict"), ("contrast", "Preference"), ("share", share)];
-    if !differences {
-        columns.push(("answers", "Answers for : neither : against"));
-    }
-    columns.extend([("people", "People for : undecided : against"), ("p_adjusted", "p adjusted")]);
-    let mut part = Table::new("contrasts", caption, &columns);
-    for row in rows.iter().filter(|row| row.is_difference == differences) {
-        let digits = |share: f64| number(share, 2);
-        let within =
-            row.interval.map_or(String::new(), |i| format!(" ({} to {})", digits(i.low), digits(i.high)));
-        let counts = |[a, b, c]: [u64; 3]| Cell::text(format!("{a} : {b} : {c}"));
-        let mut cells = vec![
-            Cell::text(row.standing.label()),
-            Cell::text(row.name()),
-            Cell::text(format!("{}{within}", digits(row.share))),
-        ];
-        if !differences {
-            cells.push(counts(row.answers.unwrap_or_default()));
-        }
-        cells.extend([counts(row.people), Cell::P(row.adjusted, 3)]);
-        part.push(cells);
-    }
-    part
+    let digits = |share: f64| number(share, 2);
+    let within = |i: Interval| format!(" ({} to {})", digits(i.low), digits(i.high));
+    let counts = |[a, b, c]: [u64; 3]| Cell::text(format!("{a} : {b} : {c}"));
+    Columns::over(rows.iter().filter(|row| row.is_difference == differences))
+        .column("verdict", "Verdict", |row| Cell::text(row.standing.label()))
+        .column("contrast", "Preference", |row| Cell::text(row.name()))
+        .column("share", share, |row| {
+            Cell::text(digits(row.share) + &row.interval.map_or(String::new(), within))
+        })
+        .columns_if(!differences, |all| {
+            let heading = "Answers for : neither : against";
+            all.column("answers", heading, |row| counts(row.answers.unwrap_or_default()))
+        })
+        .column("people", "People for : undecided : against", |row| counts(row.people))
+        .column("p_adjusted", "p adjusted", |row| Cell::P(row.adjusted, 3))
+        .into_table("contrasts", caption)
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! Triangle quality, topology, and what accumulated positions change.
 
-use isostudy_design::record::{Distribution, MeshRecord, Purpose};
+use isostudy_design::record::{Distribution, MeshRecord, Purpose, Topology, Trilinear};
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{MeshSet, known};
-use isostudy_table::{Cell, Column, Table};
+use isostudy_table::{Cell, Columns, Table};
 
 pub(super) fn purpose_label(purpose: Purpose) -> &'static str {
     match purpose {
@@ -13,16 +13,16 @@ pub(super) fn purpose_label(purpose: Purpose) -> &'static str {
     }
 }
 
-/// A measure: name, heading, decimals for people, and the distribution.
-type Measure = (&'static str, &'static str, usize, fn(&MeshRecord) -> &Distribution);
+/// A measure: name, heading, unit, decimals for people, and the distribution.
+type Measure = (&'static str, &'static str, &'static str, usize, fn(&MeshRecord) -> &Distribution);
 
 const MEASURES: &[Measure] = &[
-    ("edge_ratio", "Edge ratio", 3, |m| &m.quality.edge_ratio),
-    ("published_aspect_ratio", "Published ratio", 3, |m| &m.quality.published_aspect_ratio),
-    ("radius_ratio", "Radius ratio", 3, |m| &m.quality.radius_ratio),
-    ("min_angle_deg", "Smallest angle, deg", 1, |m| &m.quality.min_angle_deg),
-    ("max_angle_deg", "Largest angle, deg", 1, |m| &m.quality.max_angle_deg),
-    ("area", "Area", 6, |m| &m.quality.area),
+    ("edge_ratio", "Edge ratio", "", 3, |m| &m.quality.edge_ratio),
+    ("published_aspect_ratio", "Published ratio", "", 3, |m| &m.quality.published_aspect_ratio),
+    ("radius_ratio", "Radius ratio", "", 3, |m| &m.quality.radius_ratio),
+    ("min_angle_deg", "Smallest angle, {}", "deg", 1, |m| &m.quality.min_angle_deg),
+    ("max_angle_deg", "Largest angle, {}", "deg", 1, |m| &m.quality.max_angle_deg),
+    ("area", "Area", "", 6, |m| &m.quality.area),
 ];
 
 type Statistic = (&'static str, &'static str, fn(&Distribution) -> f64);
@@ -39,52 +39,35 @@ const STATISTICS: &[Statistic] = &[
     ("max", "max", |d| d.max),
 ];
 
+/// The meshes at both spacings, with what they are for.
+fn meshes<'a>(inputs: &Inputs<'a>) -> Vec<(Purpose, &'a MeshRecord)> {
+    let of = |purpose| MeshSet::of(inputs, purpose).in_order().map(|(_, mesh)| (purpose, mesh)).collect();
+    [Purpose::Benchmark, Purpose::Stimulus].into_iter().flat_map::<Vec<_>, _>(of).collect()
+}
+
 /// Quality of the triangles at both spacings: every statistic in CSV; for people one block a measure.
 pub(super) fn quality(inputs: &Inputs<'_>) -> Option<Table> {
-    let mut table = Table::new(
-        "quality",
-        "Quality of the triangles",
-        &[
-            ("id", "Id"),
-            ("purpose", "Mesh"),
-            ("triangles", "Triangles"),
-            ("degenerate", "Degenerate"),
-            ("shortest_edge", "Shortest edge"),
-        ],
-    );
-    for (measure, heading, ..) in MEASURES {
-        for (statistic, short, _) in STATISTICS {
-            let (name, heading) = (format!("{measure}_{statistic}"), format!("{heading}, {short}"));
-            table.columns.push(Column { name, heading });
-        }
-    }
-    for purpose in [Purpose::Benchmark, Purpose::Stimulus] {
-        for (_, mesh) in MeshSet::of(inputs, purpose).in_order() {
-            let mut row = vec![
-                Cell::text(&mesh.id),
-                Cell::text(purpose_label(purpose)),
-                Cell::count(mesh.quality.triangles),
-                Cell::count(mesh.quality.degenerate),
-                Cell::number(mesh.quality.shortest_edge, 6),
-            ];
-            for (_, _, decimals, of) in MEASURES {
-                let distribution = of(mesh);
-                row.extend(STATISTICS.iter().map(|s| Cell::number(known(distribution, s.2), *decimals)));
-            }
-            table.push(row);
-        }
-    }
-    let blocks: Vec<(&str, Vec<String>)> = MEASURES
-        .iter()
-        .map(|(measure, heading, ..)| {
-            let fixed = ["id", "purpose", "degenerate", "shortest_edge"].map(String::from);
-            let all = STATISTICS.iter().map(|(statistic, ..)| format!("{measure}_{statistic}"));
-            (*heading, fixed.into_iter().chain(all).collect())
+    let mut table = Columns::over(meshes(inputs))
+        .column("id", "Id", |(_, mesh)| Cell::text(&mesh.id))
+        .column("purpose", "Mesh", |(purpose, _)| Cell::text(purpose_label(*purpose)))
+        .column("triangles", "Triangles", |(_, mesh)| Cell::count(mesh.quality.triangles))
+        .column("degenerate", "Degenerate", |(_, mesh)| Cell::count(mesh.quality.degenerate))
+        .column("shortest_edge", "Shortest edge", |(_, mesh)| Cell::number(mesh.quality.shortest_edge, 6))
+        .columns_of(MEASURES, |all, (measure, heading, unit, decimals, of)| {
+            all.columns_of(STATISTICS, |all, (statistic, short, value)| {
+                let (name, heading) = (format!("{measure}_{statistic}"), format!("{heading}, {short}"));
+                all.quantity(name, &heading, unit, |(_, mesh)| {
+                    Cell::number(known(of(mesh), *value), *decimals)
+                })
+            })
         })
-        .collect();
-    for (heading, columns) in &blocks {
-        let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
-        let mut part = table.block(heading, &columns);
+        .into_table("quality", "Quality of the triangles");
+    for (measure, heading, unit, ..) in MEASURES {
+        let own = STATISTICS.iter().map(|(statistic, ..)| format!("{measure}_{statistic}"));
+        let own: Vec<String> = own.collect();
+        let fixed = ["id", "purpose", "degenerate", "shortest_edge"];
+        let columns: Vec<&str> = fixed.into_iter().chain(own.iter().map(String::as_str)).collect();
+        let mut part = table.block(&heading.replace("{}", unit), &columns);
         for (column, (_, short, _)) in part.columns[4..].iter_mut().zip(STATISTICS) {
             column.heading = (*short).into();
         }
@@ -97,80 +80,64 @@ pub(super) fn quality(inputs: &Inputs<'_>) -> Option<Table> {
          the shortest edge, which is in scene units."
             .into(),
     );
-    (!table.rows.is_empty()).then_some(table)
+    table.unless_empty()
 }
 
-/// Columns of the trilinear truth.
-const TRUTHS: [(&str, &str); 4] = [
-    ("trilinear_components", "Components of the interpolant"),
-    ("trilinear_euler_characteristic", "Euler characteristic of the interpolant"),
-    ("tunnel_cells", "Cells with a tunnel"),
-    ("cells_otherwise", "Cells decided otherwise"),
-];
 const TRUTHS_NOTE: &str = "The interpolant: the level set of the samples, interpolated trilinearly in each cell, counted exactly. Cells decided \
      otherwise: those in which the method joins what the interpolant keeps apart, or the other way round. Nothing stands where the \
      method's samples are not the corners of the cells, or it does not decide by cells.";
 
 /// Topology of the meshes at both spacings.
 pub(super) fn topology(inputs: &Inputs<'_>) -> Option<Table> {
-    let mut table = Table::new(
-        "topology",
-        "Topology of the meshes",
-        &[
-            ("id", "Id"),
-            ("purpose", "Mesh"),
-            ("vertices", "V"),
-            ("edges", "E"),
-            ("triangles", "T"),
-            ("euler_characteristic", "Euler characteristic"),
-            ("components", "Components"),
-            ("boundary_edges", "Boundary edges"),
-            ("non_manifold_edges", "Non-manifold edges"),
-            ("non_manifold_vertices", "Non-manifold vertices"),
-            ("misoriented_edges", "Misoriented edges"),
-            ("duplicate_faces", "Duplicate faces"),
-            ("folded_faces", "Folded faces"),
-            ("self_intersections", "Intersecting pairs"),
-        ],
-    );
-    let mut meshes: Vec<(Purpose, &MeshRecord)> = Vec::new();
-    for purpose in [Purpose::Benchmark, Purpose::Stimulus] {
-        meshes.extend(MeshSet::of(inputs, purpose).in_order().map(|(_, mesh)| (purpose, mesh)));
-    }
+    let meshes = meshes(inputs);
     // What the samples' interpolant has, where some method's samples are those of cells.
     let has_truth = meshes.iter().any(|(_, mesh)| mesh.trilinear.is_some());
-    if has_truth {
-        for (name, heading) in TRUTHS {
-            table.columns.push(Column { name: name.into(), heading: heading.into() });
+    let count = |count: fn(&Topology) -> u64| {
+        move |(_, mesh): &(Purpose, &MeshRecord)| Cell::count(count(&mesh.topology))
+    };
+    let truth = |truth: fn(&Trilinear) -> Option<i64>| {
+        move |(_, mesh): &(Purpose, &MeshRecord)| {
+            mesh.trilinear.as_ref().and_then(truth).map_or(Cell::Missing, Cell::Count)
         }
-        table.notes.push(TRUTHS_NOTE.into());
-    }
-    for (purpose, mesh) in meshes {
-        let t = &mesh.topology;
-        let mut row = vec![
-            Cell::text(&mesh.id),
-            Cell::text(purpose_label(purpose)),
-            Cell::count(t.vertices),
-            Cell::count(t.edges),
-            Cell::count(t.triangles),
-            Cell::Count(t.euler_characteristic),
-            Cell::count(t.components),
-            Cell::count(t.boundary_edges),
-            Cell::count(t.non_manifold_edges),
-            Cell::count(t.non_manifold_vertices),
-            Cell::count(t.misoriented_edges),
-            Cell::count(t.duplicate_faces),
-            Cell::count(t.folded_faces),
-            t.self_intersections.map_or(Cell::Missing, Cell::count),
-        ];
-        if has_truth {
-            let of = mesh.trilinear.as_ref();
-            row.push(of.map_or(Cell::Missing, |of| Cell::count(of.components)));
-            row.push(of.map_or(Cell::Missing, |of| Cell::Count(of.euler_characteristic)));
-            row.push(of.map_or(Cell::Missing, |of| Cell::count(of.tunnel_cells)));
-            row.push(of.and_then(|of| of.cells_otherwise).map_or(Cell::Missing, Cell::count));
-        }
-        table.push(row);
-    }
-    (!table.rows.is_empty()).then_some(table)
+    };
+    let mut table = Columns::over(meshes)
+        .column("id", "Id", |(_, mesh)| Cell::text(&mesh.id))
+        .column("purpose", "Mesh", |(purpose, _)| Cell::text(purpose_label(*purpose)))
+        .column("vertices", "V", count(|t| t.vertices))
+        .column("edges", "E", count(|t| t.edges))
+        .column("triangles", "T", count(|t| t.triangles))
+        .column("euler_characteristic", "Euler characteristic", |(_, mesh)| {
+            Cell::Count(mesh.topology.euler_characteristic)
+        })
+        .column("components", "Components", count(|t| t.components))
+        .column("boundary_edges", "Boundary edges", count(|t| t.boundary_edges))
+        .column("non_manifold_edges", "Non-manifold edges", count(|t| t.non_manifold_edges))
+        .column("non_manifold_vertices", "Non-manifold vertices", count(|t| t.non_manifold_vertices))
+        .column("misoriented_edges", "Misoriented edges", count(|t| t.misoriented_edges))
+        .column("duplicate_faces", "Duplicate faces", count(|t| t.duplicate_faces))
+        .column("folded_faces", "Folded faces", count(|t| t.folded_faces))
+        .column("self_intersections", "Intersecting pairs", |(_, mesh)| {
+            mesh.topology.self_intersections.map_or(Cell::Missing, Cell::count)
+        })
+        .columns_if(has_truth, |all| {
+            all.column(
+                "trilinear_components",
+                "Components of the interpolant",
+                truth(|of| i64::try_from(of.components).ok()),
+            )
+            .column(
+                "trilinear_euler_characteristic",
+                "Euler characteristic of the interpolant",
+                truth(|of| Some(of.euler_characteristic)),
+            )
+            .column("tunnel_cells", "Cells with a tunnel", truth(|of| i64::try_from(of.tunnel_cells).ok()))
+            .column(
+                "cells_otherwise",
+                "Cells decided otherwise",
+                truth(|of| i64::try_from(of.cells_otherwise?).ok()),
+            )
+        })
+        .into_table("topology", "Topology of the meshes");
+    table.notes.extend(has_truth.then(|| TRUTHS_NOTE.into()));
+    table.unless_empty()
 }

@@ -1,8 +1,8 @@
 //! Models of preference: worths with their errors, and what each model says about ties and sides.
 
-use isostudy_inference::models::{GroupModel, Worth};
+use isostudy_inference::models::GroupModel;
 use isostudy_statistics::{Penalty, WorthFit};
-use isostudy_table::{Cell, Table, field};
+use isostudy_table::{Cell, Columns, Table};
 
 /// `worths` and `models` of every group, with every model.
 ///
@@ -16,67 +16,58 @@ pub(super) fn model_tables(found: &[GroupModel<'_>], sides_recorded: bool) -> [T
     tables
 }
 
-/// A model, an item's name, and its worth.
-type Row<'a> = (&'a GroupModel<'a>, &'a str, &'a Worth);
-
 fn worths(found: &[GroupModel<'_>]) -> Table {
-    let fields = [
-        field("group", "Group", |(of, ..): &Row<'_>| Cell::text(&of.group.name)),
-        field("item", "Item", |(_, item, _)| Cell::text(item)),
-        field("model", "Model", |(of, ..)| Cell::text(of.model.code())),
-        field("log_worth", "Log worth", |(.., worth)| Cell::of_sum(Some(worth.log_worth), 3)),
-        field("se", "SE, answers independent", |(.., worth)| Cell::Number(worth.independent_error, 3)),
-        field("clustered_se", "SE, participants", |(.., worth)| Cell::number(worth.clustered_error, 3)),
-        field("low", "from", |(.., worth)| Cell::of_sum(worth.interval.map(|i| i.low), 3)),
-        field("high", "to", |(.., worth)| Cell::of_sum(worth.interval.map(|i| i.high), 3)),
-    ];
     let rows = found.iter().flat_map(|of| {
         of.group.items.iter().zip(&of.worths).map(move |(item, worth)| (of, item.as_str(), worth))
     });
     let caption = "Worths: log-odds of being preferred to the group's first item";
-    let mut table = Table::of("worths", caption, &fields, rows);
-    table.notes.push(
+    let table = Columns::over(rows)
+        .column("group", "Group", |(of, ..)| Cell::text(&of.group.name))
+        .column("item", "Item", |(_, item, _)| Cell::text(item))
+        .column("model", "Model", |(of, ..)| Cell::text(of.model.code()))
+        .column("log_worth", "Log worth", |(.., worth)| Cell::of_sum(Some(worth.log_worth), 3))
+        .column("se", "SE, answers independent", |(.., worth)| Cell::Number(worth.independent_error, 3))
+        .column("clustered_se", "SE, participants", |(.., worth)| Cell::number(worth.clustered_error, 3))
+        .column("low", "from", |(.., worth)| Cell::of_sum(worth.interval.map(|i| i.low), 3))
+        .column("high", "to", |(.., worth)| Cell::of_sum(worth.interval.map(|i| i.high), 3))
+        .into_table("worths", caption);
+    table.with_note(
         "SE, answers independent: from the exact information, for comparison with other programs; too small, because one \
          person's answers hang together. SE, participants: sandwich with m/(m \u{2212} 1); from and to: its t interval at 95 % on \
          m \u{2212} 1 degrees of freedom; none where the answers tell no spread between participants. Rao and Kupper's worths are on another scale: \
-         compare orders."
-            .into(),
-    );
-    table
+         compare orders.",
+    )
 }
 
 fn models(found: &[GroupModel<'_>]) -> Table {
     fn fit<'a>(of: &'a GroupModel<'_>) -> Option<&'a WorthFit> {
         of.fitted.as_ref().ok()
     }
-    let fields = [
-        field("group", "Group", |of: &&GroupModel<'_>| Cell::text(&of.group.name)),
-        field("model", "Model", |of| Cell::text(of.model.code())),
-        field("log_likelihood", "Log-likelihood", |of| {
+    let table = Columns::over(found)
+        .column("group", "Group", |of| Cell::text(&of.group.name))
+        .column("model", "Model", |of| Cell::text(of.model.code()))
+        .column("log_likelihood", "Log-likelihood", |of| {
             Cell::number(fit(of).map(|fit| fit.log_likelihood), 4)
-        }),
-        field("ln_nu", "ln nu", |of| {
+        })
+        .column("ln_nu", "ln nu", |of| {
             Cell::number(fit(of).and_then(|fit| fit.ln_nu).filter(|nu| nu.is_finite()), 4)
-        }),
-        field("side", "Side", |of| Cell::number(of.side[0], 4)),
-        field("side_se", "SE of side", |of| Cell::number(of.side[1], 4)),
-        field("side_p", "p of side", |of| Cell::p(of.side_p, 4)),
-        field("ln_theta", "ln theta", |of| Cell::number(fit(of).and_then(|fit| fit.ln_theta), 4)),
-        field("answers", "Answers", |of| Cell::count(of.answers as u64)),
-        field("penalised", "Penalised", |of| {
+        })
+        .column("side", "Side", |of| Cell::number(of.side[0], 4))
+        .column("side_se", "SE of side", |of| Cell::number(of.side[1], 4))
+        .column("side_p", "p of side", |of| Cell::p(of.side_p, 4))
+        .column("ln_theta", "ln theta", |of| Cell::number(fit(of).and_then(|fit| fit.ln_theta), 4))
+        .column("answers", "Answers", |of| Cell::count(of.answers as u64))
+        .column("penalised", "Penalised", |of| {
             Cell::text(fit(of).map_or("", |fit| if fit.penalised() { "yes" } else { "no" }))
-        }),
-        field("remark", "Remark", |of| Cell::text(remark(of))),
-    ];
-    let mut table = Table::of("models", "Models of preference", &fields, found);
-    table.notes.push(
+        })
+        .column("remark", "Remark", |of| Cell::text(remark(of)))
+        .into_table("models", "Models of preference");
+    table.with_note(
         "Log-likelihood: of the answers, without multinomial constants; Bradley and Terry's counts a tie as half a win for \
          both and is not on the others' scale. ln nu: Davidson's tie parameter, symmetric form. Side: bonus of the left \
          side in log-odds; its p by likelihood ratio, as if all answers were independent. Penalised: half a win each way \
-         was added to every compared pair, because the answers separate the items or a side; the remark says which."
-            .into(),
-    );
-    table
+         was added to every compared pair, because the answers separate the items or a side; the remark says which.",
+    )
 }
 
 fn remark(of: &GroupModel<'_>) -> String {

@@ -2,7 +2,7 @@
 
 use isostudy_design::{Level, Study};
 use isostudy_inference::omnibus::{Asked, Omnibus};
-use isostudy_table::{Cell, Table, field};
+use isostudy_table::{Cell, Columns, Table};
 
 /// The question, and the scores that it is asked of.
 fn asked(study: &Study, asked: Asked) -> [String; 2] {
@@ -25,24 +25,20 @@ fn asked(study: &Study, asked: Asked) -> [String; 2] {
 
 /// Friedman's tests: does anything differ at all?
 pub(super) fn omnibus(study: &Study, tests: &[Omnibus]) -> Table {
-    type Row<'a> = (&'a Study, &'a Omnibus);
-    let fields = [
-        field("question", "Question", |(study, of): &Row<'_>| Cell::text(asked(study, of.asked)[0].as_str())),
-        field("scores", "Scores", |(study, of)| Cell::text(asked(study, of.asked)[1].as_str())),
-        field("chi_square", "Chi-square", |(_, of)| Cell::Number(of.test.statistic, 3)),
-        field("degrees", "Degrees", |(_, of)| Cell::Number(of.test.degrees, 0)),
-        field("p", "p", |(_, of)| Cell::P(of.test.p, 5)),
-        field("p_adjusted", "p adjusted", |(_, of)| Cell::P(of.adjusted, 5)),
-        field("participants", "Participants", |(_, of)| Cell::count(of.participants as u64)),
-    ];
     let caption = "Does anything differ? Friedman's tests over participants";
-    let mut table = Table::of("omnibus", caption, &fields, tests.iter().map(|of| (study, of)));
-    table.notes.push(
+    let table = Columns::over(tests.iter().map(|of| (study, of)))
+        .column("question", "Question", |(study, of)| Cell::text(asked(study, of.asked)[0].as_str()))
+        .column("scores", "Scores", |(study, of)| Cell::text(asked(study, of.asked)[1].as_str()))
+        .column("chi_square", "Chi-square", |(_, of)| Cell::Number(of.test.statistic, 3))
+        .column("degrees", "Degrees", |(_, of)| Cell::Number(of.test.degrees, 0))
+        .column("p", "p", |(_, of)| Cell::P(of.test.p, 5))
+        .column("p_adjusted", "p adjusted", |(_, of)| Cell::P(of.adjusted, 5))
+        .column("participants", "Participants", |(_, of)| Cell::count(of.participants as u64))
+        .into_table("omnibus", caption);
+    table.with_note(
         "Chi-square approximation with correction for ties. The blocks are the participants who answered something of each \
-         column; a score is the mean of their answers there. p adjusted: Holm over the rows that ask the same of other pairs."
-            .into(),
-    );
-    table
+         column; a score is the mean of their answers there. p adjusted: Holm over the rows that ask the same of other pairs.",
+    )
 }
 
 #[cfg(test)]

@@ -1,33 +1,9 @@
 //! The tests with everybody, and without those who broke a rule: nobody is left out silently.
 
 use crate::words::numbers;
-use isostudy_inference::hypotheses::Hypothesis;
 use isostudy_inference::screened::WithoutBreakers;
 use isostudy_statistics::Flag;
-use isostudy_table::{Cell, Field, Table, field_in};
-
-/// A rule and its breakers, a test with everybody, and without them.
-type Row<'a> = (&'a WithoutBreakers, &'a Hypothesis, Option<&'a Hypothesis>);
-
-fn fields<'a>() -> [Field<Row<'a>>; 13] {
-    [
-        field_in(&[0, 1], "rule", "Rule", |row: &Row<'a>| Cell::text(row.0.rule.map_or("any", Flag::code))),
-        field_in(&[0], "left_out", "Left out", |row| Cell::count(row.0.people.len() as u64)),
-        field_in(&[0], "respondents", "Respondents", |row| Cell::text(numbers(&row.0.people, " "))),
-        field_in(&[0, 1], "family", "Family", |row| Cell::text(&row.1.family)),
-        field_in(&[0, 1], "contrast", "Contrast", |row| Cell::text(&row.1.contrast)),
-        field_in(&[0, 1], "scope", "Scope", |row| Cell::text(&row.1.scope)),
-        field_in(&[0], "mean", "Mean score", |row| Cell::of_sum(Some(row.1.test.mean), 3)),
-        field_in(&[0], "p_adjusted", "p adjusted", |row| Cell::P(row.1.adjusted, 4)),
-        field_in(&[0], "conclusion", "Conclusion", |row| Cell::text(row.1.conclusion().label())),
-        field_in(&[1], "mean_without", "Mean score", |row| Cell::of_sum(row.2.map(|of| of.test.mean), 3)),
-        field_in(&[1], "p_without", "p", |row| Cell::p(row.2.map(|of| of.test.sign_flip.p()), 5)),
-        field_in(&[1], "p_adjusted_without", "p adjusted", |row| Cell::p(row.2.map(|of| of.adjusted), 4)),
-        field_in(&[1], "conclusion_without", "Conclusion", |row| {
-            Cell::text(row.2.map_or("nobody left", |of| of.conclusion().label()))
-        }),
-    ]
-}
+use isostudy_table::{Cell, Columns, Table};
 
 /// Each rule that somebody broke, with every test.
 pub(super) fn screened(screened: &[WithoutBreakers]) -> Table {
@@ -35,15 +11,27 @@ pub(super) fn screened(screened: &[WithoutBreakers]) -> Table {
     let rows = screened
         .iter()
         .flat_map(|of| of.tests.iter().map(move |(with, without)| (of, with, without.as_ref())));
-    let fields = fields();
-    let mut table = Table::of("screened", caption, &fields, rows);
-    table.show_in_blocks(&fields, &["With everybody", "Without them"]);
-    table.notes.push(
+    let table = Columns::over(rows)
+        .column_in(&[0, 1], "rule", "Rule", |row| Cell::text(row.0.rule.map_or("any", Flag::code)))
+        .column_in(&[0], "left_out", "Left out", |row| Cell::count(row.0.people.len() as u64))
+        .column_in(&[0], "respondents", "Respondents", |row| Cell::text(numbers(&row.0.people, " ")))
+        .column_in(&[0, 1], "family", "Family", |row| Cell::text(&row.1.family))
+        .column_in(&[0, 1], "contrast", "Contrast", |row| Cell::text(&row.1.contrast))
+        .column_in(&[0, 1], "scope", "Scope", |row| Cell::text(&row.1.scope))
+        .column_in(&[0], "mean", "Mean score", |row| Cell::of_sum(Some(row.1.test.mean), 3))
+        .column_in(&[0], "p_adjusted", "p adjusted", |row| Cell::P(row.1.adjusted, 4))
+        .column_in(&[0], "conclusion", "Conclusion", |row| Cell::text(row.1.conclusion().label()))
+        .column_in(&[1], "mean_without", "Mean score", |row| Cell::of_sum(row.2.map(|of| of.test.mean), 3))
+        .column_in(&[1], "p_without", "p", |row| Cell::p(row.2.map(|of| of.test.sign_flip.p()), 5))
+        .column_in(&[1], "p_adjusted_without", "p adjusted", |row| Cell::p(row.2.map(|of| of.adjusted), 4))
+        .column_in(&[1], "conclusion_without", "Conclusion", |row| {
+            Cell::text(row.2.map_or("nobody left", |of| of.conclusion().label()))
+        })
+        .into_blocks("screened", caption, &["With everybody", "Without them"]);
+    table.with_note(
         "For each rule that somebody broke, the same tests without them; the rules are under the table of respondents. Both \
-         halves are about all participants, also where other tables leave some out."
-            .into(),
-    );
-    table
+         halves are about all participants, also where other tables leave some out.",
+    )
 }
 
 #[cfg(test)]

@@ -73,7 +73,7 @@ fn exponents_of(threads: u32, own: &[&Growth]) -> Table {
     let mut columns = Columns::over(&ids).column("id", "Id", |id| Cell::text(id));
     for quantity in &quantities {
         columns = columns.column(quantity, quantity, |id| {
-            let found = own.iter().find(|growth| growth.id == **id && name(growth.quantity) == *quantity);
+            let found = own.iter().find(|growth| growth.id == ***id && name(growth.quantity) == *quantity);
             found.map_or(Cell::Missing, |growth| {
                 let half = growth.law.interval.map(|i| (i.high - i.low) / 2.0);
                 let spread = half.map_or(String::new(), |half| format!(" \u{b1} {half:.2}"));
@@ -89,7 +89,7 @@ fn speed_ups(sweep: &Sweep) -> Table {
     let fewest = sweep.points.iter().map(|point| point.threads).min().unwrap_or(1);
     let end = |found: &SpeedUp, end: fn(Interval) -> f64| Cell::number(found.interval.map(end), 2);
     let efficiency = |found: &SpeedUp| found.ratio * f64::from(fewest) / f64::from(found.threads);
-    let mut table = Columns::over(&sweep.speed_ups)
+    let table = Columns::over(&sweep.speed_ups)
         .column("id", "Id", |found| Cell::text(&found.id))
         .column("cells", "Cells", |found| Cell::count(found.cells.into()))
         .column("threads", "Threads", |found| Cell::count(found.threads.into()))
@@ -98,11 +98,10 @@ fn speed_ups(sweep: &Sweep) -> Table {
         .column("high", "to", |found| end(found, |i| i.high))
         .column("efficiency", "Efficiency", |found| Cell::Number(efficiency(found), 2))
         .into_table("sweep_speed_up", "What more threads are worth");
-    table.notes.push(format!(
+    table.with_note(format!(
         "Median time on {fewest} over median time on so many threads; intervals from both medians' order statistics, at 95 % for all \
          configurations of a resolution together, where the rounds suffice for that. Efficiency is the speed-up over the share of threads."
-    ));
-    table
+    ))
 }
 
 fn budgets(sweep: &Sweep) -> Table {
@@ -114,7 +113,7 @@ fn budgets(sweep: &Sweep) -> Table {
         .budgets
         .iter()
         .flat_map(|budget| (1..).zip(&budget.methods).map(move |(rank, best)| (budget, rank, best)));
-    let mut table = Columns::over(&ranked.collect::<Vec<_>>())
+    let table = Columns::over(ranked)
         .column("object", "Object", |(budget, ..)| Cell::text(&budget.object))
         .column("cost", "For", |(budget, ..)| Cell::text(cost(budget.cost)))
         .column("rank", "Rank", |(_, rank, _)| Cell::count(*rank))
@@ -123,12 +122,10 @@ fn budgets(sweep: &Sweep) -> Table {
         .column("cells", "Cells", |(.., best)| Cell::Number(best.cells, 0))
         .column("triangles", "Triangles", |(.., best)| Cell::Number(best.triangles, 0))
         .into_table("sweep_quality", "The most regular triangles for a cost");
-    table.notes.push(
+    table.with_note(
         "Each method at the resolution that the cost buys it, interpolated between measured ones; the cost is the middle, on \
-         logarithms, of what all methods of the object reach. Times are those on the fewest threads."
-            .into(),
-    );
-    table
+         logarithms, of what all methods of the object reach. Times are those on the fewest threads.",
+    )
 }
 
 fn points(sweep: &Sweep) -> Table {
@@ -146,13 +143,13 @@ fn points(sweep: &Sweep) -> Table {
         .column("vertices", "Vertices", |point| Cell::count(point.vertices))
         .column("triangles", "Triangles", |point| Cell::count(point.triangles))
         .column("radius_ratio_mean", "Mean radius ratio", |point| Cell::number(point.radius_ratio, 4))
-        .column("total_ms", "Total, ms", |point| Cell::Number(MS * point.total_s.median, 3))
-        .column("total_low_ms", "from", |point| end(point, |i| i.low))
-        .column("total_high_ms", "to", |point| end(point, |i| i.high));
+        .quantity("total_ms", "Total, {}", "ms", |point| Cell::Number(MS * point.total_s.median, 3))
+        .quantity("total_low_ms", "from", "ms", |point| end(point, |i| i.low))
+        .quantity("total_high_ms", "to", "ms", |point| end(point, |i| i.high));
     with_stages(columns, |point, stage| point.stages_s[stage])
         .column("ns_per_sample", "ns a sample point", |point| each(point, point.samples))
         .column("ns_per_triangle", "ns a triangle", |point| each(point, point.triangles))
-        .column("memory_mib", "Memory, MiB", |point| {
+        .quantity("memory_mib", "Memory, {}", "MiB", |point| {
             Cell::number(point.memory_bytes.map(|bytes| bytes as f64 / f64::from(1 << 20)), 2)
         })
         .into_table("sweep", "Every resolution and thread count")
