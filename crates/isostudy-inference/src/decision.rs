@@ -11,7 +11,7 @@ mod wants;
 pub use candidate::{Candidate, Each, LEAST_ERROR, ObjectCandidates, candidates};
 pub use estimate::Estimate;
 pub use fronts::{Axes, Front, FrontPoint, Standing, fronts};
-pub use wants::{Cost, Pick, Want, picks};
+pub use wants::{Cost, Goal, Pick, Want, picks};
 
 #[cfg(test)]
 mod tests;

@@ -15,6 +15,13 @@ pub struct WithoutOne {
 }
 
 impl WithoutOne {
+    /// By place, each that was tested of a study or its groups; single questions are exploratory.
+    pub fn of_tested(all: &[Hypothesis]) -> Vec<(usize, Self)> {
+        let (places, tested): (Vec<usize>, Vec<&Hypothesis>) =
+            all.iter().enumerate().filter(|(_, h)| !h.is_question() && h.is_tested()).unzip();
+        places.into_iter().zip(Self::of(&tested)).collect()
+    }
+
     /// One for each hypothesis, in their order. Families are corrected by Holm's rule.
     pub fn of(all: &[&Hypothesis]) -> Vec<Self> {
         // p by hypothesis and group of participants with the same score; last, of those without one.

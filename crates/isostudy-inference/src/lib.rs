@@ -22,6 +22,7 @@ pub mod glance;
 pub mod hypotheses;
 pub mod inputs;
 pub mod leave_one_out;
+pub mod majorities;
 pub mod mesh_set;
 pub mod models;
 pub mod omnibus;
@@ -36,8 +37,10 @@ pub mod scale;
 pub mod screened;
 pub mod screens;
 pub mod self_test;
+pub mod sides;
 pub mod standing;
 pub mod tally;
+pub mod tipping;
 
 #[cfg(test)]
 pub mod fixture;

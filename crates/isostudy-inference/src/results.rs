@@ -8,6 +8,8 @@ use crate::decision::{Front, ObjectCandidates, Pick, candidates, fronts, picks};
 use crate::glance;
 use crate::hypotheses::{self, Hypothesis, Robustness, Rules};
 use crate::inputs::Inputs;
+use crate::leave_one_out::WithoutOne;
+use crate::majorities::Majorities;
 use crate::models::{self, GroupModel};
 use crate::omnibus::{self, Omnibus};
 use crate::prediction::Prediction;
@@ -15,9 +17,12 @@ use crate::recorded::Recorded;
 use crate::scale::{GroupScale, scales};
 use crate::screened::{self, Respondent, WithoutBreakers};
 use crate::screens::{self, Compared};
+use crate::sides::Sides;
+use crate::tipping::Undone;
 use isostudy_design::Study;
 use isostudy_responses::Responses;
 use isostudy_statistics::{DeclaredBallot, ShownBallot, screening_with};
+use rayon::prelude::*;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -100,6 +105,15 @@ pub struct Preferences<'a> {
     pub agreement: Vec<Agreement>,
     /// Everything that was answered, and how.
     pub recorded: Recorded<'a>,
+    /// Every hypothesis that was tested, by its place, with each participant in turn left out; single questions are left out.
+    pub without_one: Vec<(usize, WithoutOne)>,
+    /// What a liking for a side means for each hypothesis that holds; `None` for others, and where the file does not say what stood
+    /// on which side.
+    undone: Vec<Option<Undone>>,
+    /// What the design says about sides; `None` where the file does not say what stood where.
+    pub sides: Option<Sides<'a>>,
+    /// Who answers with the others and who against them.
+    pub majorities: Majorities,
     /// What was seen of everybody.
     pub respondents: Vec<Respondent>,
     /// The tests without those who broke a rule.
@@ -161,21 +175,10 @@ impl<'a> Preferences<'a> {
         self.audit.iter().any(found)
     }
 
-    /// Every hypothesis on the answers of those whom `keep` picks.
-    pub fn tested(&self, keep: impl Fn(usize) -> bool) -> Vec<Hypothesis> {
-        match self.study {
-            Some(study) => {
-                let kept = self.declared.iter().filter(|b| keep(b.participant()));
-                hypotheses::of_study(study, &kept.copied().collect::<Vec<_>>())
-            }
-            None => {
-                let some = |group: &BallotGroup| BallotGroup {
-                    ballots: group.ballots.iter().filter(|b| keep(b.participant())).copied().collect(),
-                    ..group.clone()
-                };
-                hypotheses::of_groups(&self.groups.iter().map(some).collect::<Vec<_>>())
-            }
-        }
+    /// How large a liking for a side would undo a hypothesis that holds; `None` where sides cannot have made it.
+    pub fn undone(&self, hypothesis: &Hypothesis) -> Option<Undone> {
+        let place = self.hypotheses.iter().position(|of| of.is_about_the_same(hypothesis))?;
+        self.undone[place]
     }
 }
 
@@ -206,14 +209,24 @@ impl<'a> Base<'a> {
             let screened = without(&respondents);
             (respondents, screened)
         };
-        let ((models, scales), ((respondents, screened), (audit, robustness))) = rayon::join(
-            || rayon::join(|| models::of_groups(groups, responses.sides_recorded), || scales(groups)),
-            || {
-                rayon::join(people, || {
-                    rayon::join(|| audit(&recorded.audited(probed)), || Robustness::of(&hypotheses))
-                })
-            },
+        let tested = || {
+            let majorities = || Majorities::of(study, &shown, &declared, groups, &hypotheses);
+            let undone = |of: &Hypothesis| {
+                let holds = responses.sides_recorded && of.differs() && !of.is_question();
+                holds.then(|| Undone::of(study, &shown, groups, of)).flatten()
+            };
+            rayon::join(
+                || (WithoutOne::of_tested(&hypotheses), majorities()),
+                || (Robustness::of(&hypotheses), hypotheses.par_iter().map(undone).collect()),
+            )
+        };
+        let sides = || responses.sides_recorded.then(|| Sides::of(&shown, groups));
+        let models = || models::of_groups(groups, responses.sides_recorded);
+        let ((models, (scales, sides)), ((respondents, screened), (audit, tested))) = rayon::join(
+            || rayon::join(models, || (scales(groups), sides())),
+            || rayon::join(people, || rayon::join(|| audit(&recorded.audited(probed)), tested)),
         );
+        let ((without_one, majorities), (robustness, undone)) = tested;
         let agreement = match study {
             Some(study) => of_study(study, &declared),
             None => vec![of_groups(groups, &recorded, &declared)],
@@ -234,6 +247,10 @@ impl<'a> Base<'a> {
             scales,
             agreement,
             recorded,
+            without_one,
+            undone,
+            sides,
+            majorities,
             respondents,
             screened,
             audit,

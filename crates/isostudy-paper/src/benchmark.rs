@@ -8,7 +8,6 @@ use isostudy_design::Clustering::{self, EdgeCollapse, Integrated, None as Unclus
 use isostudy_design::published::Claim;
 use isostudy_design::record::Purpose;
 use isostudy_design::{Arrangement, Crossed};
-use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{discarded, discarded_as_published, known};
 use isostudy_report::statement::{Block, Finding, Standing};
 use isostudy_report::words::{change, counted, interval, list, number, whole};
@@ -39,29 +38,28 @@ const RADIUS_RATIO: Measure =
 const ALL: [Clustering; 3] = [Unclustered, Integrated, EdgeCollapse];
 
 /// Nothing if no benchmark was published.
-pub(super) fn findings(inputs: &Inputs<'_>, claims: &[(&Claim, claims::Finding)]) -> Vec<Block> {
-    if inputs.study.published.benchmark.is_empty() {
+pub(super) fn findings(numbers: &Numbers<'_>, claims: &[(&Claim, claims::Finding)]) -> Vec<Block> {
+    if numbers.inputs.study.published.benchmark.is_empty() {
         return Vec::new();
     }
-    let numbers = Numbers::of(inputs);
     let mut found = Vec::new();
-    found.extend(sampling_share(inputs, &numbers));
+    found.extend(sampling_share(numbers));
     for (what, pairs) in [
         ("Integrated clustering against no clustering", numbers.clustering_pairs(Integrated, Unclustered)),
         ("Edge collapse against no clustering", numbers.clustering_pairs(EdgeCollapse, Unclustered)),
         ("Edge collapse against integrated clustering", numbers.clustering_pairs(EdgeCollapse, Integrated)),
         ("The body-centred lattice against the simple cubic one", numbers.arrangement_pairs(&ALL)),
     ] {
-        found.extend(cost(inputs, &numbers, what, &pairs));
+        found.extend(cost(numbers, what, &pairs));
     }
-    found.extend(reduction(&numbers, Integrated));
-    found.extend(reduction(&numbers, EdgeCollapse));
-    found.extend(triangles_left(inputs, &numbers));
+    found.extend(reduction(numbers, Integrated));
+    found.extend(reduction(numbers, EdgeCollapse));
+    found.extend(triangles_left(numbers));
     found.extend(triangles_of_arrangements(claims));
-    found.extend(regularity(inputs, &numbers));
+    found.extend(regularity(numbers));
     found.extend(ratio_ranges(claims));
     let mut blocks = Vec::new();
-    if let (Some(run), false) = (inputs.bench, found.is_empty()) {
+    if let (Some(run), false) = (numbers.inputs.bench, found.is_empty()) {
         let model = run.machine.model.as_deref().unwrap_or("an unnamed CPU");
         blocks.push(Block::Text(format!(
             "Means over objects and lattices, or over objects and clusterings. Our times are from {} on {model}; they \
@@ -81,12 +79,12 @@ pub(super) fn findings(inputs: &Inputs<'_>, claims: &[(&Claim, claims::Finding)]
     blocks
 }
 
-fn sampling_share(inputs: &Inputs<'_>, numbers: &Numbers<'_>) -> Option<Finding> {
+fn sampling_share(numbers: &Numbers<'_>) -> Option<Finding> {
     let shares = |side| -> Vec<f64> {
         let of = ALL.iter().flat_map(|&clustering| numbers.each(side, SAMPLING_SHARE, clustering));
         of.map(|share| 100.0 * share).collect()
     };
-    let ours = median(by_round(inputs.bench?, shares, mean), LEVEL)?;
+    let ours = median(by_round(numbers.inputs.bench?, shares, mean), LEVEL)?;
     let range = |side| {
         let of = shares(side);
         let (low, high) = of.iter().fold((f64::MAX, f64::MIN), |(l, h), &s| (l.min(s), h.max(s)));
@@ -108,10 +106,10 @@ fn sampling_share(inputs: &Inputs<'_>, numbers: &Numbers<'_>) -> Option<Finding>
 }
 
 /// What one configuration of each pair costs against the other, a sentence each pass.
-fn cost(inputs: &Inputs<'_>, numbers: &Numbers<'_>, what: &str, pairs: &[Pair]) -> Vec<Finding> {
+fn cost(numbers: &Numbers<'_>, what: &str, pairs: &[Pair]) -> Vec<Finding> {
     let passes = [("vertex pass", VERTEX), ("geometry pass", GEOMETRY), ("whole extraction", WHOLE)];
     let sentence = |(name, pass)| {
-        let found = Change::of(inputs, numbers, pass, pairs)?;
+        let found = Change::of(numbers, pass, pairs)?;
         let (standing, remark) = match found.direction() {
             Direction::Same if found.has_the_published_size() == Some(false) => {
                 (Standing::Holds, " The direction is the published one; the size is not.")
@@ -181,9 +179,9 @@ fn duels(
     numbers.lattice_cases().into_iter().filter_map(of).collect()
 }
 
-fn triangles_left(inputs: &Inputs<'_>, numbers: &Numbers<'_>) -> Option<Finding> {
+fn triangles_left(numbers: &Numbers<'_>) -> Option<Finding> {
     let (mut parts, mut holds, mut of) = (Vec::new(), 0, 0);
-    for &arrangement in &inputs.study.file.arrangements {
+    for &arrangement in &numbers.inputs.study.file.arrangements {
         let duels = duels(numbers, Side::Ours, TRIANGLES, arrangement);
         let fewer = duels.iter().filter(|d| d.collapsed < d.integrated).count();
         (holds, of) = (holds + duels.iter().filter(|d| d.collapsed > d.integrated).count(), of + duels.len());
@@ -296,7 +294,7 @@ fn ratio_ranges(claims: &[(&Claim, claims::Finding)]) -> Vec<Finding> {
     each.flatten().collect()
 }
 
-fn regularity(inputs: &Inputs<'_>, numbers: &Numbers<'_>) -> Option<Finding> {
+fn regularity(numbers: &Numbers<'_>) -> Option<Finding> {
     let three = all_pairs(numbers, Side::Ours, THREE_EDGES);
     let radius = all_pairs(numbers, Side::Ours, RADIUS_RATIO);
     let rounder = radius.iter().filter(|d| d.integrated > d.collapsed).count();
@@ -311,7 +309,7 @@ fn regularity(inputs: &Inputs<'_>, numbers: &Numbers<'_>) -> Option<Finding> {
         told(&radius)
     );
     // A few slivers where rounding decides whether a surface meets its volume outweigh every other triangle of a mean.
-    let indexed = Numbers::of_purpose(inputs, Purpose::Indexed);
+    let indexed = Numbers::of_purpose(&numbers.inputs, Purpose::Indexed);
     let three_indexed = all_pairs(&indexed, Side::Ours, THREE_EDGES);
     if won < three.len() && !three_indexed.is_empty() {
         let (_, of_indexed) = lower(&three_indexed);
@@ -329,9 +327,11 @@ mod tests {
     use super::*;
 
     fn of(inputs: &Inputs<'_>) -> Vec<Block> {
-        findings(inputs, &claims::all(inputs))
+        let numbers = Numbers::of(inputs);
+        findings(&numbers, &claims::all(&numbers))
     }
     use crate::fixture::{self, Everything};
+    use isostudy_inference::inputs::Inputs;
 
     #[test]
     fn the_published_conclusions_are_held_against_numbers() {

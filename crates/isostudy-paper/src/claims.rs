@@ -13,7 +13,6 @@ pub(crate) mod times;
 
 use crate::verdict::{Verdict, prints_alike, relative_difference};
 use isostudy_design::published::Claim;
-use isostudy_inference::inputs::Inputs;
 use isostudy_table::{Cell, Columns, Table};
 use numbers::Numbers;
 
@@ -32,16 +31,24 @@ pub(crate) struct Finding {
     pub(crate) verdict: Verdict,
 }
 
+impl Finding {
+    /// Of our number alone.
+    fn of(ours: Option<f64>, decimals: usize, verdict: Verdict) -> Self {
+        Self { from_published: None, as_published: None, ours, decimals, remark: String::new(), verdict }
+    }
+}
+
 /// Why numbers differ where nothing is published of the study's objects.
 const OTHER_OBJECTS: &str = "on other objects than the text's";
 
 /// The claims that can be computed and what they come to, in the order they are listed.
-pub(crate) fn all<'a>(inputs: &Inputs<'a>) -> Vec<(&'a Claim, Finding)> {
-    let (numbers, tally) = (Numbers::of(inputs), inputs.answers.map(|answers| &answers.tally));
+pub(crate) fn all<'a>(numbers: &Numbers<'a>) -> Vec<(&'a Claim, Finding)> {
+    let inputs = &numbers.inputs;
+    let tally = inputs.answers.map(|answers| &answers.tally);
     let find = |claim| {
-        let found = meshes::find(&numbers, claim)
-            .or_else(|| times::find(inputs, &numbers, claim))
-            .or_else(|| shapes::find(&numbers, claim))
+        let found = meshes::find(numbers, claim)
+            .or_else(|| times::find(numbers, claim))
+            .or_else(|| shapes::find(numbers, claim))
             .or_else(|| tally.and_then(|tally| preferences::find(inputs.study, tally, claim)))
             .or_else(|| setup::find(inputs.study, claim));
         let mut found = found?;

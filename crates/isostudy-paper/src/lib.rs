@@ -22,38 +22,40 @@ mod verdict;
 pub mod fixture;
 
 #[cfg(test)]
-use isostudy_inference::Answered;
+use isostudy_inference::{Answered, Inputs};
 
 pub use verdict::Verdict;
 
+use claims::numbers::Numbers;
 use comparison::Compared;
 use isostudy_design::published::Claim;
-use isostudy_inference::{Inputs, Results};
+use isostudy_inference::Results;
 use isostudy_report::statement::{Block, Published, Section};
 use isostudy_table::Table;
 
 /// The paper beside a study's results: its numbers and its claims, each compared once.
 pub struct Paper<'a> {
-    inputs: Inputs<'a>,
-    numbers: Vec<Compared>,
+    numbers: Numbers<'a>,
+    compared: Vec<Compared>,
     claims: Vec<(&'a Claim, claims::Finding)>,
 }
 
 impl<'a> Paper<'a> {
     /// Compares everything.
     pub fn of(results: &Results<'a>) -> Self {
-        let inputs = results.inputs;
-        Self { numbers: comparison::all(&inputs), claims: claims::all(&inputs), inputs }
+        let numbers = Numbers::of(&results.inputs);
+        Self { compared: comparison::all(&results.inputs), claims: claims::all(&numbers), numbers }
     }
 
     /// Puts the tables of the paper and about the paper where it has them, among a study's other tables.
     pub fn add_tables(&self, tables: &mut Vec<Table>) {
-        let (inputs, source) = (&self.inputs, &self.inputs.study.published.source);
+        let inputs = &self.numbers.inputs;
+        let source = &inputs.study.published.source;
         let lattices = inputs.answers.and_then(|answers| lattices::table(inputs.study, &answers.tally));
         insert(tables, "benchmark", asteroid::table(inputs));
         insert(tables, "preference_objects", lattices);
         tables.extend(positions::table(inputs));
-        tables.extend(comparison::tables(source, &self.numbers));
+        tables.extend(comparison::tables(source, &self.compared));
         tables.extend(claims::table(source, &self.claims));
     }
 
@@ -69,9 +71,9 @@ impl<'a> Paper<'a> {
             }));
             Section { id, heading, blocks }
         };
-        let checked = benchmark::findings(&self.inputs, &self.claims);
-        let source = &self.inputs.study.published.source;
-        let recomputed = recomputed::findings(source, &self.numbers, &self.claims);
+        let checked = benchmark::findings(&self.numbers, &self.claims);
+        let source = &self.numbers.inputs.study.published.source;
+        let recomputed = recomputed::findings(source, &self.compared, &self.claims);
         Published {
             fails: recomputed::failing(&self.claims),
             sections: vec![
@@ -95,7 +97,7 @@ impl<'a> Paper<'a> {
                     .is_unexplained()
                     .then(|| format!("{of}: {published} published, {ours} here; {reason}"))
             };
-        let numbers = self.numbers.iter().filter_map(|c| {
+        let numbers = self.compared.iter().filter_map(|c| {
             let of = format!("{}, {}, {}", c.source, c.row, c.quantity);
             name(of, Some(c.published), c.ours, c.decimals, &c.verdict)
         });

@@ -51,8 +51,8 @@ pub fn figures(results: &Results<'_>) -> Result<Vec<Figure>, FigureError> {
 pub fn figures_of_groups(preferences: &Preferences<'_>) -> Result<Vec<Figure>, FigureError> {
     let drafts = [
         glance::contrasts(&preferences.contrasts),
-        worths::draft(None, preferences.groups),
-        respondents::draft(&preferences.shown),
+        worths::draft(None, &preferences.scales),
+        respondents::draft(&preferences.majorities),
     ];
     drafts.into_iter().flatten().map(Unfinished::finish).collect()
 }
@@ -80,8 +80,8 @@ fn drafts(results: &Results<'_>) -> Vec<Unfinished> {
         drafts.push(answers::per_question(inputs.study, tally, answered.sides_differ()));
         drafts.push(preferences::per_object(inputs.study, tally));
         drafts.push(preferences::overall(inputs.study, tally));
-        drafts.extend(worths::draft(Some(inputs.study), preferences.groups));
-        drafts.extend(respondents::draft(&preferences.shown));
+        drafts.extend(worths::draft(Some(inputs.study), &preferences.scales));
+        drafts.extend(respondents::draft(&preferences.majorities));
         let prediction = results.prediction.as_ref();
         drafts.extend(prediction.map(|found| prediction::draft(inputs.study, found, &answered.declared)));
     }

@@ -18,6 +18,7 @@ pub mod report;
 mod self_test;
 pub mod statement;
 mod tables;
+mod wants;
 mod without_study;
 pub mod words;
 

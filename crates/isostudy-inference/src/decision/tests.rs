@@ -86,20 +86,20 @@ fn the_best_of_each_want_is_picked_with_its_price() {
     }
     let objects = candidates(&all.inputs());
     let picks = picks(&objects);
-    let of = |name: &str| -> Vec<&Pick<'_>> { picks.iter().filter(|pick| pick.want.name == name).collect() };
-    let [fastest] = of("fastest")[..] else { panic!("one method is the fastest on all objects") };
+    let of = |goal: Goal| -> Vec<&Pick<'_>> { picks.iter().filter(|pick| pick.want.goal == goal).collect() };
+    let [fastest] = of(Goal::Fastest)[..] else { panic!("one method is the fastest on all objects") };
     assert_eq!((fastest.method.id, fastest.on.len()), (ids[1], 3));
     assert_eq!(fastest.on[0].alike, [ids[3]], "5.01 is within 1 % of 5");
     assert_eq!(fastest.on[0].next.unwrap().0.id, ids[3]);
     assert_eq!(fastest.on[0].cost.crossing_triangles, 7);
     assert!((fastest.on[0].cost.error.unwrap() - 6.0).abs() < 1e-9);
-    assert_eq!(of("faultless")[0].method.id, ids[3]);
-    let time = of("faultless")[0].on[0].cost.time.unwrap();
+    assert_eq!(of(Goal::Faultless)[0].method.id, ids[3]);
+    let time = of(Goal::Faultless)[0].on[0].cost.time.unwrap();
     assert!((time - 1.002).abs() < 1e-6, "beside the fastest of all, faults or none: {time}");
-    let [closest] = of("closest")[..] else { panic!("one is the closest on all") };
+    let [closest] = of(Goal::Closest)[..] else { panic!("one is the closest on all") };
     assert_eq!(closest.method.id, ids[5]);
     assert!((closest.on[0].cost.time.unwrap() - 6.0).abs() < 0.05);
-    assert!(of("closest_per_triangle").is_empty(), "nothing is matched in the paper's study");
+    assert!(of(Goal::ClosestPerTriangle).is_empty(), "nothing is matched in the paper's study");
 }
 
 /// Which of two is faster by 1 in 500 is chance; which is closer is not.
@@ -110,7 +110,7 @@ fn of_those_not_told_apart_in_time_the_closest_is_taken() {
     let ids = all.study.method_ids();
     let objects = candidates(&all.inputs());
     let picks = picks(&objects);
-    let fastest = picks.iter().find(|pick| pick.want.name == "fastest").unwrap();
+    let fastest = picks.iter().find(|pick| pick.want.goal == Goal::Fastest).unwrap();
     assert_eq!((fastest.method.id, fastest.on.len()), (ids[3], 3));
     let best = &fastest.on[0];
     assert_eq!((best.next.unwrap().0.id, &best.alike[..]), (ids[1], &[ids[1], ids[2]][..]));
@@ -152,14 +152,14 @@ fn chunks_and_edits_are_compared_one_by_one() {
     let inputs = crate::inputs::Inputs { chunks: &chunks, ..all.inputs() };
     let objects = candidates(&inputs);
     let picks = picks(&objects);
-    for name in ["chunk", "edit"] {
-        let [pick] = picks.iter().filter(|pick| pick.want.name == name).collect::<Vec<_>>()[..] else {
-            panic!("{name}: one on all objects")
+    for goal in [Goal::Chunk, Goal::Edit] {
+        let [pick] = picks.iter().filter(|pick| pick.want.goal == goal).collect::<Vec<_>>()[..] else {
+            panic!("{goal:?}: one on all objects")
         };
-        assert_eq!((pick.method.id, pick.on.len()), (ids[0], 3), "{name}: of two alike the closer");
-        assert_eq!(pick.on[0].alike, [ids[1]], "{name}");
+        assert_eq!((pick.method.id, pick.on.len()), (ids[0], 3), "{goal:?}: of two alike the closer");
+        assert_eq!(pick.on[0].alike, [ids[1]], "{goal:?}");
         let middle = 1e3 * (place(4) + place(5)) / 2.0;
-        assert!((pick.on[0].value.value - middle).abs() < 1e-9, "{name}: {}", pick.on[0].value.value);
+        assert!((pick.on[0].value.value - middle).abs() < 1e-9, "{goal:?}: {}", pick.on[0].value.value);
     }
 }
 
@@ -174,7 +174,7 @@ fn who_is_much_slower_is_not_taken_for_the_fastest() {
     }
     let objects = candidates(&all.inputs());
     let picks = picks(&objects);
-    let fastest = picks.iter().find(|pick| pick.want.name == "fastest").unwrap();
+    let fastest = picks.iter().find(|pick| pick.want.goal == Goal::Fastest).unwrap();
     assert_eq!((fastest.method.id, fastest.on.len()), (ids[1], 3));
 }
 
@@ -189,10 +189,10 @@ fn an_error_below_the_least_that_is_told_apart_counts_as_that() {
     let objects = candidates(&all.inputs());
     assert!(objects.iter().all(ObjectCandidates::has_least_error));
     let picks = picks(&objects);
-    let closest: Vec<&Pick<'_>> = picks.iter().filter(|pick| pick.want.name == "closest").collect();
+    let closest: Vec<&Pick<'_>> = picks.iter().filter(|pick| pick.want.goal == Goal::Closest).collect();
     assert_eq!(closest[0].method.id, ids[4], "of two that are exact, the study's first");
     assert_eq!(closest[0].on[0].alike, [ids[5]]);
-    let fastest = picks.iter().find(|pick| pick.want.name == "fastest").unwrap();
+    let fastest = picks.iter().find(|pick| pick.want.goal == Goal::Fastest).unwrap();
     assert!((fastest.on[0].cost.error.unwrap() - 0.6 / LEAST_ERROR).abs() < 1e-6);
 }
 

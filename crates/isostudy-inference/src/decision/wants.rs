@@ -5,18 +5,35 @@ use crate::mesh_set::known;
 use isostudy_design::config::{ObjectSection, Quantity};
 use isostudy_design::{Method, MethodId};
 
+/// What somebody may want; times are in milliseconds, errors in edges of the object's cubes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Goal {
+    /// What people chose most: the mean score of preference.
+    Preferred,
+    /// The shortest time.
+    Fastest,
+    /// The shortest time for a chunk.
+    Chunk,
+    /// The shortest time for an edit, in chunks.
+    Edit,
+    /// The smallest mean error.
+    Closest,
+    /// The same with as many triangles.
+    ClosestPerTriangle,
+    /// The smallest mean error at sharp edges.
+    SharpEdges,
+    /// The largest mean radius ratio.
+    Regular,
+    /// The shortest time without a fault in the mesh.
+    Faultless,
+    /// The same with the topology of the interpolated samples.
+    Topology,
+}
+
 /// One quantity that somebody wants, of the methods that can be compared in it.
 pub struct Want {
-    /// Names its column.
-    pub name: &'static str,
-    /// The column's heading.
-    pub heading: &'static str,
-    /// Its number with its unit, `{}` for the number.
-    pub unit: &'static str,
-    /// In words, after *You want*.
-    pub phrase: &'static str,
-    /// What the number is, with `{}` for it.
-    pub says: &'static str,
+    /// What it is.
+    pub goal: Goal,
     among: Among,
     quantity: fn(&Candidate<'_>) -> Option<Estimate>,
     is_larger_better: bool,
@@ -47,11 +64,7 @@ enum Among {
 impl Want {
     /// A number without a unit, of those with the object's own cubes; less is better.
     const PLAIN: Self = Self {
-        name: "",
-        heading: "",
-        unit: "{}",
-        phrase: "",
-        says: "{}",
+        goal: Goal::Preferred,
         among: Among::SameCells,
         quantity: |_| None,
         is_larger_better: false,
@@ -62,101 +75,56 @@ impl Want {
 
 const WANTS: [Want; 10] = [
     Want {
-        name: "preferred",
-        heading: "most liked",
-        phrase: "the look that people chose most",
-        says: "mean score {}, from \u{2212}1 to 1",
+        goal: Goal::Preferred,
         among: Among::All,
         quantity: |of| of.preference,
         is_larger_better: true,
         ..Want::PLAIN
     },
     Want {
-        name: "fastest",
-        heading: "shortest time",
-        unit: "{} ms",
-        phrase: "the shortest time",
-        says: "{} ms",
+        goal: Goal::Fastest,
         quantity: |of| of.time_s.map(milliseconds),
         between: |of| of.error,
         ..Want::PLAIN
     },
     Want {
-        name: "chunk",
-        heading: "shortest chunk",
-        unit: "{} ms",
-        phrase: "the shortest time for a chunk",
-        says: "{} ms",
+        goal: Goal::Chunk,
         quantity: |of| of.chunks.as_ref().map(|of| milliseconds(of.median_s)),
         between: |of| of.error,
         pairs: |of| of.chunks.as_ref(),
         ..Want::PLAIN
     },
     Want {
-        name: "edit",
-        heading: "shortest edit",
-        unit: "{} ms",
-        phrase: "the shortest time for an edit, in chunks",
-        says: "{} ms",
+        goal: Goal::Edit,
         quantity: |of| of.edits.as_ref().map(|of| milliseconds(of.median_s)),
         between: |of| of.error,
         pairs: |of| of.edits.as_ref(),
         ..Want::PLAIN
     },
+    Want { goal: Goal::Closest, quantity: |of| of.error, between: |of| of.time_s, ..Want::PLAIN },
     Want {
-        name: "closest",
-        heading: "smallest mean error",
-        phrase: "the smallest mean error",
-        says: "{} cube edges",
-        quantity: |of| of.error,
-        between: |of| of.time_s,
-        ..Want::PLAIN
-    },
-    Want {
-        name: "closest_per_triangle",
-        heading: "the same with as many triangles",
-        phrase: "the smallest mean error with as many triangles",
-        says: "{} cube edges",
+        goal: Goal::ClosestPerTriangle,
         among: Among::SameTriangles,
         quantity: |of| of.error,
         between: |of| of.time_s,
         ..Want::PLAIN
     },
+    Want { goal: Goal::SharpEdges, quantity: |of| of.sharp_edges, between: |of| of.time_s, ..Want::PLAIN },
     Want {
-        name: "edges",
-        heading: "sharp edges kept",
-        phrase: "sharp edges kept: the smallest mean error at them",
-        says: "{} cube edges",
-        quantity: |of| of.sharp_edges,
-        between: |of| of.time_s,
-        ..Want::PLAIN
-    },
-    Want {
-        name: "regular",
-        heading: "most regular triangles",
-        phrase: "the most regular triangles",
-        says: "mean radius ratio {}",
+        goal: Goal::Regular,
         quantity: |of| known(&of.mesh.quality.radius_ratio, |ratio| ratio.mean).map(Estimate::exact),
         is_larger_better: true,
         ..Want::PLAIN
     },
     Want {
-        name: "faultless",
-        heading: "no fault, soonest",
-        unit: "{} ms",
-        phrase: "a manifold without intersections, soonest",
-        says: "{} ms",
+        goal: Goal::Faultless,
         among: Among::Faultless,
         quantity: |of| of.time_s.map(milliseconds),
         between: |of| of.error,
         ..Want::PLAIN
     },
     Want {
-        name: "topology",
-        heading: "no fault and the samples' topology, soonest",
-        unit: "{} ms",
-        phrase: "the topology of the interpolated samples and no fault, soonest",
-        says: "{} ms",
+        goal: Goal::Topology,
         among: Among::RightTopology,
         quantity: |of| of.time_s.map(milliseconds),
         between: |of| of.error,

@@ -39,16 +39,14 @@ pub(super) fn find(numbers: &Numbers<'_>, claim: &Claim) -> Option<Finding> {
             let ratio = |side| mean(&numbers.over_arrangement(side, SAMPLES, &[Integrated]));
             let ours = ratio(Side::Ours)?;
             let near = "twice the points in the interior; the layer of centres outside the box comes on top";
+            let verdict = match (ours - value).abs() <= 0.15 {
+                true => crate::verdict::Verdict::within("0.15", near),
+                false => crate::verdict::Verdict::differs(near),
+            };
             Some(Finding {
                 from_published: ratio(Side::Published),
                 as_published: Some(ours),
-                ours: Some(ours),
-                decimals: 2,
-                remark: String::new(),
-                verdict: match (ours - value).abs() <= 0.15 {
-                    true => crate::verdict::Verdict::within("0.15", near),
-                    false => crate::verdict::Verdict::differs(near),
-                },
+                ..Finding::of(Some(ours), 2, verdict)
             })
         }
         "simple_samples_stored" => stored(numbers, value, SAMPLES_STORED),
@@ -65,13 +63,11 @@ fn discarded(numbers: &Numbers<'_>, value: f64, clustering: Clustering) -> Optio
         true => double_count(format!("{:.2} points", as_published - ours)),
         false => crate::verdict::UNEXPLAINED.into(),
     };
+    let causes = numbers.causes(DISCARD_AS_PUBLISHED, &[clustering]);
     Some(Finding {
         from_published: percent(Side::Published, DISCARD_AS_PUBLISHED),
         as_published: Some(as_published),
-        ours: Some(ours),
-        decimals: 2,
-        remark: String::new(),
-        verdict: judge(value, ours, 2, numbers.causes(DISCARD_AS_PUBLISHED, &[clustering]).as_deref(), &far),
+        ..Finding::of(Some(ours), 2, judge(value, ours, 2, causes.as_deref(), &far))
     })
 }
 
@@ -89,10 +85,7 @@ fn more_triangles(numbers: &Numbers<'_>, value: f64) -> Option<Finding> {
     Some(Finding {
         from_published: change(Side::Published, &ALL),
         as_published: change(Side::Ours, &ALL),
-        ours: Some(ours),
-        decimals: 2,
-        remark: String::new(),
-        verdict: judge(value, ours, 2, numbers.causes(TRIANGLES, &ALL).as_deref(), &far),
+        ..Finding::of(Some(ours), 2, judge(value, ours, 2, numbers.causes(TRIANGLES, &ALL).as_deref(), &far))
     })
 }
 
@@ -103,10 +96,6 @@ fn stored(numbers: &Numbers<'_>, value: f64, measure: Measure) -> Option<Finding
     let far = "the published formula for what is needed has a wrong sign";
     Some(Finding {
         from_published: percent(Side::Published),
-        as_published: None,
-        ours: Some(ours),
-        decimals: 2,
-        remark: String::new(),
-        verdict: judge(value, ours, 2, None, far),
+        ..Finding::of(Some(ours), 2, judge(value, ours, 2, None, far))
     })
 }

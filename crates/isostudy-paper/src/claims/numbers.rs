@@ -42,18 +42,18 @@ pub(crate) enum Side {
 
 /// Looks numbers up.
 pub(crate) struct Numbers<'a> {
-    inputs: &'a Inputs<'a>,
+    pub(crate) inputs: Inputs<'a>,
     meshes: MeshSet<'a>,
 }
 
 impl<'a> Numbers<'a> {
-    pub(crate) fn of(inputs: &'a Inputs<'a>) -> Self {
+    pub(crate) fn of(inputs: &Inputs<'a>) -> Self {
         Self::of_purpose(inputs, Purpose::Benchmark)
     }
 
     /// With the meshes of another purpose.
-    pub(crate) fn of_purpose(inputs: &'a Inputs<'a>, purpose: Purpose) -> Self {
-        Self { inputs, meshes: MeshSet::of(inputs, purpose) }
+    pub(crate) fn of_purpose(inputs: &Inputs<'a>, purpose: Purpose) -> Self {
+        Self { inputs: *inputs, meshes: MeshSet::of(inputs, purpose) }
     }
 
     pub(crate) fn get(&self, side: Side, measure: Measure, object: usize, method: Crossed) -> Option<f64> {

@@ -33,13 +33,11 @@ fn published(study: &Study, kind: PreferenceKind, of: &str) -> Option<f64> {
 
 fn numeric(value: f64, from_published: Option<f64>, exact: Fraction, verdict: Verdict) -> Finding {
     let equal = (value * 1000.0).round() as i128 == exact.rounded(3);
+    let verdict = if equal { verdict } else { Verdict::differs(crate::verdict::UNEXPLAINED) };
     Finding {
         from_published,
         as_published: Some(exact.value()),
-        ours: Some(exact.value()),
-        decimals: 3,
-        remark: String::new(),
-        verdict: if equal { verdict } else { Verdict::differs(crate::verdict::UNEXPLAINED) },
+        ..Finding::of(Some(exact.value()), 3, verdict)
     }
 }
 
@@ -118,14 +116,8 @@ fn clustering(study: &Study, tally: &Tally) -> Option<Finding> {
     let reason = format!(
         "no test published; {wins} answers for integrated, {none} none, {losses} for the other; {side}"
     );
-    (all > 0).then(|| Finding {
-        from_published: None,
-        as_published: None,
-        ours: Some(wins as f64 / all as f64),
-        decimals: 3,
-        remark: String::new(),
-        verdict: Verdict::not_comparable(reason.trim_end_matches("; ")),
-    })
+    let verdict = Verdict::not_comparable(reason.trim_end_matches("; "));
+    (all > 0).then(|| Finding::of(Some(wins as f64 / all as f64), 3, verdict))
 }
 
 /// The share of direct answers for an arrangement, on the objects whose field `holds`.
@@ -152,12 +144,6 @@ fn arrangement_on(
     };
     let all = sum.body_centred + sum.none + sum.simple_cubic;
     let direction = if own > other { "in this direction" } else { "not in this direction" };
-    (all > 0).then(|| Finding {
-        from_published: None,
-        as_published: None,
-        ours: Some(own as f64 / all as f64),
-        decimals: 3,
-        remark: String::new(),
-        verdict: Verdict::not_comparable(format!("no number published; {direction}: {}", counts(&sum))),
-    })
+    let verdict = Verdict::not_comparable(format!("no number published; {direction}: {}", counts(&sum)));
+    (all > 0).then(|| Finding::of(Some(own as f64 / all as f64), 3, verdict))
 }

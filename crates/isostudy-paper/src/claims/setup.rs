@@ -27,7 +27,7 @@ fn turntable_duration(study: &Study, published_s: f64) -> Option<Finding> {
         )),
     };
     let (as_published, ours) = (Some(turntable.duration_s), Some(real_s));
-    Some(Finding { from_published: None, as_published, ours, decimals: 1, remark: String::new(), verdict })
+    Some(Finding { as_published, ..Finding::of(ours, 1, verdict) })
 }
 
 fn equal_cameras(study: &Study) -> Option<Finding> {
@@ -43,12 +43,5 @@ fn equal_cameras(study: &Study) -> Option<Finding> {
         n => Verdict::differs(format!("equal within an object; {n} different cameras across objects")),
     };
     let ours = Some(cameras.len() as f64);
-    Some(Finding {
-        from_published: None,
-        as_published: None,
-        ours,
-        decimals: 0,
-        remark: String::new(),
-        verdict,
-    })
+    Some(Finding::of(ours, 0, verdict))
 }

@@ -90,10 +90,8 @@ fn extreme_of(
     Some(Finding {
         from_published: there.map(|(.., value)| value),
         as_published: as_published.map(|(.., value)| value),
-        ours: Some(ours),
-        decimals: 2,
         remark,
-        verdict,
+        ..Finding::of(Some(ours), 2, verdict)
     })
 }
 
@@ -162,12 +160,10 @@ fn fewer_triangles(numbers: &Numbers<'_>) -> Option<Finding> {
 
 fn counted(of: usize, of_there: usize, counts: [usize; 3], reason: String) -> Option<Finding> {
     let [there, as_published, ours] = counts.map(|count| count as f64);
+    let verdict = if ours as usize == of { Verdict::Equal } else { Verdict::differs(reason) };
     (of > 0).then(|| Finding {
         from_published: (of_there > 0).then_some(there),
         as_published: Some(as_published),
-        ours: Some(ours),
-        decimals: 0,
-        remark: String::new(),
-        verdict: if ours as usize == of { Verdict::Equal } else { Verdict::differs(reason) },
+        ..Finding::of(Some(ours), 0, verdict)
     })
 }

@@ -7,7 +7,6 @@ use isostudy_design::Clustering::{self, EdgeCollapse, Integrated};
 use isostudy_design::Stage;
 use isostudy_design::published::Claim;
 use isostudy_design::record::BenchRun;
-use isostudy_inference::inputs::Inputs;
 use isostudy_statistics::interval::{Interval, LEVEL};
 use isostudy_statistics::median;
 use isostudy_timing::NoiseFloor;
@@ -67,8 +66,8 @@ pub(crate) enum Direction {
 
 impl Change {
     /// Of one pass; `None` without a benchmark of ours.
-    pub(crate) fn of(inputs: &Inputs<'_>, numbers: &Numbers<'_>, pass: Pass, pairs: &[Pair]) -> Option<Self> {
-        let run = inputs.bench?;
+    pub(crate) fn of(numbers: &Numbers<'_>, pass: Pass, pairs: &[Pair]) -> Option<Self> {
+        let run = numbers.inputs.bench?;
         let ratios = |side| numbers.ratios(side, pass.measure, pairs);
         let found = median(by_round(run, ratios, mean_change), LEVEL)?;
         let floor = NoiseFloor::of(run);
@@ -127,7 +126,7 @@ impl Change {
     }
 }
 
-pub(super) fn find(inputs: &Inputs<'_>, numbers: &Numbers<'_>, claim: &Claim) -> Option<Finding> {
+pub(super) fn find(numbers: &Numbers<'_>, claim: &Claim) -> Option<Finding> {
     let against_none = |clustering| numbers.clustering_pairs(clustering, Clustering::None);
     let (pass, pairs) = match claim.id.as_str() {
         "vertex_integrated" => (VERTEX, against_none(Integrated)),
@@ -138,8 +137,8 @@ pub(super) fn find(inputs: &Inputs<'_>, numbers: &Numbers<'_>, claim: &Claim) ->
         "arrangement_geometry" => (GEOMETRY, numbers.arrangement_pairs(&ALL)),
         _ => return None,
     };
-    let (value, run) = (claim.value?, inputs.bench?);
-    let found = Change::of(inputs, numbers, pass, &pairs)?;
+    let (value, run) = (claim.value?, numbers.inputs.bench?);
+    let found = Change::of(numbers, pass, &pairs)?;
     let from_published = found.published;
     // The text is what is checked, whatever its tables come to.
     let found = Change { published: Some(value), ..found };
@@ -158,10 +157,7 @@ pub(super) fn find(inputs: &Inputs<'_>, numbers: &Numbers<'_>, claim: &Claim) ->
     Some(Finding {
         from_published,
         as_published: Some(found.ours),
-        ours: Some(found.ours),
-        decimals: 2,
-        remark: String::new(),
-        verdict,
+        ..Finding::of(Some(found.ours), 2, verdict)
     })
 }
 

@@ -72,6 +72,17 @@ pub(super) fn largest(clusters: &[Cluster]) -> f64 {
 }
 
 impl BarPanel {
+    /// One without a heading, whose bars end within the axis.
+    pub(super) fn of(axis_label: &str, axis: Axis, clusters: Vec<Cluster>) -> Self {
+        let (heading, axis_label) = (String::new(), axis_label.into());
+        Self { heading, axis_label, axis, clusters, broken: false, cap: None }
+    }
+
+    /// One that reaches from zero to the largest bar.
+    pub(super) fn from_zero(axis_label: &str, clusters: Vec<Cluster>) -> Self {
+        Self::of(axis_label, Axis::from_zero(largest(&clusters)), clusters)
+    }
+
     /// Draws the panel into a rectangle. Labels that are wider than what they are of read upwards.
     pub(super) fn draw(&self, canvas: &mut Canvas, from: (f64, f64), to: (f64, f64)) {
         let (left, right) = (from.0 + LEFT, to.0 - RIGHT);

@@ -75,14 +75,7 @@ fn has_published(clusters: &[Cluster]) -> bool {
 pub(super) fn triangles(inputs: &Inputs<'_>) -> Option<Unfinished> {
     let clusters = mesh_clusters(inputs, |m| Some(m.counts.triangles as f64), |p| p.triangles as f64)?;
     let published = has_published(&clusters);
-    let panel = BarPanel {
-        heading: String::new(),
-        axis_label: "triangles".into(),
-        axis: Axis::from_zero(largest(&clusters)),
-        clusters,
-        broken: false,
-        cap: None,
-    };
+    let panel = BarPanel::from_zero("triangles", clusters);
     let caption = "Triangles of each configuration at the benchmark spacing.".into();
     Some(draft("triangles", caption, &panel, &published_legend(published)))
 }
@@ -137,14 +130,7 @@ pub(super) fn pass_times(inputs: &Inputs<'_>) -> Option<Unfinished> {
     for (place, (axis_label, clusters)) in
         [("median time, ms", times), ("share of the whole", shares)].into_iter().enumerate()
     {
-        let panel = BarPanel {
-            heading: String::new(),
-            axis_label: axis_label.into(),
-            axis: Axis::from_zero(largest(&clusters)),
-            clusters,
-            broken: false,
-            cap: None,
-        };
+        let panel = BarPanel::from_zero(axis_label, clusters);
         let y = top + HEIGHT * place as f64;
         panel.draw(&mut canvas, (0.0, y), (WIDTH, y + HEIGHT));
     }
@@ -170,14 +156,7 @@ pub(super) fn radius_ratios(inputs: &Inputs<'_>) -> Option<Unfinished> {
         let mean = meshes.get(id).and_then(|m| known(&m.quality.radius_ratio, |d| d.mean));
         vec![Bar::of(mean, style::method(inputs.study, id.method), None)]
     });
-    let panel = BarPanel {
-        heading: String::new(),
-        axis_label: "mean radius ratio".into(),
-        axis: Axis::up_to(1.0),
-        clusters,
-        broken: false,
-        cap: None,
-    };
+    let panel = BarPanel::of("mean radius ratio", Axis::up_to(1.0), clusters);
     let caption = "Mean radius ratio of the triangles at the benchmark spacing: 1 is equilateral, 0 is flat. A few flat \
                    triangles change it little, unlike the mean aspect ratio."
         .into();
@@ -218,7 +197,6 @@ pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Unfinished> {
         high if high > CUT => Axis::up_to(CUT),
         high => Axis::from_zero(high),
     };
-    let axis_label = "mean aspect ratio".into();
-    let panel = BarPanel { heading: String::new(), axis_label, axis, clusters, broken: true, cap: None };
+    let panel = BarPanel { broken: true, ..BarPanel::of("mean aspect ratio", axis, clusters) };
     Some(draft("aspect_ratio", caption, &panel, &published_legend(published)))
 }

@@ -82,11 +82,8 @@ fn group_panel(study: &Study, tally: &Tally, group: usize) -> BarPanel {
     }
     BarPanel {
         heading: format!("{}: {}", study.groups[group].id, study.groups[group].label),
-        axis_label: "preference factor".into(),
-        axis: Axis::up_to(1.0),
-        clusters,
-        broken: false,
         cap: Some(cap),
+        ..BarPanel::of("preference factor", Axis::up_to(1.0), clusters)
     }
 }
 
@@ -185,25 +182,16 @@ pub(super) fn overall(study: &Study, tally: &Tally) -> Unfinished {
         };
         Some(Slot { label: method.label.clone(), bars: vec![bar] })
     };
+    let all = |slots| vec![Cluster { label: "all objects".into(), slots }];
+    let shares = all(study.methods.iter().filter_map(share).collect());
     let shares = BarPanel {
         heading: "share of showings that were won".into(),
-        axis_label: "wins / showings".into(),
-        axis: Axis::up_to(1.0),
-        clusters: vec![Cluster {
-            label: "all objects".into(),
-            slots: study.methods.iter().filter_map(share).collect(),
-        }],
-        broken: false,
-        cap: None,
+        ..BarPanel::of("wins / showings", Axis::up_to(1.0), shares)
     };
-    let clusters = vec![Cluster { label: "all objects".into(), slots }];
+    let clusters = all(slots);
     let panel = BarPanel {
         heading: "as published: sums of factors".into(),
-        axis_label: "sum of preference factors".into(),
-        axis: Axis::from_zero(1.05 * largest(&clusters)),
-        clusters,
-        broken: false,
-        cap: None,
+        ..BarPanel::of("sum of preference factors", Axis::from_zero(1.05 * largest(&clusters)), clusters)
     };
     let (mut canvas, top) = canvas_with_legend(&legend, OVERALL);
     shares.draw(&mut canvas, (0.0, top), (LARGE * WIDTH, top + OVERALL));

@@ -1,22 +1,22 @@
 //! How far each respondent agrees with the others.
 
 use super::axis::Axis;
-use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
+use super::bars::{Bar, BarPanel, Cluster, Slot};
 use super::draft::{Unfinished, WIDTH, canvas_with_legend};
 use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::style::{Fill, LEFT};
-use isostudy_statistics::{Screening, ShownBallot, screening};
+use isostudy_inference::majorities::Majorities;
+use isostudy_statistics::Screening;
 
 /// Up to so many people have a row of their own; more are counted in steps of a twentieth.
 const ROWS: usize = 60;
 const STEPS: usize = 20;
 const NAME: &str = "respondents";
 
-pub(super) fn draft(ballots: &[ShownBallot]) -> Option<Unfinished> {
-    let mut screened = screening(ballots);
-    screened.retain(|s| s.comparable > 0);
+pub(super) fn draft(majorities: &Majorities) -> Option<Unfinished> {
+    let screened: Vec<&Screening> = majorities.seen.iter().filter(|s| s.comparable > 0).collect();
     if screened.is_empty() {
         return None;
     }
@@ -26,12 +26,12 @@ pub(super) fn draft(ballots: &[ShownBallot]) -> Option<Unfinished> {
 const SAYS: &str = "share of a respondent's decided answers that side with the majority of the others, where they have one; half \
                     is what answering by chance gives.";
 
-fn one_by_one(mut screened: Vec<Screening>) -> Unfinished {
+fn one_by_one(mut screened: Vec<&Screening>) -> Unfinished {
     screened.sort_by(|a, b| {
         let share = |s: &Screening| s.agreement().unwrap_or_default();
         share(b).total_cmp(&share(a)).then(a.participant.cmp(&b.participant))
     });
-    let row = |s: &Screening| {
+    let row = |s: &&Screening| {
         let [left, none, right] = s.answers;
         let share = s.agreement();
         Row {
@@ -53,9 +53,9 @@ fn one_by_one(mut screened: Vec<Screening>) -> Unfinished {
     Unfinished { name: NAME, caption: format!("Agreement between respondents: {SAYS}"), canvas }
 }
 
-fn counted(screened: &[Screening]) -> Unfinished {
+fn counted(screened: &[&Screening]) -> Unfinished {
     let mut counts = [0_u64; STEPS];
-    for share in screened.iter().filter_map(Screening::agreement) {
+    for share in screened.iter().filter_map(|s| s.agreement()) {
         counts[((share * STEPS as f64) as usize).min(STEPS - 1)] += 1;
     }
     let slot = |(i, &count): (usize, &u64)| Slot {
@@ -66,14 +66,7 @@ fn counted(screened: &[Screening]) -> Unfinished {
         label: "agreement with the others, from".into(),
         slots: counts.iter().enumerate().map(slot).collect(),
     }];
-    let panel = BarPanel {
-        heading: String::new(),
-        axis_label: "respondents".into(),
-        axis: Axis::from_zero(largest(&clusters)),
-        clusters,
-        broken: false,
-        cap: None,
-    };
+    let panel = BarPanel::from_zero("respondents", clusters);
     let (mut canvas, top) = canvas_with_legend(&[], 340.0);
     panel.draw(&mut canvas, (0.0, top), (WIDTH, top + 340.0));
     Unfinished {

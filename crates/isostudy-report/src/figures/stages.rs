@@ -1,6 +1,5 @@
 //! Stage times stacked: an object a panel; below, the same without sampling, which drowns the rest on costly fields.
 
-use super::axis::Axis;
 use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
 use super::draft::{Unfinished, WIDTH, canvas_with_legend, in_rows};
 use super::legend::Swatch;
@@ -89,12 +88,5 @@ fn panel(inputs: &Inputs<'_>, object: usize, sampling: bool) -> BarPanel {
         bar.segments.iter_mut().for_each(|segment| segment.0 *= factor);
         bar.interval = bar.interval.map(|i| Interval { low: factor * i.low, high: factor * i.high });
     }
-    BarPanel {
-        heading: String::new(),
-        axis_label: unit.into(),
-        axis: Axis::from_zero(largest(&clusters)),
-        clusters,
-        broken: false,
-        cap: None,
-    }
+    BarPanel::from_zero(unit, clusters)
 }

@@ -8,12 +8,12 @@ use super::marks::Mark;
 use crate::words::capital;
 use isostudy_design::Study;
 use isostudy_inference::ballots::{ALL_METHODS, BallotGroup};
-use isostudy_statistics::{Pairs, Participants, clustered_covariance, fit_on_one_scale};
+use isostudy_inference::scale::GroupScale;
 use isostudy_table::digits::number;
 
 /// In words where there is a study: its ids of groups and items are the same letters.
-pub(super) fn draft(study: Option<&Study>, groups: &[BallotGroup]) -> Option<Unfinished> {
-    let blocks: Vec<Block> = groups.iter().filter_map(|group| block(study, group)).collect();
+pub(super) fn draft(study: Option<&Study>, scales: &[GroupScale<'_>]) -> Option<Unfinished> {
+    let blocks: Vec<Block> = scales.iter().filter_map(|of| block(study, of)).collect();
     if blocks.is_empty() {
         return None;
     }
@@ -32,17 +32,13 @@ pub(super) fn draft(study: Option<&Study>, groups: &[BallotGroup]) -> Option<Unf
     Some(Unfinished { name: "worths", caption, canvas })
 }
 
-fn block(study: Option<&Study>, group: &BallotGroup) -> Option<Block> {
-    let items = group.items.len();
-    let fitted = fit_on_one_scale(&Pairs::of(items, &group.ballots)).ok()?;
-    let participants = Participants::of(items, &group.ballots);
-    let covariance = clustered_covariance(&fitted, &participants);
+fn block(study: Option<&Study>, of: &GroupScale<'_>) -> Option<Block> {
+    let (group, scale) = (of.group, of.scale.as_ref().ok()?);
     let row = |(item, name): (usize, &String)| {
-        let interval = covariance.as_ref().filter(|_| item > 0);
-        let interval = interval.and_then(|c| fitted.clustered_error(c, participants.number(), item));
-        let interval = interval.map(|(_, interval)| interval);
-        let worth = number(fitted.log_worths[item], 2);
-        let remark = match (item, fitted.penalised(), interval) {
+        let position = &scale.positions[item];
+        let interval = position.spread.map(|spread| spread.interval);
+        let worth = number(position.log_odds, 2);
+        let remark = match (item, scale.fit.penalised(), interval) {
             (0, ..) => "reference".into(),
             (_, true, _) => format!("{worth}, penalised"),
             (_, _, Some(i)) => format!("{worth} [{}, {}]", number(i.low, 2), number(i.high, 2)),
@@ -50,7 +46,7 @@ fn block(study: Option<&Study>, group: &BallotGroup) -> Option<Block> {
         };
         Row {
             label: study.map_or(name.clone(), |study| item_in_words(study, group, name)),
-            value: Some(fitted.log_worths[item]),
+            value: Some(position.log_odds),
             interval,
             mark: Mark::nth(0, item > 0),
             remark,

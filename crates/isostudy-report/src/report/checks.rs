@@ -11,7 +11,7 @@ use isostudy_inference::Preferences;
 use isostudy_inference::audit::{Evidence as Seen, Finding as Probed, Report};
 use isostudy_inference::hypotheses::Hypothesis;
 use isostudy_inference::screened::{Respondent, WithoutBreakers};
-use isostudy_statistics::{Flag, Screening, screening};
+use isostudy_statistics::{Flag, Screening};
 
 /// Tests named at most.
 const NAMED: usize = 6;
@@ -57,7 +57,7 @@ fn screened(evidence: &Evidence<'_>, respondents: &[Respondent]) -> Finding {
         ("times", "timed answer", |seen| seen.timed),
     ];
     let (mut judged, mut absent) = (Vec::new(), Vec::new());
-    let seen = screening(evidence.shown);
+    let seen = evidence.preferences.map_or(&[][..], |of| &of.majorities.seen);
     let of = |rule: &str, number: usize| match number {
         n if n == seen.len() => rule.to_owned(),
         n => format!("{rule} of {}", counted(n, "participant")),

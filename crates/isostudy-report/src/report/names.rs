@@ -4,10 +4,19 @@ use super::evidence::Evidence;
 use isostudy_design::contrast::Over;
 use isostudy_design::{Level, Study};
 use isostudy_inference::hypotheses::{Hypothesis, On, Target};
+use isostudy_statistics::Side;
 
 /// A level as a noun: `edge collapse`, `the body-centred lattice`.
 pub(super) fn level(study: &Study, level: Level) -> String {
     study.level(level).phrase.clone()
+}
+
+/// A side.
+pub(super) fn side(side: Side) -> &'static str {
+    match side {
+        Side::Left => "left",
+        Side::Right => "right",
+    }
 }
 
 /// Where, with a space before it: ` on the body-centred lattice`, ` without clustering`.

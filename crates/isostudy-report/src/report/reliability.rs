@@ -8,11 +8,9 @@ use crate::words::{counted, interval, list, number, p, percent};
 use isostudy_inference::agreement::Agreement;
 use isostudy_inference::hypotheses::Hypothesis;
 use isostudy_inference::leave_one_out::WithoutOne;
-use isostudy_statistics::{Alpha, Screening, Triads, screening, sign_test};
+use isostudy_statistics::{Alpha, Screening, Triads, sign_test};
 use statrs::distribution::{Binomial, DiscreteCDF};
 
-/// Fewer comparable answers than this say nothing about a person.
-const COMPARABLE: u64 = 6;
 /// Names of so many people are printed at most.
 const NAMED: usize = 8;
 
@@ -85,24 +83,17 @@ fn consistency(sum: &Triads, level: f64) -> Option<Finding> {
     Some(Finding::new(Standing::Noted, text))
 }
 
-/// What is tested of a study or its groups; single questions are exploratory.
-fn tests(hypotheses: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
-    hypotheses.iter().filter(|h| !h.is_question() && h.is_tested())
-}
-
 /// Does a result hang on one person? Judged as results are: by the corrected p, with the correction done anew.
 fn one_by_one(evidence: &Evidence<'_>) -> Option<Finding> {
     let level = evidence.rules().level;
-    let all: Vec<&Hypothesis> = tests(evidence.hypotheses).collect();
-    let without = WithoutOne::of(&all);
-    let holding: Vec<(usize, &WithoutOne)> =
-        without.iter().enumerate().filter(|(i, _)| all[*i].differs()).collect();
+    let all = evidence.preferences?.without_one.iter().map(|(i, of)| (&evidence.hypotheses[*i], of));
+    let holding: Vec<(&Hypothesis, &WithoutOne)> = all.filter(|(of, _)| of.differs()).collect();
     let largest = holding.iter().map(|(_, of)| of.largest).max_by(f64::total_cmp)?;
     let fragile: Vec<String> = holding
         .iter()
         .filter(|(_, of)| of.largest > level)
-        .map(|(i, of)| {
-            let name = names::hypothesis(evidence, all[*i]);
+        .map(|(hypothesis, of)| {
+            let name = names::hypothesis(evidence, hypothesis);
             let mut people: Vec<String> =
                 of.undone_by.iter().take(NAMED).map(|person| (person + 1).to_string()).collect();
             if of.undone_by.len() > NAMED {
@@ -143,36 +134,31 @@ fn one_by_one(evidence: &Evidence<'_>) -> Option<Finding> {
 
 /// Who answers against the others, and what the results are without them.
 fn outlying(evidence: &Evidence<'_>) -> Vec<Finding> {
-    let screened = screening(evidence.shown);
-    let judged: Vec<(&Screening, f64)> = screened
-        .iter()
-        .filter(|s| s.comparable >= COMPARABLE)
-        .filter_map(|s| s.agreement().map(|share| (s, share)))
-        .collect();
-    let (outlying, others): (Vec<_>, Vec<_>) = judged.iter().copied().partition(|(_, share)| *share < 0.5);
+    let Some(majorities) = evidence.preferences.map(|of| &of.majorities) else { return Vec::new() };
+    let [outlying, others] = majorities.judged();
     let range = |of: &[(&Screening, f64)]| {
         let shares = of.iter().map(|(_, share)| *share);
         let (low, high) = (shares.clone().fold(1.0, f64::min), shares.fold(0.0, f64::max));
         format!("{} to {}", percent(low).trim_end_matches(" %"), percent(high))
     };
-    if judged.is_empty() {
+    if outlying.is_empty() && others.is_empty() {
         return Vec::new();
     }
     if outlying.is_empty() {
         let text = format!(
             "Nobody stands out: every participant's decided answers side with the majority of the others' in {} of the \
              questions that have one.",
-            range(&judged)
+            range(&others)
         );
         return vec![Finding::new(Standing::Noted, text)];
     }
     // Where most are, the majorities are by an answer or two, and tell nobody apart.
-    if 2 * outlying.len() > judged.len() {
+    if outlying.len() > others.len() {
         let text = format!(
             "Agreement tells nobody apart: {} of {} side with the majority of the others less often than against it, so majorities \
              are thin.",
             outlying.len(),
-            counted(judged.len(), "participant")
+            counted(outlying.len() + others.len(), "participant")
         );
         return vec![Finding::new(Standing::Noted, text)];
     }
@@ -195,21 +181,15 @@ fn outlying(evidence: &Evidence<'_>) -> Vec<Finding> {
         list(&names)
     );
     let mut found = vec![Finding::new(Standing::Noted, text)];
-    found.push(without(evidence, &outlying.iter().map(|(s, _)| s.participant).collect::<Vec<_>>()));
+    found.push(without(evidence, &majorities.without_outlying, outlying.len()));
     found
 }
 
-/// `left_out` in order.
-fn without(evidence: &Evidence<'_>, left_out: &[usize]) -> Finding {
-    let keep = |person: usize| left_out.binary_search(&person).is_err();
-    let again = evidence.preferences.map_or_else(Vec::new, |of| of.tested(keep));
-    let own: Vec<&Hypothesis> = tests(evidence.hypotheses).collect();
-    let pairs: Vec<(&Hypothesis, &Hypothesis)> = own
+/// What the tests are without so many people.
+fn without(evidence: &Evidence<'_>, again: &[(usize, Hypothesis)], left_out: usize) -> Finding {
+    let changed: Vec<String> = again
         .iter()
-        .filter_map(|h| tests(&again).find(|other| h.is_about_the_same(other)).map(|b| (*h, b)))
-        .collect();
-    let changed: Vec<String> = pairs
-        .iter()
+        .map(|(i, without)| (&evidence.hypotheses[*i], without))
         .filter(|(with, without)| with.differs() != without.differs())
         .map(|(with, without)| {
             let becomes = if without.differs() { "then holds" } else { "no longer holds" };
@@ -221,17 +201,17 @@ fn without(evidence: &Evidence<'_>, left_out: &[usize]) -> Finding {
             )
         })
         .collect();
-    let whom = if left_out.len() == 1 { "this participant" } else { "these participants" };
-    let tests = counted(pairs.len(), "test");
+    let whom = if left_out == 1 { "this participant" } else { "these participants" };
+    let tests = counted(again.len(), "test");
     let text = match changed.is_empty() {
-        _ if pairs.is_empty() => format!("Without {whom} there is nothing to test."),
+        _ if again.is_empty() => format!("Without {whom} there is nothing to test."),
         true => format!("Without {whom}, none of the {tests} comes out otherwise."),
         false => format!(
             "Without {whom}, {} of the {tests} {} out otherwise: {}. Everything else in this report is with {}.",
             changed.len(),
             if changed.len() == 1 { "comes" } else { "come" },
             list(&changed),
-            if left_out.len() == 1 { "that person" } else { "them" }
+            if left_out == 1 { "that person" } else { "them" }
         ),
     };
     Finding::new(Standing::Noted, text)

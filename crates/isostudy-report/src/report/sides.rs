@@ -9,11 +9,8 @@ use crate::words::{capital, counted, interval, list, number, p as p_value};
 use isostudy_design::Level;
 use isostudy_design::contrast::{Over, contrasts};
 use isostudy_inference::audit::{Finding as Verdict, Probe, Report};
-use isostudy_statistics::{
-    Model, Pairs, Participants, Separation, ShownBallot, Side, SideBound, SideDesign, clustered_covariance,
-    fit, has_spread, separation, side_bound, side_design,
-};
-use std::collections::BTreeMap;
+use isostudy_inference::sides::{SideBonus, Sides};
+use isostudy_statistics::{SideBound, SideDesign};
 
 /// What the probe for a side says.
 struct Probed {
@@ -41,17 +38,8 @@ pub(super) fn caution(evidence: &Evidence<'_>) -> Vec<Block> {
 }
 
 pub(super) fn sides_and_methods(evidence: &Evidence<'_>) -> Vec<Block> {
-    if !evidence.sides_recorded {
-        return Vec::new();
-    }
-    let items = evidence.shown.iter().map(|b| b.left().max(b.right()) + 1).max().unwrap_or(0);
-    let both = |ballots: &[ShownBallot], items| {
-        side_design(&Pairs::of(items, ballots)) == SideDesign::Counterbalanced
-    };
-    if evidence.shown.is_empty()
-        || both(evidence.shown, items)
-        || evidence.groups.iter().any(|group| both(&group.ballots, group.items.len()))
-    {
+    let sides = evidence.preferences.and_then(|of| of.sides.as_ref());
+    if evidence.shown.is_empty() || !sides.is_some_and(Sides::go_with_items) {
         return Vec::new();
     }
     let text = "No comparison was shown in both orders. So each result is about a method together with the side on which it \
@@ -77,27 +65,17 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
 }
 
 fn side(evidence: &Evidence<'_>, probe: Option<Probed>) -> Vec<Finding> {
-    if !evidence.sides_recorded {
+    let Some(sides) = evidence.preferences.and_then(|of| of.sides.as_ref()) else {
         let text = "Whether people favour a side is not answerable here, because the file does not say which item was on \
                     which side.";
         return vec![Finding::new(Standing::NotAnswerable, text)];
-    }
+    };
     let mut counts = [0_u64; 3];
     evidence.shown.iter().for_each(|b| counts[b.outcome().index()] += 1);
     let [left, none, right] = counts;
     let totals =
         format!("{} went left, {right} right and {none} to neither", counted(left as usize, "answer"));
-    let items = evidence.shown.iter().map(|b| b.left().max(b.right()) + 1).max().unwrap_or(0);
-    let mut designs: BTreeMap<&str, (SideDesign, &[ShownBallot], usize)> = BTreeMap::new();
-    for group in evidence.groups {
-        let pairs = Pairs::of(group.items.len(), &group.ballots);
-        designs.insert(&group.name, (side_design(&pairs), &group.ballots, group.items.len()));
-    }
-    let of = |design: SideDesign| -> Vec<&str> {
-        evidence.groups.iter().map(|g| g.name.as_str()).filter(|name| designs[name].0 == design).collect()
-    };
-    let everywhere = side_design(&Pairs::of(items, evidence.shown)) != SideDesign::Counterbalanced
-        && of(SideDesign::Counterbalanced).is_empty();
+    let everywhere = sides.go_with_items();
     let mut found = Vec::new();
     match (everywhere, probe) {
         (true, None) => found.push(Finding::new(
@@ -128,19 +106,21 @@ fn side(evidence: &Evidence<'_>, probe: Option<Probed>) -> Vec<Finding> {
             }
         }
     }
-    let estimates = |names: &[&str]| -> Vec<String> {
-        names.iter().filter_map(|name| estimate(name, designs[name].1, designs[name].2)).collect()
-    };
-    let (balanced, additive) = (of(SideDesign::Counterbalanced), of(SideDesign::ThroughAdditivity));
-    for (names, what) in [
-        (&balanced, "Pairs were shown in both orders, so a bonus for the left side can be estimated"),
+    for (design, what) in [
         (
-            &additive,
+            SideDesign::Counterbalanced,
+            "Pairs were shown in both orders, so a bonus for the left side can be estimated",
+        ),
+        (
+            SideDesign::ThroughAdditivity,
             "Where three items or more were compared, a bonus for the left side can be estimated, but only if worths are \
              additive, which the answers cannot show",
         ),
     ] {
-        let parts = estimates(names);
+        let own = sides
+            .with(design)
+            .filter_map(|of| Some(format!("{} in group {}", bonus(of.bonus?), of.group.name)));
+        let parts: Vec<String> = own.collect();
         if !parts.is_empty() {
             let text = format!(
                 "{what}. In log-odds, by Davidson's model with a side (95 % t interval, participants as clusters): {}.",
@@ -149,7 +129,7 @@ fn side(evidence: &Evidence<'_>, probe: Option<Probed>) -> Vec<Finding> {
             found.push(Finding::new(Standing::Noted, text));
         }
     }
-    let confounded = of(SideDesign::Confounded);
+    let confounded: Vec<&str> = sides.with(SideDesign::Confounded).map(|of| of.group.name.as_str()).collect();
     if !everywhere && !confounded.is_empty() {
         let text = format!(
             "In {} {} side and item cannot be separated: no pair was shown in both orders, and each item's side goes with \
@@ -162,37 +142,16 @@ fn side(evidence: &Evidence<'_>, probe: Option<Probed>) -> Vec<Finding> {
     found
 }
 
-fn estimate(name: &str, ballots: &[ShownBallot], items: usize) -> Option<String> {
-    let pairs = Pairs::of(items, ballots);
-    // Where ties alone keep the worths finite, the side would take the blame.
-    if separation(&pairs) != Separation::None {
-        return None;
+fn bonus(of: SideBonus) -> String {
+    match of {
+        SideBonus::AtLeast(SideBound { side, at_least }) => {
+            format!("at least {} for the {}, without an upper bound,", number(at_least, 2), names::side(side))
+        }
+        SideBonus::Left(side, Some(within)) => format!("{} ({})", number(side, 2), interval(within, 2)),
+        SideBonus::Left(side, None) => {
+            format!("{} (no interval: the answers tell no spread between participants)", number(side, 2))
+        }
     }
-    let participants = Participants::of(items, ballots);
-    if let Some(SideBound { side, at_least }) = side_bound(&participants) {
-        let side = match side {
-            Side::Left => "left",
-            Side::Right => "right",
-        };
-        return Some(format!(
-            "at least {} for the {side}, without an upper bound, in group {name}",
-            number(at_least, 2)
-        ));
-    }
-    let fitted = fit(Model::DavidsonSide, &pairs).ok().filter(|fit| !fit.penalised())?;
-    let covariance = clustered_covariance(&fitted, &participants)?;
-    let place = fitted.parameters.len() - 1;
-    let side = fitted.side?;
-    let (people, se) = (participants.number() as f64, covariance[place][place].sqrt());
-    let t = isostudy_statistics::interval::t_half_width(people - 1.0)?;
-    if !has_spread(se, fitted.covariance[place][place].sqrt()) {
-        return Some(format!(
-            "{} (no interval: the answers tell no spread between participants) in group {name}",
-            number(side, 2)
-        ));
-    }
-    let found = isostudy_statistics::interval::Interval { low: side - t * se, high: side + t * se };
-    Some(format!("{} ({}) in group {name}", number(side, 2), interval(found, 2)))
 }
 
 /// The levels of a study that always stood on one side of the questions that compare them, as people saw them.

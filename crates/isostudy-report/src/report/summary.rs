@@ -4,10 +4,12 @@
 use super::evidence::Evidence;
 use super::{SummaryLine, asked, limits, preference};
 use crate::statement::Standing;
+use crate::wants;
 use crate::words::{capital, counted, list, number, percent};
 use isostudy_design::contrast::Over;
 use isostudy_design::record::Purpose;
 use isostudy_design::{Factor, Method, Study};
+use isostudy_inference::decision::Goal;
 use isostudy_inference::glance::Row;
 use isostudy_inference::hypotheses;
 use isostudy_inference::inputs::Inputs;
@@ -153,20 +155,19 @@ fn favourite(inputs: &Inputs<'_>) -> Option<String> {
 
 /// Who is the best at what most want of a mesh, a sentence a want.
 fn best(Decision { objects, picks, .. }: &Decision<'_>) -> Vec<String> {
-    const WANTS: [&str; 4] = ["fastest", "closest", "edges", "regular"];
-    let sentence = |name: &&str| {
-        let own: Vec<_> = picks.iter().filter(|pick| pick.want.name == *name).collect();
-        let want = own.first()?.want;
-        let is_everywhere = own[0].on.len() == objects.len() && objects.len() > 1;
+    const WANTS: [Goal; 4] = [Goal::Fastest, Goal::Closest, Goal::SharpEdges, Goal::Regular];
+    let sentence = |goal: &Goal| {
+        let own: Vec<_> = picks.iter().filter(|pick| pick.want.goal == *goal).collect();
+        let is_everywhere = own.first()?.on.len() == objects.len() && objects.len() > 1;
         let each = own.iter().map(|pick| {
             let on: Vec<&str> = pick.on.iter().map(|best| best.object.name.as_str()).collect();
             let on = if is_everywhere { "every object".into() } else { list(&on) };
             format!("{} on {on}", pick.method.label)
         });
-        Some(format!("{}: {}.", capital(want.heading), each.collect::<Vec<_>>().join("; ")))
+        Some(format!("{}: {}.", capital(wants::words(*goal).heading), each.collect::<Vec<_>>().join("; ")))
     };
     let mut found: Vec<String> = WANTS.iter().filter_map(sentence).collect();
-    let told = picks.iter().filter(|pick| WANTS.contains(&pick.want.name));
+    let told = picks.iter().filter(|pick| WANTS.contains(&pick.want.goal));
     if told.flat_map(|pick| &pick.on).any(|best| !best.alike.is_empty()) {
         found.push("From some of these others are not told apart: the first table marks them.".into());
     }

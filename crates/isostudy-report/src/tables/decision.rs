@@ -1,9 +1,10 @@
 //! Which method to take for what, and who is beaten in both time and error.
 
+use crate::wants::words;
 use crate::words::{list, whole};
 use isostudy_design::MethodId;
 use isostudy_inference::decision::{
-    Axes, Cost, Estimate, Front, FrontPoint, LEAST_ERROR, ObjectCandidates, Pick, Standing, Want,
+    Axes, Cost, Estimate, Front, FrontPoint, Goal, LEAST_ERROR, ObjectCandidates, Pick, Standing,
 };
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::results::{Decision, Results};
@@ -24,25 +25,27 @@ pub(super) fn tables(results: &Results<'_>) -> Vec<Table> {
 
 /// A row an object, a column a want: the best and its number.
 fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[Pick<'_>]) -> Table {
-    let mut wants: Vec<&'static Want> = Vec::new();
+    let mut wants: Vec<Goal> = Vec::new();
     for pick in picks {
-        if wants.iter().all(|want| want.name != pick.want.name) {
-            wants.push(pick.want);
+        if !wants.contains(&pick.want.goal) {
+            wants.push(pick.want.goal);
         }
     }
-    let cell = |object: &ObjectCandidates<'_>, want: &Want| {
-        let of_want = picks.iter().filter(|pick| pick.want.name == want.name);
+    let cell = |object: &ObjectCandidates<'_>, want: Goal| {
+        let of_want = picks.iter().filter(|pick| pick.want.goal == want);
         let mut best = of_want.flat_map(|pick| pick.on.iter().map(move |best| (pick.method.id, best)));
         let Some((id, best)) = best.find(|(_, best)| best.object.id == object.object.id) else {
             return Cell::Missing;
         };
         let sign = if best.alike.is_empty() { "" } else { " *" };
-        Cell::text(format!("{id}, {}{sign}", want.unit.replace("{}", &ranged(&[best.value.value]))))
+        Cell::text(format!("{id}, {}{sign}", words(want).unit.replace("{}", &ranged(&[best.value.value]))))
     };
     let rows = objects.iter().filter(|_| !wants.is_empty());
     let mut table = Columns::over(rows)
         .column("object", "On", |of| Cell::text(&of.object.name))
-        .columns_of(&wants, |all, want| all.column(want.name, want.heading, |of| cell(of, want)))
+        .columns_of(wants.iter().copied(), |all, want| {
+            all.column(words(want).name, words(want).heading, |of| cell(of, want))
+        })
         .into_table("choices", "The best method for each object and purpose");
     table.notes.push(
         "*: others are not told apart from it; the next table names them, and says what each choice costs. Empty: no method \
@@ -60,7 +63,7 @@ fn decision(objects: &[ObjectCandidates<'_>], picks: &[Pick<'_>]) -> Table {
         if on.len() == objects.len() && on.len() > 1 { "every object".into() } else { list(&on) }
     };
     let mut table = Columns::over(picks)
-        .column("want", "You want", |pick| Cell::text(pick.want.phrase))
+        .column("want", "You want", |pick| Cell::text(words(pick.want.goal).phrase))
         .column("objects", "On", |pick| Cell::text(on(pick)))
         .column("take", "Take", |pick| Cell::text(format!("{}: {}", pick.method.id, pick.method.label)))
         .column("why", "Why", |pick| Cell::text(why(pick)))
@@ -79,7 +82,7 @@ fn decision(objects: &[ObjectCandidates<'_>], picks: &[Pick<'_>]) -> Table {
 /// The best's numbers, the next's, and whose interval meets it.
 fn why(pick: &Pick<'_>) -> String {
     let range = |values: &mut dyn Iterator<Item = Estimate>| -> String {
-        pick.want.says.replace("{}", &ranged(&values.map(|of| of.value).collect::<Vec<_>>()))
+        words(pick.want.goal).says.replace("{}", &ranged(&values.map(|of| of.value).collect::<Vec<_>>()))
     };
     let own = range(&mut pick.on.iter().map(|best| best.value));
     let others: Vec<(MethodId, f64)> =
