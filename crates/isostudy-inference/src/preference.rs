@@ -91,6 +91,16 @@ pub fn overall(study: &Study, factors: &[GroupFactor]) -> Vec<(MethodId, Fractio
     study.method_ids().into_iter().filter_map(sum).collect()
 }
 
+/// In what share of the answers that showed a method it was chosen; without methods that no answer showed.
+pub fn showings_won(study: &Study, factors: &[GroupFactor]) -> Vec<(MethodId, Fraction)> {
+    let share = |method: MethodId| {
+        let own = factors.iter().filter(|f| f.method == method);
+        let (wins, shown) = own.fold((0, 0), |(w, n), f| (w + f.share.wins, n + f.appearances));
+        (shown > 0).then(|| (method, Fraction::new(wins.into(), shown.into())))
+    };
+    study.method_ids().into_iter().filter_map(share).collect()
+}
+
 /// Plain means of the overall factors over the methods of each level of each declared factor, in the study's order.
 pub fn margins(study: &Study, overall: &[(MethodId, Fraction)]) -> Vec<(Level, Fraction)> {
     let mean = |level: Level| {

@@ -9,6 +9,7 @@
 
 mod budgets;
 mod data;
+mod distribution;
 mod evidence_of_probes;
 mod figure;
 mod figures;

@@ -7,7 +7,7 @@ use super::draft::{Unfinished, WIDTH, canvas_with_legend};
 use super::legend::Swatch;
 use super::style::{self, Fill};
 use isostudy_design::published::PreferenceKind;
-use isostudy_design::{Method, MethodId, Study};
+use isostudy_design::{MethodId, Study};
 use isostudy_inference::fraction::Fraction;
 use isostudy_inference::preference::{self, GroupFactor, interval};
 use isostudy_inference::tally::Tally;
@@ -172,18 +172,15 @@ pub(super) fn overall(study: &Study, tally: &Tally) -> Unfinished {
     if slots.iter().flat_map(|s| &s.bars).any(|bar| bar.published.is_some()) {
         legend.push((Swatch::Diamond, "published".into()));
     }
-    let share = |method: &Method| {
-        let own = factors.iter().filter(|f| f.method == method.id);
-        let (wins, shown) = own.fold((0, 0), |(w, n), f| (w + f.share.wins, n + f.appearances));
-        let share = (shown > 0).then(|| wins as f64 / shown as f64)?;
+    let share = |(id, share): (MethodId, Fraction)| {
         let bar = Bar {
-            label: Some(format!("{:.0} %", 100.0 * share)),
-            ..Bar::of(Some(share), style::method(study, method.id), None)
+            label: Some(format!("{:.0} %", 100.0 * share.value())),
+            ..Bar::of(Some(share.value()), style::method(study, id), None)
         };
-        Some(Slot { label: method.label.clone(), bars: vec![bar] })
+        Slot { label: study.method(id).label.clone(), bars: vec![bar] }
     };
     let all = |slots| vec![Cluster { label: "all objects".into(), slots }];
-    let shares = all(study.methods.iter().filter_map(share).collect());
+    let shares = all(preference::showings_won(study, &factors).into_iter().map(share).collect());
     let shares = BarPanel {
         heading: "share of showings that were won".into(),
         ..BarPanel::of("wins / showings", Axis::up_to(1.0), shares)

@@ -2,7 +2,8 @@
 
 use super::LongFrame;
 use super::rows::Rows;
-use isostudy_design::record::{Counts, Distribution, MeshRecord, Purpose, TetrahedraCounts, Topology};
+use crate::distribution::{STATISTICS, purpose_name};
+use isostudy_design::record::{Counts, Distribution, MeshRecord, TetrahedraCounts, Topology};
 use isostudy_design::{Level, Study};
 use isostudy_inference::mesh_set::known;
 
@@ -23,7 +24,7 @@ pub(crate) fn meshes(study: &Study, records: &[MeshRecord]) -> LongFrame {
             study.level_of(mesh.id.method, factor).map(code)
         });
     }
-    rows.text("purpose", |mesh| Some(purpose(mesh.purpose).into()));
+    rows.text("purpose", |mesh| Some(purpose_name(mesh.purpose).into()));
     rows.number("spacing", |mesh| mesh.has_grid().then_some(mesh.spacing));
     for (axis, name) in ["cells_x", "cells_y", "cells_z"].into_iter().enumerate() {
         rows.count(name, |mesh| mesh.has_grid().then(|| mesh.cells[axis].into()));
@@ -33,8 +34,8 @@ pub(crate) fn meshes(study: &Study, records: &[MeshRecord]) -> LongFrame {
     rows.count("degenerate_triangles", |mesh| Some(mesh.quality.degenerate));
     for (name, of) in DISTRIBUTIONS {
         rows.count(&format!("{name}_count"), |mesh| of(mesh).map(|d| d.count));
-        for (statistic, value) in STATISTICS {
-            rows.number(&format!("{name}_{statistic}"), |mesh| of(mesh).and_then(|d| known(d, value)));
+        for (statistic, _, value) in STATISTICS {
+            rows.number(&format!("{name}_{statistic}"), |mesh| of(mesh).and_then(|d| known(d, *value)));
         }
     }
     rows.number("hausdorff", |mesh| mesh.accuracy.hausdorff());
@@ -44,15 +45,6 @@ pub(crate) fn meshes(study: &Study, records: &[MeshRecord]) -> LongFrame {
     rows.whole("euler_characteristic", |mesh| Some(mesh.topology.euler_characteristic));
     rows.count("self_intersections", |mesh| mesh.topology.self_intersections);
     LongFrame { name: "meshes", frame: rows.frame(), texts: Vec::new() }
-}
-
-/// As in the records' own files.
-fn purpose(purpose: Purpose) -> &'static str {
-    match purpose {
-        Purpose::Benchmark => "benchmark",
-        Purpose::Stimulus => "stimulus",
-        Purpose::Indexed => "indexed",
-    }
 }
 
 type Named<T, V> = (&'static str, fn(&T) -> V);
@@ -96,18 +88,6 @@ const DISTRIBUTIONS: [Described; 10] = [
     ("distance_to_mesh", |m| m.accuracy.distance_to_mesh.as_ref()),
     ("sharp_edges", |m| m.accuracy.sharp_edges.as_ref()),
     ("normal_error_deg", |m| Some(&m.accuracy.normal_error_deg)),
-];
-
-const STATISTICS: [Named<Distribution, f64>; 9] = [
-    ("mean", |d| d.mean),
-    ("sd", |d| d.sd),
-    ("min", |d| d.min),
-    ("q05", |d| d.q05),
-    ("q25", |d| d.q25),
-    ("median", |d| d.median),
-    ("q75", |d| d.q75),
-    ("q95", |d| d.q95),
-    ("max", |d| d.max),
 ];
 
 const TOPOLOGY: [Named<Topology, u64>; 10] = [

@@ -157,12 +157,7 @@ fn favourite(study: &Study, tally: &Tally, factors: &[GroupFactor]) -> Option<St
     if methods.len() == compared {
         return Some(format!("All methods have the same sum, {}.", number(sum.value(), 3)));
     }
-    let shares = study.method_ids().into_iter().filter_map(|m| {
-        let own: Vec<&GroupFactor> = factors.iter().filter(|f| f.method == m).collect();
-        let (wins, shown) = own.iter().fold((0, 0), |(w, n), f| (w + f.share.wins, n + f.appearances));
-        (shown > 0).then(|| (m, Fraction::new(wins.into(), shown.into())))
-    });
-    let (by_share, share) = largest(shares)?;
+    let (by_share, share) = largest(preference::showings_won(study, factors))?;
     let mut objects: Vec<(Vec<MethodId>, Vec<&str>)> = Vec::new();
     for (o, object) in study.file.objects.iter().enumerate() {
         let own = group_factors(study, tally, |other| other == o);

@@ -8,13 +8,13 @@ use crate::wants;
 use crate::words::{capital, counted, list, number, percent};
 use isostudy_design::contrast::Over;
 use isostudy_design::record::Purpose;
-use isostudy_design::{Factor, Method, Study};
+use isostudy_design::{Factor, Method, MethodId, Study};
 use isostudy_inference::decision::Goal;
 use isostudy_inference::glance::Row;
 use isostudy_inference::hypotheses;
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{MeshSet, known};
-use isostudy_inference::preference::{group_factors, two_factors};
+use isostudy_inference::preference::{group_factors, showings_won, two_factors};
 use isostudy_inference::results::{Decision, Results};
 
 /// Names in one line at most; the tables have all.
@@ -139,18 +139,12 @@ fn found(evidence: &Evidence<'_>, rows: &[Row], inputs: Option<&Inputs<'_>>) -> 
 fn favourite(inputs: &Inputs<'_>) -> Option<String> {
     let (study, tally) = (inputs.study, &inputs.answers?.tally);
     let factors = group_factors(study, tally, |_| true);
-    let share = |method: &Method| {
-        let own = factors.iter().filter(|f| f.method == method.id);
-        let (wins, shown) = own.fold((0, 0), |(w, n), f| (w + f.share.wins, n + f.appearances));
-        (shown > 0).then(|| wins as f64 / shown as f64)
-    };
-    let mut shares: Vec<(f64, &Method)> =
-        study.methods.iter().filter_map(|method| Some((share(method)?, method))).collect();
+    let mut shares: Vec<(f64, MethodId)> =
+        showings_won(study, &factors).into_iter().map(|(method, share)| (share.value(), method)).collect();
     shares.sort_by(|a, b| b.0.total_cmp(&a.0));
     let [(first, method), (second, _), ..] = shares[..] else { return None };
-    (first > second).then(|| {
-        format!(" {} was chosen most: in {} of its showings.", capital(&method.label), percent(first))
-    })
+    let label = capital(&study.method(method).label);
+    (first > second).then(|| format!(" {label} was chosen most: in {} of its showings.", percent(first)))
 }
 
 /// Who is the best at what most want of a mesh, a sentence a want.

@@ -1,6 +1,6 @@
 //! How well meshes stand for their isosurfaces.
 
-use super::mesh_quality::purpose_label;
+use crate::distribution::purpose_name;
 use isostudy_design::record::{Distribution, MeshRecord, Purpose};
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{MeshSet, known};
@@ -36,7 +36,7 @@ pub(super) fn accuracy(inputs: &Inputs<'_>) -> Option<Table> {
     });
     let mut table = Columns::over(rows)
         .column("id", "Id", |of| Cell::text(&of.1.id))
-        .column("purpose", "Mesh", |of| Cell::text(purpose_label(of.0)))
+        .column("purpose", "Mesh", |of| Cell::text(purpose_name(of.0)))
         .column("spacing", "Spacing", |of| Cell::Number(of.1.spacing, 3))
         .column("distance_mean", "Distance, mean", |of| distance(of, |d| d.mean))
         .column("distance_q95", "95 %", |of| distance(of, |d| d.q95))

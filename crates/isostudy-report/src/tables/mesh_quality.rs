@@ -1,17 +1,10 @@
 //! Triangle quality, topology, and what accumulated positions change.
 
+use crate::distribution::{STATISTICS, purpose_name};
 use isostudy_design::record::{Distribution, MeshRecord, Purpose, Topology, Trilinear};
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{MeshSet, known};
 use isostudy_table::{Cell, Columns, Table};
-
-pub(super) fn purpose_label(purpose: Purpose) -> &'static str {
-    match purpose {
-        Purpose::Benchmark => "benchmark",
-        Purpose::Stimulus => "stimulus",
-        Purpose::Indexed => "indexed",
-    }
-}
 
 /// A measure: name, heading, unit, decimals for people, and the distribution.
 type Measure = (&'static str, &'static str, &'static str, usize, fn(&MeshRecord) -> &Distribution);
@@ -25,20 +18,6 @@ const MEASURES: &[Measure] = &[
     ("area", "Area", "", 6, |m| &m.quality.area),
 ];
 
-type Statistic = (&'static str, &'static str, fn(&Distribution) -> f64);
-
-const STATISTICS: &[Statistic] = &[
-    ("mean", "mean", |d| d.mean),
-    ("sd", "SD", |d| d.sd),
-    ("min", "min", |d| d.min),
-    ("q05", "5 %", |d| d.q05),
-    ("q25", "25 %", |d| d.q25),
-    ("median", "median", |d| d.median),
-    ("q75", "75 %", |d| d.q75),
-    ("q95", "95 %", |d| d.q95),
-    ("max", "max", |d| d.max),
-];
-
 /// The meshes at both spacings, with what they are for.
 fn meshes<'a>(inputs: &Inputs<'a>) -> Vec<(Purpose, &'a MeshRecord)> {
     let of = |purpose| MeshSet::of(inputs, purpose).in_order().map(|(_, mesh)| (purpose, mesh)).collect();
@@ -49,7 +28,7 @@ fn meshes<'a>(inputs: &Inputs<'a>) -> Vec<(Purpose, &'a MeshRecord)> {
 pub(super) fn quality(inputs: &Inputs<'_>) -> Option<Table> {
     let mut table = Columns::over(meshes(inputs))
         .column("id", "Id", |(_, mesh)| Cell::text(&mesh.id))
-        .column("purpose", "Mesh", |(purpose, _)| Cell::text(purpose_label(*purpose)))
+        .column("purpose", "Mesh", |(purpose, _)| Cell::text(purpose_name(*purpose)))
         .column("triangles", "Triangles", |(_, mesh)| Cell::count(mesh.quality.triangles))
         .column("degenerate", "Degenerate", |(_, mesh)| Cell::count(mesh.quality.degenerate))
         .column("shortest_edge", "Shortest edge", |(_, mesh)| Cell::number(mesh.quality.shortest_edge, 6))
@@ -102,7 +81,7 @@ pub(super) fn topology(inputs: &Inputs<'_>) -> Option<Table> {
     };
     let mut table = Columns::over(meshes)
         .column("id", "Id", |(_, mesh)| Cell::text(&mesh.id))
-        .column("purpose", "Mesh", |(purpose, _)| Cell::text(purpose_label(*purpose)))
+        .column("purpose", "Mesh", |(purpose, _)| Cell::text(purpose_name(*purpose)))
         .column("vertices", "V", count(|t| t.vertices))
         .column("edges", "E", count(|t| t.edges))
         .column("triangles", "T", count(|t| t.triangles))
