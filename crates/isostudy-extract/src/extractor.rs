@@ -113,24 +113,21 @@ impl Extractor {
         control: impl Into<Control<'c>>,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
-        let result = self.try_extract_into(source, lattice, settings, None, control.into(), extraction);
-        if result.is_err() {
-            extraction.clear();
-        }
-        result
+        self.extract_by(None, source, lattice, settings, control.into(), extraction)
     }
 
-    /// The same by marching cubes, on the points of a simple cubic lattice.
-    pub(crate) fn extract_cubes_into(
+    /// The same, where there is a way by cubes: on the points of a simple cubic lattice, as corners of cubes that are not cut any
+    /// further.
+    pub(crate) fn extract_by(
         &mut self,
+        way: Option<Way>,
         source: Source,
         lattice: &Lattice,
         settings: &ExtractSettings,
-        way: Way,
         control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
-        let result = self.try_extract_into(source, lattice, settings, Some(way), control, extraction);
+        let result = self.try_extract_into(source, lattice, settings, way, control, extraction);
         if result.is_err() {
             extraction.clear();
         }
