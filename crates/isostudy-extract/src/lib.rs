@@ -220,6 +220,7 @@ mod slabs;
 mod source;
 mod surface;
 mod tetrahedra;
+mod wording;
 
 pub use chunks::{
     Chunk, ChunkError, ChunkExtractor, ChunkSettings, Mismatch, Normals, SampleLayout, TooManyVertices,

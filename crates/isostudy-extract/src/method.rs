@@ -8,7 +8,6 @@ use family::Family;
 pub use presets::{Preset, presets};
 pub use volume_cells::{VolumeCells, VolumeCellsError};
 
-use std::error::Error;
 use std::fmt;
 
 use crate::cubes::cells_otherwise;
@@ -17,6 +16,7 @@ use crate::extractor::Extractor;
 use crate::lattice::{Arrangement, Border, BoxGrid, CellBox, Lattice, LatticeError};
 use crate::settings::Execution;
 use crate::source::Source;
+use crate::wording::in_words;
 use isostudy_field::StudyField;
 
 /// Names every family once: its settings, what files call its kind, and the file that has both, with its presets.
@@ -163,18 +163,15 @@ pub enum MethodError {
     Extract(ExtractError),
 }
 
-impl fmt::Display for MethodError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Grid(error) => error.fmt(f),
-            Self::Setting { key, value, allowed } => write!(f, "{key} = {value}: {allowed}"),
-            Self::NeedsField => f.write_str("the method calls the field; samples alone do not suffice"),
-            Self::Extract(error) => error.fmt(f),
-        }
+in_words! {
+    MethodError {
+        Self::Grid(error) => "{error}";
+        Self::Setting { key, value, allowed } => "{key} = {value}: {allowed}";
+        Self::NeedsField => "the method calls the field; samples alone do not suffice";
+        Self::Extract(error) => "{error}";
     }
+    from { LatticeError => Self::Grid, ExtractError => Self::Extract }
 }
-
-impl Error for MethodError {}
 
 impl MethodError {
     /// Refuses a setting that is not what it must be.
@@ -186,18 +183,6 @@ impl MethodError {
     ) -> Result<(), Self> {
         let refused = || Self::Setting { key, value: format!("{value:?}"), allowed };
         if is_allowed { Ok(()) } else { Err(refused()) }
-    }
-}
-
-impl From<LatticeError> for MethodError {
-    fn from(error: LatticeError) -> Self {
-        Self::Grid(error)
-    }
-}
-
-impl From<ExtractError> for MethodError {
-    fn from(error: ExtractError) -> Self {
-        Self::Extract(error)
     }
 }
 
