@@ -106,7 +106,7 @@ pub(crate) enum Uniform {
 ///
 /// `cells = ceil((max - min) / spacing)` on each axis, evaluated in `f32`; when it does not divide evenly the
 /// lattice reaches past `max` as published; otherwise the last cubes are thinner, though not below a quarter, which
-/// those before them give up. Nothing is allocated until [`extract`](crate::extract) runs, so a caller can look
+/// those before them give up. Nothing is allocated until [`extract`](crate::by_lattice::extract) runs, so a caller can look
 /// at [`memory_bytes`](Self::memory_bytes) and refuse.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lattice {

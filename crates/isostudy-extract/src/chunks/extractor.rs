@@ -34,7 +34,7 @@ const FIRST_MARGIN: u32 = 8;
 const MARGIN: i32 = 1 << 10;
 
 /// Extracts boxes of cells of a grid, such that neighbours fit to the bit, and all of a box [weld](crate::weld_chunks) to
-/// the mesh that [`extract`](crate::extract) makes of the whole, byte for byte.
+/// the mesh that [`extract`](crate::by_lattice::extract) makes of the whole, byte for byte.
 ///
 /// To decide as the whole would, more is sampled than the chunk's own cells ([`window`](Self::window)): two cells on every
 /// side, or one where cubes are cut each by itself ([`Arrangement`](crate::Arrangement)) or not at all
@@ -69,7 +69,8 @@ const MARGIN: i32 = 1 << 10;
 ///
 /// ```
 /// use isostudy_extract::{Arrangement, BoxGrid, ChunkExtractor, ChunkSettings, Control, Method, Tetrahedra, weld_chunks};
-/// use isostudy_extract::{Execution, ExtractSettings, extract};
+/// use isostudy_extract::by_lattice::{ExtractSettings, extract};
+/// use isostudy_extract::Execution;
 /// use isostudy_field::{Sphere, StudyField};
 /// # use glam::Vec3;
 /// # use isostudy_mesh::Bounds;
@@ -248,7 +249,7 @@ impl ChunkExtractor {
     ///
     /// # Errors
     /// [`ChunkError::Cells`], [`ChunkError::Window`], [`ChunkError::EndlessSamples`], [`ChunkError::NormalsNeedField`],
-    /// [`ChunkError::Unsettled`]; [`ChunkError::Extract`] for what [`extract`](crate::extract) refuses.
+    /// [`ChunkError::Unsettled`]; [`ChunkError::Extract`] for what [`extract`](crate::by_lattice::extract) refuses.
     pub fn extract_into<'s, 'c>(
         &mut self,
         source: impl Into<Source<'s>>,

@@ -85,7 +85,7 @@ impl Lattice {
         })
     }
 
-    /// What [`extract`](crate::extract) allocates with accumulated positions before it knows the surface: samples, edge
+    /// What [`extract`](crate::by_lattice::extract) allocates with accumulated positions before it knows the surface: samples, edge
     /// records and scratch. With indexed positions it is [`streaming_bytes`](Self::streaming_bytes), far less;
     /// [`memory_bytes_for`](Self::memory_bytes_for) chooses. The mesh comes on top.
     ///

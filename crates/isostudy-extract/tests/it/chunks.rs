@@ -5,10 +5,11 @@ use std::sync::Mutex;
 
 use crate::fields::{FAMILIES, Family, Numbers, Volume};
 use glam::Vec3;
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
 use isostudy_extract::{
     Aabb, Arrangement, BoxGrid, CellBox, Chunk, ChunkError, ChunkExtractor, ChunkSettings, Clustering,
-    Execution, ExtractError, ExtractSettings, Lattice, Method, Placement, Positions, Source, Tetrahedra,
-    Topology, WeldError, extract, weld_chunks,
+    Execution, ExtractError, Method, Placement, Positions, Source, Tetrahedra, Topology, WeldError,
+    weld_chunks,
 };
 use isostudy_field::{Asteroid, Sphere, StudyField};
 use isostudy_mesh::{Bounds, TriangleMesh};

@@ -1,10 +1,8 @@
 //! Lattice sizes, and every way to ask for an impossible one.
 
 use glam::Vec3;
-use isostudy_extract::{
-    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Lattice, LatticeError, Positions,
-    extract,
-};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Clustering, Execution, ExtractError, LatticeError, Positions};
 use isostudy_field::{Sphere, StudyField};
 use isostudy_mesh::Bounds;
 

@@ -5,10 +5,8 @@
 use std::collections::HashMap;
 
 use glam::Vec3;
-use isostudy_extract::{
-    Arrangement, Clustering, Counts, Execution, ExtractSettings, Extraction, Lattice, Positions, Topology,
-    extract,
-};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Clustering, Counts, Execution, Extraction, Positions, Topology};
 use isostudy_field::{Asteroid, Sphere, StudyField};
 use isostudy_mesh::{Bounds, TriangleMesh};
 

@@ -5,10 +5,10 @@ use std::collections::{HashMap, HashSet};
 use crate::fields::{FAMILIES, Family, Numbers, Volume};
 use crate::warp_rules::{ONE, Place, WARP, alpha, mesh_of, offsets, plus};
 use glam::{DVec3, Vec3};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
 use isostudy_extract::{
     Arrangement, BoxGrid, CellBox, ChunkExtractor, ChunkSettings, Clustering, Execution, ExtractError,
-    ExtractSettings, Extractor, Lattice, Method, Placement, Positions, Source, Tetrahedra, Topology, extract,
-    weld_chunks,
+    Extractor, Method, Placement, Positions, Source, Tetrahedra, Topology, weld_chunks,
 };
 use isostudy_field::{Asteroid, Sphere, StudyField};
 use isostudy_mesh::{Bounds, TriangleMesh};

@@ -10,6 +10,7 @@ use isostudy_mesh::Bounds;
 use super::cut::{Cut, Step, turn};
 use super::grid::Coordinates;
 use super::{CellStreamer, dense};
+use crate::by_lattice::{ExtractSettings, Lattice};
 use crate::clock::Moment;
 use crate::fields::{FAMILIES, Family, Numbers, Volume};
 use crate::lattice::Border;
@@ -17,10 +18,7 @@ use crate::placement::spot::tests::normal_lies_between;
 use crate::slabs::Run;
 use crate::source::{Request, Sampler};
 use crate::surface::trace::Trace;
-use crate::{
-    Arrangement, CellBox, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Lattice,
-    Placement, Topology,
-};
+use crate::{Arrangement, CellBox, Clustering, Execution, ExtractError, Extraction, Placement, Topology};
 use isostudy_field::{Asteroid, Beyond, Gyroid, MeshDistance, Sphere, StudyField, VolumeField};
 
 const BOTH: [Arrangement; 2] = [Arrangement::FiveTetrahedra, Arrangement::FaceCentred];
@@ -266,7 +264,8 @@ fn fields_with_bounds_give_the_stored_mesh() {
     let rough = Asteroid { amplitude: 0.6, gain: 0.5, ..Asteroid::default() };
     let coarse = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.1).unwrap();
     let solid =
-        crate::extract(&rough, &coarse, &ExtractSettings::default(), &Execution { threads: 1 }).unwrap();
+        crate::by_lattice::extract(&rough, &coarse, &ExtractSettings::default(), &Execution { threads: 1 })
+            .unwrap();
     let distance = MeshDistance::try_new(&solid.mesh).unwrap();
     let samples = |n: usize| {
         let at = |i: usize| i as f32 / (n - 1) as f32 * 2.0 - 1.0;
@@ -365,7 +364,7 @@ fn far_from_the_surface_nothing_is_sampled() {
         let lattice = Lattice::try_new(arrangement, bounds, 2.0 / 96.0).unwrap();
         let settings = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
         let taken = |field: &Counting<Sphere>| {
-            crate::extract(field, &lattice, &settings, &Execution { threads: 1 }).unwrap();
+            crate::by_lattice::extract(field, &lattice, &settings, &Execution { threads: 1 }).unwrap();
             field.1.load(Ordering::Relaxed) as f64 / lattice.needed_samples() as f64
         };
         let taken = taken(&Counting(Sphere { radius: 0.8 }, AtomicUsize::new(0)));
