@@ -103,24 +103,21 @@ struct Net<'a> {
 }
 
 /// Buffers of one thread.
+#[derive(Default)]
 pub(crate) struct Workspace {
     samples: Samples,
     records: Records<Record>,
-    plans: Plans,
+    /// Those of a table, once there is one.
+    plans: Option<Plans>,
     tangents: Known,
 }
 
 impl Streamed for Net<'_> {
     type Workspace = Workspace;
 
-    fn workspace(&self) -> Workspace {
-        let (samples, records, tangents) = Default::default();
-        Workspace { samples, records, plans: Plans::new(self.table), tangents }
-    }
-
     fn fit(&self, workspace: &mut Workspace) -> Result<(), TryReserveError> {
-        if !std::ptr::eq(workspace.plans.table, self.table) {
-            workspace.plans = Plans::new(self.table);
+        if workspace.plans.as_ref().is_none_or(|plans| !std::ptr::eq(plans.table, self.table)) {
+            workspace.plans = Some(Plans::new(self.table));
         }
         let Sampling { grid, source, .. } = self.sampling;
         workspace.samples.fit(grid, source, SLOTS)?;
@@ -172,6 +169,7 @@ impl Net<'_> {
     fn place(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
         let Self { sampling: Sampling { grid, source, .. }, by_planes, ref placer, .. } = *self;
         let Workspace { samples, records, plans, tangents } = &mut *slab.workspace;
+        let plans = plans.as_mut().expect("there is room for it");
         let pass = VertexPass { grid, samples, values: samples.values(grid, source), placer };
         if layer == lowest_numbered(&slab.own) {
             tangents.iter_mut().for_each(HashMap::clear);
@@ -189,6 +187,7 @@ impl Net<'_> {
     fn join(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
         let (grid, level) = (self.sampling.grid, self.by_planes.map(|(_, level)| level));
         let Workspace { samples, records, plans, .. } = &*slab.workspace;
+        let plans = plans.as_ref().expect("there is room for it");
         let pass = QuadPass { grid, samples, plans, records, positions: &slab.vertices.positions, level };
         let mut crossings = pass.layer(layer, &mut slab.piece.surface)?;
         if layer == slab.own.start {

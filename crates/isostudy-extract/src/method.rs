@@ -207,14 +207,10 @@ impl Method {
             return Ok(None);
         }
         let lattice = grid.lattice(Arrangement::SimpleCubic)?;
-        let counts = lattice.cells().map(|n| n as usize + 1);
-        let first = lattice.origin();
-        let axis = |axis: usize| -> Vec<f32> {
-            let at =
-                |i: usize| lattice.coordinate(axis, 2 * (i64::from(first[axis]) + i as i64), Border::OnBox);
-            (0..counts[axis]).map(at).collect()
-        };
-        let [x, y, z] = [axis(0), axis(1), axis(2)];
+        let counts = lattice.stored_grid().map(|n| n as usize);
+        let mut at = [const { Vec::new() }; 3];
+        lattice.refit_in_line(Border::OnBox, &mut at).expect("samples take more room");
+        let [x, y, z] = at;
         let mut samples = vec![0.0; counts.iter().product()];
         for (row, values) in samples.chunks_exact_mut(counts[0]).enumerate() {
             field.sample_row(&x, y[row % counts[1]], z[row / counts[1]], values);

@@ -49,10 +49,7 @@ pub(crate) struct Run<'a> {
 /// What all slabs of an extraction share.
 pub(crate) trait Streamed: Sync + Sized {
     /// Buffers of one thread, a few layers each, kept between slabs and between extractions.
-    type Workspace: Send;
-
-    /// A workspace without room.
-    fn workspace(&self) -> Self::Workspace;
+    type Workspace: Send + Default;
 
     /// Makes room; keeps what is large enough.
     fn fit(&self, workspace: &mut Self::Workspace) -> Result<(), TryReserveError>;
@@ -97,7 +94,7 @@ pub(crate) fn in_slabs<S: Streamed>(
     let Run { request, progress, mut trace, extraction } = run;
     let Request { lattice, control, start, .. } = *request;
     let (threads, slabs) = threads_and_slabs(control.threads.count(), lattice.stored_grid()[2] as usize);
-    workspaces.resize_with(threads, || of.workspace());
+    workspaces.resize_with(threads, S::Workspace::default);
     pieces.resize_with(slabs, Piece::default);
     for workspace in &mut *workspaces {
         of.fit(workspace).map_err(|_| out_of_memory(request, times))?;

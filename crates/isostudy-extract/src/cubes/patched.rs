@@ -54,10 +54,6 @@ pub(crate) struct Workspace {
 impl Streamed for Patched<'_> {
     type Workspace = Workspace;
 
-    fn workspace(&self) -> Workspace {
-        Workspace::default()
-    }
-
     fn fit(&self, workspace: &mut Workspace) -> Result<(), TryReserveError> {
         let Sampling { grid, source, .. } = self.sampling;
         workspace.samples.fit(grid, source, SLOTS)?;

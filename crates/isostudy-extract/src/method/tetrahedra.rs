@@ -40,19 +40,6 @@ pub(super) const PRESETS: &[Preset] = &[
     published("sp-published", "simple cubic, edge collapse, as published", SimpleCubic, EdgeCollapse),
 ];
 
-/// With the library's defaults, which `defaults_are_those_of_the_library` holds to.
-const fn settings(arrangement: Arrangement, clustering: Clustering) -> Tetrahedra {
-    Tetrahedra {
-        arrangement,
-        clustering,
-        topology: Topology::Guarded,
-        positions: Positions::Indexed,
-        placement: Placement::MeanOfCrossings,
-        refine_crossings: false,
-        edge_clamp: 0.0,
-    }
-}
-
 const fn plain(
     id: &'static str,
     label: &'static str,
@@ -60,7 +47,7 @@ const fn plain(
     clustering: Clustering,
     source: &'static str,
 ) -> Preset {
-    Preset { id, label, method: Method::Tetrahedra(settings(arrangement, clustering)), source }
+    Preset { id, label, method: Method::Tetrahedra(Tetrahedra { clustering, ..Tetrahedra::new(arrangement) }), source }
 }
 
 const fn placed(
@@ -69,7 +56,7 @@ const fn placed(
     arrangement: Arrangement,
     placement: Placement,
 ) -> Preset {
-    let method = Tetrahedra { placement, ..settings(arrangement, Integrated) };
+    let method = Tetrahedra { placement, ..Tetrahedra::new(arrangement) };
     Preset { id, label, method: Method::Tetrahedra(method), source: PLACED }
 }
 
@@ -81,7 +68,7 @@ const fn published(
     clustering: Clustering,
 ) -> Preset {
     let (topology, positions) = (Topology::Published, Positions::Accumulated { chunks: 16 });
-    let method = Tetrahedra { topology, positions, ..settings(arrangement, clustering) };
+    let method = Tetrahedra { clustering, topology, positions, ..Tetrahedra::new(arrangement) };
     Preset { id, label, method: Method::Tetrahedra(method), source: COSTEN }
 }
 
@@ -112,22 +99,16 @@ pub struct Tetrahedra {
 
 impl Tetrahedra {
     /// An arrangement with the defaults of [`ExtractSettings`].
-    pub fn new(arrangement: Arrangement) -> Self {
-        Self::with(arrangement, &ExtractSettings::default())
-    }
-
-    /// An arrangement with settings, whose isovalue is left out.
-    pub fn with(arrangement: Arrangement, settings: &ExtractSettings) -> Self {
-        let ExtractSettings {
-            isovalue: _,
-            clustering,
-            topology,
-            positions,
-            placement,
-            refine_crossings,
-            edge_clamp,
-        } = *settings;
-        Self { arrangement, clustering, topology, positions, placement, refine_crossings, edge_clamp }
+    pub const fn new(arrangement: Arrangement) -> Self {
+        Self {
+            arrangement,
+            clustering: Integrated,
+            topology: Topology::Guarded,
+            positions: Positions::Indexed,
+            placement: Placement::MeanOfCrossings,
+            refine_crossings: false,
+            edge_clamp: 0.0,
+        }
     }
 
     /// The settings of an extraction.
@@ -296,7 +277,7 @@ mod tests {
     #[test]
     fn defaults_are_those_of_the_library() {
         for arrangement in Arrangement::ALL {
-            assert_eq!(settings(arrangement, Integrated), Tetrahedra::new(arrangement));
+            assert_eq!(Tetrahedra::new(arrangement).settings(0.0), ExtractSettings::default());
         }
     }
 }

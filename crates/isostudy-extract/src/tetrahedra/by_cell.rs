@@ -72,10 +72,6 @@ struct Workspace {
 impl Streamed for ByCell<'_> {
     type Workspace = Workspace;
 
-    fn workspace(&self) -> Workspace {
-        Workspace::default()
-    }
-
     fn fit(&self, workspace: &mut Workspace) -> Result<(), TryReserveError> {
         workspace.samples.fit(self.grid, self.request.source)?;
         workspace.records.fit(self.grid)

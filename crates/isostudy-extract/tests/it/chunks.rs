@@ -33,7 +33,18 @@ fn all_settings(arrangement: Arrangement) -> impl Iterator<Item = ExtractSetting
 }
 
 fn try_chunks_of(lattice: &Lattice, settings: &ExtractSettings) -> Result<ChunkExtractor, ChunkError> {
-    let method = Method::Tetrahedra(Tetrahedra::with(lattice.arrangement(), settings));
+    let ExtractSettings { clustering, topology, positions, placement, refine_crossings, edge_clamp, .. } =
+        *settings;
+    let arrangement = lattice.arrangement();
+    let method = Method::Tetrahedra(Tetrahedra {
+        arrangement,
+        clustering,
+        topology,
+        positions,
+        placement,
+        refine_crossings,
+        edge_clamp,
+    });
     let settings = ChunkSettings::default().with_isovalue(settings.isovalue);
     ChunkExtractor::in_box(&BoxGrid::from(lattice), &method, &settings)
 }

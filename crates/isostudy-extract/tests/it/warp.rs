@@ -249,7 +249,11 @@ fn chunks_weld_to_the_whole() {
                 continue;
             }
             let whole = mesh_of(&volume, &settings);
-            let method = Method::Tetrahedra(Tetrahedra::with(Arrangement::BodyCentred, &settings));
+            let method = Method::Tetrahedra(Tetrahedra {
+                clustering: Clustering::Warp,
+                placement,
+                ..Tetrahedra::new(Arrangement::BodyCentred)
+            });
             let grid = BoxGrid::from(&volume.lattice());
             let mut chunks = ChunkExtractor::in_box(&grid, &method, &ChunkSettings::default()).unwrap();
             let boxes: Vec<CellBox> = chunks.grid(4).collect();

@@ -8,12 +8,10 @@ use glam::Vec3;
 use isostudy_mesh::Bounds;
 
 use super::cut::{Cut, Step, turn};
-use super::grid::Coordinates;
 use super::{CellStreamer, dense};
 use crate::by_lattice::{ExtractSettings, Lattice};
 use crate::clock::Moment;
 use crate::fields::{FAMILIES, Family, Numbers, Volume};
-use crate::lattice::Border;
 use crate::placement::spot::tests::normal_lies_between;
 use crate::slabs::Run;
 use crate::source::{Request, Sampler};
@@ -161,9 +159,8 @@ fn check(
     all: impl Iterator<Item = ExtractSettings>,
     what: &dyn std::fmt::Debug,
 ) {
-    let cut = Cut::of(lattice.arrangement());
     for settings in all {
-        let coordinates = Coordinates::new(lattice, &cut, Border::of(&settings)).unwrap();
+        let coordinates = dense::coordinates(lattice, &settings);
         let samples = dense::samples(field, &coordinates);
         let (expected, trace) = dense::extract(field, lattice, &settings);
         let calls = settings.refine_crossings || settings.placement.calls_the_field();

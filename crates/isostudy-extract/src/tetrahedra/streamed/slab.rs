@@ -56,10 +56,6 @@ impl<R: ClusterRule> Points<'_, R> {
 impl<R: ClusterRule> Streamed for Points<'_, R> {
     type Workspace = Workspace;
 
-    fn workspace(&self) -> Workspace {
-        Workspace::default()
-    }
-
     fn fit(&self, workspace: &mut Workspace) -> Result<(), TryReserveError> {
         let slots = self.grid.slots() + self.lead();
         if matches!(self.request.source, Sampler::Field(_)) {
