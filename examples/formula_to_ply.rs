@@ -7,7 +7,8 @@ use std::error::Error;
 use std::fs::File;
 
 use isostudy_expression::Expression;
-use isostudy_extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Execution};
 use isostudy_field::Negated;
 use isostudy_mesh::{Bounds, glam::Vec3, topology::topology, write_ply};
 

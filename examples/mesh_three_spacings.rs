@@ -7,7 +7,8 @@ use std::error::Error;
 use std::fs::{File, read};
 use std::path::Path;
 
-use isostudy_extract::{Arrangement, Execution, ExtractSettings, Extractor, Lattice, Source};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice};
+use isostudy_extract::{Arrangement, Execution, Extractor, Source};
 use isostudy_field::{Holes, MeshDistance};
 use isostudy_mesh::{MeshFormat, quality::quality, weld};
 

@@ -6,7 +6,8 @@ use std::env::args;
 use std::error::Error;
 use std::fs::File;
 
-use isostudy_extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Execution};
 use isostudy_field::{Beyond, VolumeField};
 use isostudy_mesh::write_glb;
 

@@ -3,7 +3,7 @@
 
 use crate::command::Folder;
 use crate::study_page::{Row, Section, sections};
-use isostudy_extract::{Method, presets};
+use isostudy_extract::{Method, kinds, presets};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -247,42 +247,50 @@ fn quoted(message: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_page_has_the_keys_and_names_of_extractors() {
-    has_the_keys_and_names_of("tetrahedra", Some(("arrangement", "body-centred")), 5);
-    has_the_keys_and_names_of("cubes", None, 3);
-    has_the_keys_and_names_of("snap-cubes", None, 1);
-    has_the_keys_and_names_of("macet", None, 2);
-    has_the_keys_and_names_of("surface-nets", None, 0);
-    has_the_keys_and_names_of("dual-contouring", None, 0);
-    has_the_keys_and_names_of("continuation", None, 1);
+fn the_page_has_the_keys_and_names_of_every_kind_of_method() {
+    let on_the_page = sections().into_iter().filter(|section| section.table == "methods.recipe");
+    let on_the_page: BTreeSet<String> = on_the_page.filter_map(|section| section.kind).collect();
+    // A study hands the last two on to others.
+    let all = kinds().iter().map(|kind| kind.name).chain(["program", "meshes"]);
+    assert_eq!(on_the_page, all.map(str::to_owned).collect());
+    for kind in kinds() {
+        has_the_keys_and_names_of(kind.name);
+    }
 }
 
-fn has_the_keys_and_names_of(kind: &str, needed: Option<(&str, &str)>, names: usize) {
+fn has_the_keys_and_names_of(kind: &str) {
     let section = section("methods.recipe", kind);
     let read = |keys: Table| toml::Value::Table(keys).try_into::<Method>();
     let example: Table = section.examples[0].parse().unwrap();
     let recipe = example["recipe"].as_table().unwrap().clone();
-    assert!(read(recipe.clone()).is_ok());
-    let with = |key: &str, value: toml::Value| {
+    assert!(read(recipe.clone()).is_ok(), "{kind}");
+    let refused = |key: &str, value: toml::Value| {
         let mut recipe = recipe.clone();
         recipe.insert(key.into(), value);
-        read(recipe).map_err(|error| error.message().to_owned())
+        read(recipe).unwrap_err().message().to_owned()
     };
-    let known = quoted(&with("no_such_key", 1.into()).unwrap_err());
-    assert_eq!(keys(&section), known.into_iter().collect());
-    let named: Vec<&Row> = section.rows.iter().filter(|row| row.holds == "name").collect();
-    assert_eq!(named.len(), names);
-    for row in named {
-        assert_eq!(row.names(), quoted(&with(&row.key, "no-such-name".into()).unwrap_err()), "{}", row.key);
+    let known = quoted(&refused("no_such_key", 1.into()));
+    assert_eq!(keys(&section), known.into_iter().collect(), "{kind}");
+    for row in &section.rows {
+        let error = refused(&row.key, "no-such-name".into());
+        let takes_a_name = error.starts_with("unknown variant");
+        assert_eq!(row.holds == "name", takes_a_name, "{kind}: {}: {error}", row.key);
+        if takes_a_name {
+            assert_eq!(row.names(), quoted(&error), "{kind}: {}", row.key);
+        }
     }
-    // What is left out is what the page says.
-    let least = [("kind", kind)].into_iter().chain(needed);
-    let mut least: Table = least.map(|(key, value)| (key.to_owned(), value.into())).collect();
+    // What is left out is what the page says, and what is needed cannot be.
+    let mut least = Table::from_iter([("kind".to_owned(), kind.into())]);
+    for Row { key, .. } in section.rows.iter().filter(|row| row.is_needed()) {
+        let error = read(least.clone()).unwrap_err();
+        assert!(error.message().contains(key.as_str()), "{kind}: {key}: {error}");
+        least.insert(key.clone(), recipe[key].clone());
+    }
     let left_out = read(least.clone()).unwrap();
     for row in section.rows.iter().filter(|row| !row.is_needed()) {
         least.insert(row.key.clone(), row.default.trim_matches('`').parse().unwrap());
     }
-    assert_eq!(read(least).unwrap(), left_out);
+    assert_eq!(read(least).unwrap(), left_out, "{kind}");
 }
 
 #[test]

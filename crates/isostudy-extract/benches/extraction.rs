@@ -14,9 +14,9 @@ use bunny::{BOX, bunny};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use glam::Vec3;
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice};
 use isostudy_extract::{
-    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, Placement, Source,
-    StageTimes,
+    Arrangement, Clustering, Execution, Extraction, Extractor, Placement, Source, StageTimes,
 };
 use isostudy_field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 use isostudy_mesh::Bounds;

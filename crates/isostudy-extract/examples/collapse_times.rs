@@ -3,7 +3,8 @@
 //! as the lattice).
 
 use glam::Vec3;
-use isostudy_extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, extract};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Clustering, Execution};
 use isostudy_field::{Asteroid, Beyond, StudyField, VolumeField};
 use isostudy_mesh::{Bounds, TriangleMesh};
 

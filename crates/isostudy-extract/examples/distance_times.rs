@@ -2,7 +2,8 @@
 //! surface. Arguments: samples, repetitions.
 
 use glam::Vec3;
-use isostudy_extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Execution};
 use isostudy_field::{Asteroid, Sphere, StudyField};
 use isostudy_mesh::Bounds;
 use isostudy_mesh::metro::{Amount, Sampling, Surface};

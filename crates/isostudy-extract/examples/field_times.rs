@@ -6,7 +6,8 @@ mod bunny;
 
 use bunny::{BOX, bunny};
 use glam::Vec3;
-use isostudy_extract::{Arrangement, Execution, ExtractSettings, Extraction, Extractor, Lattice, Source};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice};
+use isostudy_extract::{Arrangement, Execution, Extraction, Extractor, Source};
 use isostudy_field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 use isostudy_mesh::Bounds;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -2,7 +2,8 @@
 //! Arguments: cells along an axis, threads, radius in a box from -1 to 1.
 
 use glam::Vec3;
-use isostudy_extract::{Arrangement, Execution, ExtractSettings, Extractor, Lattice, Source};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice};
+use isostudy_extract::{Arrangement, Execution, Extractor, Source};
 use isostudy_field::{Sphere, StudyField};
 use isostudy_mesh::Bounds;
 use std::io::IsTerminal;

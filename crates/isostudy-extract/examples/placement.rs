@@ -8,9 +8,9 @@ mod bunny;
 
 use bunny::{BOX, bunny};
 use glam::Vec3;
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice};
 use isostudy_extract::{
-    Arrangement, BoxGrid, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, Placement,
-    Source, accuracy,
+    Arrangement, BoxGrid, Clustering, Execution, Extraction, Extractor, Placement, Source, accuracy,
 };
 use isostudy_field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 use isostudy_mesh::Bounds;

@@ -5,9 +5,8 @@ mod given;
 
 use given::{cpu_ms, samples};
 use glam::Vec3;
-use isostudy_extract::{
-    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Extractor, Lattice, Source,
-};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice};
+use isostudy_extract::{Arrangement, Clustering, Execution, Extraction, Extractor, Source};
 use isostudy_field::{Asteroid, Sphere, StudyField};
 use isostudy_mesh::Bounds;
 

@@ -3,7 +3,8 @@
 //! `cargo run --release -p isostudy-extract --example topology`
 
 use glam::Vec3;
-use isostudy_extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, Topology, extract};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Clustering, Execution, Topology};
 use isostudy_field::{Asteroid, Sphere, StudyField};
 use isostudy_mesh::quality::{TriangleQuality, quality};
 use isostudy_mesh::topology::topology;

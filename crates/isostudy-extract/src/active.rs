@@ -25,8 +25,8 @@ mod bricks;
 mod spans;
 
 use std::collections::TryReserveError;
-use std::error::Error;
-use std::fmt;
+
+use crate::wording::in_words;
 
 pub use bricks::Bricks;
 
@@ -67,20 +67,15 @@ pub enum ActiveError {
     OutOfMemory,
 }
 
-impl fmt::Display for ActiveError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Counts { counts, samples } => write!(
-                f,
-                "{samples} samples, and {counts:?} along the axes; there must be two or more along each, and as many as they make"
-            ),
-            Self::TooManyCells { cells } => write!(f, "{cells} cells; at most {} can be numbered", u32::MAX),
-            Self::OutOfMemory => f.write_str("no memory for the ranges of the cells"),
-        }
+in_words! {
+    ActiveError {
+        Self::Counts { counts, samples } =>
+            "{samples} samples, and {counts:?} along the axes; there must be two or more along each, and as \
+             many as they make";
+        Self::TooManyCells { cells } => "{cells} cells; at most {} can be numbered", u32::MAX;
+        Self::OutOfMemory => "no memory for the ranges of the cells";
     }
 }
-
-impl Error for ActiveError {}
 
 impl From<TryReserveError> for ActiveError {
     fn from(_: TryReserveError) -> Self {

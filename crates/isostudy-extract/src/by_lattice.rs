@@ -23,5 +23,5 @@
 //! [`Extractor::extract_into`](crate::Extractor::extract_into) is the same with buffers that are kept.
 
 pub use crate::extractor::extract;
-pub use crate::lattice::{Lattice, LatticeError};
+pub use crate::lattice::Lattice;
 pub use crate::settings::ExtractSettings;

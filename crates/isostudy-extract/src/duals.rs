@@ -24,7 +24,7 @@ pub(crate) use quads::{ROUND, is_other_better};
 pub(crate) use relaxed::MOST_SMOOTHING;
 pub(crate) use sharp::Sharp;
 
-use std::collections::TryReserveError;
+use std::collections::{HashMap, TryReserveError};
 use std::ops::Range;
 
 use self::plan::{Plans, Table};
@@ -32,14 +32,13 @@ use self::quads::QuadPass;
 use self::tangents::{Known, Tangents};
 use self::vertices::{Record, VertexPass};
 use crate::cubes::Kept;
-use crate::cubes::grid::{CubeGrid, SLOTS};
+use crate::cubes::grid::SLOTS;
 use crate::cubes::records::Records;
 use crate::cubes::sampling::{Samples, Sampling};
 use crate::cubes::vertices::Placer;
 use crate::extraction::ExtractError;
 use crate::sampling::level::Level;
-use crate::slabs::{LayerDone, Pass, Piece, Run, Stage, Streamed, Vertices, stream};
-use crate::source::Request;
+use crate::slabs::{Pass, Run, Slab, Stage, Streamed};
 use crate::surface::trace::Trace;
 
 /// What decides a net.
@@ -87,139 +86,119 @@ fn extract_unmoved(
     let placer = Placer::new(request.lattice, request.settings, None);
     let grid = kept.grid(request, 1)?;
     // By tangent planes, if there is a field to have them.
-    let level = sharp.and(request.level());
-    kept.stream(&Net { grid: &grid, request, table, sharp, level, placer }, 1, workspaces, run)?;
+    let by_planes = sharp.zip(request.level());
+    let (source, isovalue) = (request.source, request.settings.isovalue);
+    let sampling = Sampling { grid: &grid, source, isovalue, all_corners: false };
+    kept.stream(&Net { sampling, table, by_planes, placer }, 1, workspaces, run)?;
     kept.keep(grid);
     Ok(())
 }
 
 /// What all slabs of an extraction share.
 struct Net<'a> {
-    grid: &'a CubeGrid<'a>,
-    request: &'a Request<'a>,
+    sampling: Sampling<'a>,
     table: &'static Table,
-    sharp: Option<Sharp>,
-    level: Option<Level<'a>>,
+    by_planes: Option<(Sharp, Level<'a>)>,
     placer: Placer<'a>,
 }
 
 /// Buffers of one thread.
+#[derive(Default)]
 pub(crate) struct Workspace {
     samples: Samples,
     records: Records<Record>,
-    plans: Plans,
+    /// Those of a table, once there is one.
+    plans: Option<Plans>,
     tangents: Known,
 }
 
 impl Streamed for Net<'_> {
     type Workspace = Workspace;
 
-    fn workspace(&self) -> Workspace {
-        let (samples, records, tangents) = Default::default();
-        Workspace { samples, records, plans: Plans::new(self.table), tangents }
-    }
-
     fn fit(&self, workspace: &mut Workspace) -> Result<(), TryReserveError> {
-        if !std::ptr::eq(workspace.plans.table, self.table) {
-            workspace.plans = Plans::new(self.table);
+        if workspace.plans.as_ref().is_none_or(|plans| !std::ptr::eq(plans.table, self.table)) {
+            workspace.plans = Some(Plans::new(self.table));
         }
-        workspace.samples.fit(self.grid, self.request.source, SLOTS)?;
-        workspace.records.fit(self.grid)
+        let Sampling { grid, source, .. } = self.sampling;
+        workspace.samples.fit(grid, source, SLOTS)?;
+        workspace.records.fit(grid)
     }
 
     /// The quadrilaterals are those of the edges that begin at the lower points of the layers. Those lead to cells one layer down,
     /// which are the slab's below.
-    fn slab(
-        &self,
-        own: Range<usize>,
-        layer_done: &LayerDone,
-        workspace: &mut Workspace,
-        piece: &mut Piece,
-    ) -> Result<(), ExtractError> {
-        let layers = self.grid.size[2];
-        let numbered = own.start.saturating_sub(1)..own.end;
+    fn passes(&self, own: Range<usize>) -> impl AsRef<[Pass<Self>]> {
+        let layers = self.sampling.grid.size[2];
+        let numbered = lowest_numbered(&own)..own.end;
         let filled = numbered.start..own.end + 1;
         let sided = numbered.start.saturating_sub(1)..layers.min(own.end + 2);
-        let passes = [
-            Pass { stage: Stage::Sampling, behind: 0, layers: sided, run: Slab::find_sides },
-            Pass { stage: Stage::Sampling, behind: 1, layers: filled, run: Slab::fill },
-            Pass { stage: Stage::Vertex, behind: 2, layers: numbered, run: Slab::place },
-            Pass { stage: Stage::Geometry, behind: 2, layers: own.clone(), run: Slab::join },
-        ];
-        let Workspace { samples, records, plans, tangents } = workspace;
-        let Request { source, settings, control, .. } = *self.request;
-        let grid = self.grid;
-        let sampling = Sampling { grid, source, isovalue: settings.isovalue, all_corners: false };
-        let tangents = self.level.map(|level| Tangents::new(level, tangents));
-        let vertices = Vertices::within(piece);
-        let mut slab =
-            Slab { of: self, layer_done, sampling, samples, records, plans, tangents, vertices, own };
-        stream(&mut slab, passes, control, piece)?;
-        let mut vertices = slab.vertices;
-        piece.tail = piece.surface.triangles.len();
+        [
+            Pass { stage: Stage::Sampling, behind: 0, layers: sided, run: Self::find_sides },
+            Pass { stage: Stage::Sampling, behind: 1, layers: filled, run: Self::fill },
+            Pass { stage: Stage::Vertex, behind: 2, layers: numbered, run: Self::place },
+            Pass { stage: Stage::Geometry, behind: 2, layers: own, run: Self::join },
+        ]
+    }
+
+    fn end(&self, slab: &mut Slab<Workspace>) {
+        slab.piece.tail = slab.piece.surface.triangles.len();
         // Those of the slab below were needed for diagonals alone.
-        let below = piece.below as usize;
-        vertices.positions.drain(..below);
-        if let Some(keys) = &mut vertices.keys {
+        let below = slab.piece.below as usize;
+        slab.vertices.positions.drain(..below);
+        if let Some(keys) = &mut slab.vertices.keys {
             keys.drain(..below);
         }
-        vertices.give_to(piece);
-        Ok(())
     }
 }
 
-/// A slab on its way.
-struct Slab<'a> {
-    of: &'a Net<'a>,
-    layer_done: &'a LayerDone<'a>,
-    sampling: Sampling<'a>,
-    samples: &'a mut Samples,
-    records: &'a mut Records<Record>,
-    plans: &'a mut Plans,
-    tangents: Option<Tangents<'a>>,
-    vertices: Vertices,
-    own: Range<usize>,
+/// The lowest layer of cells whose vertices a slab places.
+fn lowest_numbered(own: &Range<usize>) -> usize {
+    own.start.saturating_sub(1)
 }
 
-impl Slab<'_> {
-    fn find_sides(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        self.sampling.find_sides(self.samples, layer);
+impl Net<'_> {
+    fn find_sides(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        self.sampling.find_sides(&mut slab.workspace.samples, layer);
         Ok(())
     }
 
-    fn fill(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        self.sampling.fill(self.samples, layer);
+    fn fill(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        self.sampling.fill(&mut slab.workspace.samples, layer);
         Ok(())
     }
 
-    fn place(&mut self, layer: usize, piece: &mut Piece) -> Result<(), ExtractError> {
-        let Net { grid, request, sharp, placer, .. } = self.of;
-        let samples = &*self.samples;
-        let pass = VertexPass { grid, samples, values: samples.values(*grid, request.source), placer };
-        let by_planes = sharp.zip(self.tangents.as_mut());
-        let cells = pass.layer(layer, by_planes, self.plans, self.records, &mut self.vertices)?;
-        self.vertices.check(request.most_vertices)?;
-        match self.own.contains(&layer) {
-            true => piece.surface.cells_visited += cells,
-            false => piece.below = self.vertices.numbered,
+    fn place(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        let Self { sampling: Sampling { grid, source, .. }, by_planes, ref placer, .. } = *self;
+        let Workspace { samples, records, plans, tangents } = &mut *slab.workspace;
+        let plans = plans.as_mut().expect("there is room for it");
+        let pass = VertexPass { grid, samples, values: samples.values(grid, source), placer };
+        if layer == lowest_numbered(&slab.own) {
+            tangents.iter_mut().for_each(HashMap::clear);
+        }
+        let mut tangents = by_planes.map(|(sharp, level)| (sharp, Tangents::new(level, tangents, layer)));
+        let by_planes = tangents.as_mut().map(|(sharp, tangents)| (*sharp, tangents));
+        let cells = pass.layer(layer, by_planes, plans, records, &mut slab.vertices)?;
+        match slab.own.contains(&layer) {
+            true => slab.piece.surface.cells_visited += cells,
+            false => slab.piece.below = slab.vertices.numbered,
         }
         Ok(())
     }
 
-    fn join(&mut self, layer: usize, piece: &mut Piece) -> Result<(), ExtractError> {
-        let Net { grid, level, .. } = *self.of;
-        let Self { samples, records, plans, vertices, .. } = self;
-        let pass = QuadPass { grid, samples, plans, records, positions: &vertices.positions, level };
-        let mut crossings = pass.layer(layer, &mut piece.surface)?;
-        if layer == self.own.start {
+    fn join(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        let (grid, level) = (self.sampling.grid, self.by_planes.map(|(_, level)| level));
+        let Workspace { samples, records, plans, .. } = &*slab.workspace;
+        let plans = plans.as_ref().expect("there is room for it");
+        let pass = QuadPass { grid, samples, plans, records, positions: &slab.vertices.positions, level };
+        let mut crossings = pass.layer(layer, &mut slab.piece.surface)?;
+        if layer == slab.own.start {
             // Only the lowest points have quadrilaterals with vertices of the slab below.
-            piece.head = piece.surface.triangles.len();
+            slab.piece.head = slab.piece.surface.triangles.len();
         }
         if layer + 2 == grid.size[2] {
             crossings += pass.crossings(layer + 1);
         }
-        vertices.crossing_ends += 2 * crossings;
-        (self.layer_done)();
+        slab.vertices.crossing_ends += 2 * crossings;
+        (slab.layer_done)();
         Ok(())
     }
 }

@@ -1,8 +1,6 @@
 //! What an extraction gives: the surface, counts, times, errors.
 
 use std::collections::TryReserveError;
-use std::error::Error;
-use std::fmt;
 use std::time::Duration;
 
 use isostudy_mesh::TriangleMesh;
@@ -10,6 +8,7 @@ use isostudy_mesh::TriangleMesh;
 use crate::lattice::{Arrangement, CellBox, Lattice};
 use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topology};
 use crate::surface::triangulation::Triangulation;
+use crate::wording::in_words;
 
 /// A surface, what it took and what was seen on the way.
 #[derive(Debug, Clone, Default)]
@@ -196,60 +195,35 @@ pub enum ExtractError {
     },
 }
 
-impl fmt::Display for ExtractError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Isovalue { value } => write!(f, "isovalue must be finite, not {value}"),
-            Self::Grid(error) => error.fmt(f),
-            Self::NoChunks => f.write_str("accumulated positions need at least one chunk of layers"),
-            Self::OutOfMemory { bytes } => write!(f, "no memory for the {bytes} bytes of the lattice"),
-            Self::NoMemoryForMesh => f.write_str("no memory for a mesh this large"),
-            Self::SampleCount { given, wanted } => write!(f, "{given} samples for a lattice of {wanted}"),
-            Self::BrickCounts { given, wanted } => {
-                write!(f, "bricks of {given:?} samples for a lattice of {wanted:?}")
-            }
-            Self::Window { given, wanted } => {
-                write!(f, "samples of the cells {given:?} for a lattice of {wanted:?}")
-            }
-            Self::ArrangementClustering { arrangement, clustering } => write!(
-                f,
-                "{clustering} clustering does not go with {arrangement}: none and edge-collapse do, integrated and integrated-collapse go \
-                 with body-centred and simple-cubic, and warp with body-centred"
-            ),
-            Self::ArrangementAccumulated { arrangement } => write!(
-                f,
-                "{arrangement} has indexed positions only: accumulated ones go with body-centred and simple-cubic"
-            ),
-            Self::EdgeClamp { edge_clamp } => write!(
-                f,
-                "edge_clamp = {edge_clamp:?}: must be 0 or more and below 0.5, in lengths of a lattice edge"
-            ),
-            Self::Warp { with } => write!(
-                f,
-                "warp clustering does not go with {with}: it has guarded topology, indexed positions, crossings where they are interpolated, and any placement \
-                 but curvature-weighted"
-            ),
-            Self::SamplesAccumulated => f.write_str("given samples have no accumulated positions"),
-            Self::PlacementNeedsField { placement, refine_crossings } => write!(
-                f,
-                "given samples say nothing between them: {placement:?}{} needs the field",
-                if *refine_crossings { " with refined crossings" } else { "" }
-            ),
-            Self::Cancelled => f.write_str("the extraction was cancelled"),
-            Self::Threads { threads, reason } => {
-                write!(f, "cannot start {threads} sampling threads: {reason}")
-            }
-            Self::TooManyVertices { limit } => write!(f, "the surface has more than {limit} vertices"),
-        }
+in_words! {
+    ExtractError {
+        Self::Isovalue { value } => "isovalue must be finite, not {value}";
+        Self::Grid(error) => "{error}";
+        Self::NoChunks => "accumulated positions need at least one chunk of layers";
+        Self::OutOfMemory { bytes } => "no memory for the {bytes} bytes of the lattice";
+        Self::NoMemoryForMesh => "no memory for a mesh this large";
+        Self::SampleCount { given, wanted } => "{given} samples for a lattice of {wanted}";
+        Self::BrickCounts { given, wanted } => "bricks of {given:?} samples for a lattice of {wanted:?}";
+        Self::Window { given, wanted } => "samples of the cells {given:?} for a lattice of {wanted:?}";
+        Self::ArrangementClustering { arrangement, clustering } =>
+            "{clustering} clustering does not go with {arrangement}: none and edge-collapse do, integrated \
+             and integrated-collapse go with body-centred and simple-cubic, and warp with body-centred";
+        Self::ArrangementAccumulated { arrangement } =>
+            "{arrangement} has indexed positions only: accumulated ones go with body-centred and simple-cubic";
+        Self::EdgeClamp { edge_clamp } =>
+            "edge_clamp = {edge_clamp:?}: must be 0 or more and below 0.5, in lengths of a lattice edge";
+        Self::Warp { with } =>
+            "warp clustering does not go with {with}: it has guarded topology, indexed positions, crossings \
+             where they are interpolated, and any placement but curvature-weighted";
+        Self::SamplesAccumulated => "given samples have no accumulated positions";
+        Self::PlacementNeedsField { placement, refine_crossings } =>
+            "given samples say nothing between them: {placement:?}{} needs the field",
+            if *refine_crossings { " with refined crossings" } else { "" };
+        Self::Cancelled => "the extraction was cancelled";
+        Self::Threads { threads, reason } => "cannot start {threads} sampling threads: {reason}";
+        Self::TooManyVertices { limit } => "the surface has more than {limit} vertices";
     }
-}
-
-impl Error for ExtractError {}
-
-impl From<crate::lattice::LatticeError> for ExtractError {
-    fn from(error: crate::lattice::LatticeError) -> Self {
-        Self::Grid(error)
-    }
+    from { crate::lattice::LatticeError => Self::Grid }
 }
 
 /// What memory is asked for beyond that of the lattice is the mesh's.

@@ -30,7 +30,8 @@ pub(crate) use ways::Way;
 /// outgrow those before it; an [`Asteroid`](isostudy_field::Asteroid) other than the one before has its tables made again.
 ///
 /// ```
-/// use isostudy_extract::{Arrangement, Execution, ExtractSettings, Extraction, Extractor, Lattice};
+/// use isostudy_extract::by_lattice::{ExtractSettings, Lattice};
+/// use isostudy_extract::{Arrangement, Execution, Extraction, Extractor};
 /// use isostudy_field::{StudyField, Sphere};
 /// # use glam::Vec3;
 /// # use isostudy_mesh::Bounds;
@@ -83,7 +84,7 @@ impl Extractor {
         self
     }
 
-    /// Extracts a surface, as [`extract`](crate::extract).
+    /// Extracts a surface, as [`extract`](crate::by_lattice::extract).
     ///
     /// # Errors
     /// As [`extract_into`](Self::extract_into).
@@ -102,7 +103,7 @@ impl Extractor {
     /// Extracts a surface into `extraction`, whose vectors are used again. After an error it is empty.
     ///
     /// # Errors
-    /// As [`extract`](crate::extract); [`ExtractError::Cancelled`]; [`ExtractError::SampleCount`] when given samples are not as many as the
+    /// As [`extract`](crate::by_lattice::extract); [`ExtractError::Cancelled`]; [`ExtractError::SampleCount`] when given samples are not as many as the
     /// lattice has, [`ExtractError::SamplesAccumulated`] when they come with accumulated positions,
     /// [`ExtractError::PlacementNeedsField`] when they come with a placement that calls the field.
     pub fn extract_into<'c>(
@@ -113,24 +114,21 @@ impl Extractor {
         control: impl Into<Control<'c>>,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
-        let result = self.try_extract_into(source, lattice, settings, None, control.into(), extraction);
-        if result.is_err() {
-            extraction.clear();
-        }
-        result
+        self.extract_by(None, source, lattice, settings, control.into(), extraction)
     }
 
-    /// The same by marching cubes, on the points of a simple cubic lattice.
-    pub(crate) fn extract_cubes_into(
+    /// The same, where there is a way by cubes: on the points of a simple cubic lattice, as corners of cubes that are not cut any
+    /// further.
+    pub(crate) fn extract_by(
         &mut self,
+        way: Option<Way>,
         source: Source,
         lattice: &Lattice,
         settings: &ExtractSettings,
-        way: Way,
         control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
-        let result = self.try_extract_into(source, lattice, settings, Some(way), control, extraction);
+        let result = self.try_extract_into(source, lattice, settings, way, control, extraction);
         if result.is_err() {
             extraction.clear();
         }
@@ -251,7 +249,7 @@ pub fn extract(
 }
 
 impl Lattice {
-    /// What [`extract`](crate::extract) holds of the lattice at a time with these settings:
+    /// What [`extract`](crate::by_lattice::extract) holds of the lattice at a time with these settings:
     /// [`memory_bytes`](Self::memory_bytes) or [`streaming_bytes`](Self::streaming_bytes). The mesh comes on top.
     pub fn memory_bytes_for(&self, settings: &ExtractSettings, execution: &Execution) -> u64 {
         self.memory_bytes_on(settings, Control::from(execution).threads.count())

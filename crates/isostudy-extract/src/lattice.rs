@@ -16,13 +16,13 @@ pub(crate) use directions::{ALL_DIRECTIONS, DIRECTIONS, DirectionSet, Directions
 pub use endless::{Grid, GridError};
 pub(crate) use layout::{Layout, PADDING_LAYERS, PointKind};
 
-use std::error::Error;
 use std::fmt;
 
 use glam::Vec3;
 use isostudy_mesh::Bounds;
 
 use crate::settings::Clustering;
+use crate::wording::in_words;
 
 /// How sample points fill space, and which tetrahedra they make.
 ///
@@ -106,7 +106,7 @@ pub(crate) enum Uniform {
 ///
 /// `cells = ceil((max - min) / spacing)` on each axis, evaluated in `f32`; when it does not divide evenly the
 /// lattice reaches past `max` as published; otherwise the last cubes are thinner, though not below a quarter, which
-/// those before them give up. Nothing is allocated until [`extract`](crate::extract) runs, so a caller can look
+/// those before them give up. Nothing is allocated until [`extract`](crate::by_lattice::extract) runs, so a caller can look
 /// at [`memory_bytes`](Self::memory_bytes) and refuse.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lattice {
@@ -171,34 +171,18 @@ pub enum LatticeError {
     },
 }
 
-impl fmt::Display for LatticeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Spacing { value } => {
-                write!(f, "spacing must be positive and finite, not {}", short(*value))
-            }
-            Self::Bounds { axis, min, max } => write!(
-                f,
-                "bounds along {axis} must be finite with min below max, not {} to {}",
-                short(*min),
-                short(*max)
-            ),
-            Self::TooManyCells { axis, cells, limit } => {
-                write!(f, "{} cells along {axis} exceed the limit of {limit}", short(*cells))
-            }
-            Self::TooManySamples { samples, limit } => {
-                write!(f, "{samples} sample points exceed the limit of {limit}")
-            }
-            Self::OutOfRange { axis, spacing } => write!(
-                f,
-                "spacing {} puts lattice points along {axis} beyond the range of f32",
-                short(*spacing)
-            ),
-        }
+in_words! {
+    LatticeError {
+        Self::Spacing { value } => "spacing must be positive and finite, not {}", short(*value);
+        Self::Bounds { axis, min, max } =>
+            "bounds along {axis} must be finite with min below max, not {} to {}", short(*min), short(*max);
+        Self::TooManyCells { axis, cells, limit } =>
+            "{} cells along {axis} exceed the limit of {limit}", short(*cells);
+        Self::TooManySamples { samples, limit } => "{samples} sample points exceed the limit of {limit}";
+        Self::OutOfRange { axis, spacing } =>
+            "spacing {} puts lattice points along {axis} beyond the range of f32", short(*spacing);
     }
 }
-
-impl Error for LatticeError {}
 
 /// A number in few letters: `0.04`, `-2`, `1e-40`.
 pub(crate) fn short(value: f32) -> String {

@@ -30,7 +30,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Tetrahedra can also be had of a [`Lattice`] of one's own: see [`by_lattice`].
+//! Tetrahedra can also be had of a [`Lattice`](by_lattice::Lattice) of one's own: see [`by_lattice`].
 //!
 //! # Guaranteed
 //!
@@ -42,7 +42,7 @@
 //!   sample points, and the tetrahedra fill the box and nothing else: outermost points lie on its faces, and where the
 //!   spacing does not divide the box, the last cubes along an axis are thinner. So a surface ends at the box as it would
 //!   end at any cut, and a sheet that crosses the box is one component there too.
-//! - The triangles do not depend on where vertices are placed ([`Placement`], [`ExtractSettings::refine_crossings`]),
+//! - The triangles do not depend on where vertices are placed ([`Placement`], [`ExtractSettings::refine_crossings`](by_lattice::ExtractSettings::refine_crossings)),
 //!   unless edges are collapsed; and beside the mean of interpolated crossings none is turned over.
 //! - With [`Topology::Guarded`], the default, and any [`Clustering`]: whatever the samples, the mesh is an oriented
 //!   2-manifold that uses all its vertices, closed where the surface stays clear of the box. No two triangles have
@@ -220,6 +220,7 @@ mod slabs;
 mod source;
 mod surface;
 mod tetrahedra;
+mod wording;
 
 pub use chunks::{
     Chunk, ChunkError, ChunkExtractor, ChunkSettings, Mismatch, Normals, SampleLayout, TooManyVertices,
@@ -231,15 +232,15 @@ pub use cubes::{ContinuedCells, Diagonals, Faces, Flat, Seeds, SeedsError};
 pub use duals::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
 pub use execution::{Control, Jobs, Threads};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, TetrahedraCounts};
-pub use extractor::{Extractor, extract};
+pub use extractor::Extractor;
 pub use isostudy_field::{Aabb, Bound, FieldFault, FromFn, ScalarField, StudyField, check_field, from_fn};
-pub use lattice::{Arrangement, BoxGrid, CellBox, Grid, GridError, Lattice, LatticeError};
+pub use lattice::{Arrangement, BoxGrid, CellBox, Grid, GridError, LatticeError};
 pub use levels::{LevelError, LevelExtractor, LevelSettings, Neighbours};
 pub use measure::{Accuracy, DistanceError, accuracy, distances, normal_errors_deg, triangle_distances};
 pub use method::families::*;
 pub use method::{
     CornerSamples, Kind, Method, MethodError, Preset, Promises, VolumeCells, VolumeCellsError, kinds, presets,
 };
-pub use settings::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology};
+pub use settings::{Clustering, Execution, Placement, Positions, Topology};
 pub use source::Source;
 pub use surface::trace::VertexKey;

@@ -1,22 +1,22 @@
 //! A method as plain data: everything that decides a mesh, but for the field, the grid and the isovalue.
 
-mod of_cubes;
+mod family;
 mod presets;
 mod volume_cells;
 
+use family::Family;
 pub use presets::{Preset, presets};
 pub use volume_cells::{VolumeCells, VolumeCellsError};
 
-use std::error::Error;
 use std::fmt;
 
-use crate::extraction::{ExtractError, Extraction};
+use crate::cubes::cells_otherwise;
+use crate::extraction::{ExtractError, Extraction, check};
 use crate::extractor::Extractor;
-use crate::extractor::Way;
-use crate::lattice::BoxGrid;
-use crate::lattice::{Arrangement, Border, CellBox, LatticeError};
-use crate::settings::{Execution, ExtractSettings};
+use crate::lattice::{Arrangement, Border, BoxGrid, CellBox, Lattice, LatticeError};
+use crate::settings::Execution;
 use crate::source::Source;
+use crate::wording::in_words;
 use isostudy_field::StudyField;
 
 /// Names every family once: its settings, what files call its kind, and the file that has both, with its presets.
@@ -43,7 +43,8 @@ macro_rules! families {
         static KINDS: &[Kind] = &[$(Kind { name: $kind, presets: $file::PRESETS },)*];
 
         impl Method {
-            fn family(&self) -> &dyn Family {
+            /// What its family says of it.
+            pub(crate) fn family(&self) -> &dyn Family {
                 match self {
                     $(Self::$family(of) => of,)*
                 }
@@ -162,18 +163,15 @@ pub enum MethodError {
     Extract(ExtractError),
 }
 
-impl fmt::Display for MethodError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Grid(error) => error.fmt(f),
-            Self::Setting { key, value, allowed } => write!(f, "{key} = {value}: {allowed}"),
-            Self::NeedsField => f.write_str("the method calls the field; samples alone do not suffice"),
-            Self::Extract(error) => error.fmt(f),
-        }
+in_words! {
+    MethodError {
+        Self::Grid(error) => "{error}";
+        Self::Setting { key, value, allowed } => "{key} = {value}: {allowed}";
+        Self::NeedsField => "the method calls the field; samples alone do not suffice";
+        Self::Extract(error) => "{error}";
     }
+    from { LatticeError => Self::Grid, ExtractError => Self::Extract }
 }
-
-impl Error for MethodError {}
 
 impl MethodError {
     /// Refuses a setting that is not what it must be.
@@ -188,23 +186,12 @@ impl MethodError {
     }
 }
 
-impl From<LatticeError> for MethodError {
-    fn from(error: LatticeError) -> Self {
-        Self::Grid(error)
-    }
-}
-
-impl From<ExtractError> for MethodError {
-    fn from(error: ExtractError) -> Self {
-        Self::Extract(error)
-    }
-}
-
 impl Method {
     /// Whether the samples at the corners of cubes are all that the method asks for, so that a volume's own cells will do
     /// ([`VolumeCells`](crate::VolumeCells)).
     pub fn is_of_cubes(&self) -> bool {
-        self.family().is_of_cubes()
+        let family = self.family();
+        family.way().is_some() && !family.calls_the_field_always()
     }
 
     /// The samples at the corners of a grid's cells, where the method takes them; `None` if its sample points are others.
@@ -220,14 +207,10 @@ impl Method {
             return Ok(None);
         }
         let lattice = grid.lattice(Arrangement::SimpleCubic)?;
-        let counts = lattice.cells().map(|n| n as usize + 1);
-        let first = lattice.origin();
-        let axis = |axis: usize| -> Vec<f32> {
-            let at =
-                |i: usize| lattice.coordinate(axis, 2 * (i64::from(first[axis]) + i as i64), Border::OnBox);
-            (0..counts[axis]).map(at).collect()
-        };
-        let [x, y, z] = [axis(0), axis(1), axis(2)];
+        let counts = lattice.stored_grid().map(|n| n as usize);
+        let mut at = [const { Vec::new() }; 3];
+        lattice.refit_in_line(Border::OnBox, &mut at).expect("samples take more room");
+        let [x, y, z] = at;
         let mut samples = vec![0.0; counts.iter().product()];
         for (row, values) in samples.chunks_exact_mut(counts[0]).enumerate() {
             field.sample_row(&x, y[row % counts[1]], z[row / counts[1]], values);
@@ -243,7 +226,7 @@ impl Method {
     /// If there are not as many samples as the counts say.
     pub fn cells_otherwise(&self, counts: [usize; 3], values: &[f32], isovalue: f32) -> Option<u64> {
         assert_eq!(values.len(), counts.iter().product::<usize>(), "samples for the counts");
-        self.family().cells_otherwise(counts, values, isovalue)
+        self.family().rule().map(|rule| cells_otherwise(rule, counts, values, isovalue))
     }
 
     /// The tables by which signs decide triangles, before anything is merged or moved: of the cube; or of the tetrahedra of a cube's
@@ -259,7 +242,10 @@ impl Method {
     /// # Errors
     /// [`MethodError`], which says what is allowed.
     pub fn check(&self, grid: &BoxGrid) -> Result<(), MethodError> {
-        self.family().check(grid)
+        self.family().check_own()?;
+        check(&self.family().settings(0.0), self.family().arrangement())?;
+        self.lattice(grid)?;
+        Ok(())
     }
 
     /// Cells of the grid along x, y and z.
@@ -267,7 +253,7 @@ impl Method {
     /// # Errors
     /// [`LatticeError`] if the grid is not one for this method.
     pub fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError> {
-        self.family().cells(grid)
+        Ok(self.lattice(grid)?.cells())
     }
 
     /// What an extraction holds of the grid at a time, in bytes. The mesh, and what the field holds, come on top.
@@ -275,7 +261,8 @@ impl Method {
     /// # Errors
     /// [`LatticeError`] if the grid is not one for this method.
     pub fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError> {
-        self.family().memory_bytes(grid, execution)
+        let settings = self.family().settings(0.0);
+        Ok(self.family().layers() * self.lattice(grid)?.memory_bytes_for(&settings, execution))
     }
 
     /// What is certain of every mesh.
@@ -303,11 +290,39 @@ impl Method {
         execution: &Execution,
         extraction: &mut Extraction,
     ) -> Result<(), MethodError> {
-        let result = self.family().extract_into(extractor, source, grid, isovalue, execution, extraction);
+        let result = self.try_extract_into(extractor, source, grid, isovalue, execution, extraction);
         if result.is_err() {
             extraction.clear();
         }
         result
+    }
+
+    fn try_extract_into(
+        &self,
+        extractor: &mut Extractor,
+        source: Source,
+        grid: &BoxGrid,
+        isovalue: f32,
+        execution: &Execution,
+        extraction: &mut Extraction,
+    ) -> Result<(), MethodError> {
+        let family = self.family();
+        family.check_own()?;
+        let is_field = matches!(source, Source::Field(_) | Source::Study(_));
+        if family.calls_the_field_always() && !is_field {
+            return Err(MethodError::NeedsField);
+        }
+        let settings = family.settings(isovalue);
+        // Before the lattice, as in `check`.
+        check(&settings, family.arrangement())?;
+        let lattice = self.lattice(grid)?;
+        let control = execution.into();
+        Ok(extractor.extract_by(family.way(), source, &lattice, &settings, control, extraction)?)
+    }
+
+    /// The grid's sample points.
+    fn lattice(&self, grid: &BoxGrid) -> Result<Lattice, LatticeError> {
+        grid.lattice(self.family().arrangement())
     }
 
     /// Extracts the surface where `source` has the isovalue, as [`extract_into`](Self::extract_into).
@@ -326,78 +341,11 @@ impl Method {
         self.extract_into(extractor, source, grid, isovalue, execution, &mut extraction)?;
         Ok(extraction)
     }
-}
-
-/// What only the extractor of chunks asks.
-impl Method {
-    /// How many cells beyond a box's own samples can matter to its chunk; `None` where there is no such number, or there
-    /// are no chunks.
-    pub(crate) fn halo(&self) -> Option<u32> {
-        self.family().halo()
-    }
-
-    /// How a window is extracted, where the method is one that chunks are made by.
-    pub(crate) fn by_window(&self, isovalue: f32) -> Option<ByWindow> {
-        self.family().by_window(isovalue)
-    }
-
-    /// Whether the settings that only its family has are in their ranges.
-    pub(crate) fn check_own(&self) -> Result<(), MethodError> {
-        self.family().check_own()
-    }
-
-    /// Whether samples can never suffice.
-    pub(crate) fn calls_the_field_always(&self) -> bool {
-        self.family().calls_the_field_always()
-    }
 
     /// The cells whose samples can matter to the chunk of a box, in a grid without an end. `None` where that is not known
     /// beforehand: with edge collapse it is the whole piece of surface.
     pub fn window(&self, cells: CellBox) -> Option<CellBox> {
         let everywhere = CellBox { start: [i32::MIN; 3], end: [i32::MAX; 3] };
-        Some(cells.grown(self.halo()?, &everywhere))
+        Some(cells.grown(self.family().halo()?, &everywhere))
     }
-}
-
-/// How the cells of a window are extracted.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct ByWindow {
-    pub(crate) arrangement: Arrangement,
-    pub(crate) settings: ExtractSettings,
-    /// By cubes that are not cut any further, which then are the arrangement's.
-    pub(crate) cubes: Option<Way>,
-    /// How many cells from the rim of a window on its mesh is that of the whole, before vertices are moved or edges
-    /// collapsed.
-    pub(crate) halo: u32,
-}
-
-/// What a family of methods implements; see the functions of [`Method`] with the same names.
-trait Family {
-    /// Whether the settings that only the family has are in their ranges.
-    fn check_own(&self) -> Result<(), MethodError>;
-    /// Whether the field is called between the samples whatever the settings are.
-    fn calls_the_field_always(&self) -> bool;
-    fn check(&self, grid: &BoxGrid) -> Result<(), MethodError>;
-    fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError>;
-    fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError>;
-    fn promises(&self) -> Promises;
-    fn is_for_comparison(&self) -> bool {
-        false
-    }
-    fn is_of_cubes(&self) -> bool;
-    /// Whether the sample points are the corners of cubes, wherever else the field is called.
-    fn has_corners(&self) -> bool;
-    fn cells_otherwise(&self, counts: [usize; 3], values: &[f32], isovalue: f32) -> Option<u64>;
-    fn tables(&self) -> Vec<isostudy_cells::Table>;
-    fn halo(&self) -> Option<u32>;
-    fn by_window(&self, isovalue: f32) -> Option<ByWindow>;
-    fn extract_into(
-        &self,
-        extractor: &mut Extractor,
-        source: Source,
-        grid: &BoxGrid,
-        isovalue: f32,
-        execution: &Execution,
-        extraction: &mut Extraction,
-    ) -> Result<(), MethodError>;
 }

@@ -10,7 +10,7 @@ mod passes;
 mod piece;
 pub(crate) mod window;
 
-pub(crate) use passes::{Pass, Stage, stream};
+pub(crate) use passes::{Pass, Slab, Stage};
 pub(crate) use piece::{Piece, Vertices};
 
 use std::collections::TryReserveError;
@@ -47,26 +47,20 @@ pub(crate) struct Run<'a> {
 }
 
 /// What all slabs of an extraction share.
-pub(crate) trait Streamed: Sync {
+pub(crate) trait Streamed: Sync + Sized {
     /// Buffers of one thread, a few layers each, kept between slabs and between extractions.
-    type Workspace: Send;
-
-    /// A workspace without room.
-    fn workspace(&self) -> Self::Workspace;
+    type Workspace: Send + Default;
 
     /// Makes room; keeps what is large enough.
     fn fit(&self, workspace: &mut Self::Workspace) -> Result<(), TryReserveError>;
 
-    /// Extracts the layers `own`: their triangles, and the vertices of their points but for those of the highest layer, which
+    /// What makes the triangles of the layers `own`, and the vertices of their points but for those of the highest layer, which
     /// may be the next slab's. Vertices are numbered from the slab's first on, so that the numbers of the whole surface are these
-    /// plus a constant. The piece is empty.
-    fn slab(
-        &self,
-        own: Range<usize>,
-        layer_done: &LayerDone,
-        workspace: &mut Self::Workspace,
-        piece: &mut Piece,
-    ) -> Result<(), ExtractError>;
+    /// plus a constant. The first pass comes first at each step.
+    fn passes(&self, own: Range<usize>) -> impl AsRef<[Pass<Self>]>;
+
+    /// What is left to do when the passes are through.
+    fn end(&self, _slab: &mut Slab<Self::Workspace>) {}
 }
 
 /// How many threads there is work for, and how many slabs they share.
@@ -100,7 +94,7 @@ pub(crate) fn in_slabs<S: Streamed>(
     let Run { request, progress, mut trace, extraction } = run;
     let Request { lattice, control, start, .. } = *request;
     let (threads, slabs) = threads_and_slabs(control.threads.count(), lattice.stored_grid()[2] as usize);
-    workspaces.resize_with(threads, || of.workspace());
+    workspaces.resize_with(threads, S::Workspace::default);
     pieces.resize_with(slabs, Piece::default);
     for workspace in &mut *workspaces {
         of.fit(workspace).map_err(|_| out_of_memory(request, times))?;
@@ -125,7 +119,8 @@ pub(crate) fn in_slabs<S: Streamed>(
     let traced = trace.is_some();
     on_slabs(layers, control.threads, workspaces, pieces, |own, workspace, piece| {
         piece.clear(traced);
-        of.slab(own, &layer_done, workspace, piece)
+        let vertices = Vertices::within(piece);
+        Slab { own, workspace, vertices, piece, layer_done: &layer_done }.stream(of, request)
     })?;
     let times = [allocation, streaming.elapsed()];
     assemble(request, pieces, threads, times, trace, extraction)

@@ -4,9 +4,9 @@
 
 use cap::Cap;
 use glam::Vec3;
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice};
 use isostudy_extract::{
-    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extractor, Lattice, Placement,
-    Positions, Source, Topology,
+    Arrangement, Clustering, Execution, ExtractError, Extractor, Placement, Positions, Source, Topology,
 };
 use isostudy_field::{Gyroid, Sphere, StudyField};
 use isostudy_mesh::Bounds;
@@ -52,7 +52,7 @@ fn lattices_cut_by_cubes_take_what_they_say() {
         let fine = Lattice::try_new(arrangement, bounds, 1.0 / 128.0).unwrap();
         for threads in [1, 2] {
             let execution = Execution { threads };
-            let run = || isostudy_extract::extract(sphere, &fine, &settings, &execution);
+            let run = || isostudy_extract::by_lattice::extract(sphere, &fine, &settings, &execution);
             let counts = run().unwrap().counts;
             let bytes = fine.memory_bytes_for(&settings, &execution);
             assert!(
@@ -93,7 +93,7 @@ fn wherever_memory_runs_out_there_is_an_error() {
         placed(Placement::Projected),
         placed(Placement::Relaxed),
     ] {
-        let run = || isostudy_extract::extract(field, &lattice, &settings, &one);
+        let run = || isostudy_extract::by_lattice::extract(field, &lattice, &settings, &one);
         let whole = run().unwrap().mesh;
         let floor = TABLES + lattice.memory_bytes_for(&settings, &one) as usize;
         let enough = (0..).map(|i| (MB / 8) << i).find(|room| within(floor + room, run).is_ok()).unwrap();
@@ -119,9 +119,11 @@ fn a_long_row_takes_what_crosses() {
         let lattice = Lattice::try_new(arrangement, bounds, 1.0).unwrap();
         let (settings, execution) = (ExtractSettings::default(), Execution { threads: 1 });
         let room = lattice.memory_bytes_for(&settings, &execution) as usize;
-        let mesh = within(room + MB, || isostudy_extract::extract(step, &lattice, &settings, &execution))
-            .unwrap()
-            .mesh;
+        let mesh = within(room + MB, || {
+            isostudy_extract::by_lattice::extract(step, &lattice, &settings, &execution)
+        })
+        .unwrap()
+        .mesh;
         assert!(mesh.positions.iter().all(|p| (p.x - 77.3).abs() < 0.6) && !mesh.triangles.is_empty());
     }
 }

@@ -3,10 +3,10 @@
 //! A binary of its own, with one test: the allocator counts for the whole process.
 
 use glam::Vec3;
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice};
 use isostudy_extract::{
     Aabb, Arrangement, Bound, Chunk, ChunkExtractor, ChunkSettings, Clustering, Control, Execution,
-    ExtractSettings, Extraction, Extractor, Grid, Lattice, Method, Normals, ScalarField, Source, Tetrahedra,
-    Topology, presets,
+    Extraction, Extractor, Grid, Method, Normals, ScalarField, Source, Tetrahedra, Topology, presets,
 };
 use isostudy_field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 use isostudy_mesh::Bounds;
@@ -41,7 +41,8 @@ fn cube() -> Bounds {
 fn the_second_volume_of_a_size_allocates_nothing() {
     let coarse = Lattice::try_new(Arrangement::BodyCentred, cube(), 0.2).unwrap();
     let solid =
-        isostudy_extract::extract(&Sphere::default(), &coarse, &ExtractSettings::default(), &ONE).unwrap();
+        isostudy_extract::by_lattice::extract(&Sphere::default(), &coarse, &ExtractSettings::default(), &ONE)
+            .unwrap();
     let fields: [(&str, &dyn StudyField); 4] = [
         ("sphere", &Sphere { radius: 0.9 }),
         ("asteroid", &Asteroid::default()),
@@ -136,7 +137,7 @@ fn a_lattice_cut_by_cubes_takes_what_it_says() {
         let settings = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
         let nothing: &dyn StudyField = &Sphere { radius: -1.0 };
         let region = Region::new(ALLOCATOR);
-        isostudy_extract::extract(nothing, &lattice, &settings, &ONE).unwrap();
+        isostudy_extract::by_lattice::extract(nothing, &lattice, &settings, &ONE).unwrap();
         let (taken, told) = (region.change().bytes_allocated as f64, lattice.streaming_bytes(1) as f64);
         assert!(taken > 0.98 * told && taken < 1.1 * told, "{arrangement:?}: {taken} bytes, {told} told");
     }

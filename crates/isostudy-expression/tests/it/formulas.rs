@@ -1,7 +1,8 @@
 //! What formulas mean, what is no formula, and that ranges hold.
 
 use isostudy_expression::{Expression, ExpressionError};
-use isostudy_extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Execution};
 use isostudy_field::{Negated, StudyField};
 use isostudy_mesh::glam::Vec3;
 use isostudy_mesh::{Bounds, TriangleMesh};

@@ -4,7 +4,8 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use isostudy_expression::{Expression, ExpressionError};
-use isostudy_extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Execution};
 use isostudy_field::{Fractal, NoiseShape, StudyField, noise};
 use isostudy_mesh::Bounds;
 use isostudy_mesh::glam::{DVec3, Vec3};

@@ -1,6 +1,7 @@
 //! What examples that time extraction from samples in memory share.
 
-use isostudy_extract::{Arrangement, Lattice};
+use isostudy_extract::Arrangement;
+use isostudy_extract::by_lattice::Lattice;
 use isostudy_field::StudyField;
 
 /// The field at all points of the lattice, in storage order.

@@ -1,8 +1,6 @@
 //! What is extracted of a box of cells.
 
 use std::collections::TryReserveError;
-use std::error::Error;
-use std::fmt;
 
 use glam::Vec3;
 use isostudy_field::Aabb;
@@ -14,6 +12,7 @@ use crate::lattice::endless::Grid;
 use crate::memory::refill;
 use crate::method::Method;
 use crate::surface::trace::VertexKey;
+use crate::wording::in_words;
 
 /// The surface in a box of cells of a larger lattice: a [`ChunkExtractor`](crate::ChunkExtractor) makes it.
 ///
@@ -82,14 +81,12 @@ pub struct TooManyVertices {
     pub vertices: usize,
 }
 
-impl fmt::Display for TooManyVertices {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { vertices } = self;
-        write!(f, "{vertices} vertices are more than 16-bit indices can name, which is {}", 1 << 16)
+in_words! {
+    TooManyVertices {
+        Self { vertices } =>
+            "{vertices} vertices are more than 16-bit indices can name, which is {}", 1 << 16;
     }
 }
-
-impl Error for TooManyVertices {}
 
 impl Chunk {
     /// Makes room for so many vertices, and for the triangles that as many have: twice as many. For chunks whose room is

@@ -1,14 +1,13 @@
 //! Why a chunk cannot be extracted.
 
 use std::collections::TryReserveError;
-use std::error::Error;
-use std::fmt;
 
 use super::settled::MOST_EXTRA;
 use crate::extraction::ExtractError;
 use crate::lattice::{CellBox, LatticeError};
 use crate::method::MethodError;
 use crate::settings::Placement;
+use crate::wording::in_words;
 
 /// Why a chunk cannot be extracted.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,55 +52,28 @@ pub enum ChunkError {
     Unsettled,
 }
 
-impl fmt::Display for ChunkError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Extract(error) => error.fmt(f),
-            Self::Cells { given, whole } => write!(
-                f,
-                "cells {:?} to {:?} are not a box of the cells {:?} to {:?}",
-                given.start, given.end, whole.start, whole.end
-            ),
-            Self::Window { given, wanted } => write!(
-                f,
-                "samples of the cells {:?} to {:?}, where those of {:?} to {:?} are looked at",
-                given.start, given.end, wanted.start, wanted.end
-            ),
-            Self::EndlessSamples => {
-                f.write_str("a grid without an end has no last sample: give a Source::Window")
-            }
-            Self::EndlessCollapse => f.write_str("edge collapse needs a box"),
-            Self::NormalsNeedField => {
-                f.write_str("samples have no gradient between them: Normals::Field needs a field")
-            }
-            Self::Settings(error) => error.fmt(f),
-            Self::Method => f.write_str("this method makes no chunks"),
-            Self::Accumulated => f.write_str("chunks need indexed positions"),
-            Self::Placement { placement, refine_crossings } => write!(
-                f,
-                "chunks have vertices at the mean of interpolated crossings, projected or relaxed, without edge collapse; not \
-                 {placement:?}{}",
-                if *refine_crossings { " with refined crossings" } else { "" }
-            ),
-            Self::Unsettled => {
-                write!(f, "whether vertices may move depends on others more than {MOST_EXTRA} cells away")
-            }
-        }
+in_words! {
+    ChunkError {
+        Self::Extract(error) => "{error}";
+        Self::Cells { given, whole } =>
+            "cells {:?} to {:?} are not a box of the cells {:?} to {:?}",
+            given.start, given.end, whole.start, whole.end;
+        Self::Window { given, wanted } =>
+            "samples of the cells {:?} to {:?}, where those of {:?} to {:?} are looked at",
+            given.start, given.end, wanted.start, wanted.end;
+        Self::EndlessSamples => "a grid without an end has no last sample: give a Source::Window";
+        Self::EndlessCollapse => "edge collapse needs a box";
+        Self::NormalsNeedField => "samples have no gradient between them: Normals::Field needs a field";
+        Self::Settings(error) => "{error}";
+        Self::Method => "this method makes no chunks";
+        Self::Accumulated => "chunks need indexed positions";
+        Self::Placement { placement, refine_crossings } =>
+            "chunks have vertices at the mean of interpolated crossings, projected or relaxed, without edge \
+             collapse; not {placement:?}{}",
+            if *refine_crossings { " with refined crossings" } else { "" };
+        Self::Unsettled => "whether vertices may move depends on others more than {MOST_EXTRA} cells away";
     }
-}
-
-impl Error for ChunkError {}
-
-impl From<ExtractError> for ChunkError {
-    fn from(error: ExtractError) -> Self {
-        Self::Extract(error)
-    }
-}
-
-impl From<MethodError> for ChunkError {
-    fn from(error: MethodError) -> Self {
-        Self::Settings(error)
-    }
+    from { ExtractError => Self::Extract, MethodError => Self::Settings }
 }
 
 impl From<TryReserveError> for ChunkError {

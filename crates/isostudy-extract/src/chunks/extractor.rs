@@ -16,12 +16,12 @@ use super::world::{Place, World};
 use crate::clustering::guard::Guard;
 use crate::execution::control::Control;
 use crate::extraction::{ExtractError, Extraction, check};
-use crate::extractor::Extractor;
+use crate::extractor::{Extractor, Way};
 use crate::lattice::BoxGrid;
 use crate::lattice::endless::Grid;
-use crate::lattice::{Border, CellBox, Lattice};
+use crate::lattice::{Arrangement, Border, CellBox, Lattice};
 use crate::memory::refill;
-use crate::method::{ByWindow, Method, MethodError};
+use crate::method::{Method, MethodError};
 use crate::placement::FieldTargets;
 use crate::sampling::level::Level;
 use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topology};
@@ -34,7 +34,7 @@ const FIRST_MARGIN: u32 = 8;
 const MARGIN: i32 = 1 << 10;
 
 /// Extracts boxes of cells of a grid, such that neighbours fit to the bit, and all of a box [weld](crate::weld_chunks) to
-/// the mesh that [`extract`](crate::extract) makes of the whole, byte for byte.
+/// the mesh that [`extract`](crate::by_lattice::extract) makes of the whole, byte for byte.
 ///
 /// To decide as the whole would, more is sampled than the chunk's own cells ([`window`](Self::window)): two cells on every
 /// side, or one where cubes are cut each by itself ([`Arrangement`](crate::Arrangement)) or not at all
@@ -69,7 +69,8 @@ const MARGIN: i32 = 1 << 10;
 ///
 /// ```
 /// use isostudy_extract::{Arrangement, BoxGrid, ChunkExtractor, ChunkSettings, Control, Method, Tetrahedra, weld_chunks};
-/// use isostudy_extract::{Execution, ExtractSettings, extract};
+/// use isostudy_extract::by_lattice::{ExtractSettings, extract};
+/// use isostudy_extract::Execution;
 /// use isostudy_field::{Sphere, StudyField};
 /// # use glam::Vec3;
 /// # use isostudy_mesh::Bounds;
@@ -131,8 +132,8 @@ impl ChunkExtractor {
     }
 
     fn new(place: Place, method: &Method, settings: &ChunkSettings) -> Result<Self, ChunkError> {
-        method.check_own()?;
-        let how = method.by_window(settings.isovalue).ok_or(ChunkError::Method)?;
+        method.family().check_own()?;
+        let how = ByWindow::new(method, settings.isovalue).ok_or(ChunkError::Method)?;
         let world = World { place, method: *method, settings: *settings, levels: None };
         let ByWindow { arrangement, settings, .. } = how;
         check(&settings, arrangement)?;
@@ -158,7 +159,7 @@ impl ChunkExtractor {
             world,
             how,
             whole,
-            halo: method.halo(),
+            halo: method.family().halo(),
             extractor,
             extraction: Extraction::default(),
             samples: Vec::new(),
@@ -181,9 +182,9 @@ impl ChunkExtractor {
         trace.keys.try_reserve(vertices)?;
         trace.cells.try_reserve(2 * vertices)?;
         self.numbers.try_reserve(vertices)?;
-        let ByWindow { arrangement, settings, cubes, .. } = &self.how;
+        let ByWindow { arrangement, settings, way, .. } = &self.how;
         let merges = settings.clustering == Clustering::Integrated && settings.topology == Topology::Guarded;
-        if cubes.is_none() && merges {
+        if way.is_none() && merges {
             Guard::get(*arrangement).complete();
         }
         Ok(())
@@ -248,7 +249,7 @@ impl ChunkExtractor {
     ///
     /// # Errors
     /// [`ChunkError::Cells`], [`ChunkError::Window`], [`ChunkError::EndlessSamples`], [`ChunkError::NormalsNeedField`],
-    /// [`ChunkError::Unsettled`]; [`ChunkError::Extract`] for what [`extract`](crate::extract) refuses.
+    /// [`ChunkError::Unsettled`]; [`ChunkError::Extract`] for what [`extract`](crate::by_lattice::extract) refuses.
     pub fn extract_into<'s, 'c>(
         &mut self,
         source: impl Into<Source<'s>>,
@@ -293,7 +294,7 @@ impl ChunkExtractor {
         chunk: &mut Chunk,
     ) -> Result<(), ChunkError> {
         crate::placement::check(&self.how.settings, false)?;
-        if self.world.method.calls_the_field_always() {
+        if self.world.method.family().calls_the_field_always() {
             return Err(MethodError::NeedsField.into());
         }
         if self.world.settings.normals == Normals::Field {
@@ -478,12 +479,7 @@ impl ChunkExtractor {
             ..self.how.settings
         };
         let extraction = &mut self.extraction;
-        match self.how.cubes {
-            None => self.extractor.extract_into(source, &lattice, &settings, control, extraction)?,
-            Some(way) => {
-                self.extractor.extract_cubes_into(source, &lattice, &settings, way, control, extraction)?
-            }
-        }
+        self.extractor.extract_by(self.how.way, source, &lattice, &settings, control, extraction)?;
         Ok(lattice)
     }
 
@@ -527,4 +523,25 @@ enum Given<'a> {
     Field(&'a dyn StudyField),
     /// Of a box, all samples.
     Samples(&'a Lattice, &'a [f32]),
+}
+
+/// How the cells of a window are extracted.
+#[derive(Debug, Clone, Copy)]
+struct ByWindow {
+    arrangement: Arrangement,
+    settings: ExtractSettings,
+    /// By cubes that are not cut any further, which then are the arrangement's.
+    way: Option<Way>,
+    /// How many cells from the rim of a window on its mesh is that of the whole, before vertices are moved or edges
+    /// collapsed.
+    halo: u32,
+}
+
+impl ByWindow {
+    /// `None` for a method that makes no chunks.
+    fn new(method: &Method, isovalue: f32) -> Option<Self> {
+        let family = method.family();
+        let (arrangement, settings, way) = (family.arrangement(), family.settings(isovalue), family.way());
+        Some(Self { arrangement, settings, way, halo: family.unmoved_halo()? })
+    }
 }

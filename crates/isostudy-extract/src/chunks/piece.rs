@@ -6,9 +6,9 @@ use isostudy_mesh::TriangleMesh;
 
 use super::chunk::Chunk;
 use super::settings::Normals;
-use crate::clustering::collapse::collapse_traced;
+use crate::clustering::collapse::{Merged, collapse_traced};
 use crate::lattice::{CellBox, Lattice};
-use crate::memory::{collected, filled, push};
+use crate::memory::{filled, push};
 use crate::settings::Topology;
 use crate::surface::normals::vertex_normals;
 use crate::surface::trace::Trace;
@@ -32,12 +32,13 @@ pub(super) fn collapsed(
     chunk: &mut Chunk,
 ) -> Result<bool, TryReserveError> {
     let (seen, cells) = (window.cell_box(), chunk.cells);
-    let mut pieces = Pieces::of(mesh)?;
+    let mut pieces = pieces_of(mesh)?;
+    let mut root = |v: u32| pieces.survivor(v) as usize;
     // What is known of each piece, at its root.
     let mut enters = filled(mesh.positions.len(), false)?;
     let mut leaves = filled(mesh.positions.len(), false)?;
     for (triangle, &cell) in mesh.triangles.iter().zip(&trace.cells) {
-        let (cell, root) = (seen.cell(cell), pieces.root(triangle[0]));
+        let (cell, root) = (seen.cell(cell), root(triangle[0]));
         enters[root] |= cells.contains(cell);
         leaves[root] |= !as_in_whole.contains(cell);
     }
@@ -49,7 +50,7 @@ pub(super) fn collapsed(
     let mut numbers = filled(mesh.positions.len(), NOWHERE)?;
     let (mut positions, mut keys) = (Vec::new(), Vec::new());
     for v in 0..mesh.positions.len() {
-        if enters[pieces.root(v as u32)] {
+        if enters[root(v as u32)] {
             numbers[v] = positions.len() as u32;
             push(&mut positions, mesh.positions[v])?;
             push(&mut keys, trace.keys[v])?;
@@ -57,7 +58,7 @@ pub(super) fn collapsed(
     }
     let (mut triangles, mut triangle_cells) = (Vec::new(), Vec::new());
     for (triangle, &cell) in mesh.triangles.iter().zip(&trace.cells) {
-        if enters[pieces.root(triangle[0])] {
+        if enters[root(triangle[0])] {
             push(&mut triangles, triangle.map(|v| numbers[v as usize]))?;
             push(&mut triangle_cells, cell)?;
         }
@@ -89,29 +90,14 @@ pub(super) fn collapsed(
     Ok(true)
 }
 
-/// The vertices of each connected piece of a mesh.
-struct Pieces {
-    towards_root: Vec<u32>,
-}
-
-impl Pieces {
-    fn of(mesh: &TriangleMesh) -> Result<Self, TryReserveError> {
-        let mut pieces = Self { towards_root: collected(0..mesh.positions.len() as u32)? };
-        for &[a, b, c] in &mesh.triangles {
-            for other in [b, c] {
-                let (one, other) = (pieces.root(a), pieces.root(other));
-                pieces.towards_root[one.max(other)] = one.min(other) as u32;
-            }
+/// Which vertices are connected: those that have one survivor.
+fn pieces_of(mesh: &TriangleMesh) -> Result<Merged, TryReserveError> {
+    let mut pieces = Merged::none(mesh.positions.len())?;
+    for &[a, b, c] in &mesh.triangles {
+        for other in [b, c] {
+            let (one, other) = (pieces.survivor(a), pieces.survivor(other));
+            pieces.into[one.max(other) as usize] = one.min(other);
         }
-        Ok(pieces)
     }
-
-    fn root(&mut self, vertex: u32) -> usize {
-        let mut v = vertex as usize;
-        while self.towards_root[v] as usize != v {
-            self.towards_root[v] = self.towards_root[self.towards_root[v] as usize];
-            v = self.towards_root[v] as usize;
-        }
-        v
-    }
+    Ok(pieces)
 }

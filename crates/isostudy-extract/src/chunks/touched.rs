@@ -4,7 +4,7 @@ use isostudy_field::Aabb;
 
 use crate::lattice::Arrangement;
 use crate::lattice::endless::{Grid, GridError, check};
-use crate::method::{ByWindow, Method};
+use crate::method::Method;
 
 impl Grid {
     /// The chunks of so many cells a side that can be other ones when the field has changed in a box and nowhere else:
@@ -26,11 +26,10 @@ impl Grid {
         method: &Method,
     ) -> Result<impl Iterator<Item = [i32; 3]> + use<>, GridError> {
         check(&changed)?;
-        let halo = i64::from(method.halo().ok_or(GridError::NoWindow)?);
+        let halo = i64::from(method.family().halo().ok_or(GridError::NoWindow)?);
         let size = i64::from(cells);
         // Body-centred lattices have centres half a cell beyond their cells.
-        let is_centred = |how: ByWindow| how.arrangement == Arrangement::BodyCentred;
-        let beyond = i64::from(method.by_window(0.0).is_some_and(is_centred));
+        let beyond = i64::from(method.family().arrangement() == Arrangement::BodyCentred);
         let from_cell = self.cell_at(changed.min).map(|cell| i64::from(cell) - halo - 2);
         let to_cell = self.cell_at(changed.max).map(|cell| i64::from(cell) + halo + 2);
         let of = move |cell: i64| cell.div_euclid(size) as i32;

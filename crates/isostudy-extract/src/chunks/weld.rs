@@ -1,8 +1,6 @@
 //! Chunks to one mesh.
 
 use std::collections::{HashMap, TryReserveError};
-use std::error::Error;
-use std::fmt;
 
 use glam::Vec3;
 use isostudy_mesh::TriangleMesh;
@@ -12,6 +10,7 @@ use super::world::World;
 use crate::lattice::CellBox;
 use crate::memory::{push, with_room};
 use crate::surface::trace::VertexKey;
+use crate::wording::in_words;
 
 /// Why chunks do not weld.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,19 +35,15 @@ pub enum WeldError {
     NoMemory,
 }
 
-impl fmt::Display for WeldError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Worlds { worlds } => write!(f, "chunks of two worlds: {}; and {}", worlds[0], worlds[1]),
-            Self::Overlap { cell } => write!(f, "cell {cell:?} is in two of the chunks"),
-            Self::Mismatch(error) => error.fmt(f),
-            Self::TooManyVertices => write!(f, "the chunks have more than {} vertices", u32::MAX),
-            Self::NoMemory => f.write_str("no memory for a mesh this large"),
-        }
+in_words! {
+    WeldError {
+        Self::Worlds { worlds } => "chunks of two worlds: {}; and {}", worlds[0], worlds[1];
+        Self::Overlap { cell } => "cell {cell:?} is in two of the chunks";
+        Self::Mismatch(error) => "{error}";
+        Self::TooManyVertices => "the chunks have more than {} vertices", u32::MAX;
+        Self::NoMemory => "no memory for a mesh this large";
     }
 }
-
-impl Error for WeldError {}
 
 /// One vertex, as two chunks have it.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,24 +58,14 @@ pub struct Mismatch {
     pub normals: [[f32; 3]; 2],
 }
 
-impl fmt::Display for Mismatch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { key, chunks, positions, normals } = self;
-        write!(
-            f,
-            "the chunks do not fit at vertex {:#x}: that of cells {:?} has it at {:?} with normal {:?}, that of cells {:?} at {:?} with normal {:?}",
-            key.number(),
-            chunks[0].start,
-            positions[0],
-            normals[0],
-            chunks[1].start,
-            positions[1],
-            normals[1]
-        )
+in_words! {
+    Mismatch {
+        Self { key, chunks, positions, normals } =>
+            "the chunks do not fit at vertex {:#x}: that of cells {:?} has it at {:?} with normal {:?}, that \
+             of cells {:?} at {:?} with normal {:?}",
+            key.number(), chunks[0].start, positions[0], normals[0], chunks[1].start, positions[1], normals[1];
     }
 }
-
-impl Error for Mismatch {}
 
 impl From<TryReserveError> for WeldError {
     fn from(_: TryReserveError) -> Self {

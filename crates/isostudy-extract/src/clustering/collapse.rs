@@ -22,12 +22,9 @@ pub(crate) fn collapse(
         Clustering::None | Clustering::Integrated | Clustering::Warp => return Ok(false),
         Clustering::EdgeCollapse | Clustering::IntegratedCollapse => {}
     }
-    let rule = match settings.topology {
-        Topology::Guarded => guarded::guarded,
-        Topology::Published => published::published,
-    };
     let before = surface.triangles.len();
-    (*positions, surface.triangles) = rule(std::mem::take(positions), &surface.triangles, spacing)?;
+    let after = collapse_traced(settings.topology, spacing, std::mem::take(positions), &surface.triangles)?;
+    (*positions, surface.triangles) = (after.positions, after.triangles);
     let dropped = (before - surface.triangles.len()) as u64;
     surface.discarded += dropped;
     surface.discarded_as_published += dropped;
@@ -52,26 +49,26 @@ pub(crate) fn collapse_traced(
     triangles: &[[u32; 3]],
 ) -> Result<Collapsed, TryReserveError> {
     let merge = match topology {
-        Topology::Guarded => guarded::merge,
-        Topology::Published => published::merge,
+        Topology::Guarded => guarded::guarded,
+        Topology::Published => published::published,
     };
     let (positions, mut merged) = merge(positions, triangles, spacing)?;
-    rebuild_traced(&positions, triangles, &mut merged)
+    rebuild(&positions, triangles, &mut merged)
 }
 
 /// Which vertex each vertex was merged into, directly or through others.
-struct Merged {
-    into: Vec<u32>,
+pub(crate) struct Merged {
+    pub(crate) into: Vec<u32>,
 }
 
 impl Merged {
     /// Each of so many into itself.
-    fn none(vertices: usize) -> Result<Self, TryReserveError> {
+    pub(crate) fn none(vertices: usize) -> Result<Self, TryReserveError> {
         Ok(Self { into: collected(0..vertices as u32)? })
     }
 
     /// Follows the chain to its end and shortens it on the way.
-    fn survivor(&mut self, vertex: u32) -> u32 {
+    pub(crate) fn survivor(&mut self, vertex: u32) -> u32 {
         let mut vertex = vertex as usize;
         while self.into[vertex] as usize != vertex {
             self.into[vertex] = self.into[self.into[vertex] as usize];
@@ -100,16 +97,6 @@ fn is_proper([a, b, c]: [u32; 3]) -> bool {
 
 /// Drops triangles that lost a corner, then vertices that no triangle uses, and numbers the rest by first use.
 fn rebuild(
-    positions: &[Vec3],
-    triangles: &[[u32; 3]],
-    merged: &mut Merged,
-) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), TryReserveError> {
-    let after = rebuild_traced(positions, triangles, merged)?;
-    Ok((after.positions, after.triangles))
-}
-
-/// The same, and says what is left of what.
-fn rebuild_traced(
     positions: &[Vec3],
     triangles: &[[u32; 3]],
     merged: &mut Merged,

@@ -6,7 +6,6 @@ use glam::Vec3;
 use isostudy_mesh::Bounds;
 
 use crate::lattice::{Border, Lattice};
-use crate::memory::refilled;
 use crate::sampling::bits::between;
 use crate::sampling::line::All;
 use crate::sampling::tiles::Points;
@@ -36,12 +35,7 @@ impl<'a> CubeGrid<'a> {
     /// The same, with coordinates in vectors that are there.
     pub(crate) fn within(lattice: &'a Lattice, mut at: [Vec<f32>; 3]) -> Result<Self, TryReserveError> {
         let size = lattice.stored_grid().map(|n| n as usize);
-        let first = lattice.origin();
-        for (axis, at) in at.iter_mut().enumerate() {
-            let coordinate =
-                |i: usize| lattice.coordinate(axis, 2 * (i64::from(first[axis]) + i as i64), Border::OnBox);
-            refilled(at, (0..size[axis]).map(coordinate))?;
-        }
+        lattice.refit_in_line(Border::OnBox, &mut at)?;
         Ok(Self { lattice, size, words: size[0].div_ceil(64), at })
     }
 

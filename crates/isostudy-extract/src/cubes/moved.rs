@@ -1,5 +1,8 @@
 //! Vertices that are taken from near the middles of their edges to the surface, square to it: what Macet is for.
 
+#[cfg(test)]
+mod tests;
+
 use glam::Vec3;
 use isostudy_mesh::TriangleMesh;
 

@@ -19,14 +19,12 @@ use self::cells_pass::Chosen;
 use self::labels::{Labels, Snap};
 use self::table::Table;
 use self::vertices::{Record, VertexPass};
-use super::grid::CubeGrid;
 use super::records::Records;
 use super::sampling::{Samples, Sampling};
 use super::vertices::Placer;
 use super::{Flat, Kept};
 use crate::extraction::ExtractError;
-use crate::slabs::{LayerDone, Pass, Piece, Run, Stage, Streamed, Vertices, stream};
-use crate::source::Request;
+use crate::slabs::{Pass, Run, Slab, Stage, Streamed};
 
 /// Layers of sides and samples in sight.
 const SLOTS: usize = 6;
@@ -45,15 +43,16 @@ pub(crate) fn extract(
     let snap = Snap { isovalue: request.settings.isovalue, gamma };
     let table = Table::get();
     let grid = kept.grid(request, TIMES)?;
-    kept.stream(&Snapped { grid: &grid, request, snap, flat, table, placer }, TIMES, workspaces, run)?;
+    let sampling =
+        Sampling { grid: &grid, source: request.source, isovalue: snap.isovalue, all_corners: true };
+    kept.stream(&Snapped { sampling, snap, flat, table, placer }, TIMES, workspaces, run)?;
     kept.keep(grid);
     Ok(())
 }
 
 /// What all slabs of an extraction share.
 struct Snapped<'a> {
-    grid: &'a CubeGrid<'a>,
-    request: &'a Request<'a>,
+    sampling: Sampling<'a>,
     snap: Snap,
     flat: Flat,
     table: &'a Table,
@@ -72,106 +71,84 @@ pub(crate) struct Workspace {
 impl Streamed for Snapped<'_> {
     type Workspace = Workspace;
 
-    fn workspace(&self) -> Workspace {
-        Workspace::default()
-    }
-
     fn fit(&self, workspace: &mut Workspace) -> Result<(), TryReserveError> {
-        workspace.samples.fit(self.grid, self.request.source, SLOTS)?;
-        workspace.labels.fit(self.grid)?;
-        workspace.chosen.fit(self.grid)?;
-        workspace.records.fit(self.grid)
+        let Sampling { grid, source, .. } = self.sampling;
+        workspace.samples.fit(grid, source, SLOTS)?;
+        workspace.labels.fit(grid)?;
+        workspace.chosen.fit(grid)?;
+        workspace.records.fit(grid)
     }
 
-    fn slab(
-        &self,
-        own: Range<usize>,
-        layer_done: &LayerDone,
-        workspace: &mut Workspace,
-        piece: &mut Piece,
-    ) -> Result<(), ExtractError> {
-        let layers = self.grid.size[2];
+    fn passes(&self, own: Range<usize>) -> impl AsRef<[Pass<Self>]> {
+        let layers = self.sampling.grid.size[2];
         let (lowest, highest) = (own.start, own.end);
         let numbered = lowest..highest + 1;
         // Whether a point is used is for the cells on both sides of its layer to say; which patch those have, for the next.
-        let chosen = lowest.saturating_sub(1)..(layers - 1).min(highest + 1);
+        let chosen = lowest_chosen(&own)..(layers - 1).min(highest + 1);
         let labelled = lowest.saturating_sub(2)..layers.min(highest + 3);
         let filled = lowest.saturating_sub(3)..layers.min(highest + 4);
         let sided = lowest.saturating_sub(4)..layers.min(highest + 5);
-        workspace.chosen.clear_used(chosen.start);
-        let passes = [
-            Pass { stage: Stage::Sampling, behind: 0, layers: sided, run: Slab::find_sides },
-            Pass { stage: Stage::Sampling, behind: 1, layers: filled, run: Slab::fill },
-            Pass { stage: Stage::Vertex, behind: 2, layers: labelled, run: Slab::label },
-            Pass { stage: Stage::Vertex, behind: 4, layers: chosen, run: Slab::choose },
-            Pass { stage: Stage::Vertex, behind: 4, layers: numbered, run: Slab::place },
-            Pass { stage: Stage::Geometry, behind: 5, layers: own, run: Slab::triangulate },
-        ];
-        let vertices = Vertices::within(piece);
-        let Request { source, control, .. } = *self.request;
-        let sampling = Sampling { grid: self.grid, source, isovalue: self.snap.isovalue, all_corners: true };
-        let mut slab = Slab { of: self, layer_done, sampling, workspace, vertices, highest };
-        stream(&mut slab, passes, control, piece)?;
-        slab.vertices.give_to(piece);
-        Ok(())
+        [
+            Pass { stage: Stage::Sampling, behind: 0, layers: sided, run: Self::find_sides },
+            Pass { stage: Stage::Sampling, behind: 1, layers: filled, run: Self::fill },
+            Pass { stage: Stage::Vertex, behind: 2, layers: labelled, run: Self::label },
+            Pass { stage: Stage::Vertex, behind: 4, layers: chosen, run: Self::choose },
+            Pass { stage: Stage::Vertex, behind: 4, layers: numbered, run: Self::place },
+            Pass { stage: Stage::Geometry, behind: 5, layers: own, run: Self::triangulate },
+        ]
     }
 }
 
-/// A slab on its way.
-struct Slab<'a> {
-    of: &'a Snapped<'a>,
-    layer_done: &'a LayerDone<'a>,
-    sampling: Sampling<'a>,
-    workspace: &'a mut Workspace,
-    vertices: Vertices,
-    /// The layer above the slab's cells, whose vertices are the next slab's.
-    highest: usize,
+/// The lowest layer of cells whose patches a slab chooses.
+fn lowest_chosen(own: &Range<usize>) -> usize {
+    own.start.saturating_sub(1)
 }
 
-impl Slab<'_> {
-    fn find_sides(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        self.sampling.find_sides(&mut self.workspace.samples, layer);
+impl Snapped<'_> {
+    fn find_sides(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        self.sampling.find_sides(&mut slab.workspace.samples, layer);
         Ok(())
     }
 
-    fn fill(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        self.sampling.fill(&mut self.workspace.samples, layer);
+    fn fill(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        self.sampling.fill(&mut slab.workspace.samples, layer);
         Ok(())
     }
 
-    fn label(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        let Snapped { grid, request, snap, .. } = self.of;
-        let Workspace { samples, labels, .. } = &mut *self.workspace;
-        labels.find(grid, samples, samples.values(*grid, request.source), *snap, layer);
+    fn label(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        let Self { sampling: Sampling { grid, source, .. }, snap, .. } = *self;
+        let Workspace { samples, labels, .. } = &mut *slab.workspace;
+        labels.find(grid, samples, samples.values(grid, source), snap, layer);
         Ok(())
     }
 
-    fn choose(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        let Snapped { grid, table, flat, .. } = self.of;
-        let Workspace { labels, chosen, .. } = &mut *self.workspace;
-        chosen.layer(grid, labels, table, *flat, layer);
-        Ok(())
-    }
-
-    fn place(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        let Snapped { grid, request, placer, .. } = self.of;
-        let Workspace { samples, labels, chosen, records } = &mut *self.workspace;
-        let values = samples.values(*grid, request.source);
-        let pass = VertexPass { grid, labels, used: &chosen.used, values, placer };
-        let is_own = layer < self.highest || layer + 1 == grid.size[2];
-        pass.layer(layer, is_own, records, &mut self.vertices)?;
-        self.vertices.check(request.most_vertices)
-    }
-
-    fn triangulate(&mut self, layer: usize, piece: &mut Piece) -> Result<(), ExtractError> {
-        let Snapped { grid, table, .. } = self.of;
-        if layer + 1 == self.highest {
-            // Only the highest cells have vertices of the slab above.
-            piece.tail = piece.surface.triangles.len();
+    fn choose(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        let Workspace { labels, chosen, .. } = &mut *slab.workspace;
+        if layer == lowest_chosen(&slab.own) {
+            chosen.clear_used(layer);
         }
-        let Workspace { chosen, records, .. } = &*self.workspace;
-        chosen.triangulate(grid, table, records, layer, &mut piece.surface)?;
-        (self.layer_done)();
+        chosen.layer(self.sampling.grid, labels, self.table, self.flat, layer);
+        Ok(())
+    }
+
+    fn place(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        let Self { sampling: Sampling { grid, source, .. }, ref placer, .. } = *self;
+        let Workspace { samples, labels, chosen, records } = &mut *slab.workspace;
+        let values = samples.values(grid, source);
+        let pass = VertexPass { grid, labels, used: &chosen.used, values, placer };
+        // Vertices of the layer above the slab's cells are the next slab's.
+        let is_own = layer < slab.own.end || layer + 1 == grid.size[2];
+        Ok(pass.layer(layer, is_own, records, &mut slab.vertices)?)
+    }
+
+    fn triangulate(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        if layer + 1 == slab.own.end {
+            // Only the highest cells have vertices of the slab above.
+            slab.piece.tail = slab.piece.surface.triangles.len();
+        }
+        let Workspace { chosen, records, .. } = &*slab.workspace;
+        chosen.triangulate(self.sampling.grid, self.table, records, layer, &mut slab.piece.surface)?;
+        (slab.layer_done)();
         Ok(())
     }
 }

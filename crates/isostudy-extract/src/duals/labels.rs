@@ -7,8 +7,6 @@
 //! Two layers of labels and the vertex numbers of two layers of cells are held at a time.
 
 use std::collections::{BTreeMap, TryReserveError};
-use std::error::Error;
-use std::fmt;
 
 use glam::Vec3;
 use isostudy_mesh::{LabelledMesh, TriangleMesh};
@@ -19,6 +17,7 @@ use crate::execution::control::Control;
 use crate::extraction::ExtractError;
 use crate::memory::{filled, push};
 use crate::surface::space::Space;
+use crate::wording::in_words;
 
 /// The label of what is outside of everything.
 const BACKGROUND: u32 = 0;
@@ -120,40 +119,20 @@ pub enum LabelError {
     Extract(ExtractError),
 }
 
-impl fmt::Display for LabelError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Flat { counts } => {
-                write!(f, "{counts:?} samples along the axes; there must be two or more along each")
-            }
-            Self::Count { given, counts } => {
-                write!(f, "{given} labels for {counts:?} samples along the axes")
-            }
-            Self::Steps { steps, origin } => {
-                write!(f, "the steps {steps:?} from sample to sample, from {origin:?}, span no space")
-            }
-            Self::Alone { label } => write!(f, "every sample has the label {label}: there is no boundary"),
-            Self::TooMany => write!(f, "more than {MOST_LABELS} different labels: are these densities?"),
-            Self::Absent { label, known } => {
-                write!(f, "no sample has the label {label}; labels are {}", few(known))
-            }
-            Self::Background => {
-                write!(f, "label {BACKGROUND} is the background, which is there always; choose others")
-            }
-            Self::Smoothing { smoothing } => {
-                write!(f, "smoothing = {smoothing}: must be from 0 to {MOST_SMOOTHING}, steps")
-            }
-            Self::Extract(error) => error.fmt(f),
-        }
+in_words! {
+    LabelError {
+        Self::Flat { counts } => "{counts:?} samples along the axes; there must be two or more along each";
+        Self::Count { given, counts } => "{given} labels for {counts:?} samples along the axes";
+        Self::Steps { steps, origin } =>
+            "the steps {steps:?} from sample to sample, from {origin:?}, span no space";
+        Self::Alone { label } => "every sample has the label {label}: there is no boundary";
+        Self::TooMany => "more than {MOST_LABELS} different labels: are these densities?";
+        Self::Absent { label, known } => "no sample has the label {label}; labels are {}", few(known);
+        Self::Background => "label {BACKGROUND} is the background, which is there always; choose others";
+        Self::Smoothing { smoothing } => "smoothing = {smoothing}: must be from 0 to {MOST_SMOOTHING}, steps";
+        Self::Extract(error) => "{error}";
     }
-}
-
-impl Error for LabelError {}
-
-impl From<ExtractError> for LabelError {
-    fn from(error: ExtractError) -> Self {
-        Self::Extract(error)
-    }
+    from { ExtractError => Self::Extract }
 }
 
 /// The first of a list, for messages.

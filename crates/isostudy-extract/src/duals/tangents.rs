@@ -26,15 +26,10 @@ pub(super) struct Tangents<'a> {
 }
 
 impl<'a> Tangents<'a> {
-    /// None yet, in room that is there.
-    pub(super) fn new(level: Level<'a>, known: &'a mut Known) -> Self {
-        known.iter_mut().for_each(HashMap::clear);
+    /// For the cells of layer `z`, the points above which are new.
+    pub(super) fn new(level: Level<'a>, known: &'a mut Known, z: usize) -> Self {
+        known[(z + 1) % 2].clear();
         Self { level, known }
-    }
-
-    /// Before the cells of layer `z`: the points above them are new.
-    pub(super) fn begin(&mut self, z: usize) {
-        self.known[(z + 1) % 2].clear();
     }
 
     /// The crossing of the edge that begins at a point, with the samples at its ends.

@@ -45,9 +45,6 @@ impl VertexPass<'_> {
     ) -> Result<u64, TryReserveError> {
         let grid = self.grid;
         let mut visited = 0;
-        if let Some((_, tangents)) = &mut by_planes {
-            tangents.begin(z);
-        }
         for y in 0..grid.size[1] - 1 {
             let rows = [[y, z], [y + 1, z], [y, z + 1], [y + 1, z + 1]];
             if self.samples.is_uniform(&rows) {

@@ -3,11 +3,9 @@
 use glam::Vec3;
 use isostudy_mesh::Bounds;
 
+use crate::by_lattice::{ExtractSettings, Lattice};
 use crate::extractor::MostVertices;
-use crate::{
-    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Lattice,
-    Positions, Source,
-};
+use crate::{Arrangement, Clustering, Execution, ExtractError, Extraction, Extractor, Positions, Source};
 use isostudy_field::Sphere;
 
 #[test]

@@ -4,7 +4,7 @@ use std::collections::TryReserveError;
 
 use glam::Vec3;
 
-use super::{DIRECTIONS, DirectionSet, Lattice, Layout, Offset, PointKind, Whole, members};
+use super::{Arrangement, DIRECTIONS, DirectionSet, Lattice, Layout, Offset, PointKind, Whole, members};
 use crate::memory::{collected, refilled, with_room};
 use crate::settings::{ExtractSettings, Positions, Topology};
 
@@ -228,6 +228,22 @@ impl Coordinates {
 const ALL_REGULAR: [[usize; 2]; 3] = [[0, usize::MAX]; 3];
 
 impl Lattice {
+    /// Where stored points are along each axis, of a lattice whose rows stand in line, in vectors that are there. What is large enough
+    /// stays.
+    pub(crate) fn refit_in_line(
+        &self,
+        border: Border,
+        at: &mut [Vec<f32>; 3],
+    ) -> Result<(), TryReserveError> {
+        let halves_a_step = if self.arrangement == Arrangement::FaceCentred { 1 } else { 2 };
+        let (first, grid) = (self.first_stored(), self.stored_grid());
+        for (axis, at) in at.iter_mut().enumerate() {
+            let place = |i: u32| self.coordinate(axis, (first[axis] + i64::from(i)) * halves_a_step, border);
+            refilled(at, (0..grid[axis]).map(place))?;
+        }
+        Ok(())
+    }
+
     /// Of the point so many half cells along an axis of the whole lattice.
     pub(crate) fn coordinate(&self, axis: usize, halves: i64, border: Border) -> f32 {
         match (self.whole, border) {

@@ -37,15 +37,6 @@ impl Lattice {
         })
     }
 
-    /// [`needed_samples`](Self::needed_samples) as Costen (2026) has it: simple cubic as `(x-1)(y-1)(z-1)`, a wrong
-    /// sign that makes the published allocation ratio 112.75 % where it is 100 %.
-    pub fn needed_samples_as_published(&self) -> u64 {
-        match self.arrangement {
-            Arrangement::SimpleCubic => self.polynomial([1, -1, 1, -1]),
-            _ => self.needed_samples(),
-        }
-    }
-
     /// Places for an edge's vertex that are stored: fourteen a stored sample point. Where points differ in their edges,
     /// those that belong to a tetrahedron.
     pub fn stored_edges(&self) -> u64 {
@@ -67,14 +58,6 @@ impl Lattice {
         })
     }
 
-    /// [`needed_edges`](Self::needed_edges) as Costen (2026) has it: simple cubic with `-3(xy+xz+yz)`, a wrong sign.
-    pub fn needed_edges_as_published(&self) -> u64 {
-        match self.arrangement {
-            Arrangement::SimpleCubic => self.polynomial([7, -3, 1, 0]),
-            _ => self.needed_edges(),
-        }
-    }
-
     /// Tetrahedra: `12xyz + 4(xy+xz+yz)` body-centred, `6xyz` simple cubic, `5xyz` and `24xyz`.
     pub fn tetrahedra(&self) -> u64 {
         self.polynomial(match self.arrangement {
@@ -85,7 +68,7 @@ impl Lattice {
         })
     }
 
-    /// What [`extract`](crate::extract) allocates with accumulated positions before it knows the surface: samples, edge
+    /// What [`extract`](crate::by_lattice::extract) allocates with accumulated positions before it knows the surface: samples, edge
     /// records and scratch. With indexed positions it is [`streaming_bytes`](Self::streaming_bytes), far less;
     /// [`memory_bytes_for`](Self::memory_bytes_for) chooses. The mesh comes on top.
     ///

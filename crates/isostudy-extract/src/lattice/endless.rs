@@ -1,11 +1,9 @@
 //! A grid of cubes without an end, for worlds that have none.
 
-use std::error::Error;
-use std::fmt;
-
 use isostudy_field::Aabb;
 
 use crate::lattice::{CellBox, short};
+use crate::wording::in_words;
 
 /// Cubes of one size in line with the axes, numbered by `i32` in all directions from an origin.
 ///
@@ -61,26 +59,16 @@ pub enum GridError {
     NoWindow,
 }
 
-impl fmt::Display for GridError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Spacing { value } => write!(f, "spacing must be positive and finite in f32, not {value:?}"),
-            Self::Origin { axis, value } => {
-                write!(f, "the origin must be finite along {axis}, not {value:?}")
-            }
-            Self::Bounds { axis, min, max } => write!(
-                f,
-                "bounds along {axis} must be finite with min at most max, not {} to {}",
-                short(*min),
-                short(*max)
-            ),
-            Self::OutOfRange { axis } => write!(f, "cells along {axis} beyond the numbers of i32"),
-            Self::NoWindow => f.write_str("chunks by this method may look at samples anywhere"),
-        }
+in_words! {
+    GridError {
+        Self::Spacing { value } => "spacing must be positive and finite in f32, not {value:?}";
+        Self::Origin { axis, value } => "the origin must be finite along {axis}, not {value:?}";
+        Self::Bounds { axis, min, max } =>
+            "bounds along {axis} must be finite with min at most max, not {} to {}", short(*min), short(*max);
+        Self::OutOfRange { axis } => "cells along {axis} beyond the numbers of i32";
+        Self::NoWindow => "chunks by this method may look at samples anywhere";
     }
 }
-
-impl Error for GridError {}
 
 const AXES: [char; 3] = ['x', 'y', 'z'];
 

@@ -1,11 +1,10 @@
 //! What can go wrong with chunks of several levels.
 
 use std::collections::TryReserveError;
-use std::error::Error;
-use std::fmt;
 
 use crate::chunks::ChunkError;
 use crate::lattice::CellBox;
+use crate::wording::in_words;
 
 /// The coarsest level that there is.
 pub(super) const COARSEST: u32 = 24;
@@ -46,39 +45,24 @@ pub enum LevelError {
     NeedsField,
 }
 
-impl fmt::Display for LevelError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Chunk(error) => error.fmt(f),
-            Self::Method => f.write_str(
-                "levels are for marching cubes, and for surface nets and dual contouring with one vertex a cell",
-            ),
-            Self::Width { width } => write!(f, "width = {width:?}: must be from 0 to 0.5, in cells"),
-            Self::Level { level } => {
-                write!(f, "level {level}: there are levels 0 to {COARSEST}, as far as cubes are finite in f32")
-            }
-            Self::Step { direction, levels: [of, neighbour] } => write!(
-                f,
-                "the neighbour in direction {direction:?} is of level {neighbour}, the chunk of level {of}: they may differ by \
-                 one"
-            ),
-            Self::Finest => f.write_str("level 0 is the finest: it has no finer neighbours"),
-            Self::Odd { cells } => write!(
-                f,
-                "cells {:?} to {:?} have a coarser neighbour: the numbers must be even",
-                cells.start, cells.end
-            ),
-            Self::NeedsField => f.write_str("seams need samples of two levels: give a field"),
-        }
+in_words! {
+    LevelError {
+        Self::Chunk(error) => "{error}";
+        Self::Method =>
+            "levels are for marching cubes, and for surface nets and dual contouring with one vertex a cell";
+        Self::Width { width } => "width = {width:?}: must be from 0 to 0.5, in cells";
+        Self::Level { level } =>
+            "level {level}: there are levels 0 to {COARSEST}, as far as cubes are finite in f32";
+        Self::Step { direction, levels } =>
+            "the neighbour in direction {direction:?} is of level {}, the chunk of level {}: they may differ \
+             by one",
+            levels[1], levels[0];
+        Self::Finest => "level 0 is the finest: it has no finer neighbours";
+        Self::Odd { cells } =>
+            "cells {:?} to {:?} have a coarser neighbour: the numbers must be even", cells.start, cells.end;
+        Self::NeedsField => "seams need samples of two levels: give a field";
     }
-}
-
-impl Error for LevelError {}
-
-impl From<ChunkError> for LevelError {
-    fn from(error: ChunkError) -> Self {
-        Self::Chunk(error)
-    }
+    from { ChunkError => Self::Chunk }
 }
 
 impl From<TryReserveError> for LevelError {

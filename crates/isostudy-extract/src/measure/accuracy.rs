@@ -77,7 +77,7 @@ impl Accuracy {
 /// The result does not depend on `execution`.
 ///
 /// # Errors
-/// As [`crate::extract`].
+/// As [`crate::by_lattice::extract`].
 ///
 /// # Panics
 /// If a triangle's index is out of range, or there are more normals than vertices.

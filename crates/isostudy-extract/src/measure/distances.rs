@@ -1,8 +1,5 @@
 //! Metro distances between a mesh and the isosurface of a field.
 
-use std::error::Error;
-use std::fmt;
-
 use glam::DVec3;
 use isostudy_mesh::TriangleMesh;
 use isostudy_mesh::metro::{Foot, Metro, MetroError, Sampling, Surface};
@@ -13,6 +10,7 @@ use crate::lattice::BoxGrid;
 use crate::measure::isosurface::Isosurface;
 use crate::sampling::level::Level;
 use crate::settings::Execution;
+use crate::wording::in_words;
 use isostudy_field::{FieldCache, StudyField};
 
 /// Why a mesh and an isosurface cannot be measured against each other.
@@ -27,28 +25,13 @@ pub enum DistanceError {
     Mesh(MetroError),
 }
 
-impl fmt::Display for DistanceError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Extract(error) => error.fmt(f),
-            Self::Isosurface(error) => write!(f, "the isosurface: {error}"),
-            Self::Mesh(error) => error.fmt(f),
-        }
+in_words! {
+    DistanceError {
+        Self::Extract(error) => "{error}";
+        Self::Isosurface(error) => "the isosurface: {error}";
+        Self::Mesh(error) => "{error}";
     }
-}
-
-impl Error for DistanceError {}
-
-impl From<ExtractError> for DistanceError {
-    fn from(error: ExtractError) -> Self {
-        Self::Extract(error)
-    }
-}
-
-impl From<MetroError> for DistanceError {
-    fn from(error: MetroError) -> Self {
-        Self::Mesh(error)
-    }
+    from { ExtractError => Self::Extract, MetroError => Self::Mesh }
 }
 
 /// The distances from `mesh` to the isosurface of `field` in the box of `grid`, and back; `diagonal` is that of the

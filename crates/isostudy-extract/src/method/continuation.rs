@@ -1,7 +1,6 @@
 //! Continuation as a method.
 
-use super::of_cubes::OfCubes;
-use super::{Method, MethodError, Preset, Promises};
+use super::{Family, Method, MethodError, Preset, Promises};
 use crate::cubes::{Continued, ContinuedCells, Seeds};
 use crate::extractor::Way;
 
@@ -46,10 +45,10 @@ impl Default for Continuation {
     }
 }
 
-impl OfCubes for Continuation {
-    fn way(&self) -> Way {
+impl Family for Continuation {
+    fn way(&self) -> Option<Way> {
         let Self { cells, seeds, search } = *self;
-        Way::Continued(Continued { cells, seeds, search })
+        Some(Way::Continued(Continued { cells, seeds, search }))
     }
 
     fn promises(&self) -> Promises {
@@ -62,7 +61,7 @@ impl OfCubes for Continuation {
         }
     }
 
-    fn check_settings(&self) -> Result<(), MethodError> {
+    fn check_own(&self) -> Result<(), MethodError> {
         MethodError::unless(self.search > 0, "search", self.search, "must be 1 or more, cells")
     }
 }

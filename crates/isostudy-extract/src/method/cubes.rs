@@ -1,7 +1,6 @@
 //! Marching cubes as a method.
 
-use super::{Method, Preset, Promises};
-use super::of_cubes::OfCubes;
+use super::{Family, Method, Preset, Promises};
 use crate::cubes::{Diagonals, Faces, Rule};
 use crate::extractor::Way;
 use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topology};
@@ -63,9 +62,9 @@ impl Cubes {
     }
 }
 
-impl OfCubes for Cubes {
-    fn way(&self) -> Way {
-        Way::Patches(self.table())
+impl Family for Cubes {
+    fn way(&self) -> Option<Way> {
+        Some(Way::Patches(self.table()))
     }
 
     fn promises(&self) -> Promises {

@@ -1,7 +1,6 @@
 //! Dual contouring as a method.
 
-use super::of_cubes::OfCubes;
-use super::{Method, MethodError, Preset, Promises};
+use super::{Family, Method, MethodError, Preset, Promises};
 use crate::duals::{Nets, Sharp};
 use crate::extractor::Way;
 
@@ -59,10 +58,10 @@ impl Default for DualContouring {
     }
 }
 
-impl OfCubes for DualContouring {
-    fn way(&self) -> Way {
+impl Family for DualContouring {
+    fn way(&self) -> Option<Way> {
         let sharp = Sharp { truncation: self.truncation, in_cell: self.in_cell };
-        Way::Nets(Nets { patches: self.patches, sharp: Some(sharp), smoothing: 0, tolerance: self.tolerance })
+        Some(Way::Nets(Nets { patches: self.patches, sharp: Some(sharp), smoothing: 0, tolerance: self.tolerance }))
     }
 
     fn promises(&self) -> Promises {
@@ -75,7 +74,7 @@ impl OfCubes for DualContouring {
         }
     }
 
-    fn check_settings(&self) -> Result<(), MethodError> {
+    fn check_own(&self) -> Result<(), MethodError> {
         let Self { truncation, tolerance, .. } = *self;
         let share = "must be from 0 to 1, a share of the largest eigenvalue";
         MethodError::unless((0.0..=1.0).contains(&truncation), "truncation", truncation, share)?;
@@ -83,7 +82,7 @@ impl OfCubes for DualContouring {
         MethodError::unless(tolerance >= 0.0, "tolerance", tolerance, length)
     }
 
-    fn calls_the_field(&self) -> bool {
+    fn calls_the_field_always(&self) -> bool {
         true
     }
 

@@ -1,7 +1,6 @@
 //! Macet as a method: our reading of it.
 
-use super::of_cubes::OfCubes;
-use super::{Method, MethodError, Preset, Promises};
+use super::{Family, Method, MethodError, Preset, Promises};
 use crate::cubes::{Diagonals, EdgeMoves, Faces, Rule};
 use crate::extractor::Way;
 
@@ -69,10 +68,10 @@ impl Macet {
     }
 }
 
-impl OfCubes for Macet {
-    fn way(&self) -> Way {
+impl Family for Macet {
+    fn way(&self) -> Option<Way> {
         let moves = EdgeMoves { pull: self.pull, steps: self.steps, share: self.share };
-        Way::Moved { rule: self.table(), moves }
+        Some(Way::Moved { rule: self.table(), moves })
     }
 
     fn promises(&self) -> Promises {
@@ -85,7 +84,7 @@ impl OfCubes for Macet {
         }
     }
 
-    fn check_settings(&self) -> Result<(), MethodError> {
+    fn check_own(&self) -> Result<(), MethodError> {
         let is_share = |value: f32| (0.0..=1.0).contains(&value);
         let Self { pull, steps, share, .. } = *self;
         if is_share(pull) && is_share(share) && steps <= MOST_STEPS {
@@ -101,7 +100,7 @@ impl OfCubes for Macet {
         Some(self.table())
     }
 
-    fn calls_the_field(&self) -> bool {
+    fn calls_the_field_always(&self) -> bool {
         true
     }
 }

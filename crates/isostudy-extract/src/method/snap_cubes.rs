@@ -1,7 +1,6 @@
 //! SnapMC as a method.
 
-use super::of_cubes::OfCubes;
-use super::{Method, MethodError, Preset, Promises};
+use super::{Family, Method, MethodError, Preset, Promises};
 use crate::cubes::Flat;
 use crate::extractor::Way;
 
@@ -44,9 +43,9 @@ impl Default for SnapCubes {
     }
 }
 
-impl OfCubes for SnapCubes {
-    fn way(&self) -> Way {
-        Way::Snapped { gamma: self.gamma, flat: self.flat }
+impl Family for SnapCubes {
+    fn way(&self) -> Option<Way> {
+        Some(Way::Snapped { gamma: self.gamma, flat: self.flat })
     }
 
     /// Where several sheets meet in one cell, snapping joins them along edges and at points.
@@ -60,7 +59,7 @@ impl OfCubes for SnapCubes {
         }
     }
 
-    fn check_settings(&self) -> Result<(), MethodError> {
+    fn check_own(&self) -> Result<(), MethodError> {
         let allowed = "must be from 0 to 0.5, in lengths of a lattice edge";
         MethodError::unless((0.0..=0.5).contains(&self.gamma), "gamma", self.gamma, allowed)
     }

@@ -1,7 +1,6 @@
 //! Surface nets as a method.
 
-use super::of_cubes::OfCubes;
-use super::{Method, MethodError, Preset, Promises};
+use super::{Family, Method, MethodError, Preset, Promises};
 use crate::duals::{MOST_SMOOTHING, Nets};
 use crate::extractor::Way;
 use crate::settings::{Clustering, ExtractSettings, Topology};
@@ -41,9 +40,9 @@ pub struct SurfaceNets {
     pub edge_clamp: f32,
 }
 
-impl OfCubes for SurfaceNets {
-    fn way(&self) -> Way {
-        Way::Nets(Nets { patches: self.patches, sharp: None, smoothing: self.smoothing, tolerance: 0.0 })
+impl Family for SurfaceNets {
+    fn way(&self) -> Option<Way> {
+        Some(Way::Nets(Nets { patches: self.patches, sharp: None, smoothing: self.smoothing, tolerance: 0.0 }))
     }
 
     fn promises(&self) -> Promises {
@@ -66,7 +65,7 @@ impl OfCubes for SurfaceNets {
         }
     }
 
-    fn check_settings(&self) -> Result<(), MethodError> {
+    fn check_own(&self) -> Result<(), MethodError> {
         let allowed = "must be from 0 to 64, steps";
         MethodError::unless(self.smoothing <= MOST_SMOOTHING, "smoothing", self.smoothing, allowed)
     }

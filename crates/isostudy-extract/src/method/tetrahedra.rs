@@ -1,14 +1,10 @@
 //! Marching tetrahedra as a method.
 
-use super::{ByWindow, Family, Method, MethodError, Preset, Promises};
-use crate::extraction::{Extraction, check};
-use crate::extractor::Extractor;
-use crate::lattice::BoxGrid;
+use super::{Family, Method, Preset, Promises};
+use crate::extractor::Way;
 use crate::lattice::Arrangement::{self, BodyCentred, FaceCentred, FiveTetrahedra, SimpleCubic};
-use crate::lattice::LatticeError;
 use crate::settings::Clustering::{self, EdgeCollapse, Integrated, IntegratedCollapse, None as Unclustered};
-use crate::settings::{Execution, ExtractSettings, Placement, Positions, Topology};
-use crate::source::Source;
+use crate::settings::{ExtractSettings, Placement, Positions, Topology};
 
 const COSTEN: &str = "Costen 2026";
 const TREECE: &str = "Treece, Prager & Gee 1999; Costen 2026";
@@ -44,19 +40,6 @@ pub(super) const PRESETS: &[Preset] = &[
     published("sp-published", "simple cubic, edge collapse, as published", SimpleCubic, EdgeCollapse),
 ];
 
-/// With the library's defaults, which `defaults_are_those_of_the_library` holds to.
-const fn settings(arrangement: Arrangement, clustering: Clustering) -> Tetrahedra {
-    Tetrahedra {
-        arrangement,
-        clustering,
-        topology: Topology::Guarded,
-        positions: Positions::Indexed,
-        placement: Placement::MeanOfCrossings,
-        refine_crossings: false,
-        edge_clamp: 0.0,
-    }
-}
-
 const fn plain(
     id: &'static str,
     label: &'static str,
@@ -64,7 +47,7 @@ const fn plain(
     clustering: Clustering,
     source: &'static str,
 ) -> Preset {
-    Preset { id, label, method: Method::Tetrahedra(settings(arrangement, clustering)), source }
+    Preset { id, label, method: Method::Tetrahedra(Tetrahedra { clustering, ..Tetrahedra::new(arrangement) }), source }
 }
 
 const fn placed(
@@ -73,7 +56,7 @@ const fn placed(
     arrangement: Arrangement,
     placement: Placement,
 ) -> Preset {
-    let method = Tetrahedra { placement, ..settings(arrangement, Integrated) };
+    let method = Tetrahedra { placement, ..Tetrahedra::new(arrangement) };
     Preset { id, label, method: Method::Tetrahedra(method), source: PLACED }
 }
 
@@ -85,7 +68,7 @@ const fn published(
     clustering: Clustering,
 ) -> Preset {
     let (topology, positions) = (Topology::Published, Positions::Accumulated { chunks: 16 });
-    let method = Tetrahedra { topology, positions, ..settings(arrangement, clustering) };
+    let method = Tetrahedra { clustering, topology, positions, ..Tetrahedra::new(arrangement) };
     Preset { id, label, method: Method::Tetrahedra(method), source: COSTEN }
 }
 
@@ -116,22 +99,16 @@ pub struct Tetrahedra {
 
 impl Tetrahedra {
     /// An arrangement with the defaults of [`ExtractSettings`].
-    pub fn new(arrangement: Arrangement) -> Self {
-        Self::with(arrangement, &ExtractSettings::default())
-    }
-
-    /// An arrangement with settings, whose isovalue is left out.
-    pub fn with(arrangement: Arrangement, settings: &ExtractSettings) -> Self {
-        let ExtractSettings {
-            isovalue: _,
-            clustering,
-            topology,
-            positions,
-            placement,
-            refine_crossings,
-            edge_clamp,
-        } = *settings;
-        Self { arrangement, clustering, topology, positions, placement, refine_crossings, edge_clamp }
+    pub const fn new(arrangement: Arrangement) -> Self {
+        Self {
+            arrangement,
+            clustering: Integrated,
+            topology: Topology::Guarded,
+            positions: Positions::Indexed,
+            placement: Placement::MeanOfCrossings,
+            refine_crossings: false,
+            edge_clamp: 0.0,
+        }
     }
 
     /// The settings of an extraction.
@@ -140,34 +117,19 @@ impl Tetrahedra {
             *self;
         ExtractSettings { isovalue, clustering, topology, positions, placement, refine_crossings, edge_clamp }
     }
-
-    /// Where vertices stay at the mean of their crossings.
-    fn unmoved_halo(&self) -> u32 {
-        if self.arrangement.uniform().is_some() { 2 } else { 1 }
-    }
 }
 
 impl Family for Tetrahedra {
-    fn check_own(&self) -> Result<(), MethodError> {
-        Ok(())
+    fn way(&self) -> Option<Way> {
+        None
     }
 
-    fn calls_the_field_always(&self) -> bool {
-        false
+    fn arrangement(&self) -> Arrangement {
+        self.arrangement
     }
 
-    fn check(&self, grid: &BoxGrid) -> Result<(), MethodError> {
-        check(&self.settings(0.0), self.arrangement)?;
-        grid.lattice(self.arrangement)?;
-        Ok(())
-    }
-
-    fn cells(&self, grid: &BoxGrid) -> Result<[u32; 3], LatticeError> {
-        Ok(grid.lattice(self.arrangement)?.cells())
-    }
-
-    fn memory_bytes(&self, grid: &BoxGrid, execution: &Execution) -> Result<u64, LatticeError> {
-        Ok(grid.lattice(self.arrangement)?.memory_bytes_for(&self.settings(0.0), execution))
+    fn settings(&self, isovalue: f32) -> ExtractSettings {
+        Self::settings(self, isovalue)
     }
 
     fn promises(&self) -> Promises {
@@ -198,18 +160,10 @@ impl Family for Tetrahedra {
             || self.clustering == Clustering::EdgeCollapse
     }
 
-    fn is_of_cubes(&self) -> bool {
-        false
-    }
-
     fn has_corners(&self) -> bool {
         self.arrangement == Arrangement::SimpleCubic
             && self.topology == Topology::Guarded
             && self.positions == Positions::Indexed
-    }
-
-    fn cells_otherwise(&self, _counts: [usize; 3], _values: &[f32], _isovalue: f32) -> Option<u64> {
-        None
     }
 
     fn tables(&self) -> Vec<isostudy_cells::Table> {
@@ -229,28 +183,12 @@ impl Family for Tetrahedra {
             Placement::Relaxed => 2,
             Placement::CurvatureWeighted => return None,
         };
-        Some(moves + self.unmoved_halo())
+        Some(self.unmoved_halo()? + moves)
     }
 
-    fn by_window(&self, isovalue: f32) -> Option<ByWindow> {
-        let (settings, halo) = (self.settings(isovalue), self.unmoved_halo());
-        Some(ByWindow { arrangement: self.arrangement, settings, cubes: None, halo })
-    }
-
-    fn extract_into(
-        &self,
-        extractor: &mut Extractor,
-        source: Source,
-        grid: &BoxGrid,
-        isovalue: f32,
-        execution: &Execution,
-        extraction: &mut Extraction,
-    ) -> Result<(), MethodError> {
-        let settings = self.settings(isovalue);
-        // Before the lattice, as in `check`.
-        check(&settings, self.arrangement)?;
-        let lattice = grid.lattice(self.arrangement)?;
-        Ok(extractor.extract_into(source, &lattice, &settings, execution, extraction)?)
+    /// Where vertices stay at the mean of their crossings.
+    fn unmoved_halo(&self) -> Option<u32> {
+        Some(if self.arrangement.uniform().is_some() { 2 } else { 1 })
     }
 }
 
@@ -339,7 +277,7 @@ mod tests {
     #[test]
     fn defaults_are_those_of_the_library() {
         for arrangement in Arrangement::ALL {
-            assert_eq!(settings(arrangement, Integrated), Tetrahedra::new(arrangement));
+            assert_eq!(Tetrahedra::new(arrangement).settings(0.0), ExtractSettings::default());
         }
     }
 }

@@ -1,8 +1,5 @@
 //! A volume's own cells: the surface between its samples, in the space its steps are in.
 
-use std::error::Error;
-use std::fmt;
-
 use glam::Vec3;
 use isostudy_mesh::Bounds;
 
@@ -16,6 +13,7 @@ use crate::settings::Execution;
 use crate::source::Source;
 use crate::surface::normals::vertex_normals;
 use crate::surface::space::Space;
+use crate::wording::in_words;
 
 /// Samples on a regular grid that may be turned, mirrored, sheared and unequal in its steps. Sample `(i, j, k)` lies at
 /// `origin + i * steps[0] + j * steps[1] + k * steps[2]`, the first axis fastest.
@@ -53,29 +51,16 @@ pub enum VolumeCellsError {
     Extract(MethodError),
 }
 
-impl fmt::Display for VolumeCellsError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Flat { counts } => {
-                write!(f, "{counts:?} samples along the axes; there must be two or more along each")
-            }
-            Self::Steps { steps, origin } => {
-                write!(f, "the steps {steps:?} from sample to sample, from {origin:?}, span no space")
-            }
-            Self::Method => f.write_str(
-                "a volume's own cells are for methods of cubes: other methods have sample points between",
-            ),
-            Self::Extract(error) => error.fmt(f),
-        }
+in_words! {
+    VolumeCellsError {
+        Self::Flat { counts } => "{counts:?} samples along the axes; there must be two or more along each";
+        Self::Steps { steps, origin } =>
+            "the steps {steps:?} from sample to sample, from {origin:?}, span no space";
+        Self::Method =>
+            "a volume's own cells are for methods of cubes: other methods have sample points between";
+        Self::Extract(error) => "{error}";
     }
-}
-
-impl Error for VolumeCellsError {}
-
-impl From<MethodError> for VolumeCellsError {
-    fn from(error: MethodError) -> Self {
-        Self::Extract(error)
-    }
+    from { MethodError => Self::Extract }
 }
 
 impl<'a> VolumeCells<'a> {

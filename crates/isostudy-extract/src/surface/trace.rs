@@ -8,7 +8,7 @@ use crate::lattice::{Arrangement, Lattice, cell_of_stored};
 /// at that point among them.
 ///
 /// Keys are those of the whole lattice, whatever box of it was extracted. Two vertices with one key are one vertex, with
-/// the same bits. Keys are in the order in which [`extract`](crate::extract) numbers vertices, unless edges are
+/// the same bits. Keys are in the order in which [`extract`](crate::by_lattice::extract) numbers vertices, unless edges are
 /// collapsed; the key of a vertex that others were collapsed into is its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct VertexKey(u128);

@@ -25,7 +25,7 @@ use self::sampling::{Samples, Sampling};
 use super::ties::Ties;
 use crate::extraction::ExtractError;
 use crate::lattice::Border;
-use crate::slabs::{LayerDone, Pass, Piece, Run, Stage, Streamed, Vertices, in_slabs, out_of_memory, stream};
+use crate::slabs::{Pass, Piece, Run, Slab, Stage, Streamed, in_slabs, out_of_memory};
 use crate::source::Request;
 
 /// The extractor's plan and buffers, kept from one surface to the next.
@@ -72,103 +72,72 @@ struct Workspace {
 impl Streamed for ByCell<'_> {
     type Workspace = Workspace;
 
-    fn workspace(&self) -> Workspace {
-        Workspace::default()
-    }
-
     fn fit(&self, workspace: &mut Workspace) -> Result<(), TryReserveError> {
         workspace.samples.fit(self.grid, self.request.source)?;
         workspace.records.fit(self.grid)
     }
 
     /// Each pass is as many layers behind the one before as a lattice edge can reach.
-    fn slab(
-        &self,
-        own: Range<usize>,
-        layer_done: &LayerDone,
-        workspace: &mut Workspace,
-        piece: &mut Piece,
-    ) -> Result<(), ExtractError> {
-        let grid = self.grid;
-        let (steps, reach, layers) = (grid.cut.steps_a_cell, grid.reach(), grid.size[2]);
-        let (lowest, highest) = (own.start * steps, own.end * steps);
+    fn passes(&self, own: Range<usize>) -> impl AsRef<[Pass<Self>]> {
+        let [lowest, highest] = self.points(&own);
+        let (steps, reach, layers) = (self.grid.cut.steps_a_cell, self.grid.reach(), self.grid.size[2]);
         let around = |n: usize| lowest.saturating_sub(n)..layers.min(highest + n + 1);
         let behind = 2 * reach;
-        let passes = [
-            Pass { stage: Stage::Sampling, behind: 0, layers: around(2 * reach), run: Slab::find_sides },
-            Pass { stage: Stage::Sampling, behind: reach, layers: around(reach), run: Slab::find_crossings },
-            Pass { stage: Stage::Vertex, behind, layers: around(0), run: Slab::place },
-            Pass {
-                stage: Stage::Geometry,
-                behind,
-                layers: lowest + steps..highest + 1,
-                run: Slab::triangulate,
-            },
-        ];
-        let Request { source, settings, control, .. } = *self.request;
-        let sampling = Sampling { grid, source, isovalue: settings.isovalue };
-        let mut slab =
-            Slab { of: self, layer_done, sampling, workspace, vertices: Vertices::within(piece), highest };
-        stream(&mut slab, passes, control, piece)?;
-        slab.vertices.give_to(piece);
-        Ok(())
+        let above = lowest + steps..highest + 1;
+        [
+            Pass { stage: Stage::Sampling, behind: 0, layers: around(2 * reach), run: Self::find_sides },
+            Pass { stage: Stage::Sampling, behind: reach, layers: around(reach), run: Self::find_crossings },
+            Pass { stage: Stage::Vertex, behind, layers: around(0), run: Self::place },
+            Pass { stage: Stage::Geometry, behind, layers: above, run: Self::triangulate },
+        ]
     }
 }
 
-/// A slab on its way.
-struct Slab<'a> {
-    of: &'a ByCell<'a>,
-    layer_done: &'a LayerDone<'a>,
-    sampling: Sampling<'a>,
-    workspace: &'a mut Workspace,
-    vertices: Vertices,
-    /// The layer of points above the slab's cells, whose vertices are the next slab's.
-    highest: usize,
-}
+impl ByCell<'_> {
+    /// The lowest and the highest layer of points of some layers of cells. The vertices of the highest are the next slab's.
+    fn points(&self, own: &Range<usize>) -> [usize; 2] {
+        [own.start, own.end].map(|layer| layer * self.grid.cut.steps_a_cell)
+    }
 
-impl Slab<'_> {
-    fn find_sides(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        self.workspace.samples.find_sides(self.sampling, layer);
+    fn sampling(&self) -> Sampling<'_> {
+        let Request { source, settings, .. } = *self.request;
+        Sampling { grid: self.grid, source, isovalue: settings.isovalue }
+    }
+
+    fn find_sides(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        slab.workspace.samples.find_sides(self.sampling(), layer);
         Ok(())
     }
 
-    fn find_crossings(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        self.workspace.samples.find_crossings(self.sampling, layer);
+    fn find_crossings(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        slab.workspace.samples.find_crossings(self.sampling(), layer);
         Ok(())
     }
 
-    fn place(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        let ByCell { grid, request, placer } = self.of;
-        let Workspace { samples, records } = &mut *self.workspace;
+    fn place(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        let Self { grid, request, ref placer } = *self;
+        let Workspace { samples, records } = &mut *slab.workspace;
         let (values, isovalue) = (samples.values(grid, request.source), request.settings.isovalue);
         let (sides, active, ties) = (samples.sides(), &samples.active, Ties::of(request.settings.topology));
         let pass = PointPass { grid, values, sides, active, isovalue, ties, placer };
-        let is_own = layer < self.highest || layer + 1 == grid.size[2];
-        pass.layer(layer, is_own, records, &mut self.vertices)?;
-        self.vertices.check(request.most_vertices)
+        let is_own = layer < self.points(&slab.own)[1] || layer + 1 == grid.size[2];
+        Ok(pass.layer(layer, is_own, records, &mut slab.vertices)?)
     }
 
     /// The cells below a layer of points, where it is not in the middle of cells.
-    fn triangulate(&mut self, layer: usize, piece: &mut Piece) -> Result<(), ExtractError> {
-        let grid = self.of.grid;
-        let steps = grid.cut.steps_a_cell;
+    fn triangulate(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        let steps = self.grid.cut.steps_a_cell;
         if !layer.is_multiple_of(steps) {
             return Ok(());
         }
-        if layer == self.highest {
+        if layer == self.points(&slab.own)[1] {
             // Only the highest cells have vertices of the slab above.
-            piece.tail = piece.surface.triangles.len();
+            slab.piece.tail = slab.piece.surface.triangles.len();
         }
-        let Workspace { samples, records } = &*self.workspace;
-        triangulate_layer(
-            grid,
-            samples.sides(),
-            &samples.active,
-            records,
-            layer / steps - 1,
-            &mut piece.surface,
-        )?;
-        (self.layer_done)();
+        let Workspace { samples, records } = &*slab.workspace;
+        let (sides, active, result) = (samples.sides(), &samples.active, &mut slab.piece.surface);
+        triangulate_layer(self.grid, sides, active, records, layer / steps - 1, result)?;
+        (slab.layer_done)();
         Ok(())
     }
 }

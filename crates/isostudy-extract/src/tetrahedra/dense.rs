@@ -8,12 +8,10 @@ pub(crate) mod sides;
 pub(crate) mod triangles;
 pub(crate) mod vertices;
 
-use std::time::Duration;
-
 use isostudy_mesh::TriangleMesh;
 
 use self::sampling::sample;
-use crate::clock::Moment;
+use crate::clock::Laps;
 use crate::execution::control::Control;
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes, check};
 use crate::lattice::{Border, Coordinates, Lattice, Layout};
@@ -37,7 +35,7 @@ pub(crate) fn extract(
     most_vertices: u32,
 ) -> Result<Extraction, ExtractError> {
     check(settings, lattice.arrangement())?;
-    let mut clock = Clock::start();
+    let mut clock = Laps::new();
 
     let layout = Layout::new(lattice);
     reserve(lattice)?;
@@ -79,20 +77,4 @@ fn reserve(lattice: &Lattice) -> Result<(), ExtractError> {
     let error = ExtractError::OutOfMemory { bytes };
     let length = usize::try_from(bytes).map_err(|_| error.clone())?;
     Vec::<u8>::new().try_reserve_exact(length).map_err(|_| error)
-}
-
-/// Laps without a gap.
-struct Clock {
-    last: Moment,
-}
-
-impl Clock {
-    fn start() -> Self {
-        Self { last: Moment::now() }
-    }
-
-    fn lap(&mut self) -> Duration {
-        let now = Moment::now();
-        now - std::mem::replace(&mut self.last, now)
-    }
 }

@@ -3,10 +3,8 @@
 use std::collections::BTreeMap;
 
 use glam::{Vec3, vec3};
-use isostudy_extract::{
-    Accuracy, Arrangement, BoxGrid, DistanceError, Execution, ExtractSettings, Lattice, accuracy, distances,
-    extract,
-};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Accuracy, Arrangement, BoxGrid, DistanceError, Execution, accuracy, distances};
 use isostudy_field::{Asteroid, MeshDistance, Sphere, StudyField};
 use isostudy_mesh::metro::{Amount, MetroError, Sampling, Surface, metro};
 use isostudy_mesh::{Bounds, MeshError, TriangleMesh};

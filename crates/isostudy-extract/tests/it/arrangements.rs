@@ -6,9 +6,10 @@ use std::f64::consts::PI;
 use crate::fields::{FAMILIES, Family, Volume};
 use crate::survey::{Component, survey};
 use glam::Vec3;
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
 use isostudy_extract::{
-    Arrangement, BoxGrid, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor,
-    Lattice, Placement, Positions, Source, Topology, accuracy, extract,
+    Arrangement, BoxGrid, Clustering, Execution, ExtractError, Extraction, Extractor, Placement, Positions,
+    Source, Topology, accuracy,
 };
 use isostudy_field::{Asteroid, Gyroid, Sphere, StudyField};
 use isostudy_mesh::Bounds;

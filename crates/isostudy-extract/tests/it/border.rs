@@ -3,9 +3,10 @@
 use std::sync::Mutex;
 
 use glam::Vec3;
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
 use isostudy_extract::{
-    Arrangement, BoxGrid, ChunkExtractor, ChunkSettings, Clustering, Execution, ExtractSettings, Lattice,
-    Method, Tetrahedra, Topology, extract, weld_chunks,
+    Arrangement, BoxGrid, ChunkExtractor, ChunkSettings, Clustering, Execution, Method, Tetrahedra, Topology,
+    weld_chunks,
 };
 use isostudy_field::{Gyroid, StudyField};
 use isostudy_mesh::topology::topology;

@@ -5,10 +5,11 @@ use std::sync::Mutex;
 
 use crate::fields::{FAMILIES, Family, Numbers, Volume};
 use glam::Vec3;
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
 use isostudy_extract::{
     Aabb, Arrangement, BoxGrid, CellBox, Chunk, ChunkError, ChunkExtractor, ChunkSettings, Clustering,
-    Execution, ExtractError, ExtractSettings, Lattice, Method, Placement, Positions, Source, Tetrahedra,
-    Topology, WeldError, extract, weld_chunks,
+    Execution, ExtractError, Method, Placement, Positions, Source, Tetrahedra, Topology, WeldError,
+    weld_chunks,
 };
 use isostudy_field::{Asteroid, Sphere, StudyField};
 use isostudy_mesh::{Bounds, TriangleMesh};
@@ -32,7 +33,18 @@ fn all_settings(arrangement: Arrangement) -> impl Iterator<Item = ExtractSetting
 }
 
 fn try_chunks_of(lattice: &Lattice, settings: &ExtractSettings) -> Result<ChunkExtractor, ChunkError> {
-    let method = Method::Tetrahedra(Tetrahedra::with(lattice.arrangement(), settings));
+    let ExtractSettings { clustering, topology, positions, placement, refine_crossings, edge_clamp, .. } =
+        *settings;
+    let arrangement = lattice.arrangement();
+    let method = Method::Tetrahedra(Tetrahedra {
+        arrangement,
+        clustering,
+        topology,
+        positions,
+        placement,
+        refine_crossings,
+        edge_clamp,
+    });
     let settings = ChunkSettings::default().with_isovalue(settings.isovalue);
     ChunkExtractor::in_box(&BoxGrid::from(lattice), &method, &settings)
 }

@@ -2,7 +2,8 @@
 //! of any box.
 
 use glam::{DMat3, DVec3, Vec3};
-use isostudy_extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, extract};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Clustering, Execution};
 use isostudy_field::{Asteroid, Beyond, Negated, Sphere, StudyField, VolumeField, Walled};
 use isostudy_mesh::quality::quality;
 use isostudy_mesh::topology::{first_boundary_edge, topology};

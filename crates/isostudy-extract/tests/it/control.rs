@@ -7,10 +7,11 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread::ThreadId;
 
 use glam::Vec3;
+use isostudy_extract::by_lattice::ExtractSettings;
 use isostudy_extract::{
     Arrangement, BoxGrid, CellBox, Chunk, ChunkError, ChunkExtractor, ChunkSettings, Clustering, Control,
-    Cubes, ExtractError, ExtractSettings, Extractor, Grid, Jobs, Method, Normals, Positions, Source,
-    Tetrahedra, Threads, from_fn,
+    Cubes, ExtractError, Extractor, Grid, Jobs, Method, Normals, Positions, Source, Tetrahedra, Threads,
+    from_fn,
 };
 use isostudy_field::{Sphere, StudyField};
 use isostudy_mesh::Bounds;

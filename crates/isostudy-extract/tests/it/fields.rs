@@ -3,7 +3,8 @@
 use std::f32::consts::TAU;
 
 use glam::Vec3;
-use isostudy_extract::{Arrangement, Lattice};
+use isostudy_extract::Arrangement;
+use isostudy_extract::by_lattice::Lattice;
 use isostudy_field::StudyField;
 use isostudy_mesh::Bounds;
 

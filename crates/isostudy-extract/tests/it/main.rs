@@ -20,7 +20,6 @@ mod labels;
 mod lattice;
 mod levels;
 mod levels_of_duals;
-mod macet;
 mod manifold;
 mod mesh_distance;
 mod method;

@@ -7,9 +7,8 @@
 
 use crate::fields::{FAMILIES, Family, Volume, image};
 use crate::survey::{Component, survey};
-use isostudy_extract::{
-    Arrangement, Clustering, Counts, Execution, ExtractSettings, Extraction, Topology, extract,
-};
+use isostudy_extract::by_lattice::{ExtractSettings, extract};
+use isostudy_extract::{Arrangement, Clustering, Counts, Execution, Extraction, Topology};
 use isostudy_mesh::topology::topology;
 use rayon::prelude::*;
 

@@ -5,9 +5,8 @@ use std::thread;
 
 use crate::bunny::{BOX, bunny};
 use glam::{DVec3, Vec3};
-use isostudy_extract::{
-    Arrangement, Clustering, Execution, ExtractSettings, Lattice, Positions, Topology, extract,
-};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Clustering, Execution, Positions, Topology};
 use isostudy_field::{MeshDistance, MeshFieldError, StudyField};
 use isostudy_mesh::topology::topology;
 use isostudy_mesh::{MeshError, TriangleMesh, repair};

@@ -3,10 +3,11 @@
 use crate::fields::{FAMILIES, Volume};
 use crate::survey::survey;
 use glam::Vec3;
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
 use isostudy_extract::{
     Arrangement, BoxGrid, ChunkExtractor, ChunkSettings, Clustering, ContinuedCells, Cubes, Execution,
-    ExtractError, ExtractSettings, Extraction, Extractor, Lattice, LatticeError, Method, MethodError,
-    Placement, Positions, Source, Tetrahedra, Topology, extract, kinds, presets, weld_chunks,
+    ExtractError, Extraction, Extractor, LatticeError, Method, MethodError, Placement, Positions, Source,
+    Tetrahedra, Topology, kinds, presets, weld_chunks,
 };
 use isostudy_field::{Sphere, StudyField};
 use isostudy_mesh::{Bounds, TriangleMesh};

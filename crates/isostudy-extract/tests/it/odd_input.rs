@@ -1,10 +1,8 @@
 //! What the crate's front page says of odd input: an error, or a mesh with a meaning.
 
 use glam::Vec3;
-use isostudy_extract::{
-    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Lattice, Placement, Positions, Topology,
-    extract,
-};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Clustering, Execution, Extraction, Placement, Positions, Topology};
 use isostudy_field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 use isostudy_mesh::topology::topology;
 use isostudy_mesh::{Bounds, TriangleMesh};

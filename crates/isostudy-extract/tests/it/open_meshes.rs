@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use crate::bunny::bunny;
 use glam::{DVec3, Vec3};
-use isostudy_extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Execution};
 use isostudy_field::{Holes, MeshDistance, MeshFieldError, StudyField};
 use isostudy_mesh::topology::topology;
 use isostudy_mesh::{Bounds, MeshError, TriangleMesh, repair};

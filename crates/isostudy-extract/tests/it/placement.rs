@@ -2,9 +2,10 @@
 
 use crate::fields::{FAMILIES, Volume};
 use glam::Vec3;
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
 use isostudy_extract::{
-    Arrangement, BoxGrid, Clustering, Execution, ExtractError, ExtractSettings, Extractor, Lattice,
-    Placement, Source, Topology, accuracy, extract,
+    Arrangement, BoxGrid, Clustering, Execution, ExtractError, Extractor, Placement, Source, Topology,
+    accuracy,
 };
 use isostudy_field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 use isostudy_mesh::quality::quality;

@@ -5,10 +5,8 @@
 use std::collections::HashMap;
 
 use glam::Vec3;
-use isostudy_extract::{
-    Arrangement, Clustering, Counts, Execution, ExtractSettings, Extraction, Lattice, Positions, Topology,
-    extract,
-};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Clustering, Counts, Execution, Extraction, Positions, Topology};
 use isostudy_field::{Asteroid, Sphere, StudyField};
 use isostudy_mesh::{Bounds, TriangleMesh};
 
@@ -153,13 +151,24 @@ fn discarded_triangles_are_those_of_the_unclustered_mesh() {
     }
 }
 
+/// [`Lattice::needed_samples`] and [`Lattice::needed_edges`] as Costen (2026) has them: two wrong signs on the simple cubic
+/// lattice, which make the published allocation ratio 112.75 % where it is 100 %.
+pub(crate) fn needed_as_published(lattice: &Lattice) -> (u64, u64) {
+    if lattice.arrangement() != Arrangement::SimpleCubic {
+        return (lattice.needed_samples(), lattice.needed_edges());
+    }
+    let [x, y, z] = lattice.cells().map(u64::from);
+    let (sides, ends) = (x * y + x * z + y * z, x + y + z);
+    ((x - 1) * (y - 1) * (z - 1), 7 * x * y * z - 3 * sides + ends)
+}
+
 #[test]
 fn lattice_counts_as_published_and_as_they_are() {
     for row in published_rows() {
         let lattice = lattice_of(&row);
         assert_eq!(lattice.cells(), [50; 3]);
-        assert_eq!(lattice.needed_samples_as_published(), row.count("needed_samples"));
-        assert_eq!(lattice.needed_edges_as_published(), row.count("needed_edges"));
+        let wanted = (row.count("needed_samples"), row.count("needed_edges"));
+        assert_eq!(needed_as_published(&lattice), wanted);
         let expected = match lattice.arrangement() {
             Arrangement::BodyCentred => (272_651, 1_832_650),
             _ => (132_651, 897_650),

@@ -5,9 +5,8 @@ use std::f64::consts::PI;
 
 use crate::topology::{assert_closed_manifold, directed_sides};
 use glam::Vec3;
-use isostudy_extract::{
-    Arrangement, Clustering, Execution, ExtractSettings, Extraction, Lattice, Positions, Topology, extract,
-};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Clustering, Execution, Extraction, Positions, Topology};
 use isostudy_field::{Sphere, StudyField};
 use isostudy_mesh::{Bounds, TriangleMesh};
 

@@ -1,7 +1,8 @@
 //! Surfaces of terrains: closed, sound, of the topology that their name says, and the same with fewer samples.
 
 use glam::Vec3;
-use isostudy_extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, extract};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Clustering, Execution};
 use isostudy_field::{StudyField, Terrain, TerrainCharacter, TerrainSettings};
 use isostudy_mesh::topology::topology;
 use isostudy_mesh::{Bounds, TriangleMesh};

@@ -3,7 +3,8 @@
 
 use crate::fields::{FAMILIES, Family, Numbers, Volume};
 use glam::Vec3;
-use isostudy_extract::{Arrangement, Clustering, Execution, ExtractSettings, Lattice, Topology, extract};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Clustering, Execution, Topology};
 use isostudy_field::{Beyond, StudyField, VolumeField};
 use isostudy_mesh::quality::quality;
 use isostudy_mesh::topology::topology;

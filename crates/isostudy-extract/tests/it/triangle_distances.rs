@@ -1,7 +1,8 @@
 //! Distances of triangles to the isosurface.
 
 use glam::Vec3;
-use isostudy_extract::{Execution, ExtractSettings, Lattice, extract, triangle_distances};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Execution, triangle_distances};
 use isostudy_field::{Sphere, StudyField};
 use isostudy_mesh::{Bounds, TriangleMesh};
 

@@ -3,7 +3,8 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::{DMat3, DVec3, Vec3};
-use isostudy_extract::{Arrangement, Execution, ExtractSettings, Lattice, extract};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
+use isostudy_extract::{Arrangement, Execution};
 use isostudy_field::{Beyond, Negated, StudyField, VolumeField, VolumeFieldError};
 use isostudy_mesh::topology::topology;
 use isostudy_mesh::{Bounds, TriangleMesh};

@@ -5,10 +5,10 @@ use std::collections::{HashMap, HashSet};
 use crate::fields::{FAMILIES, Family, Numbers, Volume};
 use crate::warp_rules::{ONE, Place, WARP, alpha, mesh_of, offsets, plus};
 use glam::{DVec3, Vec3};
+use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
 use isostudy_extract::{
     Arrangement, BoxGrid, CellBox, ChunkExtractor, ChunkSettings, Clustering, Execution, ExtractError,
-    ExtractSettings, Extractor, Lattice, Method, Placement, Positions, Source, Tetrahedra, Topology, extract,
-    weld_chunks,
+    Extractor, Method, Placement, Positions, Source, Tetrahedra, Topology, weld_chunks,
 };
 use isostudy_field::{Asteroid, Sphere, StudyField};
 use isostudy_mesh::{Bounds, TriangleMesh};
@@ -249,7 +249,11 @@ fn chunks_weld_to_the_whole() {
                 continue;
             }
             let whole = mesh_of(&volume, &settings);
-            let method = Method::Tetrahedra(Tetrahedra::with(Arrangement::BodyCentred, &settings));
+            let method = Method::Tetrahedra(Tetrahedra {
+                clustering: Clustering::Warp,
+                placement,
+                ..Tetrahedra::new(Arrangement::BodyCentred)
+            });
             let grid = BoxGrid::from(&volume.lattice());
             let mut chunks = ChunkExtractor::in_box(&grid, &method, &ChunkSettings::default()).unwrap();
             let boxes: Vec<CellBox> = chunks.grid(4).collect();

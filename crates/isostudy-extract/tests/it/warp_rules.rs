@@ -1,7 +1,8 @@
 //! What the warp's tests share: the published shares, the lattice's directions, and a mesh by the extractor.
 
 use crate::fields::Volume;
-use isostudy_extract::{Clustering, Execution, ExtractSettings, Placement, Positions, Topology, extract};
+use isostudy_extract::by_lattice::{ExtractSettings, extract};
+use isostudy_extract::{Clustering, Execution, Placement, Positions, Topology};
 use isostudy_mesh::TriangleMesh;
 
 pub(crate) const ONE: Execution = Execution { threads: 1 };

@@ -5,7 +5,7 @@ use std::collections::{BinaryHeap, TryReserveError};
 
 use glam::{DVec3, Vec3};
 
-use super::{Merged, is_proper, rebuild, unique_edges};
+use super::{Merged, is_proper, unique_edges};
 use crate::memory::{collected, copied, filled};
 
 /// Least cosine between a triangle and the mean normal of the triangles round its edge: 78 degrees.
@@ -13,7 +13,7 @@ const LEAST_COSINE: f64 = 0.2;
 /// An edge that had to stay may go when its neighbours have; a fourth pass found nothing on the evaluation's objects.
 const PASSES: usize = 3;
 
-/// Collapses edges up to half of `spacing`, shortest first, and renumbers what is left.
+/// Collapses edges up to half of `spacing`, shortest first: where vertices are then, and which are one.
 ///
 /// The two ends meet at their midpoint or at one of them, wherever the worst triangle is best. An edge is left alone
 /// when
@@ -32,17 +32,7 @@ const PASSES: usize = 3;
 /// without boundary.
 ///
 /// Source of the link condition: Dey, Edelsbrunner, Guha & Nekhayev (1999).
-pub(crate) fn guarded(
-    positions: Vec<Vec3>,
-    triangles: &[[u32; 3]],
-    spacing: f32,
-) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), TryReserveError> {
-    let (positions, mut merged) = merge(positions, triangles, spacing)?;
-    rebuild(&positions, triangles, &mut merged)
-}
-
-/// The collapses alone: where vertices are now, and which are one.
-pub(super) fn merge(
+pub(super) fn guarded(
     positions: Vec<Vec3>,
     triangles: &[[u32; 3]],
     spacing: f32,
@@ -317,7 +307,15 @@ impl Corner {
 
 #[cfg(test)]
 mod tests {
+    use super::super::collapse_traced;
     use super::*;
+    use crate::settings::Topology;
+
+    /// Positions and triangles of what is left.
+    fn collapsed(positions: Vec<Vec3>, triangles: &[[u32; 3]], spacing: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+        let after = collapse_traced(Topology::Guarded, spacing, positions, triangles).unwrap();
+        (after.positions, after.triangles)
+    }
 
     /// A flat patch: two vertices close together in a ring of six, the ring on the boundary.
     fn patch() -> (Vec<Vec3>, Vec<[u32; 3]>) {
@@ -333,10 +331,10 @@ mod tests {
     #[test]
     fn a_short_edge_goes_and_the_boundary_stays() {
         let (positions, triangles) = patch();
-        let (after, rest) = guarded(positions.clone(), &triangles, 0.4).unwrap();
+        let (after, rest) = collapsed(positions.clone(), &triangles, 0.4);
         assert_eq!((after.len(), rest.len()), (7, 6));
         assert!(positions[2..].iter().all(|p| after.contains(p)));
-        let (after, rest) = guarded(positions, &triangles, 0.39).unwrap();
+        let (after, rest) = collapsed(positions, &triangles, 0.39);
         assert_eq!((after.len(), rest.len()), (8, 8), "longer than half the spacing");
     }
 
@@ -345,7 +343,7 @@ mod tests {
         let (mut positions, triangles) = patch();
         positions[0] = Vec3::new(-0.5, 0.1, 0.0);
         positions[1] = positions[2] - Vec3::new(0.05, 0.0, 0.0);
-        let (after, rest) = guarded(positions.clone(), &triangles, 0.2).unwrap();
+        let (after, rest) = collapsed(positions.clone(), &triangles, 0.2);
         assert_eq!((after.len(), rest.len()), (7, 6));
         assert!(after.contains(&positions[2]) && !after.contains(&positions[1]));
     }
@@ -354,7 +352,7 @@ mod tests {
     fn a_tetrahedron_stays_however_small() {
         let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
         let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
-        assert_eq!(guarded(corners, &faces, 1000.0).unwrap().1.len(), 4);
+        assert_eq!(collapsed(corners, &faces, 1000.0).1.len(), 4);
     }
 
     #[test]
@@ -370,6 +368,6 @@ mod tests {
             (b - a).cross(c - a).z > 0.0
         };
         assert!(triangles.iter().all(up));
-        assert_eq!(guarded(positions.clone(), &triangles, 0.5).unwrap().1.len(), 8);
+        assert_eq!(collapsed(positions.clone(), &triangles, 0.5).1.len(), 8);
     }
 }

@@ -4,29 +4,19 @@ use std::collections::TryReserveError;
 
 use glam::Vec3;
 
-use super::{Merged, rebuild, unique_edges};
+use super::{Merged, unique_edges};
 
-/// Collapses short edges of an unclustered mesh in one pass and renumbers what is left.
+/// Collapses short edges of an unclustered mesh in one pass.
 ///
 /// Edges are taken in order of their smaller, then larger vertex number. The two ends are looked up where earlier
-/// collapses left them; if their distance is at most half of `spacing`, both become the midpoint. Triangles that lose
-/// a corner are dropped. The order is by number and not by length, collapses change lengths that were already
-/// passed over, and neither topology nor normals are looked at: the result can fold over itself.
+/// collapses left them; if their distance is at most half of `spacing`, both become the midpoint. The
+/// order is by number and not by length, collapses change lengths that were already passed over, and neither topology
+/// nor normals are looked at: the result can fold over itself.
 ///
-/// Returns positions and triangles; vertices are numbered by first use.
+/// Returns where vertices are now, and which are one.
 ///
 /// Source: Costen (2026), "post-processed" clustering.
-pub(crate) fn published(
-    positions: Vec<Vec3>,
-    triangles: &[[u32; 3]],
-    spacing: f32,
-) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), TryReserveError> {
-    let (positions, mut merged) = merge(positions, triangles, spacing)?;
-    rebuild(&positions, triangles, &mut merged)
-}
-
-/// The collapses alone: where vertices are now, and which are one.
-pub(super) fn merge(
+pub(super) fn published(
     mut positions: Vec<Vec3>,
     triangles: &[[u32; 3]],
     spacing: f32,
@@ -46,7 +36,15 @@ pub(super) fn merge(
 
 #[cfg(test)]
 mod tests {
+    use super::super::collapse_traced;
     use super::*;
+    use crate::settings::Topology;
+
+    /// Positions and triangles of what is left.
+    fn collapsed(positions: Vec<Vec3>, triangles: &[[u32; 3]], spacing: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+        let after = collapse_traced(Topology::Published, spacing, positions, triangles).unwrap();
+        (after.positions, after.triangles)
+    }
 
     /// A strip of two triangles over a short and a long side.
     fn strip() -> (Vec<Vec3>, Vec<[u32; 3]>) {
@@ -58,7 +56,7 @@ mod tests {
     #[test]
     fn short_edge_goes_to_its_midpoint() {
         let (positions, triangles) = strip();
-        let (positions, triangles) = published(positions, &triangles, 1.0).unwrap();
+        let (positions, triangles) = collapsed(positions, &triangles, 1.0);
         assert_eq!(triangles, [[0, 1, 2]]);
         assert_eq!(positions, [Vec3::new(0.2, 0.0, 0.0), Vec3::new(2.0, 2.0, 0.0), Vec3::new(0.0, 2.0, 0.0)]);
     }
@@ -66,11 +64,11 @@ mod tests {
     #[test]
     fn half_the_spacing_is_the_limit_and_counts() {
         let (positions, triangles) = strip();
-        let longer = published(positions.clone(), &triangles, 0.79).unwrap();
+        let longer = collapsed(positions.clone(), &triangles, 0.79);
         assert_eq!(longer.1, triangles);
         let mut exact = positions;
         exact[1].x = 0.5;
-        assert_eq!(published(exact, &triangles, 1.0).unwrap().1.len(), 1);
+        assert_eq!(collapsed(exact, &triangles, 1.0).1.len(), 1);
     }
 
     #[test]
@@ -78,7 +76,7 @@ mod tests {
         // Three points 0.4 apart: the first collapse moves the pair to 0.2, and 0.8 is then too far away.
         let positions =
             vec![Vec3::ZERO, Vec3::new(0.4, 0.0, 0.0), Vec3::new(0.8, 0.0, 0.0), Vec3::new(0.0, 9.0, 0.0)];
-        let (positions, triangles) = published(positions, &[[0, 1, 3], [1, 2, 3]], 1.0).unwrap();
+        let (positions, triangles) = collapsed(positions, &[[0, 1, 3], [1, 2, 3]], 1.0);
         assert_eq!(triangles.len(), 1);
         assert!(
             positions.contains(&Vec3::new(0.2, 0.0, 0.0)) && positions.contains(&Vec3::new(0.8, 0.0, 0.0))

@@ -1,12 +1,11 @@
 //! Where continuation begins: near points that are given, or where a search finds that the surface crosses a line.
 
 use std::collections::TryReserveError;
-use std::error::Error;
-use std::fmt;
 
 use super::Continued;
 use super::corners::Corners;
 use crate::memory::push;
+use crate::wording::in_words;
 
 /// What a visited cube is to continuation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -42,19 +41,13 @@ pub struct SeedsError {
     pub is_finite: bool,
 }
 
-impl fmt::Display for SeedsError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { count, is_finite } = self;
-        write!(
-            f,
+in_words! {
+    SeedsError {
+        Self { count, is_finite } =>
             "seeds: {count} points{}; there must be at most {} of finite coordinates",
-            if *is_finite { "" } else { ", not all finite" },
-            Seeds::MOST
-        )
+            if *is_finite { "" } else { ", not all finite" }, Seeds::MOST;
     }
 }
-
-impl Error for SeedsError {}
 
 impl Seeds {
     /// The most points.

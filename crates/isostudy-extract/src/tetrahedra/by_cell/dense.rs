@@ -1,9 +1,10 @@
 //! The same extractor with the samples and sides of all points in memory, for the tests to compare with.
 
+use glam::Vec3;
 use isostudy_mesh::TriangleMesh;
 
 use super::cut::{Cut, Step};
-use super::grid::{Coordinates, is_regular};
+use super::grid::is_regular;
 use super::points::{Placer, Record};
 use crate::execution::control::Threads;
 use crate::extraction::{Counts, Extraction};
@@ -26,7 +27,7 @@ pub(super) fn extract(
     settings: &ExtractSettings,
 ) -> (Extraction, Trace) {
     let cut = Cut::of(lattice.arrangement());
-    let coordinates = Coordinates::new(lattice, &cut, Border::of(settings)).unwrap();
+    let coordinates = coordinates(lattice, settings);
     let samples = samples(field, &coordinates);
     let sides = samples.iter().map(|value| settings.isovalue - value < 0.0).collect();
     let grid = lattice.stored_grid().map(|n| n as usize);
@@ -43,8 +44,15 @@ pub(super) fn extract(
     (Extraction { mesh, counts, ..Extraction::default() }, trace)
 }
 
+/// Where stored points are, along each axis.
+pub(super) fn coordinates(lattice: &Lattice, settings: &ExtractSettings) -> [Vec<f32>; 3] {
+    let mut at = Default::default();
+    lattice.refit_in_line(Border::of(settings), &mut at).unwrap();
+    at
+}
+
 /// As [`crate::Source::Samples`] has them.
-pub(super) fn samples(field: &dyn StudyField, Coordinates { x, y, z }: &Coordinates) -> Vec<f32> {
+pub(super) fn samples(field: &dyn StudyField, [x, y, z]: &[Vec<f32>; 3]) -> Vec<f32> {
     let mut samples = vec![0.0; x.len() * y.len() * z.len()];
     for (i, row) in samples.chunks_exact_mut(x.len()).enumerate() {
         field.sample_row(x, y[i % y.len()], z[i / y.len()], row);
@@ -76,7 +84,7 @@ impl Points<'_> {
     fn place(
         &mut self,
         samples: &[f32],
-        coordinates: &Coordinates,
+        coordinates: &[Vec<f32>; 3],
         settings: &ExtractSettings,
         level: Level,
     ) -> Vertices {
@@ -84,6 +92,7 @@ impl Points<'_> {
         let placer = Placer::new(self.lattice, self.cut, settings, Some(level));
         let ties = Ties::of(settings.topology);
         let border = Border::of(settings);
+        let at = |place: [usize; 3]| Vec3::from_array([0, 1, 2].map(|axis| coordinates[axis][place[axis]]));
         let [nx, ny, nz] = self.grid;
         for place in (0..nx * ny * nz).map(|i| [i % nx, i / nx % ny, i / nx / ny]) {
             let point = self.index(place);
@@ -98,11 +107,11 @@ impl Points<'_> {
                 if ties.is_near(self.sides[point], here, settings.isovalue - samples[neighbour]) {
                     record.near |= 1 << direction;
                     let values = [samples[point], samples[neighbour]];
-                    let from = coordinates.at(place);
+                    let from = at(place);
                     let is_regular = is_regular(self.lattice, self.cut, border, place);
                     let there =
                         [0, 1, 2].map(|axis| place[axis].wrapping_add_signed(isize::from(step[axis])));
-                    let way = if is_regular { placer.edges[direction] } else { coordinates.at(there) - from };
+                    let way = if is_regular { placer.edges[direction] } else { at(there) - from };
                     placer.place(from, (direction, way), values, &mut vertices).unwrap();
                     let key =
                         VertexKey::new(self.lattice.arrangement(), self.lattice.stored(place), direction);

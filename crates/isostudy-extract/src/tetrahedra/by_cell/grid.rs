@@ -7,7 +7,6 @@ use isostudy_mesh::Bounds;
 
 use super::cut::{Cut, CutEdge, Directions, Step};
 use crate::lattice::{Border, Lattice};
-use crate::memory::refilled;
 use crate::sampling::line::Every;
 use crate::sampling::tiles::Points;
 use crate::slabs::window::PointRows;
@@ -32,7 +31,8 @@ pub(super) struct CutGrid {
     pub(super) size: [usize; 3],
     /// Words of bits a row.
     pub(super) words: usize,
-    pub(super) coordinates: Coordinates,
+    /// Where stored points are, along each axis.
+    at: [Vec<f32>; 3],
     /// The columns that have points, by [`RowKind::columns`].
     pub(super) columns: [Vec<f32>; 2],
     /// By parity of the row and of the layer, in the window.
@@ -71,39 +71,6 @@ pub(super) struct Tetrahedron {
     pub(super) edges: [CutEdge; 6],
 }
 
-/// Where stored points are, along each axis.
-#[derive(Debug, Default)]
-pub(super) struct Coordinates {
-    pub(super) x: Vec<f32>,
-    pub(super) y: Vec<f32>,
-    pub(super) z: Vec<f32>,
-}
-
-impl Coordinates {
-    #[cfg(test)]
-    pub(super) fn new(lattice: &Lattice, cut: &Cut, border: Border) -> Result<Self, TryReserveError> {
-        let mut coordinates = Self::default();
-        coordinates.refit(lattice, cut, border)?;
-        Ok(coordinates)
-    }
-
-    /// Makes them those of a lattice, where [`Lattice::coordinate`] puts them. What is large enough stays.
-    fn refit(&mut self, lattice: &Lattice, cut: &Cut, border: Border) -> Result<(), TryReserveError> {
-        let (first, grid) = (lattice.first_stored(), lattice.stored_grid());
-        let axes = [&mut self.x, &mut self.y, &mut self.z];
-        for (axis, places) in axes.into_iter().enumerate() {
-            let halves = |i: usize| (first[axis] + i as i64) * 2 / cut.steps_a_cell as i64;
-            let at = |i: usize| lattice.coordinate(axis, halves(i), border);
-            refilled(places, (0..grid[axis] as usize).map(at))?;
-        }
-        Ok(())
-    }
-
-    pub(super) fn at(&self, [x, y, z]: [usize; 3]) -> Vec3 {
-        Vec3::new(self.x[x], self.y[y], self.z[z])
-    }
-}
-
 impl CutGrid {
     pub(super) fn new(lattice: &Lattice, border: Border) -> Result<Self, TryReserveError> {
         let cut = Cut::get(lattice.arrangement());
@@ -139,7 +106,7 @@ impl CutGrid {
             border,
             size: [0; 3],
             words: 0,
-            coordinates: Coordinates::default(),
+            at: Default::default(),
             columns: [Vec::new(), Vec::new()],
             kinds,
             lines,
@@ -158,12 +125,12 @@ impl CutGrid {
         (self.lattice, self.border) = (lattice.clone(), border);
         self.size = lattice.stored_grid().map(|n| n as usize);
         self.words = self.size[0].div_ceil(64);
-        self.coordinates.refit(lattice, self.cut, border)?;
+        lattice.refit_in_line(border, &mut self.at)?;
         if self.cut.steps_a_cell > 1 {
             for (first, columns) in self.columns.iter_mut().enumerate() {
                 columns.clear();
                 columns.try_reserve_exact(self.size[0])?;
-                columns.extend(self.coordinates.x[first..].iter().step_by(2));
+                columns.extend(self.at[0][first..].iter().step_by(2));
             }
         }
         let first = lattice.first_stored();
@@ -186,7 +153,11 @@ impl CutGrid {
         }
         let step = self.cut.steps[direction];
         let there = [0, 1, 2].map(|axis| place[axis].strict_add_signed(isize::from(step[axis])));
-        self.coordinates.at(there) - self.coordinates.at(place)
+        self.position(there) - self.position(place)
+    }
+
+    pub(super) fn position(&self, place: [usize; 3]) -> Vec3 {
+        Vec3::from_array([0, 1, 2].map(|axis| self.at[axis][place[axis]]))
     }
 
     /// No neighbour is more layers, rows or columns away.
@@ -233,7 +204,7 @@ impl Points for CutGrid {
     }
 
     fn bounds(&self, columns: [usize; 2], rows: [usize; 2], layers: [usize; 2]) -> Bounds {
-        let [min, max] = [0, 1].map(|end| self.coordinates.at([columns[end], rows[end], layers[end]]));
+        let [min, max] = [0, 1].map(|end| self.position([columns[end], rows[end], layers[end]]));
         Bounds { min, max }
     }
 }
@@ -277,13 +248,12 @@ impl PointRows for CutGrid {
     }
 
     fn at(&self, axis: usize) -> &[f32] {
-        let Coordinates { x, y, z } = &self.coordinates;
-        [x, y, z][axis]
+        &self.at[axis]
     }
 
     fn columns(&self, row: usize, layer: usize) -> (Every, &[f32], u64) {
         let RowKind { columns: [offset, step], used, .. } = *self.kind(row, layer);
-        let x = if step == 1 { &self.coordinates.x } else { &self.columns[offset] };
+        let x = if step == 1 { &self.at[0] } else { &self.columns[offset] };
         (Every { offset, step }, x, used)
     }
 }

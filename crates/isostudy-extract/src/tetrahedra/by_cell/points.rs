@@ -180,7 +180,7 @@ impl PointPass<'_> {
                 continue;
             }
             let way = grid.way(place, direction, self.placer.edges[direction]);
-            self.placer.place(grid.coordinates.at(place), (direction, way), [value, neighbour], vertices)?;
+            self.placer.place(grid.position(place), (direction, way), [value, neighbour], vertices)?;
             vertices.name(&grid.lattice, place, direction)?;
         }
         Ok(record)

@@ -8,19 +8,15 @@ use glam::Vec3;
 use isostudy_mesh::Bounds;
 
 use super::cut::{Cut, Step, turn};
-use super::grid::Coordinates;
 use super::{CellStreamer, dense};
+use crate::by_lattice::{ExtractSettings, Lattice};
 use crate::clock::Moment;
 use crate::fields::{FAMILIES, Family, Numbers, Volume};
-use crate::lattice::Border;
 use crate::placement::spot::tests::normal_lies_between;
 use crate::slabs::Run;
 use crate::source::{Request, Sampler};
 use crate::surface::trace::Trace;
-use crate::{
-    Arrangement, CellBox, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Lattice,
-    Placement, Topology,
-};
+use crate::{Arrangement, CellBox, Clustering, Execution, ExtractError, Extraction, Placement, Topology};
 use isostudy_field::{Asteroid, Beyond, Gyroid, MeshDistance, Sphere, StudyField, VolumeField};
 
 const BOTH: [Arrangement; 2] = [Arrangement::FiveTetrahedra, Arrangement::FaceCentred];
@@ -163,9 +159,8 @@ fn check(
     all: impl Iterator<Item = ExtractSettings>,
     what: &dyn std::fmt::Debug,
 ) {
-    let cut = Cut::of(lattice.arrangement());
     for settings in all {
-        let coordinates = Coordinates::new(lattice, &cut, Border::of(&settings)).unwrap();
+        let coordinates = dense::coordinates(lattice, &settings);
         let samples = dense::samples(field, &coordinates);
         let (expected, trace) = dense::extract(field, lattice, &settings);
         let calls = settings.refine_crossings || settings.placement.calls_the_field();
@@ -266,7 +261,8 @@ fn fields_with_bounds_give_the_stored_mesh() {
     let rough = Asteroid { amplitude: 0.6, gain: 0.5, ..Asteroid::default() };
     let coarse = Lattice::try_new(Arrangement::BodyCentred, bounds, 0.1).unwrap();
     let solid =
-        crate::extract(&rough, &coarse, &ExtractSettings::default(), &Execution { threads: 1 }).unwrap();
+        crate::by_lattice::extract(&rough, &coarse, &ExtractSettings::default(), &Execution { threads: 1 })
+            .unwrap();
     let distance = MeshDistance::try_new(&solid.mesh).unwrap();
     let samples = |n: usize| {
         let at = |i: usize| i as f32 / (n - 1) as f32 * 2.0 - 1.0;
@@ -365,7 +361,7 @@ fn far_from_the_surface_nothing_is_sampled() {
         let lattice = Lattice::try_new(arrangement, bounds, 2.0 / 96.0).unwrap();
         let settings = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
         let taken = |field: &Counting<Sphere>| {
-            crate::extract(field, &lattice, &settings, &Execution { threads: 1 }).unwrap();
+            crate::by_lattice::extract(field, &lattice, &settings, &Execution { threads: 1 }).unwrap();
             field.1.load(Ordering::Relaxed) as f64 / lattice.needed_samples() as f64
         };
         let taken = taken(&Counting(Sphere { radius: 0.8 }, AtomicUsize::new(0)));

@@ -15,6 +15,7 @@ use super::signs::Signs;
 use crate::lattice::{DIRECTIONS, DirectionSet, members};
 use crate::placement::spot::{Apart, Company, linear_ratio};
 use crate::placement::{CrossingPlacer, Surroundings};
+use crate::slabs::Vertices;
 use crate::surface::trace::VertexKey;
 
 /// Samples, by row.
@@ -39,19 +40,6 @@ pub(super) struct PointPass<'a, R> {
     pub(super) has_more: bool,
 }
 
-/// What the pass counts and writes.
-#[derive(Debug, Default)]
-pub(super) struct Placed {
-    /// Vertices numbered so far, in the slab's own layers and in those below that it only needs the numbers of.
-    pub(super) numbered: u64,
-    /// Crossings seen, each once from either end.
-    pub(super) crossing_ends: u64,
-    /// Where the placer wants the vertices.
-    pub(super) targets: Vec<Vec3>,
-    /// Their keys, where they are asked for.
-    pub(super) keys: Option<Vec<VertexKey>>,
-}
-
 /// A point with a crossing.
 struct Point {
     column: usize,
@@ -70,7 +58,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
         &self,
         layer: usize,
         records: &mut Records,
-        placed: &mut Placed,
+        placed: &mut Vertices,
         mut positions: Option<&mut Vec<Vec3>>,
     ) -> Result<(), TryReserveError> {
         records.open_layer(layer);
@@ -96,7 +84,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
         lines: &Lines,
         samples: &[usize; LINES],
         records: &mut Records,
-        placed: &mut Placed,
+        placed: &mut Vertices,
         mut positions: Option<&mut Vec<Vec3>>,
     ) -> Result<(), TryReserveError> {
         let grid = self.grid;
@@ -170,7 +158,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
         neighbours: &[usize; 16],
         layer: usize,
         records: &mut Records,
-        placed: &mut Placed,
+        placed: &mut Vertices,
         mut positions: Option<&mut Vec<Vec3>>,
     ) -> Record {
         let &Point { column, inside, crossing, present, .. } = point;
@@ -237,7 +225,7 @@ impl<R: ClusterRule> PointPass<'_, R> {
         clusters: &[DirectionSet],
         row_start: usize,
         neighbours: &[usize; 16],
-        placed: &mut Placed,
+        placed: &mut Vertices,
     ) {
         if let Some(keys) = &mut placed.keys {
             let lattice = &self.grid.lattice;

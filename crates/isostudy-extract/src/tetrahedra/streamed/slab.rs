@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use super::faces::{FaceTables, triangulate_layer};
 use super::grid::UniformGrid;
-use super::points::{Placed, PointPass, Samples};
+use super::points::{PointPass, Samples};
 use super::records::Records;
 use super::rule::ClusterRule;
 use super::sampling::{FieldPass, FieldSamples, signs_of};
@@ -14,7 +14,7 @@ use super::signs::Signs;
 use crate::extraction::ExtractError;
 use crate::placement::CrossingPlacer;
 use crate::placement::spot::Apart;
-use crate::slabs::{LayerDone, Pass, Piece, Stage, Streamed, stream};
+use crate::slabs::{Pass, Slab, Stage, Streamed};
 use crate::source::{Request, Sampler};
 
 /// What all slabs of an extraction share.
@@ -56,10 +56,6 @@ impl<R: ClusterRule> Points<'_, R> {
 impl<R: ClusterRule> Streamed for Points<'_, R> {
     type Workspace = Workspace;
 
-    fn workspace(&self) -> Workspace {
-        Workspace::default()
-    }
-
     fn fit(&self, workspace: &mut Workspace) -> Result<(), TryReserveError> {
         let slots = self.grid.slots() + self.lead();
         if matches!(self.request.source, Sampler::Field(_)) {
@@ -69,62 +65,26 @@ impl<R: ClusterRule> Streamed for Points<'_, R> {
         workspace.records.fit(self.grid)
     }
 
-    fn slab(
-        &self,
-        own: Range<usize>,
-        layer_done: &LayerDone,
-        workspace: &mut Workspace,
-        piece: &mut Piece,
-    ) -> Result<(), ExtractError> {
+    fn passes(&self, own: Range<usize>) -> impl AsRef<[Pass<Self>]> {
         let (reach, layers, lead) = (self.grid.reach, self.grid.size[2], self.lead());
         let around = |n: usize| own.start.saturating_sub(n)..layers.min(own.end + n);
         let [signed, sampled, recorded] = [2 * reach + lead, 2 * reach, reach].map(around);
-        let passes = [
-            Pass { stage: Stage::Sampling, behind: 0, layers: signed, run: Slab::find_signs },
-            Pass { stage: Stage::Sampling, behind: lead, layers: sampled, run: Slab::fill },
-            Pass { stage: Stage::Vertex, behind: lead + reach, layers: recorded, run: Slab::place },
-            Pass {
-                stage: Stage::Geometry,
-                behind: lead + 2 * reach,
-                layers: own.clone(),
-                run: Slab::triangulate,
-            },
-        ];
-        let placed = Placed {
-            targets: std::mem::take(&mut piece.targets),
-            keys: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys)),
-            ..Placed::default()
-        };
-        let field = self.field_pass();
-        let mut slab = Slab { of: self, layer_done, field, workspace, placed, own };
-        stream(&mut slab, passes, self.request.control, piece)?;
-        let Placed { targets, keys, .. } = slab.placed;
-        piece.targets = targets;
-        if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, keys) {
-            trace.keys = keys;
-        }
-        Ok(())
+        let behind = lead + 2 * reach;
+        [
+            Pass { stage: Stage::Sampling, behind: 0, layers: signed, run: Self::find_signs },
+            Pass { stage: Stage::Sampling, behind: lead, layers: sampled, run: Self::fill },
+            Pass { stage: Stage::Vertex, behind: lead + reach, layers: recorded, run: Self::place },
+            Pass { stage: Stage::Geometry, behind, layers: own, run: Self::triangulate },
+        ]
     }
 }
 
-/// A slab on its way.
-struct Slab<'a, R> {
-    of: &'a Points<'a, R>,
-    layer_done: &'a LayerDone<'a>,
-    /// What is called, if it is a field.
-    field: Option<FieldPass<'a>>,
-    workspace: &'a mut Workspace,
-    placed: Placed,
-    own: Range<usize>,
-}
-
-impl<R: ClusterRule> Slab<'_, R> {
-    fn find_signs(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        let Points { grid, request, .. } = self.of;
-        let Workspace { samples, signs, .. } = &mut *self.workspace;
-        match (request.source, self.field) {
+impl<R: ClusterRule> Points<'_, R> {
+    fn find_signs(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        let Workspace { samples, signs, .. } = &mut *slab.workspace;
+        match (self.request.source, self.field_pass()) {
             (Sampler::Given { values, .. }, _) => {
-                signs_of(grid, values, request.settings.isovalue, layer, signs);
+                signs_of(self.grid, values, self.request.settings.isovalue, layer, signs);
             }
             (Sampler::Field(_), Some(pass)) => samples.find_signs(pass, layer, signs),
             (Sampler::Field(_), None) => unreachable!("made for a field"),
@@ -132,16 +92,16 @@ impl<R: ClusterRule> Slab<'_, R> {
         Ok(())
     }
 
-    fn fill(&mut self, layer: usize, _: &mut Piece) -> Result<(), ExtractError> {
-        if let Some(pass) = self.field {
-            self.workspace.samples.fill(pass, layer, &self.workspace.signs);
+    fn fill(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        if let Some(pass) = self.field_pass() {
+            slab.workspace.samples.fill(pass, layer, &slab.workspace.signs);
         }
         Ok(())
     }
 
-    fn place(&mut self, layer: usize, piece: &mut Piece) -> Result<(), ExtractError> {
-        let &Points { grid, rule, request, apart, ref placer, has_trace, .. } = self.of;
-        let Workspace { samples, signs, records } = &mut *self.workspace;
+    fn place(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        let &Self { grid, rule, request, apart, ref placer, has_trace, .. } = self;
+        let Slab { own, workspace: Workspace { samples, signs, records }, vertices, piece, .. } = slab;
         let samples = match request.source {
             Sampler::Given { values, .. } => Samples { values, slots: grid.size[2] },
             Sampler::Field(_) => samples.samples(),
@@ -149,35 +109,32 @@ impl<R: ClusterRule> Slab<'_, R> {
         let (placer, isovalue) = (placer.as_ref(), request.settings.isovalue);
         let has_more = placer.is_some() || has_trace;
         let pass = PointPass { grid, rule, samples, signs, isovalue, apart, placer, has_more };
-        let placed = &mut self.placed;
-        if layer == self.own.start {
-            piece.below = placed.numbered;
+        if layer == own.start {
+            piece.below = vertices.numbered;
         }
-        if self.own.contains(&layer) {
-            let seen = placed.crossing_ends;
-            pass.layer(layer, records, placed, Some(&mut piece.positions))?;
-            piece.crossing_ends += placed.crossing_ends - seen;
-        } else {
-            pass.layer(layer, records, placed, None)?;
+        // Of other layers, vertices are numbered and no more.
+        let (is_own, seen) = (own.contains(&layer), vertices.crossing_ends);
+        let mut positions = std::mem::take(&mut vertices.positions);
+        let placed = pass.layer(layer, records, vertices, is_own.then_some(&mut positions));
+        vertices.positions = positions;
+        if !is_own {
+            vertices.crossing_ends = seen;
         }
-        let limit = request.most_vertices;
-        if placed.numbered > u64::from(limit) {
-            return Err(ExtractError::TooManyVertices { limit });
-        }
-        Ok(())
+        Ok(placed?)
     }
 
-    fn triangulate(&mut self, layer: usize, piece: &mut Piece) -> Result<(), ExtractError> {
-        let Points { grid, tables, .. } = self.of;
-        let farthest = 2 * grid.reach;
-        if layer + farthest <= self.own.end {
+    fn triangulate(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
+        let Slab { own, workspace, piece, layer_done, .. } = slab;
+        let farthest = 2 * self.grid.reach;
+        if layer + farthest <= own.end {
             piece.tail = piece.surface.triangles.len();
         }
-        triangulate_layer(grid, tables, R::TIES, &self.workspace.records, layer, &mut piece.surface)?;
-        if layer < self.own.start + farthest {
+        let result = &mut piece.surface;
+        triangulate_layer(self.grid, self.tables, R::TIES, &workspace.records, layer, result)?;
+        if layer < own.start + farthest {
             piece.head = piece.surface.triangles.len();
         }
-        (self.layer_done)();
+        layer_done();
         Ok(())
     }
 }

@@ -8,10 +8,11 @@ use proptest::prelude::*;
 
 use super::super::dense;
 use crate::bunny::{BOX, bunny};
+use crate::by_lattice::{ExtractSettings, Lattice};
 use crate::lattice::{Border, Coordinates, Layout};
 use crate::{
-    Arrangement, Clustering, Execution, ExtractError, ExtractSettings, Extraction, Extractor, Lattice,
-    Placement, Positions, Source, Topology,
+    Arrangement, Clustering, Execution, ExtractError, Extraction, Extractor, Placement, Positions, Source,
+    Topology,
 };
 use isostudy_field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 

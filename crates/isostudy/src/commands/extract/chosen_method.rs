@@ -1,12 +1,9 @@
 //! A method on the command line: by its name, or by the recipe that a study file would have for it.
 
 use crate::recipe::StudyKind;
-use isostudy_extract::{Method, Preset, presets};
+use isostudy_extract::{Method, Preset, kinds, presets};
 use serde::{Deserialize, Serialize};
 use toml::de::ValueDeserializer;
-
-/// The kinds that go without one.
-const KINDS: &str = "\"tetrahedra\", \"cubes\", \"snap-cubes\", \"macet\", \"surface-nets\", \"dual-contouring\", \"continuation\"";
 
 /// A method as reports name it.
 #[derive(Debug, Serialize)]
@@ -64,11 +61,11 @@ pub(super) fn recipe(text: &str) -> Result<Method, String> {
     };
     let kind = match table.get("kind") {
         Some(toml::Value::String(kind)) => kind.as_str(),
-        Some(other) => return Err(format!("kind = {other}: allowed: {KINDS}")),
-        None => return Err(format!("kind is missing; allowed: {KINDS}")),
+        Some(other) => return Err(format!("kind = {other}: allowed: {}", known_kinds())),
+        None => return Err(format!("kind is missing; allowed: {}", known_kinds())),
     };
     if let Some(of) = StudyKind::of(kind) {
-        return Err(format!("kind = \"{kind}\": {}; allowed here: {KINDS}", why_not(of)));
+        return Err(format!("kind = \"{kind}\": {}; allowed here: {}", why_not(of), known_kinds()));
     }
     // Errors in values do not say their key, for what has a kind is read twice.
     let known = Method::deserialize(value.clone()).map_err(|error| error.message().to_owned());
@@ -76,6 +73,11 @@ pub(super) fn recipe(text: &str) -> Result<Method, String> {
         Some((key, value)) => format!("{key} = {value}: {error}"),
         None => error,
     })
+}
+
+/// The kinds that go without a study.
+fn known_kinds() -> String {
+    kinds().iter().map(|kind| format!("\"{}\"", kind.name)).collect::<Vec<_>>().join(", ")
 }
 
 /// Why a study alone can have recipes of a kind.

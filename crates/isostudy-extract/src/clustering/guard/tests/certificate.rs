@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use super::super::{Class, Guard};
+use crate::by_lattice::Lattice;
 use crate::clustering::clusters::Clusters;
 use crate::fields::{FAMILIES, Family, Volume, image};
 use crate::lattice::{Border, Coordinates, DIRECTIONS, Layout, members};
@@ -15,7 +16,7 @@ use crate::tetrahedra::dense::edges::EdgeTable;
 use crate::tetrahedra::dense::sides::Sides;
 use crate::tetrahedra::dense::triangles::triangulate;
 use crate::tetrahedra::dense::vertices::VertexStage;
-use crate::{Arrangement, Lattice, tetrahedra::dense::sampling};
+use crate::{Arrangement, tetrahedra::dense::sampling};
 use glam::Vec3;
 use isostudy_field::{Asteroid, StudyField};
 use isostudy_mesh::Bounds;
