@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// What a run said, under what it was.
 fn section(title: &str, Run { code, stdout, stderr }: Run) -> String {
-    format!("# {title}: exit code {}\n{stdout}{stderr}\n", code.unwrap())
+    format!("# {title}: exit code {}\n{stdout}\n{stderr}\n", code.unwrap())
 }
 
 /// Two runs whose times are planted: nothing is measured, so every word and number is the same anywhere.
