@@ -402,7 +402,7 @@ fn bad_input_is_refused_before_any_work() {
         (
             "triangles_of = \"bi\"",
             "triangles_of = \"bi\", time_of = \"bi\"",
-            vec!["study.toml", "one of the keys triangles_of, samples_of and time_of"],
+            vec!["study.toml", "triangles_of, samples_of and time_of"],
         ),
         (
             "triangles_of = \"bi\"",
@@ -428,8 +428,9 @@ fn a_budget_that_cannot_be_met_is_said() {
     folder.edit("benchmark_spacing = 0.1\nstimulus_spacing = 0.11\ncamera = { distance = 2.0, vertical_fov_rad = 0.6 }\n\n[[objects]]\nid = \"vo\"", "benchmark_spacing = 0.1\nstimulus_spacing = 0.125\ncamera = { distance = 2.0, vertical_fov_rad = 0.6 }\n\n[[objects]]\nid = \"vo\"");
     let ran = folder.run(&["extract", "study.toml", "--out", "out", "--allow-programs"]);
     assert_eq!(ran.code, Some(2), "{}", ran.stderr);
-    let told = "study.toml: methods[2].match.triangles_of = bi: no spacing gives te_fp";
-    assert!(ran.stderr.contains(told) && ran.stderr.contains("triangles to 1 %"), "{}", ran.stderr);
+    for part in ["study.toml: methods[2].match.triangles_of = bi", "te_fp", " 1 %"] {
+        assert!(ran.stderr.contains(part), "{part}: {}", ran.stderr);
+    }
     // Who takes what is nearer than that says so.
     folder.edit("match = { triangles_of = \"bi\" }", "match = { triangles_of = \"bi\", within = 0.2 }");
     folder.succeed(&["extract", "study.toml", "--out", "out", "--allow-programs"]);
@@ -508,7 +509,7 @@ fn a_program_that_fails_while_it_is_timed_is_left_out_of_the_times() {
     let inspect = ["inspect", "vo_program", "--study", "study.toml", "--iterations", "2", "--json"];
     let refused = folder.run(&inspect);
     assert_eq!(refused.code, Some(2));
-    assert!(refused.stderr.contains("--allow-programs runs it"), "{}", refused.stderr);
+    assert!(refused.stderr.contains("--allow-programs"), "{}", refused.stderr);
     let panel: serde_json::Value =
         serde_json::from_str(&folder.succeed(&[&inspect[..], &["--allow-programs"]].concat()).stdout)
             .unwrap();

@@ -15,6 +15,7 @@ mod gate;
 mod http;
 mod isovalues;
 mod labels;
+mod messages;
 mod named;
 mod page;
 mod serve;

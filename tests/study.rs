@@ -41,6 +41,10 @@ fn a_study_makes_everything_once_and_then_nothing() {
 /// anything but two letters. A change that is meant renews `golden/quick.sha256` from what this prints, and says so in the changelog:
 /// so far records of meshes, digests of cameras, intervals of alpha, the note under what predicts preference, triangles that pass
 /// through each other, and distances from sharp edges.
+///
+/// It says that nothing changed, not that anything is right. That is for other tests: tables of answers against `isostudy-oracle` and
+/// published numbers, statistics against R and SciPy, meshes against genus, area and volume, pictures as `golden.rs` of
+/// `isostudy-raster` says.
 fn assert_golden(made: &BTreeMap<String, Vec<u8>>) {
     let golden = include_str!("golden/quick.sha256");
     let golden: BTreeMap<&str, &str> = golden
@@ -296,7 +300,7 @@ fn report_draws_again_but_never_extracts() {
     let fixture = Fixture::new();
     let first = fixture.run("report", &[]);
     assert_eq!(first.code, Some(2));
-    assert!(first.stderr.contains("run `isostudy study` first"), "{}", first.stderr);
+    assert!(first.stderr.contains("isostudy study"), "{}", first.stderr);
     fixture.succeed("study", &[]);
     std::fs::remove_file(fixture.out().join("tables/answers.csv")).unwrap();
     fixture.succeed("report", &[]);
@@ -342,7 +346,7 @@ fn memory_is_checked_for_the_extractor_that_runs() {
     assert_eq!(validated("memory_gib = 1.0"), (Some(0), String::new()));
     let (code, said) = validated("memory_gib = 0.001");
     assert_eq!(code, Some(2), "{said}");
-    for part in ["benchmark_spacing = 0.002", "MiB", "limits.memory_gib allows 1.0 MiB"] {
+    for part in ["benchmark_spacing = 0.002", "limits.memory_gib", "1.0 MiB"] {
         assert!(said.contains(part), "{part:?} is not in: {said}");
     }
 }
@@ -358,7 +362,7 @@ fn a_mesh_with_another_digest_is_refused() {
     });
     let Run { code, stderr: said, .. } = fixture.run("study", &[]);
     assert_eq!(code, Some(2));
-    assert!(said.contains("solid.obj") && said.contains("has SHA-256"), "{said}");
+    assert!(said.contains("solid.obj") && said.contains("SHA-256"), "{said}");
     assert!(!fixture.out().exists(), "something was written");
     assert_eq!(Run::of(isostudy().arg("validate").arg(fixture.config())).code, Some(2));
 }

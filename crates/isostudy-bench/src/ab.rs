@@ -4,7 +4,7 @@
 //! stays with it, so that only the medians of many pairs of processes are evidence (see [`Invocation`](crate::Invocation)).
 
 use crate::error::BenchError;
-use crate::journal::JournalError;
+use crate::journal::{self, JournalError};
 use crate::load::CpuTimes;
 use crate::plan::{Round, order};
 use crate::run::{Executor, Measurement};
@@ -73,7 +73,7 @@ impl AbEntry {
     /// # Panics
     /// Never: the entry is plain data, and its numbers are finite.
     pub fn line(&self) -> String {
-        serde_json::to_string(self).expect("plain data serialises") + "\n"
+        journal::line(self)
     }
 }
 
@@ -82,12 +82,7 @@ impl AbEntry {
 /// # Errors
 /// [`JournalError`] if it belongs to another run or is damaged.
 pub fn read_ab_journal(text: &str, key: &str) -> Result<Vec<AbEntry>, JournalError> {
-    let whole = &text[..text.rfind('\n').map_or(0, |end| end + 1)];
-    let mut entries = Vec::new();
-    for (line, number) in whole.lines().zip(1..) {
-        let invalid = |error: serde_json::Error| JournalError::Line { number, reason: error.to_string() };
-        entries.push(serde_json::from_str::<AbEntry>(line).map_err(invalid)?);
-    }
+    let mut entries: Vec<AbEntry> = journal::entries(text).collect::<Result<_, _>>()?;
     match entries.first() {
         None => return Ok(Vec::new()),
         Some(AbEntry::Begun { key: found }) if found == key => drop(entries.remove(0)),

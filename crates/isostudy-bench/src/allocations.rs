@@ -81,13 +81,6 @@ pub(crate) fn allocations<E: std::fmt::Display>(
 
 fn by_stage(times: &StageTimes) -> StageCounts {
     let count = |time: Duration| u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
-    StageCounts {
-        allocation: count(times.allocation),
-        sampling: count(times.sampling),
-        vertex: count(times.vertex),
-        geometry: count(times.geometry),
-        clustering: count(times.clustering),
-        normals: count(times.normals),
-        total: 0,
-    }
+    let [allocation, sampling, vertex, geometry, clustering, normals] = crate::stages::six(times).map(count);
+    StageCounts { allocation, sampling, vertex, geometry, clustering, normals, total: 0 }
 }

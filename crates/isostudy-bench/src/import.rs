@@ -1,9 +1,10 @@
 //! A published table of means as a run, so that it stands beside ours.
 
 use crate::error::BenchError;
+use crate::stages::StageSeconds;
 use isostudy_design::machine::{Build, CpuProfile, Machine};
 use isostudy_design::published::BenchmarkRow;
-use isostudy_design::record::{BenchRun, BenchSample, Counters};
+use isostudy_design::record::{BenchRun, BenchSample};
 use std::collections::HashSet;
 
 /// A run with one sample for each row: what was published is a mean, so there is no spread and no interval can be had.
@@ -59,22 +60,10 @@ pub fn import(
 }
 
 fn sample(row: &BenchmarkRow, place: u32) -> BenchSample {
-    let stages = [row.allocation_s, row.sampling_s, row.vertex_s, row.geometry_s, row.normals_s];
-    BenchSample {
-        id: row.id.clone(),
-        invocation: 0,
-        iteration: 0,
-        place,
-        allocation_s: row.allocation_s,
-        sampling_s: row.sampling_s,
-        vertex_s: row.vertex_s,
-        geometry_s: row.geometry_s,
-        clustering_s: 0.0,
-        normals_s: row.normals_s,
-        total_s: stages.iter().fold(0.0, |sum, stage| sum + stage),
-        reference_s: None,
-        counters: Counters::default(),
-    }
+    let &BenchmarkRow { allocation_s, sampling_s, vertex_s, geometry_s, normals_s, .. } = row;
+    let stages =
+        StageSeconds { allocation_s, sampling_s, vertex_s, geometry_s, clustering_s: 0.0, normals_s };
+    stages.sample(row.id.clone(), [0, 0, place], None)
 }
 
 fn machine_of(profile: &CpuProfile) -> Machine {
@@ -97,6 +86,7 @@ fn machine_of(profile: &CpuProfile) -> Machine {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use isostudy_design::record::InvalidSample;
 
     fn rows() -> Vec<BenchmarkRow> {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../study/paper/published_benchmark.csv");
@@ -130,11 +120,14 @@ mod tests {
     fn a_table_that_makes_no_sense_is_refused() {
         let profile: CpuProfile = toml::from_str("name = \"any\"\nmodel = \"\"").unwrap();
         let error = |rows: &[BenchmarkRow]| import(rows, "x", 1, 1, &profile).unwrap_err();
-        assert_eq!(error(&[]).to_string(), "the table has no rows");
+        assert!(matches!(error(&[]), BenchError::NoRows));
         let mut rows = rows();
         rows[3].vertex_s = -1.0;
-        let text = error(&rows);
-        assert_eq!(text.to_string(), "the row of ss_su: vertex = -1.0 s: must be finite and not negative");
+        let negative = InvalidSample::NotADuration { what: "vertex", seconds: -1.0 };
+        assert!(matches!(
+            error(&rows),
+            BenchError::Row { id, reason } if id == rows[3].id && reason == negative
+        ));
         let twice = [rows[0].clone(), rows[0].clone()];
         assert!(matches!(error(&twice), BenchError::Repeated(_)));
     }

@@ -4,6 +4,7 @@ use isostudy_design::ConfigurationId;
 use isostudy_design::record::{
     Allocations, BenchSample, Failure, InvalidSample, LoadWindow, PeakMemory, Resumption,
 };
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 /// One line of a journal: something that happened, written when it happened.
@@ -37,27 +38,34 @@ impl Entry {
     /// # Panics
     /// Never: the entry is plain data, and its numbers are finite.
     pub fn line(&self) -> String {
-        serde_json::to_string(self).expect("plain data serialises") + "\n"
+        line(self)
     }
 }
 
-/// The entries of a journal after its first line. A last line that was not written to its end is left out: the run was
-/// killed while writing it.
+pub(crate) fn line(entry: &impl Serialize) -> String {
+    serde_json::to_string(entry).expect("plain data serialises") + "\n"
+}
+
+/// A journal's entries. A last line that was not written to its end is left out: the run was killed while writing it.
+pub(crate) fn entries<E: DeserializeOwned>(text: &str) -> impl Iterator<Item = Result<E, JournalError>> {
+    let whole = &text[..text.rfind('\n').map_or(0, |end| end + 1)];
+    whole.lines().zip(1..).map(|(line, number)| {
+        serde_json::from_str(line).map_err(|error| JournalError::Line { number, reason: error.to_string() })
+    })
+}
+
+/// The entries of a journal after its first line, but for a last one that was not written to its end.
 ///
 /// # Errors
 /// [`JournalError`] if it belongs to another run or is damaged; nothing of it may be used then.
 pub fn read_journal(text: &str, key: &str) -> Result<Vec<Entry>, JournalError> {
-    let whole = &text[..text.rfind('\n').map_or(0, |end| end + 1)];
-    let mut lines = whole.lines().zip(1..).map(|(line, number)| {
-        serde_json::from_str::<Entry>(line)
-            .map_err(|error| JournalError::Line { number, reason: error.to_string() })
-    });
-    match lines.next().transpose()? {
+    let mut entries = entries(text);
+    match entries.next().transpose()? {
         None => return Ok(Vec::new()),
         Some(Entry::Begun { key: found }) if found == key => {}
         Some(_) => return Err(JournalError::OtherRun),
     }
-    lines.collect()
+    entries.collect()
 }
 
 /// Why a journal is of no use.

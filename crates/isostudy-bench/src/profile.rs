@@ -84,21 +84,14 @@ pub fn differences(target: &CpuProfile, machine: &Machine) -> Vec<ProfileDiffere
 fn model(target: &CpuProfile, machine: &Machine) -> ProfileRow {
     let asked = target.model.to_lowercase();
     let matches = machine.model.as_ref().is_some_and(|model| model.to_lowercase().contains(&asked));
-    ProfileRow {
-        property: "model".into(),
-        target: target.model.clone(),
-        machine: told(machine.model.clone()),
-        matches: (!asked.is_empty()).then_some(matches),
-    }
+    let matches = (!asked.is_empty()).then_some(matches);
+    row("model", target.model.clone(), machine.model.clone(), matches)
 }
 
 fn isa(target: &CpuProfile, machine: &Machine) -> ProfileRow {
-    ProfileRow {
-        property: "instruction set".into(),
-        target: target.isa.map_or_else(String::new, |level| level.label().into()),
-        machine: told(machine.isa.map(|level| level.label().into())),
-        matches: target.isa.map(|asked| machine.isa >= Some(asked)),
-    }
+    let [asked, found] = [target.isa, machine.isa].map(|level| level.map(|level| level.label().to_owned()));
+    let matches = target.isa.map(|asked| machine.isa >= Some(asked));
+    row("instruction set", asked.unwrap_or_default(), found, matches)
 }
 
 fn gib(bytes: u64) -> f64 {
@@ -114,51 +107,33 @@ fn memory(target: &CpuProfile, machine: &Machine) -> ProfileRow {
         let least = f64::from(asked) * (1.0 - MEMORY_ALLOWANCE);
         machine.memory_bytes.is_some_and(|bytes| gib(bytes) >= least)
     };
-    ProfileRow {
-        property: "memory".into(),
-        target: target.memory_gib.map_or_else(String::new, |asked| format!("{asked} GiB")),
-        machine: told(machine.memory_bytes.map(gibibytes)),
-        matches: target.memory_gib.map(enough),
-    }
+    let asked = target.memory_gib.map_or_else(String::new, |asked| format!("{asked} GiB"));
+    row("memory", asked, machine.memory_bytes.map(gibibytes), target.memory_gib.map(enough))
 }
 
 fn feature(feature: &str, machine: &Machine) -> ProfileRow {
     let there = machine.features.iter().any(|has| has == feature);
     // A feature that nobody looked for is not known to be missing.
-    let has = if there {
-        "yes"
-    } else if FEATURES.contains(&feature) {
-        "no"
-    } else {
-        UNKNOWN
-    };
-    ProfileRow {
-        property: format!("feature {feature}"),
-        target: "yes".into(),
-        machine: has.into(),
-        matches: Some(there),
-    }
+    let has = (there || FEATURES.contains(&feature)).then(|| if there { "yes" } else { "no" }.into());
+    row(&format!("feature {feature}"), "yes".into(), has, Some(there))
 }
 
 fn equal<T: PartialEq + ToString>(property: &str, target: Option<&T>, machine: Option<&T>) -> ProfileRow {
-    ProfileRow {
-        property: property.into(),
-        target: target.map_or_else(String::new, T::to_string),
-        machine: told(machine.map(T::to_string)),
-        matches: target.map(|asked| machine == Some(asked)),
-    }
+    let matches = target.map(|asked| machine == Some(asked));
+    row(property, target.map_or_else(String::new, T::to_string), machine.map(T::to_string), matches)
 }
 
 fn recorded(property: &str, target: String, machine: Option<String>) -> ProfileRow {
-    ProfileRow { property: property.into(), target, machine: told(machine), matches: None }
+    row(property, target, machine, None)
+}
+
+fn row(property: &str, target: String, machine: Option<String>, matches: Option<bool>) -> ProfileRow {
+    let machine = machine.unwrap_or_else(|| UNKNOWN.into());
+    ProfileRow { property: property.into(), target, machine, matches }
 }
 
 fn clock(mhz: Option<u32>) -> String {
     mhz.map_or_else(String::new, |mhz| format!("{mhz} MHz"))
-}
-
-fn told(value: Option<String>) -> String {
-    value.unwrap_or_else(|| UNKNOWN.into())
 }
 
 #[cfg(test)]

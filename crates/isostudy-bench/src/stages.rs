@@ -4,6 +4,7 @@ use isostudy_design::ConfigurationId;
 use isostudy_design::record::{BenchSample, Counters};
 use isostudy_extract::StageTimes;
 use serde::{Deserialize, Serialize};
+use std::time::Duration;
 
 /// How long each stage of one extraction took, in seconds.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -26,16 +27,17 @@ pub struct Timed {
     pub counters: Counters,
 }
 
+/// The six, in their order.
+pub(crate) fn six(times: &StageTimes) -> [Duration; 6] {
+    let &StageTimes { allocation, sampling, vertex, geometry, clustering, normals } = times;
+    [allocation, sampling, vertex, geometry, clustering, normals]
+}
+
 impl From<&StageTimes> for StageSeconds {
     fn from(times: &StageTimes) -> Self {
-        Self {
-            allocation_s: times.allocation.as_secs_f64(),
-            sampling_s: times.sampling.as_secs_f64(),
-            vertex_s: times.vertex.as_secs_f64(),
-            geometry_s: times.geometry.as_secs_f64(),
-            clustering_s: times.clustering.as_secs_f64(),
-            normals_s: times.normals.as_secs_f64(),
-        }
+        let [allocation_s, sampling_s, vertex_s, geometry_s, clustering_s, normals_s] =
+            six(times).map(|time| time.as_secs_f64());
+        Self { allocation_s, sampling_s, vertex_s, geometry_s, clustering_s, normals_s }
     }
 }
 

@@ -93,16 +93,6 @@ impl EdgeGroups {
         &self.groups
     }
 
-    /// How many triples of edges each group has.
-    pub fn sizes(&self) -> Vec<usize> {
-        self.groups.iter().map(|group| group.triples).collect()
-    }
-
-    /// The mean radius ratio of each group, in the order of the sizes.
-    pub fn expected_qualities(&self) -> Vec<f64> {
-        self.groups.iter().map(|group| group.quality[1]).collect()
-    }
-
     /// Whether the triangle's edges are a path in space, end to end and not in one plane: group 2, whose triangles are the
     /// only ones that are often bad.
     ///

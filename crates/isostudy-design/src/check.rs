@@ -1,5 +1,7 @@
 //! What may be wrong with a study file, and the checks that say so.
 
+use crate::method::ConfigurationId;
+use crate::study::Configuration;
 use std::path::{Path, PathBuf};
 
 /// Why a study file is refused. Every variant names the file, and the key where there is one.
@@ -130,6 +132,31 @@ impl Checker<'_> {
             return self.refuse(key, value, format!("must lie between {low} and {high}"));
         }
         Ok(())
+    }
+
+    /// A text with something in it.
+    pub(crate) fn text(&self, key: &str, value: &str, limit: &str) -> Result<(), ConfigError> {
+        if value.trim().is_empty() { self.refuse(key, "\"\"", limit) } else { Ok(()) }
+    }
+
+    /// Texts with something in each, all different.
+    pub(crate) fn texts(&self, key: &str, values: &[String]) -> Result<(), ConfigError> {
+        let key = |i: usize| format!("{key}[{i}]");
+        values.iter().enumerate().try_for_each(|(i, value)| self.text(&key(i), value, "must be a text"))?;
+        self.distinct(key, values)
+    }
+
+    /// The configuration with this id.
+    pub(crate) fn configuration<'a>(
+        &self,
+        key: &str,
+        id: &ConfigurationId,
+        all: &'a [Configuration],
+    ) -> Result<&'a Configuration, ConfigError> {
+        match all.iter().find(|configuration| configuration.id == *id) {
+            Some(configuration) => Ok(configuration),
+            None => self.refuse(key, id, "is not a configuration of this study"),
+        }
     }
 
     /// No two of the values are the same.

@@ -127,12 +127,12 @@ mod tests {
             "２026-1-01",
             "21.11.2026",
         ] {
-            let told = format!("\"{text}\" is not a date: write year, month and day");
-            assert!(text.parse::<Date>().unwrap_err().to_string().starts_with(&told), "{text}");
-            assert!(read(&format!("\"{text}\"")).unwrap_err().contains(&told), "{text}");
+            assert_eq!(text.parse::<Date>().unwrap_err(), ParseDateError(text.into()));
+            let told = read(&format!("\"{text}\"")).unwrap_err();
+            assert!(told.contains(&format!("\"{text}\"")), "{told}");
         }
         let timed = read("2026-11-21T10:00:00Z").unwrap_err();
-        assert!(timed.contains("\"2026-11-21T10:00:00Z\" is not a date"), "{timed}");
+        assert!(timed.contains("\"2026-11-21T10:00:00Z\""), "{timed}");
         for value in ["20261121", "true", "[2026, 11, 21]", "{ year = 2026 }"] {
             assert!(read(value).unwrap_err().contains("line 1"), "{value}");
         }

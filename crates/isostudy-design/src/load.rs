@@ -152,15 +152,8 @@ fn comparisons(
     let mut comparisons = Vec::new();
     for (i, section) in file.comparisons.iter().enumerate() {
         let key = |name: &str| format!("comparisons[{i}].{name}");
-        let find = |name: &str, id: &ConfigurationId| match configurations
-            .iter()
-            .find(|configuration| configuration.id == *id)
-        {
-            Some(configuration) => Ok(configuration.object),
-            None => c.refuse(key(name), id, "is not a configuration of this study"),
-        };
-        let object = find("left", &section.left)?;
-        if find("right", &section.right)? != object {
+        let object = c.configuration(&key("left"), &section.left, configurations)?.object;
+        if c.configuration(&key("right"), &section.right, configurations)?.object != object {
             let limit = format!("must show the same object as the left side, {}", section.left);
             return c.refuse(key("right"), &section.right, limit);
         }

@@ -92,11 +92,6 @@ impl Bound {
         Self { slope: Some(slope), ..self }
     }
 
-    /// The same with a range.
-    pub const fn with_range(self, least: f32, greatest: f32) -> Self {
-        Self { range: Some((least, greatest)), ..self }
-    }
-
     /// What it says of a box when the value in the middle is known: the range, or what the slope makes of that value.
     pub fn range_round(&self, bounds: Aabb, middle: f32) -> Option<(f32, f32)> {
         self.range.or_else(|| Some(range_by_slope(self.slope?, bounds.into(), middle)))

@@ -163,13 +163,7 @@ fn table(
     };
     (report.format, report.format_rule) = (format, rule);
     match format {
-        Format::Long => {
-            let (row, header) = &head[0];
-            if !long::is_long(header) {
-                return Err(long::not_long(*row));
-            }
-            long::read(source, (*row, header), plan, mapping, report)
-        }
+        Format::Long => long::read(source, &head, plan, mapping, report),
         Format::JsPsych | Format::Jatos => trials::read_table(source, &head, plan, mapping, report),
         Format::WebMushra => webmushra::read(source, &head, plan, mapping, report),
         Format::Arenakit => arenakit::read(source, &head, plan, mapping, report),

@@ -185,13 +185,11 @@ fn check_field(c: &Checker<'_>, key: &str, field: &FieldSection) -> Result<(), C
                 _ => Ok(()),
             }
         }
-        FieldSection::Formula { text, .. } if text.trim().is_empty() => {
-            c.refuse(format!("{key}.text"), "\"\"", "must be a formula in x, y and z")
+        FieldSection::Formula { text, .. } => {
+            c.text(&format!("{key}.text"), text, "must be a formula in x, y and z")
         }
-        FieldSection::Volume { file, .. } if file.trim().is_empty() => {
-            c.refuse(format!("{key}.file"), "\"\"", "must name a file")
-        }
-        FieldSection::Formula { .. } | FieldSection::Volume { .. } | FieldSection::Terrain(_) => Ok(()),
+        FieldSection::Volume { file, .. } => c.text(&format!("{key}.file"), file, "must name a file"),
+        FieldSection::Terrain(_) => Ok(()),
     }
 }
 
@@ -208,13 +206,7 @@ pub(super) fn check_stills(
         if still.id.is_empty() || !still.id.bytes().all(plain) {
             return c.refuse(key("id"), &still.id, "must be lower-case letters, digits or underscores");
         }
-        if !configurations.iter().any(|configuration| configuration.id == still.configuration) {
-            return c.refuse(
-                key("configuration"),
-                &still.configuration,
-                "is not a configuration of this study",
-            );
-        }
+        c.configuration(&key("configuration"), &still.configuration, configurations)?;
         c.length(&key("spacing"), still.spacing, 1e6)?;
         if still.looks.is_empty() {
             return c.refuse(key("looks"), "[]", "must list at least one look");
@@ -246,28 +238,17 @@ pub(super) fn check_forms(
         let limit = format!("with forms.max_questions = {} at most {most} fit", forms.max_questions);
         return c.refuse("forms.repeats", forms.repeats, limit);
     }
-    if forms.prompt.trim().is_empty() {
-        return c.refuse("forms.prompt", "\"\"", "must say what is asked about each pair");
-    }
-    if let Some(i) = forms.choices.iter().position(|choice| choice.trim().is_empty()) {
-        return c.refuse(format!("forms.choices[{i}]"), "\"\"", "must be a text");
-    }
-    c.distinct(|i| format!("forms.choices[{i}]"), &forms.choices)?;
-    for (key, text) in [("forms.consent", &forms.consent), ("forms.instructions", &forms.instructions)] {
-        if text.trim().is_empty() {
-            return c.refuse(key, "\"\"", "must be a text");
-        }
-    }
+    c.text("forms.prompt", &forms.prompt, "must say what is asked about each pair")?;
+    c.texts("forms.choices", &forms.choices)?;
+    c.text("forms.consent", &forms.consent, "must be a text")?;
+    c.text("forms.instructions", &forms.instructions, "must be a text")?;
     c.count("forms.page_scale", forms.page_scale, 1, 4)?;
     c.count("forms.web_mb", forms.web_mb, 1, 100_000)?;
     if let Some(least) = forms.min_surface_px {
         c.count("forms.min_surface_px", least, 16, 4096)?;
     }
     if let Some(choices) = &forms.choices_stacked {
-        if let Some(i) = choices.iter().position(|choice| choice.trim().is_empty()) {
-            return c.refuse(format!("forms.choices_stacked[{i}]"), "\"\"", "must be a text");
-        }
-        c.distinct(|i| format!("forms.choices_stacked[{i}]"), choices)?;
+        c.texts("forms.choices_stacked", choices)?;
     }
     if let Some(completion) = &forms.completion {
         let code = completion.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '-');
@@ -282,10 +263,7 @@ pub(super) fn check_forms(
     c.count("forms.training", forms.training.len() as u32, 0, 100)?;
     for (i, pair) in file.forms.iter().flat_map(|forms| &forms.training).enumerate() {
         for (name, id) in [("left", &pair.left), ("right", &pair.right)] {
-            if !configurations.iter().any(|configuration| configuration.id == *id) {
-                let key = format!("forms.training[{i}].{name}");
-                return c.refuse(key, id, "is not a configuration of this study");
-            }
+            c.configuration(&format!("forms.training[{i}].{name}"), id, configurations)?;
         }
         if pair.left.object != pair.right.object {
             let limit = format!("must show the same object as the left side, {}", pair.left);

@@ -279,11 +279,15 @@ mod tests {
         }
     }
 
-    /// What is said of a run after this was done to it.
-    fn after(spoil: impl FnOnce(&mut BenchRun)) -> String {
+    fn id(text: &str) -> ConfigurationId {
+        text.parse().unwrap()
+    }
+
+    /// Why a run is invalid after this was done to it.
+    fn after(spoil: impl FnOnce(&mut BenchRun)) -> InvalidRun {
         let mut run = run();
         spoil(&mut run);
-        run.check().unwrap_err().to_string()
+        run.check().unwrap_err()
     }
 
     #[test]
@@ -300,29 +304,27 @@ mod tests {
 
     #[test]
     fn what_no_clock_gives_is_refused_with_its_place() {
+        let of = |place, reason| InvalidRun::Sample { list: "samples", place, id: id("ss_su"), reason };
         assert_eq!(
             after(|run| run.samples[3].vertex_s = -0.5),
-            "samples[3], ss_su: vertex = -0.5 s: must be finite and not negative"
+            of(3, InvalidSample::NotADuration { what: "vertex", seconds: -0.5 })
         );
+        let reason = InvalidSample::Reference(f64::INFINITY);
         assert_eq!(
             after(|run| run.aa_samples[0].reference_s = Some(f64::INFINITY)),
-            "aa_samples[0], ss_bi: reference work = inf s: must be finite and above 0"
+            InvalidRun::Sample { list: "aa_samples", place: 0, id: id("ss_bi"), reason }
         );
-        let text = after(|run| run.samples[1].total_s = 2.0);
-        assert!(
-            text.starts_with("samples[1], ss_su: total = 2.0 s, and its stages add up to 1.111000"),
-            "{text}"
-        );
-        let text = after(|run| run.samples[1].reference_s = Some(0.0));
-        assert_eq!(text, "samples[1], ss_su: reference work = 0.0 s: must be finite and above 0");
-        let text = after(|run| {
+        let sum = 0.001 + 0.01 + 0.1 + 0.3 + 0.7 + 1e-7;
+        assert_eq!(after(|run| run.samples[1].total_s = 2.0), of(1, InvalidSample::Sum { total: 2.0, sum }));
+        assert_eq!(after(|run| run.samples[1].reference_s = Some(0.0)), of(1, InvalidSample::Reference(0.0)));
+        let beyond = after(|run| {
             let sample = &mut run.samples[1];
             (sample.vertex_s, sample.geometry_s, sample.total_s) = (1e308, 1e308, 1.7e308);
         });
-        assert_eq!(text, "samples[1], ss_su: total = 1.7e308 s, and its stages add up to inf s");
+        assert_eq!(beyond, of(1, InvalidSample::Sum { total: 1.7e308, sum: f64::INFINITY }));
         assert_eq!(
             after(|run| run.samples[1].iteration = 3),
-            "samples[1], ss_su: iteration = 3: the run has 3, counted from 0"
+            of(1, InvalidSample::Round { iteration: 3, rounds: 3 })
         );
     }
 
@@ -333,40 +335,45 @@ mod tests {
             (sample.geometry_s, sample.clustering_s, sample.normals_s) = (0.0, 0.0, 0.0);
             sample.total_s = 0.0;
         };
-        let text = after(|run| run.samples.iter_mut().for_each(nothing));
-        assert_eq!(text, "samples: every total is 0 s: nothing was measured");
+        assert_eq!(after(|run| run.samples.iter_mut().for_each(nothing)), InvalidRun::NothingTimed);
         let mut one = run();
         one.samples[1..].iter_mut().for_each(nothing);
         assert_eq!(one.check(), Ok(()), "one of them was");
-        let text = after(|run| run.samples[0].counters.cpu_s = Some(-1.0));
-        assert_eq!(text, "samples[0], ss_bi: cpu_s = -1.0: must be finite and not negative");
-    }
-
-    #[test]
-    fn every_round_is_there_once() {
-        let text = after(|run| run.samples[2].iteration = 0);
-        assert_eq!(text, "samples: ss_bi is there twice in round 0");
-        let text = after(|run| drop(run.samples.pop()));
-        assert_eq!(text, "samples: ss_su has 2 of 3 rounds");
-        let text = after(|run| drop(run.aa_samples.remove(0)));
-        assert_eq!(text, "aa_samples: ss_bi has 1 of 2 rounds");
-        let text = after(|run| run.aa_samples.clear());
-        assert_eq!(text, "ss_bi is in one of samples and aa_samples only");
-        let text = after(|run| run.aa_samples[1].invocation = 0);
+        let reason = InvalidSample::Counter { what: "cpu_s", value: -1.0 };
         assert_eq!(
-            text,
-            "invocation 0 has both samples and aa_samples: the A/A block has processes of its own"
+            after(|run| run.samples[0].counters.cpu_s = Some(-1.0)),
+            InvalidRun::Sample { list: "samples", place: 0, id: id("ss_bi"), reason }
         );
     }
 
     #[test]
+    fn every_round_is_there_once() {
+        assert_eq!(
+            after(|run| run.samples[2].iteration = 0),
+            InvalidRun::Twice { list: "samples", id: id("ss_bi"), round: 0 }
+        );
+        assert_eq!(
+            after(|run| drop(run.samples.pop())),
+            InvalidRun::Rounds { list: "samples", id: id("ss_su"), found: 2, asked: 3 }
+        );
+        assert_eq!(
+            after(|run| drop(run.aa_samples.remove(0))),
+            InvalidRun::Rounds { list: "aa_samples", id: id("ss_bi"), found: 1, asked: 2 }
+        );
+        assert_eq!(after(|run| run.aa_samples.clear()), InvalidRun::OneList { id: id("ss_bi") });
+        assert_eq!(after(|run| run.aa_samples[1].invocation = 0), InvalidRun::SharedInvocation(0));
+    }
+
+    #[test]
     fn shares_and_peaks_are_ones_that_can_be() {
-        let text = after(|run| run.load[0].steal = 0.8);
-        assert_eq!(text, "load[0]: others = 0.25, steal = 0.8: must be from 0 to 1, together too");
-        let text = after(|run| run.memory[0].peak_bytes = 1);
-        let bytes = "before_bytes = 2, peak_before_bytes = 3, peak_bytes = 1";
-        assert_eq!(text, format!("memory[0], ss_bi: {bytes}: must not fall"));
-        let text = after(|run| run.memory.push(run.memory[0].clone()));
-        assert_eq!(text, "memory: ss_bi is there twice");
+        assert_eq!(
+            after(|run| run.load[0].steal = 0.8),
+            InvalidRun::Load { place: 0, others: 0.25, steal: 0.8 }
+        );
+        assert_eq!(
+            after(|run| run.memory[0].peak_bytes = 1),
+            InvalidRun::Memory { place: 0, id: id("ss_bi"), bytes: [2, 3, 1] }
+        );
+        assert_eq!(after(|run| run.memory.push(run.memory[0].clone())), InvalidRun::MemoryTwice(id("ss_bi")));
     }
 }

@@ -1,4 +1,5 @@
 //! Studies, from outside.
 
+mod messages;
 mod page;
 mod study_file;

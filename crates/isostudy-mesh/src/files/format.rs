@@ -1,6 +1,5 @@
 //! Which file format a mesh is in.
 
-use std::error::Error;
 use std::fmt;
 use std::io::{self, Read, Write};
 
@@ -48,34 +47,7 @@ impl fmt::Display for ReadError {
     }
 }
 
-impl Error for ReadError {
-    fn source(&self) -> Option<&(dyn Error + 'static)> {
-        match self {
-            Self::Obj(error) => error.source(),
-            Self::Ply(error) => error.source(),
-            Self::Stl(error) => error.source(),
-            _ => None,
-        }
-    }
-}
-
-impl From<ObjError> for ReadError {
-    fn from(error: ObjError) -> Self {
-        Self::Obj(error)
-    }
-}
-
-impl From<PlyError> for ReadError {
-    fn from(error: PlyError) -> Self {
-        Self::Ply(error)
-    }
-}
-
-impl From<StlError> for ReadError {
-    fn from(error: StlError) -> Self {
-        Self::Stl(error)
-    }
-}
+error_of!(ReadError { Obj(ObjError), Ply(PlyError), Stl(StlError) });
 
 impl MeshFormat {
     /// All of them.

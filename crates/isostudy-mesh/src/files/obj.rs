@@ -1,6 +1,5 @@
 //! Wavefront OBJ: vertices, vertex normals and faces.
 
-use std::error::Error;
 use std::fmt;
 use std::io::{self, BufWriter, Read, Write};
 use std::str::SplitAsciiWhitespace;
@@ -71,20 +70,7 @@ impl fmt::Display for ObjError {
     }
 }
 
-impl Error for ObjError {
-    fn source(&self) -> Option<&(dyn Error + 'static)> {
-        match self {
-            Self::Io(error) => error.source(),
-            _ => None,
-        }
-    }
-}
-
-impl From<io::Error> for ObjError {
-    fn from(error: io::Error) -> Self {
-        Self::Io(error)
-    }
-}
+error_of!(ObjError { Io(io::Error) });
 
 /// Reads the `v`, `vn` and `f` statements of an OBJ file; everything else is skipped.
 ///

@@ -3,7 +3,6 @@
 mod body;
 mod header;
 
-use std::error::Error;
 use std::fmt;
 use std::io::{self, BufWriter, Read, Write};
 
@@ -124,20 +123,7 @@ impl fmt::Display for PlyError {
     }
 }
 
-impl Error for PlyError {
-    fn source(&self) -> Option<&(dyn Error + 'static)> {
-        match self {
-            Self::Io(error) => error.source(),
-            _ => None,
-        }
-    }
-}
-
-impl From<io::Error> for PlyError {
-    fn from(error: io::Error) -> Self {
-        Self::Io(error)
-    }
-}
+error_of!(PlyError { Io(io::Error) });
 
 /// Reads the `vertex` and `face` elements of a PLY file; other elements and properties are skipped.
 ///

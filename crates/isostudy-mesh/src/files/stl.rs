@@ -2,7 +2,6 @@
 
 mod text;
 
-use std::error::Error;
 use std::fmt;
 use std::io::{self, BufWriter, Read, Write};
 
@@ -84,20 +83,7 @@ impl fmt::Display for StlError {
     }
 }
 
-impl Error for StlError {
-    fn source(&self) -> Option<&(dyn Error + 'static)> {
-        match self {
-            Self::Io(error) => error.source(),
-            _ => None,
-        }
-    }
-}
-
-impl From<io::Error> for StlError {
-    fn from(error: io::Error) -> Self {
-        Self::Io(error)
-    }
-}
+error_of!(StlError { Io(io::Error) });
 
 /// Reads an STL file, text or binary.
 ///

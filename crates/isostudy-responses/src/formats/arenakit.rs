@@ -8,13 +8,12 @@ use crate::collect::Ids;
 use crate::decode::source::Source;
 use crate::error::{Fault, shorten};
 use crate::format::Format;
-use crate::formats::layout::Head;
+use crate::formats::layout::{Head, Header};
 use crate::formats::long::{self, Columns};
 use crate::mapping::Mapping;
 use crate::plan::Plan;
-use crate::report::{Kind, Report};
+use crate::report::Report;
 use crate::value::Responses;
-use crate::words::normalise;
 
 const COLUMNS: [&str; 5] = ["model_a", "model_b", "winner", "item_id", "voter_id"];
 
@@ -29,28 +28,19 @@ pub(crate) fn read(
     mapping: &Mapping,
     report: &mut Report,
 ) -> Result<Responses, Fault> {
-    let (row, header) = &head[0];
-    let find = |name: &str| header.iter().position(|title| normalise(title) == name);
-    let needed = |name: &str| {
-        let missing = format!("the header has no {name}");
-        find(name).ok_or(Fault::NotThatFormat { format: Format::Arenakit, row: *row, missing })
-    };
-    let participant = mapping.participant(header.len())?.or_else(|| find("voter_id"));
-    for (column, title) in header.iter().enumerate() {
-        if participant != Some(column) && !COLUMNS.contains(&normalise(title).as_str()) {
-            report.cell(Kind::Noted, *row, column, title, "not a column of this format: not read");
-        }
-    }
+    let header = Header::of(Format::Arenakit, head);
+    let participant = mapping.participant(header.cells.len())?.or_else(|| header.find(&["voter_id"]));
+    header.note_others(participant, &COLUMNS, report);
     report.column_rule = match participant {
-        Some(column) => format!("participants by \"{}\"", shorten(&header[column])),
+        Some(column) => format!("participants by \"{}\"", shorten(&header.cells[column])),
         None => "no voters: every answer is another person's".into(),
     };
-    let question = find("item_id");
+    let question = header.find(&["item_id"]);
     let columns = Columns {
         participant,
         question,
-        sides: Some((needed("model_a")?, needed("model_b")?)),
-        choice: needed("winner")?,
+        sides: Some((header.needed(&["model_a"])?, header.needed(&["model_b"])?)),
+        choice: header.needed(&["winner"])?,
         ..Columns::default()
     };
     let mut own = mapping.clone();
@@ -60,5 +50,5 @@ pub(crate) fn read(
     own.words.declare(words.each_ref().map(|words| &words[..])).expect("no word twice");
     let ids = if question.is_some() { Ids::Scene } else { Ids::MadeUp };
     let rule = long::Rule { ordered: false, ids, ..long::Rule::LONG };
-    long::read_columns(source, (*row, header), columns, rule, plan, &own, report)
+    long::read_columns(source, &header, columns, rule, plan, &own, report)
 }

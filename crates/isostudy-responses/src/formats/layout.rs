@@ -1,10 +1,49 @@
 //! What the header of an export with one row a participant says.
 
+use crate::error::Fault;
 use crate::format::Format;
+use crate::report::{Kind, Report};
 use crate::words::normalise;
 
 /// The first rows that are not blank, with their numbers.
 pub(crate) type Head = [(u64, Vec<String>)];
+
+/// The header of a format with one row an answer and columns of its own.
+pub(crate) struct Header<'a> {
+    pub(crate) format: Format,
+    pub(crate) row: u64,
+    pub(crate) cells: &'a [String],
+}
+
+impl<'a> Header<'a> {
+    pub(crate) fn of(format: Format, head: &'a Head) -> Self {
+        Self { format, row: head[0].0, cells: &head[0].1 }
+    }
+
+    /// The first column with one of these titles.
+    pub(crate) fn find(&self, names: &[&str]) -> Option<usize> {
+        let place = |name: &&str| self.cells.iter().position(|title| normalise(title) == normalise(name));
+        names.iter().find_map(place)
+    }
+
+    pub(crate) fn needed(&self, names: &[&str]) -> Result<usize, Fault> {
+        self.find(names).ok_or_else(|| self.missing(format!("the header has no {}", names[0])))
+    }
+
+    pub(crate) fn missing(&self, missing: impl Into<String>) -> Fault {
+        Fault::NotThatFormat { format: self.format, row: self.row, missing: missing.into() }
+    }
+
+    /// Notes columns that are neither the participant's nor among those of the format.
+    pub(crate) fn note_others(&self, participant: Option<usize>, known: &[&str], report: &mut Report) {
+        for (column, title) in self.cells.iter().enumerate() {
+            let is_known = known.iter().any(|name| normalise(name) == normalise(title));
+            if participant != Some(column) && !is_known {
+                report.cell(Kind::Noted, self.row, column, title, "not a column of this format: not read");
+            }
+        }
+    }
+}
 
 /// Where things are in a file with one row a participant and one column a question. Columns are counted from 0.
 #[derive(Debug, Clone, Default)]

@@ -5,6 +5,7 @@ use crate::decode::records::{Record, is_blank, trim};
 use crate::decode::source::Source;
 use crate::error::{Fault, shorten};
 use crate::format::Format;
+use crate::formats::layout::{Head, Header};
 use crate::mapping::Mapping;
 use crate::name;
 use crate::plan::Plan;
@@ -35,15 +36,19 @@ pub(crate) fn is_long(header: &[String]) -> bool {
 /// See [`Fault`].
 pub(crate) fn read(
     source: &Source<'_>,
-    (header_row, header): (u64, &[String]),
+    head: &Head,
     plan: Option<&Plan>,
     mapping: &Mapping,
     report: &mut Report,
 ) -> Result<Responses, Fault> {
-    let columns = Columns::of(header, header_row, plan.is_some(), report)?;
+    let header = Header::of(Format::Long, head);
+    if !is_long(header.cells) {
+        return Err(header.missing("the header needs participant, question, left, right and choice"));
+    }
+    let columns = Columns::of(&header, plan.is_some(), report)?;
     let ids = if columns.question.is_some() { Ids::OnePair } else { Ids::MadeUp };
     let rule = Rule { ids, ..Rule::LONG };
-    read_columns(source, (header_row, header), columns, rule, plan, mapping, report)
+    read_columns(source, &header, columns, rule, plan, mapping, report)
 }
 
 /// Reads every row under a header whose columns are known.
@@ -52,7 +57,7 @@ pub(crate) fn read(
 /// See [`Fault`].
 pub(crate) fn read_columns(
     source: &Source<'_>,
-    (header_row, header): (u64, &[String]),
+    &Header { row: header_row, cells: header, .. }: &Header<'_>,
     columns: Columns,
     rule: Rule,
     plan: Option<&Plan>,
@@ -327,10 +332,4 @@ impl Rows<'_> {
         self.collector.report.cell(kind, record.row, column, cell, action);
         time
     }
-}
-
-/// Says what a file lacks that was declared to be in this format.
-pub(crate) fn not_long(row: u64) -> Fault {
-    let missing = "the header needs participant, question, left, right and choice".into();
-    Fault::NotThatFormat { format: Format::Long, row, missing }
 }

@@ -11,13 +11,12 @@ use crate::collect::Ids;
 use crate::decode::source::Source;
 use crate::error::Fault;
 use crate::format::Format;
-use crate::formats::layout::Head;
+use crate::formats::layout::{Head, Header};
 use crate::formats::long::{self, Columns};
 use crate::mapping::Mapping;
 use crate::plan::Plan;
 use crate::report::{Kind, Report};
 use crate::value::Responses;
-use crate::words::normalise;
 use std::collections::HashMap;
 
 /// Names of the column with the answer.
@@ -38,24 +37,17 @@ pub(crate) fn read(
     mapping: &Mapping,
     report: &mut Report,
 ) -> Result<Responses, Fault> {
-    let (row, header) = &head[0];
-    let find = |name: &str| header.iter().position(|title| normalise(title) == name);
-    let needed = |column: Option<usize>, name: &str| {
-        let missing = format!("the header has no {name}");
-        column.ok_or(Fault::NotThatFormat { format: Format::Pwcmp, row: *row, missing })
-    };
-    let participant = needed(mapping.participant(header.len())?.or_else(|| find("observer")), "observer")?;
-    for (column, title) in header.iter().enumerate() {
-        if participant != column && !COLUMNS.contains(&normalise(title).as_str()) {
-            report.cell(Kind::Noted, *row, column, title, "not a column of this format: not read");
-        }
-    }
-    let form = match find("session") {
+    let header = Header::of(Format::Pwcmp, head);
+    let declared = mapping.participant(header.cells.len())?;
+    let participant = declared.map_or_else(|| header.needed(&["observer"]), Ok)?;
+    header.note_others(Some(participant), &COLUMNS, report);
+    let session = header.find(&["session"]);
+    let form = match session {
         None => None,
         Some(session) => {
-            let found = sessions(source, *row, participant, session, plan)?;
+            let found = sessions(source, header.row, participant, session, plan)?;
             if let Some(action) = found.action() {
-                report.cell(Kind::Noted, *row, session, &header[session], action);
+                report.cell(Kind::Noted, header.row, session, &header.cells[session], action);
             }
             (found == Sessions::Forms).then_some(session)
         }
@@ -66,14 +58,11 @@ pub(crate) fn read(
     };
     let columns = Columns {
         participant: Some(participant),
-        sides: Some((
-            needed(find("condition_a"), "condition_A")?,
-            needed(find("condition_b"), "condition_B")?,
-        )),
-        choice: needed(SELECTED.into_iter().find_map(find), "is_A_selected")?,
-        object: find("scene"),
+        sides: Some((header.needed(&["condition_A"])?, header.needed(&["condition_B"])?)),
+        choice: header.find(&SELECTED).ok_or_else(|| header.missing("the header has no is_A_selected"))?,
+        object: header.find(&["scene"]),
         form,
-        session: find("session"),
+        session,
         ..Columns::default()
     };
     let mut own = mapping.clone();
@@ -86,7 +75,7 @@ pub(crate) fn read(
         ids: Ids::MadeUp,
         ..long::Rule::LONG
     };
-    long::read_columns(source, (*row, header), columns, rule, plan, &own, report)
+    long::read_columns(source, &header, columns, rule, plan, &own, report)
 }
 
 /// What sessions say.

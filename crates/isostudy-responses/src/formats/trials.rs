@@ -3,13 +3,12 @@
 use crate::decode::source::Source;
 use crate::error::{Fault, shorten};
 use crate::format::Format;
-use crate::formats::layout::Head;
+use crate::formats::layout::{Head, Header};
 use crate::formats::long::{self, Columns};
 use crate::mapping::Mapping;
 use crate::plan::Plan;
 use crate::report::{Kind, Report};
 use crate::value::Responses;
-use crate::words::normalise;
 use serde_json::Value;
 use std::collections::HashMap;
 
@@ -112,34 +111,33 @@ pub(crate) fn read_table(
     mapping: &Mapping,
     report: &mut Report,
 ) -> Result<Responses, Fault> {
-    let (row, header) = &head[0];
-    let find = |names: &[&str]| {
-        names.iter().find_map(|name| header.iter().position(|title| normalise(title) == *name))
-    };
-    let missing =
-        |missing: &str| Fault::NotThatFormat { format: Format::JsPsych, row: *row, missing: missing.into() };
+    let header = Header::of(Format::JsPsych, head);
+    let find = |names: &[&str]| header.find(names);
     let question = find(&["question", "question_id"]).ok_or_else(|| {
-        missing("no trial has a `question`: add it, with `left` and `right`, to the data of each trial")
+        header
+            .missing("no trial has a `question`: add it, with `left` and `right`, to the data of each trial")
     })?;
-    let choice =
-        find(&["choice", "response"]).ok_or_else(|| missing("no trial has a `choice` or `response`"))?;
+    let choice = find(&["choice", "response"])
+        .ok_or_else(|| header.missing("no trial has a `choice` or `response`"))?;
     let sides = find(&["left"]).zip(find(&["right"]));
     if sides.is_none() && plan.is_none() {
-        return Err(missing(
-            "trials do not say what was `left` and `right`, and there is no study that does",
-        ));
+        return Err(
+            header.missing("trials do not say what was `left` and `right`, and there is no study that does")
+        );
     }
     let declared =
-        mapping.participant_column.filter(|column| (1..=header.len()).contains(column)).map(|c| c - 1);
+        mapping.participant_column.filter(|column| (1..=header.cells.len()).contains(column)).map(|c| c - 1);
     let named = declared.or_else(|| find(&PARTICIPANT)).or_else(|| find(&[RUN]));
     let index = find(&["trial_index"]);
     let (participant, restarts) = match (named, index) {
         (Some(column), _) => (column, false),
         (None, Some(index)) => (index, true),
-        (None, None) => return Err(missing("no field says who answered; declare `participant_column`")),
+        (None, None) => {
+            return Err(header.missing("no field says who answered; declare `participant_column`"));
+        }
     };
     report.column_rule = match restarts {
-        false => format!("participants by \"{}\"", shorten(&header[participant])),
+        false => format!("participants by \"{}\"", shorten(&header.cells[participant])),
         true => "participants by trial_index, which starts again with each".into(),
     };
     let columns = Columns {
@@ -156,8 +154,12 @@ pub(crate) fn read_table(
         ..Columns::default()
     };
     if sides.is_none() {
-        report.row(Kind::Noted, *row, "trials do not say what was left and right: taken from the study");
+        report.row(
+            Kind::Noted,
+            header.row,
+            "trials do not say what was left and right: taken from the study",
+        );
     }
     let rows = long::Rule { escaped: false, every_row: false, ..long::Rule::LONG };
-    long::read_columns(source, (*row, header), columns, rows, plan, mapping, report)
+    long::read_columns(source, &header, columns, rows, plan, mapping, report)
 }

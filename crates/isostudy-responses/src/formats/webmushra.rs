@@ -6,13 +6,12 @@
 use crate::decode::source::Source;
 use crate::error::{Fault, shorten};
 use crate::format::Format;
-use crate::formats::layout::Head;
+use crate::formats::layout::{Head, Header};
 use crate::formats::long::{self, Columns};
 use crate::mapping::Mapping;
 use crate::plan::Plan;
 use crate::report::Report;
 use crate::value::Responses;
-use crate::words::normalise;
 
 /// Reads every row under the header. The participant is the declared column, or the first field that the test asks for.
 ///
@@ -25,32 +24,21 @@ pub(crate) fn read(
     mapping: &Mapping,
     report: &mut Report,
 ) -> Result<Responses, Fault> {
-    let (row, header) = &head[0];
-    let find = |name: &str| {
-        let missing = || Fault::NotThatFormat {
-            format: Format::WebMushra,
-            row: *row,
-            missing: format!("the header has no {name}"),
-        };
-        header.iter().position(|title| normalise(title) == name).ok_or_else(missing)
-    };
-    let question = find("trial_id")?;
-    let participant = match mapping.participant(header.len())? {
+    let header = Header::of(Format::WebMushra, head);
+    let question = header.needed(&["trial_id"])?;
+    let participant = match mapping.participant(header.cells.len())? {
         Some(column) => column,
         None if question > 1 => 1,
-        None => {
-            let missing = "no column says who answered; declare `participant_column`".into();
-            return Err(Fault::NotThatFormat { format: Format::WebMushra, row: *row, missing });
-        }
+        None => return Err(header.missing("no column says who answered; declare `participant_column`")),
     };
     report.column_rule =
-        format!("participants by column {} (\"{}\")", participant + 1, shorten(&header[participant]));
+        format!("participants by column {} (\"{}\")", participant + 1, shorten(&header.cells[participant]));
     let columns = Columns {
-        sides: Some((find("choice_reference")?, find("choice_non_reference")?)),
-        rt_ms: find("choice_time").ok(),
+        sides: Some((header.needed(&["choice_reference"])?, header.needed(&["choice_non_reference"])?)),
+        rt_ms: header.find(&["choice_time"]),
         participant: Some(participant),
         question: Some(question),
-        choice: find("choice_answer")?,
+        choice: header.needed(&["choice_answer"])?,
         ..Columns::default()
     };
     let mut own = mapping.clone();
@@ -59,5 +47,5 @@ pub(crate) fn read(
     own.words.declare(words.map(Vec::as_slice)).expect("three words");
     own.words.declare_blank("unknown");
     let rows = long::Rule { sides_recorded: false, escaped: false, ordered: false, ..long::Rule::LONG };
-    long::read_columns(source, (*row, header), columns, rows, plan, &own, report)
+    long::read_columns(source, &header, columns, rows, plan, &own, report)
 }

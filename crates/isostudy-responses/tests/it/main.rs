@@ -2,6 +2,7 @@
 
 mod counted;
 mod exports;
+mod messages;
 mod mutated;
 mod open;
 mod people;

@@ -1,7 +1,7 @@
 //! Who is who: one person under two ids, one sheet twice, and addresses that nobody is shown.
 
-use crate::study::{export, parse, parse_with, plan, read, remarks, said};
-use isostudy_responses::{Duplicates, Mapping, Reading};
+use crate::study::{export, fault, parse, parse_with, plan, read, remarks, said};
+use isostudy_responses::{Duplicates, Fault, Mapping, Reading};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::path::Path;
@@ -36,17 +36,14 @@ fn an_address_in_two_rows_is_one_person() {
     for (header, rows, first, second, ids) in tables {
         let text = format!("{header}{rows}");
         let refused = parse(&text).unwrap_err();
-        let want =
-            format!("x.csv: row {second}: the e-mail address of row {first} again, so one person twice;");
-        assert!(refused.starts_with(&want) && !refused.contains('@'), "{refused}");
+        assert_eq!(refused, Fault::DuplicateAddress { row: second, first });
+        assert!(!refused.to_string().contains('@'), "{refused}");
         for (duplicates, last) in [(Duplicates::First, "b>c"), (Duplicates::Last, "b<c")] {
             let reading = parse_with(&text, &keeping(duplicates)).unwrap();
             let mut said = said(&reading);
             said.sort_unstable();
             assert_eq!(said, ["Q1 a<b", "Q2 a=c", &format!("Q3 {last}")].map(|s| format!("{} {s}", ids[0])));
-            let noted =
-                format!("{second} noted: the e-mail address of row {first}: taken for the same person");
-            assert!(remarks(&reading).contains(&noted), "{}", reading.report);
+            assert!(remarks(&reading).contains(&format!("{second} noted {first}")), "{}", reading.report);
             assert_eq!(reading.report.count(isostudy_responses::Kind::Rejected), 3);
             assert!(!all_of(&reading).to_lowercase().contains("@x.org"), "{}", all_of(&reading));
         }
@@ -62,14 +59,13 @@ fn an_address_in_two_rows_is_one_person() {
 #[test]
 fn exports_with_somebody_twice() {
     let path = export("microsoft_twice.csv");
-    let refused =
-        isostudy_responses::read(&path, Some(&plan()), &Mapping::default()).unwrap_err().to_string();
-    assert!(refused.contains("microsoft_twice.csv: row 4: the e-mail address of row 2 again"), "{refused}");
+    let refused = isostudy_responses::read(&path, Some(&plan()), &Mapping::default()).unwrap_err();
+    assert_eq!(fault(refused), Fault::DuplicateAddress { row: 4, first: 2 });
     let first = read("microsoft_twice.csv", &keeping(Duplicates::First));
     let ids: Vec<&str> = first.responses.participants.iter().map(|p| p.id.as_str()).collect();
     assert_eq!(ids, ["1", "2", "4"]);
-    let copy = "5 noted: the same time and the same 3 answers as row 3: perhaps a copy; both are counted";
-    assert!(remarks(&first).iter().any(|remark| remark == copy), "{}", first.report);
+    // The same time and the same 3 answers as row 3.
+    assert!(remarks(&first).iter().any(|remark| remark == "5 noted 3 3"), "{}", first.report);
     let long = read("long_addresses.csv", &Mapping::default());
     let want = ["row 2' Q1 a<b", "row 2' Q2 a=c", "row 2 Q1 b>a", "row 5 Q1 a>b", "row 2' Q3 b>c"];
     assert_eq!(said(&long), want);
@@ -91,14 +87,15 @@ fn a_column_that_people_were_asked_for_counts_as_well() {
     let text = "Timestamp,a,b,c,Your e-mail address\nx,L,L,L,a@x.org\ny,R,R,R,a@x.org\n";
     assert_eq!(parse(text).unwrap().responses.participants.len(), 2);
     let text = text.replace("Your e-mail address", "Your email address *");
-    assert!(parse(&text).unwrap_err().contains("row 3: the e-mail address of row 2 again"));
+    assert_eq!(parse(&text).unwrap_err(), Fault::DuplicateAddress { row: 3, first: 2 });
 }
 
 #[test]
 fn an_id_goes_before_an_address() {
     let rows = "1,8:00,,a@x.org,,L,L,L\n2,9:00,,b@x.org,,R,R,R\n2,10:00,,a@x.org,,R,R,L\n";
     let text = format!("{MICROSOFT}{rows}");
-    assert!(parse(&text).unwrap_err().contains("row 4: participant 2 is already in row 3"));
+    let again = Fault::DuplicateParticipant { row: 4, first: 3, participant: "2".into() };
+    assert_eq!(parse(&text).unwrap_err(), again);
     let first = parse_with(&text, &keeping(Duplicates::First)).unwrap();
     assert_eq!(said(&first)[3..], ["2 Q1 a>b", "2 Q2 a>c", "2 Q3 b>c"]);
 }
@@ -108,8 +105,7 @@ fn rows_that_are_there_twice_are_noted() {
     let twice = "Timestamp,w,w,w\nx,Left,Right,No preference\ny,R,R,R\nx,Left,Right,No preference\n";
     let reading = parse(twice).unwrap();
     assert_eq!(reading.responses.participants.len(), 3);
-    let want = "4 noted: the same time and the same 3 answers as row 2: perhaps a copy; both are counted";
-    assert_eq!(remarks(&reading), [want]);
+    assert_eq!(remarks(&reading), ["4 noted 3 2"]);
     for other in ["z,Left,Right,No preference", "x,Left,Right,Right"] {
         let text = twice.replace("\ny,R,R,R\nx,Left,Right,No preference", &format!("\n{other}"));
         assert!(parse(&text).unwrap().report.remarks.is_empty(), "{other}");
@@ -120,11 +116,11 @@ fn rows_that_are_there_twice_are_noted() {
     for text in [ids, addresses] {
         let first = parse_with(&text, &keeping(Duplicates::First)).unwrap();
         assert_eq!(first.responses.answers.len(), 3);
-        assert!(!first.report.to_string().contains("copy"), "{}", first.report);
+        assert!(!remarks(&first).iter().any(|remark| remark.ends_with("noted 3 2")), "{}", first.report);
     }
     // Two answers, or no time, are the same by chance.
     let few = parse("Timestamp,w,w,w\nx,Left,Right,\nx,Left,Right,\n").unwrap();
-    assert!(remarks(&few).iter().all(|remark| remark.contains("unanswered")), "{}", few.report);
+    assert_eq!(remarks(&few), ["2 noted 1 1 3 Q3", "3 noted 2 1 3 Q3"], "{}", few.report);
     assert!(parse("Q1,Q2,Q3\nL,L,L\nL,L,L\n").unwrap().report.remarks.is_empty());
 }
 
@@ -133,7 +129,8 @@ fn a_questionnaire_filled_in_twice_is_no_question_shown_twice() {
     // The order of the second time differs, which tells showings apart in one questionnaire alone.
     let rows = "1/2,R_1,,L,L,L,QID1|QID2|QID3\n1/3,R_1,,R,R,R,QID3|QID1|QID2\n";
     let text = format!("{QUALTRICS}{rows}");
-    assert!(parse(&text).unwrap_err().contains("row 4: participant R_1 is already in row 3"));
+    let again = Fault::DuplicateParticipant { row: 4, first: 3, participant: "R_1".into() };
+    assert_eq!(parse(&text).unwrap_err(), again);
     let last = parse_with(&text, &keeping(Duplicates::Last)).unwrap();
     assert_eq!(said(&last), ["R_1 Q1 a>b", "R_1 Q2 a>c", "R_1 Q3 b>c"]);
 }
@@ -149,12 +146,17 @@ fn addresses_as_ids_are_neither_kept_nor_shown() {
     let ids: Vec<&str> = reading.responses.participants.iter().map(|p| p.id.as_str()).collect();
     assert_eq!(ids, ["row 2'", "row 2", "row 4'", "row 4"]);
     assert!(!all_of(&reading).contains('@'), "{}", all_of(&reading));
-    let twice = parse(&text.replace("A@X.ORG,r", "A@X.ORG,q")).unwrap_err().to_string();
-    assert!(twice.contains("row 5: row 2' has already answered q") && !twice.contains('@'), "{twice}");
+    let twice = fault(parse(&text.replace("A@X.ORG,r", "A@X.ORG,q")).unwrap_err());
+    assert!(
+        matches!(&twice, Fault::DuplicateAnswer { row: 5, participant, .. } if participant == "row 2'"),
+        "{twice}"
+    );
+    assert!(!twice.to_string().contains('@'), "{twice}");
     let declared = Mapping { participant_column: Some(2), ..Mapping::default() };
     let text = format!("{GOOGLE}x,a@x.org,L,NP,R\ny,A@x.org,L,NP,L\n");
     let refused = parse_with(&text, &declared).unwrap_err();
-    assert!(refused.contains("row 3: participant (an e-mail address) is already in row 2"), "{refused}");
+    assert!(matches!(&refused, Fault::DuplicateParticipant { row: 3, first: 2, .. }), "{refused}");
+    assert!(!refused.to_string().contains('@'), "{refused}");
 }
 
 /// Whoever has an address counts once, whatever the order of the rows; everybody else counts a row.

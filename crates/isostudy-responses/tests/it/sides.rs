@@ -1,9 +1,9 @@
 //! Files that do not name sides, of studies that show participants different ones.
 
-use crate::study::{parse_with, remarks};
+use crate::study::{bad_cell, fault, parse_with, remarks};
 use isostudy_design::Study;
 use isostudy_design::forms::{KeyEntry, Questionnaire, Role};
-use isostudy_responses::{Choice, Mapping, Plan, Reading};
+use isostudy_responses::{Choice, Fault, Mapping, Plan, Reading};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -23,14 +23,13 @@ pub(crate) fn key(study: &Study) -> Vec<KeyEntry> {
     Questionnaire::of(study).unwrap().key()
 }
 
-pub(crate) fn read(text: &str, study: &Study) -> Result<Reading, String> {
+pub(crate) fn read(text: &str, study: &Study) -> Result<Reading, Fault> {
     let plan = Plan::of_study(study);
-    let reading =
-        isostudy_responses::parse(text.as_bytes(), Path::new("x.csv"), Some(&plan), &Mapping::default());
-    reading.map_err(|error| error.to_string())
+    isostudy_responses::parse(text.as_bytes(), Path::new("x.csv"), Some(&plan), &Mapping::default())
+        .map_err(fault)
 }
 
-fn refused(text: &str, study: &Study) -> String {
+fn refused(text: &str, study: &Study) -> Fault {
     read(text, study).map(|reading| format!("{:?}", reading.responses.answers)).unwrap_err()
 }
 
@@ -155,7 +154,7 @@ fn exports_with_a_form_column_are_read_by_it() {
             row.replace("NUMBER", &form.to_string()).trim_end_matches(',').to_owned()
         });
         let refused = refused(&without, &study);
-        assert!(refused.contains("does not say which item was on which side"), "{first}: {refused}");
+        assert!(matches!(refused, Fault::NoSides { .. }), "{first}: {refused}");
     }
 }
 
@@ -164,32 +163,26 @@ fn tables_without_forms_are_refused_with_what_to_add() {
     let study = study("balanced.toml", &[]);
     let key = key(&study);
     let text = table("participant", &questions(&study), &key, |form| format!("p{form}"));
-    let want = "x.csv: row 1: the file does not say which item was on which side, and this study shows participants \
-        different sides. Add a `form` column with the number of each participant's form; cells are then read as what was \
-        pressed. Or use the long format with `left` and `right`.";
-    let error = refused(&text, &study);
-    assert!(error.starts_with(want), "{error}");
-    assert!(refused("participant,question,choice\np,Q1,L\n", &study).starts_with(want));
-    let trials = refused("trial_type,trial_index,participant,question,response\nx,1,p,Q1,L\n", &study);
-    assert!(trials.starts_with(want), "{trials}");
+    for text in [
+        text.as_str(),
+        "participant,question,choice\np,Q1,L\n",
+        "trial_type,trial_index,participant,question,response\nx,1,p,Q1,L\n",
+    ] {
+        assert_eq!(refused(text, &study), Fault::NoSides { row: 1 });
+    }
     let table = |form: &str| {
         refused(&table("participant,form", &questions(&study), &key, |n| format!("p{n},{form}")), &study)
     };
-    let not = |cell: &str| {
-        format!(
-            "x.csv: row 2, column 2 (form): \"{cell}\" is not a form of this study, whose forms are 1 to 36"
-        )
+    let not = |refused: Fault, form: &str| {
+        assert_eq!(bad_cell(&refused), (2, 2, "form", form));
+        assert!(matches!(refused, Fault::Cell { limit, .. } if limit.contains("1 to 36") != form.is_empty()));
     };
-    for cell in ["A", "0", "37", "-1", "1.5", "99999999999999999999999"] {
-        assert_eq!(table(cell), not(cell));
+    for cell in ["A", "0", "37", "-1", "1.5", "99999999999999999999999", ""] {
+        not(table(cell), cell);
     }
-    assert_eq!(
-        table(""),
-        "x.csv: row 2, column 2 (form): \"\" must not be empty, since the form says what was on which side"
-    );
     let long = |row: &str| refused(&format!("participant,form,question,choice\n{row}\n"), &study);
-    assert_eq!(long("p,40,Q1,L"), not("40"));
-    assert!(long("p,,Q1,L").contains("row 2, column 2 (form): \"\" must not be empty"));
+    not(long("p,40,Q1,L"), "40");
+    not(long("p,,Q1,L"), "");
 }
 
 #[test]
@@ -199,8 +192,7 @@ fn what_a_form_does_not_ask_cannot_be_answered() {
     let asked: Vec<&str> =
         key.iter().filter(|entry| entry.form == 1).map(|entry| entry.question.as_str()).collect();
     let other = questions(&study).into_iter().find(|id| !asked.contains(&id.as_str())).unwrap();
-    let want =
-        format!("x.csv: row 2: form 1 does not ask {other}, and here is an answer to it; is that the form?");
+    let want = Fault::NotInForm { row: 2, form: "1".into(), question: other.clone() };
     let long = refused(&format!("participant,form,question,choice\np,1,{other},L\n"), &study);
     assert_eq!(long, want);
     let mut columns = questions(&study);
@@ -271,21 +263,22 @@ fn code_names_that_contradict_are_refused() {
     };
     let KeyEntry { form, question, left, right, .. } = entry;
     let code = &mirrored.stimulus;
-    assert_eq!(
-        row(code),
-        format!(
-            "x.csv: row 2: stimulus {code} shows {right} and {left}, left to right, and form {form} asks {question} with {left} \
-             and {right}"
-        )
-    );
-    assert!(
-        row("qqqq").ends_with("(stimulus): \"qqqq\" is not a code name of this study"),
-        "{}",
-        row("qqqq")
-    );
+    let other = Fault::OtherStimulus {
+        row: 2,
+        stimulus: format!("{code} shows {right} and {left}"),
+        form: form.to_string(),
+        question: question.clone(),
+        asked: format!("{left} and {right}"),
+    };
+    assert_eq!(row(code), other);
+    assert_eq!(bad_cell(&row("qqqq")), (2, 5, "stimulus", "qqqq"));
     let other = key.iter().find(|other| other.question == "Q9").unwrap();
     let text = format!("participant,question,choice,stimulus\np,Q1,L,{}\n", other.stimulus);
-    assert!(refused(&text, &study).contains("row 2: question Q1 compares ss_bu and ss_bi, not ss_b"));
+    let refused = refused(&text, &study);
+    assert!(
+        matches!(&refused, Fault::Pair { row: 2, declared, .. } if declared == "ss_bu and ss_bi"),
+        "{refused}"
+    );
 }
 
 #[test]
@@ -308,25 +301,17 @@ fn code_names_that_the_study_lacks_are_told() {
     let assumptions = reading.responses.assumptions();
     assert_eq!(assumptions.len(), said + 1);
     let row = unknown.row;
-    assert_eq!(
-        assumptions[said],
-        format!(
-            "The code names of {answers} answers are not in this study; the first is \"zzzz\" in row {row}. The sides of such \
-             answers were not checked by code name."
-        )
-    );
-    let want =
-        format!("{row}:8 noted: not a code name of this study; {} more answers have such names", answers - 1);
+    let told = [format!(" {answers} "), "\"zzzz\"".into(), format!(" {row}.")];
+    assert!(told.iter().all(|part| assumptions[said].contains(part)), "{}", assumptions[said]);
+    let want = format!("{row}:8 noted {}", answers - 1);
     assert!(remarks(&reading).contains(&want), "{want}");
 
     // One among others, after rows that are no answers; without a study, no name is unknown.
     let one =
         "participant,question,left,right,choice,stimulus\np,Q1,ss_bu,ss_bi,,aaaa\np,Q1,ss_bu,ss_bi,L,zzzz\n";
     let reading = read(one, &study).unwrap();
-    assert_eq!(remarks(&reading).last().unwrap(), "3:6 noted: not a code name of this study");
-    assert!(
-        reading.responses.assumptions()[said].starts_with("The code name of 1 answer is not in this study; ")
-    );
+    assert_eq!(remarks(&reading).last().unwrap(), "3:6 noted");
+    assert!(reading.responses.assumptions()[said].contains(" 1 answer "));
     assert!(
         parse_with(&one.replace("ss_bu,ss_bi", "a,b"), &Mapping::default())
             .unwrap()
@@ -371,12 +356,10 @@ fn listed_sides_may_be_left_out() {
     let paper = study("paper.toml", &[]);
     let row = |row: &str| read(&format!("participant,question,choice\n{row}\n"), &paper);
     assert!(row("p,Q1,L").unwrap().responses.sides_recorded);
-    assert_eq!(
-        row("p,Q1-r,L").unwrap_err(),
-        "x.csv: row 2: neither the file nor the study says on which sides Q1-r was shown; add the columns `left` and `right`"
-    );
+    let want = Fault::NoSidesOf { row: 2, question: "Q1-r".into() };
+    assert_eq!(row("p,Q1-r,L").unwrap_err(), want);
     let plain = parse_with("participant,question,choice\np,Q1-r,L\n", &Mapping::default()).unwrap_err();
-    assert!(plain.contains("neither the file nor the study says on which sides Q1-r was shown"), "{plain}");
+    assert_eq!(plain, want);
 }
 
 /// What was assumed can be said.
@@ -403,12 +386,7 @@ mod source {
         let paper = super::study("paper.toml", &[]);
         let listed = read("participant,question,choice\np,Q1,L\n", &paper).unwrap();
         assert_eq!(listed.responses.sides, SidesSource::AsListed);
-        assert_eq!(
-            listed.responses.assumptions(),
-            [
-                "The file does not name sides. They are taken as listed, because everybody was shown the listed sides."
-            ]
-        );
+        assert_eq!(listed.responses.assumptions(), [SidesSource::AsListed.sentence()]);
         assert!(Plan::of_study(&paper).shows_listed_sides() && !Plan::of_study(&study).shows_listed_sides());
     }
 }

@@ -3,13 +3,14 @@
 use crate::collect::Ids;
 use crate::decode::records::is_blank;
 use crate::error::Fault;
+use crate::formats::layout::Header;
 use crate::plan::Plan;
 use crate::report::{Kind, Report};
 use crate::screen::SCREEN_COLUMNS;
 use crate::sides::SidesSource;
 use crate::words::normalise;
 
-/// Columns of an answer and of what was asked, in the order in which [`Columns::of`] takes them.
+/// Columns of an answer and of what was asked.
 const OF_ANSWERS: [&str; 14] = [
     "participant",
     "question",
@@ -112,14 +113,9 @@ impl Rule {
 }
 
 impl Columns {
-    pub(super) fn of(
-        header: &[String],
-        row: u64,
-        with_plan: bool,
-        report: &mut Report,
-    ) -> Result<Self, Fault> {
+    pub(super) fn of(header: &Header<'_>, with_plan: bool, report: &mut Report) -> Result<Self, Fault> {
         let mut at = [None; LONG_COLUMNS.len()];
-        for (column, title) in header.iter().enumerate() {
+        for (column, title) in header.cells.iter().enumerate() {
             match LONG_COLUMNS.iter().position(|name| *name == normalise(title)) {
                 Some(name) => {
                     if let Some(first) = at[name].replace(column) {
@@ -128,59 +124,44 @@ impl Columns {
                     }
                 }
                 None if is_blank(title) => {}
-                None => report.cell(Kind::Noted, row, column, title, "not a column of this format: not read"),
+                None => report.cell(
+                    Kind::Noted,
+                    header.row,
+                    column,
+                    title,
+                    "not a column of this format: not read",
+                ),
             }
         }
-        let [
-            participant,
-            question,
-            left,
-            right,
-            choice,
-            object,
-            group,
-            form,
-            order,
-            rt_ms,
-            role,
-            stimulus,
-            count,
-            sides_unknown,
-            screen @ ..,
-        ] = at;
-        let needed = |column: Option<usize>, name: &str| match column {
-            Some(column) => Ok(column),
-            None => Err(Fault::MissingColumn { name: name.into() }),
-        };
-        if count.is_none() {
-            needed(participant, "participant")?;
+        let column =
+            |name: &str| at[LONG_COLUMNS.iter().position(|of| *of == name).expect("a column of the format")];
+        let needed = |name: &str| column(name).ok_or_else(|| Fault::MissingColumn { name: name.into() });
+        if column("count").is_none() {
+            needed("participant")?;
         }
         if with_plan {
-            needed(question, "question")?;
+            needed("question")?;
         }
-        let sides = match (left, right) {
+        let sides = match (column("left"), column("right")) {
             (None, None) if with_plan => None,
-            _ => Some((needed(left, "left")?, needed(right, "right")?)),
+            _ => Some((needed("left")?, needed("right")?)),
         };
-        let choice = needed(choice, "choice")?;
-        let restarts = false;
         Ok(Self {
-            participant,
-            restarts,
-            question,
+            participant: column("participant"),
+            question: column("question"),
             sides,
-            choice,
-            object,
-            group,
-            form,
-            order,
-            rt_ms,
-            role,
-            stimulus,
-            count,
-            sides_unknown,
-            session: None,
-            screen,
+            choice: needed("choice")?,
+            object: column("object"),
+            group: column("group"),
+            form: column("form"),
+            order: column("order"),
+            rt_ms: column("rt_ms"),
+            role: column("role"),
+            stimulus: column("stimulus"),
+            count: column("count"),
+            sides_unknown: column("sides_unknown"),
+            screen: SCREEN_COLUMNS.map(column),
+            ..Self::default()
         })
     }
 
