@@ -67,7 +67,7 @@ fn a_journal_of_another_plan_is_not_used() {
 fn every_statement_is_there_in_every_format() {
     let fixture = Fixture::new();
     let run = fixture.succeed("bench", &[]);
-    assert!(run.stdout.contains("ss_bi"), "{}", run.stdout);
+    assert!(run.stdout.contains(r"ss\_bi"), "{}", run.stdout);
     for name in ["bench_medians", "bench_ratios", "bench_counters", "bench_allocations"] {
         for extension in ["csv", "md", "tex"] {
             assert!(
@@ -345,7 +345,7 @@ fn only_what_did_the_same_work_is_compared() {
     let rows = found["rows"].as_array().unwrap();
     assert!(!rows.is_empty() && rows.iter().all(|row| row["id"] != *changed), "{found}");
     let named = pair.compare(&["--all"]);
-    assert!(named.stdout.contains(changed.as_str().unwrap()), "{}", named.stdout);
+    assert!(named.stdout.contains(&changed.as_str().unwrap().replace('_', r"\_")), "{}", named.stdout);
 }
 
 #[test]

@@ -236,7 +236,10 @@ pub use extractor::Extractor;
 pub use isostudy_field::{Aabb, Bound, FieldFault, FromFn, ScalarField, StudyField, check_field, from_fn};
 pub use lattice::{Arrangement, BoxGrid, CellBox, Grid, GridError, LatticeError};
 pub use levels::{LevelError, LevelExtractor, LevelSettings, Neighbours};
-pub use measure::{Accuracy, DistanceError, accuracy, distances, normal_errors_deg, triangle_distances};
+pub use measure::{
+    Accuracy, DistanceError, IsosurfacePoints, accuracy, accuracy_beside, distances, normal_errors_deg,
+    triangle_distances,
+};
 pub use method::families::*;
 pub use method::{
     CornerSamples, Kind, Method, MethodError, Preset, Promises, VolumeCells, VolumeCellsError, kinds, presets,

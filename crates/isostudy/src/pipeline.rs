@@ -29,6 +29,7 @@ mod worker;
 
 pub(crate) use ab::AbChoice;
 pub(crate) use bundle::forms_digest;
+use meshes::Isosurfaces;
 pub(crate) use meshes::Meshes;
 pub(crate) use stimuli::MadeWith;
 pub(crate) use tables::{write_answers_only, write_without_study};
@@ -44,7 +45,7 @@ use anyhow::{Context, Result};
 use isostudy_design::record::Purpose;
 use isostudy_design::{Configuration, ConfigurationId, Study};
 use std::collections::BTreeMap;
-use std::sync::{PoisonError, RwLock, RwLockReadGuard};
+use std::sync::{Mutex, PoisonError, RwLock, RwLockReadGuard};
 
 /// Stages that only commands of their own make; a whole study leaves them in place.
 const ASKED_FOR: [&str; 5] = ["bench/", "bundle", "contact_sheet", "video/", "web"];
@@ -59,6 +60,8 @@ pub(crate) struct Pipeline<'a> {
     frozen: bool,
     /// What was found for methods with a budget.
     spacings: RwLock<Spacings>,
+    /// Points of the isosurface that meshes were last measured against.
+    isosurfaces: Mutex<Isosurfaces>,
     /// Configurations whose program failed, and why.
     failed: RwLock<BTreeMap<ConfigurationId, String>>,
 }
@@ -72,6 +75,7 @@ impl<'a> Pipeline<'a> {
             threads,
             frozen: false,
             spacings: RwLock::default(),
+            isosurfaces: Mutex::default(),
             failed: RwLock::default(),
         }
     }

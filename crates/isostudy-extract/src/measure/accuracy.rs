@@ -8,7 +8,7 @@ use isostudy_mesh::metro::{AreaSamples, Surface};
 use crate::execution::threads::{SHARE, mapped, on_threads};
 use crate::extraction::ExtractError;
 use crate::lattice::BoxGrid;
-use crate::measure::isosurface::{Isosurface, REACH};
+use crate::measure::isosurface::{Isosurface, REACH, foot};
 use crate::sampling::level::Level;
 use crate::settings::Execution;
 use isostudy_field::{FieldCache, StudyField};
@@ -88,7 +88,61 @@ pub fn accuracy(
     grid: &BoxGrid,
     execution: &Execution,
 ) -> Result<Accuracy, ExtractError> {
-    let spacing = grid.spacing;
+    let points = IsosurfacePoints::of(field, isovalue, grid, execution)?;
+    accuracy_beside(&points, mesh, field, isovalue, grid.spacing, execution)
+}
+
+/// Points of an isosurface and of its sharp edges: of any number of meshes from the same field, isovalue and grid they are the same.
+#[derive(Debug, Clone)]
+pub struct IsosurfacePoints {
+    /// Evenly in area; `None` outside the box.
+    surface: Vec<Option<DVec3>>,
+    sharp: Vec<DVec3>,
+}
+
+impl IsosurfacePoints {
+    /// Finds them, as [`accuracy`] says.
+    ///
+    /// # Errors
+    /// As [`accuracy`].
+    pub fn of(
+        field: &dyn StudyField,
+        isovalue: f32,
+        grid: &BoxGrid,
+        execution: &Execution,
+    ) -> Result<Self, ExtractError> {
+        let mut kept = FieldCache::default();
+        let sampled = field.prepared(&mut kept).unwrap_or(field);
+        let level = Level { field: sampled, isovalue, spacing: grid.spacing };
+        let isosurface = Isosurface::new(field, level, grid, execution)?;
+        let on_triangles = points_on(&isosurface.triangles);
+        on_threads(execution, POINTS as usize / SHARE, || {
+            let sharp = isosurface.sharp_edges();
+            let every = sharp.len().div_ceil(POINTS as usize).max(1);
+            Self {
+                surface: mapped(&on_triangles, |&p| isosurface.point(p)),
+                sharp: sharp.into_iter().step_by(every).collect(),
+            }
+        })
+    }
+}
+
+/// As [`accuracy`], with the isosurface's points at hand: those of this field and isovalue on a grid of this spacing.
+///
+/// # Errors
+/// If threads cannot be started.
+///
+/// # Panics
+/// As [`accuracy`].
+pub fn accuracy_beside(
+    points: &IsosurfacePoints,
+    mesh: &TriangleMesh,
+    field: &dyn StudyField,
+    isovalue: f32,
+    spacing: f32,
+    execution: &Execution,
+) -> Result<Accuracy, ExtractError> {
+    let IsosurfacePoints { surface: beyond, sharp } = points;
     let triangles: Vec<[Vec3; 3]> = (0..mesh.triangles.len()).map(|t| mesh.corners(t)).collect();
     let points: Vec<DVec3> = points_on(&triangles);
     // Without an area there is nothing to be far from.
@@ -96,21 +150,16 @@ pub fn accuracy(
 
     let mut kept = FieldCache::default();
     let level = Level { field: field.prepared(&mut kept).unwrap_or(field), isovalue, spacing };
-    let isosurface = Isosurface::new(field, level, grid, execution)?;
-    let beyond = points_on(&isosurface.triangles);
     let every = mesh.normals.len().div_ceil(VERTICES).max(1);
     let vertices: Vec<usize> = (0..mesh.normals.len()).step_by(every).collect();
     let to_surface = |p: DVec3| Some(surface.as_ref()?.nearest(p, f64::INFINITY).distance);
     let most = (POINTS as usize).max(VERTICES) / SHARE;
     let (there, back, sharp, angles): (Vec<_>, Vec<_>, Vec<_>, Vec<_>) = on_threads(execution, most, || {
-        let distance = |&p: &DVec3| isosurface.foot(p).map(|foot| foot.distance);
-        let to_mesh = |&p: &DVec3| to_surface(isosurface.point(p)?);
-        let sharp = isosurface.sharp_edges();
-        let sharp: Vec<DVec3> =
-            sharp.iter().copied().step_by(sharp.len().div_ceil(POINTS as usize).max(1)).collect();
+        let distance = |&p: &DVec3| foot(field, &level, p).map(|foot| foot.distance);
+        let to_mesh = |p: &Option<DVec3>| to_surface((*p)?);
         let angle = |&v: &usize| normal_error_deg(&level, mesh.positions[v], mesh.normals[v]);
-        let sharp = mapped(&sharp, |&p| to_surface(p));
-        (mapped(&points, distance), mapped(&beyond, to_mesh), sharp, mapped(&vertices, angle))
+        let sharp = mapped(sharp, |&p| to_surface(p));
+        (mapped(&points, distance), mapped(beyond, to_mesh), sharp, mapped(&vertices, angle))
     })?;
     let lost = |of: &[Option<f64>]| of.iter().filter(|value| value.is_none()).count() as u64;
     let (lost_points, lost_vertices) = (lost(&there), lost(&angles));

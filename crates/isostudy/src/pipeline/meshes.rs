@@ -11,8 +11,9 @@ use crate::{recipe, source_digests};
 use anyhow::{Context, Result};
 use isostudy_design::record::{MeshRecord, Purpose};
 use isostudy_design::{Configuration, ConfigurationId};
-use isostudy_extract::{Execution, Extractor};
+use isostudy_extract::{BoxGrid, Execution, ExtractError, Extractor, IsosurfacePoints, accuracy_beside};
 use isostudy_mesh::TriangleMesh;
+use std::sync::PoisonError;
 
 /// How far a mesh moves the bar, which moves while one is extracted: a large volume takes minutes.
 pub(super) const TICKS_A_MESH: usize = 1000;
@@ -31,6 +32,37 @@ impl Meshes {
         let same = |(i, p, _): &&(ConfigurationId, Purpose, Stamp)| i == id && *p == purpose;
         let (_, _, stamp) = self.entries.iter().find(same).expect("every selected mesh has been made");
         stamp
+    }
+}
+
+/// Points of an object's isosurface on each grid that its meshes were made on: all methods share them.
+#[derive(Default)]
+pub(super) struct Isosurfaces {
+    object: usize,
+    of_grids: Vec<((f32, BoxGrid), IsosurfacePoints)>,
+}
+
+impl Isosurfaces {
+    /// Those of the object before go.
+    fn of(
+        &mut self,
+        object: usize,
+        isovalue: f32,
+        grid: &BoxGrid,
+        find: impl FnOnce() -> Result<IsosurfacePoints, ExtractError>,
+    ) -> Result<&IsosurfacePoints, ExtractError> {
+        if self.object != object {
+            *self = Self { object, of_grids: Vec::new() };
+        }
+        let key = (isovalue, *grid);
+        let place = match self.of_grids.iter().position(|(known, _)| *known == key) {
+            Some(place) => place,
+            None => {
+                self.of_grids.push((key, find()?));
+                self.of_grids.len() - 1
+            }
+        };
+        Ok(&self.of_grids[place].1)
     }
 }
 
@@ -96,7 +128,7 @@ impl Pipeline<'_> {
             // On one thread, so that calls of the field are counted.
             let execution = Execution { threads: 1 };
             let Made { mesh, counts, program } = self.make(configuration, &prepared, &execution, step)?;
-            let accuracy = self.accuracy(&prepared, &mesh)?;
+            let accuracy = self.accuracy(configuration.object, &prepared, &mesh)?;
             let cells = prepared.cells()?;
             let mut record =
                 mesh_record(&configuration.id, purpose, spacing, cells, counts, &mesh, &accuracy);
@@ -149,11 +181,16 @@ impl Pipeline<'_> {
     /// How well a configuration's mesh stands for its isosurface.
     pub(super) fn accuracy(
         &self,
+        object: usize,
         prepared: &Prepared<'_>,
         mesh: &TriangleMesh,
     ) -> Result<isostudy_extract::Accuracy> {
         let Prepared { field, grid, isovalue, .. } = prepared;
-        Ok(isostudy_extract::accuracy(mesh, *field, *isovalue, grid, &Execution { threads: self.threads })?)
+        let execution = Execution { threads: self.threads };
+        let mut kept = self.isosurfaces.lock().unwrap_or_else(PoisonError::into_inner);
+        let find = || IsosurfacePoints::of(*field, *isovalue, grid, &execution);
+        let points = kept.of(object, *isovalue, grid, find)?;
+        Ok(accuracy_beside(points, mesh, *field, *isovalue, grid.spacing, &execution)?)
     }
 
     /// The records of finished meshes.

@@ -100,7 +100,7 @@ impl Pipeline<'_> {
                 match self.at_another_spacing(configuration, &prepared, step)? {
                     Err(why) => entry.missing = Some(why),
                     Ok(Made { mesh, counts, program }) => {
-                        let accuracy = self.accuracy(&prepared, &mesh)?;
+                        let accuracy = self.accuracy(configuration.object, &prepared, &mesh)?;
                         let cells = prepared.cells()?;
                         let purpose = Purpose::Stimulus;
                         let record = mesh_record(id, purpose, spacing, cells, counts, &mesh, &accuracy);
