@@ -440,47 +440,47 @@ fn a_budget_that_cannot_be_met_is_said() {
 #[test]
 fn a_program_that_fails_is_left_out_by_name() {
     for (program, told) in [
-        ("import sys\nsys.exit(3)\n", "ended with code 3"),
         (
             "import time\nprint('{\"ready\": {\"name\": \"x\", \"version\": \"1\"}}', flush=True)\ntime.sleep(60)\n",
             "5 s",
         ),
         ("print('hello', flush=True)\ninput()\n", "`hello`"),
     ] {
-        let folder = Study::new();
-        folder.write("example.py", program);
-        // Enough to start Python beside other work.
-        folder.edit("time_limit_s = 60", "time_limit_s = 5");
-        let ran = folder.run(&["study", "study.toml", "--out", "out", "--allow-programs"]);
-        assert_eq!(ran.code, Some(1), "{program}: {}", ran.stderr);
-        assert!(
-            ran.stderr.contains("fo_program failed") && ran.stderr.contains(told),
-            "{told}: {}",
-            ran.stderr
-        );
-        assert!(
-            ran.stderr.contains("failed and left out: fo_program, te_program, vo_program"),
-            "{}",
-            ran.stderr
-        );
-        let benchmark = folder.table("out/tables/benchmark.csv");
-        let ids: BTreeSet<&str> = benchmark[1..].iter().map(|row| row[0].as_str()).collect();
-        assert!(ids.contains("fo_bi") && !ids.contains("fo_program"), "{ids:?}");
-        let left_out = folder.table("out/tables/left_out.csv");
-        let ids: Vec<&str> = left_out[1..].iter().map(|row| row[0].as_str()).collect();
-        assert_eq!(ids, ["fo_program", "te_program", "vo_program"]);
-        assert!(left_out[1][1].contains(told), "{left_out:?}");
-        let page = std::fs::read_to_string(folder.path("out/index.html")).unwrap();
-        assert!(page.contains("The programs of fo_program, te_program and vo_program failed"), "{told}");
-        // Every picture that the page names is there.
-        let page = page.replace("&#x2f;", "/");
-        let sources = page.split("src=\"").skip(1).map(|rest| rest.split('"').next().unwrap());
-        let missing: Vec<&str> =
-            sources.filter(|file| !folder.path(&format!("out/{file}")).exists()).collect();
-        assert_eq!(missing, [""; 0], "{told}");
-        let bundle = folder.run(&["bundle", "study.toml", "--out", "out", "--allow-programs"]);
-        assert_eq!(bundle.code, Some(2), "{}", bundle.stderr);
+        left_out(program, told, "extract");
     }
+    let told = "ended with code 3";
+    let folder = left_out("import sys\nsys.exit(3)\n", told, "study");
+    let benchmark = folder.table("out/tables/benchmark.csv");
+    let ids: BTreeSet<&str> = benchmark[1..].iter().map(|row| row[0].as_str()).collect();
+    assert!(ids.contains("fo_bi") && !ids.contains("fo_program"), "{ids:?}");
+    let left_out = folder.table("out/tables/left_out.csv");
+    let ids: Vec<&str> = left_out[1..].iter().map(|row| row[0].as_str()).collect();
+    assert_eq!(ids, ["fo_program", "te_program", "vo_program"]);
+    assert!(left_out[1][1].contains(told), "{left_out:?}");
+    let page = std::fs::read_to_string(folder.path("out/index.html")).unwrap();
+    assert!(page.contains("The programs of fo_program, te_program and vo_program failed"), "{told}");
+    // Every picture that the page names is there.
+    let page = page.replace("&#x2f;", "/");
+    let sources = page.split("src=\"").skip(1).map(|rest| rest.split('"').next().unwrap());
+    let missing: Vec<&str> = sources.filter(|file| !folder.path(&format!("out/{file}")).exists()).collect();
+    assert_eq!(missing, [""; 0], "{told}");
+    let bundle = folder.run(&["bundle", "study.toml", "--out", "out", "--allow-programs"]);
+    assert_eq!(bundle.code, Some(2), "{}", bundle.stderr);
+}
+
+/// Runs the study's meshes, or all of it, with a program that fails; others are made, and the exit code and the words say who is not.
+fn left_out(program: &str, told: &str, command: &str) -> Study {
+    let folder = Study::new();
+    folder.write("example.py", program);
+    // Enough to start Python beside other work.
+    folder.edit("time_limit_s = 60", "time_limit_s = 5");
+    let ran = folder.run(&[command, "study.toml", "--out", "out", "--allow-programs"]);
+    assert_eq!(ran.code, Some(1), "{program}: {}", ran.stderr);
+    assert!(ran.stderr.contains("fo_program failed") && ran.stderr.contains(told), "{told}: {}", ran.stderr);
+    assert!(ran.stderr.contains("failed and left out: fo_program, te_program, vo_program"), "{}", ran.stderr);
+    assert!(folder.path("out/meshes/benchmark/fo_bi.json").exists());
+    assert!(!folder.path("out/meshes/benchmark/fo_program.json").exists());
+    folder
 }
 
 /// A program that crashes in the middle of the benchmark loses its own times and nobody else's; and one is inspected and swept like an
