@@ -1,7 +1,5 @@
 //! What may be wrong with a study file, and the checks that say so.
 
-use crate::method::ConfigurationId;
-use crate::study::Configuration;
 use std::path::{Path, PathBuf};
 
 /// Why a study file is refused. Every variant names the file, and the key where there is one.
@@ -144,19 +142,6 @@ impl Checker<'_> {
         let key = |i: usize| format!("{key}[{i}]");
         values.iter().enumerate().try_for_each(|(i, value)| self.text(&key(i), value, "must be a text"))?;
         self.distinct(key, values)
-    }
-
-    /// The configuration with this id.
-    pub(crate) fn configuration<'a>(
-        &self,
-        key: &str,
-        id: &ConfigurationId,
-        all: &'a [Configuration],
-    ) -> Result<&'a Configuration, ConfigError> {
-        match all.iter().find(|configuration| configuration.id == *id) {
-            Some(configuration) => Ok(configuration),
-            None => self.refuse(key, id, "is not a configuration of this study"),
-        }
     }
 
     /// No two of the values are the same.

@@ -152,8 +152,8 @@ fn comparisons(
     let mut comparisons = Vec::new();
     for (i, section) in file.comparisons.iter().enumerate() {
         let key = |name: &str| format!("comparisons[{i}].{name}");
-        let object = c.configuration(&key("left"), &section.left, configurations)?.object;
-        if c.configuration(&key("right"), &section.right, configurations)?.object != object {
+        let object = configuration(c, &key("left"), &section.left, configurations)?.object;
+        if configuration(c, &key("right"), &section.right, configurations)?.object != object {
             let limit = format!("must show the same object as the left side, {}", section.left);
             return c.refuse(key("right"), &section.right, limit);
         }
@@ -192,6 +192,19 @@ fn comparisons(
         return c.refuse("comparisons", comparisons.len(), limit);
     }
     Ok(comparisons)
+}
+
+/// The configuration with this id.
+fn configuration<'a>(
+    c: &Checker<'_>,
+    key: &str,
+    id: &ConfigurationId,
+    all: &'a [Configuration],
+) -> Result<&'a Configuration, ConfigError> {
+    match all.iter().find(|configuration| configuration.id == *id) {
+        Some(configuration) => Ok(configuration),
+        None => c.refuse(key, id, "is not a configuration of this study"),
+    }
 }
 
 #[cfg(test)]

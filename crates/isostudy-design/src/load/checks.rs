@@ -1,5 +1,6 @@
 //! What may stand in each section of a study file.
 
+use super::configuration;
 use crate::check::{Checker, ConfigError, short};
 use crate::config::{FieldSection, ObjectSection, StudyFile, SweepSection};
 use crate::contrast::contrasts;
@@ -206,7 +207,7 @@ pub(super) fn check_stills(
         if still.id.is_empty() || !still.id.bytes().all(plain) {
             return c.refuse(key("id"), &still.id, "must be lower-case letters, digits or underscores");
         }
-        c.configuration(&key("configuration"), &still.configuration, configurations)?;
+        configuration(c, &key("configuration"), &still.configuration, configurations)?;
         c.length(&key("spacing"), still.spacing, 1e6)?;
         if still.looks.is_empty() {
             return c.refuse(key("looks"), "[]", "must list at least one look");
@@ -263,7 +264,7 @@ pub(super) fn check_forms(
     c.count("forms.training", forms.training.len() as u32, 0, 100)?;
     for (i, pair) in file.forms.iter().flat_map(|forms| &forms.training).enumerate() {
         for (name, id) in [("left", &pair.left), ("right", &pair.right)] {
-            c.configuration(&format!("forms.training[{i}].{name}"), id, configurations)?;
+            configuration(c, &format!("forms.training[{i}].{name}"), id, configurations)?;
         }
         if pair.left.object != pair.right.object {
             let limit = format!("must show the same object as the left side, {}", pair.left);
