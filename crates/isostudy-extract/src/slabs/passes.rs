@@ -16,13 +16,16 @@ pub(crate) enum Stage {
     Geometry,
 }
 
+/// What a pass does in one layer.
+type InLayer<S> = fn(&S, &mut Slab<<S as Streamed>::Workspace>, usize) -> Result<(), ExtractError>;
+
 /// A pass over layers of a slab, and of those round it that it needs to see. One call a layer: the loop is in the pass.
 pub(crate) struct Pass<S: Streamed> {
     pub(crate) stage: Stage,
     /// Layers that it stays behind the first pass.
     pub(crate) behind: usize,
     pub(crate) layers: Range<usize>,
-    pub(crate) run: fn(&S, &mut Slab<S::Workspace>, usize) -> Result<(), ExtractError>,
+    pub(crate) run: InLayer<S>,
 }
 
 /// A slab on its way.
