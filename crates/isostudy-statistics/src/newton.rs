@@ -104,8 +104,8 @@ fn by_slope(step: &[f64], here: &Curvature, after: &dyn Fn(f64) -> Curvature) ->
     halves().map(|part| (part, after(part))).find(|(_, there)| good(there))
 }
 
-/// The inverse of a symmetric positive definite matrix by Cholesky's factors; `None` if it is not one.
-pub(super) fn inverse(matrix: &Matrix) -> Option<Matrix> {
+/// Cholesky's lower factor of a symmetric positive definite matrix; `None` if it is not one.
+fn factor(matrix: &Matrix) -> Option<Matrix> {
     let n = matrix.len();
     let mut factor = vec![vec![0.0; n]; n];
     for i in 0..n {
@@ -121,6 +121,19 @@ pub(super) fn inverse(matrix: &Matrix) -> Option<Matrix> {
             }
         }
     }
+    Some(factor)
+}
+
+/// ln of the determinant of a symmetric positive definite matrix; `None` if it is not one.
+pub(super) fn ln_determinant(matrix: &Matrix) -> Option<f64> {
+    let factor = factor(matrix)?;
+    Some((0..matrix.len()).map(|i| 2.0 * factor[i][i].ln()).sum())
+}
+
+/// The inverse of a symmetric positive definite matrix by Cholesky's factors; `None` if it is not one.
+pub(super) fn inverse(matrix: &Matrix) -> Option<Matrix> {
+    let n = matrix.len();
+    let factor = factor(matrix)?;
     // Symmetric: its columns are its rows.
     let mut inverse = Vec::with_capacity(n);
     for column in 0..n {
